@@ -1,0 +1,55 @@
+"""The error tree: everything the user can cause is a `TrialidError` with one clear line."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class TrialidError(Exception):
+    """The input is wrong: what, where, what was expected, what to do. The CLI prints one line."""
+
+
+class LogError(TrialidError):
+    """A log file is missing, damaged, of no known format, or lacks a channel."""
+
+
+class UnitError(TrialidError):
+    """A unit text is unknown or does not fit the quantity."""
+
+
+class AlignmentError(TrialidError):
+    """Channels cannot be brought onto one clock, or contradict each other."""
+
+
+class EffectError(TrialidError):
+    """An effect's declaration is incomplete or asks for something unknown."""
+
+
+class ShipError(TrialidError):
+    """A ship file is incomplete or physically impossible."""
+
+
+class RecipeError(TrialidError):
+    """A pipeline file has a wrong key, a wrong value or a contradiction."""
+
+
+class SimulationError(TrialidError):
+    """A simulation left the domain of the model; the message says when and how."""
+
+
+class NotIdentifiable(TrialidError):
+    """The record cannot carry the question: no excitation, too few samples, nothing to compare."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Words for an error about an unknown name: the nearest known ones, else all of them.
+
+    >>> nearest("delat", ["delta", "phi", "r"])
+    "did you mean 'delta'?"
+    >>> nearest("zz", ["delta", "phi"])
+    'known: delta, phi'
+    """
+    names = sorted(known)
+    close = difflib.get_close_matches(name, names, n=3, cutoff=0.6)
+    if close:
+        return "did you mean " + " or ".join(repr(c) for c in close) + "?"
+    return "known: " + ", ".join(names)

@@ -1,0 +1,131 @@
+"""The dictionary of quantities: one name, one symbol, one SI unit, one positive direction each."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A named signal or ship particular.
+
+    `mirror` is the sign the quantity takes when port and starboard are exchanged: +1 for what the
+    mirror leaves alone (surge speed), -1 for what it reverses (rudder angle). `shown` is the unit
+    in reports, `length` and `speed` the powers of L and U in its prime scale.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    shown: str
+    meaning: str
+    mirror: int = 1
+    length: int = 0
+    speed: int = 0
+    angle: bool = False
+    aliases: frozenset[str] = frozenset()
+
+
+def _table(rows: Iterable[Quantity]) -> dict[str, Quantity]:
+    return {row.name: row for row in rows}
+
+
+def _aliases(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+SIGNALS = _table(
+    (
+        Quantity(
+            "u",
+            "u",
+            "m/s",
+            "m/s",
+            "surge speed through the water, positive forward",
+            speed=1,
+            aliases=_aliases("stw speed_through_water"),
+        ),
+        Quantity("v", "v", "m/s", "m/s", "sway speed, positive to starboard", mirror=-1, speed=1),
+        Quantity(
+            "p",
+            "p",
+            "rad/s",
+            "deg/s",
+            "roll rate, positive starboard side going down",
+            mirror=-1,
+            length=-1,
+            speed=1,
+            aliases=_aliases("roll_rate"),
+        ),
+        Quantity(
+            "r",
+            "r",
+            "rad/s",
+            "deg/s",
+            "yaw rate, positive bow to starboard",
+            mirror=-1,
+            length=-1,
+            speed=1,
+            aliases=_aliases("rot yaw_rate rate_of_turn"),
+        ),
+        Quantity(
+            "phi",
+            "phi",
+            "rad",
+            "deg",
+            "roll angle, positive starboard side down",
+            mirror=-1,
+            aliases=_aliases("roll heel"),
+        ),
+        Quantity(
+            "psi",
+            "psi",
+            "rad",
+            "deg",
+            "heading, positive clockwise from north",
+            mirror=-1,
+            angle=True,
+            aliases=_aliases("heading yaw"),
+        ),
+        Quantity(
+            "delta",
+            "delta",
+            "rad",
+            "deg",
+            "rudder angle, positive turns the ship to starboard",
+            mirror=-1,
+            aliases=_aliases("rudder rudder_angle"),
+        ),
+        Quantity(
+            "delta_order",
+            "delta_c",
+            "rad",
+            "deg",
+            "ordered rudder angle, positive turns the ship to starboard",
+            mirror=-1,
+            aliases=_aliases("rudder_order"),
+        ),
+        Quantity(
+            "n",
+            "n",
+            "rad/s",
+            "rpm",
+            "propeller shaft speed, positive ahead",
+            aliases=_aliases("rpm shaft_speed propeller_rate"),
+        ),
+        Quantity("U", "U", "m/s", "m/s", "speed through the water sqrt(u^2 + v^2)", speed=1),
+    )
+)
+"""Signals an effect may ask for and a log may hold."""
+
+PARTICULARS = _table(
+    (
+        Quantity("L", "L", "m", "m", "length between perpendiculars", length=1),
+        Quantity("rho", "rho", "kg/m^3", "kg/m^3", "density of the water"),
+        Quantity("g", "g", "m/s^2", "m/s^2", "acceleration of gravity", length=-1, speed=2),
+        Quantity("nabla", "nabla", "m^3", "m^3", "volume of displacement", length=3),
+        Quantity("U0", "U_0", "m/s", "m/s", "approach speed of the trial", speed=1),
+    )
+)
+"""Constants of the ship and the water an effect may ask for."""
+
+QUANTITIES = SIGNALS | PARTICULARS

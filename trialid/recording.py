@@ -1,0 +1,48 @@
+"""What a log holds: channels, each on its own clock, as they were logged."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One logged column on its own clock.
+
+    Parameters
+    ----------
+    name
+        What a pipeline writes as `channel`: `/imu:angular_velocity.z`, `rudder`.
+    t
+        Time stamps [ns], any origin, in the order of the log; (N,) int64.
+    y
+        Values as logged, no unit conversion, NaN where the log says `not available`; (N,).
+    unit
+        The unit the log itself states, or None when it states none.
+    clock
+        Which of a message's times `t` is, in words for the report: `header stamp`, `column t`.
+    """
+
+    name: str
+    t: NDArray[np.int64]
+    y: NDArray[np.float64]
+    unit: str | None = None
+    clock: str = ""
+
+    def __post_init__(self) -> None:
+        for array in (self.t, self.y):
+            array.setflags(write=False)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """All channels read from one log file, with remarks on what was found while reading."""
+
+    path: Path
+    adapter: str
+    sha256: str
+    channels: Mapping[str, Channel]
+    remarks: tuple[str, ...] = field(default=())

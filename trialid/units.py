@@ -1,0 +1,56 @@
+"""Unit text to SI, at the doors only; inside the package every number is SI."""
+
+import functools
+from typing import TYPE_CHECKING
+
+from trialid.errors import UnitError, nearest
+from trialid.quantities import Quantity
+
+if TYPE_CHECKING:
+    import pint
+
+COMMON = ("rad", "deg", "rad/s", "deg/s", "deg/min", "m/s", "kn", "km/h", "m", "s", "rpm", "1/s")
+
+
+@functools.cache
+def _registry() -> "pint.UnitRegistry":
+    import pint  # 0.3 s: only when a unit is really asked for
+
+    registry = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+    registry.define("kn = knot")
+    return registry
+
+
+def factor(unit: str, si: str) -> float:
+    """What to multiply a number in `unit` by to have it in the SI unit `si`.
+
+    >>> round(factor("kn", "m/s"), 6)
+    0.514444
+    >>> round(factor("deg/min", "rad/s") * 60 * 180, 6)
+    3.141593
+    >>> factor("furlongs", "rad")
+    Traceback (most recent call last):
+        ...
+    trialid.errors.UnitError: unit 'furlongs' cannot become 'rad'; units that can: deg, rad
+    """
+    import pint
+
+    registry = _registry()
+    try:
+        return float(registry.Quantity(1.0, unit).to(si).magnitude)
+    except pint.UndefinedUnitError as error:
+        known = nearest(unit, COMMON)
+        raise UnitError(f"unit {unit!r} is not known ({known})") from error
+    except (pint.DimensionalityError, pint.OffsetUnitCalculusError) as error:
+        able = ", ".join(sorted(c for c in COMMON if _fits(c, si)))
+        raise UnitError(f"unit {unit!r} cannot become {si!r}; units that can: {able}") from error
+
+
+def _fits(unit: str, si: str) -> bool:
+    registry = _registry()
+    return bool(registry.Quantity(1.0, unit).is_compatible_with(si))
+
+
+def shown(quantity: Quantity) -> float:
+    """What to multiply an SI number by to show it in the unit reports use."""
+    return 1.0 / factor(quantity.shown, quantity.unit)
