@@ -1,1 +1,51 @@
-"""."""
+"""The catalogue: every effect the package knows, by name."""
+
+from pathlib import Path
+from types import ModuleType
+
+from trialid.effects import heel, hull, roll, rudder, sensors, steering_gear
+from trialid.errors import EffectError, nearest
+from trialid.ship.effect import Effect
+
+FILES: tuple[ModuleType, ...] = (hull, heel, roll, rudder, steering_gear, sensors)
+
+CATALOGUE: dict[str, Effect] = {e.name: e for file in FILES for e in file.EFFECTS}
+
+
+def find(name: str, own: dict[str, Effect]) -> Effect:
+    """The effect of this name, the user's own first.
+
+    Raises
+    ------
+    EffectError
+        There is none; the message has the nearest names.
+    """
+    known = CATALOGUE | own
+    if name not in known:
+        raise EffectError(f"there is no effect {name!r}; {nearest(name, known)}")
+    return known[name]
+
+
+def from_file(path: Path) -> dict[str, Effect]:
+    """The effects a user's own `.py` file declares.
+
+    Raises
+    ------
+    EffectError
+        The file cannot be read or run, or declares no effect.
+    """
+    try:
+        source = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise EffectError(f"effects file {path}: cannot be read ({error.strerror})") from error
+    module = ModuleType(path.stem)
+    module.__file__ = str(path)
+    try:
+        exec(compile(source, str(path), "exec"), module.__dict__)
+    except (SyntaxError, NameError, ImportError, TypeError, AttributeError) as error:
+        raise EffectError(f"effects file {path}: {error}") from error
+    found = {x.name: x for x in vars(module).values() if isinstance(x, Effect)}
+    own = {n: e for n, e in found.items() if e.function.__module__ == module.__name__}
+    if not own:
+        raise EffectError(f"effects file {path}: declares no effect; write one with @effect")
+    return own

@@ -1,0 +1,399 @@
+"""How far each parameter can be trusted: Blanke & Knudsen (1999), Eq. 8 to 14, in their order.
+
+Everything starts from the sensitivity matrix A = [Psi L / y_RMS] / sqrt(N n_y), one row per
+compared value and one column per parameter, so that A^T A is the relative normed Hessian H_rn.
+H_rn itself is never formed or inverted: sensitivities come from the singular values and the R
+factor of A.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+
+Vector = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+RANK: Final = 1e-10
+"""Singular values below this share of the largest are zero: a direction nobody can see."""
+
+
+def normed_rms(eps: Vector, y_rms: float) -> float:
+    """Eq. 8: root mean square of the output error over that of the output.
+
+    >>> normed_rms(np.array([0.5, -0.5]), 2.0)
+    0.25
+    """
+    return float(np.sqrt(np.mean(np.square(eps))) / y_rms)
+
+
+def relative_sensitivities(psi: Vector, reference: Vector) -> Vector:
+    """Eq. 9: A with A^T A = H_rn = y_RMS^-2 L H L; (M, n_theta).
+
+    Parameters
+    ----------
+    psi
+        Normed sensitivities d(yhat / y_RMS) / d(theta) / sqrt(N n_y), all outputs and trials
+        stacked; (M, n_theta).
+    reference
+        Diagonal of L: the estimate, or the typical size where the estimate is near zero.
+    """
+    return psi * reference
+
+
+def minimum_sensitivity(A: Vector) -> Vector:
+    """Eq. 10: S_imin = ([H_rn^-1]_ii)^-1/2, what is left of S_i when the others answer; (n_theta,).
+
+    Zero for a parameter in a direction that leaves no trace.
+
+    >>> minimum_sensitivity(np.array([[2.0, 0.0], [0.0, 3.0]])).tolist()
+    [2.0, 3.0]
+    """
+    norms = np.linalg.norm(A, axis=0)
+    if not np.all(norms > 0.0):
+        return _with_dead_columns(A, norms > 0.0)
+    R = np.linalg.qr(A / norms, mode="r")
+    _, s, Vt = np.linalg.svd(R)
+    unseen = s <= RANK * s[0]
+    if unseen.any():
+        hidden = (np.abs(Vt[unseen]) > 1e-6).any(axis=0)
+        return np.where(hidden, 0.0, _from_svd(s, Vt, ~unseen)) * norms
+    inverse = solve_triangular(R, np.eye(len(R)))
+    result: Vector = norms / np.linalg.norm(inverse, axis=1)
+    return result
+
+
+def _with_dead_columns(A: Vector, alive: Mask) -> Vector:
+    result = np.zeros(A.shape[1])
+    if alive.any():
+        result[alive] = minimum_sensitivity(A[:, alive])
+    return result
+
+
+def _from_svd(s: Vector, Vt: Vector, seen: Mask) -> Vector:
+    result: Vector = 1.0 / np.sqrt(np.sum((Vt[seen] / s[seen, None]) ** 2, axis=0))
+    return result
+
+
+def sensitivity_range(A: Vector) -> tuple[float, float, float]:
+    """Eq. 11: S_min, S_max over all directions of parameter space, and R = S_max / S_min.
+
+    R depends on how the parameters are scaled; R_i (Eq. 13) does not.
+
+    >>> sensitivity_range(np.diag([2.0, 4.0]))
+    (2.0, 4.0, 2.0)
+    """
+    s = np.linalg.svd(np.linalg.qr(A, mode="r"), compute_uv=False)
+    ratio = float(s[0] / s[-1]) if s[-1] > RANK * s[0] else float("inf")
+    return float(s[-1]), float(s[0]), ratio
+
+
+def sensitivity(A: Vector) -> Vector:
+    """Eq. 12: S_i = ([H_rn]_ii)^1/2, sensitivity to each parameter alone; (n_theta,)."""
+    result: Vector = np.linalg.norm(A, axis=0)
+    return result
+
+
+def correlation_ratio(A: Vector) -> Vector:
+    """Eq. 13: R_i = S_i / S_imin >= 1; its square is the variance inflation factor; (n_theta,)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(sensitivity(A) / minimum_sensitivity(A))
+
+
+def relative_error(
+    noise: float, undermodelling: float, S_imin: Vector, samples: float | Vector
+) -> tuple[Vector, Vector]:
+    """Eq. 14: relative error of each parameter, its noise part and its model part; (n_theta,) each.
+
+    The first is one standard deviation; it falls with the number of samples, which for coloured
+    residuals is the effective one. The second is a bound over all model errors of this size; it
+    does not fall, and assumes that the invisible part of the model error is about as large as the
+    visible one.
+
+    >>> [float(x[0]) for x in relative_error(0.1, 0.02, np.array([0.5]), 400)]
+    [0.01, 0.04]
+    """
+    with np.errstate(divide="ignore"):
+        return noise / (S_imin * np.sqrt(samples)), undermodelling / S_imin
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Rows of A that are one output of one trial; `compared` places them on the trial's clock."""
+
+    trial: int
+    output: int
+    rows: slice
+    compared: Mask
+
+
+def white_covariance(A: Vector, residual: Vector) -> Vector:
+    """Covariance of the relative parameters if the residual were white; (n_theta, n_theta)."""
+    rows, columns = A.shape
+    variance = float(residual @ residual) / max(rows - columns, 1)
+    inverse = np.linalg.pinv(np.linalg.qr(A, mode="r"))
+    return np.asarray(variance * inverse @ inverse.T)
+
+
+def coloured_covariance(A: Vector, residual: Vector, stretches: Sequence[Stretch]) -> Vector:
+    """Covariance of the relative parameters for the residual's own colour; (n_theta, n_theta).
+
+    A sandwich: (A^T A)^-1 A^T C A (A^T A)^-1, where C holds the autocovariance of each output in
+    each trial up to a lag of three correlation times (Bartlett weights), no correlation between.
+    Morelli & Klein (1997), `Accuracy of aerodynamic model parameters estimated from flight test
+    data`, in the time domain.
+    """
+    rows, columns = A.shape
+    inverse = np.linalg.pinv(A)
+    meat = np.zeros((columns, columns))
+    for stretch in stretches:
+        e = _on_clock(residual[stretch.rows], stretch.compared)
+        a = _on_clock(inverse[:, stretch.rows].T, stretch.compared)
+        meat += a.T @ _correlated(a, autocovariance(e, stretch.compared))
+    return meat * rows / max(rows - columns, 1)
+
+
+def _on_clock(values: Vector, compared: Mask) -> Vector:
+    """Rows back on the trial's clock, zero where nothing was compared."""
+    full = np.zeros((len(compared), *values.shape[1:]))
+    full[compared] = values
+    return full
+
+
+def autocovariance(e: Vector, compared: Mask) -> Vector:
+    """Bartlett-weighted autocovariance up to three correlation times; (lags,).
+
+    Pairs are counted where both values were compared, so that gaps do not bias it.
+    """
+    n = len(e)
+    size = 1 << (2 * n - 1).bit_length()
+    spectrum = np.fft.rfft(e, size)
+    presence = np.fft.rfft(compared.astype(float), size)
+    products = np.fft.irfft(spectrum * spectrum.conj(), size)[:n]
+    pairs = np.round(np.fft.irfft(presence * presence.conj(), size)[:n])
+    c = products / np.maximum(pairs, 1.0)
+    lags = window(c, n)
+    weights: Vector = c[:lags] * (1.0 - np.arange(lags) / lags)
+    return weights
+
+
+def window(c: Vector, n: int) -> int:
+    """Lags to keep: three times the longest correlation time, at most a quarter of the record.
+
+    The correlation time is the last lag at which the autocorrelation leaves the band of twice
+    its own standard error, counted until it has stayed inside for as long again.
+    """
+    longest = max(n // 4, 1)
+    if c[0] <= 0.0:
+        return 1
+    rho = np.abs(c[:longest] / c[0])
+    band = 2.0 / np.sqrt(n)
+    last = 0
+    for lag in range(1, longest):
+        if rho[lag] > max(band, 0.05):
+            last = lag
+        elif lag > 2 * last + 10:
+            break
+    return min(3 * last + 1, longest)
+
+
+def _correlated(a: Vector, c: Vector) -> Vector:
+    """The symmetric Toeplitz matrix of autocovariance c times a; (N, n_theta)."""
+    n = len(a)
+    size = 1 << (n + 2 * len(c)).bit_length()
+    kernel = np.zeros(size)
+    kernel[: len(c)] = c
+    kernel[size - len(c) + 1 :] += c[1:][::-1]
+    spectrum = np.fft.rfft(kernel).real[:, None]
+    return np.fft.irfft(np.fft.rfft(a, size, axis=0) * spectrum, size, axis=0)[:n]
+
+
+Kind = Literal["physical", "nuisance"]
+
+
+@dataclass(frozen=True)
+class ParameterAccuracy:
+    """One row of the accuracy table; errors absolute unless called relative."""
+
+    name: str
+    kind: Kind
+    unit: str
+    value: float
+    reference: float
+    S_i: float
+    S_imin: float
+    R_i: float
+    noise_error: float | None
+    undermodelling_error: float | None
+    standard_error: float
+    white_error: float
+    n_effective: float
+
+    @property
+    def relative_error(self) -> float | None:
+        """Eq. 14 in full, where both parts are known."""
+        if self.noise_error is None or self.undermodelling_error is None or self.reference == 0.0:
+            return None
+        return (self.noise_error + self.undermodelling_error) / abs(self.reference)
+
+
+@dataclass(frozen=True)
+class Weakness:
+    """A direction of parameter space that the record hardly sees."""
+
+    parameters: tuple[str, ...]
+    sentence: str
+    relative_error: float
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Sensitivities and errors of a fit; S_min, S_max, R are of the physical parameters."""
+
+    parameters: tuple[ParameterAccuracy, ...]
+    S_min: float
+    S_max: float
+    R: float
+    n_effective: float
+    weak: tuple[Weakness, ...]
+    covariance: Vector
+
+    @property
+    def physical(self) -> tuple[ParameterAccuracy, ...]:
+        """The rows of the physical parameters."""
+        return tuple(p for p in self.parameters if p.kind == "physical")
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a parameter is, beside its column of A."""
+
+    name: str
+    kind: Kind
+    unit: str
+    value: float
+    reference: float
+
+
+def assess(
+    subjects: Sequence[Subject],
+    psi: Vector,
+    residual: Vector,
+    stretches: Sequence[Stretch],
+    noise: float | None,
+    undermodelling: float | None,
+) -> Accuracy:
+    """The accuracy of every parameter from the sensitivities and the residual of a fit.
+
+    Parameters
+    ----------
+    subjects
+        The parameters, in the order of the columns; (n_theta,).
+    psi, residual
+        Normed sensitivities (M, n_theta) and normed residual (M,), scaled so that the squares of
+        the residual sum to eps_RMSn^2.
+    noise, undermodelling
+        eps^x_RMSn and eps^m_RMSn, None where they could not be separated.
+    """
+    reference = np.array([s.reference for s in subjects])
+    A = relative_sensitivities(psi, reference)
+    S_i, S_imin, R_i = sensitivity(A), minimum_sensitivity(A), correlation_ratio(A)
+    white = np.sqrt(np.diag(white_covariance(A, residual)))
+    covariance = coloured_covariance(A, residual, stretches)
+    coloured = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        n_effective = len(residual) * (white / coloured) ** 2
+    x, m = relative_error(noise or 0.0, undermodelling or 0.0, S_imin, n_effective)
+    rows = tuple(
+        ParameterAccuracy(
+            s.name, s.kind, s.unit, s.value, s.reference,
+            float(S_i[i]), float(S_imin[i]), float(R_i[i]),
+            None if noise is None else float(x[i] * abs(s.reference)),
+            None if undermodelling is None else float(m[i] * abs(s.reference)),
+            float(coloured[i] * abs(s.reference)), float(white[i] * abs(s.reference)),
+            float(n_effective[i]),
+        )
+        for i, s in enumerate(subjects)
+    )  # fmt: skip
+    physical = np.array([s.kind == "physical" for s in subjects])
+    clean = without_nuisance(A, physical)
+    S_min, S_max, R = sensitivity_range(clean)
+    eps = float(np.linalg.norm(residual))
+    names = [s.name for s in subjects if s.kind == "physical"]
+    typical = float(np.median(n_effective[physical]))
+    return Accuracy(
+        rows, S_min, S_max, R, typical, weak_directions(clean, names, eps / np.sqrt(typical)),
+        covariance * np.outer(reference, reference),
+    )  # fmt: skip
+
+
+def without_nuisance(A: Vector, physical: Mask) -> Vector:
+    """Columns of the physical parameters with everything projected out that nuisances can mimic."""
+    nuisance = A[:, ~physical]
+    if nuisance.shape[1] == 0:
+        return A[:, physical]
+    norms = np.linalg.norm(nuisance, axis=0)
+    Q, _ = np.linalg.qr(nuisance[:, norms > 0.0] / norms[norms > 0.0])
+    wanted = A[:, physical]
+    return np.asarray(wanted - Q @ (Q.T @ wanted))
+
+
+COLLINEAR: Final = 10.0
+"""A collinearity index above this names a weak direction (Brun et al. 2001: 10 to 15)."""
+
+SHARE: Final = 0.3
+"""A parameter with at least this share of a direction is named in it."""
+
+
+def weak_directions(A: Vector, names: Sequence[str], error: float) -> tuple[Weakness, ...]:
+    """Directions of the physical parameters that leave hardly a trace, in words.
+
+    Columns are brought to length one first, so that the answer does not depend on how parameters
+    are scaled; a direction is weak when its singular value is below 1 / `COLLINEAR`. `error` is
+    the normed noise over the root of the effective samples, from which the relative error of the
+    combination follows.
+    """
+    norms = np.linalg.norm(A, axis=0)
+    alive = norms > 0.0
+    found = [
+        Weakness((n,), f"{spoken(n)} leaves no trace in this record", float("inf"))
+        for n, on in zip(names, alive, strict=True)
+        if not on
+    ]
+    kept = [n for n, on in zip(names, alive, strict=True) if on]
+    if len(kept) < 2:
+        return tuple(found)
+    _, s, Vt = np.linalg.svd(np.linalg.qr(A[:, alive] / norms[alive], mode="r"))
+    for value, direction in zip(s[::-1], Vt[::-1], strict=True):
+        if value >= 1.0 / COLLINEAR:
+            break
+        shares = np.abs(direction)
+        leading = np.argsort(-shares)
+        parts = tuple(kept[i] for i in leading if shares[i] >= SHARE)
+        size = float(np.linalg.norm(direction / norms[alive]))
+        relative = error / value * size if value > 0.0 else float("inf")
+        found.append(Weakness(parts, _weak_sentence(parts, 1.0 / max(value, 1e-300)), relative))
+    return tuple(found)
+
+
+def _weak_sentence(parts: tuple[str, ...], index: float) -> str:
+    words = [spoken(p) for p in parts]
+    if len(words) == 1:
+        return f"{words[0]} is answered for by all the others together (collinearity {index:.3g})"
+    listed = ", ".join(words[:-1]) + " and " + words[-1]
+    return f"{listed} cannot be told apart here (collinearity {index:.3g})"
+
+
+def spoken(name: str) -> str:
+    """A coefficient as people write it: `av` and `ar` are moduli.
+
+    >>> spoken("Yvar"), spoken("Nrar"), spoken("Kpap"), spoken("Nvav"), spoken("Yv")
+    ('Yv|r|', 'Nr|r|', 'Kp|p|', 'Nv|v|', 'Yv')
+    """
+    for letter in "uvpr":
+        if name.endswith("a" + letter) and len(name) > 3:
+            return f"{name[:-2]}|{letter}|"
+    return name

@@ -1,0 +1,154 @@
+"""Hydrodynamic forces on the hull: linear, second-order modulus and third-order terms; primed."""
+
+from trialid.ship.effect import Force, Parameter, effect
+
+BK99 = "Blanke & Knudsen (1999), section 4"
+SN82 = "Son & Nomoto (1982), container ship S-175"
+BC93 = "Blanke & Christensen (1993), multipurpose naval vessel"
+
+
+@effect(source=BK99)
+def linear_hull(v, r, *, Yv=-0.0119, Yr=0.0029, Kv=0.00031, Kr=-0.00007, Nv=-0.0037, Nr=-0.0025):
+    """Y = Yv v + Yr r,  K = Kv v + Kr r,  N = Nv v + Nr r: drift and turning, small motions."""
+    return Force(Y=Yv * v + Yr * r, K=Kv * v + Kr * r, N=Nv * v + Nr * r)
+
+
+@effect(source=SN82)
+def centripetal_added_mass(u, v, r, *, Xvrm=0.007, Yurm=-0.00024, Kurm=0.0000074):
+    """X = Xvrm v r,  Y = Yurm u r,  K = Kurm u r: the water that turns with the hull."""
+    return Force(X=Xvrm * v * r, Y=Yurm * u * r, K=Kurm * u * r)
+
+
+@effect(source=BK99)
+def sway_drag_vav(v, *, Yvav=Parameter(-0.03, low=-0.5, high=0.0)):
+    """Y = Yv|v| |v| v: water passing under the keel when the ship drifts."""
+    return Force(Y=Yvav * abs(v) * v)
+
+
+@effect(source=BK99)
+def sway_drag_var(v, r, *, Yvar=Parameter(-0.02, low=-0.3, high=0.05)):
+    """Y = Yv|r| v |r|: more sway damping while the ship turns."""
+    return Force(Y=Yvar * v * abs(r))
+
+
+@effect(source=BC93)
+def sway_drag_rav(v, r, *, Yrav=Parameter(-0.02, low=-0.3, high=0.3)):
+    """Y = Yr|v| r |v|: side force of turning, more of it while drifting."""
+    return Force(Y=Yrav * r * abs(v))
+
+
+@effect(source=BK99)
+def sway_drag_rar(r, *, Yrar=Parameter(0.003, low=-0.05, high=0.05)):
+    """Y = Yr|r| r |r|: side force of fast turning."""
+    return Force(Y=Yrar * r * abs(r))
+
+
+@effect(source=BK99)
+def yaw_drag_vav(v, *, Nvav=Parameter(-0.005, low=-0.1, high=0.1)):
+    """N = Nv|v| v |v|: yaw moment of large drift."""
+    return Force(N=Nvav * v * abs(v))
+
+
+@effect(source=BK99)
+def yaw_drag_var(v, r, *, Nvar=Parameter(0.005, low=-0.1, high=0.1)):
+    """N = Nv|r| v |r|: drift moment that changes with turning."""
+    return Force(N=Nvar * v * abs(r))
+
+
+@effect(source=BC93)
+def yaw_drag_rav(v, r, *, Nrav=Parameter(-0.005, low=-0.1, high=0.02)):
+    """N = Nr|v| r |v|: yaw damping that grows with drift."""
+    return Force(N=Nrav * r * abs(v))
+
+
+@effect(source=BK99)
+def yaw_drag_rar(r, *, Nrar=Parameter(-0.0015, low=-0.02, high=0.0)):
+    """N = Nr|r| r |r|: yaw damping that grows with the rate of turn."""
+    return Force(N=Nrar * r * abs(r))
+
+
+@effect(source=BC93)
+def roll_drag_vav(v, *, Kvav=Parameter(0.0004, low=-0.02, high=0.02)):
+    """K = Kv|v| v |v|: heeling moment of large drift."""
+    return Force(K=Kvav * v * abs(v))
+
+
+@effect(source=BC93)
+def roll_drag_var(v, r, *, Kvar=Parameter(0.0003, low=-0.02, high=0.02)):
+    """K = Kv|r| v |r|: heeling moment of drift that changes with turning."""
+    return Force(K=Kvar * v * abs(r))
+
+
+@effect(source=BC93)
+def roll_drag_rav(v, r, *, Krav=Parameter(0.0001, low=-0.02, high=0.02)):
+    """K = Kr|v| r |v|: heeling moment of turning that grows with drift."""
+    return Force(K=Krav * r * abs(v))
+
+
+@effect(source=SN82)
+def sway_cubic_vvv(v, *, Yvvv=Parameter(-0.1, low=-2.0, high=0.0)):
+    """Y = Yvvv v^3: sway damping at large drift."""
+    return Force(Y=Yvvv * v**3)
+
+
+@effect(source=SN82)
+def sway_cubic_cross(
+    v, r, *, Yvvr=Parameter(0.02, low=-1.0, high=1.0), Yvrr=Parameter(-0.04, low=-1.0, high=1.0)
+):
+    """Y = Yvvr v^2 r + Yvrr v r^2: side force of turning with drift."""
+    return Force(Y=Yvvr * v**2 * r + Yvrr * v * r**2)
+
+
+@effect(source=SN82)
+def sway_cubic_rrr(r, *, Yrrr=Parameter(0.002, low=-0.1, high=0.1)):
+    """Y = Yrrr r^3: side force of fast turning."""
+    return Force(Y=Yrrr * r**3)
+
+
+@effect(source=SN82)
+def yaw_cubic_vvv(v, *, Nvvv=Parameter(0.002, low=-0.5, high=0.5)):
+    """N = Nvvv v^3: yaw moment of large drift."""
+    return Force(N=Nvvv * v**3)
+
+
+@effect(source=SN82)
+def yaw_cubic_cross(
+    v, r, *, Nvvr=Parameter(-0.04, low=-1.0, high=1.0), Nvrr=Parameter(0.002, low=-1.0, high=1.0)
+):
+    """N = Nvvr v^2 r + Nvrr v r^2: yaw damping in a tight turn."""
+    return Force(N=Nvvr * v**2 * r + Nvrr * v * r**2)
+
+
+@effect(source=SN82)
+def yaw_cubic_rrr(r, *, Nrrr=Parameter(-0.0023, low=-0.1, high=0.0)):
+    """N = Nrrr r^3: yaw damping of fast turning."""
+    return Force(N=Nrrr * r**3)
+
+
+@effect(source=SN82)
+def roll_cubic(v, r, *, Kvvv=0.0028, Kvvr=-0.00059, Kvrr=0.00106, Krrr=-0.000046):
+    """K = Kvvv v^3 + Kvvr v^2 r + Kvrr v r^2 + Krrr r^3: heeling moment of tight turns."""
+    return Force(K=Kvvv * v**3 + Kvvr * v**2 * r + Kvrr * v * r**2 + Krrr * r**3)
+
+
+@effect(source=SN82)
+def surge_resistance(u, *, Xuu=Parameter(-0.0004, high=0.0)):
+    """X = Xuu u |u|: resistance ahead."""
+    return Force(X=Xuu * u * abs(u))
+
+
+@effect(source=SN82)
+def surge_turning(v, r, *, Xvr=-0.0031, Xvv=-0.0039, Xrr=0.0002):
+    """X = Xvr v r + Xvv v^2 + Xrr r^2: speed lost in turns."""
+    return Force(X=Xvr * v * r + Xvv * v**2 + Xrr * r**2)
+
+
+EFFECTS = (
+    linear_hull, centripetal_added_mass,
+    sway_drag_vav, sway_drag_var, sway_drag_rav, sway_drag_rar,
+    yaw_drag_vav, yaw_drag_var, yaw_drag_rav, yaw_drag_rar,
+    roll_drag_vav, roll_drag_var, roll_drag_rav,
+    sway_cubic_vvv, sway_cubic_cross, sway_cubic_rrr,
+    yaw_cubic_vvv, yaw_cubic_cross, yaw_cubic_rrr, roll_cubic,
+    surge_resistance, surge_turning,
+)  # fmt: skip

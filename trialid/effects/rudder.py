@@ -1,0 +1,100 @@
+"""The rudder: linear and cubic forces, its neutral angle, and the propeller's race over it."""
+
+import math
+
+from trialid.maths import arctan, cos, sin, sqrt
+from trialid.ship.effect import Force, Parameter, Steered, effect
+
+BK99 = "Blanke & Knudsen (1999), section 4"
+SN82 = "Son & Nomoto (1982), container ship S-175"
+TURN = 2.0 * math.pi
+PI = math.pi
+
+CST65 = "Chislett & Strom-Tejsen (1965), Mariner"
+
+
+@effect(source=BK99)
+def linear_rudder(delta, *, Ydelta=-0.003, Kdelta=0.0001, Ndelta=0.0015):
+    """Y = Ydelta delta,  K = Kdelta delta,  N = Ndelta delta: small rudder angles."""
+    return Force(Y=Ydelta * delta, K=Kdelta * delta, N=Ndelta * delta)
+
+
+@effect(source=CST65)
+def rudder_cubic(
+    delta, *,
+    Yddd=Parameter(0.001, low=-0.02, high=0.02), Nddd=Parameter(-0.0005, low=-0.01, high=0.01),
+):  # fmt: skip
+    """Y = Yddd delta^3,  N = Nddd delta^3: lift that falls off at large rudder angles."""
+    return Force(Y=Yddd * delta**3, N=Nddd * delta**3)
+
+
+@effect(source=SN82)
+def surge_rudder(delta, *, Xdd=Parameter(-0.002, low=-0.05, high=0.0)):
+    """X = Xdd delta^2: resistance of the rudder."""
+    return Force(X=Xdd * delta**2)
+
+
+@effect(source="neutral angle of a single-screw ship; indicator zero")
+def rudder_offset(*, delta_0=Parameter(0.01, "rad", low=-0.1, high=0.1)):
+    """delta = delta + delta_0: the recorded zero is not the angle that keeps the ship straight."""
+    return Steered(delta=delta_0)
+
+
+def _inflow(u, v, r, L, w_P, tau_P, x_P):
+    """Speed of the water at the propeller; the printed code of the set has cos(v) for u."""
+    U = sqrt(u * u + v * v)
+    return u * ((1.0 - w_P) + tau_P * ((v + x_P * r * L) / U) ** 2)
+
+
+def _thrust_coefficient(inflow, n, D_P, KT0, KT1):
+    """Advance number J and thrust coefficient K_T; n in rad/s."""
+    J = inflow / (n / TURN * D_P)
+    return J, KT0 + KT1 * J
+
+
+@effect(source=SN82, system="SI")
+def propeller_thrust(
+    u, v, r, n, L, rho, *,
+    D_P=Parameter(6.533, "m"), KT0=0.527, KT1=-0.455, t_P=0.175, w_P=0.184, tau_P=1.09, x_P=-0.526,
+):  # fmt: skip
+    """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s)."""
+    _, K_T = _thrust_coefficient(_inflow(u, v, r, L, w_P, tau_P, x_P), n, D_P, KT0, KT1)
+    return Force(X=(1.0 - t_P) * rho * (n / TURN) ** 2 * D_P**4 * K_T)
+
+
+@effect(source=SN82, system="SI")
+def propeller_rudder(
+    u, v, r, n, delta, L, rho, *,
+    D_P=Parameter(6.533, "m"), A_R=Parameter(33.0376, "m^2"), Lambda_R=1.8219,
+    KT0=0.527, KT1=-0.455, t_P=0.175, w_P=0.184, tau_P=1.09, x_P=-0.526,
+    k_R=0.631, eps_R=0.921, x_R=-0.5, gamma_R=0.088, l_R=-0.156, l_Rrrr=-0.275, l_Rrrv=1.96,
+    c_RX=0.71, a_H=0.237, z_R=0.033, x_H=-0.48,
+):  # fmt: skip
+    """F_N = -1/2 rho A_R f (u_R^2 + v_R^2) sin(alpha_R): a rudder in the propeller's race.
+
+    With the thrust X = (1 - t_P) rho n^2 D_P^4 K_T(J); u_R is the race, v_R the side flow that
+    drift and turning leave at the rudder, f the slope of the normal force by aspect ratio.
+    """
+    inflow = _inflow(u, v, r, L, w_P, tau_P, x_P)
+    J, K_T = _thrust_coefficient(inflow, n, D_P, KT0, KT1)
+    thrust = rho * (n / TURN) ** 2 * D_P**4 * K_T
+    u_R = inflow * eps_R * sqrt(1.0 + 8.0 * k_R * K_T / (PI * J * J))
+    U = sqrt(u * u + v * v)
+    r_prime = r * L / U
+    turned = l_R * r + l_Rrrr * r * r_prime**2
+    v_R = gamma_R * v + turned * L + l_Rrrv * r_prime**2 * v
+    alpha = delta + arctan(v_R / u_R)
+    slope = 6.13 * Lambda_R / (Lambda_R + 2.25)
+    F_N = -0.5 * rho * A_R * slope * (u_R * u_R + v_R * v_R) * sin(alpha)
+    across = F_N * cos(delta)
+    return Force(
+        X=(1.0 - t_P) * thrust + c_RX * F_N * sin(delta),
+        Y=(1.0 + a_H) * across,
+        K=-(1.0 + a_H) * z_R * L * across,
+        N=(x_R + a_H * x_H) * L * across,
+    )
+
+
+EFFECTS = (
+    linear_rudder, rudder_cubic, surge_rudder, rudder_offset, propeller_thrust, propeller_rudder,
+)  # fmt: skip

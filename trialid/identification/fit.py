@@ -1,0 +1,477 @@
+"""From trials and a model to a fit: what is unknown, where it starts, and the search."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.effects import CATALOGUE
+from trialid.errors import NotIdentifiable, SimulationError, nearest
+from trialid.identification.gauss_newton import REASONS, Iteration, Minimum, minimise
+from trialid.identification.output_error import (
+    Norm,
+    Problem,
+    Unknown,
+    linearise,
+    norms,
+    respond_all,
+    scores,
+    where_compared,
+)
+from trialid.ship.effect import Effect, Force, Parameter, Rate
+from trialid.ship.model import ShipModel, check_mass
+from trialid.simulation.integrate import (
+    Departure,
+    Engine,
+    Response,
+    Simulator,
+    guess,
+    initial,
+    prepare,
+    respond,
+)
+from trialid.trial import Mask, Trial
+
+Vector = NDArray[np.float64]
+Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
+
+STATE_SIZE: Final = {"u": 0.1, "v": 0.1, "p": 0.002, "r": 0.0005, "phi": 0.01, "psi": 0.01}
+"""Typical error of a start guessed from the record [SI]: the scale of an initial state."""
+
+STILL_RUDDER: Final = 0.002
+"""[rad] A rudder that moves less than this over all trials excites nothing."""
+
+HUBER: Final = 1.345
+"""Residuals beyond this many standard deviations count by their size, not its square."""
+
+PASSES: Final = 12
+SAME_OPTIMUM: Final = 1e-6
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to identify; see the pipeline's `[identify]`.
+
+    `priors` are (mean, standard deviation) in the parameter's own unit; `bounds` (low, high).
+    """
+
+    free: tuple[str, ...]
+    outputs: tuple[str, ...]
+    nuisance: tuple[Nuisance, ...] = ()
+    weights: Mapping[str, float] = field(default_factory=dict)
+    loss: Literal["squares", "huber"] = "squares"
+    priors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    starts: int = 1
+    spread: float = 0.3
+    seed: int = 0
+    max_iterations: int = 50
+    norm: Norm = "mean"
+    substeps: int = 1
+    engine: Engine = "compiled"
+
+
+@dataclass(frozen=True)
+class Score:
+    """How one trial came out: eps_RMSn of each output, and the simulated response."""
+
+    trial: Trial
+    response: Response
+    compared: Mask
+    eps_rmsn: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The result of a search.
+
+    Attributes
+    ----------
+    model
+        The model with the fitted values of the shared parameters.
+    theta
+        All unknowns; (n_theta,).
+    residual, psi
+        Normed residual (M,) and normed gradient (M, n_theta) at the optimum, without priors.
+    scores
+        Trials to fit, then trials to check.
+    iterations
+        The whole history, over all passes of the search that won.
+    agreeing
+        How many of the starts reached this optimum, of how many.
+    """
+
+    model: ShipModel
+    settings: Settings
+    problem: Problem
+    theta: Vector
+    residual: Vector
+    psi: Vector
+    scores: tuple[Score, ...]
+    iterations: tuple[Iteration, ...]
+    reason: str
+    converged: bool
+    agreeing: tuple[int, int]
+
+    @property
+    def V(self) -> float:
+        """Eq. 4 at the optimum, in normed outputs."""
+        return 0.5 * float(self.residual @ self.residual)
+
+    @property
+    def eps_rmsn(self) -> float:
+        """Error of all outputs over all trials to fit, each output normed."""
+        return float(np.sqrt(np.mean(np.square(list(self.eps_by_output.values())))))
+
+    @property
+    def eps_by_output(self) -> dict[str, float]:
+        """The same, output by output."""
+        return _pooled([s for s in self.scores if s.trial.use == "fit"])
+
+    @property
+    def eps_check(self) -> float | None:
+        """Error over the held-out trials, None where there are none."""
+        checks = [s for s in self.scores if s.trial.use == "check"]
+        if not checks:
+            return None
+        return float(np.sqrt(np.mean(np.square(list(_pooled(checks).values())))))
+
+    @property
+    def explanation(self) -> str:
+        """Why the search ended, in words."""
+        return REASONS[self.reason]
+
+    def value(self, name: str) -> float:
+        """The fitted value of an unknown by its name."""
+        return float(self.theta[[x.name for x in self.problem.unknowns].index(name)])
+
+
+def _pooled(scored: Sequence[Score]) -> dict[str, float]:
+    pooled = {}
+    for c in scored[0].eps_rmsn:
+        i = list(scored[0].eps_rmsn).index(c)
+        squares = sum(s.eps_rmsn[c] ** 2 * s.compared[:, i].sum() for s in scored)
+        pooled[c] = float(np.sqrt(squares / sum(s.compared[:, i].sum() for s in scored)))
+    return pooled
+
+
+Progress = Callable[[Iteration], None]
+
+
+def identify(
+    trials: Sequence[Trial],
+    model: ShipModel,
+    settings: Settings,
+    progress: Progress = lambda iteration: None,
+) -> Fit:
+    """Eq. 5: the parameters with the smallest output error over all trials marked `fit`.
+
+    Raises
+    ------
+    NotIdentifiable
+        Nothing excites the ship, there are fewer values than unknowns, nothing can be compared.
+    SimulationError
+        No start can be simulated.
+    """
+    problem = pose(trials, model, settings)
+    starts = _starts(problem, settings)
+    ends = [_search(problem, settings, start, progress) for start in starts]
+    best = min(ends, key=lambda end: end.minimum.V if end.minimum.iterations else np.inf)
+    if not best.minimum.iterations:
+        raise SimulationError(_why_no_start(problem))
+    same = [e.minimum.iterations and _same(e.minimum.V, best.minimum.V) for e in ends]
+    return _finish(model, problem, trials, settings, best, (sum(map(bool, same)), len(starts)))
+
+
+def _same(V: float, best: float) -> bool:
+    return V <= best * (1.0 + SAME_OPTIMUM) + 1e-20
+
+
+def pose(trials: Sequence[Trial], model: ShipModel, settings: Settings) -> Problem:
+    """What is unknown, and what a residual is made of."""
+    fitted = tuple(t for t in trials if t.use == "fit")
+    _check_outputs(fitted, settings)
+    full, per_trial = with_nuisance(model, settings)
+    shared = tuple(n for n in settings.free if n not in per_trial)
+    simulator = prepare(
+        _with_starts(full, (*shared, *per_trial), settings),
+        (*shared, *per_trial),
+        settings.outputs,
+        settings.engine,
+        settings.substeps,
+    )
+    unknowns = (*(_shared(simulator, n, settings) for n in shared),
+                *_nuisances(simulator, fitted, per_trial, settings))  # fmt: skip
+    check_mass(simulator.model, {n: simulator.model.value(n) for n in simulator.model.parameters})
+    compared = tuple(where_compared(t, simulator) for t in fitted)
+    y_rms = norms(fitted, compared, settings.outputs, settings.norm)
+    weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
+    weights = weights / np.sqrt(np.mean(weights**2))
+    problem = Problem(simulator, fitted, unknowns, compared, y_rms, weights)
+    _check_excitation(problem)
+    return problem
+
+
+def _check_outputs(trials: Sequence[Trial], settings: Settings) -> None:
+    for trial in trials:
+        for c in settings.outputs:
+            if c not in trial.signals:
+                raise NotIdentifiable(
+                    f"trial {trial.name!r} has no signal {c!r}, which is an output to fit; "
+                    f"map it in [trial.signals] ({nearest(c, trial.signals)})"
+                )
+
+
+def with_nuisance(model: ShipModel, settings: Settings) -> tuple[ShipModel, tuple[str, ...]]:
+    """The model with the effects that nuisance parameters act through, and their names."""
+    wanted: list[Effect] = []
+    if "bias" in settings.nuisance:
+        wanted += [CATALOGUE[f"bias_{c}"] for c in settings.outputs if f"bias_{c}" in CATALOGUE]
+    if "delay" in settings.nuisance:
+        wanted += [CATALOGUE[f"delay_{c}"] for c in settings.outputs if f"delay_{c}" in CATALOGUE]
+    if "rudder_offset" in settings.nuisance:
+        wanted += [CATALOGUE["rudder_offset"]]
+    present = {e.name for e in model.effects}
+    added = [e for e in wanted if e.name not in present]
+    for effect in added:
+        model = model + effect
+    return model, tuple(p for e in added for p in e.parameters)
+
+
+def _with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> ShipModel:
+    """Typical values for free parameters nobody states, so that the search has a start."""
+    missing = {}
+    for name in free:
+        if name not in model.parameters:
+            known = nearest(name, model.parameters)
+            raise NotIdentifiable(f"free parameter {name!r} is in no effect of the model; {known}")
+        if name in settings.priors and model.stated(name) is None:
+            missing[name] = settings.priors[name][0]
+        elif model.stated(name) is None:
+            parameter = model.parameters[name]
+            missing[name] = parameter.null if is_sensor(model, name) else parameter.start
+    return model.with_values(missing) if missing else model
+
+
+def is_sensor(model: ShipModel, name: str) -> bool:
+    """Whether a parameter belongs to a sensor or an offset, not to the ship."""
+    for effect in model.effects:
+        if name in effect.parameters:
+            return not (Force in effect.forms or Rate in effect.forms)
+    return False
+
+
+def _shared(simulator: Simulator, name: str, settings: Settings) -> Unknown:
+    parameter = simulator.model.parameters[name]
+    low, high = settings.bounds.get(name, (parameter.low, parameter.high))
+    start = simulator.model.value(name)
+    size = abs(start) if start else abs(parameter.start)
+    kind: Literal["physical", "nuisance"] = (
+        "nuisance" if is_sensor(simulator.model, name) else "physical"
+    )
+    prior = settings.priors.get(name)
+    return Unknown(name, name, None, start, size, low, high, parameter.unit, kind, prior)
+
+
+def _nuisances(
+    simulator: Simulator, trials: Sequence[Trial], names: Sequence[str], settings: Settings
+) -> list[Unknown]:
+    model = simulator.model
+    made = []
+    for i, trial in enumerate(trials):
+        for name in names:
+            p: Parameter = model.parameters[name]
+            label = f"{name} [{trial.name}]"
+            made.append(
+                Unknown(label, name, i, p.null, abs(p.start), p.low, p.high, p.unit, "nuisance")
+            )
+        if "initial_state" in settings.nuisance:
+            made += [_initial(model, trial, i, s) for s in model.states]
+    return made
+
+
+def _initial(model: ShipModel, trial: Trial, index: int, state: str) -> Unknown:
+    start, size = guess(model, trial, state), STATE_SIZE[state]
+    unit = {"u": "m/s", "v": "m/s", "p": "rad/s", "r": "rad/s"}.get(state, "rad")
+    label = f"{initial(state)} [{trial.name}]"
+    return Unknown(label, initial(state), index, start, size, -np.inf, np.inf, unit, "nuisance")
+
+
+def _check_excitation(problem: Problem) -> None:
+    """Refuse records that cannot carry the question.
+
+    Raises
+    ------
+    NotIdentifiable
+        The rudder does not move, or there are fewer values than unknowns.
+    """
+    count = sum(int(m.sum()) for m in problem.compared)
+    if count <= len(problem.unknowns):
+        raise NotIdentifiable(
+            f"{count} compared values for {len(problem.unknowns)} unknowns; free fewer "
+            "parameters, or use a longer record or a shorter [align] period"
+        )
+    for name in ("delta", "delta_order"):
+        if name in problem.simulator.equations.inputs:
+            moves = max(float(np.ptp(t.signals[name])) for t in problem.trials)
+            if moves < STILL_RUDDER:
+                listed = ", ".join(repr(t.name) for t in problem.trials)
+                raise NotIdentifiable(
+                    f"the rudder ({name}) moves less than {np.rad2deg(moves):.2f} deg in trial "
+                    f"{listed}: nothing excites the ship and no parameter can be found; use a "
+                    "trial with a manoeuvre, or check the channel"
+                )
+
+
+def _starts(problem: Problem, settings: Settings) -> list[Vector]:
+    """The stated start, then random ones; (n_theta,) each."""
+    rng = np.random.default_rng(settings.seed)
+    physical = np.array([x.kind == "physical" for x in problem.unknowns])
+    starts = [problem.start]
+    for _ in range(settings.starts - 1):
+        factor = 1.0 + settings.spread * rng.uniform(-1.0, 1.0, len(physical))
+        starts.append(np.where(physical, problem.start * factor, problem.start))
+    return starts
+
+
+@dataclass(frozen=True)
+class _End:
+    """Where a search ended, with the history of all its passes."""
+
+    minimum: Minimum
+    path: tuple[Iteration, ...]
+
+
+def _search(problem: Problem, settings: Settings, start: Vector, progress: Progress) -> _End:
+    """Minimise; again with new weights while a robust loss or a prior asks for it.
+
+    A prior weighs in by the noise level of the record, and a robust loss by the residual, both of
+    which are known only after a fit: hence the passes, until nothing changes.
+    """
+    once = settings.loss == "squares" and not any(x.prior for x in problem.unknowns)
+    weights, noise = None, 0.0
+    path: tuple[Iteration, ...] = ()
+    for _ in range(1 if once else PASSES):
+        minimum = minimise(
+            _evaluator(problem, weights, noise),
+            start,
+            np.array([x.size for x in problem.unknowns]),
+            np.array([x.low for x in problem.unknowns]),
+            np.array([x.high for x in problem.unknowns]),
+            settings.max_iterations,
+            progress,
+        )
+        path += minimum.iterations
+        moved = np.max(np.abs(minimum.theta - start) / [x.size for x in problem.unknowns])
+        if once or not minimum.iterations or (noise > 0.0 and moved < 1e-6):
+            break
+        start = minimum.theta
+        point = linearise(problem, start)
+        assert not isinstance(point, Departure)
+        weights = _huber(point[0]) if settings.loss == "huber" else None
+        noise = float(np.linalg.norm(point[0])) / np.sqrt(len(point[0]) - len(start))
+    return _End(minimum, path)
+
+
+def _evaluator(
+    problem: Problem, weights: Vector | None, noise: float
+) -> Callable[[Vector], tuple[Vector, Vector] | None]:
+    """Residual and gradient with robust weights and with one row for each prior."""
+    held = [(i, x.prior) for i, x in enumerate(problem.unknowns) if x.prior and noise > 0.0]
+
+    def evaluate(theta: Vector) -> tuple[Vector, Vector] | None:
+        point = linearise(problem, theta)
+        if isinstance(point, Departure):
+            return None
+        residual, psi = point
+        if weights is not None:
+            residual, psi = residual * weights, psi * weights[:, None]
+        for i, (mean, deviation) in held:
+            row = np.zeros((1, len(theta)))
+            row[0, i] = noise / deviation
+            residual = np.append(residual, (mean - theta[i]) * noise / deviation)
+            psi = np.concatenate([psi, row])
+        return residual, psi
+
+    return evaluate
+
+
+def _huber(residual: Vector) -> Vector:
+    """Square roots of Huber's weights, by a scale that outliers do not move; (M,)."""
+    scale = 1.4826 * float(np.median(np.abs(residual)))
+    ratio = np.abs(residual) / max(HUBER * scale, 1e-300)
+    return np.asarray(1.0 / np.sqrt(np.maximum(ratio, 1.0)))
+
+
+def _why_no_start(problem: Problem) -> str:
+    departure = linearise(problem, problem.start)
+    return (
+        f"the model cannot be simulated at its start values: {departure}; give nearer values in "
+        "[model.values] or in the ship file, or narrower [identify] bounds"
+    )
+
+
+def _finish(
+    model: ShipModel,
+    problem: Problem,
+    trials: Sequence[Trial],
+    settings: Settings,
+    end: _End,
+    agreeing: tuple[int, int],
+) -> Fit:
+    theta = end.minimum.theta
+    point = linearise(problem, theta)
+    assert not isinstance(point, Departure)
+    shared = {x.column: float(a) for x, a in zip(problem.unknowns, theta, strict=True)
+              if x.trial is None}  # fmt: skip
+    return Fit(
+        model.with_values(shared), settings, problem, theta, *point,
+        tuple(_score(problem, theta, t) for t in trials), end.path, end.minimum.reason,
+        end.minimum.converged, agreeing,
+    )  # fmt: skip
+
+
+def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
+    """Simulate one trial with the fitted parameters.
+
+    A trial to check has no nuisance parameters of its own: sensors keep the mean of the fitted
+    ones, and the motion starts as recorded.
+    """
+    if trial.use == "fit":
+        index = problem.trials.index(trial)
+        values = problem.values(theta, index)
+    else:
+        values = _mean_values(problem, theta)
+    start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+    response = respond(problem.simulator, trial, values, start, sensitivities=False)
+    compared = where_compared(trial, problem.simulator)
+    if response.departure is not None:
+        compared = compared & np.isfinite(response.y)
+    eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
+    return Score(trial, response, compared, eps)
+
+
+def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:
+    """Shared parameters, and the mean over the trials of what belongs to a sensor."""
+    gathered: dict[str, list[float]] = {}
+    for x, a in zip(problem.unknowns, theta, strict=True):
+        if not x.column.endswith("(0)"):
+            gathered.setdefault(x.column, []).append(float(a))
+    return {n: float(np.mean(a)) for n, a in gathered.items()}
+
+
+def step_halving(fit: Fit) -> dict[str, float]:
+    """Integration error of the fit: normed difference to the same run with half the step."""
+    problem = fit.problem
+    simulator = problem.simulator
+    finer = replace(problem, simulator=replace(simulator, substeps=2 * simulator.substeps))
+    coarse, fine = (respond_all(p, fit.theta, False) for p in (problem, finer))
+    if isinstance(coarse, Departure) or isinstance(fine, Departure):
+        return {}
+    result = {}
+    for c, name in enumerate(problem.outputs):
+        gaps = [a.y[:, c] - b.y[:, c] for a, b in zip(coarse, fine, strict=True)]
+        result[name] = float(np.sqrt(np.mean(np.concatenate(gaps) ** 2)) / problem.y_rms[c])
+    return result

@@ -1,0 +1,203 @@
+"""Gauss-Newton with step control, for any least-squares problem with an exact Jacobian.
+
+Undamped Gauss-Newton diverges from starts 30 % off even on easy ship data; here each step is
+damped as Levenberg and Marquardt do, the damping following the ratio of actual to predicted fall
+(Nielsen 1999). A point that cannot be evaluated (the simulation left its domain) is a step that was
+too long, not a crash. The normal matrix is never formed: the step comes from QR and SVD.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Linearised = tuple[Vector, Vector]
+"""Residual y - yhat (M,) and Jacobian dyhat/dtheta (M, n_theta)."""
+
+STEP: Final = 1e-9
+ORTHOGONAL: Final = 1e-8
+EXACT: Final = 1e-24
+HOPELESS: Final = 1e14
+FIRST_DAMPING: Final = 1e-3
+
+REASONS: Final = {
+    "step": "no parameter moves any more",
+    "orthogonal": "the residual is orthogonal to every sensitivity",
+    "exact": "the residual is zero to rounding",
+    "stalled": "no step, however short, lowers the error",
+    "iterations": "the number of iterations is used up",
+    "start": "the model cannot be simulated at the start values",
+}
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One accepted point: loss V = |residual|^2 / 2, and the relative step that led to it."""
+
+    V: float
+    step: float
+    damping: float
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where the search ended, how, and the way there.
+
+    `reason` is a key of `REASONS`; `converged` says that it marks a minimum.
+    """
+
+    theta: Vector
+    residual: Vector
+    jacobian: Vector
+    iterations: tuple[Iteration, ...]
+    reason: str
+    evaluations: int
+
+    @property
+    def converged(self) -> bool:
+        """Whether the search ended at a minimum."""
+        return self.reason in {"step", "orthogonal", "exact"}
+
+    @property
+    def V(self) -> float:
+        """Half the sum of squares at the end."""
+        return 0.5 * float(self.residual @ self.residual)
+
+
+def minimise(
+    evaluate: Callable[[Vector], Linearised | None],
+    start: Vector,
+    scale: Vector,
+    low: Vector | None = None,
+    high: Vector | None = None,
+    max_iterations: int = 50,
+    progress: Callable[[Iteration], None] = lambda iteration: None,
+) -> Minimum:
+    """Find the parameters with the smallest sum of squared residuals.
+
+    Parameters
+    ----------
+    evaluate
+        Residual and Jacobian at a point, or None where the model cannot be evaluated.
+    start, scale, low, high
+        Start, typical size and bounds of each parameter; (n_theta,).
+    """
+    low = np.full(len(start), -np.inf) if low is None else low
+    high = np.full(len(start), np.inf) if high is None else high
+    theta = np.clip(start, low, high)
+    here = evaluate(theta)
+    if here is None:
+        empty = np.zeros(0)
+        return Minimum(theta, empty, np.zeros((0, len(start))), (), "start", 1)
+    search = _Search(evaluate, scale, low, high, theta, here)
+    for _ in range(max_iterations):
+        reason = search.advance()
+        progress(search.path[-1])
+        if reason:
+            return search.minimum(reason)
+    return search.minimum("iterations")
+
+
+class _Search:
+    """The state of one search: the point, its linearisation and the damping."""
+
+    def __init__(
+        self,
+        evaluate: Callable[[Vector], Linearised | None],
+        scale: Vector,
+        low: Vector,
+        high: Vector,
+        theta: Vector,
+        here: Linearised,
+    ) -> None:
+        self.evaluate, self.low, self.high = evaluate, low, high
+        self.size = np.where(scale > 0.0, scale, 1.0)
+        self.theta, self.here = theta, here
+        self.damping, self.growth = FIRST_DAMPING, 2.0
+        self.norms = np.zeros(len(theta))
+        self.count = 1
+        self.path = [Iteration(self._loss(here), 0.0, self.damping)]
+
+    @staticmethod
+    def _loss(point: Linearised) -> float:
+        return 0.5 * float(point[0] @ point[0])
+
+    def minimum(self, reason: str) -> Minimum:
+        return Minimum(self.theta, *self.here, tuple(self.path), reason, self.count)
+
+    def advance(self) -> str | None:
+        """One accepted step, or the reason why there is none."""
+        residual, jacobian = self.here
+        loss = self._loss(self.here)
+        if loss <= EXACT:
+            return "exact"
+        moving = self._moving(jacobian.T @ residual)
+        if not moving.any():
+            return "orthogonal"
+        self.norms = np.maximum(self.norms, np.linalg.norm(jacobian, axis=0))
+        weights = np.where(self.norms > 0.0, self.norms, 1.0)
+        directions = _Directions(residual, jacobian[:, moving] / weights[moving])
+        if directions.orthogonality < ORTHOGONAL:
+            return "orthogonal"
+        while self.damping < HOPELESS:
+            step = np.zeros(len(self.theta))
+            step[moving] = directions.step(self.damping) / weights[moving]
+            if self._try(step, loss):
+                return None
+            if self._relative(step) < STEP:
+                return "step"
+            self.damping *= self.growth
+            self.growth *= 2.0
+        return "stalled"
+
+    def _moving(self, descent: Vector) -> NDArray[np.bool_]:
+        """Parameters not held at a bound by the way down."""
+        held_low = (self.theta <= self.low) & (descent < 0.0)
+        held_high = (self.theta >= self.high) & (descent > 0.0)
+        moving: NDArray[np.bool_] = ~(held_low | held_high)
+        return moving
+
+    def _relative(self, step: Vector) -> float:
+        return float(np.max(np.abs(step) / np.maximum(np.abs(self.theta), self.size)))
+
+    def _try(self, step: Vector, loss: float) -> bool:
+        """Go there if the error falls; set the damping by how well the fall was foreseen."""
+        there = np.clip(self.theta + step, self.low, self.high)
+        taken = there - self.theta
+        self.count += 1
+        with np.errstate(over="ignore", invalid="ignore"):
+            point = self.evaluate(there)
+        if point is None or not np.isfinite(point[0]).all():
+            return False
+        actual = loss - self._loss(point)
+        foreseen = self.here[0] - self.here[1] @ taken
+        predicted = loss - 0.5 * float(foreseen @ foreseen)
+        if not actual > 0.0:
+            return False
+        ratio = actual / predicted if predicted > 0.0 else 0.0
+        self.damping *= max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
+        self.growth = 2.0
+        self.path.append(Iteration(self._loss(point), self._relative(taken), self.damping))
+        self.theta, self.here = there, point
+        return True
+
+
+class _Directions:
+    """Damped steps of one linearisation, from one QR and one small SVD."""
+
+    def __init__(self, residual: Vector, jacobian: Vector) -> None:
+        Q, R = np.linalg.qr(jacobian)
+        projected = Q.T @ residual
+        U, self.s, self.Vt = np.linalg.svd(R)
+        self.along = U.T @ projected
+        inside, whole = float(projected @ projected), float(residual @ residual)
+        self.orthogonality = np.sqrt(inside / whole)
+
+    def step(self, damping: float) -> Vector:
+        """The step that minimises |r - A d|^2 + damping |d|^2."""
+        ratio = self.s / (self.s**2 + damping)
+        step: Vector = self.Vt.T @ (ratio * self.along)
+        return step

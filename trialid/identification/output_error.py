@@ -1,0 +1,230 @@
+"""The output error of a model against recorded trials, and its exact gradient (Eq. 3, 4, 6, 7).
+
+The paper is written for one output. Here the residuals of each output are divided by the output's
+own y_RMS (Eq. 8) and all outputs count alike unless weights are given, so that
+V = 1/(2 n_y) sum_c 1/N_c sum_k (eps_c(k) / y_RMS,c)^2, which for one output and y_RMS = 1 is Eq. 4.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.accuracy import Kind, Stretch, normed_rms
+from trialid.errors import NotIdentifiable
+from trialid.simulation.delay import margin
+from trialid.simulation.integrate import Departure, Response, Simulator, respond
+from trialid.trial import Mask, Trial
+
+Vector = NDArray[np.float64]
+Norm = Literal["mean", "zero"]
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One entry of theta.
+
+    `column` is the simulator's name of it; `trial` the index of the only trial it acts in, None
+    for a parameter that all trials share. What belongs to one trial or to a sensor is nuisance.
+    """
+
+    name: str
+    column: str
+    trial: int | None
+    start: float
+    size: float
+    low: float
+    high: float
+    unit: str
+    kind: Kind
+    prior: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Trials, a simulator and the unknowns: everything a residual is made of.
+
+    Attributes
+    ----------
+    compared
+        Per trial where measurement and simulation are compared; (N, n_y) each.
+    y_rms, weights
+        Norm of each output [SI] and its weight; (n_y,).
+    """
+
+    simulator: Simulator
+    trials: tuple[Trial, ...]
+    unknowns: tuple[Unknown, ...]
+    compared: tuple[Mask, ...]
+    y_rms: Vector
+    weights: Vector
+
+    @property
+    def start(self) -> Vector:
+        """Start of every unknown; (n_theta,)."""
+        return np.array([x.start for x in self.unknowns])
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return self.simulator.outputs
+
+    def values(self, theta: Vector, trial: int) -> dict[str, float]:
+        """Column name to value in one trial."""
+        return {
+            x.column: float(a)
+            for x, a in zip(self.unknowns, theta, strict=True)
+            if x.trial in (None, trial)
+        }
+
+
+def measured(trial: Trial, outputs: Sequence[str]) -> Vector:
+    """Recorded outputs; (N, n_y)."""
+    return np.column_stack([trial.signals[c] for c in outputs])
+
+
+def output_error(y: Vector, y_hat: Vector) -> Vector:
+    """Eq. 3: eps(k) = y(k) - yhat(k), measured minus simulated; (N, n_y)."""
+    return y - y_hat
+
+
+def loss(residual: Vector) -> float:
+    """Eq. 4: V = half the sum of squares of the normed, stacked residual."""
+    return 0.5 * float(residual @ residual)
+
+
+def gradient(response: Response, problem: Problem, trial: int) -> Vector:
+    """Eq. 6: Psi(k) = d yhat(k) / d theta by the variational equations; (N, n_y, n_theta)."""
+    assert response.S is not None
+    columns = {n: i for i, n in enumerate(problem.simulator.columns)}
+    psi = np.zeros((*response.y.shape, len(problem.unknowns)))
+    for i, unknown in enumerate(problem.unknowns):
+        if unknown.trial in (None, trial):
+            psi[..., i] = response.S[..., columns[unknown.column]]
+    return psi
+
+
+def hessian(psi: Vector) -> Vector:
+    """Eq. 7: H = 1/N sum Psi Psi^T, for the stacked normed gradient that holds the 1/N; (n, n).
+
+    For printing only: steps and sensitivities come from `psi` itself.
+    """
+    return np.asarray(psi.T @ psi)
+
+
+def respond_all(
+    problem: Problem, theta: Vector, sensitivities: bool = True
+) -> list[Response] | Departure:
+    """Responses of all trials, or the first departure from the model's domain."""
+    responses = []
+    for i, trial in enumerate(problem.trials):
+        values = problem.values(theta, i)
+        start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+        response = respond(problem.simulator, trial, values, start, sensitivities)
+        if response.departure is not None:
+            return response.departure
+        responses.append(response)
+    return responses
+
+
+def linearise(problem: Problem, theta: Vector) -> tuple[Vector, Vector] | Departure:
+    """Normed residual (M,) and normed gradient (M, n_theta), rows as in `stretches`."""
+    responses = respond_all(problem, theta)
+    if isinstance(responses, Departure):
+        return responses
+    rows, slopes = [], []
+    scale = row_scale(problem)
+    for i, (trial, response) in enumerate(zip(problem.trials, responses, strict=True)):
+        eps = output_error(measured(trial, problem.outputs), response.y)
+        psi = gradient(response, problem, i)
+        for c in range(len(problem.outputs)):
+            mask = problem.compared[i][:, c]
+            rows.append(eps[mask, c] * scale[c])
+            slopes.append(psi[mask, c] * scale[c])
+    return np.concatenate(rows), np.concatenate(slopes)
+
+
+def row_scale(problem: Problem) -> Vector:
+    """Weight / (y_RMS sqrt(N_c n_y)) of each output, so that squares sum to eps_RMSn^2; (n_y,)."""
+    counts = np.sum([m.sum(axis=0) for m in problem.compared], axis=0)
+    return np.asarray(problem.weights / (problem.y_rms * np.sqrt(counts * len(problem.outputs))))
+
+
+def stretches(problem: Problem) -> tuple[Stretch, ...]:
+    """Which rows are which output of which trial."""
+    made, at = [], 0
+    for i, masks in enumerate(problem.compared):
+        for c in range(masks.shape[1]):
+            count = int(masks[:, c].sum())
+            made.append(Stretch(i, c, slice(at, at + count), masks[:, c]))
+            at += count
+    return tuple(made)
+
+
+def where_compared(trial: Trial, simulator: Simulator) -> Mask:
+    """Where an output and every input were measured, away from ends a delay may spoil; (N, n_y)."""
+    inputs = np.ones(trial.samples, dtype=bool)
+    for name in simulator.equations.inputs:
+        if name in trial.valid:
+            inputs &= trial.valid[name]
+    columns = []
+    for c in simulator.outputs:
+        mask = inputs & trial.valid[c]
+        edge = _edge(simulator, c, trial.period)
+        if edge:
+            mask[:edge] = mask[-edge:] = False
+        columns.append(mask)
+    return np.column_stack(columns)
+
+
+def _edge(simulator: Simulator, output: str, period: float) -> int:
+    """Samples to leave out at each end because the output's delay is free or not zero."""
+    for effect in simulator.model.effects:
+        for name, parameter in effect.parameters.items():
+            if name == f"tau_{output}":
+                if name in simulator.equations.free:
+                    return margin(parameter.low, parameter.high, period)
+                value = simulator.model.value(name)
+                return margin(value, value, period) if value else 0
+    return 0
+
+
+def norms(
+    trials: Sequence[Trial], compared: Sequence[Mask], outputs: Sequence[str], norm: Norm
+) -> Vector:
+    """y_RMS of each output over the trials, about each trial's own mean or about zero; (n_y,).
+
+    Raises
+    ------
+    NotIdentifiable
+        An output has nothing to compare, or does not move.
+    """
+    result = []
+    for c, name in enumerate(outputs):
+        pieces = [t.signals[name][m[:, c]] for t, m in zip(trials, compared, strict=True)]
+        pieces = [p - p.mean() if norm == "mean" else p for p in pieces if len(p)]
+        y = np.concatenate(pieces) if pieces else np.zeros(0)
+        if len(y) == 0:
+            raise NotIdentifiable(
+                f"output {name!r}: no sample where it and every input were measured; "
+                "check gaps and time windows"
+            )
+        rms = float(np.sqrt(np.mean(y**2)))
+        if rms == 0.0:
+            raise NotIdentifiable(f"output {name!r} does not move in the trials to fit")
+        result.append(rms)
+    return np.array(result)
+
+
+def scores(
+    trial: Trial, response: Response, compared: Mask, outputs: Sequence[str], y_rms: Vector
+) -> Mapping[str, float]:
+    """eps_RMSn of each output in one trial, by the norm of the fit."""
+    eps = output_error(measured(trial, outputs), response.y)
+    return {
+        c: normed_rms(eps[compared[:, i], i], y_rms[i])
+        for i, c in enumerate(outputs)
+        if compared[:, i].any()
+    }

@@ -1,0 +1,219 @@
+"""What a physical effect is: a plain function of named signals and named parameters."""
+
+import inspect
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal, NamedTuple
+
+from trialid.errors import EffectError, nearest
+from trialid.maths import Number
+from trialid.quantities import QUANTITIES, SIGNALS
+
+System = Literal["prime", "SI"]
+
+
+class Force(NamedTuple):
+    """Forces X, Y and moments K, N on the ship; the axes stay horizontal and move with the ship.
+
+    Primed (divided by 1/2 rho L^2 U^2, moments by 1/2 rho L^3 U^2) unless the effect says SI.
+    """
+
+    X: Number = 0.0
+    Y: Number = 0.0
+    K: Number = 0.0
+    N: Number = 0.0
+
+
+class _Named(Mapping[str, Number]):
+    """A frozen mapping written with keywords: `Rate(delta=...)`."""
+
+    def __init__(self, **parts: Number) -> None:
+        self._parts = parts
+
+    def __getitem__(self, name: str) -> Number:
+        return self._parts[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._parts)
+
+    def __len__(self) -> int:
+        return len(self._parts)
+
+
+class Rate(_Named):
+    """Time derivatives [SI/s] of the states an actuator or a sensor adds."""
+
+
+class Measured(_Named):
+    """What a sensor adds to the true value of an output [SI]: bias, scale, cross-axis."""
+
+
+class Steered(_Named):
+    """What is added to a recorded input before it acts on the ship [SI]: the rudder's offset."""
+
+
+class Delayed(_Named):
+    """How late an output is recorded [s]."""
+
+
+Result = Force | Rate | Measured | Steered | Delayed
+FORMS: Final = (Force, Rate, Measured, Steered, Delayed)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number to be identified.
+
+    Parameters
+    ----------
+    start
+        Typical value: where a fit starts, and the scale of everything relative.
+    unit
+        `1` for a primed coefficient, else its SI unit.
+    low, high
+        Physical range.
+    null
+        The value at which the effect is absent.
+    """
+
+    start: float
+    unit: str = "1"
+    low: float = -math.inf
+    high: float = math.inf
+    null: float = 0.0
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One named physical effect.
+
+    Attributes
+    ----------
+    signals
+        What it reads from the state, the record and the ship's particulars.
+    parameters
+        What can be identified.
+    states
+        States it adds, with the signal each starts from (None: from zero).
+    forms
+        What it returns: any of `Force, Rate, Measured, Steered, Delayed`.
+    """
+
+    name: str
+    function: Callable[..., Any] = field(repr=False)
+    signals: tuple[str, ...]
+    parameters: Mapping[str, Parameter]
+    states: Mapping[str, str | None]
+    forms: tuple[type, ...]
+    system: System
+    source: str
+
+    @property
+    def equation(self) -> str:
+        """The first line of the docstring, which is the equation."""
+        return (self.function.__doc__ or "").strip().splitlines()[0]
+
+    def __call__(self, values: Mapping[str, Number]) -> tuple[Result, ...]:
+        """Evaluate from one mapping of signal and parameter values; always a tuple of forms."""
+        wanted = (*self.signals, *self.parameters)
+        result = self.function(**{name: values[name] for name in wanted})
+        return (result,) if isinstance(result, FORMS) else tuple(result)
+
+
+def effect(
+    source: str, system: System = "prime", states: Mapping[str, str | None] | None = None
+) -> Callable[[Callable[..., Any]], Effect]:
+    """Turn a function into an `Effect`; its signature is the declaration.
+
+    Positional arguments are signals; keyword-only arguments are parameters, written as a typical
+    value (a primed coefficient) or as a `Parameter` with its unit. In the prime system signals
+    arrive primed (v/U, rL/U) and a Force leaves primed; in SI both are SI. Everything that is not
+    a Force is SI.
+
+    >>> @effect(source="textbook")
+    ... def yaw_damping(r, *, Nr=-0.002):
+    ...     "N' = Nr r'."
+    ...     return Force(N=Nr * r)
+    >>> yaw_damping.signals, yaw_damping.parameters["Nr"].start
+    (('r',), -0.002)
+    >>> yaw_damping({"r": 0.5, "Nr": -0.002})[0].N
+    -0.001
+
+    Raises
+    ------
+    EffectError
+        No docstring, an unknown signal, a parameter without a typical value, or a result that is
+        none of the forms.
+    """
+
+    def declare(function: Callable[..., Any]) -> Effect:
+        name = function.__name__
+        if not (function.__doc__ or "").strip():
+            raise EffectError(f"effect {name!r} has no docstring; write its equation there")
+        own = dict(states or {})
+        signals, parameters = _signature(name, function, own)
+        forms = _forms(name, function, signals, parameters)
+        made: System = system if Force in forms else "SI"
+        return Effect(name, function, signals, parameters, own, forms, made, source)
+
+    return declare
+
+
+def _signature(
+    name: str, function: Callable[..., Any], own: Mapping[str, Any]
+) -> tuple[tuple[str, ...], dict[str, Parameter]]:
+    arguments = inspect.signature(function).parameters.values()
+    signals = tuple(a.name for a in arguments if a.kind is a.POSITIONAL_OR_KEYWORD)
+    for signal in signals:
+        if signal not in QUANTITIES and signal not in own:
+            raise EffectError(
+                f"effect {name!r} asks for signal {signal!r}, which is not a quantity "
+                f"({nearest(signal, QUANTITIES)}); a parameter goes after the `*` with its "
+                "typical value"
+            )
+    given = {a.name: a.default for a in arguments if a.kind is a.KEYWORD_ONLY}
+    for parameter, start in given.items():
+        if start is inspect.Parameter.empty:
+            raise EffectError(
+                f"effect {name!r}: parameter {parameter!r} has no typical value; "
+                f"write `{parameter}=...` in the signature"
+            )
+    return signals, {
+        n: p if isinstance(p, Parameter) else Parameter(float(p)) for n, p in given.items()
+    }
+
+
+def _forms(
+    name: str,
+    function: Callable[..., Any],
+    signals: tuple[str, ...],
+    parameters: Mapping[str, Parameter],
+) -> tuple[type, ...]:
+    """Find out what the function returns by calling it once on small numbers."""
+    values = dict.fromkeys(signals, 0.1) | {n: p.start for n, p in parameters.items()}
+    try:
+        result = function(**values)
+    except (ArithmeticError, TypeError, NameError, AttributeError, ValueError) as error:
+        raise EffectError(f"effect {name!r} cannot be evaluated: {error}") from error
+    results = result if isinstance(result, tuple) and not isinstance(result, Force) else (result,)
+    for part in results:
+        if not isinstance(part, FORMS):
+            names = ", ".join(form.__name__ for form in FORMS)
+            raise EffectError(
+                f"effect {name!r} returns {type(part).__name__}; expected one of {names}"
+            )
+        _check_names(name, part, signals)
+    return tuple(type(part) for part in results)
+
+
+def _check_names(name: str, part: Result, signals: tuple[str, ...]) -> None:
+    if isinstance(part, Force):
+        return
+    known = {*SIGNALS, *signals}
+    for signal in part:
+        if signal not in known:
+            raise EffectError(
+                f"effect {name!r} returns {type(part).__name__}({signal}=...), "
+                f"and {signal!r} is not a signal ({nearest(signal, known)})"
+            )

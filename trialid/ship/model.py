@@ -1,0 +1,354 @@
+"""A ship model: a ship, the states that are simulated, and the effects that act on it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Final
+
+from trialid.errors import EffectError, ShipError, nearest
+from trialid.maths import Number, sqrt
+from trialid.quantities import PARTICULARS
+from trialid.ship.effect import Delayed, Effect, Force, Measured, Parameter, Rate, Steered
+from trialid.ship.particulars import Ship
+from trialid.ship.prime import mass_scale, prime_parameter, prime_signal, primed_coefficient
+from trialid.ship.rigid_body import MASS_PARAMETERS, ROWS, Balance, rigid_body
+
+STATES: Final = ("u", "v", "p", "r", "phi", "psi")
+KINEMATICS: Final = {"phi": "p", "psi": "r"}  # horizontal axes: the heading rate is r
+NEEDED_MASS: Final = {"u": ("m",), "v": ("m",), "p": ("I_xx",), "r": ("I_zz",)}
+STANDSTILL: Final = 1e-6
+"""[m/s] Added to the speed in squares, so that quadratic terms keep their limit at rest."""
+
+
+@dataclass(frozen=True)
+class ShipModel:
+    """What is simulated. `model + effect` and `model - "name"` give a new one.
+
+    Attributes
+    ----------
+    states
+        Subset of u, v, p, r, phi, psi; other motions come from the record.
+    effects
+        Physical effects in the order they were added.
+    values
+        Parameter values that replace those of the ship file.
+    """
+
+    ship: Ship
+    states: tuple[str, ...]
+    effects: tuple[Effect, ...] = ()
+    values: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        _check_states(self.states)
+        _check_unique(self.effects)
+        _check_signals(self)
+        for name in self.values:
+            if name not in self.parameters:
+                raise EffectError(
+                    f"value for parameter {name!r}, which no effect of the model has "
+                    f"({nearest(name, self.parameters)})"
+                )
+
+    def __add__(self, effect: Effect) -> "ShipModel":
+        return replace(self, effects=(*self.effects, effect))
+
+    def __sub__(self, name: str) -> "ShipModel":
+        if name not in (e.name for e in self.effects):
+            known = nearest(name, [e.name for e in self.effects])
+            raise EffectError(f"the model has no effect {name!r}; {known}")
+        kept = tuple(e for e in self.effects if e.name != name)
+        gone = {p for e in self.effects if e.name == name for p in e.parameters}
+        values = {n: x for n, x in self.values.items() if n not in gone}
+        return replace(self, effects=kept, values=values)
+
+    def with_values(self, values: Mapping[str, float]) -> "ShipModel":
+        """The same model with other parameter values."""
+        return replace(self, values={**self.values, **values})
+
+    @cached_property
+    def parameters(self) -> dict[str, Parameter]:
+        """Every parameter: the masses, then those of the effects in order."""
+        masses = {n: Parameter(self.ship.mass.get(n, 0.0)) for n in MASS_PARAMETERS}
+        return masses | {n: p for e in self.effects for n, p in e.parameters.items()}
+
+    @cached_property
+    def all_states(self) -> tuple[str, ...]:
+        """The motions simulated and the states that effects add."""
+        return (*self.states, *(s for e in self.effects for s in e.states))
+
+    @cached_property
+    def recorded(self) -> tuple[str, ...]:
+        """Signals that must come from the record (u is the approach speed when it does not)."""
+        wanted = {s for e in self.effects for s in e.signals} | {"u"}
+        wanted |= {s for e in self.effects if Steered in e.forms for s in steered_signals(e)}
+        if "U" in wanted:
+            wanted |= {"u"}
+        known = {*self.all_states, *PARTICULARS, "U"}
+        return tuple(sorted(wanted - known))
+
+    def value(self, name: str) -> float:
+        """A parameter's value in the prime system or its unit: stated, the ship's, or typical.
+
+        Raises
+        ------
+        EffectError
+            Neither the pipeline nor the ship file gives it.
+        """
+        found = self.stated(name)
+        if found is None:
+            raise EffectError(
+                f"parameter {name!r} has no value: ship {self.ship.name!r} gives none; "
+                f"free it, or write [model.values] {name} = ..."
+            )
+        return found
+
+    def stated(self, name: str) -> float | None:
+        """A parameter's value if the pipeline, the ship file or its null gives one."""
+        if name in self.values:
+            return self.values[name]
+        if name in MASS_PARAMETERS:
+            return _primed_mass(self.ship, name)
+        for effect in self.effects:
+            if name in effect.parameters and name in self.ship.coefficients:
+                return primed_coefficient(self.ship, effect, name)
+        return None
+
+
+def _primed_mass(ship: Ship, name: str) -> float:
+    value = ship.mass.get(name, 0.0)
+    if ship.system == "prime":
+        return value
+    return value / mass_scale(name, ship.particulars["L"], ship.particulars["rho"])
+
+
+def _check_states(states: tuple[str, ...]) -> None:
+    for state in states:
+        if state not in STATES:
+            raise EffectError(f"state {state!r} cannot be simulated; {nearest(state, STATES)}")
+    for angle, rate in KINEMATICS.items():
+        if angle in states and rate not in states and angle != "psi":
+            raise EffectError(f"state {angle!r} needs state {rate!r} beside it")
+
+
+def _check_unique(effects: tuple[Effect, ...]) -> None:
+    seen: dict[str, str] = dict.fromkeys(MASS_PARAMETERS, "the rigid body")
+    names: set[str] = set()
+    for effect in effects:
+        if effect.name in names:
+            raise EffectError(f"effect {effect.name!r} is in the model twice")
+        names.add(effect.name)
+        for parameter in (*effect.parameters, *effect.states):
+            if parameter in seen:
+                raise EffectError(
+                    f"effect {effect.name!r} and {seen[parameter]} both have {parameter!r}; "
+                    "rename one"
+                )
+            seen[parameter] = f"effect {effect.name!r}"
+
+
+def _check_signals(model: ShipModel) -> None:
+    for state in model.states:
+        for name in NEEDED_MASS.get(state, ()):
+            if _primed_mass(model.ship, name) <= 0.0 and name not in model.values:
+                raise ShipError(
+                    f"ship {model.ship.name!r}: [mass] {name} is missing or not positive; "
+                    f"state {state!r} needs it"
+                )
+
+
+def steered_signals(effect: Effect) -> tuple[str, ...]:
+    """Inputs that an effect adds to."""
+    values = dict.fromkeys(effect.signals, 0.1)
+    values |= {n: p.start for n, p in effect.parameters.items()}
+    return tuple(n for part in effect(values) if isinstance(part, Steered) for n in part)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Everything the equations give at one instant, on any kind of number.
+
+    Attributes
+    ----------
+    balance
+        Mass matrix and right-hand sides of the simulated force equations.
+    rates
+        Time derivatives of the other states: kinematics, actuators, sensors.
+    measured
+        Output name to what is recorded, before delay.
+    delay
+        Output name to its delay [s].
+    """
+
+    balance: Balance
+    rates: Mapping[str, Number]
+    measured: Mapping[str, Number]
+    delay: Mapping[str, Number]
+
+
+def motion(
+    model: ShipModel,
+    states: Mapping[str, Number],
+    inputs: Mapping[str, Number],
+    theta: Mapping[str, Number],
+) -> Motion:
+    """All equations of the model at one instant.
+
+    Parameters
+    ----------
+    states, inputs
+        Values of `model.all_states` and `model.recorded` [SI].
+    theta
+        Values of `model.parameters`: primed, or in the parameter's unit.
+    """
+    signals = _signals(model, states, inputs, theta)
+    force, rates, measured, delay = Force(), dict[str, Number](), dict(signals), dict[str, Number]()
+    for effect in model.effects:
+        for part in effect(_values(model, effect, signals, theta)):
+            match part:
+                case Force():
+                    force = _add(force, _to_SI(model, effect, part, signals))
+                case Rate():
+                    rates |= dict(part)
+                case Measured():
+                    measured |= {n: measured[n] + x for n, x in part.items()}
+                case Delayed():
+                    delay |= {n: delay.get(n, 0.0) + x for n, x in part.items()}
+    rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
+    return Motion(_balance(model, signals, force, theta), rates, measured, delay)
+
+
+def _balance(
+    model: ShipModel, signals: Mapping[str, Number], force: Force, theta: Mapping[str, Number]
+) -> Balance:
+    """The rigid-body balance of the simulated rows; a motion that is not simulated keeps still."""
+    L, rho = model.ship.particulars["L"], model.ship.particulars["rho"]
+    mass = {n: theta[n] * mass_scale(n, L, rho) for n in MASS_PARAMETERS}
+    moves = {s: signals.get(s, 0.0) for s in ("u", "v", "p", "r", "phi")}
+    full = rigid_body(moves, force, mass)
+    rows = [s for s in ROWS if s in model.states]
+    return Balance(
+        {(a, b): x for (a, b), x in full.mass.items() if a in rows and b in rows},
+        {a: full.force[a] for a in rows},
+    )
+
+
+def _signals(
+    model: ShipModel,
+    states: Mapping[str, Number],
+    inputs: Mapping[str, Number],
+    theta: Mapping[str, Number],
+) -> dict[str, Number]:
+    """States, inputs as they act on the ship, particulars and the speed U; SI."""
+    signals: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
+    for effect in model.effects:
+        if Steered in effect.forms:
+            for part in effect({**signals, **theta}):
+                if isinstance(part, Steered):
+                    signals |= {n: signals[n] + x for n, x in part.items()}
+    u, v = signals["u"], signals.get("v", 0.0)
+    signals["U"] = sqrt(u * u + v * v + STANDSTILL**2)
+    return signals
+
+
+def _values(
+    model: ShipModel, effect: Effect, signals: Mapping[str, Number], theta: Mapping[str, Number]
+) -> dict[str, Number]:
+    """Signals and parameters in the effect's own system."""
+    if effect.system == "SI":
+        return {**signals, **theta}
+    L, U = model.ship.particulars["L"], signals["U"]
+    values = {s: prime_signal(s, signals[s], L, U) for s in effect.signals}
+    return values | {n: prime_parameter(effect, n, theta[n], L, U) for n in effect.parameters}
+
+
+def _to_SI(model: ShipModel, effect: Effect, force: Force, signals: Mapping[str, Number]) -> Force:
+    if effect.system == "SI":
+        return force
+    L, rho, U = model.ship.particulars["L"], model.ship.particulars["rho"], signals["U"]
+    pressure = 0.5 * rho * L * L * (U * U)
+    return Force(
+        force.X * pressure, force.Y * pressure, force.K * pressure * L, force.N * pressure * L
+    )
+
+
+def _add(a: Force, b: Force) -> Force:
+    return Force(a.X + b.X, a.Y + b.Y, a.K + b.K, a.N + b.N)
+
+
+def solve(balance: Balance, rows: tuple[str, ...]) -> dict[tuple[str, str], Number]:
+    """Inverse of the mass matrix of the simulated rows, by cofactors (surge stands alone)."""
+    inverse: dict[tuple[str, str], Number] = {}
+    if "u" in rows:
+        inverse["u", "u"] = 1.0 / balance.mass["u", "u"]
+    lateral = tuple(s for s in rows if s != "u")
+    matrix = [[balance.mass.get((a, b), 0.0) for b in lateral] for a in lateral]
+    for i, a in enumerate(lateral):
+        for j, b in enumerate(lateral):
+            cofactor = _determinant(_minor(matrix, j, i)) * (-1.0) ** (i + j)
+            inverse[a, b] = cofactor
+    if lateral:
+        over = 1.0 / _determinant(matrix)
+        inverse |= {k: x * over for k, x in inverse.items() if k != ("u", "u")}
+    return inverse
+
+
+def _minor(matrix: list[list[Number]], row: int, column: int) -> list[list[Number]]:
+    return [
+        [x for j, x in enumerate(line) if j != column] for i, line in enumerate(matrix) if i != row
+    ]
+
+
+def _determinant(matrix: list[list[Number]]) -> Number:
+    if not matrix:
+        return 1.0
+    total: Number = 0.0
+    for j, x in enumerate(matrix[0]):
+        total = total + x * _determinant(_minor(matrix, 0, j)) * (-1.0) ** j
+    return total
+
+
+def derivatives(
+    model: ShipModel,
+    states: Mapping[str, Number],
+    inputs: Mapping[str, Number],
+    theta: Mapping[str, Number],
+) -> dict[str, Number]:
+    """Time derivative of every state at one instant, on any kind of number [SI]."""
+    now = motion(model, states, inputs, theta)
+    rows = tuple(now.balance.force)
+    inverse = solve(now.balance, rows)
+    rates = dict(now.rates)
+    for a in rows:
+        total: Number = 0.0
+        for b in rows:
+            if (a, b) in inverse:
+                total = total + inverse[a, b] * now.balance.force[b]
+        rates[a] = total
+    return {s: rates[s] for s in model.all_states}
+
+
+def check_mass(model: ShipModel, theta: Mapping[str, float]) -> None:
+    """Refuse a mass matrix that is not symmetric-positive enough to invert.
+
+    Raises
+    ------
+    ShipError
+        A leading minor of the (symmetrised) sway-roll-yaw matrix is not positive.
+    """
+    still = {s: 0.0 for s in ("v", "p", "r", "phi")} | {"u": 1.0}
+    balance = _balance(model, still, Force(), theta)
+    rows = [s for s in ("v", "p", "r") if s in model.states]
+    for size in range(1, len(rows) + 1):
+        part = rows[:size]
+        matrix = [
+            [0.5 * (balance.mass.get((a, b), 0.0) + balance.mass.get((b, a), 0.0)) for b in part]
+            for a in part
+        ]
+        minor = _determinant(matrix)
+        if not (minor > 0.0 and math.isfinite(minor)):
+            raise ShipError(
+                f"ship {model.ship.name!r}: the mass matrix of {', '.join(part)} is not positive "
+                f"(determinant {minor:.3g}); check m, I_xx, I_zz and the added masses"
+            )

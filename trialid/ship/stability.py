@@ -1,0 +1,87 @@
+"""Directional stability of the fitted ship: levers of the yaw and sway forces."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.maths import Number
+
+PARTS = ("Yv", "Yr", "Nv", "Nr")
+ROLL_PARTS = ("Yphi", "Nphi", "Kv", "Kr")
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Levers over L, their margin, and the margin's standard error (None: not estimated)."""
+
+    L_r: float
+    L_v: float
+    margin: float
+    standard_error: float | None
+
+    @property
+    def stable(self) -> bool:
+        """Eq. 16: directionally stable when L_r - L_v > 0."""
+        return self.margin > 0.0
+
+
+def levers(c: Mapping[str, Number]) -> tuple[Number, Number]:
+    """Eq. 15: L_r = (N_r - m x_G) / (Y_r - m) and L_v = N_v / Y_v, primed.
+
+    >>> L_r, L_v = levers({"Nr": -2.0, "Yr": 1.0, "Nv": -3.0, "Yv": -12.0, "m": 9.0, "x_G": 0.0})
+    >>> L_r, L_v
+    (0.25, 0.25)
+    """
+    return (c["Nr"] - c["m"] * c["x_G"]) / (c["Yr"] - c["m"]), c["Nv"] / c["Yv"]
+
+
+def roll_coupled(c: Mapping[str, Number]) -> dict[str, Number]:
+    """Sway and yaw derivatives of a ship that heels as it turns slowly; primed.
+
+    In a slow turn the heel follows phi = (K_v v + (K_r + m z_G) r) / G_phi, with
+    G_phi = 2 g nabla GM / (L^2 U^2) - K_phi, and pushes back through Y_phi and N_phi. Eq. 15 on
+    these numbers includes that; the paper's form leaves it out.
+    """
+    heel = {"v": c["Kv"] / c["G_phi"], "r": (c["Kr"] + c["m"] * c["z_G"]) / c["G_phi"]}
+    changed = {f"{row}{s}": c[f"{row}{s}"] + c[f"{row}phi"] * heel[s] for row in "YN" for s in "vr"}
+    return {**c, **changed}
+
+
+def stability(
+    values: Mapping[str, float],
+    names: tuple[str, ...] = (),
+    covariance: NDArray[np.float64] | None = None,
+    coupled: bool = False,
+) -> Stability:
+    """Levers and margin with the standard error by the delta method.
+
+    Parameters
+    ----------
+    values
+        Primed coefficients: m, x_G and those of `PARTS`; with `coupled` also z_G, G_phi and
+        those of `ROLL_PARTS`.
+    names, covariance
+        Fitted parameters and their covariance; (n_theta,), (n_theta, n_theta).
+    """
+    L_r, L_v = _levers(values, coupled)
+    error = None
+    if covariance is not None:
+        slope = np.array([_slope(values, name, coupled) for name in names])
+        error = float(np.sqrt(slope @ covariance @ slope))
+    return Stability(float(L_r.real), float(L_v.real), float((L_r - L_v).real), error)
+
+
+def _levers(values: Mapping[str, Number], coupled: bool) -> tuple[complex, complex]:
+    numbers = {n: complex(x) for n, x in values.items()}
+    return levers(roll_coupled(numbers) if coupled else numbers)
+
+
+def _slope(values: Mapping[str, float], name: str, coupled: bool) -> float:
+    """Derivative of the margin by one coefficient; exact, by a complex step of a rational form."""
+    if name not in values:
+        return 0.0
+    step = 1e-30
+    L_r, L_v = _levers({**values, name: values[name] + 1j * step}, coupled)
+    return float((L_r - L_v).imag / step)

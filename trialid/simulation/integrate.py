@@ -1,0 +1,293 @@
+"""The response of a ship model to a recorded input, with its exact sensitivities."""
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.errors import EffectError, NotIdentifiable, nearest
+from trialid.quantities import SIGNALS
+from trialid.ship.model import ShipModel
+from trialid.simulation import kernel
+from trialid.simulation.delay import delayed
+from trialid.simulation.graph import Node, gradient
+from trialid.simulation.kernel import Kernel
+from trialid.simulation.reference import Reference, evaluator
+from trialid.simulation.trace import Equations, trace
+from trialid.trial import Trial
+
+Vector = NDArray[np.float64]
+Engine = Literal["compiled", "numpy"]
+
+DOMAIN: Final = {"phi": 1.4, "p": 10.0}
+"""Bounds of a motion that do not depend on the ship: 80 deg of heel, 10 rad/s of roll."""
+
+
+@dataclass(frozen=True)
+class Departure:
+    """Where a simulation left the domain of its model."""
+
+    state: str
+    t: float
+    value: float
+
+    def __str__(self) -> str:
+        """Say it in words, in the unit of reports."""
+        quantity = SIGNALS.get(self.state)
+        factor = np.rad2deg(1.0) if quantity and quantity.shown.startswith("deg") else 1.0
+        unit = quantity.shown if quantity else ""
+        value = f"{self.value * factor:.3g} {unit}" if np.isfinite(self.value) else "not a number"
+        return f"{self.state} left the model's domain at t = {self.t:.1f} s ({value})"
+
+
+@dataclass(frozen=True)
+class Response:
+    """What a model does in one trial.
+
+    Attributes
+    ----------
+    states
+        (N, n_x); NaN after a departure.
+    y
+        Simulated outputs as recorded: with bias and delay; (N, n_y).
+    S
+        dy / d(columns); (N, n_y, n_columns), or None when not asked for.
+    departure
+        Where the simulation left the domain, or None.
+    """
+
+    states: Vector
+    y: Vector
+    S: Vector | None
+    departure: Departure | None
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """A model made ready to run: traced, and compiled on first use.
+
+    Attributes
+    ----------
+    columns
+        What sensitivities are by: free parameters, then the initial states as `v(0)`.
+    """
+
+    model: ShipModel
+    equations: Equations
+    engine: Kernel | Reference
+    outputs: tuple[str, ...]
+    substeps: int
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the sensitivity columns, in the order of `Response.S`."""
+        return (*self.equations.free, *(initial(s) for s in self.equations.states))
+
+    @functools.cached_property
+    def fixed(self) -> dict[str, float]:
+        """Values of the parameters that are not free."""
+        eq = self.equations
+        return {n: self.model.value(n) for n in eq.parameters if n not in eq.free}
+
+    @functools.cached_property
+    def readout(self) -> "_Readout":
+        """How outputs follow from states."""
+        return _Readout(self.equations, self.outputs)
+
+
+def initial(state: str) -> str:
+    """The name of an initial state among the columns.
+
+    >>> initial("v")
+    'v(0)'
+    """
+    return f"{state}(0)"
+
+
+def prepare(
+    model: ShipModel,
+    free: Sequence[str],
+    outputs: Sequence[str],
+    engine: Engine = "compiled",
+    substeps: int = 1,
+) -> Simulator:
+    """Trace a model for these free parameters and outputs.
+
+    Raises
+    ------
+    EffectError
+        An output or free parameter the model does not have.
+    """
+    for name in free:
+        if name not in model.parameters:
+            known = nearest(name, model.parameters)
+            raise EffectError(f"free parameter {name!r} is in no effect of the model; {known}")
+    equations = trace(model, free, outputs)
+    compiled = engine == "compiled" and kernel.available()
+    made = Kernel(equations) if compiled else Reference(equations)
+    return Simulator(model, equations, made, tuple(outputs), substeps)
+
+
+def respond(
+    simulator: Simulator,
+    trial: Trial,
+    values: Mapping[str, float],
+    start: Mapping[str, float],
+    sensitivities: bool = True,
+) -> Response:
+    """Eq. 2: the simulated output, from the recorded input and the parameters alone.
+
+    Parameters
+    ----------
+    values
+        The free parameters.
+    start
+        Initial states that are not to be guessed from the record.
+    """
+    eq = simulator.equations
+    known = {**simulator.fixed, **values}
+    theta = np.array([known[n] for n in eq.parameters])
+    x0 = np.array([start.get(s, guess(simulator.model, trial, s)) for s in eq.states])
+    u = inputs(simulator, trial)
+    run = simulator.engine
+    limit = domain(simulator.model)
+    arguments = (theta, x0, u, limit, trial.period, simulator.substeps)
+    if not sensitivities:
+        X, left = run.simulate(*arguments)
+        y, _ = _outputs(simulator, trial, X, None, u, theta)
+        return Response(X, y, None, _departure(eq, X, left, trial.period))
+    X, S, left = run.sensitivities(*arguments)
+    y, dy = _outputs(simulator, trial, X, S, u, theta)
+    return Response(X, y, dy, _departure(eq, X, left, trial.period))
+
+
+def guess(model: ShipModel, trial: Trial, state: str) -> float:
+    """Where a state starts when nobody says: as recorded, else at rest on a straight course."""
+    for effect in model.effects:
+        if state in effect.states:
+            follows = effect.states[state]
+            return float(trial.signals[follows][0]) if follows in trial.signals else 0.0
+    if state in trial.signals:
+        return float(trial.signals[state][0])
+    return model.ship.particulars["U0"] if state == "u" else 0.0
+
+
+def inputs(simulator: Simulator, trial: Trial) -> Vector:
+    """The recorded signals the equations need; (N, n_u). Speed not recorded is the approach speed.
+
+    Raises
+    ------
+    NotIdentifiable
+        The trial lacks a signal.
+    """
+    columns = []
+    for name in simulator.equations.inputs:
+        if name in trial.signals:
+            columns.append(trial.signals[name])
+        elif name == "u":
+            columns.append(np.full(trial.samples, simulator.model.ship.particulars["U0"]))
+        else:
+            users = [e.name for e in simulator.model.effects if name in e.signals]
+            raise NotIdentifiable(
+                f"trial {trial.name!r} has no signal {name!r}, which effect "
+                f"{', '.join(users)!r} needs: map it in [trial.signals], simulate it in [model] "
+                "states, or leave the effect out"
+            )
+    return np.column_stack(columns) if columns else np.zeros((trial.samples, 0))
+
+
+def domain(model: ShipModel) -> Vector:
+    """Bounds on |x| beyond which the equations mean nothing; (n_x,).
+
+    Speeds are held against the larger of the approach speed and sqrt(g L), turning against the
+    same speed over a third of the length; headings and added states are free.
+    """
+    L, g, U0 = (model.ship.particulars[n] for n in ("L", "g", "U0"))
+    speed = max(U0, float(np.sqrt(g * L)))
+    bounds = {**DOMAIN, "u": 3.0 * speed, "v": 2.0 * speed, "r": 3.0 * speed / L}
+    return np.array([bounds.get(s, np.inf) for s in model.all_states])
+
+
+def _departure(eq: Equations, X: Vector, left: int, period: float) -> Departure | None:
+    if left == 0:
+        return None
+    values = X[left]
+    outside = [i for i, x in enumerate(values) if not np.isfinite(x)] or [
+        int(np.argmax(np.abs(values)))
+    ]
+    return Departure(eq.states[outside[0]], left * period, float(values[outside[0]]))
+
+
+class _Readout:
+    """Outputs and their derivatives by states and parameters, as functions of arrays."""
+
+    def __init__(self, eq: Equations, outputs: tuple[str, ...]) -> None:
+        symbols = (*eq.states, *eq.inputs, *eq.parameters)
+        table = {n.value: n for n in eq.graph.nodes if n.op == "symbol"}
+        self.kept = [eq.states[i] for i in eq.kept]
+        by = [table[s] for s in (*self.kept, *eq.free) if s in table]
+        self.by = [n.value for n in by]
+        nodes = [eq.outputs[c] for c in outputs]
+        slopes = [gradient(n, by) for n in nodes]
+        self.entries = [
+            (c, i) for c, row in enumerate(slopes) for i, d in enumerate(row) if not _zero(d)
+        ]
+        self.value = evaluator(nodes, symbols, scalar=False)
+        self.slope = evaluator([slopes[c][i] for c, i in self.entries], symbols, scalar=False)
+        delays = [eq.delays[c] for c in outputs]
+        free = [table[s] for s in eq.free]
+        self.late = [not _zero(d) for d in delays]
+        self.delay = evaluator(delays, symbols, scalar=False)
+        self.delay_slope = evaluator(
+            [d for node in delays for d in gradient(node, free)], symbols, scalar=False
+        )
+
+
+def _zero(node: Node) -> bool:
+    return node.is_constant(0.0)
+
+
+def _outputs(
+    simulator: Simulator, trial: Trial, X: Vector, S: Vector | None, u: Vector, theta: Vector
+) -> tuple[Vector, Vector | None]:
+    """Outputs as a sensor records them, from states; (N, n_y), (N, n_y, n_columns)."""
+    read = simulator.readout
+    symbols = [*X.T, *u.T, *theta]
+    y = np.column_stack([np.broadcast_to(c, len(X)) for c in read.value(symbols)])
+    if S is None:
+        return _late(simulator, trial, y, None, theta)
+    width = len(simulator.columns)
+    dy = np.zeros((len(X), len(simulator.outputs), width))
+    free = simulator.equations.free
+    for (c, i), slope in zip(read.entries, read.slope(symbols), strict=True):
+        name = read.by[i]
+        factor = np.broadcast_to(slope, len(X))[:, None]
+        if name in read.kept:
+            dy[:, c] += factor * S[:, read.kept.index(name), :width]
+        else:
+            dy[:, c, free.index(name)] += factor[:, 0]
+    return _late(simulator, trial, y, dy, theta)
+
+
+def _late(
+    simulator: Simulator, trial: Trial, y: Vector, dy: Vector | None, theta: Vector
+) -> tuple[Vector, Vector | None]:
+    """Apply the delays of the outputs, with the derivative by each delay."""
+    read = simulator.readout
+    if not any(read.late):
+        return y, dy
+    eq = simulator.equations
+    symbols = [0.0] * (len(eq.states) + len(eq.inputs)) + list(theta)
+    delays = read.delay(symbols)
+    slopes = np.reshape(read.delay_slope(symbols), (len(simulator.outputs), len(eq.free)))
+    for c, tau in enumerate(delays):
+        if not read.late[c]:
+            continue
+        y[:, c], rate = delayed(y[:, c], tau / trial.period)
+        if dy is not None:
+            dy[:, c], _ = delayed(dy[:, c], tau / trial.period)
+            dy[:, c, : len(eq.free)] += rate[:, None] * slopes[c] / trial.period
+    return y, dy

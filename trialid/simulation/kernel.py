@@ -1,0 +1,189 @@
+"""Compiled kernels: LLVM IR to machine code by llvmlite, kept on disk by structure."""
+
+import ctypes
+import functools
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.simulation.emit import module_text
+from trialid.simulation.trace import Equations
+
+Vector = NDArray[np.float64]
+LOOPS: Final = [ctypes.c_int64, ctypes.c_int64, ctypes.c_double]
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels are kept: private to the user; `TRIALID_CACHE` names another place."""
+    stated = os.environ.get("TRIALID_CACHE")
+    if stated:
+        return Path(stated)
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(home) / "trialid" / "kernels"
+
+
+@functools.cache
+def _machine() -> Any:
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=2,
+        jit=True,
+    )
+
+
+def _key(text: str) -> str:
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    parts = (
+        text,
+        llvm.get_host_cpu_name(),
+        llvm.get_host_cpu_features().flatten(),
+        llvmlite.__version__,
+    )
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _compile(text: str) -> bytes:
+    """Machine code; `sroa` turns the places in memory into registers and is what matters."""
+    import llvmlite.binding as llvm
+
+    machine = _machine()
+    module = llvm.parse_assembly(text)
+    module.triple = machine.triple
+    module.data_layout = str(machine.target_data)
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_sroa_pass()
+    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
+    return bytes(machine.emit_object(module))
+
+
+def _object(text: str) -> bytes:
+    """Machine code from the cache, or compiled and put there.
+
+    The file appears whole or not at all (written beside, then renamed), so that two processes
+    that compile the same kernel at once both find a good one. Where nothing can be written, as
+    on a read-only disk, the kernel is compiled each time.
+    """
+    path = cache_folder() / f"{_key(text)}.o"
+    try:
+        return path.read_bytes()
+    except OSError:
+        code = _compile(text)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+            file.write(code)
+        Path(file.name).replace(path)
+    except OSError:
+        pass
+    return code
+
+
+def _function(text: str, name: str, pointers: int) -> Callable[..., int]:
+    import llvmlite.binding as llvm
+
+    _machine()
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine_for_engine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(_object(text)))
+    engine.finalize_object()
+    kind = ctypes.CFUNCTYPE(ctypes.c_int64, *LOOPS, *[ctypes.c_void_p] * pointers)
+    call = kind(engine.get_function_address(name))
+    call.engine = engine  # type: ignore[attr-defined]  # the code lives as long as its engine
+    return call
+
+
+def _machine_for_engine() -> Any:
+    """A target machine of its own: an engine takes possession of it."""
+    import llvmlite.binding as llvm
+
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), jit=True
+    )
+
+
+class Kernel:
+    """The compiled equations of one model structure; safe to call from several threads."""
+
+    def __init__(self, equations: Equations) -> None:
+        self.equations = equations
+
+    @functools.cached_property
+    def _sim(self) -> Callable[..., int]:
+        return _function(module_text(self.equations, False), "sim", 4)
+
+    @functools.cached_property
+    def _sens(self) -> Callable[..., int]:
+        return _function(module_text(self.equations, True), "sens", 8)
+
+    def simulate(
+        self, theta: Vector, x0: Vector, u: Vector, limit: Vector, h: float, substeps: int
+    ) -> tuple[Vector, int]:
+        """States at every sample, and the sample at which they left the domain (0: never).
+
+        Parameters
+        ----------
+        theta, x0, limit
+            Parameters (n_p,), initial states (n_x,) and bounds on |x| (n_x,).
+        u
+            Inputs at the samples, linear between them; (N, n_u).
+        h, substeps
+            Sample period [s] and RK4 steps in it.
+        """
+        X = _room(x0, len(u))
+        left = self._sim(len(u) - 1, substeps, h, *map(_at, (theta, _rows(u), limit, X)))
+        return X, left
+
+    def sensitivities(
+        self, theta: Vector, x0: Vector, u: Vector, limit: Vector, h: float, substeps: int
+    ) -> tuple[Vector, Vector, int]:
+        """States, and d(kept states)/d(free parameters, initial states); (N, n_kept, columns)."""
+        eq = self.equations
+        n_x, width = len(eq.states), eq.columns
+        X = _room(x0, len(u))
+        s = np.zeros((n_x, width))
+        s[np.arange(n_x), len(eq.free) + np.arange(n_x)] = 1.0
+        S = np.empty((len(u), len(eq.kept), width))
+        S[0] = s[list(eq.kept)]
+        g = np.zeros((4, n_x, width))
+        j = np.zeros((4, max(len(eq.J) + len(eq.W), 1)))
+        arrays = (theta, _rows(u), limit, X, S, s, g, j)
+        left = self._sens(len(u) - 1, substeps, h, *map(_at, arrays))
+        return X, S, left
+
+
+def _room(x0: Vector, samples: int) -> Vector:
+    X = np.full((samples, len(x0)), np.nan)
+    X[0] = x0
+    return X
+
+
+def _rows(u: Vector) -> Vector:
+    return np.ascontiguousarray(u, dtype=np.float64)
+
+
+def _at(array: Vector) -> int:
+    return int(array.ctypes.data)
+
+
+def available() -> bool:
+    """Whether a compiler is installed (llvmlite); without it the NumPy reference runs."""
+    if "llvmlite" in sys.modules:
+        return True
+    try:
+        import llvmlite.binding  # noqa: F401
+    except ImportError:
+        return False
+    return True
