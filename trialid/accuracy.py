@@ -8,7 +8,7 @@ factor of A.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,7 +156,7 @@ def coloured_covariance(A: Vector, residual: Vector, stretches: Sequence[Stretch
     return meat * rows / max(rows - columns, 1)
 
 
-def _on_clock(values: Vector, compared: Mask) -> Vector:
+def _on_clock(values: NDArray[np.floating[Any]], compared: Mask) -> Vector:
     """Rows back on the trial's clock, zero where nothing was compared."""
     full = np.zeros((len(compared), *values.shape[1:]))
     full[compared] = values

@@ -113,6 +113,12 @@ SIGNALS = _table(
             aliases=_aliases("rpm shaft_speed propeller_rate"),
         ),
         Quantity("U", "U", "m/s", "m/s", "speed through the water sqrt(u^2 + v^2)", speed=1),
+        Quantity("X_ext", "X_ext", "N", "N", "known outer force ahead (tug, tow line, test rig)"),
+        Quantity(
+            "Y_ext", "Y_ext", "N", "N", "known outer force to starboard at the origin", mirror=-1
+        ),
+        Quantity("K_ext", "K_ext", "N m", "N m", "known outer heeling moment", mirror=-1),
+        Quantity("N_ext", "N_ext", "N m", "N m", "known outer yaw moment", mirror=-1),
     )
 )
 """Signals an effect may ask for and a log may hold."""

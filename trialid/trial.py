@@ -61,7 +61,7 @@ class Trial:
     @property
     def t(self) -> Vector:
         """Time from the start of the trial [s]; (N,)."""
-        return np.arange(self.samples) * self.period
+        return np.asarray(np.arange(self.samples) * self.period)
 
     @property
     def duration(self) -> float:

@@ -1,7 +1,7 @@
 """Unit text to SI, at the doors only; inside the package every number is SI."""
 
 import functools
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from trialid.errors import UnitError, nearest
 from trialid.quantities import Quantity
@@ -13,10 +13,10 @@ COMMON = ("rad", "deg", "rad/s", "deg/s", "deg/min", "m/s", "kn", "km/h", "m", "
 
 
 @functools.cache
-def _registry() -> "pint.UnitRegistry":
+def _registry() -> "pint.UnitRegistry[Any]":
     import pint  # 0.3 s: only when a unit is really asked for
 
-    registry = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+    registry: pint.UnitRegistry[Any] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
     registry.define("kn = knot")
     return registry
 

@@ -3,11 +3,11 @@
 from pathlib import Path
 from types import ModuleType
 
-from trialid.effects import heel, hull, roll, rudder, sensors, steering_gear
+from trialid.effects import heel, hull, outer, roll, rudder, sensors, steering_gear
 from trialid.errors import EffectError, nearest
 from trialid.ship.effect import Effect
 
-FILES: tuple[ModuleType, ...] = (hull, heel, roll, rudder, steering_gear, sensors)
+FILES: tuple[ModuleType, ...] = (hull, heel, roll, rudder, steering_gear, outer, sensors)
 
 CATALOGUE: dict[str, Effect] = {e.name: e for file in FILES for e in file.EFFECTS}
 

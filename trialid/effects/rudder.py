@@ -2,7 +2,7 @@
 
 import math
 
-from trialid.maths import arctan, cos, sin, sqrt
+from trialid.maths import Number, arctan, cos, sin, sqrt
 from trialid.ship.effect import Force, Parameter, Steered, effect
 
 BK99 = "Blanke & Knudsen (1999), section 4"
@@ -40,13 +40,17 @@ def rudder_offset(*, delta_0=Parameter(0.01, "rad", low=-0.1, high=0.1)):
     return Steered(delta=delta_0)
 
 
-def _inflow(u, v, r, L, w_P, tau_P, x_P):
+def _inflow(
+    u: Number, v: Number, r: Number, L: Number, w_P: Number, tau_P: Number, x_P: Number
+) -> Number:
     """Speed of the water at the propeller; the printed code of the set has cos(v) for u."""
     U = sqrt(u * u + v * v)
     return u * ((1.0 - w_P) + tau_P * ((v + x_P * r * L) / U) ** 2)
 
 
-def _thrust_coefficient(inflow, n, D_P, KT0, KT1):
+def _thrust_coefficient(
+    inflow: Number, n: Number, D_P: Number, KT0: Number, KT1: Number
+) -> tuple[Number, Number]:
     """Advance number J and thrust coefficient K_T; n in rad/s."""
     J = inflow / (n / TURN * D_P)
     return J, KT0 + KT1 * J

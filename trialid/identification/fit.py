@@ -1,76 +1,39 @@
 """From trials and a model to a fit: what is unknown, where it starts, and the search."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Final, Literal
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.effects import CATALOGUE
-from trialid.errors import NotIdentifiable, SimulationError, nearest
+from trialid.errors import SimulationError
 from trialid.identification.gauss_newton import REASONS, Iteration, Minimum, minimise
 from trialid.identification.output_error import (
-    Norm,
     Problem,
-    Unknown,
     linearise,
-    norms,
     respond_all,
     scores,
     where_compared,
 )
-from trialid.ship.effect import Effect, Force, Parameter, Rate
-from trialid.ship.model import ShipModel, check_mass
+from trialid.identification.pose import Settings, pose
+from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import (
     Departure,
-    Engine,
     Response,
-    Simulator,
-    guess,
-    initial,
-    prepare,
     respond,
 )
 from trialid.trial import Mask, Trial
 
 Vector = NDArray[np.float64]
-Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
-
-STATE_SIZE: Final = {"u": 0.1, "v": 0.1, "p": 0.002, "r": 0.0005, "phi": 0.01, "psi": 0.01}
-"""Typical error of a start guessed from the record [SI]: the scale of an initial state."""
-
-STILL_RUDDER: Final = 0.002
-"""[rad] A rudder that moves less than this over all trials excites nothing."""
-
 HUBER: Final = 1.345
 """Residuals beyond this many standard deviations count by their size, not its square."""
 
+TOLERANCE: Final = 1e-5
+"""Share of the residual left along the sensitivities: a thousandth of a standard error."""
+
 PASSES: Final = 12
 SAME_OPTIMUM: Final = 1e-6
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How to identify; see the pipeline's `[identify]`.
-
-    `priors` are (mean, standard deviation) in the parameter's own unit; `bounds` (low, high).
-    """
-
-    free: tuple[str, ...]
-    outputs: tuple[str, ...]
-    nuisance: tuple[Nuisance, ...] = ()
-    weights: Mapping[str, float] = field(default_factory=dict)
-    loss: Literal["squares", "huber"] = "squares"
-    priors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    starts: int = 1
-    spread: float = 0.3
-    seed: int = 0
-    max_iterations: int = 50
-    norm: Norm = "mean"
-    substeps: int = 1
-    engine: Engine = "compiled"
 
 
 @dataclass(frozen=True)
@@ -143,9 +106,14 @@ class Fit:
         """Why the search ended, in words."""
         return REASONS[self.reason]
 
+    @property
+    def estimates(self) -> dict[str, float]:
+        """Every unknown by name."""
+        return {x.name: float(a) for x, a in zip(self.problem.unknowns, self.theta, strict=True)}
+
     def value(self, name: str) -> float:
         """The fitted value of an unknown by its name."""
-        return float(self.theta[[x.name for x in self.problem.unknowns].index(name)])
+        return self.estimates[name]
 
 
 def _pooled(scored: Sequence[Score]) -> dict[str, float]:
@@ -165,8 +133,11 @@ def identify(
     model: ShipModel,
     settings: Settings,
     progress: Progress = lambda iteration: None,
+    near: Mapping[str, float] | None = None,
 ) -> Fit:
     """Eq. 5: the parameters with the smallest output error over all trials marked `fit`.
+
+    `near` holds better starts by the unknown's name, from a fit of a neighbouring model.
 
     Raises
     ------
@@ -175,7 +146,7 @@ def identify(
     SimulationError
         No start can be simulated.
     """
-    problem = pose(trials, model, settings)
+    problem = pose(trials, model, settings, near or {})
     starts = _starts(problem, settings)
     ends = [_search(problem, settings, start, progress) for start in starts]
     best = min(ends, key=lambda end: end.minimum.V if end.minimum.iterations else np.inf)
@@ -186,143 +157,7 @@ def identify(
 
 
 def _same(V: float, best: float) -> bool:
-    return V <= best * (1.0 + SAME_OPTIMUM) + 1e-20
-
-
-def pose(trials: Sequence[Trial], model: ShipModel, settings: Settings) -> Problem:
-    """What is unknown, and what a residual is made of."""
-    fitted = tuple(t for t in trials if t.use == "fit")
-    _check_outputs(fitted, settings)
-    full, per_trial = with_nuisance(model, settings)
-    shared = tuple(n for n in settings.free if n not in per_trial)
-    simulator = prepare(
-        _with_starts(full, (*shared, *per_trial), settings),
-        (*shared, *per_trial),
-        settings.outputs,
-        settings.engine,
-        settings.substeps,
-    )
-    unknowns = (*(_shared(simulator, n, settings) for n in shared),
-                *_nuisances(simulator, fitted, per_trial, settings))  # fmt: skip
-    check_mass(simulator.model, {n: simulator.model.value(n) for n in simulator.model.parameters})
-    compared = tuple(where_compared(t, simulator) for t in fitted)
-    y_rms = norms(fitted, compared, settings.outputs, settings.norm)
-    weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
-    weights = weights / np.sqrt(np.mean(weights**2))
-    problem = Problem(simulator, fitted, unknowns, compared, y_rms, weights)
-    _check_excitation(problem)
-    return problem
-
-
-def _check_outputs(trials: Sequence[Trial], settings: Settings) -> None:
-    for trial in trials:
-        for c in settings.outputs:
-            if c not in trial.signals:
-                raise NotIdentifiable(
-                    f"trial {trial.name!r} has no signal {c!r}, which is an output to fit; "
-                    f"map it in [trial.signals] ({nearest(c, trial.signals)})"
-                )
-
-
-def with_nuisance(model: ShipModel, settings: Settings) -> tuple[ShipModel, tuple[str, ...]]:
-    """The model with the effects that nuisance parameters act through, and their names."""
-    wanted: list[Effect] = []
-    if "bias" in settings.nuisance:
-        wanted += [CATALOGUE[f"bias_{c}"] for c in settings.outputs if f"bias_{c}" in CATALOGUE]
-    if "delay" in settings.nuisance:
-        wanted += [CATALOGUE[f"delay_{c}"] for c in settings.outputs if f"delay_{c}" in CATALOGUE]
-    if "rudder_offset" in settings.nuisance:
-        wanted += [CATALOGUE["rudder_offset"]]
-    present = {e.name for e in model.effects}
-    added = [e for e in wanted if e.name not in present]
-    for effect in added:
-        model = model + effect
-    return model, tuple(p for e in added for p in e.parameters)
-
-
-def _with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> ShipModel:
-    """Typical values for free parameters nobody states, so that the search has a start."""
-    missing = {}
-    for name in free:
-        if name not in model.parameters:
-            known = nearest(name, model.parameters)
-            raise NotIdentifiable(f"free parameter {name!r} is in no effect of the model; {known}")
-        if name in settings.priors and model.stated(name) is None:
-            missing[name] = settings.priors[name][0]
-        elif model.stated(name) is None:
-            parameter = model.parameters[name]
-            missing[name] = parameter.null if is_sensor(model, name) else parameter.start
-    return model.with_values(missing) if missing else model
-
-
-def is_sensor(model: ShipModel, name: str) -> bool:
-    """Whether a parameter belongs to a sensor or an offset, not to the ship."""
-    for effect in model.effects:
-        if name in effect.parameters:
-            return not (Force in effect.forms or Rate in effect.forms)
-    return False
-
-
-def _shared(simulator: Simulator, name: str, settings: Settings) -> Unknown:
-    parameter = simulator.model.parameters[name]
-    low, high = settings.bounds.get(name, (parameter.low, parameter.high))
-    start = simulator.model.value(name)
-    size = abs(start) if start else abs(parameter.start)
-    kind: Literal["physical", "nuisance"] = (
-        "nuisance" if is_sensor(simulator.model, name) else "physical"
-    )
-    prior = settings.priors.get(name)
-    return Unknown(name, name, None, start, size, low, high, parameter.unit, kind, prior)
-
-
-def _nuisances(
-    simulator: Simulator, trials: Sequence[Trial], names: Sequence[str], settings: Settings
-) -> list[Unknown]:
-    model = simulator.model
-    made = []
-    for i, trial in enumerate(trials):
-        for name in names:
-            p: Parameter = model.parameters[name]
-            label = f"{name} [{trial.name}]"
-            made.append(
-                Unknown(label, name, i, p.null, abs(p.start), p.low, p.high, p.unit, "nuisance")
-            )
-        if "initial_state" in settings.nuisance:
-            made += [_initial(model, trial, i, s) for s in model.states]
-    return made
-
-
-def _initial(model: ShipModel, trial: Trial, index: int, state: str) -> Unknown:
-    start, size = guess(model, trial, state), STATE_SIZE[state]
-    unit = {"u": "m/s", "v": "m/s", "p": "rad/s", "r": "rad/s"}.get(state, "rad")
-    label = f"{initial(state)} [{trial.name}]"
-    return Unknown(label, initial(state), index, start, size, -np.inf, np.inf, unit, "nuisance")
-
-
-def _check_excitation(problem: Problem) -> None:
-    """Refuse records that cannot carry the question.
-
-    Raises
-    ------
-    NotIdentifiable
-        The rudder does not move, or there are fewer values than unknowns.
-    """
-    count = sum(int(m.sum()) for m in problem.compared)
-    if count <= len(problem.unknowns):
-        raise NotIdentifiable(
-            f"{count} compared values for {len(problem.unknowns)} unknowns; free fewer "
-            "parameters, or use a longer record or a shorter [align] period"
-        )
-    for name in ("delta", "delta_order"):
-        if name in problem.simulator.equations.inputs:
-            moves = max(float(np.ptp(t.signals[name])) for t in problem.trials)
-            if moves < STILL_RUDDER:
-                listed = ", ".join(repr(t.name) for t in problem.trials)
-                raise NotIdentifiable(
-                    f"the rudder ({name}) moves less than {np.rad2deg(moves):.2f} deg in trial "
-                    f"{listed}: nothing excites the ship and no parameter can be found; use a "
-                    "trial with a manoeuvre, or check the channel"
-                )
+    return best * (1.0 + SAME_OPTIMUM) + 1e-20 >= V
 
 
 def _starts(problem: Problem, settings: Settings) -> list[Vector]:
@@ -361,6 +196,7 @@ def _search(problem: Problem, settings: Settings, start: Vector, progress: Progr
             np.array([x.low for x in problem.unknowns]),
             np.array([x.high for x in problem.unknowns]),
             settings.max_iterations,
+            TOLERANCE,
             progress,
         )
         path += minimum.iterations

@@ -74,6 +74,7 @@ def minimise(
     low: Vector | None = None,
     high: Vector | None = None,
     max_iterations: int = 50,
+    tolerance: float = ORTHOGONAL,
     progress: Callable[[Iteration], None] = lambda iteration: None,
 ) -> Minimum:
     """Find the parameters with the smallest sum of squared residuals.
@@ -84,6 +85,9 @@ def minimise(
         Residual and Jacobian at a point, or None where the model cannot be evaluated.
     start, scale, low, high
         Start, typical size and bounds of each parameter; (n_theta,).
+    tolerance
+        Share of the residual that may still lie along the sensitivities at the end; its square is
+        the relative fall of V that a further step could bring.
     """
     low = np.full(len(start), -np.inf) if low is None else low
     high = np.full(len(start), np.inf) if high is None else high
@@ -92,7 +96,7 @@ def minimise(
     if here is None:
         empty = np.zeros(0)
         return Minimum(theta, empty, np.zeros((0, len(start))), (), "start", 1)
-    search = _Search(evaluate, scale, low, high, theta, here)
+    search = _Search(evaluate, scale, low, high, theta, here, tolerance)
     for _ in range(max_iterations):
         reason = search.advance()
         progress(search.path[-1])
@@ -112,8 +116,9 @@ class _Search:
         high: Vector,
         theta: Vector,
         here: Linearised,
+        tolerance: float,
     ) -> None:
-        self.evaluate, self.low, self.high = evaluate, low, high
+        self.evaluate, self.low, self.high, self.tolerance = evaluate, low, high, tolerance
         self.size = np.where(scale > 0.0, scale, 1.0)
         self.theta, self.here = theta, here
         self.damping, self.growth = FIRST_DAMPING, 2.0
@@ -140,7 +145,7 @@ class _Search:
         self.norms = np.maximum(self.norms, np.linalg.norm(jacobian, axis=0))
         weights = np.where(self.norms > 0.0, self.norms, 1.0)
         directions = _Directions(residual, jacobian[:, moving] / weights[moving])
-        if directions.orthogonality < ORTHOGONAL:
+        if directions.orthogonality < self.tolerance:
             return "orthogonal"
         while self.damping < HOPELESS:
             step = np.zeros(len(self.theta))
@@ -189,12 +194,13 @@ class _Directions:
     """Damped steps of one linearisation, from one QR and one small SVD."""
 
     def __init__(self, residual: Vector, jacobian: Vector) -> None:
-        Q, R = np.linalg.qr(jacobian)
-        projected = Q.T @ residual
-        U, self.s, self.Vt = np.linalg.svd(R)
+        # the residual rides along as a last column, so that Q itself is never needed
+        n = jacobian.shape[1]
+        R = np.asarray(np.linalg.qr(np.column_stack([jacobian, residual]), mode="r"))
+        projected = R[:n, n]
+        U, self.s, self.Vt = np.linalg.svd(R[:n, :n])
         self.along = U.T @ projected
-        inside, whole = float(projected @ projected), float(residual @ residual)
-        self.orthogonality = np.sqrt(inside / whole)
+        self.orthogonality = float(np.linalg.norm(projected) / np.linalg.norm(residual))
 
     def step(self, damping: float) -> Vector:
         """The step that minimises |r - A d|^2 + damping |d|^2."""

@@ -5,7 +5,7 @@ generated from a graph is the same on every run.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 from trialid.errors import EffectError
@@ -232,7 +232,7 @@ def _partials(node: Node) -> tuple[Node, ...]:
     return (_UNARY_PARTIALS[node.op](node, a),)
 
 
-_UNARY_PARTIALS: Final = {
+_UNARY_PARTIALS: Final[dict[str, Callable[[Node, Node], Node]]] = {
     "abs": lambda node, a: unary("sign", a),
     "sqrt": lambda node, a: 0.5 / node,
     "sin": lambda node, a: a.cos(),

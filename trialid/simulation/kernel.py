@@ -17,7 +17,7 @@ from trialid.simulation.emit import module_text
 from trialid.simulation.trace import Equations
 
 Vector = NDArray[np.float64]
-LOOPS: Final = [ctypes.c_int64, ctypes.c_int64, ctypes.c_double]
+LOOPS: Final[list[Any]] = [ctypes.c_int64, ctypes.c_int64, ctypes.c_double]
 
 
 def cache_folder() -> Path:
@@ -95,7 +95,7 @@ def _object(text: str) -> bytes:
 def _function(text: str, name: str, pointers: int) -> Callable[..., int]:
     import llvmlite.binding as llvm
 
-    _machine()
+    _machine()  # initialises the compiler once
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine_for_engine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(_object(text)))
     engine.finalize_object()

@@ -115,7 +115,8 @@ class Reference:
         for k in range(len(u) - 1):
             u0, du = u[k], u[k + 1] - u[k]
             for j in range(substeps):
-                total, slope, seen = [0.0] * len(x), [0.0] * len(x), []
+                total, seen = [0.0] * len(x), []
+                slope: Sequence[float] = [0.0] * len(x)
                 for ahead, weight in STAGES:
                     now = [a + ahead * step * b for a, b in zip(x, slope, strict=True)]
                     signals = [*now, *(u0 + du * ((j + ahead) / substeps)).tolist(), *th]
@@ -131,10 +132,10 @@ class Reference:
 
     def _slope(self, signals: list[float]) -> Sequence[float]:
         try:
-            slope: Sequence[float] = self._f(signals)
+            found: Sequence[float] = self._f(signals)
         except (ZeroDivisionError, OverflowError):
-            slope = [math.nan] * len(self.equations.states)
-        return slope
+            found = [math.nan] * len(self.equations.states)
+        return found
 
     def _matrices(self, theta: Vector, stages: Vector) -> tuple[Vector, Vector]:
         """J and W G at every stage; (steps, 4, n_x, n_x), (steps, 4, n_x, columns)."""

@@ -1,0 +1,430 @@
+"""How much of the error is noise and how much is the model's: the two parts of Eq. 14.
+
+The paper names eps^x (noise) and eps^m (under-modelling) and gives no recipe. Five routes, in the
+order in which they are trusted; the first that holds is used and named:
+
+a. the same manoeuvre was run twice: what differs between the runs is noise;
+b. the test is periodic: scatter about the mean period is noise;
+c. a stretch without excitation: nothing is there for the model to miss, so its error is noise;
+d. what an input-driven basis predicts of the residual out of sample is model, the rest noise;
+e. a stated sensor figure.
+
+First differences are not a route: on wave noise they find about a tenth of the variance.
+"""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.accuracy import window
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import measured, output_error, stretches
+from trialid.trial import Mask, Trial
+
+Vector = NDArray[np.float64]
+Interval = tuple[float, float]
+
+CONFIDENCE: Final = 1.96
+TIGHT: Final = 0.35
+"""A noise estimate whose 95 % interval is wider than this share either way is no estimate."""
+
+SAME_RUDDER: Final = 0.02
+"""Mean square difference over variance below which two rudder records are the same."""
+
+QUIET_SECONDS: Final = 60.0
+QUIET_RUDDER: Final = np.deg2rad(0.5)
+QUIET_RESPONSE: Final = 0.1
+"""A stretch is quiet when the model itself moves less than this share of y_RMS in it."""
+
+FOLDS: Final = 8
+
+
+@dataclass(frozen=True)
+class OutputNoise:
+    """Noise of one output by one route: normed variance, its standard error, effective samples."""
+
+    variance: float
+    deviation: float
+
+
+@dataclass(frozen=True)
+class Split:
+    """What the error is made of, by one route; numbers None where the route does not hold.
+
+    `noise` and `undermodelling` are normed as eps_RMSn, their squares add up to its square.
+    """
+
+    method: str
+    why: str
+    noise: float | None = None
+    undermodelling: float | None = None
+    noise_interval: Interval | None = None
+    undermodelling_interval: Interval | None = None
+    by_output: Mapping[str, tuple[float, float]] | None = None
+
+    @property
+    def available(self) -> bool:
+        """Whether the route holds on this record."""
+        return self.noise is not None
+
+
+@dataclass(frozen=True)
+class Residual:
+    """Normed output error of one trial; (N, n_y), zero where nothing was compared."""
+
+    trial: Trial
+    eps: Vector
+    compared: Mask
+    predicted: Vector
+
+
+def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
+    """Normed output errors of a fit, trial by trial, on the trial's clock."""
+    found = []
+    y_rms = fit.problem.y_rms
+    for score in fit.scores:
+        if score.trial.use in uses:
+            eps = output_error(measured(score.trial, fit.problem.outputs), score.response.y) / y_rms
+            eps = np.where(score.compared, eps, 0.0)
+            found.append(Residual(score.trial, eps, score.compared, score.response.y / y_rms))
+    return found
+
+
+def split(
+    fit: Fit,
+    basis: Sequence[Vector],
+    stated: Mapping[str, float],
+    quiet: Mapping[str, Sequence[Interval]] | None = None,
+) -> tuple[Split, tuple[Split, ...]]:
+    """The most trusted split of the error, and all five routes.
+
+    Parameters
+    ----------
+    basis
+        Input-driven signals that could explain the residual, per trial to fit (N, n_y, n_basis):
+        sensitivities to effects the model lacks.
+    stated
+        Sensor noise by output [SI].
+    quiet
+        Stretches [s] by trial name that the user declares to be without excitation.
+    """
+    routes = (
+        _repeated(fit),
+        _periodic(fit),
+        _quiet(fit, quiet or {}),
+        _input_driven(fit, basis),
+        _stated(fit, stated),
+    )
+    for route in routes:
+        if route.available:
+            return route, routes
+    why = "; ".join(f"{r.method}: {r.why}" for r in routes)
+    return Split("not separable", why), routes
+
+
+def _repeated(fit: Fit) -> Split:
+    """Route a: pairs of trials with the same rudder record."""
+    method = "repeated manoeuvre"
+    found = residuals(fit, ("fit", "check"))
+    pairs = [
+        (one, other)
+        for i, one in enumerate(found)
+        for other in found[i + 1 :]
+        if _same_rudder(_rudder(one.trial), _rudder(other.trial))
+    ]
+    if not pairs:
+        return Split(method, "no two trials have the same rudder record")
+    pieces = [_differences(one, other) for one, other in pairs]
+    names = " and ".join(repr(r.trial.name) for r in pairs[0])
+    return _from_pieces(fit, method, pieces, f"what differs between {names}")
+
+
+def _rudder(trial: Trial) -> Vector | None:
+    for name in ("delta", "delta_order"):
+        if name in trial.signals:
+            return trial.signals[name]
+    return None
+
+
+def _same_rudder(one: Vector | None, other: Vector | None) -> bool:
+    if one is None or other is None or min(len(one), len(other)) < 0.8 * max(len(one), len(other)):
+        return False
+    n = min(len(one), len(other))
+    spread = float(np.var(one[:n]))
+    return spread > 0.0 and float(np.mean((one[:n] - other[:n]) ** 2)) < SAME_RUDDER * spread
+
+
+def _differences(one: Residual, other: Residual) -> tuple[Vector, Mask]:
+    """Half-difference scaled to one run's noise: the model's own error cancels; (N, n_y)."""
+    n = min(len(one.eps), len(other.eps))
+    both = one.compared[:n] & other.compared[:n]
+    return np.where(both, (one.eps[:n] - other.eps[:n]) / np.sqrt(2.0), 0.0), both
+
+
+def _periodic(fit: Fit) -> Split:
+    """Route b: periods of one trial's rudder against each other."""
+    method = "periods of a periodic test"
+    pieces, words = [], []
+    for r in residuals(fit):
+        rudder = _rudder(r.trial)
+        found = None if rudder is None else _period(rudder)
+        if found is not None:
+            start, lag = found
+            late = Residual(r.trial, r.eps[start + lag :], r.compared[start + lag :], r.predicted)
+            early = Residual(r.trial, r.eps[start:-lag], r.compared[start:-lag], r.predicted)
+            pieces.append(_differences(late, early))
+            words.append(f"{lag * r.trial.period:.0f} s in {r.trial.name!r}")
+    if not pieces:
+        return Split(method, "no rudder record repeats itself")
+    return _from_pieces(fit, method, pieces, "scatter between periods of " + ", ".join(words))
+
+
+def _period(rudder: Vector) -> tuple[int, int] | None:
+    """Start and length [samples] of a rudder record that repeats at least once after its start."""
+    moving = np.flatnonzero(np.abs(rudder - rudder[0]) > QUIET_RUDDER)
+    if len(moving) == 0:
+        return None
+    start = int(moving[0])
+    active = rudder[start:] - rudder[start:].mean()
+    n = len(active)
+    spread = float(np.mean(active**2))
+    for lag in range(10, n // 2 + 1):
+        gap = active[lag:] - active[:-lag]
+        if float(np.mean(gap**2)) < SAME_RUDDER * spread:
+            return start, lag
+    return None
+
+
+def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:
+    """Route c: stretches in which the rudder rests and the model stands still."""
+    method = "quiet stretch"
+    pieces, words = [], []
+    for r in residuals(fit, ("fit", "check")):
+        spans = declared.get(r.trial.name) or _still(r)
+        for start, stop in spans:
+            a, b = round(start / r.trial.period), round(stop / r.trial.period)
+            eps, mask = r.eps[a:b], r.compared[a:b]
+            if mask.any():
+                pieces.append((_about_mean(eps, mask), mask))
+                words.append(f"{start:.0f}-{stop:.0f} s of {r.trial.name!r}")
+    if not pieces:
+        return Split(method, f"no stretch of {QUIET_SECONDS:.0f} s with the rudder at rest")
+    return _from_pieces(fit, method, pieces, "residual in " + ", ".join(words))
+
+
+def _about_mean(eps: Vector, mask: Mask) -> Vector:
+    mean = np.sum(eps, axis=0) / np.maximum(mask.sum(axis=0), 1)
+    return np.where(mask, eps - mean, 0.0)
+
+
+def _still(r: Residual) -> list[Interval]:
+    """Longest stretch with rudder and prediction at rest, if it is long enough."""
+    rudder = _rudder(r.trial)
+    if rudder is None:
+        return []
+    best: list[Interval] = []
+    n, needed = len(rudder), round(QUIET_SECONDS / r.trial.period)
+    start = 0
+    while start + needed <= n:
+        stop = _rest(rudder, r.predicted, start)
+        if stop - start >= needed and (not best or stop - start > _samples(best[0], r)):
+            best = [(start * r.trial.period, stop * r.trial.period)]
+        start = max(stop, start + needed // 4)
+    return best
+
+
+def _samples(span: Interval, r: Residual) -> int:
+    return round((span[1] - span[0]) / r.trial.period)
+
+
+def _rest(rudder: Vector, predicted: Vector, start: int) -> int:
+    """Where rest that begins at `start` ends."""
+    low, high = np.minimum.accumulate(rudder[start:]), np.maximum.accumulate(rudder[start:])
+    moved = (
+        np.maximum.accumulate(predicted[start:], axis=0)
+        - np.minimum.accumulate(predicted[start:], axis=0)
+    ).max(axis=1)
+    broken = np.flatnonzero((high - low > QUIET_RUDDER) | (moved > QUIET_RESPONSE))
+    return start + int(broken[0]) if len(broken) else len(rudder)
+
+
+def _stated(fit: Fit, stated: Mapping[str, float]) -> Split:
+    """Route e: the user's own figures."""
+    method = "stated sensor figure"
+    missing = [c for c in fit.problem.outputs if c not in stated]
+    if missing:
+        return Split(method, f"no figure in [diagnose] noise for {', '.join(missing)}")
+    found = [
+        OutputNoise((stated[c] / y) ** 2, 0.0)
+        for c, y in zip(fit.problem.outputs, fit.problem.y_rms, strict=True)
+    ]
+    return _finish(fit, method, "as stated in [diagnose] noise", found)
+
+
+def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], why: str) -> Split:
+    """A split from pieces of pure noise; (n, n_y) each."""
+    found = [
+        _pooled([p[:, c] for p, _ in pieces], [m[:, c] for _, m in pieces])
+        for c in range(len(fit.problem.outputs))
+    ]
+    for c, noise in zip(fit.problem.outputs, found, strict=True):
+        if noise is None:
+            return Split(method, f"{why}: nothing compared in {c}")
+    return _finish(fit, method, why, [n for n in found if n is not None])
+
+
+def _pooled(pieces: Sequence[Vector], masks: Sequence[Mask]) -> OutputNoise | None:
+    """Variance over pieces, and its standard error from the pieces' own correlation."""
+    count = sum(int(m.sum()) for m in masks)
+    if count < 10:
+        return None
+    variance = sum(float(p @ p) for p in pieces) / count
+    effective = sum(_effective(p, m) for p, m in zip(pieces, masks, strict=True))
+    degrees = max(effective - len(pieces), 1.0)
+    return OutputNoise(variance * effective / degrees, variance * np.sqrt(2.0 / degrees))
+
+
+def _effective(e: Vector, mask: Mask) -> float:
+    """Effective samples for a variance: N over the summed squared autocorrelation."""
+    n = int(mask.sum())
+    if n < 2:
+        return float(n)
+    size = 1 << (2 * len(e) - 1).bit_length()
+    power = np.abs(np.fft.rfft(e, size)) ** 2
+    c = np.fft.irfft(power, size)[: len(e)]
+    if c[0] <= 0.0:
+        return float(n)
+    lags = window(c / n, len(e))
+    rho = c[1:lags] / c[0]
+    return n / (1.0 + 2.0 * float(rho @ rho))
+
+
+def _finish(fit: Fit, method: str, why: str, found: Sequence[OutputNoise]) -> Split:
+    """Noise and model part with intervals; refused where the noise is hardly known."""
+    total, spread = _total(fit)
+    noise2 = float(np.mean([n.variance for n in found]))
+    deviation = float(np.sqrt(np.sum([n.deviation**2 for n in found])) / len(found))
+    if CONFIDENCE * deviation > 2.0 * TIGHT * noise2:
+        share = 0.5 * CONFIDENCE * deviation / noise2
+        return Split(method, f"{why}: too short, the noise is known to +-{share:.0%} only")
+    by_output = {}
+    for (c, eps), n in zip(fit.eps_by_output.items(), found, strict=True):
+        x2 = min(n.variance, eps**2)
+        by_output[c] = (float(np.sqrt(x2)), float(np.sqrt(eps**2 - x2)))
+    x2 = float(np.mean([x**2 for x, _ in by_output.values()]))
+    gap = CONFIDENCE * float(np.hypot(deviation, spread))
+    model2 = (total**2 - noise2 - gap, total**2 - noise2 + gap)
+    return Split(
+        method, why, float(np.sqrt(x2)), float(np.sqrt(max(total**2 - x2, 0.0))),
+        _roots(noise2 - CONFIDENCE * deviation, noise2 + CONFIDENCE * deviation),
+        _roots(*model2), by_output,
+    )  # fmt: skip
+
+
+def _roots(low: float, high: float) -> Interval:
+    return float(np.sqrt(max(low, 0.0))), float(np.sqrt(max(high, 0.0)))
+
+
+def effective_samples(fit: Fit) -> float:
+    """Effective number of compared values for the variance of the residual."""
+    found = residuals(fit)
+    return sum(
+        _effective(r.eps[:, c], r.compared[:, c])
+        for r in found
+        for c in range(len(fit.problem.outputs))
+    )
+
+
+def _total(fit: Fit) -> tuple[float, float]:
+    """eps_RMSn, and the standard error that noise gives its square."""
+    found = residuals(fit)
+    spread = []
+    for c in range(len(fit.problem.outputs)):
+        pooled = _pooled([r.eps[:, c] for r in found], [r.compared[:, c] for r in found])
+        spread.append(0.0 if pooled is None else pooled.deviation)
+    return fit.eps_rmsn, float(np.sqrt(np.sum(np.square(spread))) / len(spread))
+
+
+def _input_driven(fit: Fit, basis: Sequence[Vector]) -> Split:
+    """Route d: what the basis explains in sample is too much, out of sample too little.
+
+    With q coefficients over N_eff effective samples, noise is over-explained in sample by q / N_eff
+    and the model error under-explained out of sample by as much, so the mean of the two is used.
+    """
+    method = "dependence on the input"
+    found = residuals(fit)
+    if not basis or basis[0].shape[2] == 0:
+        return Split(method, "no candidate signals")
+    psi = _stacked_psi(fit)
+    pieces = []
+    for c in range(len(fit.problem.outputs)):
+        e = np.concatenate([r.eps[r.compared[:, c], c] for r in found])
+        Z = np.concatenate([b[r.compared[:, c], c] for b, r in zip(basis, found, strict=True)])
+        effective = sum(_effective(r.eps[:, c], r.compared[:, c]) for r in found)
+        pieces.append((e, Z, psi[c], effective))
+    return _explained(fit, method, pieces)
+
+
+def _stacked_psi(fit: Fit) -> list[Vector]:
+    rows: list[list[Vector]] = [[] for _ in fit.problem.outputs]
+    for stretch in stretches(fit.problem):
+        rows[stretch.output].append(fit.psi[stretch.rows])
+    return [np.concatenate(r) for r in rows]
+
+
+def _explained(
+    fit: Fit, method: str, pieces: Sequence[tuple[Vector, Vector, Vector, float]]
+) -> Split:
+    found = []
+    for e, Z, psi, effective in pieces:
+        directions = _directions(Z, psi)
+        q = directions.shape[1]
+        if effective < 5 * q:
+            return Split(method, f"too short: {effective:.0f} effective samples for {q} directions")
+        inside = float(np.sum((directions.T @ e) ** 2)) / len(e)
+        outside = _out_of_sample(e, directions)
+        model2 = max(0.5 * (inside + outside), 0.0)
+        noise2 = max(float(np.mean(e**2)) - model2, 1e-30)
+        found.append(
+            OutputNoise(noise2, _explained_error(noise2, model2, inside - outside, effective))
+        )
+    why = "what candidate effects explain of the residual out of sample is model"
+    return _finish(fit, method, why, found)
+
+
+def _explained_error(noise2: float, model2: float, gap: float, effective: float) -> float:
+    own = 2.0 * noise2**2 / effective
+    crossed = 4.0 * noise2 * model2 / effective
+    return float(np.sqrt(own + crossed) + 0.25 * abs(gap))
+
+
+def _directions(Z: Vector, psi: Vector) -> Vector:
+    """Orthonormal directions of the basis that the model's own parameters do not reach; (N, q)."""
+    norms = np.linalg.norm(psi, axis=0)
+    Q, _ = np.linalg.qr(psi[:, norms > 0.0] / norms[norms > 0.0])
+    clean = Z - Q @ (Q.T @ Z)
+    sizes = np.linalg.norm(Z, axis=0)
+    seen = np.linalg.norm(clean, axis=0) > 0.02 * sizes
+    if not seen.any():
+        return np.zeros((len(Z), 0))
+    U, s, _ = np.linalg.svd(clean[:, seen] / np.linalg.norm(clean[:, seen], axis=0),
+                            full_matrices=False)  # fmt: skip
+    return np.asarray(U[:, s > 0.05 * s[0]])
+
+
+def _out_of_sample(e: Vector, Z: Vector) -> float:
+    """Mean square of e that coefficients from the other folds predict."""
+    edges = np.linspace(0, len(e), FOLDS + 1).astype(int)
+    explained = 0.0
+    for a, b in itertools.pairwise(edges):
+        inside = slice(a, b)
+        rest = np.ones(len(e), dtype=bool)
+        rest[inside] = False
+        coefficients, *_ = np.linalg.lstsq(Z[rest], e[rest], rcond=None)
+        guess = Z[inside] @ coefficients
+        explained += float(e[inside] @ e[inside] - np.sum((e[inside] - guess) ** 2))
+    return explained / len(e)

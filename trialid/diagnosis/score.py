@@ -1,0 +1,265 @@
+"""Which physical effect is missing: the score test on augmented sensitivities.
+
+What the fitted parameters, nuisances included, could mimic is projected out of every candidate's
+sensitivity; what remains is compared with the residual. The residual is coloured, so both are
+whitened by an autoregression first, and the variance of the score is of the HAC kind.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+from scipy.stats import chi2
+
+from trialid.accuracy import Stretch
+from trialid.diagnosis.augment import Augmented, augment
+from trialid.identification.fit import Fit
+from trialid.ship.effect import Effect
+
+Vector = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+WHITENING_SECONDS: Final = 10.0
+"""Memory of the autoregression that whitens the residual."""
+
+HAC_SECONDS: Final = 60.0
+"""Lag window of the score's variance: two to three times the longest correlation time."""
+
+VISIBLE: Final = 0.001
+"""Below this share of its sensitivity left, an effect cannot be told from the free parameters."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect the model lacks, and what the record says of it.
+
+    Attributes
+    ----------
+    expected
+        Parameter values by linearisation.
+    eps_predicted
+        eps_RMSn by linearisation with the effect in the model.
+    p_value
+        Of the score test, corrected for the whole catalogue (Holm).
+    visibility
+        Share of the effect's sensitivity that no free parameter can mimic.
+    score
+        The test statistic, chi-square of as many degrees as parameters.
+    family
+        Effects this record cannot separate from it, |cos| above the limit.
+    allowed
+        Whether the expected values lie in their physical range.
+    """
+
+    effect: Effect
+    expected: Mapping[str, float]
+    eps_predicted: float
+    score: float
+    p_value: float
+    visibility: float
+    family: tuple[str, ...]
+    allowed: bool
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Residual and candidate columns with everything the base columns reach taken out."""
+
+    residual: Vector
+    S: Vector
+
+    def of(self, which: Sequence[int], sizes: Vector) -> Vector:
+        """Some columns in units of their size; (M, q)."""
+        return np.asarray(self.S[:, which] / sizes)
+
+
+def rank(
+    fit: Fit, catalogue: Mapping[str, Effect], family_cos: float = 0.9
+) -> tuple[tuple[Candidate, ...], Augmented]:
+    """Candidates by the evidence for them, best first; unphysical ones behind the physical.
+
+    Parameters
+    ----------
+    family_cos
+        |cos| between visible traces from which on two effects are one family.
+    """
+    augmented = augment(fit, catalogue)
+    if not augmented.effects:
+        return (), augmented
+    raw = _project(augmented.residual, augmented.psi, augmented.S)
+    residual, psi, S, parts = whitened(augmented, fit.problem.trials[0].period)
+    white = _project(residual, psi, S)
+    made = [_score(fit, augmented, effect, raw, white, parts) for effect in augmented.effects]
+    scored = _families(_holm([c for c in made if c is not None]), augmented, white.S, family_cos)
+    return tuple(sorted(scored, key=_standing)), augmented
+
+
+def _standing(c: Candidate) -> tuple[bool, float, float]:
+    return not c.allowed, c.p_value, -c.score
+
+
+def _project(residual: Vector, psi: Vector, S: Vector) -> _Columns:
+    norms = np.linalg.norm(psi, axis=0)
+    Q, _ = np.linalg.qr(psi[:, norms > 0.0] / norms[norms > 0.0])
+    return _Columns(residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S))
+
+
+def whitened(
+    augmented: Augmented, period: float
+) -> tuple[Vector, Vector, Vector, tuple[Stretch, ...]]:
+    """Residual, base and candidate columns filtered by the inverse of the residual's colour."""
+    order = max(round(WHITENING_SECONDS / period), 1)
+    filters = _autoregressions(augmented, order)
+    rows, made, at = [], [], 0
+    every = np.column_stack([augmented.residual, augmented.psi, augmented.S])
+    for stretch in augmented.stretches:
+        full = np.zeros((len(stretch.compared), every.shape[1]))
+        full[stretch.compared] = every[stretch.rows]
+        out, valid = _filtered(full, stretch.compared, filters[stretch.output])
+        count = int(valid.sum())
+        rows.append(out[valid])
+        made.append(Stretch(stretch.trial, stretch.output, slice(at, at + count), valid))
+        at += count
+    done = np.concatenate(rows)
+    n = augmented.psi.shape[1]
+    return done[:, 0], done[:, 1 : n + 1], done[:, n + 1 :], tuple(made)
+
+
+def _autoregressions(augmented: Augmented, order: int) -> dict[int, Vector]:
+    """Coefficients 1, -a_1, ... of each output's residual, by least squares over all trials."""
+    filters = {}
+    for output in sorted({s.output for s in augmented.stretches}):
+        targets, lags = [], []
+        for stretch in augmented.stretches:
+            if stretch.output == output:
+                e = np.zeros(len(stretch.compared))
+                e[stretch.compared] = augmented.residual[stretch.rows]
+                past = np.lib.stride_tricks.sliding_window_view(e, order)[:-1, ::-1]
+                whole = np.lib.stride_tricks.sliding_window_view(stretch.compared, order + 1)
+                keep = whole.all(axis=1)
+                targets.append(e[order:][keep])
+                lags.append(past[keep])
+        X, y = np.concatenate(lags), np.concatenate(targets)
+        if len(y) < 4 * order:
+            filters[output] = np.array([1.0])
+            continue
+        a, *_ = np.linalg.lstsq(X, y, rcond=None)
+        scale = float(np.std(y - X @ a)) or 1.0
+        filters[output] = np.concatenate([[1.0], -a]) / scale
+    return filters
+
+
+def _filtered(full: Vector, compared: Mask, a: Vector) -> tuple[Vector, Mask]:
+    """FIR-filtered columns and where every tap fell on a compared sample."""
+    out = lfilter(a, [1.0], full, axis=0)
+    present = lfilter(np.ones(len(a)), [1.0], compared.astype(float))
+    return np.asarray(out), np.asarray(present > len(a) - 0.5)
+
+
+def _score(
+    fit: Fit,
+    augmented: Augmented,
+    effect: Effect,
+    raw: _Columns,
+    white: _Columns,
+    parts: Sequence[Stretch],
+) -> Candidate | None:
+    """The score test of one effect; None when it leaves no trace at all."""
+    which = [augmented.columns.index(p) for p in effect.parameters]
+    sizes = np.linalg.norm(augmented.S[:, which], axis=0)
+    if not np.all(sizes > 0.0):
+        return None
+    visibility = float(np.mean(np.sum(raw.of(which, sizes) ** 2, axis=0)))
+    s, e = white.of(which, sizes), white.residual
+    variance = _hac(s * e[:, None], parts, fit.problem.trials[0].period)
+    g = s.T @ e
+    score = float(g @ np.linalg.pinv(variance, rcond=1e-10, hermitian=True) @ g)
+    beta, *_ = np.linalg.lstsq(s, e, rcond=1e-10)
+    expected = {p: float(b / z) for p, b, z in zip(effect.parameters, beta, sizes, strict=True)}
+    eps2 = max(fit.eps_rmsn**2 - _fall(raw, which, sizes), 0.0)
+    p = float(chi2.sf(score, len(which))) if visibility > VISIBLE else 1.0
+    return Candidate(
+        effect, expected, float(np.sqrt(eps2)), score, p, visibility, (effect.name,),
+        _allowed(effect, expected),
+    )  # fmt: skip
+
+
+def _fall(raw: _Columns, which: Sequence[int], sizes: Vector) -> float:
+    """Fall of eps_RMSn^2 by linearisation."""
+    s = raw.of(which, sizes)
+    beta, *_ = np.linalg.lstsq(s, raw.residual, rcond=1e-10)
+    return float(raw.residual @ (s @ beta))
+
+
+def _allowed(effect: Effect, expected: Mapping[str, float]) -> bool:
+    return all(p.low <= expected[n] <= p.high for n, p in effect.parameters.items())
+
+
+def _hac(products: Vector, parts: Sequence[Stretch], period: float) -> Vector:
+    """Variance of a sum of correlated products; (q, q), Bartlett weights.
+
+    The outputs of one trial share their disturbances, so their products are added on the clock.
+    """
+    lags = max(round(HAC_SECONDS / period), 1)
+    total = np.zeros((products.shape[1],) * 2)
+    for trial in sorted({s.trial for s in parts}):
+        mine = [s for s in parts if s.trial == trial]
+        m = np.zeros((max(len(s.compared) for s in mine), products.shape[1]))
+        for stretch in mine:
+            m[stretch.compared] += products[stretch.rows]
+        total += _long_run(m, lags)
+    return total
+
+
+def _long_run(m: Vector, lags: int) -> Vector:
+    n = len(m)
+    size = 1 << (n + lags).bit_length()
+    spectrum = np.fft.rfft(m, size, axis=0)
+    weights = np.maximum(1.0 - np.arange(lags + 1) / (lags + 1), 0.0)
+    result = np.zeros((m.shape[1],) * 2)
+    for i in range(m.shape[1]):
+        for j in range(m.shape[1]):
+            c = np.fft.irfft(spectrum[:, i].conj() * spectrum[:, j], size)
+            result[i, j] = float(
+                weights[0] * c[0] + weights[1:] @ (c[1 : lags + 1] + c[size - lags :][::-1])
+            )
+    return result
+
+
+def _holm(scored: Sequence[Candidate]) -> list[Candidate]:
+    """Holm's correction over the whole catalogue: family-wise error of all the tests at once."""
+    order = sorted(range(len(scored)), key=lambda i: scored[i].p_value)
+    corrected = dict[int, float]()
+    largest = 0.0
+    for rank_, i in enumerate(order):
+        largest = max(largest, min(1.0, scored[i].p_value * (len(scored) - rank_)))
+        corrected[i] = largest
+    return [replace(c, p_value=corrected[i]) for i, c in enumerate(scored)]
+
+
+def _families(
+    scored: Sequence[Candidate], augmented: Augmented, S: Vector, limit: float
+) -> list[Candidate]:
+    """Name with each candidate those whose visible traces are nearly parallel to its own."""
+    bases = {}
+    for c in scored:
+        columns = [augmented.columns.index(p) for p in c.effect.parameters]
+        Q, _ = np.linalg.qr(
+            S[:, columns] / np.maximum(np.linalg.norm(S[:, columns], axis=0), 1e-300)
+        )
+        bases[c.effect.name] = Q
+    result = []
+    for c in scored:
+        mine = bases[c.effect.name]
+        alike = [
+            other.effect.name
+            for other in scored
+            if other is not c
+            and other.visibility > VISIBLE
+            and float(np.linalg.norm(mine.T @ bases[other.effect.name], 2)) > limit
+        ]
+        result.append(replace(c, family=(c.effect.name, *alike)))
+    return result
