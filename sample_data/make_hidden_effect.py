@@ -7,7 +7,6 @@ not have. Nothing here is tuned to the pipeline: what the logs hold is the ship,
 sensors below. Same seeds, same bytes.
 """
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
@@ -15,6 +14,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
+from write_logs import (
+    Imu,
+    write_csv,
+    write_json_mcap,
+    write_keelson_mcap,
+    write_ros2_mcap,
+)
 
 from trialid.effects import CATALOGUE
 from trialid.ship.model import ShipModel
@@ -24,6 +30,7 @@ from trialid.trial import Trial
 
 HERE: Final = Path(__file__).parent
 Vector = NDArray[np.float64]
+Samples = tuple[NDArray[np.int64], Vector]
 
 PERIOD: Final = 0.1  # s, of the simulation and of the fastest sensor
 DURATION: Final = 1200.0  # s
@@ -39,6 +46,9 @@ TRUTH: Final = (
 HIDDEN: Final = ("righting_arm_cubic", {"GM3": 3.2})  # wall sides: BM/2
 OFFSET: Final = np.deg2rad(0.4)  # neutral rudder angle
 SHAFT: Final = 70.0 * 2.0 * np.pi / 60.0  # rad/s
+KNOT: Final = 1852.0 / 3600.0  # m/s
+ROLL_DELAY: Final = 0.7  # s, the filter inside the motion sensor
+START: Final = 1_780_000_000_000_000_000  # ns, when every recording begins
 RUDDER_RATE: Final = np.deg2rad(2.5)  # rad/s
 
 
@@ -157,3 +167,102 @@ def trials() -> dict[str, tuple[Vector, int]]:
         "binary-15": (multi_frequency_binary(15.0, 3), 13),
         "zigzag-15": (zigzag(15.0, 10.0, heading_of), 14),
     }
+
+
+def sampled(
+    motion: Vector, rate: float, rng: np.random.Generator, noise: float, bias: float = 0.0,
+    late: float = 0.0,
+) -> Samples:  # fmt: skip
+    """What a sensor logs: its own clock at `rate` [Hz], white noise, a bias, and what is late."""
+    t = np.arange(0.0, DURATION + PERIOD / 2, PERIOD)
+    phase = rng.uniform(0.0, 1.0 / rate)
+    clock = phase + np.arange(0.0, DURATION - phase, 1.0 / rate)
+    values = np.interp(clock - late, t, motion) + bias + noise * rng.standard_normal(len(clock))
+    return START + np.round(clock * 1e9).astype(np.int64), values
+
+
+def sensors(x: dict[str, Vector], delta: Vector, seed: int) -> dict[str, Samples]:
+    """Everything the trial's sensors log, in SI and in this project's positive directions."""
+    rng = np.random.default_rng(1000 + seed)
+    deg = np.deg2rad(1.0)
+    return {
+        "delta": sampled(delta, 5.0, rng, 0.02 * deg),
+        "r": sampled(x["r"], 10.0, rng, 0.05 * deg, 0.01 * deg),
+        "phi": sampled(x["phi"], 4.0, rng, 0.1 * deg, 0.3 * deg, ROLL_DELAY),
+        "u": sampled(x["u"], 1.0, rng, 0.02),
+    }
+
+
+def scaled(samples: Samples, factor: float) -> Samples:
+    """The same samples in another unit, rounded as a logger prints them."""
+    return samples[0], np.round(samples[1] * factor, 6)
+
+
+def write_keelson(path: Path, logged: dict[str, Samples]) -> None:
+    """The harbour authority's recorder: Keelson names, degrees and knots in the subject."""
+    key = "harbour/@v0/s175q/pubsub"
+    deg = np.rad2deg(1.0)
+    write_keelson_mcap(path, {
+        f"{key}/rudder_angle_deg/steering_gear": scaled(logged["delta"], deg),
+        f"{key}/yaw_rate_degps/gyro": scaled(logged["r"], deg),
+        f"{key}/roll_deg/motion_sensor": scaled(logged["phi"], deg),
+        f"{key}/speed_through_water_knots/log": scaled(logged["u"], 1.0 / KNOT),
+    })  # fmt: skip
+
+
+def write_ros(path: Path, logged: dict[str, Samples]) -> None:
+    """A research recorder: ROS axes, in which a turn to starboard is a negative yaw rate."""
+    t, r = logged["r"]
+    phi = np.interp(t, *logged["phi"])
+    zero = np.zeros(len(t))
+    imu = Imu(t, phi, zero, zero, zero, zero, -r)
+    floats = {"/steering/rudder": logged["delta"], "/speed/stw": logged["u"]}
+    write_ros2_mcap(path, floats, {"/imu": imu})
+
+
+def write_json(path: Path, logged: dict[str, Samples]) -> None:
+    """An in-house logger: JSON messages, rate of turn in deg/min."""
+    deg = np.rad2deg(1.0)
+    write_json_mcap(path, {
+        "/rudder": scaled(logged["delta"], deg),
+        "/rate_of_turn": scaled(logged["r"], 60.0 * deg),
+        "/heel": scaled(logged["phi"], deg),
+        "/stw": scaled(logged["u"], 1.0 / KNOT),
+    })  # fmt: skip
+
+
+def write_table(path: Path, logged: dict[str, Samples]) -> None:
+    """A table on one clock at 5 Hz, as a data logger exports it."""
+    t = logged["delta"][0]
+    deg = np.rad2deg(1.0)
+    columns = {
+        "rudder[deg]": np.interp(t, *logged["delta"]) * deg,
+        "rot[deg/min]": np.interp(t, *logged["r"]) * 60.0 * deg,
+        "heel[deg]": np.interp(t, *logged["phi"]) * deg,
+        "stw[kn]": np.interp(t, *logged["u"]) / KNOT,
+    }
+    write_csv(path, (t - START) * 1e-9, {n: np.round(c, 4) for n, c in columns.items()})
+
+
+WRITERS: Final = {
+    "zigzag-10": ("zigzag-10.mcap", write_keelson),
+    "zigzag-20": ("zigzag-20.mcap", write_ros),
+    "binary-15": ("binary-15.mcap", write_json),
+    "zigzag-15": ("zigzag-15.csv", write_table),
+}
+
+
+def main() -> None:
+    """Write the four logs."""
+    folder = HERE / "hidden_effect"
+    folder.mkdir(exist_ok=True)
+    model = ship_model()
+    for name, (delta, seed) in trials().items():
+        motion = run(model, delta, sea(model, seed, len(delta)))
+        file, writer = WRITERS[name]
+        writer(folder / file, sensors(motion, delta, seed))
+        print(f"{file}: {(folder / file).stat().st_size / 1e6:.2f} MB")
+
+
+if __name__ == "__main__":
+    main()

@@ -134,7 +134,7 @@ def _repeated(fit: Fit) -> Split:
         (one, other)
         for i, one in enumerate(found)
         for other in found[i + 1 :]
-        if _same_rudder(_rudder(one.trial), _rudder(other.trial))
+        if _same_rudder(rudder(one.trial), rudder(other.trial))
     ]
     if not pairs:
         return Split(method, "no two trials have the same rudder record")
@@ -143,7 +143,8 @@ def _repeated(fit: Fit) -> Split:
     return _from_pieces(fit, method, pieces, f"what differs between {names}")
 
 
-def _rudder(trial: Trial) -> Vector | None:
+def rudder(trial: Trial) -> Vector | None:
+    """The rudder's record, the measured angle before the order; None where there is neither."""
     for name in ("delta", "delta_order"):
         if name in trial.signals:
             return trial.signals[name]
@@ -170,8 +171,8 @@ def _periodic(fit: Fit) -> Split:
     method = "periods of a periodic test"
     pieces, words = [], []
     for r in residuals(fit):
-        rudder = _rudder(r.trial)
-        found = None if rudder is None else _period(rudder)
+        angle = rudder(r.trial)
+        found = None if angle is None else _period(angle)
         if found is not None:
             start, lag = found
             late = Residual(r.trial, r.eps[start + lag :], r.compared[start + lag :], r.predicted)
@@ -223,14 +224,14 @@ def _about_mean(eps: Vector, mask: Mask) -> Vector:
 
 def _still(r: Residual) -> list[Interval]:
     """Longest stretch with rudder and prediction at rest, if it is long enough."""
-    rudder = _rudder(r.trial)
-    if rudder is None:
+    angle = rudder(r.trial)
+    if angle is None:
         return []
     best: list[Interval] = []
-    n, needed = len(rudder), round(QUIET_SECONDS / r.trial.period)
+    n, needed = len(angle), round(QUIET_SECONDS / r.trial.period)
     start = 0
     while start + needed <= n:
-        stop = _rest(rudder, r.predicted, start)
+        stop = _rest(angle, r.predicted, start)
         if stop - start >= needed and (not best or stop - start > _samples(best[0], r)):
             best = [(start * r.trial.period, stop * r.trial.period)]
         start = max(stop, start + needed // 4)
@@ -286,6 +287,11 @@ def _pooled(pieces: Sequence[Vector], masks: Sequence[Mask]) -> OutputNoise | No
     effective = sum(_effective(p, m) for p, m in zip(pieces, masks, strict=True))
     degrees = max(effective - len(pieces), 1.0)
     return OutputNoise(variance * effective / degrees, variance * np.sqrt(2.0 / degrees))
+
+
+def effective_of(e: Vector) -> float:
+    """Effective samples of a piece without gaps, for its variance."""
+    return max(_effective(e, np.ones(len(e), dtype=bool)), 1.0)
 
 
 def _effective(e: Vector, mask: Mask) -> float:

@@ -1,0 +1,283 @@
+"""The whole chain: logs, alignment, fit, accuracy, what the error is made of, what is missing."""
+
+import json
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from trialid import effects, ingest, units
+from trialid.accuracy import Accuracy, Subject, assess
+from trialid.alignment import SignalSource, align
+from trialid.diagnosis.augment import Augmented
+from trialid.diagnosis.missing_effect import confirmed, decide, refit
+from trialid.diagnosis.noise import Split, split
+from trialid.diagnosis.score import Candidate, rank
+from trialid.diagnosis.where import where as stretches_that_fail
+from trialid.errors import RecipeError, nearest
+from trialid.identification.fit import Fit, identify
+from trialid.identification.gauss_newton import Iteration
+from trialid.identification.output_error import stretches
+from trialid.identification.pose import Settings
+from trialid.quantities import SIGNALS
+from trialid.recipe import Recipe, TrialRecipe, where
+from trialid.report.overlay import write_mcap
+from trialid.report.page import write_page
+from trialid.report.series import OutputSeries, TrialSeries, write_csv
+from trialid.result import Diagnosed, Findings, plain
+from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
+from trialid.ship.particulars import read_ship
+from trialid.trial import Trial
+
+Progress = Callable[[str, float | None], None]
+
+NEAR_ZERO: Final = 0.05
+"""An estimate below this share of its typical size is scaled by the latter."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A finished run: its findings, the same as plain data, and the time series."""
+
+    recipe: Recipe
+    findings: Findings
+    result: Mapping[str, Any]
+    series: tuple[TrialSeries, ...]
+
+
+def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
+    """Everything from a pipeline, nothing written.
+
+    Raises
+    ------
+    TrialidError
+        The input is wrong; nothing is left behind.
+    """
+    trials = align_trials(recipe, progress)
+    catalogue = available(recipe)
+    model = build_model(recipe, catalogue)
+    settings = settings_of(recipe)
+    progress("fitting", 0.3)
+    fit = identify(trials, model, settings, _fit_progress(progress))
+    before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
+    refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
+                         lambda words: progress(words, 0.7)))  # fmt: skip
+    level = recipe.diagnose.level
+    named = confirmed(fit, refits, level)
+    after = None
+    if named is not None:
+        after = diagnose(recipe, named.fit, catalogue, progress)[0]
+    findings = Findings(
+        recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
+        decide(fit, ranking, refits, before.split, level), stretches_that_fail(fit), after,
+    )  # fmt: skip
+    progress("done", 1.0)
+    return Run(recipe, findings, plain(findings), time_series(fit))
+
+
+def align_trials(recipe: Recipe, progress: Progress) -> tuple[Trial, ...]:
+    """Logs of every trial, read and brought onto one clock."""
+    done = []
+    for i, trial in enumerate(recipe.trials):
+        progress(f"reading {trial.name}", 0.3 * i / len(recipe.trials))
+        done.append(_aligned(recipe, trial))
+    return tuple(done)
+
+
+def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
+    sources = [
+        SignalSource(q, s.channel, s.unit, s.positive, s.angle, s.delay)
+        for q, s in trial.signals.items()
+    ]
+    recordings = ingest.read_together(trial.logs, [s.channel for s in sources])
+    made = align(trial.name, trial.use, recordings, sources, recipe.align.period, trial.window)
+    if trial.speed is None or "u" in made.signals:
+        return made
+    signals = {**made.signals, "u": np.full(made.samples, trial.speed)}
+    valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
+    remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
+    return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+
+
+def available(recipe: Recipe) -> dict[str, Effect]:
+    """The catalogue and the user's own effects, by name."""
+    own = [effects.from_file(path) for path in recipe.model.effects_from]
+    return {**effects.CATALOGUE, **{n: e for found in own for n, e in found.items()}}
+
+
+def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
+    """The ship with the pipeline's states, effects and values.
+
+    Raises
+    ------
+    RecipeError
+        An effect or a value the model does not have.
+    """
+    chosen = []
+    for i, name in enumerate(recipe.model.effects):
+        if name not in catalogue:
+            raise RecipeError(
+                f"{where(recipe, f'model.effects[{i}]')}: there is no effect {name!r}; "
+                f"{nearest(name, catalogue)}"
+            )
+        chosen.append(catalogue[name])
+    model = ShipModel(read_ship(recipe.ship), recipe.model.states, tuple(chosen))
+    return model.with_values({n: _value(recipe, model, n) for n in recipe.model.values})
+
+
+def _value(recipe: Recipe, model: ShipModel, name: str) -> float:
+    given = recipe.model.values[name]
+    if name not in model.parameters:
+        raise RecipeError(
+            f"{where(recipe, f'model.values.{name}')}: no effect of the model has this parameter; "
+            f"{nearest(name, model.parameters)}"
+        )
+    if given.unit is None:
+        return given.value
+    return given.value * units.factor(given.unit, model.parameters[name].unit)
+
+
+def settings_of(recipe: Recipe) -> Settings:
+    """The pipeline's `[identify]` as the identifier takes it."""
+    r = recipe.identify
+    return Settings(
+        free=r.free, outputs=r.outputs, nuisance=r.nuisance, weights=r.weights, loss=r.loss,
+        priors={n: (p.mean, p.std) for n, p in r.priors.items()}, bounds=r.bounds,
+        starts=r.starts, spread=r.spread, seed=r.seed, max_iterations=r.max_iterations,
+        norm=r.norm, substeps=r.substeps, engine=r.engine,
+    )  # fmt: skip
+
+
+def _fit_progress(progress: Progress) -> Callable[[Iteration], None]:
+    count = 0
+
+    def tell(iteration: Iteration) -> None:
+        nonlocal count
+        count += 1
+        share = 0.3 + 0.3 * count / (count + 10.0)
+        progress(f"fitting: iteration {count}, error {np.sqrt(2.0 * iteration.V):.2%}", share)
+
+    return tell
+
+
+def diagnose(
+    recipe: Recipe, fit: Fit, catalogue: Mapping[str, Effect], progress: Progress
+) -> tuple[Diagnosed, tuple[Candidate, ...], Augmented]:
+    """What the error is made of, how far the parameters can be trusted, and the ranking."""
+    progress("looking for what is missing", 0.65)
+    ranking, augmented = rank(fit, candidates(recipe, catalogue), recipe.diagnose.family_cos)
+    n_y = len(fit.problem.outputs)
+    basis = [augmented.on_clock(t, i, n_y) for i, t in enumerate(fit.problem.trials)]
+    best, routes = split(fit, basis, stated_noise(recipe), _declared_quiet(recipe))
+    return Diagnosed(fit, accuracy_of(fit, best), best, routes), ranking, augmented
+
+
+def candidates(recipe: Recipe, catalogue: Mapping[str, Effect]) -> dict[str, Effect]:
+    """Effects to try: all, none, or those the pipeline lists.
+
+    Raises
+    ------
+    RecipeError
+        A listed effect does not exist.
+    """
+    asked = recipe.diagnose.candidates
+    if asked == "all":
+        return dict(catalogue)
+    if asked == "none":
+        return {}
+    for i, name in enumerate(asked):
+        if name not in catalogue:
+            raise RecipeError(
+                f"{where(recipe, f'diagnose.candidates[{i}]')}: there is no effect {name!r}; "
+                f"{nearest(name, catalogue)}"
+            )
+    return {n: catalogue[n] for n in asked}
+
+
+def worth_refitting(recipe: Recipe, ranking: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+    """The best candidates that stand out and are physical."""
+    standing = [c for c in ranking if c.allowed and c.p_value < recipe.diagnose.level]
+    return tuple(standing[: recipe.diagnose.refit])
+
+
+def stated_noise(recipe: Recipe) -> dict[str, float]:
+    """Sensor figures of the pipeline, from the unit of reports to SI."""
+    return {c: x / units.shown(SIGNALS[c]) for c, x in recipe.diagnose.noise.items()}
+
+
+def _declared_quiet(recipe: Recipe) -> dict[str, list[tuple[float, float]]]:
+    declared: dict[str, list[tuple[float, float]]] = {}
+    for stretch in recipe.diagnose.quiet:
+        declared.setdefault(stretch.trial, []).append(stretch.window)
+    return declared
+
+
+def accuracy_of(fit: Fit, parts: Split) -> Accuracy:
+    """Eq. 8 to 14 for every unknown of a fit."""
+    subjects = []
+    for unknown, value in zip(fit.problem.unknowns, fit.theta, strict=True):
+        near_zero = abs(value) < NEAR_ZERO * unknown.size
+        typical = unknown.kind == "nuisance" or near_zero
+        reference = unknown.size if typical else float(value)
+        subjects.append(Subject(unknown.name, unknown.kind, unknown.unit, float(value), reference))
+    return assess(
+        subjects, fit.psi, fit.residual, stretches(fit.problem), parts.noise, parts.undermodelling
+    )
+
+
+def time_series(fit: Fit) -> tuple[TrialSeries, ...]:
+    """Measured and predicted of every trial, for the report."""
+    outputs = fit.problem.outputs
+    names = fit.problem.simulator.equations.inputs
+    return tuple(
+        TrialSeries(
+            s.trial.name, s.trial.use, s.trial.t,
+            {n: s.trial.signals[n] for n in names if n in s.trial.signals},
+            tuple(
+                OutputSeries(c, s.trial.signals[c], s.response.y[:, i], s.compared[:, i])
+                for i, c in enumerate(outputs)
+            ),
+        )
+        for s in fit.scores
+    )  # fmt: skip
+
+
+def write(done: Run, folder: Path) -> None:
+    """The run's folder: report, result, series, a recording that opens in plot tools, the pipeline.
+
+    Everything is written beside and moved in place at the end, so that a run that is broken off
+    leaves the old folder or the new one, never half of one.
+
+    Raises
+    ------
+    RecipeError
+        The place exists and is no folder of a run.
+    """
+    if folder.exists() and not (folder / "result.json").exists() and any(folder.iterdir()):
+        raise RecipeError(
+            f"--out {folder}: exists and is not the folder of a run; name another place"
+        )
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    work = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    try:
+        _write_files(done, work)
+        if folder.exists():
+            shutil.rmtree(folder)
+        work.chmod(0o755)
+        work.replace(folder)
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+
+def _write_files(done: Run, folder: Path) -> None:
+    text = json.dumps(done.result, indent=1, allow_nan=False)
+    (folder / "result.json").write_text(text + "\n", encoding="utf-8")
+    write_csv(folder / "series.csv", done.series)
+    write_mcap(folder / "predicted.mcap", done.result, done.series)
+    write_page(folder / "report.html", done.result, done.series)
+    shutil.copyfile(done.recipe.path, folder / "pipeline.toml")

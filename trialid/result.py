@@ -1,0 +1,405 @@
+"""The result of a run as plain data: `result.json`, schema trialid-result/1.
+
+Numbers are SI unless a unit stands beside them; what is not known is None, never 0.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+import trialid
+from trialid.accuracy import Accuracy, ParameterAccuracy
+from trialid.diagnosis.missing_effect import Refit, Verdict
+from trialid.diagnosis.noise import Split
+from trialid.diagnosis.score import Candidate
+from trialid.diagnosis.where import Finding
+from trialid.errors import EffectError
+from trialid.identification.fit import Fit, step_halving
+from trialid.ship.model import ShipModel
+from trialid.ship.stability import PARTS, ROLL_PARTS, Stability, stability
+
+SCHEMA: Final = "trialid-result/1"
+Plain = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """One fit with everything that was found out about it."""
+
+    fit: Fit
+    accuracy: Accuracy
+    split: Split
+    routes: tuple[Split, ...]
+
+
+@dataclass(frozen=True)
+class Findings:
+    """All that a run found.
+
+    `after` is the confirmed refit, diagnosed in its turn; None where no effect was named.
+    """
+
+    name: str
+    pipeline: str
+    before: Diagnosed
+    ranking: tuple[Candidate, ...]
+    left_out: Mapping[str, str]
+    refits: tuple[Refit, ...]
+    verdict: Verdict
+    where: tuple[Finding, ...]
+    after: Diagnosed | None
+
+
+def plain(found: Findings) -> Plain:
+    """Everything as plain data, ready for `json.dumps`."""
+    fit = found.before.fit
+    return _finite(
+        {
+            "schema": SCHEMA,
+            "version": trialid.__version__,
+            "versions": _versions(),
+            "name": found.name,
+            "pipeline": found.pipeline,
+            "trials": [_trial(s) for s in fit.scores],
+            "model": _model(fit),
+            "fit": _fit(fit),
+            "split": _split(found.before.split, found.before.routes),
+            "accuracy": _accuracy(fit, found.before.accuracy),
+            "where": [_finding(f) for f in found.where],
+            "missing": _missing(found),
+            "not_tried": dict(found.left_out),
+            "verdict": _verdict(found.verdict),
+            "history": _history(found),
+            "before_after": _before_after(found),
+        }
+    )
+
+
+def _finite(value: Any) -> Any:
+    """Infinite and undefined numbers have no place in JSON: they are not known."""
+    if isinstance(value, Mapping):
+        return {k: _finite(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(v) for v in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def _versions() -> Plain:
+    import platform
+
+    import llvmlite
+    import scipy
+
+    return {
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "llvmlite": llvmlite.__version__,
+    }
+
+
+def _trial(score: Any) -> Plain:
+    trial = score.trial
+    return {
+        "name": trial.name,
+        "use": trial.use,
+        "logs": [{"path": g.path, "sha256": g.sha256, "adapter": g.adapter} for g in trial.logs],
+        "samples": trial.samples,
+        "period": trial.period,
+        "duration": trial.duration,
+        "remarks": [*trial.remarks, *_departure(score)],
+        "eps_rmsn": dict(score.eps_rmsn),
+    }
+
+
+def _departure(score: Any) -> list[str]:
+    departure = score.response.departure
+    return [] if departure is None else [f"simulation: {departure}; not compared after that"]
+
+
+def _model(fit: Fit) -> Plain:
+    model = fit.model
+    return {
+        "ship": model.ship.name,
+        "rudder_positive": "starboard",
+        "states": list(model.states),
+        "effects": [e.name for e in model.effects],
+        "free": list(fit.settings.free),
+        "inputs": list(fit.problem.simulator.equations.inputs),
+        "outputs": list(fit.problem.outputs),
+        "nuisance": list(fit.settings.nuisance),
+    }
+
+
+def _fit(fit: Fit) -> Plain:
+    return {
+        "eps_rmsn": fit.eps_rmsn,
+        "eps_rmsn_by_output": fit.eps_by_output,
+        "eps_rmsn_check": fit.eps_check,
+        "V": fit.V,
+        "iterations": [
+            {"V": i.V, "eps_rmsn": math.sqrt(2.0 * i.V), "step": i.step} for i in fit.iterations
+        ],
+        "converged": fit.converged,
+        "reason": fit.explanation,
+        "starts": {"agreeing": fit.agreeing[0], "of": fit.agreeing[1]},
+        "samples": len(fit.residual),
+        "step_halving": step_halving(fit) or None,
+        "weighting": weighting(fit),
+        "y_rms": dict(zip(fit.problem.outputs, map(float, fit.problem.y_rms), strict=True)),
+    }
+
+
+def weighting(fit: Fit) -> str:
+    """How outputs count, in words."""
+    about = "its own mean" if fit.settings.norm == "mean" else "zero"
+    weights = fit.problem.weights
+    equal = bool(np.allclose(weights, 1.0))
+    listed = ", ".join(f"{c} {w:.3g}" for c, w in zip(fit.problem.outputs, weights, strict=True))
+    counted = "all outputs count alike" if equal else f"weights {listed}"
+    return f"residuals over y_RMS of the output about {about}, all trials pooled; {counted}"
+
+
+def _split(split: Split, routes: Sequence[Split]) -> Plain:
+    chosen = _route(split)
+    chosen["by_output"] = (
+        None
+        if split.by_output is None
+        else {c: {"noise": x, "undermodelling": m} for c, (x, m) in split.by_output.items()}
+    )
+    return {**chosen, "routes": [_route(r) | {"available": r.available} for r in routes]}
+
+
+def _route(split: Split) -> Plain:
+    interval = None
+    if split.noise_interval is not None and split.undermodelling_interval is not None:
+        interval = {
+            "noise": list(split.noise_interval),
+            "undermodelling": list(split.undermodelling_interval),
+        }
+    return {
+        "noise": split.noise,
+        "undermodelling": split.undermodelling,
+        "method": split.method,
+        "why": split.why,
+        "interval": interval,
+    }
+
+
+def _accuracy(fit: Fit, accuracy: Accuracy) -> Plain:
+    return {
+        "S_min": accuracy.S_min,
+        "S_max": accuracy.S_max,
+        "R": accuracy.R,
+        "n_effective": accuracy.n_effective,
+        "weighting": weighting(fit),
+        "scaling": (
+            "relative to the estimate, or to the typical size where the estimate is near zero and "
+            "for nuisance parameters; S_min, S_max and R of the physical parameters, with "
+            "everything projected out that nuisance parameters can mimic"
+        ),
+        "parameters": [_parameter(p) for p in accuracy.parameters],
+        "weak": [
+            {"sentence": w.sentence, "parameters": list(w.parameters),
+             "relative_error": w.relative_error}
+            for w in accuracy.weak
+        ],
+        "stability": _stability(fit.model, accuracy),
+    }  # fmt: skip
+
+
+def _parameter(p: ParameterAccuracy) -> Plain:
+    return {
+        "name": p.name,
+        "value": p.value,
+        "unit": p.unit,
+        "S_i": p.S_i,
+        "S_imin": p.S_imin,
+        "R_i": p.R_i,
+        "relative_error": p.relative_error,
+        "noise_error": p.noise_error,
+        "undermodelling_error": p.undermodelling_error,
+        "standard_error": p.standard_error,
+        "white_error": p.white_error,
+        "n_effective": p.n_effective,
+        "kind": p.kind,
+    }
+
+
+def _stability(model: ShipModel, accuracy: Accuracy) -> Plain | None:
+    values = _values(model, (*PARTS, "m", "x_G"))
+    if values is None or values["Yv"] == 0.0:
+        return None
+    names = tuple(p.name for p in accuracy.parameters)
+    plain_form = stability(values, names, accuracy.covariance)
+    coupled_values = _values(model, (*PARTS, "m", "x_G", "z_G", "Kv", "Kr", "GM"))
+    coupled = None
+    if coupled_values is not None:
+        full = coupled_values | _heel(model)
+        coupled = _levers(stability(full, names, accuracy.covariance, coupled=True))
+    return _levers(plain_form) | {"roll_coupled": coupled}
+
+
+def _values(model: ShipModel, names: Sequence[str]) -> dict[str, float] | None:
+    if any(n not in model.parameters for n in names):
+        return None
+    try:
+        return {n: model.value(n) for n in names}
+    except EffectError:
+        return None
+
+
+def _heel(model: ShipModel) -> dict[str, float]:
+    """Heel derivatives (zero where no effect has them) and the stiffness G_phi; primed."""
+    known = {n: model.value(n) if n in model.parameters else 0.0 for n in ("Yphi", "Nphi", "Kphi")}
+    p = model.ship.particulars
+    stiffness = 2.0 * p["g"] * p["nabla"] * model.value("GM") / (p["L"] ** 3 * p["U0"] ** 2)
+    return {"Yphi": known["Yphi"], "Nphi": known["Nphi"], "G_phi": stiffness - known["Kphi"]}
+
+
+def _levers(s: Stability) -> Plain:
+    return {
+        "L_r": s.L_r,
+        "L_v": s.L_v,
+        "margin": s.margin,
+        "standard_error": s.standard_error,
+        "stable": s.stable,
+    }
+
+
+def _finding(f: Finding) -> Plain:
+    return {
+        "output": f.output,
+        "finding": f.doing,
+        "share": f.share,
+        "excess": f.excess,
+        "t_start": f.t_start,
+        "t_end": f.t_end,
+        "trial": f.trial,
+        "sentence": f.sentence,
+    }
+
+
+def _missing(found: Findings) -> list[Plain]:
+    refitted = {r.candidate.effect.name: r.fit for r in found.refits}
+    return [
+        _candidate(i + 1, c, refitted.get(c.effect.name), found)
+        for i, c in enumerate(found.ranking)
+    ]
+
+
+def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Findings) -> Plain:
+    return {
+        "rank": rank,
+        "effect": c.effect.name,
+        "equation": c.effect.equation,
+        "family": list(c.family),
+        "parameters": {
+            n: {
+                "expected": x,
+                "refitted": refit.estimates[n] if refit else None,
+                "unit": c.effect.parameters[n].unit,
+            }
+            for n, x in c.expected.items()
+        },
+        "eps_rmsn_predicted": c.eps_predicted,
+        "eps_rmsn_refitted": refit.eps_rmsn if refit else None,
+        "eps_rmsn_check": refit.eps_check if refit else None,
+        "score": c.score,
+        "p_value": c.p_value,
+        "visibility": c.visibility,
+        "verdict": _standing(c, found),
+        "sentence": _sentence(c, refit, found),
+    }
+
+
+def _standing(c: Candidate, found: Findings) -> str:
+    if c.effect.name == found.verdict.effect:
+        return "missing"
+    if c.effect.name in found.verdict.family:
+        return "not told from the missing one"
+    if not c.allowed:
+        return "outside its physical range"
+    return "stands out" if c.p_value < 0.05 else "no evidence"
+
+
+def _sentence(c: Candidate, refit: Fit | None, found: Findings) -> str:
+    eps = found.before.fit.eps_rmsn
+    said = f"would bring the error from {eps:.2%} to {c.eps_predicted:.2%} (p = {c.p_value:.2g})"
+    if refit is not None:
+        said += f"; fitted, it brings it to {refit.eps_rmsn:.2%}"
+    if len(c.family) > 1:
+        said += f"; not separable here from {', '.join(c.family[1:])}"
+    return f"{c.effect.name} {said}"
+
+
+def _verdict(v: Verdict) -> Plain:
+    return {
+        "kind": v.kind,
+        "effect": v.effect,
+        "family": list(v.family),
+        "sentence": v.sentence,
+        "next_trial": None,
+    }
+
+
+def _history(found: Findings) -> list[Plain]:
+    rows = [_stage(found.before, None)]
+    if found.after is not None:
+        rows.append(_stage(found.after, found.verdict.effect))
+    return rows
+
+
+def _stage(d: Diagnosed, added: str | None) -> Plain:
+    return {
+        "effects": [e.name for e in d.fit.model.effects],
+        "added": added,
+        "eps_rmsn": d.fit.eps_rmsn,
+        "noise": d.split.noise,
+        "undermodelling": d.split.undermodelling,
+        "eps_rmsn_check": d.fit.eps_check,
+    }
+
+
+def _before_after(found: Findings) -> Plain | None:
+    if found.after is None or found.verdict.effect is None:
+        return None
+    before, after = found.before, found.after
+    effect = next(e for e in after.fit.model.effects if e.name == found.verdict.effect)
+    checks = [before.fit.eps_check, after.fit.eps_check]
+    return {
+        "effect": effect.name,
+        "equation": effect.equation,
+        "eps_rmsn": [before.fit.eps_rmsn, after.fit.eps_rmsn],
+        "eps_rmsn_check": None if None in checks else checks,
+        "by_output": {
+            c: [x, after.fit.eps_by_output[c]] for c, x in before.fit.eps_by_output.items()
+        },
+        "noise": _pair(before.split.noise, after.split.noise),
+        "undermodelling": _pair(before.split.undermodelling, after.split.undermodelling),
+        "undermodelling_interval": list(after.split.undermodelling_interval or ()) or None,
+        "parameters": _moved(before, after),
+    }
+
+
+def _pair(a: float | None, b: float | None) -> list[float] | None:
+    return None if a is None or b is None else [a, b]
+
+
+def _moved(before: Diagnosed, after: Diagnosed) -> list[Plain]:
+    old = before.fit.estimates
+    return [
+        {
+            "name": p.name,
+            "unit": p.unit,
+            "before": old.get(p.name),
+            "after": p.value,
+            "standard_error": p.standard_error,
+        }
+        for p in after.accuracy.physical
+    ]
