@@ -32,6 +32,7 @@ from trialid.result import Diagnosed, Findings, plain
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import read_ship
+from trialid.threads import one_thread
 from trialid.trial import Trial
 
 Progress = Callable[[str, float | None], None]
@@ -50,6 +51,7 @@ class Run:
     series: tuple[TrialSeries, ...]
 
 
+@one_thread
 def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
     """Everything from a pipeline, nothing written.
 
@@ -171,9 +173,7 @@ def diagnose(
     """What the error is made of, how far the parameters can be trusted, and the ranking."""
     progress("looking for what is missing", 0.65)
     ranking, augmented = rank(fit, candidates(recipe, catalogue), recipe.diagnose.family_cos)
-    n_y = len(fit.problem.outputs)
-    basis = [augmented.on_clock(t, i, n_y) for i, t in enumerate(fit.problem.trials)]
-    best, routes = split(fit, basis, stated_noise(recipe), _declared_quiet(recipe))
+    best, routes = split(fit, augmented, stated_noise(recipe), _declared_quiet(recipe))
     return Diagnosed(fit, accuracy_of(fit, best), best, routes), ranking, augmented
 
 

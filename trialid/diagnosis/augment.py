@@ -32,14 +32,6 @@ class Augmented:
     stretches: tuple[Stretch, ...]
     left_out: Mapping[str, str]
 
-    def on_clock(self, trial: Trial, index: int, outputs: int) -> Vector:
-        """Candidate columns of one trial on its clock, zero where not compared; (N, n_y, n_S)."""
-        full = np.zeros((trial.samples, outputs, len(self.columns)))
-        for stretch in self.stretches:
-            if stretch.trial == index:
-                full[stretch.compared, stretch.output] = self.S[stretch.rows]
-        return full
-
 
 def candidates_for(
     model: ShipModel, trial: Trial, catalogue: Mapping[str, Effect]

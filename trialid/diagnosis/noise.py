@@ -12,7 +12,6 @@ e. a stated sensor figure.
 First differences are not a route: on wave noise they find about a tenth of the variance.
 """
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -20,9 +19,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.accuracy import window
+from trialid.accuracy import Stretch, window
+from trialid.diagnosis.augment import Augmented
+from trialid.diagnosis.score import hac, project, whitened
 from trialid.identification.fit import Fit
-from trialid.identification.output_error import measured, output_error, stretches
+from trialid.identification.output_error import measured, output_error
 from trialid.trial import Mask, Trial
 
 Vector = NDArray[np.float64]
@@ -40,7 +41,11 @@ QUIET_RUDDER: Final = np.deg2rad(0.5)
 QUIET_RESPONSE: Final = 0.1
 """A stretch is quiet when the model itself moves less than this share of y_RMS in it."""
 
-FOLDS: Final = 8
+SEEN: Final = 0.02
+"""A candidate that keeps less than this share of its sensitivity is part of the fit already."""
+
+DISTINCT: Final = 0.05
+"""Directions with singular values below this share of the largest are copies of others."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +101,7 @@ def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
 
 def split(
     fit: Fit,
-    basis: Sequence[Vector],
+    augmented: Augmented,
     stated: Mapping[str, float],
     quiet: Mapping[str, Sequence[Interval]] | None = None,
 ) -> tuple[Split, tuple[Split, ...]]:
@@ -104,9 +109,8 @@ def split(
 
     Parameters
     ----------
-    basis
-        Input-driven signals that could explain the residual, per trial to fit (N, n_y, n_basis):
-        sensitivities to effects the model lacks.
+    augmented
+        Sensitivities to effects the model lacks.
     stated
         Sensor noise by output [SI].
     quiet
@@ -116,7 +120,7 @@ def split(
         _repeated(fit),
         _periodic(fit),
         _quiet(fit, quiet or {}),
-        _input_driven(fit, basis),
+        _input_driven(fit, augmented),
         _stated(fit, stated),
     )
     for route in routes:
@@ -355,82 +359,65 @@ def _total(fit: Fit) -> tuple[float, float]:
     return fit.eps_rmsn, float(np.sqrt(np.sum(np.square(spread))) / len(spread))
 
 
-def _input_driven(fit: Fit, basis: Sequence[Vector]) -> Split:
-    """Route d: what the basis explains in sample is too much, out of sample too little.
+def _input_driven(fit: Fit, augmented: Augmented) -> Split:
+    """Route d: what candidate effects explain of the residual, less what they explain of noise.
 
-    With q coefficients over N_eff effective samples, noise is over-explained in sample by q / N_eff
-    and the model error under-explained out of sample by as much, so the mean of the two is used.
+    Coefficients come from the whitened residual; their covariance says how much of the explained
+    mean square they would explain of pure noise, and that much is taken off. What is left is what
+    the same coefficients would explain of another record with the same input: out of sample.
     """
     method = "dependence on the input"
-    found = residuals(fit)
-    if not basis or basis[0].shape[2] == 0:
-        return Split(method, "no candidate signals")
-    psi = _stacked_psi(fit)
-    pieces = []
-    for c in range(len(fit.problem.outputs)):
-        e = np.concatenate([r.eps[r.compared[:, c], c] for r in found])
-        Z = np.concatenate([b[r.compared[:, c], c] for b, r in zip(basis, found, strict=True)])
-        effective = sum(_effective(r.eps[:, c], r.compared[:, c]) for r in found)
-        pieces.append((e, Z, psi[c], effective))
-    return _explained(fit, method, pieces)
-
-
-def _stacked_psi(fit: Fit) -> list[Vector]:
-    rows: list[list[Vector]] = [[] for _ in fit.problem.outputs]
-    for stretch in stretches(fit.problem):
-        rows[stretch.output].append(fit.psi[stretch.rows])
-    return [np.concatenate(r) for r in rows]
-
-
-def _explained(
-    fit: Fit, method: str, pieces: Sequence[tuple[Vector, Vector, Vector, float]]
-) -> Split:
-    found = []
-    for e, Z, psi, effective in pieces:
-        directions = _directions(Z, psi)
-        q = directions.shape[1]
-        if effective < 5 * q:
-            return Split(method, f"too short: {effective:.0f} effective samples for {q} directions")
-        inside = float(np.sum((directions.T @ e) ** 2)) / len(e)
-        outside = _out_of_sample(e, directions)
-        model2 = max(0.5 * (inside + outside), 0.0)
-        noise2 = max(float(np.mean(e**2)) - model2, 1e-30)
-        found.append(
-            OutputNoise(noise2, _explained_error(noise2, model2, inside - outside, effective))
-        )
-    why = "what candidate effects explain of the residual out of sample is model"
+    if not augmented.columns:
+        return Split(method, "no candidate effect that acts linearly on the outputs")
+    period = fit.problem.trials[0].period
+    raw = project(augmented.residual, augmented.psi, augmented.S)
+    residual, psi, S, parts = whitened(augmented, period)
+    white = project(residual, psi, S)
+    T = _visible_directions(raw.S, augmented.S, white.S)
+    Z = white.S @ T
+    if len(Z) < 20 * Z.shape[1]:
+        return Split(method, f"too short: {len(Z)} compared values for {Z.shape[1]} directions")
+    beta = np.asarray(np.linalg.lstsq(Z, white.residual, rcond=None)[0])
+    inverse = np.linalg.inv(Z.T @ Z)
+    left = white.residual - Z @ beta
+    covariance = inverse @ hac(Z * left[:, None], parts, period) @ inverse
+    found = [
+        _unexplained(fit, c, raw.S @ T, beta, covariance, augmented.stretches)
+        for c in range(len(fit.problem.outputs))
+    ]
+    why = f"what {Z.shape[1]} directions of candidate effects explain beyond chance is model"
     return _finish(fit, method, why, found)
 
 
-def _explained_error(noise2: float, model2: float, gap: float, effective: float) -> float:
-    own = 2.0 * noise2**2 / effective
-    crossed = 4.0 * noise2 * model2 / effective
-    return float(np.sqrt(own + crossed) + 0.25 * abs(gap))
+def _visible_directions(raw: Vector, whole: Vector, white: Vector) -> Vector:
+    """Combinations of candidates that stand clear of each other and of the fit; (n_S, q)."""
+    sizes = np.linalg.norm(whole, axis=0)
+    seen = np.linalg.norm(raw, axis=0) > SEEN * sizes
+    scale = np.where(seen, np.linalg.norm(white, axis=0), 1.0)
+    columns = np.where(seen, white / np.where(scale > 0.0, scale, 1.0), 0.0)
+    _, s, Vt = np.linalg.svd(np.linalg.qr(columns, mode="r"))
+    kept = s > DISTINCT * s[0]
+    return np.asarray(Vt[kept].T / np.where(scale > 0.0, scale, 1.0)[:, None])
 
 
-def _directions(Z: Vector, psi: Vector) -> Vector:
-    """Orthonormal directions of the basis that the model's own parameters do not reach; (N, q)."""
-    norms = np.linalg.norm(psi, axis=0)
-    Q, _ = np.linalg.qr(psi[:, norms > 0.0] / norms[norms > 0.0])
-    clean = Z - Q @ (Q.T @ Z)
-    sizes = np.linalg.norm(Z, axis=0)
-    seen = np.linalg.norm(clean, axis=0) > 0.02 * sizes
-    if not seen.any():
-        return np.zeros((len(Z), 0))
-    U, s, _ = np.linalg.svd(clean[:, seen] / np.linalg.norm(clean[:, seen], axis=0),
-                            full_matrices=False)  # fmt: skip
-    return np.asarray(U[:, s > 0.05 * s[0]])
-
-
-def _out_of_sample(e: Vector, Z: Vector) -> float:
-    """Mean square of e that coefficients from the other folds predict."""
-    edges = np.linspace(0, len(e), FOLDS + 1).astype(int)
-    explained = 0.0
-    for a, b in itertools.pairwise(edges):
-        inside = slice(a, b)
-        rest = np.ones(len(e), dtype=bool)
-        rest[inside] = False
-        coefficients, *_ = np.linalg.lstsq(Z[rest], e[rest], rcond=None)
-        guess = Z[inside] @ coefficients
-        explained += float(e[inside] @ e[inside] - np.sum((e[inside] - guess) ** 2))
-    return explained / len(e)
+def _unexplained(
+    fit: Fit,
+    output: int,
+    Z: Vector,
+    beta: Vector,
+    covariance: Vector,
+    parts: Sequence[Stretch],
+) -> OutputNoise:
+    """Noise of one output: its mean square less what the coefficients explain beyond chance."""
+    rows = np.concatenate([np.arange(s.rows.start, s.rows.stop) for s in parts
+                           if s.output == output])  # fmt: skip
+    scale = fit.problem.weights[output] / np.sqrt(len(fit.problem.outputs))
+    part = Z[rows] / scale
+    explained = float(np.sum((part @ beta) ** 2))
+    gram = part.T @ part
+    chance = gram @ covariance
+    model2 = max(explained - float(np.trace(chance)), 0.0)
+    noise2 = max(fit.eps_by_output[fit.problem.outputs[output]] ** 2 - model2, 1e-30)
+    spread2 = 2.0 * float(np.sum(chance * chance.T)) + 4.0 * float(beta @ gram @ covariance @ gram
+                                                                   @ beta)  # fmt: skip
+    return OutputNoise(noise2, float(np.sqrt(spread2)))

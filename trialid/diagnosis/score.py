@@ -65,7 +65,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class _Columns:
+class Projected:
     """Residual and candidate columns with everything the base columns reach taken out."""
 
     residual: Vector
@@ -89,9 +89,9 @@ def rank(
     augmented = augment(fit, catalogue)
     if not augmented.effects:
         return (), augmented
-    raw = _project(augmented.residual, augmented.psi, augmented.S)
+    raw = project(augmented.residual, augmented.psi, augmented.S)
     residual, psi, S, parts = whitened(augmented, fit.problem.trials[0].period)
-    white = _project(residual, psi, S)
+    white = project(residual, psi, S)
     made = [_score(fit, augmented, effect, raw, white, parts) for effect in augmented.effects]
     scored = _families(_holm([c for c in made if c is not None]), augmented, white.S, family_cos)
     return tuple(sorted(scored, key=_standing)), augmented
@@ -101,10 +101,11 @@ def _standing(c: Candidate) -> tuple[bool, float, float]:
     return not c.allowed, c.p_value, -c.score
 
 
-def _project(residual: Vector, psi: Vector, S: Vector) -> _Columns:
+def project(residual: Vector, psi: Vector, S: Vector) -> Projected:
+    """Take out of the residual and the candidates what the base columns reach."""
     norms = np.linalg.norm(psi, axis=0)
     Q, _ = np.linalg.qr(psi[:, norms > 0.0] / norms[norms > 0.0])
-    return _Columns(residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S))
+    return Projected(residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S))
 
 
 def whitened(
@@ -163,8 +164,8 @@ def _score(
     fit: Fit,
     augmented: Augmented,
     effect: Effect,
-    raw: _Columns,
-    white: _Columns,
+    raw: Projected,
+    white: Projected,
     parts: Sequence[Stretch],
 ) -> Candidate | None:
     """The score test of one effect; None when it leaves no trace at all."""
@@ -174,7 +175,7 @@ def _score(
         return None
     visibility = float(np.mean(np.sum(raw.of(which, sizes) ** 2, axis=0)))
     s, e = white.of(which, sizes), white.residual
-    variance = _hac(s * e[:, None], parts, fit.problem.trials[0].period)
+    variance = hac(s * e[:, None], parts, fit.problem.trials[0].period)
     g = s.T @ e
     score = float(g @ np.linalg.pinv(variance, rcond=1e-10, hermitian=True) @ g)
     beta, *_ = np.linalg.lstsq(s, e, rcond=1e-10)
@@ -187,7 +188,7 @@ def _score(
     )  # fmt: skip
 
 
-def _fall(raw: _Columns, which: Sequence[int], sizes: Vector) -> float:
+def _fall(raw: Projected, which: Sequence[int], sizes: Vector) -> float:
     """Fall of eps_RMSn^2 by linearisation."""
     s = raw.of(which, sizes)
     beta, *_ = np.linalg.lstsq(s, raw.residual, rcond=1e-10)
@@ -198,7 +199,7 @@ def _allowed(effect: Effect, expected: Mapping[str, float]) -> bool:
     return all(p.low <= expected[n] <= p.high for n, p in effect.parameters.items())
 
 
-def _hac(products: Vector, parts: Sequence[Stretch], period: float) -> Vector:
+def hac(products: Vector, parts: Sequence[Stretch], period: float) -> Vector:
     """Variance of a sum of correlated products; (q, q), Bartlett weights.
 
     The outputs of one trial share their disturbances, so their products are added on the clock.

@@ -23,6 +23,7 @@ from trialid.simulation.integrate import (
     Response,
     respond,
 )
+from trialid.threads import one_thread
 from trialid.trial import Mask, Trial
 
 Vector = NDArray[np.float64]
@@ -128,6 +129,7 @@ def _pooled(scored: Sequence[Score]) -> dict[str, float]:
 Progress = Callable[[Iteration], None]
 
 
+@one_thread
 def identify(
     trials: Sequence[Trial],
     model: ShipModel,

@@ -22,6 +22,14 @@ ORTHOGONAL: Final = 1e-8
 EXACT: Final = 1e-24
 HOPELESS: Final = 1e14
 FIRST_DAMPING: Final = 1e-3
+LONGEST: Final = 10.0
+"""Longest step in units of max(|theta|, typical size): beyond it plateaus wait."""
+
+ROUNDING: Final = 1e-6
+"""Orthogonality at which a search that cannot move any more has arrived."""
+
+RANK: Final = 1e-12
+"""Share of the largest singular value below which a direction is rounding."""
 
 REASONS: Final = {
     "step": "no parameter moves any more",
@@ -93,7 +101,7 @@ def minimise(
     high = np.full(len(start), np.inf) if high is None else high
     theta = np.clip(start, low, high)
     here = evaluate(theta)
-    if here is None:
+    if here is None or not _finite(here):
         empty = np.zeros(0)
         return Minimum(theta, empty, np.zeros((0, len(start))), (), "start", 1)
     search = _Search(evaluate, scale, low, high, theta, here, tolerance)
@@ -103,6 +111,12 @@ def minimise(
         if reason:
             return search.minimum(reason)
     return search.minimum("iterations")
+
+
+def _finite(point: Linearised) -> bool:
+    """Whether the sum of squares and every sensitivity are numbers."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return bool(np.isfinite(point[0] @ point[0]) and np.isfinite(point[1]).all())
 
 
 class _Search:
@@ -150,10 +164,13 @@ class _Search:
         while self.damping < HOPELESS:
             step = np.zeros(len(self.theta))
             step[moving] = directions.step(self.damping) / weights[moving]
-            if self._try(step, loss):
+            length = self._relative(step)
+            if length <= LONGEST and self._try(step, loss):
                 return None
-            if self._relative(step) < STEP:
-                return "step"
+            if length < STEP:
+                # a step made short by damping alone says nothing about a minimum
+                free = self.damping <= FIRST_DAMPING
+                return "step" if free or directions.orthogonality < ROUNDING else "stalled"
             self.damping *= self.growth
             self.growth *= 2.0
         return "stalled"
@@ -175,7 +192,7 @@ class _Search:
         self.count += 1
         with np.errstate(over="ignore", invalid="ignore"):
             point = self.evaluate(there)
-        if point is None or not np.isfinite(point[0]).all():
+        if point is None or not _finite(point):
             return False
         actual = loss - self._loss(point)
         foreseen = self.here[0] - self.here[1] @ taken
@@ -200,7 +217,11 @@ class _Directions:
         projected = R[:n, n]
         U, self.s, self.Vt = np.linalg.svd(R[:n, :n])
         self.along = U.T @ projected
-        self.orthogonality = float(np.linalg.norm(projected) / np.linalg.norm(residual))
+        # columns of unit length, so that what is left of rank is rounding and not scale
+        lengths = np.linalg.norm(R[:n, :n], axis=0)
+        U, s, _ = np.linalg.svd(R[:n, :n] / np.where(lengths > 0.0, lengths, 1.0))
+        within = (U.T @ projected)[s > RANK * s[0]]
+        self.orthogonality = float(np.linalg.norm(within) / np.linalg.norm(residual))
 
     def step(self, damping: float) -> Vector:
         """The step that minimises |r - A d|^2 + damping |d|^2."""
