@@ -1,6 +1,7 @@
 """The whole chain: logs, alignment, fit, accuracy, what the error is made of, what is missing."""
 
 import json
+import os
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping
@@ -97,6 +98,7 @@ def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
         for q, s in trial.signals.items()
     ]
     recordings = ingest.read_together(trial.logs, [s.channel for s in sources])
+    recordings = tuple(replace(r, path=_as_written(recipe, r.path)) for r in recordings)
     made = align(trial.name, trial.use, recordings, sources, recipe.align.period, trial.window)
     if trial.speed is None or "u" in made.signals:
         return made
@@ -104,6 +106,12 @@ def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
     valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
     remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
     return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+
+
+def _as_written(recipe: Recipe, path: Path) -> Path:
+    """A log's path from the pipeline's folder, so that a result holds no place of one machine."""
+    folder = recipe.path.parent.resolve()
+    return Path(os.path.relpath(path.resolve(), folder))
 
 
 def available(recipe: Recipe) -> dict[str, Effect]:
@@ -145,8 +153,21 @@ def _value(recipe: Recipe, model: ShipModel, name: str) -> float:
 
 
 def settings_of(recipe: Recipe) -> Settings:
-    """The pipeline's `[identify]` as the identifier takes it."""
+    """The pipeline's `[identify]` as the identifier takes it.
+
+    Raises
+    ------
+    RecipeError
+        A prior or a bound of a parameter that is not free.
+    """
     r = recipe.identify
+    for table, names in (("priors", r.priors), ("bounds", r.bounds)):
+        for name in names:
+            if name not in r.free:
+                raise RecipeError(
+                    f"{where(recipe, f'identify.{table}.{name}')}: {name!r} is not free; "
+                    f"{nearest(name, r.free)}"
+                )
     return Settings(
         free=r.free, outputs=r.outputs, nuisance=r.nuisance, weights=r.weights, loss=r.loss,
         priors={n: (p.mean, p.std) for n, p in r.priors.items()}, bounds=r.bounds,
@@ -264,13 +285,16 @@ def write(done: Run, folder: Path) -> None:
         )
     folder.parent.mkdir(parents=True, exist_ok=True)
     work = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    new, old = work / "new", work / "old"
     try:
-        _write_files(done, work)
+        new.mkdir()
+        _write_files(done, new)
         if folder.exists():
-            shutil.rmtree(folder)
-        work.chmod(0o755)
-        work.replace(folder)
+            folder.replace(old)
+        new.replace(folder)
     finally:
+        if old.exists() and not folder.exists():
+            old.replace(folder)
         shutil.rmtree(work, ignore_errors=True)
 
 

@@ -19,7 +19,7 @@ from trialid.diagnosis.where import Finding
 from trialid.errors import EffectError
 from trialid.identification.fit import Fit, step_halving
 from trialid.ship.model import ShipModel
-from trialid.ship.stability import PARTS, ROLL_PARTS, Stability, stability
+from trialid.ship.stability import PARTS, Stability, stability
 
 SCHEMA: Final = "trialid-result/1"
 Plain = dict[str, Any]

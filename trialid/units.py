@@ -1,13 +1,17 @@
 """Unit text to SI, at the doors only; inside the package every number is SI."""
 
 import functools
-from typing import TYPE_CHECKING, Any
+import re
+from typing import TYPE_CHECKING, Any, Final
 
 from trialid.errors import UnitError, nearest
 from trialid.quantities import Quantity
 
 if TYPE_CHECKING:
     import pint
+
+TEXT: Final = re.compile(r"[A-Za-z%°µ][\w%°µ]*(\s?(\*\*?|/|\^|\s)\s?-?[\w%°µ]+)*|1(/[A-Za-z]\w*)?")
+"""What a unit may look like; anything else would be evaluated as arithmetic."""
 
 COMMON = ("rad", "deg", "rad/s", "deg/s", "deg/min", "m/s", "kn", "km/h", "m", "s", "rpm", "1/s")
 
@@ -35,13 +39,14 @@ def factor(unit: str, si: str) -> float:
     """
     import pint
 
+    if not TEXT.fullmatch(unit):
+        raise UnitError(f"unit {unit!r} is not a unit text; write it like {', '.join(COMMON[:4])}")
     registry = _registry()
     try:
         return float(registry.Quantity(1.0, unit).to(si).magnitude)
     except pint.UndefinedUnitError as error:
-        known = nearest(unit, COMMON)
-        raise UnitError(f"unit {unit!r} is not known ({known})") from error
-    except (pint.DimensionalityError, pint.OffsetUnitCalculusError) as error:
+        raise UnitError(f"unit {unit!r} is not known ({nearest(unit, COMMON)})") from error
+    except pint.DimensionalityError as error:
         able = ", ".join(sorted(c for c in COMMON if _fits(c, si)))
         raise UnitError(f"unit {unit!r} cannot become {si!r}; units that can: {able}") from error
 

@@ -1,1 +1,103 @@
-"""."""
+"""Recording to Trial: channels on their own clocks to signals in SI on one clock.
+
+`align` is the whole of it: find each channel and bring it to SI and to our positive direction
+(`sources`, `frames`), put its stamps in order and choose the common clock (`clocks`), resample with
+one and the same filter (`resample`), and say what was noticed on the way (`quality`, `signs`).
+"""
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+from typing import Literal
+
+from trialid.alignment import clocks, frames, quality, resample, signs
+from trialid.alignment.clocks import Grid, Series
+from trialid.alignment.sources import SignalSource
+from trialid.errors import AlignmentError
+from trialid.recording import Recording
+from trialid.trial import LogSource, Trial
+
+__all__ = ["SignalSource", "align"]
+
+
+def align(
+    name: str,
+    use: Literal["fit", "check"],
+    recordings: Sequence[Recording],
+    sources: Sequence[SignalSource],
+    period: float,
+    window: tuple[float, float] | None = None,
+) -> Trial:
+    """The trial in `recordings`, its signals in SI on one clock.
+
+    Parameters
+    ----------
+    name, use
+        As in the pipeline.
+    recordings
+        The logs of this trial; a signal may come from any of them.
+    sources
+        One for each signal, which channel it is and how to read it.
+    period
+        Time between samples of the trial [s].
+    window
+        Part of the trial to use [s], from the first instant all channels cover; None for all.
+
+    Raises LogError for a channel that is in no log, UnitError for a unit, and AlignmentError for
+    everything that would have to be guessed: a missing sign or unit, signals that do not overlap
+    in time or contradict one another.
+    """
+    where = f"trial {name!r}"
+    _check_sources(sources, where)
+    at = [f"{where}, signal {source.quantity!r}" for source in sources]
+    logged = [frames.series(s, recordings, w) for s, w in zip(sources, at, strict=True)]
+    series = [clocks.ordered(one) for one in logged]
+    for one, place in zip(series, at, strict=True):
+        clocks.check(one, place)
+    grid = clocks.common(series, period, window, where)
+    trial = _trial(name, use, recordings, series, grid, where)
+    remarks = (
+        *_of_logs(recordings),
+        *_of_signals(logged, series, grid),
+        *quality.of_trial(series, grid, window),
+        *signs.check(trial, {source.quantity: source for source in sources}, where),
+    )
+    return dataclasses.replace(trial, remarks=remarks)
+
+
+def _check_sources(sources: Sequence[SignalSource], where: str) -> None:
+    names = [source.quantity for source in sources]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise AlignmentError(f"{where}: signal {twice!r} is given twice; keep one channel for it")
+    if not names:
+        raise AlignmentError(f"{where}: no signals; name at least a rudder and a motion")
+
+
+def _of_logs(recordings: Sequence[Recording]) -> Iterator[str]:
+    for recording in recordings:
+        for remark in recording.remarks:
+            yield f"{recording.path.name}: {remark}"
+
+
+def _of_signals(logged: Sequence[Series], series: Sequence[Series], grid: Grid) -> Iterator[str]:
+    for raw, one in zip(logged, series, strict=True):
+        yield from quality.of_clock(raw, one)
+        yield from quality.of_values(one, grid)
+
+
+def _trial(
+    name: str,
+    use: Literal["fit", "check"],
+    recordings: Sequence[Recording],
+    series: Sequence[Series],
+    grid: Grid,
+    where: str,
+) -> Trial:
+    smooth = resample.any_faster(series, grid.period)
+    signals, valid = {}, {}
+    for one in series:
+        quantity = one.quantity.name
+        signals[quantity], valid[quantity] = resample.onto(one, grid, smooth=smooth)
+        quality.check_valid(one, valid[quantity], grid, where)
+    logs = tuple(LogSource(str(r.path), r.sha256, r.adapter) for r in recordings)
+    return Trial(name, use, grid.period, signals, valid, logs=logs)

@@ -70,7 +70,7 @@ class ShipModel:
     @cached_property
     def parameters(self) -> dict[str, Parameter]:
         """Every parameter: the masses, then those of the effects in order."""
-        masses = {n: Parameter(self.ship.mass.get(n, 0.0)) for n in MASS_PARAMETERS}
+        masses = {n: Parameter(_primed_mass(self.ship, n)) for n in MASS_PARAMETERS}
         return masses | {n: p for e in self.effects for n, p in e.parameters.items()}
 
     @cached_property

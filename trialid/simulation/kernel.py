@@ -143,7 +143,8 @@ class Kernel:
             Sample period [s] and RK4 steps in it.
         """
         X = _room(x0, len(u))
-        left = self._sim(len(u) - 1, substeps, h, *map(_at, (theta, _rows(u), limit, X)))
+        arrays = (theta, _rows(u), limit, X)  # named: a copied u must outlive the call
+        left = self._sim(len(u) - 1, substeps, h, *map(_at, arrays))
         return X, left
 
     def sensitivities(
@@ -155,7 +156,7 @@ class Kernel:
         X = _room(x0, len(u))
         s = np.zeros((n_x, width))
         s[np.arange(n_x), len(eq.free) + np.arange(n_x)] = 1.0
-        S = np.empty((len(u), len(eq.kept), width))
+        S = np.full((len(u), len(eq.kept), width), np.nan)
         S[0] = s[list(eq.kept)]
         g = np.zeros((4, n_x, width))
         j = np.zeros((4, max(len(eq.J) + len(eq.W), 1)))

@@ -1,0 +1,6 @@
+"""`python -m trialid` is the command `trialid`."""
+
+from trialid.cli import main
+
+if __name__ == "__main__":
+    main()

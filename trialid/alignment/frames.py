@@ -1,0 +1,114 @@
+"""From a channel as logged to a quantity in SI, positive in our own direction."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid import units
+from trialid.alignment.clocks import Series
+from trialid.alignment.sources import SignalSource, find
+from trialid.errors import AlignmentError, UnitError, nearest
+from trialid.quantities import SIGNALS, Quantity
+from trialid.recording import Channel, Recording
+
+RUDDERS = frozenset({"delta", "delta_order"})
+"""Half of the literature and many loggers count the rudder to port: its side is never guessed."""
+
+Vector = NDArray[np.float64]
+
+
+def series(source: SignalSource, recordings: Sequence[Recording], where: str) -> Series:
+    """The signal in SI on its sensor's own clock, in the order of the log."""
+    quantity = _quantity(source, where)
+    _check_side(source, quantity, where)
+    channel = _angle(source, recordings, where) if source.as_ else None
+    channel = channel or find(source.channel, recordings, where)
+    factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
+    t = channel.t - round(source.delay * 1e9)
+    return Series(quantity, t, channel.y * factor, channel.clock)
+
+
+def _quantity(source: SignalSource, where: str) -> Quantity:
+    if source.quantity not in SIGNALS:
+        known = nearest(source.quantity, SIGNALS)
+        raise AlignmentError(f"{where}: no quantity of that name ({known})")
+    return SIGNALS[source.quantity]
+
+
+def _check_side(source: SignalSource, quantity: Quantity, where: str) -> None:
+    if source.positive is None and quantity.name in RUDDERS:
+        raise AlignmentError(
+            f"{where}: the sign of a rudder is never guessed; say which way the ship turns when "
+            f'{source.channel!r} is positive: add positive = "starboard" or positive = "port"'
+        )
+    if source.positive is not None and quantity.mirror > 0:
+        raise AlignmentError(
+            f"{where}: {quantity.meaning} has no port or starboard; remove "
+            f'positive = "{source.positive}"'
+        )
+
+
+def _side(source: SignalSource) -> float:
+    return -1.0 if source.positive == "port" else 1.0
+
+
+def _unit(source: SignalSource, channel: Channel, quantity: Quantity, where: str) -> str:
+    """The one unit that pipeline and log agree on."""
+    stated = source.unit or channel.unit
+    if stated is None:
+        raise AlignmentError(
+            f"{where}: neither the log nor the pipeline states the unit of {channel.name!r}; "
+            f'add unit = "{quantity.shown}" or whatever it is in'
+        )
+    if source.unit and channel.unit and not _same(source.unit, channel.unit, quantity, where):
+        raise AlignmentError(
+            f"{where}: the log states {channel.unit!r} for {channel.name!r}, the pipeline "
+            f"{source.unit!r}; remove unit if the log is right, correct the log's header if not"
+        )
+    return stated
+
+
+def _same(stated: str, logged: str, quantity: Quantity, where: str) -> bool:
+    factor = _factor(stated, quantity, where)
+    try:
+        return bool(np.isclose(units.factor(logged, quantity.unit), factor, rtol=1e-6))
+    except UnitError:
+        return False
+
+
+def _factor(unit: str, quantity: Quantity, where: str) -> float:
+    try:
+        return units.factor(unit, quantity.unit)
+    except UnitError as error:
+        raise UnitError(f"{where}: {error}") from error
+
+
+def _angle(source: SignalSource, recordings: Sequence[Recording], where: str) -> Channel:
+    """One angle [rad] of the quaternion whose fields are `channel`.x, .y, .z and .w.
+
+    Roll in the ROS frame (REP-103: x forward, y to port, z up) has our sign; pitch and yaw have
+    the opposite. Yaw is the rotation about z as logged, counterclockwise where z points up; with
+    positive = "port" it becomes our heading but for the constant between the frame's x axis and
+    north.
+    """
+    parts = [find(f"{source.channel}.{axis}", recordings, where) for axis in "xyzw"]
+    if any(not np.array_equal(part.t, parts[0].t) for part in parts[1:]):
+        raise AlignmentError(
+            f"{where}: the four fields of {source.channel!r} do not share their stamps; "
+            "a quaternion needs all of them at once"
+        )
+    x, y, z, w = (part.y for part in parts)
+    square = x**2 + y**2 + z**2 + w**2
+    angle = np.where(square > 0, _euler(source.as_, x, y, z, w), np.nan)
+    return Channel(source.channel, parts[0].t, angle, "rad", parts[0].clock)
+
+
+def _euler(name: str | None, x: Vector, y: Vector, z: Vector, w: Vector) -> Vector:
+    """Angle [rad] of a quaternion, normalised or not; rotations taken as yaw, pitch, roll."""
+    if name == "roll":
+        return np.arctan2(2 * (w * x + y * z), w**2 - x**2 - y**2 + z**2)
+    if name == "yaw":
+        return np.arctan2(2 * (w * z + x * y), w**2 + x**2 - y**2 - z**2)
+    square = np.maximum(x**2 + y**2 + z**2 + w**2, np.finfo(float).tiny)
+    return np.arcsin(np.clip(2 * (w * y - z * x) / square, -1.0, 1.0))

@@ -1,0 +1,128 @@
+"""What was noticed about the samples of a signal, in words for the report."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from trialid.alignment.clocks import Grid, Series
+from trialid.alignment.frames import RUDDERS
+from trialid.alignment.resample import (
+    CUT_OFF,
+    HALF_LENGTH,
+    any_faster,
+    available,
+    faster,
+    longest_step,
+    stretches,
+)
+from trialid.errors import AlignmentError
+from trialid.trial import Mask, Vector
+
+JITTER = 0.2
+"""Spread of the time between samples, as a share of it, that is worth a remark."""
+STUCK_S = 10.0
+STUCK_SHARE = 0.1
+"""A motion that does not change for so long, and for this share of the trial, is worth a remark."""
+
+
+def of_clock(logged: Series, ordered: Series) -> Iterator[str]:
+    """Remarks on the stamps: rate, order, duplicates, jitter; `logged` is in the log's order."""
+    name = logged.quantity.name
+    yield f"{name}: {len(ordered.t)} samples, {1 / ordered.period:.4g} Hz, {logged.clock}"
+    back = -np.diff(logged.t)[np.diff(logged.t) < 0]
+    if len(back):
+        largest = back.max() / 1e9
+        yield f"{name}: time steps back {len(back)} times, by up to {largest:.3g} s; sorted"
+    twice = len(logged.t) - len(ordered.t)
+    if twice:
+        yield f"{name}: {twice} samples with the stamp of another one dropped"
+    missing = int(np.sum(~np.isfinite(ordered.y)))
+    if missing:
+        yield f"{name}: {missing} of {len(ordered.y)} values not available"
+    yield from _jitter(ordered)
+
+
+def _jitter(series: Series) -> Iterator[str]:
+    steps = np.diff(series.t[np.isfinite(series.y)]) / 1e9
+    near = steps[steps < 3 * series.period]
+    spread = float(np.std(near)) if len(near) else 0.0
+    if spread > JITTER * series.period:
+        name = series.quantity.name
+        yield f"{name}: stamps jitter, {spread:.3g} s rms in a period of {series.period:.3g} s"
+
+
+def of_values(series: Series, grid: Grid) -> Iterator[str]:
+    """Remarks on the values within the trial: gaps, a slow or stuck sensor."""
+    name = series.quantity.name
+    yield from _gaps(series, grid)
+    if not faster(series, grid.period) and series.period > grid.period / 0.99:
+        yield f"{name}: one sample in {series.period:.3g} s, interpolated to {grid.period:.3g} s"
+    t, y = available(series, grid)
+    during = (t >= 0) & (t <= grid.t[-1])
+    t, y = t[during], y[during]
+    if len(y) and np.ptp(y) == 0:
+        shown = f"{y[0]:.4g} {series.quantity.unit}"
+        yield f"{name}: constant at {shown} throughout; is the sensor alive?"
+    elif name not in RUDDERS and series.quantity.mirror < 0:
+        yield from _stuck(name, t, y)
+
+
+def _stuck(name: str, t: Vector, y: Vector) -> Iterator[str]:
+    """The longest time a motion keeps one and the same value."""
+    if not len(y):
+        return
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(y)) + 1, [len(y)]])
+    spans = t[edges[1:] - 1] - t[edges[:-1]]
+    k = int(np.argmax(spans))
+    if spans[k] >= max(STUCK_S, STUCK_SHARE * (t[-1] - t[0])):
+        begin = t[edges[k]]
+        yield f"{name}: does not change from {begin:.1f} to {begin + spans[k]:.1f} s; stuck?"
+
+
+def _gaps(series: Series, grid: Grid) -> Iterator[str]:
+    t, _ = available(series, grid)
+    runs = stretches(t, longest_step(series, grid.period))
+    closing = [t[last] for _, last in runs]
+    opening = [t[first] for first, _ in runs]
+    edges = zip([0.0, *closing], [*opening, grid.t[-1]], strict=True)
+    gaps = [(max(a, 0.0), min(b, grid.t[-1])) for a, b in edges]
+    gaps = [(a, b) for a, b in gaps if b - a > grid.period]
+    if gaps:
+        total = sum(b - a for a, b in gaps)
+        places = ", ".join(f"{a:.1f}-{b:.1f} s" for a, b in gaps[:3])
+        more = f" and {len(gaps) - 3} more" if len(gaps) > 3 else ""
+        count = "1 gap" if len(gaps) == 1 else f"{len(gaps)} gaps"
+        yield f"{series.quantity.name}: {count}, {total:.1f} s in all, at {places}{more}; masked"
+
+
+def of_trial(
+    series: Sequence[Series], grid: Grid, window: tuple[float, float] | None
+) -> Iterator[str]:
+    """Remarks on the trial as a whole: its clocks, its filter, its end."""
+    clocks: dict[str, list[str]] = {}
+    for one in series:
+        clocks.setdefault(one.clock, []).append(one.quantity.name)
+    if len(clocks) > 1:
+        words = "; ".join(f"{', '.join(names)} by {clock}" for clock, names in clocks.items())
+        yield f"different clocks, the delay between them is not known: {words}"
+    if any_faster(series, grid.period):
+        half = CUT_OFF / (2 * grid.period)
+        yield (
+            f"all signals low-pass filtered alike, half amplitude at {half:.3g} Hz; "
+            f"{HALF_LENGTH * grid.period:.3g} s at each end and beside each gap masked"
+        )
+    if window is not None and window[1] - window[0] > grid.t[-1] + grid.period:
+        yield f"the channels end {grid.t[-1]:.1f} s into the window, before the window does"
+
+
+def check_valid(series: Series, valid: Mask, grid: Grid, where: str) -> None:
+    """AlignmentError when gaps and the ends of the filter leave nothing of a signal."""
+    if valid.any():
+        return
+    t, _ = available(series, grid)
+    inside = int(np.sum((t >= 0) & (t <= grid.t[-1])))
+    raise AlignmentError(
+        f"{where}: nothing of {series.quantity.name} is usable in the {grid.t[-1]:.6g} s of the "
+        f"trial: {inside} values there, in pieces too short for period = {grid.period:.6g} s; "
+        "choose another window or a shorter period"
+    )

@@ -1,0 +1,141 @@
+"""Do the signals of a trial agree in sign with one another? Nothing is ever flipped here.
+
+Positive rudder turns the bow to starboard: over a stretch of time the rate of turn grows with the
+mean rudder, less what the ship's own damping, the mean rate of turn, takes away. So the correlation
+is a partial one, with the mean rate of turn taken out of both. And the heading grows with the mean
+rate of turn. The length of the stretches is the one that shows the relation best: short ones drown
+in noise, long ones are few.
+"""
+
+from collections.abc import Iterator, Mapping
+from itertools import takewhile
+
+import numpy as np
+
+from trialid.alignment.frames import RUDDERS
+from trialid.alignment.sources import SignalSource
+from trialid.errors import AlignmentError
+from trialid.trial import Mask, Trial, Vector
+
+CONTRADICTION = -0.3
+"""Correlation below which a sign is taken to be wrong."""
+FEWEST_STRETCHES = 20
+"""Independent stretches the record must hold; fewer correlate by chance."""
+PARTS = 4
+"""The record is looked at in so many parts: two must agree with the whole, none contradict it."""
+MOVES = 0.25
+"""A part in which the cause moves by less than this share of its whole range says nothing."""
+DEPENDENT = 0.03
+"""Share of a signal that must be left without the damping; less tells delays, not signs."""
+
+
+def check(trial: Trial, sources: Mapping[str, SignalSource], where: str) -> Iterator[str]:
+    """Remarks on signs that agree; AlignmentError on a clear contradiction."""
+    if "r" in trial.signals and "psi" in trial.signals:
+        yield from _heading(trial, where)
+    turning = _rate_of_turn(trial)
+    for rudder in sorted(RUDDERS & trial.signals.keys()):
+        if turning is not None and _ahead(trial):
+            yield from _rudder(trial, rudder, turning, sources[rudder], where)
+
+
+def _heading(trial: Trial, where: str) -> Iterator[str]:
+    valid = trial.valid["r"] & trial.valid["psi"]
+    found = agreement(trial.signals["r"], trial.signals["psi"], valid)
+    if contradicts(found):
+        raise AlignmentError(
+            f"{where}: r and the slope of psi have opposite signs (correlation {found[0]:.2f} over "
+            f'{trial.duration:.0f} s); add positive = "port" to the one that is positive to port'
+        )
+    yield f"r and the slope of psi: correlation {found[0]:.2f}"
+
+
+def _rudder(
+    trial: Trial, rudder: str, turning: tuple[Vector, Mask], source: SignalSource, where: str
+) -> Iterator[str]:
+    rate, valid = turning
+    found = agreement(trial.signals[rudder], rate, valid & trial.valid[rudder], damping=rate)
+    if contradicts(found):
+        other = "port" if source.positive == "starboard" else "starboard"
+        raise AlignmentError(
+            f"{where}: {rudder} looks inverted, the ship turns the other way (correlation of "
+            f"{rudder} with dr/dt {found[0]:.2f} over {trial.duration:.0f} s); write "
+            f'positive = "{other}" for {rudder}, or correct the sign of the rate of turn'
+        )
+    yield f"{rudder} and dr/dt: correlation {found[0]:.2f}"
+
+
+def _rate_of_turn(trial: Trial) -> tuple[Vector, Mask] | None:
+    """Rate of turn [rad/s], from the heading where it was not logged, and where it is valid."""
+    if "r" in trial.signals:
+        return trial.signals["r"], trial.valid["r"]
+    if "psi" in trial.signals:
+        return np.gradient(trial.signals["psi"], trial.period), trial.valid["psi"]
+    return None
+
+
+def _ahead(trial: Trial) -> bool:
+    """A rudder works the other way when the ship goes astern; then it cannot be judged."""
+    return "u" not in trial.signals or float(np.median(trial.signals["u"])) > 0
+
+
+def contradicts(found: tuple[float, list[float]]) -> bool:
+    """True when the record as a whole says that a sign is wrong, and its parts agree with that."""
+    whole, parts = found
+    against = sum(part < CONTRADICTION for part in parts)
+    return whole < CONTRADICTION and against >= 2 and max(parts) < -CONTRADICTION
+
+
+def agreement(
+    cause: Vector, effect: Vector, valid: Mask, damping: Vector | None = None
+) -> tuple[float, list[float]]:
+    """Correlation of the mean of `cause` with the change of `effect` over stretches of time.
+
+    The mean of `damping` is taken out of both first. Second result: the same in each part of the
+    record. Zero, and no parts, where nothing moves or the record is too short.
+    """
+    longest = len(cause) // FEWEST_STRETCHES
+    lengths = takewhile(lambda n: n <= longest, (2**k for k in range(30)))
+    tables = [_stretches(cause, effect, damping, valid, length) for length in lengths]
+    strengths = [_correlation(table) for table in tables]
+    if not strengths:
+        return 0.0, []
+    best = int(np.argmax(np.abs(strengths)))
+    parts = [_correlation(part) for part in _moving_parts(tables[best])]
+    return strengths[best], [part for part in parts if part != 0.0]
+
+
+def _moving_parts(table: Vector) -> list[Vector]:
+    """The parts of the record in which the cause moves as it does in the whole."""
+    moves = MOVES * np.ptp(table[:, 0])
+    return [part for part in np.array_split(table, PARTS) if np.ptp(part[:, 0]) > moves]
+
+
+def _stretches(
+    cause: Vector, effect: Vector, damping: Vector | None, valid: Mask, length: int
+) -> Vector:
+    """Mean cause, change of the effect, mean damping of every wholly valid stretch; (n, 3)."""
+    missing = np.concatenate([[0], np.cumsum(~valid)])
+    whole = missing[length + 1 :] == missing[: -length - 1]
+    change = effect[length:] - effect[:-length]
+    mean = _mean(cause, length)
+    taken = np.zeros_like(mean) if damping is None else _mean(damping, length)
+    return np.column_stack([mean, change, taken])[whole]
+
+
+def _mean(y: Vector, length: int) -> Vector:
+    """Mean of every stretch of `length` periods, its ends counting half."""
+    between = (y[1:] + y[:-1]) / 2
+    return np.convolve(between, np.ones(length) / length, "valid")
+
+
+def _correlation(table: Vector) -> float:
+    """Correlation of the first two columns without what the third explains; 0 if nothing moves."""
+    if len(table) < FEWEST_STRETCHES:
+        return 0.0
+    explained, _ = np.linalg.qr(np.column_stack([np.ones(len(table)), table[:, 2]]))
+    centred = table[:, :2] - table[:, :2].mean(axis=0)
+    left = centred - explained @ (explained.T @ centred)
+    if np.any(np.std(left, axis=0) <= DEPENDENT * np.std(centred, axis=0)):
+        return 0.0
+    return float(np.corrcoef(left.T)[0, 1])

@@ -1,0 +1,169 @@
+"""The command `trialid`: files in, a report out, one line for every mistake.
+
+Everything heavy is imported inside the commands, so that `trialid --help` answers at once.
+"""
+
+import io
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+import trialid
+from trialid.errors import TrialidError
+
+if TYPE_CHECKING:
+    from trialid.recipe import Recipe
+
+WRONG_INPUT: Final = 2
+STOPPED: Final = 130
+"""128 + SIGINT, as shells report a command stopped by the keyboard."""
+
+Progress = Callable[[str, float | None], None]
+"""Takes a short sentence and the fraction done, None where nobody knows it."""
+
+
+class OneLineErrors(click.Group):
+    """A group whose commands answer the user's mistakes with one line and an exit status."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; status 2 for wrong input, 130 when stopped by the keyboard."""
+        try:
+            return super().invoke(ctx)
+        except TrialidError as error:
+            _complain(str(error))
+            ctx.exit(WRONG_INPUT)
+        except KeyboardInterrupt:
+            _complain("stopped; no half-written results are left")
+            ctx.exit(STOPPED)
+
+
+@click.group(cls=OneLineErrors, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(trialid.__version__, prog_name="trialid")
+def commands() -> None:
+    """Turn a sea trial into a ship model you can trust."""
+
+
+@commands.command()
+@click.argument("pipeline", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder for the results; by default runs/ and the pipeline's name. "
+    "An earlier run in it is replaced.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print result.json, and nothing else.")
+@click.option("--quiet", is_flag=True, help="No progress and no summary.")
+def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Fit a ship model to the logs of PIPELINE, a TOML file, and report what it is worth.
+
+    Logs are aligned, the free parameters fitted and rated, the misfit located, the missing effect
+    sought; report, tables and data go to a folder.
+    """
+    from trialid.recipe import load
+
+    recipe = load(pipeline)
+    folder = out or Path("runs", pipeline.stem)
+    _check_replaceable(folder, recipe)
+    # The chain takes a second to import: a misspelt key is answered before.
+    from trialid.pipeline import run as identify_from
+    from trialid.pipeline import write
+
+    with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
+        done = identify_from(recipe, progress)
+        try:
+            write(done, folder)
+        except OSError as error:
+            raise TrialidError(
+                f"{folder}: cannot be written ({error.strerror or error})"
+            ) from error
+    if as_json:
+        _print(json.dumps(done.result, indent=2, allow_nan=False))
+    elif not quiet:
+        _print(f"{_summary(done.result)}\nReport: {folder / 'report.html'}")
+
+
+def main() -> None:
+    """Run the command line and leave with its exit status."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without Greek is no reason to fail
+    sys.excepthook = _report_bug
+    commands(prog_name="trialid")
+
+
+def _check_replaceable(folder: Path, recipe: "Recipe") -> None:
+    """Refuse, before the work, to replace a folder that holds anything but an earlier run."""
+    from trialid.recipe import sources
+
+    if folder.exists() and not folder.is_dir():
+        raise TrialidError(f"{folder}: is a file; --out takes a folder")
+    inside = [path for path in sources(recipe) if path.resolve().is_relative_to(folder.resolve())]
+    if folder.is_dir() and inside:
+        raise TrialidError(
+            f"{folder}: holds {inside[0]}, which this run reads; choose another --out"
+        )
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / "result.json").is_file():
+        raise TrialidError(f"{folder}: holds other files and no earlier run; choose another --out")
+
+
+@contextmanager
+def _progress(*, shown: bool) -> Iterator[Progress]:
+    """Give the function that shows progress on stderr, or one that keeps silent."""
+    if not shown:
+        yield lambda sentence, fraction: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
+
+    sentence = TextColumn("{task.description}", markup=False)
+    columns = (SpinnerColumn(), TimeElapsedColumn(), BarColumn(bar_width=20), sentence)
+    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
+        task = bars.add_task("reading", total=None)
+
+        def show(sentence: str, fraction: float | None) -> None:
+            total = None if fraction is None else 1.0
+            bars.update(task, description=sentence, total=total, completed=fraction or 0.0)
+
+        yield show
+
+
+def _summary(result: Mapping[str, Any]) -> str:
+    """Give the one-screen summary as text for this stdout, in colour where it is a terminal."""
+    from rich.console import Console
+
+    from trialid.report.summary import summary
+
+    console = Console()
+    with console.capture() as capture:
+        console.print(summary(result), markup=False, highlight=False)
+    return capture.get().rstrip("\n")
+
+
+def _print(text: str) -> None:
+    """Write to stdout; a reader that left early (`| head`) has what it wanted."""
+    try:
+        click.echo(text)
+    except BrokenPipeError:
+        # Python flushes stdout once more on leaving and would complain into the closed pipe.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _complain(message: str) -> None:
+    folded = " ".join(line.strip() for line in message.splitlines())
+    click.echo(f"trialid: {folded}", err=True)
+
+
+def _report_bug(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
+    """Show the traceback and say whose fault it is; Python then leaves with status 1."""
+    sys.__excepthook__(kind, error, trace)
+    _complain(f"this is a bug in trialid, not a mistake of yours: {kind.__name__}: {error}")

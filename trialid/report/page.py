@@ -1,0 +1,133 @@
+"""The report page: one HTML file with everything inside, made from the result and the series."""
+
+from collections.abc import Mapping, Sequence
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trialid.report import bars, labels, panels, wording
+from trialid.report.series import TrialSeries
+from trialid.report.shape import Run, whole
+
+if TYPE_CHECKING:
+    import jinja2
+    import markupsafe
+
+VERDICTS = {
+    "missing": "An effect is missing",
+    "nothing missing": "Nothing is missing",
+    "not in catalogue": "Something is missing that the catalogue does not hold",
+    "cannot tell": "This record cannot tell",
+}
+"""What the four kinds of verdict are called at the top of the page."""
+
+
+def write_page(path: str | Path, result: Mapping[str, Any], series: Sequence[TrialSeries]) -> None:
+    """`report.html`: opens offline, asks the network for nothing."""
+    Path(path).write_text(page(result, series), encoding="utf-8")
+
+
+def page(result: Mapping[str, Any], series: Sequence[TrialSeries]) -> str:
+    """The page as text."""
+    run = whole(result)
+    physical, nuisance = _by_kind(run)
+    axis, parameter_bars = bars.parameter_bars(physical)
+    return (
+        _environment()
+        .get_template("page.html.j2")
+        .render(
+            run=run,
+            no_check=_no_check(run),
+            named=_named(run),
+            heading=VERDICTS.get(run["verdict"]["kind"], "No verdict"),
+            changes=bars.changes(run),
+            split=bars.split_bars(run),
+            physical=list(zip(physical, parameter_bars, strict=True)),
+            nuisance=nuisance,
+            axis=axis,
+            outputs=_outputs(run),
+            shown_trials=_shown_trials(run, series),
+            plots=panels.trial_panels(series, run),
+            assets=_assets(),
+        )
+    )
+
+
+def _environment() -> "jinja2.Environment":
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("trialid", "report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "number": wording.number,
+        "percent": wording.percent,
+        "percent_range": wording.percent_range,
+        "by_error": wording.by_error,
+        "breakable": _breakable,
+        "prose": wording.prose,
+        "shown": wording.shown,
+        "short_hash": wording.short_hash,
+        "labelled": labels.labelled,
+        "symbol": labels.symbol,
+        "in_shown_unit": labels.shown,
+    }
+    return environment
+
+
+def _breakable(name: str) -> "markupsafe.Markup":
+    """A long name that may break after an underscore, and there only if it can."""
+    from markupsafe import Markup, escape
+
+    return Markup("_<wbr>").join(escape(part) for part in name.split("_"))
+
+
+def _assets() -> dict[str, str]:
+    """The style and script that go into the page as they are, uPlot with its licence."""
+    files = resources.files("trialid.report")
+    names = {
+        "style": ("uplot/uPlot.min.css", "page.css"),
+        "licence": ("uplot/LICENSE",),
+        "script": ("uplot/uPlot.iife.min.js", "page.js"),
+    }
+    return {
+        asset: "\n".join(files.joinpath(name).read_text(encoding="utf-8") for name in each)
+        for asset, each in names.items()
+    }
+
+
+def _by_kind(run: Run) -> tuple[list[Run], list[Run]]:
+    rows = run["accuracy"]["parameters"]
+    physical = [row for row in rows if row["kind"] != "nuisance"]
+    return physical, [row for row in rows if row["kind"] == "nuisance"]
+
+
+def _no_check(run: Run) -> str:
+    """Why there is no error on held-out trials, where that is known."""
+    uses = {trial["use"] for trial in run["trials"]}
+    return "no trial was held out" if uses == {"fit"} else ""
+
+
+def _named(run: Run) -> Run | None:
+    """The candidate the verdict names, as ranked."""
+    effect = run["verdict"]["effect"]
+    return next((row for row in run["missing"] if effect and row["effect"] == effect), None)
+
+
+def _outputs(run: Run) -> list[str]:
+    """Every output an error is stated for, in the order they are met."""
+    names = dict.fromkeys(run["fit"]["eps_rmsn_by_output"])
+    for trial in run["trials"]:
+        names |= dict.fromkeys(trial["eps_rmsn"])
+    return list(names)
+
+
+def _shown_trials(run: Run, series: Sequence[TrialSeries]) -> list[Run]:
+    """What the result says of each trial that has a series; its name and use at least."""
+    said = {row["name"]: row for row in run["trials"]}
+    bare = whole({"trials": [{"name": each.name, "use": each.use} for each in series]})["trials"]
+    return [said.get(row["name"], row) for row in bare]

@@ -1,0 +1,97 @@
+"""The shape of `result.json`: what a reader of it may ask for, whether known in this run or not."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+Run = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Maybe:
+    """An object that is null as a whole when there is nothing to say."""
+
+    inner: Any
+
+
+@dataclass(frozen=True)
+class Each:
+    """A mapping whose keys are the run's own: outputs, parameters."""
+
+    inner: Any = None
+
+
+def _keys(text: str) -> dict[str, Any]:
+    return dict.fromkeys(text.split())
+
+
+_PARTS = _keys("noise undermodelling")
+_SPLIT = _PARTS | {"interval": Maybe(_PARTS)}
+_TRIAL = _keys("name use samples period duration") | {
+    "logs": [_keys("path sha256 adapter")],
+    "remarks": [None],
+    "eps_rmsn": Each(),
+}
+_FIT = _keys("eps_rmsn eps_rmsn_check V converged reason samples weighting") | {
+    "eps_rmsn_by_output": Each(),
+    "iterations": [_keys("V eps_rmsn step")],
+    "step_halving": Each(),
+    "y_rms": Each(),
+}
+_PARAMETER = _keys(
+    "name value unit S_i S_imin R_i relative_error noise_error undermodelling_error"
+    " standard_error kind"
+)
+_ACCURACY = _keys("S_min S_max R n_effective weighting scaling") | {
+    "parameters": [_PARAMETER],
+    "stability": Maybe(_keys("L_r L_v margin standard_error stable")),
+    "weak": [_keys("sentence relative_error") | {"parameters": [None]}],
+}
+_MISSING = _keys(
+    "rank effect equation sentence eps_rmsn_predicted eps_rmsn_refitted eps_rmsn_check p_value"
+    " visibility verdict"
+) | {"family": [None], "parameters": Each(_keys("expected refitted"))}
+_BEFORE_AFTER = _keys("effect equation eps_rmsn eps_rmsn_check noise undermodelling") | {
+    "by_output": Each(),
+    "parameters": [_keys("name unit before after standard_error")],
+}
+
+SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
+    "trials": [_TRIAL],
+    "model": {"states": [None], "effects": [None], "free": [None], "inputs": [None]},
+    "fit": _FIT,
+    "split": _SPLIT
+    | _keys("method why")
+    | {"by_output": Each(_SPLIT), "routes": [_SPLIT | _keys("method available why")]},
+    "accuracy": _ACCURACY,
+    "where": [_keys("output finding share t_start t_end trial sentence")],
+    "missing": [_MISSING],
+    "verdict": _keys("kind effect sentence") | {"family": [None], "next_trial": Maybe({})},
+    "history": [_keys("added eps_rmsn noise undermodelling eps_rmsn_check") | {"effects": [None]}],
+    "before_after": Maybe(_BEFORE_AFTER),
+}
+
+
+def whole(result: Mapping[str, Any]) -> Run:
+    """The result with every key of the schema present: absent knowledge is None, never an error.
+
+    >>> run = whole({"fit": {"eps_rmsn": 0.1}})
+    >>> run["fit"]["eps_rmsn"], run["fit"]["V"], run["trials"], run["before_after"]
+    (0.1, None, [], None)
+    """
+    return _filled(SHAPE, result)
+
+
+def _filled(shape: Any, value: Any) -> Any:
+    match shape:
+        case Maybe(inner):
+            return None if value is None else _filled(inner, value)
+        case Each(inner):
+            return {key: _filled(inner, each) for key, each in (value or {}).items()}
+        case [row]:
+            return [_filled(row, each) for each in value or ()]
+        case dict():
+            given = value or {}
+            return {**given, **{key: _filled(each, given.get(key)) for key, each in shape.items()}}
+        case _:
+            return value
