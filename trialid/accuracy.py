@@ -344,6 +344,9 @@ def without_nuisance(A: Vector, physical: Mask) -> Vector:
 COLLINEAR: Final = 10.0
 """A collinearity index above this names a weak direction (Brun et al. 2001: 10 to 15)."""
 
+WELL_KNOWN: Final = 0.1
+"""A combination known better than this is not weak, however alike its parameters act."""
+
 SHARE: Final = 0.3
 """A parameter with at least this share of a direction is named in it."""
 
@@ -352,9 +355,9 @@ def weak_directions(A: Vector, names: Sequence[str], error: float) -> tuple[Weak
     """Directions of the physical parameters that leave hardly a trace, in words.
 
     Columns are brought to length one first, so that the answer does not depend on how parameters
-    are scaled; a direction is weak when its singular value is below 1 / `COLLINEAR`. `error` is
-    the normed noise over the root of the effective samples, from which the relative error of the
-    combination follows.
+    are scaled; a direction is weak when its singular value is below 1 / `COLLINEAR` and noise
+    leaves it open by more than `WELL_KNOWN`. `error` is the normed noise over the root of the
+    effective samples, from which the relative error of the combination follows.
     """
     norms = np.linalg.norm(A, axis=0)
     alive = norms > 0.0
@@ -375,7 +378,8 @@ def weak_directions(A: Vector, names: Sequence[str], error: float) -> tuple[Weak
         parts = tuple(kept[i] for i in leading if shares[i] >= SHARE)
         size = float(np.linalg.norm(direction / norms[alive]))
         relative = error / value * size if value > 0.0 else float("inf")
-        found.append(Weakness(parts, _weak_sentence(parts, 1.0 / max(value, 1e-300)), relative))
+        if relative > WELL_KNOWN:
+            found.append(Weakness(parts, _weak_sentence(parts, 1.0 / max(value, 1e-300)), relative))
     return tuple(found)
 
 

@@ -214,6 +214,8 @@ def _accuracy(fit: Fit, accuracy: Accuracy) -> Plain:
 
 
 def _parameter(p: ParameterAccuracy) -> Plain:
+    """One row; the two parts of Eq. 14 and their sum are relative, other errors in the unit."""
+    size = abs(p.reference)
     return {
         "name": p.name,
         "value": p.value,
@@ -222,8 +224,10 @@ def _parameter(p: ParameterAccuracy) -> Plain:
         "S_imin": p.S_imin,
         "R_i": p.R_i,
         "relative_error": p.relative_error,
-        "noise_error": p.noise_error,
-        "undermodelling_error": p.undermodelling_error,
+        "noise_error": None if p.noise_error is None else p.noise_error / size,
+        "undermodelling_error": (
+            None if p.undermodelling_error is None else p.undermodelling_error / size
+        ),
         "standard_error": p.standard_error,
         "white_error": p.white_error,
         "n_effective": p.n_effective,

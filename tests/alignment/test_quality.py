@@ -1,0 +1,89 @@
+import numpy as np
+import pytest
+from made_recordings import channel, recording
+
+from trialid.alignment import SignalSource, align
+
+T = np.arange(0, 200, 0.1)
+
+
+def remarks_on(t, y, quantity="r", unit="rad/s", **more):
+    log = recording(channel("x", t, y, **more))
+    side = "starboard" if quantity.startswith("delta") else None
+    return align("t", "fit", [log], [SignalSource(quantity, "x", unit, side)], 0.5).remarks
+
+
+def swing(t):
+    return np.sin(0.5 * t)
+
+
+def test_a_clean_channel_says_rate_clock_and_filter_only():
+    assert remarks_on(T, swing, clock="header stamp") == (
+        "r: 2000 samples, 10 Hz, header stamp",
+        "all signals low-pass filtered alike, half amplitude at 0.6 Hz; "
+        "2.5 s at each end and beside each gap masked",
+    )
+
+
+def test_gaps_are_counted_and_placed():
+    kept = ~(((T > 50) & (T < 62.5)) | ((T > 100) & (T < 110)))
+    assert "r: 2 gaps, 22.5 s in all, at 50.0-62.5 s, 100.0-110.0 s; masked" in remarks_on(
+        T[kept], swing
+    )
+
+
+def test_missing_values_at_both_ends_are_gaps():
+    y = swing(T)
+    y[T < 20] = np.nan
+    y[T > 180] = np.nan
+    found = remarks_on(T, y)
+    assert "r: 399 of 2000 values not available" in found
+    assert "r: 2 gaps, 39.5 s in all, at 0.0-20.0 s, 180.0-199.5 s; masked" in found
+
+
+def test_duplicates_and_steps_back():
+    t = np.concatenate([T[:1000], T[990:]])
+    found = remarks_on(t, swing)
+    assert "r: time steps back 1 times, by up to 0.9 s; sorted" in found
+    assert "r: 10 samples with the stamp of another one dropped" in found
+
+
+def test_of_two_samples_with_one_stamp_the_first_logged_stays():
+    t = np.arange(0, 100, 0.5)
+    log = recording(channel("x", np.repeat(t, 2), np.tile([1.0, 9.0], len(t))))
+    trial = align("t", "fit", [log], [SignalSource("u", "x", "m/s")], 0.5)
+    np.testing.assert_array_equal(trial.signals["u"], 1.0)
+
+
+@pytest.mark.parametrize(("spread", "remarked"), [(0.01, False), (0.04, True)])
+def test_jitter(spread, remarked):
+    t = T + np.random.default_rng(8).uniform(-spread, spread, len(T))
+    assert any("stamps jitter" in remark for remark in remarks_on(t, swing)) == remarked
+
+
+def test_a_dead_sensor_and_a_rudder_that_stays_are_remarked_not_refused():
+    assert "r: constant at 0.25 rad/s throughout; is the sensor alive?" in remarks_on(
+        T, 0.25 + 0 * T
+    )
+    assert "delta: constant at 0.1 rad throughout; is the sensor alive?" in remarks_on(
+        T, 0.1 + 0 * T, "delta", "rad"
+    )
+
+
+def test_a_motion_that_freezes_for_a_while():
+    y = swing(T)
+    y[(T > 60) & (T < 100)] = 0.3
+    assert "r: does not change from 60.1 to 99.9 s; stuck?" in remarks_on(T, y)
+    rudder = remarks_on(T, y, "delta", "rad")
+    assert not any("stuck" in remark for remark in rudder)
+
+
+def test_signals_by_different_clocks():
+    log = recording(
+        channel("a", T, swing, clock="header stamp"), channel("b", T, swing, clock="log")
+    )
+    sources = [SignalSource("r", "a", "rad/s"), SignalSource("p", "b", "rad/s")]
+    assert (
+        "different clocks, the delay between them is not known: r by header stamp; p by log"
+        in align("t", "fit", [log], sources, 0.5).remarks
+    )

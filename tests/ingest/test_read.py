@@ -1,0 +1,95 @@
+import hashlib
+
+import pytest
+
+from trialid import ingest
+from trialid.errors import LogError
+from trialid.ingest import adapter, read, read_together
+
+TEXT = "t,u,r\n0,1,2\n1,2,3\n"
+
+
+def write(path, text=TEXT):
+    path.write_text(text)
+    return path
+
+
+def refused(path):
+    with pytest.raises(LogError) as caught:
+        read(path)
+    assert "\n" not in str(caught.value)
+    assert str(caught.value).startswith(f"{path}: ")
+    return str(caught.value)
+
+
+def test_the_hash_of_the_file_is_in_the_recording(tmp_path):
+    path = write(tmp_path / "a.log")
+    recording = read(path)
+    assert recording.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert recording.path == path
+
+
+def test_a_missing_file_names_what_lies_there(tmp_path):
+    write(tmp_path / "zigzag20.csv")
+    assert "no such file; did you mean 'zigzag20.csv'?" in refused(tmp_path / "zigzag2O.csv")
+    assert "no such file; the folder holds: zigzag20.csv" in refused(tmp_path / "other")
+    assert "no such file; nor is there a folder" in refused(tmp_path / "no" / "log")
+
+
+def test_a_folder_names_the_files_in_it(tmp_path):
+    for i in range(7):
+        write(tmp_path / f"log{i}.csv")
+    message = refused(tmp_path)
+    assert "is a folder, not a log; name a file in it: log0.csv" in message
+    assert "and 2 more" in message
+
+
+def test_an_empty_file(tmp_path):
+    assert "is empty (0 bytes)" in refused(write(tmp_path / "log", ""))
+
+
+def test_an_unknown_file_shows_its_first_bytes(tmp_path):
+    path = tmp_path / "log.mcap"
+    path.write_bytes(b"\x7fELF\x02\x01" + bytes(50))
+    message = refused(path)
+    assert "no adapter recognises it (of mcap, csv)" in message
+    assert "it begins b'\\x7fELF" in message
+
+
+def test_two_adapters_that_recognise_one_file(tmp_path, monkeypatch):
+    other = adapter.Adapter("other", lambda head: True, read)
+    monkeypatch.setattr(ingest, "ADAPTERS", (*ingest.ADAPTERS, other))
+    message = refused(write(tmp_path / "log"))
+    assert "more than one adapter recognises it (of csv, other)" in message
+
+
+@pytest.mark.parametrize(
+    "head", [b"\x89MCAP0\r\n\x01", b"t,u\n0,1\n", b"t;u", b"\xef\xbb\xbft,u\n"]
+)
+def test_exactly_one_adapter_recognises_each_format(head):
+    assert sum(one.recognises(head) for one in ingest.ADAPTERS) == 1
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"",
+        b"\x00" * 64,
+        b"$IIRSA,12.5,A,,V*6A\r\n",
+        b"(1700000000.0) can0 09F10D00#00\n",
+        b'{"a": 1, "b": 2}\n',
+        b"0.0,1.0,2.0\n0.1,1.0,2.0\n",
+        b"\xfd\x1c\x00\x00",
+    ],
+)
+def test_what_is_no_table_is_not_taken_for_one(head):
+    assert not any(one.recognises(head) for one in ingest.ADAPTERS)
+
+
+def test_logs_read_together_are_filtered_only_when_all_is_found(tmp_path):
+    first = write(tmp_path / "first", "t,u,r\n0,1,2\n1,2,3\n")
+    second = write(tmp_path / "second", "t,phi,x\n0,1,2\n1,2,3\n")
+    found = read_together([first, second], ["u", "phi"])
+    assert [list(recording.channels) for recording in found] == [["u"], ["phi"]]
+    unfound = read_together([first, second], ["u", "psi"])
+    assert [list(recording.channels) for recording in unfound] == [["u", "r"], ["phi", "x"]]
