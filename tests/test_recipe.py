@@ -126,7 +126,7 @@ def test_a_short_pipeline_has_defaults_for_the_rest(folder: Path) -> None:
     assert (trial.use, trial.window, trial.speed) == ("fit", None, None)
     identify = recipe.identify
     assert (identify.nuisance, identify.weights, identify.priors, identify.bounds) == (
-        (),
+        ("initial_state",),
         {},
         {},
         {},

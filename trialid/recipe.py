@@ -103,6 +103,7 @@ def _candidates(given: Any) -> Literal["all", "none"] | tuple[str, ...]:
 # Strict, because a pipeline that writes "0.5" or true for a number has a slip worth showing.
 Number = Annotated[float, Strict()]
 Positive = Annotated[Number, Field(gt=0)]
+NotNegative = Annotated[Number, Field(ge=0)]
 Count = Annotated[int, Strict(), Field(ge=1)]
 Whole = Annotated[int, Strict(), Field(ge=0)]
 Unit = Annotated[str, AfterValidator(_unit_text)]
@@ -148,7 +149,7 @@ class TrialRecipe(Section):
     logs: Annotated[tuple[ReadFile, ...], Field(min_length=1)]
     use: Literal["fit", "check"] = "fit"
     window: Window | None = None
-    speed: Positive | None = None
+    speed: NotNegative | None = None
     signals: Mapping[str, SignalSource] = {}
 
 
@@ -191,7 +192,7 @@ class IdentifyRecipe(Section):
 
     free: SomeNames
     outputs: SomeNames
-    nuisance: tuple[Nuisance, ...] = ()
+    nuisance: tuple[Nuisance, ...] = ("initial_state",)
     weights: Mapping[str, Positive] = {}
     loss: Literal["squares", "huber"] = "squares"
     priors: Mapping[str, Prior] = {}

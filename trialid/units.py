@@ -21,7 +21,8 @@ def _registry() -> "pint.UnitRegistry[Any]":
     import pint  # 0.3 s: only when a unit is really asked for
 
     registry: pint.UnitRegistry[Any] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
-    registry.define("kn = knot")
+    if "kn" not in registry:
+        registry.define("kn = knot")
     return registry
 
 

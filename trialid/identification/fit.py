@@ -45,6 +45,7 @@ class Score:
     response: Response
     compared: Mask
     eps_rmsn: Mapping[str, float]
+    counts: Mapping[str, int]
 
 
 @dataclass(frozen=True)
@@ -98,9 +99,8 @@ class Fit:
     def eps_check(self) -> float | None:
         """Error over the held-out trials, None where there are none."""
         checks = [s for s in self.scores if s.trial.use == "check"]
-        if not checks:
-            return None
-        return float(np.sqrt(np.mean(np.square(list(_pooled(checks).values())))))
+        pooled = list(_pooled(checks).values())
+        return float(np.sqrt(np.mean(np.square(pooled)))) if pooled else None
 
     @property
     def explanation(self) -> str:
@@ -118,12 +118,13 @@ class Fit:
 
 
 def _pooled(scored: Sequence[Score]) -> dict[str, float]:
-    pooled = {}
-    for c in scored[0].eps_rmsn:
-        i = list(scored[0].eps_rmsn).index(c)
-        squares = sum(s.eps_rmsn[c] ** 2 * s.compared[:, i].sum() for s in scored)
-        pooled[c] = float(np.sqrt(squares / sum(s.compared[:, i].sum() for s in scored)))
-    return pooled
+    """Root mean square of each output over all compared samples of these trials."""
+    squares, counts = dict[str, float](), dict[str, int]()
+    for score in scored:
+        for c, eps in score.eps_rmsn.items():
+            squares[c] = squares.get(c, 0.0) + eps**2 * score.counts[c]
+            counts[c] = counts.get(c, 0) + score.counts[c]
+    return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
 
 
 Progress = Callable[[Iteration], None]
@@ -288,7 +289,8 @@ def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
     if response.departure is not None:
         compared = compared & np.isfinite(response.y)
     eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
-    return Score(trial, response, compared, eps)
+    counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
+    return Score(trial, response, compared, eps, counts)
 
 
 def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:

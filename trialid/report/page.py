@@ -79,11 +79,11 @@ def _environment() -> "jinja2.Environment":
     return environment
 
 
-def _breakable(name: str) -> "markupsafe.Markup":
-    """A long name that may break after an underscore, and there only if it can."""
-    from markupsafe import Markup, escape
+def _breakable(name: str | None) -> "markupsafe.Markup":
+    """A name that breaks after an underscore where it is too long for its line."""
+    from markupsafe import Markup
 
-    return Markup("_<wbr>").join(escape(part) for part in name.split("_"))
+    return Markup("_<wbr>").join((name or wording.DASH).split("_"))
 
 
 def _assets() -> dict[str, str]:
