@@ -272,8 +272,13 @@ def _stated(fit: Fit, stated: Mapping[str, float]) -> Split:
 
 def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], why: str) -> Split:
     """A split from pieces of pure noise; (n, n_y) each."""
+    every = residuals(fit)
     found = [
-        _pooled([p[:, c] for p, _ in pieces], [m[:, c] for _, m in pieces])
+        _pooled(
+            [p[:, c] for p, _ in pieces],
+            [m[:, c] for _, m in pieces],
+            _slowness([r.eps[:, c] for r in every], [r.compared[:, c] for r in every]),
+        )
         for c in range(len(fit.problem.outputs))
     ]
     for c, noise in zip(fit.problem.outputs, found, strict=True):
@@ -282,15 +287,29 @@ def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], w
     return _finish(fit, method, why, [n for n in found if n is not None])
 
 
-def _pooled(pieces: Sequence[Vector], masks: Sequence[Mask]) -> OutputNoise | None:
-    """Variance over pieces, and its standard error from the pieces' own correlation."""
+def _pooled(
+    pieces: Sequence[Vector], masks: Sequence[Mask], slowness: float = 1.0
+) -> OutputNoise | None:
+    """Variance over pieces, and its standard error.
+
+    `slowness` is the least number of samples that count as one; short pieces alone would make slow
+    noise look independent.
+    """
     count = sum(int(m.sum()) for m in masks)
     if count < 10:
         return None
     variance = sum(float(p @ p) for p in pieces) / count
+    own = sum(_effective(p, m) for p, m in zip(pieces, masks, strict=True))
+    degrees = max(own - len(pieces), 1.0)
+    sure = max(min(own, count / slowness) - len(pieces), 1.0)
+    return OutputNoise(variance * own / degrees, variance * np.sqrt(2.0 / sure))
+
+
+def _slowness(pieces: Sequence[Vector], masks: Sequence[Mask]) -> float:
+    """Samples that count as one for a variance, over whole trials."""
+    count = sum(int(m.sum()) for m in masks)
     effective = sum(_effective(p, m) for p, m in zip(pieces, masks, strict=True))
-    degrees = max(effective - len(pieces), 1.0)
-    return OutputNoise(variance * effective / degrees, variance * np.sqrt(2.0 / degrees))
+    return count / max(effective, 1.0)
 
 
 def effective_of(e: Vector) -> float:

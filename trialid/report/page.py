@@ -59,6 +59,7 @@ def _environment() -> "jinja2.Environment":
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trialid", "report"),
         autoescape=True,
+        finalize=_finalized,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -77,6 +78,11 @@ def _environment() -> "jinja2.Environment":
         "in_shown_unit": labels.shown,
     }
     return environment
+
+
+def _finalized(value: object) -> object:
+    """Absent knowledge is an en dash, wherever the template prints it."""
+    return wording.DASH if value is None else value
 
 
 def _breakable(name: str | None) -> "markupsafe.Markup":

@@ -1,0 +1,57 @@
+import base64
+import json
+import math
+
+import numpy as np
+
+from trialid.report.panels import trial_panels
+from trialid.report.shape import whole
+
+
+def decoded(text):
+    return np.frombuffer(base64.b64decode(text), "<f4")
+
+
+def test_panels_hold_shown_units_and_open_gaps(result, series):
+    _, trial, *_ = trial_panels(series, whole(result))
+    r = trial["panels"][2]
+    output = series[1].outputs[0]
+    assert (r["title"], r["unit"]) == ("yaw rate", "deg/s")
+    assert np.allclose(
+        decoded(r["measured"]), output.observed * 180 / math.pi, rtol=1e-6, equal_nan=True
+    )
+    assert np.isnan(decoded(r["measured"])).sum() == (~output.compared).sum()
+
+
+def test_an_ordered_signal_shares_the_panel_of_what_came_of_it(result, series):
+    trial, *_ = trial_panels(series, whole(result))
+    rudder, speed = trial["panels"][:2]
+    assert [line["label"] for line in rudder["lines"]] == [
+        "\N{GREEK SMALL LETTER DELTA}",
+        "\N{GREEK SMALL LETTER DELTA}_c",
+    ]
+    assert speed["unit"] == "m/s"
+
+
+def test_findings_stand_in_the_panel_they_speak_of(result, series):
+    trials = trial_panels(series, whole(result))
+    placed = {
+        (trial["name"], panel["title"]): panel["stretches"]
+        for trial in trials
+        for panel in trial["panels"]
+        if panel.get("stretches")
+    }
+    assert placed == {
+        ("zigzag-20", "yaw rate"): [[640.0, 760.0]],
+        ("binary", "roll angle"): [[212.5, 398.5]],
+    }
+
+
+def test_a_clock_with_a_step_is_given_sample_by_sample(series):
+    from dataclasses import replace
+
+    late = np.where(series[0].t > 50, series[0].t + 1, series[0].t)
+    even, uneven = trial_panels([series[0], replace(series[0], t=late)], whole({}))
+    assert even["t"]["samples"] == len(late)
+    assert np.allclose(decoded(uneven["t"]["each"]), late)
+    json.dumps([even, uneven], allow_nan=False)

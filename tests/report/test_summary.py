@@ -1,0 +1,80 @@
+import copy
+
+import pytest
+from rich.console import Console
+
+from trialid.report.summary import summary
+
+
+def lines(result):
+    console = Console(width=100, color_system=None)
+    with console.capture() as capture:
+        console.print(summary(result))
+    return capture.get().splitlines()
+
+
+def crowded(result):
+    """A run with far more of everything than a screen holds."""
+    run = copy.deepcopy(result)
+    run["pipeline"] = "a very long name " * 20
+    run["trials"] = [row | {"name": f"trial {k} " * 9} for k, row in enumerate(run["trials"] * 6)]
+    run["fit"]["eps_rmsn_by_output"] = dict.fromkeys(("u", "v", "p", "r", "phi", "psi"), 0.1)
+    run["missing"] = run["missing"] * 5
+    run["missing"][0]["verdict"] = "not within its physical range, and of the wrong sign " * 3
+    run["verdict"]["sentence"] = "There is a great deal to say about this. " * 30
+    run["verdict"]["next_trial"]["sentence"] = "And about the next trial. " * 30
+    run["split"]["method"] = "a route with a long name " * 20
+    run["before_after"]["effect"] = "an_effect_with_a_long_name_" * 9
+    return run
+
+
+@pytest.mark.parametrize("copies", [0.5, 1.2, 5])
+def test_one_screen_whatever_the_run_holds(result, copies):
+    run = crowded(result)
+    rows = run["accuracy"]["parameters"][:10]
+    run["accuracy"]["parameters"] = (rows * 5)[: int(10 * copies)]
+    shown = lines(run)
+    assert len(shown) <= 40
+    assert max(map(len, shown)) <= 100
+
+
+def test_what_a_reader_must_learn(result):
+    text = "\n".join(lines(result))
+    for words in (
+        "zigzag-15     ",
+        "held out  12.0 %  16.3 %",
+        "noise 8.41 % (8.02 to 8.81 %) and model 9.44 % (9.07 to 9.79 %)",
+        "Nr         1      -0.0022453  4.3e-06  4.00",
+        "1 yaw_damping_cubic",
+        "The model lacks nonlinear yaw damping",
+        "With yaw_damping_cubic: fitted 12.6 % -> 8.71 %, held out 14.4 % -> 9.12 %",
+    ):
+        assert words in text
+    assert lines(result)[-1].startswith("With yaw_damping_cubic")
+
+
+def test_many_parameters_show_the_least_certain(result):
+    run = copy.deepcopy(result)
+    rows = run["accuracy"]["parameters"][:10]
+    run["accuracy"]["parameters"] = [
+        row | {"name": f"{row['name']}{k}", "relative_error": k / 100}
+        for k, row in enumerate(rows + rows)
+    ]
+    text = "\n".join(lines(run))
+    assert "T_E19" in text
+    assert "Yv0 " not in text
+    assert "12 more" in text
+
+
+def test_brackets_in_names_are_text(result):
+    run = copy.deepcopy(result)
+    run["trials"][0]["name"] = "[red]zigzag[/red]"
+    assert any(line.startswith("[red]zigzag[/red]") for line in lines(run))
+
+
+def test_nothing_known_is_said_in_words():
+    text = "\n".join(lines({}))
+    assert "no route to the noise was open" in text
+    assert "No verdict." in text
+    assert "No effect was added." in text
+    assert "None" not in text
