@@ -61,8 +61,8 @@ def plain(found: Findings) -> Plain:
             "schema": SCHEMA,
             "version": trialid.__version__,
             "versions": _versions(),
-            "name": found.name,
-            "pipeline": found.pipeline,
+            "pipeline": found.name,
+            "file": found.pipeline,
             "trials": [_trial(s) for s in fit.scores],
             "model": _model(fit),
             "fit": _fit(fit),
@@ -326,9 +326,9 @@ def _standing(c: Candidate, found: Findings) -> str:
     if c.effect.name == found.verdict.effect:
         return "missing"
     if c.effect.name in found.verdict.family:
-        return "not told from the missing one"
+        return "same family"
     if not c.allowed:
-        return "outside its physical range"
+        return "unphysical"
     return "stands out" if c.p_value < 0.05 else "no evidence"
 
 

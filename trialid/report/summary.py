@@ -85,7 +85,9 @@ def _parameters(run: Run) -> "Iterable[RenderableType]":
         return
     short = len(rows) > PARAMETERS
     shown = sorted(rows, key=_doubt, reverse=True)[:WORST] if short else rows
-    table = _table("parameter", "unit", "value", "+-", "R_i", "error", "noise", "model", words=2)
+    table = _table(
+        "parameter", "unit", "value", "+-", "R_i", "Eq. 14", "noise", "model <=", words=2
+    )
     for row in shown:
         unit, factor = wording.shown(row["unit"])
         value, error = _times(row["value"], factor), _times(row["standard_error"], factor)
