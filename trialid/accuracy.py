@@ -300,34 +300,48 @@ def assess(
     """
     reference = np.array([s.reference for s in subjects])
     A = relative_sensitivities(psi, reference)
+    covariance = coloured_covariance(A, residual, stretches)
+    rows = _rows(subjects, A, residual, covariance, noise, undermodelling)
+    physical = np.array([s.kind == "physical" for s in subjects])
+    clean = without_nuisance(A, physical)
+    S_min, S_max, R = sensitivity_range(clean)
+    typical = float(np.median([r.n_effective for r in rows if r.kind == "physical"]))
+    names = [s.name for s in subjects if s.kind == "physical"]
+    error = float(np.linalg.norm(residual)) / np.sqrt(typical)
+    weak = weak_directions(clean, names, error)
+    scaled = covariance * np.outer(reference, reference)
+    return Accuracy(rows, S_min, S_max, R, typical, weak, scaled)
+
+
+def _rows(
+    subjects: Sequence[Subject],
+    A: Vector,
+    residual: Vector,
+    covariance: Vector,
+    noise: float | None,
+    undermodelling: float | None,
+) -> tuple[ParameterAccuracy, ...]:
     S_i, S_imin, R_i = sensitivity(A), minimum_sensitivity(A), correlation_ratio(A)
     white = np.sqrt(np.diag(white_covariance(A, residual)))
-    covariance = coloured_covariance(A, residual, stretches)
     coloured = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
         n_effective = len(residual) * (white / coloured) ** 2
     x, m = relative_error(noise or 0.0, undermodelling or 0.0, S_imin, n_effective)
-    rows = tuple(
+    return tuple(
         ParameterAccuracy(
             s.name, s.kind, s.unit, s.value, s.reference,
             float(S_i[i]), float(S_imin[i]), float(R_i[i]),
-            None if noise is None else float(x[i] * abs(s.reference)),
-            None if undermodelling is None else float(m[i] * abs(s.reference)),
+            _scaled(noise, x[i], s.reference), _scaled(undermodelling, m[i], s.reference),
             float(coloured[i] * abs(s.reference)), float(white[i] * abs(s.reference)),
             float(n_effective[i]),
         )
         for i, s in enumerate(subjects)
     )  # fmt: skip
-    physical = np.array([s.kind == "physical" for s in subjects])
-    clean = without_nuisance(A, physical)
-    S_min, S_max, R = sensitivity_range(clean)
-    eps = float(np.linalg.norm(residual))
-    names = [s.name for s in subjects if s.kind == "physical"]
-    typical = float(np.median(n_effective[physical]))
-    return Accuracy(
-        rows, S_min, S_max, R, typical, weak_directions(clean, names, eps / np.sqrt(typical)),
-        covariance * np.outer(reference, reference),
-    )  # fmt: skip
+
+
+def _scaled(known: float | None, relative: float, reference: float) -> float | None:
+    """A relative error in the parameter's unit, None where its source is not known."""
+    return None if known is None else float(relative * abs(reference))
 
 
 def without_nuisance(A: Vector, physical: Mask) -> Vector:

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trialid.diagnosis.noise import Split, effective_samples
+from trialid.diagnosis.noise import Split
+from trialid.diagnosis.residual import effective_samples
 from trialid.diagnosis.score import Candidate
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify

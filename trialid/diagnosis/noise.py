@@ -19,12 +19,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.accuracy import Stretch, window
+from trialid.accuracy import Stretch
 from trialid.diagnosis.augment import Augmented
+from trialid.diagnosis.residual import OutputNoise, Residual, pooled, residuals, rudder, slowness
 from trialid.diagnosis.score import hac, project, whitened
 from trialid.identification.fit import Fit
-from trialid.identification.output_error import measured, output_error
-from trialid.trial import Mask, Trial
+from trialid.trial import Mask
 
 Vector = NDArray[np.float64]
 Interval = tuple[float, float]
@@ -49,14 +49,6 @@ DISTINCT: Final = 0.05
 
 
 @dataclass(frozen=True)
-class OutputNoise:
-    """Noise of one output by one route: normed variance, its standard error, effective samples."""
-
-    variance: float
-    deviation: float
-
-
-@dataclass(frozen=True)
 class Split:
     """What the error is made of, by one route; numbers None where the route does not hold.
 
@@ -75,28 +67,6 @@ class Split:
     def available(self) -> bool:
         """Whether the route holds on this record."""
         return self.noise is not None
-
-
-@dataclass(frozen=True)
-class Residual:
-    """Normed output error of one trial; (N, n_y), zero where nothing was compared."""
-
-    trial: Trial
-    eps: Vector
-    compared: Mask
-    predicted: Vector
-
-
-def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
-    """Normed output errors of a fit, trial by trial, on the trial's clock."""
-    found = []
-    y_rms = fit.problem.y_rms
-    for score in fit.scores:
-        if score.trial.use in uses:
-            eps = output_error(measured(score.trial, fit.problem.outputs), score.response.y) / y_rms
-            eps = np.where(score.compared, eps, 0.0)
-            found.append(Residual(score.trial, eps, score.compared, score.response.y / y_rms))
-    return found
 
 
 def split(
@@ -145,14 +115,6 @@ def _repeated(fit: Fit) -> Split:
     pieces = [_differences(one, other) for one, other in pairs]
     names = " and ".join(repr(r.trial.name) for r in pairs[0])
     return _from_pieces(fit, method, pieces, f"what differs between {names}")
-
-
-def rudder(trial: Trial) -> Vector | None:
-    """The rudder's record, the measured angle before the order; None where there is neither."""
-    for name in ("delta", "delta_order"):
-        if name in trial.signals:
-            return trial.signals[name]
-    return None
 
 
 def _same_rudder(one: Vector | None, other: Vector | None) -> bool:
@@ -274,10 +236,10 @@ def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], w
     """A split from pieces of pure noise; (n, n_y) each."""
     every = residuals(fit)
     found = [
-        _pooled(
+        pooled(
             [p[:, c] for p, _ in pieces],
             [m[:, c] for _, m in pieces],
-            _slowness([r.eps[:, c] for r in every], [r.compared[:, c] for r in every]),
+            slowness([r.eps[:, c] for r in every], [r.compared[:, c] for r in every]),
         )
         for c in range(len(fit.problem.outputs))
     ]
@@ -285,51 +247,6 @@ def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], w
         if noise is None:
             return Split(method, f"{why}: nothing compared in {c}")
     return _finish(fit, method, why, [n for n in found if n is not None])
-
-
-def _pooled(
-    pieces: Sequence[Vector], masks: Sequence[Mask], slowness: float = 1.0
-) -> OutputNoise | None:
-    """Variance over pieces, and its standard error.
-
-    `slowness` is the least number of samples that count as one; short pieces alone would make slow
-    noise look independent.
-    """
-    count = sum(int(m.sum()) for m in masks)
-    if count < 10:
-        return None
-    variance = sum(float(p @ p) for p in pieces) / count
-    own = sum(_effective(p, m) for p, m in zip(pieces, masks, strict=True))
-    degrees = max(own - len(pieces), 1.0)
-    sure = max(min(own, count / slowness) - len(pieces), 1.0)
-    return OutputNoise(variance * own / degrees, variance * np.sqrt(2.0 / sure))
-
-
-def _slowness(pieces: Sequence[Vector], masks: Sequence[Mask]) -> float:
-    """Samples that count as one for a variance, over whole trials."""
-    count = sum(int(m.sum()) for m in masks)
-    effective = sum(_effective(p, m) for p, m in zip(pieces, masks, strict=True))
-    return count / max(effective, 1.0)
-
-
-def effective_of(e: Vector) -> float:
-    """Effective samples of a piece without gaps, for its variance."""
-    return max(_effective(e, np.ones(len(e), dtype=bool)), 1.0)
-
-
-def _effective(e: Vector, mask: Mask) -> float:
-    """Effective samples for a variance: N over the summed squared autocorrelation."""
-    n = int(mask.sum())
-    if n < 2:
-        return float(n)
-    size = 1 << (2 * len(e) - 1).bit_length()
-    power = np.abs(np.fft.rfft(e, size)) ** 2
-    c = np.fft.irfft(power, size)[: len(e)]
-    if c[0] <= 0.0:
-        return float(n)
-    lags = window(c / n, len(e))
-    rho = c[1:lags] / c[0]
-    return n / (1.0 + 2.0 * float(rho @ rho))
 
 
 def _finish(fit: Fit, method: str, why: str, found: Sequence[OutputNoise]) -> Split:
@@ -358,23 +275,13 @@ def _roots(low: float, high: float) -> Interval:
     return float(np.sqrt(max(low, 0.0))), float(np.sqrt(max(high, 0.0)))
 
 
-def effective_samples(fit: Fit) -> float:
-    """Effective number of compared values for the variance of the residual."""
-    found = residuals(fit)
-    return sum(
-        _effective(r.eps[:, c], r.compared[:, c])
-        for r in found
-        for c in range(len(fit.problem.outputs))
-    )
-
-
 def _total(fit: Fit) -> tuple[float, float]:
     """eps_RMSn, and the standard error that noise gives its square."""
     found = residuals(fit)
     spread = []
     for c in range(len(fit.problem.outputs)):
-        pooled = _pooled([r.eps[:, c] for r in found], [r.compared[:, c] for r in found])
-        spread.append(0.0 if pooled is None else pooled.deviation)
+        known = pooled([r.eps[:, c] for r in found], [r.compared[:, c] for r in found])
+        spread.append(0.0 if known is None else known.deviation)
     return fit.eps_rmsn, float(np.sqrt(np.sum(np.square(spread))) / len(spread))
 
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.diagnosis.noise import Residual, effective_of, residuals, rudder
+from trialid.diagnosis.residual import Residual, effective_of, residuals, rudder
 from trialid.identification.fit import Fit
 
 Vector = NDArray[np.float64]
