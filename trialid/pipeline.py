@@ -193,7 +193,9 @@ def diagnose(
 ) -> tuple[Diagnosed, tuple[Candidate, ...], Augmented]:
     """What the error is made of, how far the parameters can be trusted, and the ranking."""
     progress("looking for what is missing", 0.65)
-    ranking, augmented = rank(fit, candidates(recipe, catalogue), recipe.diagnose.family_cos)
+    ranking, augmented = rank(
+        fit, candidates(recipe, catalogue), recipe.diagnose.family_cos, recipe.diagnose.level
+    )
     best, routes = split(fit, augmented, stated_noise(recipe), _declared_quiet(recipe))
     return Diagnosed(fit, accuracy_of(fit, best), best, routes), ranking, augmented
 

@@ -2,17 +2,21 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from trialid.diagnosis.noise import Split
 from trialid.diagnosis.residual import effective_samples
-from trialid.diagnosis.score import Candidate
+from trialid.diagnosis.score import Candidate, cost
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.pose import Settings
 from trialid.ship.effect import Effect
 from trialid.trial import Trial
+
+DECISIVE: Final = 6.0
+"""Difference of twice the log likelihood that decides: odds of 20 to 1."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ def decide(
     """
     named = confirmed(fit, refits, level)
     if named is not None:
-        return _missing(fit, named)
+        return _missing(fit, named, rivals(fit, named, ranking, refits))
     if parts.undermodelling_interval is None:
         return Verdict("cannot tell", None, (), _no_split(parts))
     low, high = parts.undermodelling_interval
@@ -104,31 +108,49 @@ def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
     The price is that of Schwarz (1978) with the effective number of samples: an effect of four
     parameters must explain more than one of one parameter.
     """
+    samples = effective_samples(fit)
+
+    def price(r: Refit) -> float:
+        return cost(r.fit.eps_rmsn, len(r.candidate.expected), samples)
+
     able = [
         r
         for r in refits
         if r.candidate.p_value < level
         and r.candidate.allowed
-        and r.fit.eps_rmsn < fit.eps_rmsn
+        and price(r) < cost(fit.eps_rmsn, 0, samples)
         and (fit.eps_check is None or (r.fit.eps_check or np.inf) < fit.eps_check)
     ]
+    return min(able, key=price, default=None)
+
+
+def rivals(
+    fit: Fit, named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]
+) -> tuple[str, ...]:
+    """Effects that this record cannot tell from the named one: alike in trace, or as good."""
     samples = effective_samples(fit)
+    fitted = {r.candidate.effect.name: r.fit.eps_rmsn for r in refits}
+    best = cost(named.fit.eps_rmsn, len(named.candidate.expected), samples)
+    close = [
+        c.effect.name
+        for c in ranking
+        if c.allowed
+        and c is not named.candidate
+        and cost(fitted.get(c.effect.name, c.eps_predicted), len(c.expected), samples)
+        < best + DECISIVE
+    ]
+    alike = [n for n in named.candidate.family[1:] if n not in close]
+    return (*close, *alike)
 
-    def cost(r: Refit) -> float:
-        return samples * 2.0 * np.log(r.fit.eps_rmsn) + len(r.candidate.expected) * np.log(samples)
 
-    return min(able, key=cost, default=None)
-
-
-def _missing(fit: Fit, named: Refit) -> Verdict:
+def _missing(fit: Fit, named: Refit, others: tuple[str, ...]) -> Verdict:
     candidate = named.candidate
-    others = [n for n in candidate.family if n != candidate.effect.name]
     alike = f"; this record cannot tell it from {', '.join(others)}" if others else ""
     held = ""
     if fit.eps_check is not None and named.fit.eps_check is not None:
         held = f", on held-out trials from {fit.eps_check:.2%} to {named.fit.eps_check:.2%}"
     return Verdict(
-        "missing", candidate.effect.name, candidate.family,
+        "missing", candidate.effect.name, (candidate.effect.name, *others),
         f"{candidate.effect.name} is missing: with it the error falls from {fit.eps_rmsn:.2%} to "
         f"{named.fit.eps_rmsn:.2%}{held} (p = {candidate.p_value:.2g} over the catalogue){alike}",
     )  # fmt: skip

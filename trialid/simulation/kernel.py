@@ -1,5 +1,6 @@
 """Compiled kernels: LLVM IR to machine code by llvmlite, kept on disk by structure."""
 
+import contextlib
 import ctypes
 import functools
 import hashlib
@@ -17,6 +18,7 @@ from trialid.simulation.emit import module_text
 from trialid.simulation.trace import Equations
 
 Vector = NDArray[np.float64]
+CHECKSUM: Final = 32
 LOOPS: Final[list[Any]] = [ctypes.c_int64, ctypes.c_int64, ctypes.c_double]
 
 
@@ -74,22 +76,31 @@ def _object(text: str) -> bytes:
     """Machine code from the cache, or compiled and put there.
 
     The file appears whole or not at all (written beside, then renamed), so that two processes
-    that compile the same kernel at once both find a good one. Where nothing can be written, as
-    on a read-only disk, the kernel is compiled each time.
+    that compile the same kernel at once both find a good one; it begins with its own checksum,
+    because damaged machine code would crash the process. Where nothing can be written, as on a
+    read-only disk, the kernel is compiled each time.
     """
-    path = cache_folder() / f"{_key(text)}.o"
-    try:
-        return path.read_bytes()
-    except OSError:
-        code = _compile(text)
-    try:
+    path = cache_folder() / f"{_key(text)}.kernel"
+    known = _kept(path)
+    if known is not None:
+        return known
+    code = _compile(text)
+    with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            file.write(code)
+            file.write(hashlib.sha256(code).digest() + code)
         Path(file.name).replace(path)
-    except OSError:
-        pass
     return code
+
+
+def _kept(path: Path) -> bytes | None:
+    """Machine code from a file of the cache, None where there is none or it is damaged."""
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return None
+    checksum, code = content[:CHECKSUM], content[CHECKSUM:]
+    return code if code and hashlib.sha256(code).digest() == checksum else None
 
 
 def _function(text: str, name: str, pointers: int) -> Callable[..., int]:
