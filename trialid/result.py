@@ -236,12 +236,13 @@ def _parameter(p: ParameterAccuracy) -> Plain:
 
 
 def _stability(model: ShipModel, accuracy: Accuracy) -> Plain | None:
-    values = _values(model, (*PARTS, "m", "x_G"))
+    turning = tuple(n for n in ("Yurm", "Kurm") if n in model.parameters)
+    values = _values(model, (*PARTS, "m", "x_G", *turning))
     if values is None or values["Yv"] == 0.0:
         return None
     names = tuple(p.name for p in accuracy.parameters)
     plain_form = stability(values, names, accuracy.covariance)
-    coupled_values = _values(model, (*PARTS, "m", "x_G", "z_G", "Kv", "Kr", "GM"))
+    coupled_values = _values(model, (*PARTS, "m", "x_G", "z_G", "Kv", "Kr", "GM", *turning))
     coupled = None
     if coupled_values is not None:
         full = coupled_values | _heel(model)

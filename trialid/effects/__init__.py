@@ -11,6 +11,12 @@ FILES: tuple[ModuleType, ...] = (hull, heel, roll, rudder, steering_gear, outer,
 
 CATALOGUE: dict[str, Effect] = {e.name: e for file in FILES for e in file.EFFECTS}
 
+FAULTS = (
+    SyntaxError, NameError, ImportError, TypeError, AttributeError, ValueError, ArithmeticError,
+    LookupError, AssertionError, OSError, RuntimeError,
+)  # fmt: skip
+"""What somebody's own Python file may raise while it runs."""
+
 
 def find(name: str, own: dict[str, Effect]) -> Effect:
     """The effect of this name, the user's own first.
@@ -38,12 +44,14 @@ def from_file(path: Path) -> dict[str, Effect]:
         source = path.read_text(encoding="utf-8")
     except OSError as error:
         raise EffectError(f"effects file {path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise EffectError(f"effects file {path}: not UTF-8 text (byte {error.start})") from error
     module = ModuleType(path.stem)
     module.__file__ = str(path)
     try:
         exec(compile(source, str(path), "exec"), module.__dict__)
-    except (SyntaxError, NameError, ImportError, TypeError, AttributeError) as error:
-        raise EffectError(f"effects file {path}: {error}") from error
+    except FAULTS as error:
+        raise EffectError(f"effects file {path}: {type(error).__name__}: {error}") from error
     found = {x.name: x for x in vars(module).values() if isinstance(x, Effect)}
     own = {n: e for n, e in found.items() if e.function.__module__ == module.__name__}
     if not own:

@@ -9,6 +9,7 @@ BK99 = "Blanke & Knudsen (1999), section 4"
 SN82 = "Son & Nomoto (1982), container ship S-175"
 TURN = 2.0 * math.pi
 PI = math.pi
+STANDSTILL = 1e-12  # (m/s)^2: quotients keep their limit at rest
 
 CST65 = "Chislett & Strom-Tejsen (1965), Mariner"
 
@@ -44,16 +45,13 @@ def _inflow(
     u: Number, v: Number, r: Number, L: Number, w_P: Number, tau_P: Number, x_P: Number
 ) -> Number:
     """Speed of the water at the propeller; the printed code of the set has cos(v) for u."""
-    U = sqrt(u * u + v * v)
-    return u * ((1.0 - w_P) + tau_P * ((v + x_P * r * L) / U) ** 2)
+    return u * ((1.0 - w_P) + tau_P * (v + x_P * r * L) ** 2 / (u * u + v * v + STANDSTILL))
 
 
-def _thrust_coefficient(
-    inflow: Number, n: Number, D_P: Number, KT0: Number, KT1: Number
-) -> tuple[Number, Number]:
-    """Advance number J and thrust coefficient K_T; n in rad/s."""
-    J = inflow / (n / TURN * D_P)
-    return J, KT0 + KT1 * J
+def _race(inflow: Number, n: Number, D_P: Number, KT0: Number, KT1: Number) -> Number:
+    """K_T (n D_P)^2 with K_T = KT0 + KT1 J, finite with the shaft stopped; n in rad/s."""
+    tip = n / TURN * D_P
+    return (KT0 * tip + KT1 * inflow) * tip
 
 
 @effect(source=SN82, system="SI")
@@ -62,8 +60,8 @@ def propeller_thrust(
     D_P=Parameter(6.533, "m"), KT0=0.527, KT1=-0.455, t_P=0.175, w_P=0.184, tau_P=1.09, x_P=-0.526,
 ):  # fmt: skip
     """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s)."""
-    _, K_T = _thrust_coefficient(_inflow(u, v, r, L, w_P, tau_P, x_P), n, D_P, KT0, KT1)
-    return Force(X=(1.0 - t_P) * rho * (n / TURN) ** 2 * D_P**4 * K_T)
+    race = _race(_inflow(u, v, r, L, w_P, tau_P, x_P), n, D_P, KT0, KT1)
+    return Force(X=(1.0 - t_P) * rho * D_P**2 * race)
 
 
 @effect(source=SN82, system="SI")
@@ -80,13 +78,12 @@ def propeller_rudder(
     drift and turning leave at the rudder, f the slope of the normal force by aspect ratio.
     """
     inflow = _inflow(u, v, r, L, w_P, tau_P, x_P)
-    J, K_T = _thrust_coefficient(inflow, n, D_P, KT0, KT1)
-    thrust = rho * (n / TURN) ** 2 * D_P**4 * K_T
-    u_R = inflow * eps_R * sqrt(1.0 + 8.0 * k_R * K_T / (PI * J * J))
-    U = sqrt(u * u + v * v)
-    r_prime = r * L / U
-    turned = l_R * r + l_Rrrr * r * r_prime**2
-    v_R = gamma_R * v + turned * L + l_Rrrv * r_prime**2 * v
+    race = _race(inflow, n, D_P, KT0, KT1)
+    thrust = rho * D_P**2 * race
+    u_R = eps_R * sqrt(inflow * inflow + 8.0 * k_R * race / PI + STANDSTILL)
+    turning = (r * L) ** 2 / (u * u + v * v + STANDSTILL)
+    turned = l_R * r + l_Rrrr * r * turning
+    v_R = gamma_R * v + turned * L + l_Rrrv * turning * v
     alpha = delta + arctan(v_R / u_R)
     slope = 6.13 * Lambda_R / (Lambda_R + 2.25)
     F_N = -0.5 * rho * A_R * slope * (u_R * u_R + v_R * v_R) * sin(alpha)

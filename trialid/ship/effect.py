@@ -153,8 +153,9 @@ def effect(
             raise EffectError(f"effect {name!r} has no docstring; write its equation there")
         own = dict(states or {})
         signals, parameters = _signature(name, function, own)
-        forms = _forms(name, function, signals, parameters)
+        forms = _forms(name, function, signals, parameters, own)
         made: System = system if Force in forms else "SI"
+        _check_states(name, own, forms, made)
         return Effect(name, function, signals, parameters, own, forms, made, source)
 
     return declare
@@ -189,6 +190,7 @@ def _forms(
     function: Callable[..., Any],
     signals: tuple[str, ...],
     parameters: Mapping[str, Parameter],
+    own: Mapping[str, Any],
 ) -> tuple[type, ...]:
     """Find out what the function returns by calling it once on small numbers."""
     values = dict.fromkeys(signals, 0.1) | {n: p.start for n, p in parameters.items()}
@@ -204,7 +206,26 @@ def _forms(
                 f"effect {name!r} returns {type(part).__name__}; expected one of {names}"
             )
         _check_names(name, part, signals)
+    _check_rates(name, tuple(n for part in results if isinstance(part, Rate) for n in part), own)
     return tuple(type(part) for part in results)
+
+
+def _check_states(
+    name: str, own: Mapping[str, Any], forms: tuple[type, ...], system: System
+) -> None:
+    if own and system == "prime":
+        raise EffectError(
+            f"effect {name!r} has a force and states of its own; a state is SI, so declare the "
+            'effect with system="SI"'
+        )
+
+
+def _check_rates(name: str, rates: tuple[str, ...], own: Mapping[str, Any]) -> None:
+    if set(rates) != set(own):
+        raise EffectError(
+            f"effect {name!r} gives the rate of {', '.join(rates) or 'nothing'}, and declares "
+            f"the states {', '.join(own) or 'none'}; they must be the same"
+        )
 
 
 def _check_names(name: str, part: Result, signals: tuple[str, ...]) -> None:

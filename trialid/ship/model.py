@@ -83,8 +83,7 @@ class ShipModel:
         """Signals that must come from the record (u is the approach speed when it does not)."""
         wanted = {s for e in self.effects for s in e.signals} | {"u"}
         wanted |= {s for e in self.effects if Steered in e.forms for s in steered_signals(e)}
-        if "U" in wanted:
-            wanted |= {"u"}
+        wanted |= {"r"} if "psi" in self.states else set()
         known = {*self.all_states, *PARTICULARS, "U"}
         return tuple(sorted(wanted - known))
 
@@ -105,7 +104,7 @@ class ShipModel:
         return found
 
     def stated(self, name: str) -> float | None:
-        """A parameter's value if the pipeline, the ship file or its null gives one."""
+        """A parameter's value if the pipeline or the ship file gives one."""
         if name in self.values:
             return self.values[name]
         if name in MASS_PARAMETERS:
@@ -202,21 +201,40 @@ def motion(
     theta
         Values of `model.parameters`: primed, or in the parameter's unit.
     """
-    signals = _signals(model, states, inputs, theta)
-    force, rates, measured, delay = Force(), dict[str, Number](), dict(signals), dict[str, Number]()
+    recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
+    signals = _signals(model, recorded, theta)
+    measured = {**recorded, "U": signals["U"]}
+    force, rates, delay = Force(), dict[str, Number](), dict[str, Number]()
     for effect in model.effects:
-        for part in effect(_values(model, effect, signals, theta)):
+        seen = measured_by(effect, recorded, signals)
+        for part in effect(_values(model, effect, seen, theta)):
             match part:
                 case Force():
                     force = _add(force, _to_SI(model, effect, part, signals))
                 case Rate():
                     rates |= dict(part)
                 case Measured():
-                    measured |= {n: measured[n] + x for n, x in part.items()}
+                    measured |= {n: _known(effect, measured, n) + x for n, x in part.items()}
                 case Delayed():
                     delay |= {n: delay.get(n, 0.0) + x for n, x in part.items()}
     rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
     return Motion(_balance(model, signals, force, theta), rates, measured, delay)
+
+
+def measured_by(
+    effect: Effect, recorded: Mapping[str, Number], acting: Mapping[str, Number]
+) -> Mapping[str, Number]:
+    """What an effect sees: steering gear and sensors the recorded rudder, forces the acting one."""
+    return acting if Force in effect.forms else {**recorded, "U": acting["U"]}
+
+
+def _known(effect: Effect, measured: Mapping[str, Number], name: str) -> Number:
+    if name not in measured:
+        raise EffectError(
+            f"effect {effect.name!r} adds to {name!r}, which is neither simulated nor asked of the "
+            f"record; simulate {name!r} in [model] states, or leave the effect out"
+        )
+    return measured[name]
 
 
 def _balance(
@@ -235,13 +253,10 @@ def _balance(
 
 
 def _signals(
-    model: ShipModel,
-    states: Mapping[str, Number],
-    inputs: Mapping[str, Number],
-    theta: Mapping[str, Number],
+    model: ShipModel, recorded: Mapping[str, Number], theta: Mapping[str, Number]
 ) -> dict[str, Number]:
-    """States, inputs as they act on the ship, particulars and the speed U; SI."""
-    signals: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
+    """States and inputs as they act on the ship, particulars and the speed U; SI."""
+    signals = dict(recorded)
     for effect in model.effects:
         if Steered in effect.forms:
             for part in effect({**signals, **theta}):

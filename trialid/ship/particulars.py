@@ -1,5 +1,6 @@
 """A ship: its particulars, masses and hydrodynamic coefficients, as its source publishes them."""
 
+import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,10 +8,12 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from trialid.errors import ShipError, nearest
+from trialid.ship.rigid_body import MASS_PARAMETERS
 
 REQUIRED: Final = ("name", "source", "system", "rudder_positive", "particulars", "mass")
 OPTIONAL: Final = ("coefficients", "coefficient_speed", "notes")
 PARTICULARS: Final = ("L", "rho", "g", "nabla", "U0")
+SECTIONS: Final = ("particulars", "mass", "coefficients")
 
 
 @dataclass(frozen=True)
@@ -53,11 +56,14 @@ def read_ship(path: Path) -> Ship:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
         raise ShipError(f"ship file {path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise ShipError(f"ship file {path}: not UTF-8 text (byte {error.start})") from error
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ShipError(f"ship file {path}: not valid TOML: {error}") from error
     _check_keys(path, table)
+    _check_sections(path, table)
     return Ship(
         name=table["name"],
         source=table["source"],
@@ -66,7 +72,7 @@ def read_ship(path: Path) -> Ship:
         particulars=_numbers(path, table, "particulars"),
         mass=_numbers(path, table, "mass"),
         coefficients=_numbers(path, table, "coefficients"),
-        coefficient_speed=float(table.get("coefficient_speed", 1.0)),
+        coefficient_speed=_positive(path, "", table, "coefficient_speed", 1.0),
         notes=table.get("notes", ""),
     )
 
@@ -79,12 +85,35 @@ def _check_keys(path: Path, table: Mapping[str, Any]) -> None:
     for key in REQUIRED:
         if key not in table:
             raise ShipError(f"ship file {path}: key {key!r} is missing; {_MEANING.get(key, '')}")
-    missing = [key for key in PARTICULARS if key not in table["particulars"]]
-    if missing:
-        raise ShipError(f"ship file {path}: [particulars] lacks {', '.join(missing)}")
     for key, allowed in _CHOICES.items():
         if table[key] not in allowed:
             raise ShipError(f"ship file {path}: {key} = {table[key]!r}; expected one of {allowed}")
+
+
+def _check_sections(path: Path, table: Mapping[str, Any]) -> None:
+    for key in SECTIONS:
+        if not isinstance(table.get(key, {}), dict):
+            raise ShipError(f"ship file {path}: {key} = {table[key]!r}; expected a [{key}] section")
+    missing = [key for key in PARTICULARS if key not in table["particulars"]]
+    if missing:
+        raise ShipError(f"ship file {path}: [particulars] lacks {', '.join(missing)}")
+    for key in PARTICULARS:
+        _positive(path, "[particulars] ", table["particulars"], key)
+    for key in table["mass"]:  # one with a slip in its name would silently be zero
+        if key not in MASS_PARAMETERS:
+            known = nearest(key, MASS_PARAMETERS)
+            raise ShipError(f"ship file {path}: [mass] {key} is not a mass parameter; {known}")
+
+
+def _positive(
+    path: Path, where: str, rows: Mapping[str, Any], key: str, default: float = math.nan
+) -> float:
+    value = rows.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ShipError(f"ship file {path}: {where}{key} = {value!r} is not a number")
+    if not 0.0 < value < math.inf:
+        raise ShipError(f"ship file {path}: {where}{key} = {value!r}; expected a positive number")
+    return float(value)
 
 
 _CHOICES: Final = {"system": ("prime", "dimensional"), "rudder_positive": ("starboard", "port")}

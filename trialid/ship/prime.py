@@ -9,7 +9,7 @@ from typing import Final
 from trialid.errors import EffectError, ShipError
 from trialid.maths import Number
 from trialid.quantities import PARTICULARS, QUANTITIES
-from trialid.ship.effect import Effect, Force
+from trialid.ship.effect import Effect, Force, Steered
 from trialid.ship.particulars import Ship
 
 FORCE_LENGTH: Final = {"X": 2, "Y": 2, "K": 3, "N": 3}
@@ -88,12 +88,19 @@ def primed_coefficient(ship: Ship, effect: Effect, name: str) -> float:
     """
     value = ship.coefficients[name]
     if effect.system == "SI" or effect.parameters[name].unit != "1":
-        return value
+        return -value if ship.rudder_positive == "port" and _steers_rudder(effect) else value
     if ship.system == "dimensional":
         value *= _dimensional_ratio(ship, effect, name)
     if ship.rudder_positive == "port" and "delta" in effect.signals:
         value *= _rudder_parity(effect, name)
     return value
+
+
+def _steers_rudder(effect: Effect) -> bool:
+    if Steered not in effect.forms:
+        return False
+    values = dict.fromkeys(effect.signals, 0.1) | {n: p.start for n, p in effect.parameters.items()}
+    return any(isinstance(part, Steered) and "delta" in part for part in effect(values))
 
 
 def _probe(effect: Effect, name: str, signals: Mapping[str, float]) -> Force:

@@ -12,6 +12,19 @@ PARTS = ("Yv", "Yr", "Nv", "Nr")
 ROLL_PARTS = ("Yphi", "Nphi", "Kv", "Kr")
 
 
+def levers(c: Mapping[str, Number]) -> tuple[Number, Number]:
+    """Eq. 15: L_r = (N_r - m x_G) / (Y_r - m) and L_v = N_v / Y_v, primed.
+
+    Yurm, where a model has it, is part of Y_r: the water that turns with the hull.
+
+    >>> L_r, L_v = levers({"Nr": -2.0, "Yr": 1.0, "Nv": -3.0, "Yv": -12.0, "m": 9.0, "x_G": 0.0})
+    >>> L_r, L_v
+    (0.25, 0.25)
+    """
+    Yr = c["Yr"] + c.get("Yurm", 0.0)
+    return (c["Nr"] - c["m"] * c["x_G"]) / (Yr - c["m"]), c["Nv"] / c["Yv"]
+
+
 @dataclass(frozen=True)
 class Stability:
     """Levers over L, their margin, and the margin's standard error (None: not estimated)."""
@@ -27,24 +40,15 @@ class Stability:
         return self.margin > 0.0
 
 
-def levers(c: Mapping[str, Number]) -> tuple[Number, Number]:
-    """Eq. 15: L_r = (N_r - m x_G) / (Y_r - m) and L_v = N_v / Y_v, primed.
-
-    >>> L_r, L_v = levers({"Nr": -2.0, "Yr": 1.0, "Nv": -3.0, "Yv": -12.0, "m": 9.0, "x_G": 0.0})
-    >>> L_r, L_v
-    (0.25, 0.25)
-    """
-    return (c["Nr"] - c["m"] * c["x_G"]) / (c["Yr"] - c["m"]), c["Nv"] / c["Yv"]
-
-
 def roll_coupled(c: Mapping[str, Number]) -> dict[str, Number]:
     """Sway and yaw derivatives of a ship that heels as it turns slowly; primed.
 
     In a slow turn the heel follows phi = (K_v v + (K_r + m z_G) r) / G_phi, with
-    G_phi = 2 g nabla GM / (L^2 U^2) - K_phi, and pushes back through Y_phi and N_phi. Eq. 15 on
-    these numbers includes that; the paper's form leaves it out.
+    G_phi = 2 g nabla GM / (L^3 U^2) - K_phi, and pushes back through Y_phi and N_phi. Eq. 15 on
+    these numbers includes that; the paper's form leaves it out. Kurm is part of K_r.
     """
-    heel = {"v": c["Kv"] / c["G_phi"], "r": (c["Kr"] + c["m"] * c["z_G"]) / c["G_phi"]}
+    Kr = c["Kr"] + c.get("Kurm", 0.0)
+    heel = {"v": c["Kv"] / c["G_phi"], "r": (Kr + c["m"] * c["z_G"]) / c["G_phi"]}
     changed = {f"{row}{s}": c[f"{row}{s}"] + c[f"{row}phi"] * heel[s] for row in "YN" for s in "vr"}
     return {**c, **changed}
 
@@ -61,7 +65,7 @@ def stability(
     ----------
     values
         Primed coefficients: m, x_G and those of `PARTS`; with `coupled` also z_G, G_phi and
-        those of `ROLL_PARTS`.
+        those of `ROLL_PARTS`; Yurm and Kurm where the model has them.
     names, covariance
         Fitted parameters and their covariance; (n_theta,), (n_theta, n_theta).
     """

@@ -26,8 +26,6 @@ DECLARATIONS: Final = (
     "declare double @llvm.fabs.f64(double)\ndeclare double @llvm.sqrt.f64(double)\n"
     "declare double @llvm.sin.f64(double)\ndeclare double @llvm.cos.f64(double)\n"
     "declare double @llvm.copysign.f64(double, double)\n"
-    "declare double @llvm.maxnum.f64(double, double)\n"
-    "declare double @llvm.minnum.f64(double, double)\n"
     "declare double @exp(double)\ndeclare double @tanh(double)\ndeclare double @atan(double)\n"
     "declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)\n"
 )
@@ -110,7 +108,7 @@ def _instruction(text: _Text, node: Node, known: Mapping[int, str]) -> str:
     match node.op:
         case "clip":
             low = text.new(f"fneg double {args[1]}")
-            return text.call("llvm.minnum.f64", text.call("llvm.maxnum.f64", args[0], low), args[1])
+            return _nearer(text, "ogt", _nearer(text, "olt", args[0], low), args[1])
         case "inside":
             size = text.call("llvm.fabs.f64", args[0])
             test = text.new(f"fcmp olt double {size}, {args[1]}")
@@ -118,6 +116,12 @@ def _instruction(text: _Text, node: Node, known: Mapping[int, str]) -> str:
         case "sign":
             return text.call("llvm.copysign.f64", _literal(1.0), *args)
     return text.call(FUNCTIONS[node.op], *args)
+
+
+def _nearer(text: _Text, beyond: str, value: str, bound: str) -> str:
+    """The bound where the value is beyond it; NaN is beyond nothing and stays."""
+    test = text.new(f"fcmp {beyond} double {value}, {bound}")
+    return text.new(f"select i1 {test}, double {bound}, double {value}")
 
 
 @dataclass(frozen=True)

@@ -158,10 +158,10 @@ def respond(
     if not sensitivities:
         X, left = run.simulate(*arguments)
         y, _ = _outputs(simulator, trial, X, None, u, theta)
-        return Response(X, y, None, _departure(eq, X, left, trial.period))
+        return Response(X, y, None, _departure(eq, X, left, trial.period, limit))
     X, S, left = run.sensitivities(*arguments)
     y, dy = _outputs(simulator, trial, X, S, u, theta)
-    return Response(X, y, dy, _departure(eq, X, left, trial.period))
+    return Response(X, y, dy, _departure(eq, X, left, trial.period, limit))
 
 
 def guess(model: ShipModel, trial: Trial, state: str) -> float:
@@ -212,14 +212,13 @@ def domain(model: ShipModel) -> Vector:
     return np.array([bounds.get(s, np.inf) for s in model.all_states])
 
 
-def _departure(eq: Equations, X: Vector, left: int, period: float) -> Departure | None:
+def _departure(
+    eq: Equations, X: Vector, left: int, period: float, limit: Vector
+) -> Departure | None:
     if left == 0:
         return None
-    values = X[left]
-    outside = [i for i, x in enumerate(values) if not np.isfinite(x)] or [
-        int(np.argmax(np.abs(values)))
-    ]
-    return Departure(eq.states[outside[0]], left * period, float(values[outside[0]]))
+    outside = int(np.flatnonzero(~(np.abs(X[left]) < limit))[0])
+    return Departure(eq.states[outside], left * period, float(X[left, outside]))
 
 
 class _Readout:

@@ -154,6 +154,8 @@ class Kernel:
             Sample period [s] and RK4 steps in it.
         """
         X = _room(x0, len(u))
+        if len(u) < 2:
+            return X, 0
         arrays = (theta, _rows(u), limit, X)  # named: a copied u must outlive the call
         left = self._sim(len(u) - 1, substeps, h, *map(_at, arrays))
         return X, left
@@ -169,6 +171,8 @@ class Kernel:
         s[np.arange(n_x), len(eq.free) + np.arange(n_x)] = 1.0
         S = np.full((len(u), len(eq.kept), width), np.nan)
         S[0] = s[list(eq.kept)]
+        if len(u) < 2:
+            return X, S, 0
         g = np.zeros((4, n_x, width))
         j = np.zeros((4, max(len(eq.J) + len(eq.W), 1)))
         arrays = (theta, _rows(u), limit, X, S, s, g, j)

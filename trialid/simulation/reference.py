@@ -97,6 +97,8 @@ class Reference:
         s[np.arange(n_x), free + np.arange(n_x)] = 1.0
         S = np.full((len(u), len(eq.kept), eq.columns), np.nan)
         S[0] = s[list(eq.kept)]
+        if len(stages) == 0:
+            return X, S, left
         J, F = self._matrices(theta, stages)
         for step in range(len(J)):
             s = _step(s, J[step], F[step], h / substeps)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trialid.errors import EffectError
-from trialid.ship.model import ShipModel, motion, solve
+from trialid.ship.model import Motion, ShipModel, motion, solve
 from trialid.simulation.graph import SYMBOL, Graph, Node, gradient, lift, order
 
 BLOCK: Final = 8
@@ -76,7 +76,7 @@ def trace(model: ShipModel, free: Sequence[str], outputs: Sequence[str]) -> Equa
     x = {s: graph.symbol(s, True) for s in model.all_states}
     inputs = {s: graph.symbol(s, True) for s in model.recorded}
     theta = _parameters(graph, model, free)
-    now = motion(model, x, inputs, theta)
+    now = _traced(model, x, inputs, theta)
     rows = tuple(now.balance.force)
     inverse = {k: lift(graph, w) for k, w in solve(now.balance, rows).items()}
     right = {s: lift(graph, r) for s, r in (*now.balance.force.items(), *now.rates.items())}
@@ -101,6 +101,21 @@ def trace(model: ShipModel, free: Sequence[str], outputs: Sequence[str]) -> Equa
         outputs={c: _output(graph, model, now.measured, c) for c in outputs},
         delays={c: lift(graph, now.delay.get(c, 0.0)) for c in outputs},
     )
+
+
+def _traced(
+    model: ShipModel,
+    states: Mapping[str, Node],
+    inputs: Mapping[str, Node],
+    theta: Mapping[str, Node | float],
+) -> Motion:
+    try:
+        return motion(model, states, inputs, theta)
+    except TypeError as error:
+        raise EffectError(
+            f"an effect does what cannot be differentiated ({error}); without branches, min and "
+            "max, use abs and trialid.maths (sin, cos, sqrt, exp, tanh, arctan, clip)"
+        ) from error
 
 
 def _parameters(graph: Graph, model: ShipModel, free: Sequence[str]) -> dict[str, Node | float]:

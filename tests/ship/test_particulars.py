@@ -1,0 +1,107 @@
+"""A ship file is read, or refused in one clear line."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from trialid.errors import ShipError
+from trialid.ship.particulars import Ship, read_ship
+
+SHIPS = Path(__file__).parents[2] / "sample_data" / "ships"
+
+
+@pytest.mark.parametrize("file", ["s175q", "s175", "naval"])
+def test_the_sample_ships(file: str) -> None:
+    ship = read_ship(SHIPS / f"{file}.toml")
+    assert ship.source
+    assert ship.notes
+    assert ship.rudder_positive == "starboard"
+    assert ship.coefficients
+
+
+def expect_refusal(read: Callable[[], Ship], says: str) -> None:
+    with pytest.raises(ShipError, match=says) as caught:
+        read()
+    assert "\n" not in str(caught.value)
+    assert str(caught.value).startswith("ship file ")
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        ({"rudder_positive": None}, r"'rudder_positive' is missing.*\"port\" \(SNAME"),
+        ({"system": None}, '\'system\' is missing; write "prime" or "dimensional"'),
+        ({"source": None}, "'source' is missing; say where the numbers come from"),
+        ({"name": None}, "'name' is missing"),
+        ({"rudder_positive": '"stbd"'}, "rudder_positive = 'stbd'; expected one of"),
+        ({"system": '"bis"'}, "system = 'bis'; expected one of"),
+        ({"L": None}, r"\[particulars\] lacks L"),
+        ({"L": None, "U0": None}, r"\[particulars\] lacks L, U0"),
+        ({"m": '"heavy"'}, r"\[mass\] m = 'heavy' is not a number"),
+        ({"Yv": "true"}, r"\[coefficients\] Yv = True is not a number"),
+        ({"L": "[175.0]"}, r"\[particulars\] L = \[175.0\] is not a number"),
+        ({"Yv": ""}, "not valid TOML.*line"),
+        ({"L": "nan"}, r"\[particulars\] L"),
+        ({"L": "-175.0"}, r"\[particulars\] L"),
+        ({"rho": "0"}, r"\[particulars\] rho"),
+    ],
+)
+def test_a_wrong_line(lines: dict[str, str | None], says: str, edited: Callable[..., Ship]) -> None:
+    expect_refusal(lambda: edited(**lines), says)
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ('flag = "x"', "unknown key 'flag'; known: "),
+        ('rudder_positiv = "port"', "unknown key 'rudder_positiv'; did you mean 'rudder_positive'"),
+        ('coefficient_speed = "fast"', "coefficient_speed"),
+        ("coefficient_speed = 0.0", "coefficient_speed"),
+    ],
+)
+def test_a_line_too_many(line: str, says: str, edited: Callable[..., Ship]) -> None:
+    expect_refusal(lambda: edited(line + "\n"), says)
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("Yvdott", r"\[mass\].*did you mean 'Yvdot'"),
+        ("Ixx", r"\[mass\].*did you mean 'I_xx'"),
+    ],
+)
+def test_a_mass_with_a_slip_in_its_name(name: str, says: str, text: str, tmp_path: Path) -> None:
+    """Dropped in silence it would mean an added mass of zero."""
+    file = tmp_path / "ship.toml"
+    file.write_text(text.replace("[mass]", f"[mass]\n{name} = 0.001"), encoding="utf-8")
+    expect_refusal(lambda: read_ship(file), says)
+
+
+@pytest.mark.parametrize("section", ["particulars", "mass"])
+def test_a_section_that_is_a_number(section: str, text: str, tmp_path: Path) -> None:
+    head = text.split("[particulars]", maxsplit=1)[0]
+    other = {"particulars": "mass", "mass": "particulars"}[section]
+    keep = "L = 1.0\nrho = 1.0\ng = 1.0\nnabla = 1.0\nU0 = 1.0\n"
+    file = tmp_path / "ship.toml"
+    file.write_text(f"{head}{section} = 3.0\n[{other}]\n{keep}", encoding="utf-8")
+    expect_refusal(lambda: read_ship(file), section)
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    expect_refusal(lambda: read_ship(tmp_path / "nowhere.toml"), "nowhere.toml: cannot be read")
+    expect_refusal(lambda: read_ship(tmp_path), "cannot be read")
+
+
+def test_a_file_that_is_not_text(tmp_path: Path) -> None:
+    file = tmp_path / "ship.toml"
+    file.write_bytes(b'name = "\xff\xfe"\n')
+    expect_refusal(lambda: read_ship(file), "not valid TOML|UTF-8")
+
+
+def test_coefficients_may_be_left_out(text: str, tmp_path: Path) -> None:
+    """A ship whose coefficients are all to be found."""
+    file = tmp_path / "ship.toml"
+    file.write_text(text.split("[coefficients]", maxsplit=1)[0], encoding="utf-8")
+    assert read_ship(file).coefficients == {}
+    assert read_ship(file).coefficient_speed == 1.0

@@ -1,0 +1,93 @@
+"""dy/dtheta of whole simulations against RK4 on dual numbers, which shares no code with it."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dual import simulate
+
+from trialid.effects import CATALOGUE, from_file
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import Response, prepare, respond
+from trialid.trial import Trial
+
+OUTPUTS = ("r", "phi", "u", "v", "psi")
+START = {"u": 7.1, "v": 0.2, "p": 0.01, "r": -0.002, "phi": 0.05, "psi": 0.3}
+
+OWN_EFFECT = '''
+from trialid.maths import arctan, clip, cos, exp, sin, sqrt, tanh
+from trialid.ship.effect import Force, Measured, Parameter, Rate, effect
+
+
+@effect(source="made up: every function of trialid.maths", system="SI", states={"lift": None})
+def late_lift(u, v, r, phi, delta, lift, L, *, a_l=9e5, T_l=Parameter(3.0, "s"), s_l=0.6, q_l=0.3):
+    """Y = a_l lift + ...: a lift that comes late, saturates, and shows in the log of u."""
+    across = arctan(v / u) + q_l * r * L / u
+    wanted = tanh(delta / s_l) + 0.2 * sin(2.0 * across) * cos(phi)
+    drag = sqrt(1.0 + (lift * lift) / (q_l * q_l)) - 1.0
+    held = clip(lift - across, 0.25 * s_l)
+    return (
+        Force(X=-2e4 * drag, Y=a_l * held, N=-80.0 * a_l * lift * exp(-(phi**2)) / (1.0 + abs(r))),
+        Rate(lift=(wanted - lift) / T_l),
+        Measured(u=0.1 * lift),
+    )
+'''
+
+
+def variant(name: str, everything: ShipModel, folder: Path) -> ShipModel:
+    match name:
+        case "recorded rudder":
+            return everything
+        case "rudder_servo":
+            return (everything + CATALOGUE[name]).with_values({"T_delta": 1.7})
+        case "rudder_servo_limited":
+            model = everything + CATALOGUE[name]
+            return model.with_values({"T_servo": 1.2, "rate_max": 0.05})
+    file = folder / "own.py"
+    file.write_text(OWN_EFFECT, encoding="utf-8")
+    model = everything + from_file(file)["late_lift"]
+    return model.with_values({"a_l": 9e5, "T_l": 3.0, "s_l": 0.6, "q_l": 0.3})
+
+
+VARIANTS = ("recorded rudder", "rudder_servo", "rudder_servo_limited", "a user's own effect")
+
+
+def run(
+    model: ShipModel, trial: Trial, engine: str, substeps: int
+) -> tuple[tuple[str, ...], Response]:
+    simulator = prepare(model, tuple(model.parameters), OUTPUTS, engine, substeps)
+    values = {n: model.value(n) for n in model.parameters}
+    return simulator.columns, respond(simulator, trial, values, start(model))
+
+
+def start(model: ShipModel) -> dict[str, float]:
+    return START | {s: 0.1 for s in model.all_states if s not in START}
+
+
+def relative(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest difference in a column over the largest value in it."""
+    size = np.abs(b).max(axis=0)
+    return float(np.max(np.abs(a - b) / np.where(size == 0.0, 1.0, size)))
+
+
+@pytest.mark.parametrize("substeps", [1, 3])
+@pytest.mark.parametrize("name", VARIANTS)
+def test_every_column_is_the_derivative_of_the_rk4_map(
+    name: str, substeps: int, everything: ShipModel, lively: Callable[..., Trial], tmp_path: Path
+) -> None:
+    """All parameters and all initial states are free: masses, centre of gravity, delays, servo."""
+    model, trial = variant(name, everything, tmp_path), lively(samples=40)
+    columns, compiled = run(model, trial, "compiled", substeps)
+    _, plain = run(model, trial, "numpy", substeps)
+    theta = {n: model.value(n) for n in model.parameters}
+    names, y, dy = simulate(model, trial, theta, start(model), OUTPUTS, substeps)
+    order = [names.index(c) for c in columns]
+    assert compiled.departure is None
+    assert sorted(names) == sorted(columns)
+    assert np.all(np.abs(dy).max(axis=(0, 1)) > 0.0), "a column that proves nothing"
+    np.testing.assert_allclose(compiled.y, y, rtol=1e-11, atol=1e-13)
+    assert relative(compiled.S, dy[:, :, order]) < 1e-9
+    assert relative(plain.S, dy[:, :, order]) < 1e-9
+    assert relative(compiled.states, plain.states) < 1e-12
+    assert relative(compiled.S, plain.S) < 1e-12

@@ -1,0 +1,36 @@
+"""Values a quantity may take on a moving ship, for tests that ask for any signal there is."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.quantities import QUANTITIES
+
+KNOWN = {
+    "u": (5.0, 9.0), "n": (5.0, 9.0), "U": (5.0, 9.0), "U0": (7.0, 8.0), "L": (170.0, 180.0),
+    "rho": (1000.0, 1025.0), "g": (9.8, 9.82), "nabla": (2e4, 2.2e4), "p": (-0.05, 0.05),
+    "r": (-0.02, 0.02),
+}  # fmt: skip
+SPAN = {"m/s": 1.5, "rad/s": 0.1, "rad": 0.4, "N": 1e5, "N m": 1e6, "m": 1.0, "1": 1.0}
+"""Unit to the size of a quantity that has no row of its own yet."""
+
+
+def interval(name: str) -> tuple[float, float]:
+    """Lowest and highest value [SI]; on both sides of zero where the mirror reverses the sign."""
+    if name in KNOWN or name not in QUANTITIES:
+        return KNOWN.get(name, (-0.3, 0.3))
+    quantity = QUANTITIES[name]
+    span = SPAN[quantity.unit]
+    return (-span, span) if quantity.mirror < 0 else (0.5 * span, 1.5 * span)
+
+
+def draw(name: str, rng: np.random.Generator) -> float:
+    """One value of a quantity, or of a state of an effect's own [SI]."""
+    return float(rng.uniform(*interval(name)))
+
+
+def wave(name: str, t: NDArray[np.float64], seed: int) -> NDArray[np.float64]:
+    """A quantity that never rests; like t."""
+    low, high = interval(name)
+    rng = np.random.default_rng([seed, sum(name.encode())])
+    phase, rate = rng.uniform(0.0, 6.0), rng.uniform(0.1, 0.3)
+    return 0.5 * (low + high) + 0.4 * (high - low) * np.sin(rate * t + phase)
