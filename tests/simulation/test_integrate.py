@@ -107,7 +107,12 @@ def test_a_departure_has_its_time_and_leaves_nothing_behind(
     assert np.all(np.isnan(answer.y[k + 1 :]))
     assert np.all(np.isnan(answer.S[k + 1 :][:, :, : len(simulator.columns)]).any(axis=(1, 2)))
     quiet = respond(simulator, trial, free_values(unstable, ("Nv", "Yv")), {}, sensitivities=False)
-    assert quiet.departure == answer.departure
+    assert (quiet.departure.state, quiet.departure.t) == (
+        answer.departure.state,
+        answer.departure.t,
+    )
+    # the two kernels are compiled apart and may differ in the last bit, which a blow-up enlarges
+    assert quiet.departure.value == pytest.approx(answer.departure.value, rel=1e-9)
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -13,6 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.accuracy import triangle
+
 Vector = NDArray[np.float64]
 Linearised = tuple[Vector, Vector]
 """Residual y - yhat (M,) and Jacobian dyhat/dtheta (M, n_theta)."""
@@ -135,6 +137,7 @@ class _Search:
         self.evaluate, self.low, self.high, self.tolerance = evaluate, low, high, tolerance
         self.size = np.where(scale > 0.0, scale, 1.0)
         self.theta, self.here = theta, here
+        self.fold = Fold.of(*here)
         self.damping, self.growth = FIRST_DAMPING, 2.0
         self.norms = np.zeros(len(theta))
         self.count = 1
@@ -149,16 +152,15 @@ class _Search:
 
     def advance(self) -> str | None:
         """One accepted step, or the reason why there is none."""
-        residual, jacobian = self.here
         loss = self._loss(self.here)
         if loss <= EXACT:
             return "exact"
-        moving = self._moving(jacobian.T @ residual)
+        moving = self._moving(self.fold.R.T @ self.fold.q)
         if not moving.any():
             return "orthogonal"
-        self.norms = np.maximum(self.norms, np.linalg.norm(jacobian, axis=0))
+        self.norms = np.maximum(self.norms, np.linalg.norm(self.fold.R, axis=0))
         weights = np.where(self.norms > 0.0, self.norms, 1.0)
-        directions = _Directions(residual, jacobian[:, moving] / weights[moving])
+        directions = _Directions(self.fold, moving, weights)
         if directions.orthogonality < self.tolerance:
             return "orthogonal"
         while self.damping < HOPELESS:
@@ -192,36 +194,54 @@ class _Search:
         self.count += 1
         with np.errstate(over="ignore", invalid="ignore"):
             point = self.evaluate(there)
-        if point is None or not _finite(point):
+            actual = 0.0 if point is None else loss - self._loss(point)
+        if point is None or not actual > 0.0:
             return False
-        actual = loss - self._loss(point)
-        foreseen = self.here[0] - self.here[1] @ taken
-        predicted = loss - 0.5 * float(foreseen @ foreseen)
-        if not actual > 0.0:
+        fold = Fold.of(*point)
+        if not np.isfinite(fold.R).all():
             return False
+        predicted = loss - self.fold.loss(taken)
         ratio = actual / predicted if predicted > 0.0 else 0.0
         self.damping *= max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
         self.growth = 2.0
         self.path.append(Iteration(self._loss(point), self._relative(taken), self.damping))
-        self.theta, self.here = there, point
+        self.theta, self.here, self.fold = there, point, fold
         return True
 
 
-class _Directions:
-    """Damped steps of one linearisation, from one QR and one small SVD."""
+@dataclass(frozen=True)
+class Fold:
+    """A linearisation |r - A d|^2 folded into |q - R d|^2 + rest^2, with n rows instead of M."""
 
-    def __init__(self, residual: Vector, jacobian: Vector) -> None:
-        # the residual rides along as a last column, so that Q itself is never needed
-        n = jacobian.shape[1]
-        R = np.asarray(np.linalg.qr(np.column_stack([jacobian, residual]), mode="r"))
-        projected = R[:n, n]
-        U, self.s, self.Vt = np.linalg.svd(R[:n, :n])
-        self.along = U.T @ projected
+    R: Vector
+    q: Vector
+    rest: float
+
+    @classmethod
+    def of(cls, residual: Vector, jacobian: Vector) -> "Fold":
+        """The residual rides along as a last column, so that Q itself is never needed."""
+        table = triangle(np.column_stack([jacobian, residual]))
+        return cls(table[:-1, :-1], table[:-1, -1], float(table[-1, -1]))
+
+    def loss(self, step: Vector) -> float:
+        """Half the sum of squares that is foreseen after a step."""
+        left = self.q - self.R @ step
+        return 0.5 * (float(left @ left) + self.rest**2)
+
+
+class _Directions:
+    """Damped steps of one linearisation, from one small SVD."""
+
+    def __init__(self, fold: Fold, moving: NDArray[np.bool_], weights: Vector) -> None:
+        R = fold.R[:, moving] / weights[moving]
+        U, self.s, self.Vt = np.linalg.svd(R, full_matrices=False)
+        self.along = U.T @ fold.q
         # columns of unit length, so that what is left of rank is rounding and not scale
-        lengths = np.linalg.norm(R[:n, :n], axis=0)
-        U, s, _ = np.linalg.svd(R[:n, :n] / np.where(lengths > 0.0, lengths, 1.0))
-        within = (U.T @ projected)[s > RANK * s[0]]
-        self.orthogonality = float(np.linalg.norm(within) / np.linalg.norm(residual))
+        lengths = np.linalg.norm(R, axis=0)
+        U, s, _ = np.linalg.svd(R / np.where(lengths > 0.0, lengths, 1.0), full_matrices=False)
+        within = (U.T @ fold.q)[s > RANK * s[0]]
+        whole = np.hypot(np.linalg.norm(fold.q), fold.rest)
+        self.orthogonality = float(np.linalg.norm(within) / whole)
 
     def step(self, damping: float) -> Vector:
         """The step that minimises |r - A d|^2 + damping |d|^2."""

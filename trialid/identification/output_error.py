@@ -95,15 +95,19 @@ def loss(residual: Vector) -> float:
     return 0.5 * float(residual @ residual)
 
 
-def gradient(response: Response, problem: Problem, trial: int) -> Vector:
-    """Eq. 6: Psi(k) = d yhat(k) / d theta by the variational equations; (N, n_y, n_theta)."""
+def gradient(
+    response: Response, problem: Problem, trial: int, output: int
+) -> tuple[list[int], Vector]:
+    """Eq. 6: Psi(k) = d yhat(k) / d theta by the variational equations, for one output.
+
+    The unknowns that act in this trial, and the gradient by them; by all others it is zero.
+    (n,), (N, n).
+    """
     assert response.S is not None
     columns = {n: i for i, n in enumerate(problem.simulator.columns)}
-    psi = np.zeros((*response.y.shape, len(problem.unknowns)))
-    for i, unknown in enumerate(problem.unknowns):
-        if unknown.trial in (None, trial):
-            psi[..., i] = response.S[..., columns[unknown.column]]
-    return psi
+    acting = [i for i, x in enumerate(problem.unknowns) if x.trial in (None, trial)]
+    places = [columns[problem.unknowns[i].column] for i in acting]
+    return acting, response.S[:, output, places]
 
 
 def hessian(psi: Vector) -> Vector:
@@ -134,16 +138,16 @@ def linearise(problem: Problem, theta: Vector) -> tuple[Vector, Vector] | Depart
     responses = respond_all(problem, theta)
     if isinstance(responses, Departure):
         return responses
-    rows, slopes = [], []
-    scale = row_scale(problem)
-    for i, (trial, response) in enumerate(zip(problem.trials, responses, strict=True)):
-        eps = output_error(measured(trial, problem.outputs), response.y)
-        psi = gradient(response, problem, i)
-        for c in range(len(problem.outputs)):
-            mask = problem.compared[i][:, c]
-            rows.append(eps[mask, c] * scale[c])
-            slopes.append(psi[mask, c] * scale[c])
-    return np.concatenate(rows), np.concatenate(slopes)
+    parts, scale = stretches(problem), row_scale(problem)
+    residual = np.empty(parts[-1].rows.stop)
+    psi = np.zeros((len(residual), len(problem.unknowns)))
+    for part in parts:
+        response, c = responses[part.trial], part.output
+        y = problem.trials[part.trial].signals[problem.outputs[c]]
+        residual[part.rows] = output_error(y, response.y[:, c])[part.compared] * scale[c]
+        acting, slopes = gradient(response, problem, part.trial, c)
+        psi[part.rows, acting] = slopes[part.compared] * scale[c]
+    return residual, psi
 
 
 def row_scale(problem: Problem) -> Vector:

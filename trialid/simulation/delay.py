@@ -45,11 +45,23 @@ def delayed(y: Vector, lag: float) -> tuple[Vector, Vector]:
     """
     whole = int(np.ceil(lag))
     value, slope = taps(whole - lag)
-    index = np.arange(len(y)) - whole
-    near = [np.clip(index + i - 2, 0, len(y) - 1) for i in range(6)]
-    shifted = sum(w * y[n] for w, n in zip(value, near, strict=True))
-    rate = sum(-w * y[n] for w, n in zip(slope, near, strict=True))
-    return np.asarray(shifted), np.asarray(rate)
+    return _weighed(y, whole, value), _weighed(y, whole, -slope)
+
+
+def shifted(y: Vector, lag: float) -> Vector:
+    """The first of `delayed` alone: what a delay makes of sensitivities; like y, (N, ...)."""
+    whole = int(np.ceil(lag))
+    return _weighed(y, whole, taps(whole - lag)[0])
+
+
+def _weighed(y: Vector, whole: int, weights: Vector) -> Vector:
+    """Six neighbours of each sample, all moved by whole samples, times their weights."""
+    n = len(y)
+    near = y[np.clip(np.arange(-whole - 2, n - whole + 3), 0, n - 1)]
+    total = weights[0] * near[:n]
+    for i in range(1, 6):
+        total += weights[i] * near[i : i + n]
+    return np.asarray(total)
 
 
 def margin(low: float, high: float, period: float) -> int:

@@ -12,7 +12,7 @@ from trialid.errors import EffectError, NotIdentifiable, nearest
 from trialid.quantities import SIGNALS
 from trialid.ship.model import ShipModel
 from trialid.simulation import kernel
-from trialid.simulation.delay import delayed
+from trialid.simulation.delay import delayed, shifted
 from trialid.simulation.graph import Node, gradient
 from trialid.simulation.kernel import Kernel
 from trialid.simulation.reference import Reference, evaluator
@@ -235,6 +235,10 @@ class _Readout:
         self.entries = [
             (c, i) for c, row in enumerate(slopes) for i, d in enumerate(row) if not _zero(d)
         ]
+        states = [(c, self.by[i], slopes[c][i]) for c, i in self.entries if self.by[i] in self.kept]
+        self.plain = [(c, s) for c, s, _ in states] == list(enumerate(self.kept)) and all(
+            d.is_constant(1.0) for *_, d in states
+        )  # every output is a state of its own: S is what is asked for
         self.value = evaluator(nodes, symbols, scalar=False)
         self.slope = evaluator([slopes[c][i] for c, i in self.entries], symbols, scalar=False)
         delays = [eq.delays[c] for c in outputs]
@@ -259,17 +263,22 @@ def _outputs(
     y = np.column_stack([np.broadcast_to(c, len(X)) for c in read.value(symbols)])
     if S is None:
         return _late(simulator, trial, y, None, theta)
-    width = len(simulator.columns)
-    dy = np.zeros((len(X), len(simulator.outputs), width))
-    free = simulator.equations.free
-    for (c, i), slope in zip(read.entries, read.slope(symbols), strict=True):
-        name = read.by[i]
-        factor = np.broadcast_to(slope, len(X))[:, None]
-        if name in read.kept:
-            dy[:, c] += factor * S[:, read.kept.index(name), :width]
-        else:
-            dy[:, c, free.index(name)] += factor[:, 0]
+    dy = _slopes(simulator, S, read.slope(symbols))
     return _late(simulator, trial, y, dy, theta)
+
+
+def _slopes(simulator: Simulator, S: Vector, slopes: Sequence[Vector | float]) -> Vector:
+    """Sensitivities of the outputs from those of the kept states, in place where they are alike."""
+    read, free, width = simulator.readout, simulator.equations.free, len(simulator.columns)
+    dy = S[..., :width] if read.plain else np.zeros((len(S), len(simulator.outputs), width))
+    for (c, i), slope in zip(read.entries, slopes, strict=True):
+        name = read.by[i]
+        if name not in read.kept:
+            dy[:, c, free.index(name)] += slope
+        elif not read.plain:
+            factor = np.broadcast_to(slope, len(S))[:, None]
+            dy[:, c] += factor * S[:, read.kept.index(name), :width]
+    return dy
 
 
 def _late(
@@ -288,6 +297,7 @@ def _late(
             continue
         y[:, c], rate = delayed(y[:, c], tau / trial.period)
         if dy is not None:
-            dy[:, c], _ = delayed(dy[:, c], tau / trial.period)
-            dy[:, c, : len(eq.free)] += rate[:, None] * slopes[c] / trial.period
+            dy[:, c] = shifted(dy[:, c], tau / trial.period)
+            for i in np.flatnonzero(slopes[c]):
+                dy[:, c, i] += rate * (slopes[c, i] / trial.period)
     return y, dy

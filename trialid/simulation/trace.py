@@ -53,9 +53,9 @@ class Equations:
 
     @property
     def kept(self) -> tuple[int, ...]:
-        """States that the outputs depend on, so that their sensitivities are kept."""
-        needed = {n.value for n in order(self.outputs.values()) if n.op == SYMBOL}
-        return tuple(i for i, s in enumerate(self.states) if s in needed)
+        """States that the outputs depend on, in the order in which outputs ask for them."""
+        asked = [n.value for c in self.outputs.values() for n in order([c]) if n.op == SYMBOL]
+        return tuple(self.states.index(s) for s in dict.fromkeys(asked) if s in self.states)
 
     @property
     def columns(self) -> int:
@@ -85,8 +85,9 @@ def trace(model: ShipModel, free: Sequence[str], outputs: Sequence[str]) -> Equa
     W = {(names.index(a), names.index(b)): w for (a, b), w in inverse.items() if a in rows}
     W |= {(i, i): graph.constant(1.0) for i, s in enumerate(names) if s not in rows}
     mass = {k: lift(graph, m) for k, m in now.balance.mass.items()}
-    G = {n: _drive(names, right, mass, f, theta[n]) for n in free}
-    drives = [_drive(names, right, mass, f, x[s]) for s in names]
+    symbols = [lift(graph, theta[n]) for n in free] + [x[s] for s in names]
+    found = _drives(names, right, mass, f, symbols)
+    G, drives = dict(zip(free, found, strict=False)), found[len(free) :]
     ordered = tuple(sorted(free, key=lambda n: (sorted(G[n]), list(free).index(n))))
     return Equations(
         graph=graph,
@@ -147,24 +148,24 @@ def _state_rates(
     return rates
 
 
-def _drive(
+def _drives(
     names: tuple[str, ...],
     right: Mapping[str, Node],
     mass: Mapping[tuple[str, str], Node],
     f: Mapping[str, Node],
-    symbol: Node | float,
-) -> dict[int, Node]:
-    """Nonzeros of dR/ds - (dM/ds) dx/dt by row, for one symbol s."""
-    if not isinstance(symbol, Node):
-        return {}
-    found: dict[int, Node] = {}
+    symbols: Sequence[Node],
+) -> list[dict[int, Node]]:
+    """Nonzeros of dR/ds - (dM/ds) dx/dt by row, for each symbol s; one reverse pass a row."""
+    found: list[dict[int, Node]] = [{} for _ in symbols]
     for i, row in enumerate(names):
-        total = gradient(right[row], [symbol])[0]
+        totals = gradient(right[row], symbols)
         for (a, b), m in mass.items():
             if a == row:
-                total = total - gradient(m, [symbol])[0] * f[b]
-        if not total.is_constant(0.0):
-            found[i] = total
+                slopes = gradient(m, symbols)
+                totals = [t - s * f[b] for t, s in zip(totals, slopes, strict=True)]
+        for drive, total in zip(found, totals, strict=True):
+            if not total.is_constant(0.0):
+                drive[i] = total
     return found
 
 
