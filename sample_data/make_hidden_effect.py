@@ -215,8 +215,11 @@ def write_ros(path: Path, logged: dict[str, Samples]) -> None:
     t, r = logged["r"]
     phi = np.interp(t, *logged["phi"])
     zero = np.zeros(len(t))
-    imu = Imu(t, phi, zero, zero, zero, zero, -r)
-    floats = {"/steering/rudder": logged["delta"], "/speed/stw": logged["u"]}
+    imu = Imu(t, np.round(phi, 8), zero, zero, zero, zero, -np.round(r, 8))
+    floats = {
+        "/steering/rudder": scaled(logged["delta"], 1.0),
+        "/speed/stw": scaled(logged["u"], 1.0),
+    }
     write_ros2_mcap(path, floats, {"/imu": imu})
 
 
