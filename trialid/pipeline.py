@@ -126,7 +126,7 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
     Raises
     ------
     RecipeError
-        An effect or a value the model does not have.
+        An effect, a free parameter or a value the model does not have.
     """
     chosen = []
     for i, name in enumerate(recipe.model.effects):
@@ -137,6 +137,12 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
             )
         chosen.append(catalogue[name])
     model = ShipModel(read_ship(recipe.ship), recipe.model.states, tuple(chosen))
+    for i, name in enumerate(recipe.identify.free):
+        if name not in model.parameters:
+            raise RecipeError(
+                f"{where(recipe, f'identify.free[{i}]')}: no effect of the model has the parameter "
+                f"{name!r}; {nearest(name, model.parameters)}"
+            )
     return model.with_values({n: _value(recipe, model, n) for n in recipe.model.values})
 
 

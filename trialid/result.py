@@ -294,9 +294,7 @@ def _missing(found: Findings) -> list[Plain]:
     refitted = {r.candidate.effect.name: r.fit for r in found.refits}
     # the named one first: what was foreseen by linearisation gives way to what was fitted
     ordered = sorted(found.ranking, key=lambda c: c.effect.name != found.verdict.effect)
-    return [
-        _candidate(i + 1, c, refitted.get(c.effect.name), found) for i, c in enumerate(ordered)
-    ]
+    return [_candidate(i + 1, c, refitted.get(c.effect.name), found) for i, c in enumerate(ordered)]
 
 
 def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Findings) -> Plain:

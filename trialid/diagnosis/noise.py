@@ -21,7 +21,15 @@ from numpy.typing import NDArray
 
 from trialid.accuracy import Stretch
 from trialid.diagnosis.augment import Augmented
-from trialid.diagnosis.residual import OutputNoise, Residual, pooled, residuals, rudder, slowness
+from trialid.diagnosis.residual import (
+    OutputNoise,
+    Residual,
+    about_mean,
+    pooled,
+    residuals,
+    rudder,
+    slowness,
+)
 from trialid.diagnosis.score import hac, project, whitened
 from trialid.identification.fit import Fit
 from trialid.trial import Mask
@@ -176,16 +184,11 @@ def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:
             a, b = round(start / r.trial.period), round(stop / r.trial.period)
             eps, mask = r.eps[a:b], r.compared[a:b]
             if mask.any():
-                pieces.append((_about_mean(eps, mask), mask))
+                pieces.append((about_mean(eps, mask), mask))
                 words.append(f"{start:.0f}-{stop:.0f} s of {r.trial.name!r}")
     if not pieces:
         return Split(method, f"no stretch of {QUIET_SECONDS:.0f} s with the rudder at rest")
     return _from_pieces(fit, method, pieces, "residual in " + ", ".join(words))
-
-
-def _about_mean(eps: Vector, mask: Mask) -> Vector:
-    mean = np.sum(eps, axis=0) / np.maximum(mask.sum(axis=0), 1)
-    return np.where(mask, eps - mean, 0.0)
 
 
 def _still(r: Residual) -> list[Interval]:

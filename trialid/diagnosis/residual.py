@@ -71,10 +71,17 @@ def pooled(
 
 
 def slowness(pieces: Sequence[Vector], masks: Sequence[Mask]) -> float:
-    """Samples that count as one for a variance, over whole trials."""
+    """Samples that count as one for a variance about the mean, over whole trials."""
     count = sum(int(m.sum()) for m in masks)
-    effective = sum(effective_in(p, m) for p, m in zip(pieces, masks, strict=True))
+    pairs = zip(pieces, masks, strict=True)
+    effective = sum(effective_in(about_mean(p, m), m) for p, m in pairs)
     return count / max(effective, 1.0)
+
+
+def about_mean(eps: Vector, mask: Mask) -> Vector:
+    """Residual less its mean over what was compared, zero elsewhere; (N,) or (N, n_y)."""
+    mean = np.sum(eps, axis=0) / np.maximum(mask.sum(axis=0), 1)
+    return np.where(mask, eps - mean, 0.0)
 
 
 def effective_of(e: Vector) -> float:
