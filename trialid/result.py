@@ -337,8 +337,6 @@ def _sentence(c: Candidate, refit: Fit | None, found: Findings) -> str:
     said = f"would bring the error from {eps:.2%} to {c.eps_predicted:.2%} (p = {c.p_value:.2g})"
     if refit is not None:
         said += f"; fitted, it brings it to {refit.eps_rmsn:.2%}"
-    if len(c.family) > 1:
-        said += f"; not separable here from {', '.join(c.family[1:])}"
     return f"{c.effect.name} {said}"
 
 

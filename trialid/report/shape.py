@@ -44,7 +44,10 @@ _PARAMETER = _keys(
 )
 _ACCURACY = _keys("S_min S_max R n_effective weighting scaling") | {
     "parameters": [_PARAMETER],
-    "stability": Maybe(_keys("L_r L_v margin standard_error stable")),
+    "stability": Maybe(
+        _keys("L_r L_v margin standard_error stable")
+        | {"roll_coupled": Maybe(_keys("L_r L_v margin standard_error stable"))}
+    ),
     "weak": [_keys("sentence relative_error") | {"parameters": [None]}],
 }
 _MISSING = _keys(
