@@ -12,6 +12,7 @@ from trialid.identification.gauss_newton import REASONS, Iteration, Minimum, min
 from trialid.identification.output_error import (
     Problem,
     linearise,
+    loss,
     respond_all,
     scores,
     where_compared,
@@ -83,7 +84,7 @@ class Fit:
     @property
     def V(self) -> float:
         """Eq. 4 at the optimum, in normed outputs."""
-        return 0.5 * float(self.residual @ self.residual)
+        return loss(self.residual)
 
     @property
     def eps_rmsn(self) -> float:
