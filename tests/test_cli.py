@@ -309,3 +309,34 @@ def test_help_waits_for_nothing_heavy() -> None:
         "print(sorted(heavy & sys.modules.keys()))"
     )
     assert spawn("-c", code).stdout == "[]\n"
+
+
+def test_effects_lists_the_catalogue() -> None:
+    from trialid.effects import CATALOGUE
+
+    answer = CliRunner().invoke(cli.commands, ["effects", "--json"])
+    assert answer.exit_code == 0
+    rows = {row["name"]: row for row in json.loads(answer.stdout)}
+    assert set(rows) == set(CATALOGUE)
+    assert rows["righting_arm_cubic"]["parameters"]["GM3"]["unit"] == "m"
+    shown = CliRunner().invoke(cli.commands, ["effects"], env={"COLUMNS": "160"})
+    assert all(name in shown.stdout for name in CATALOGUE)
+
+
+def test_effects_tells_all_about_one_and_includes_ones_own(tmp_path: Path) -> None:
+    shown = CliRunner().invoke(cli.commands, ["effects", "rudder_servo"])
+    assert "T_delta" in shown.stdout
+    assert "adds the states: delta" in shown.stdout
+    own = tmp_path / "mine.py"
+    own.write_text(
+        "from trialid.ship.effect import Force, effect\n"
+        '@effect(source="me")\n'
+        "def keel(v, *, Ykeel=-0.02):\n"
+        '    """Y = Ykeel v."""\n'
+        "    return Force(Y=Ykeel * v)\n"
+    )
+    mine = CliRunner().invoke(cli.commands, ["effects", "keel", "--from", str(own)])
+    assert "Ykeel" in mine.stdout
+    lost = CliRunner().invoke(cli.commands, ["effects", "kel", "--from", str(own)])
+    assert lost.exit_code == 2
+    assert "did you mean 'keel'" in lost.stderr

@@ -89,6 +89,31 @@ def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
         _print(f"{_summary(done.result)}\nReport: {folder / 'report.html'}")
 
 
+@commands.command()
+@click.argument("name", required=False)
+@click.option(
+    "--from",
+    "own_files",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    help="A file of your own with effects in it; may be given again.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print plain data, and nothing else.")
+def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> None:
+    """List the effects a model can be made of, or tell all about the one called NAME."""
+    from trialid.effects import CATALOGUE, find, from_file
+    from trialid.report.catalogue import listing, plain, sheet
+
+    own = {n: e for path in own_files for n, e in from_file(path).items()}
+    chosen = {name: find(name, own)} if name else {**CATALOGUE, **own}
+    if as_json:
+        _print(json.dumps([plain(e) for e in chosen.values()], indent=2, allow_nan=False))
+    elif name:
+        _print(_rendered(*sheet(chosen[name])))
+    else:
+        _print(_rendered(listing(chosen)))
+
+
 def main() -> None:
     """Run the command line and leave with its exit status."""
     for stream in (sys.stdout, sys.stderr):
@@ -136,14 +161,20 @@ def _progress(*, shown: bool) -> Iterator[Progress]:
 
 
 def _summary(result: Mapping[str, Any]) -> str:
-    """Give the one-screen summary as text for this stdout, in colour where it is a terminal."""
-    from rich.console import Console
-
+    """Give the one-screen summary."""
     from trialid.report.summary import summary
+
+    return _rendered(summary(result))
+
+
+def _rendered(*parts: Any) -> str:
+    """Give what rich makes of them as text for this stdout, in colour where it is a terminal."""
+    from rich.console import Console
 
     console = Console()
     with console.capture() as capture:
-        console.print(summary(result), markup=False, highlight=False)
+        for part in parts:
+            console.print(part, markup=False, highlight=False)
     return capture.get().rstrip("\n")
 
 
