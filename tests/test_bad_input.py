@@ -248,12 +248,10 @@ def test_a_pipeline_that_is_none(content: bytes, words: tuple[str, ...]) -> None
     pytest.param("[diagnose]", "[identify.priors]\nNv = { mean = 1.0, std = 1.0 }\n[diagnose]",
                  ("identify.priors.Nv", "not free", "Ndelta, Nr"), id="prior of what is not free"),
     pytest.param('"Ndelta"]', '"Ndelt"]',
-                 ("identify.free[1]", "'Ndelt'", "'Ndelta'"), id="unknown free parameter",
-                 marks=defect(reason="the line has neither the file nor the key")),
+                 ("identify.free[1]", "'Ndelt'", "'Ndelta'"), id="unknown free parameter"),
     pytest.param('"Ndelta"]', '"Nrar"]',
                  ("identify.free[1]", "'Nrar'", "no effect of the model"),
-                 id="free parameter of no effect",
-                 marks=defect(reason="the line has neither the file nor the key")),
+                 id="free parameter of no effect"),
     pytest.param('["v",', '["w",',
                  ("model.states", "'w'", "phi, psi, r, u, v"), id="unknown state",
                  marks=defect(reason="the line has neither the file nor the key")),
@@ -593,15 +591,16 @@ def test_a_roll_decay_needs_no_rudder_and_no_yaw() -> None:
                  marks=defect(reason="KeyError 'psi'")),
     pytest.param("return Force", "if v > 0.0:\n        return Force(N=0.0)\n    return Force",
                  ("'mine'", "branch", "abs"), id="branches on a signal",
-                 marks=defect(reason="TypeError: '>' not supported")),
+                 marks=defect(reason="the line names neither the file nor the effect")),
     pytest.param("return Force", "if v:\n        return Force(N=0.0)\n    return Force",
                  ("'mine'", "branch", "abs"), id="branches on a truth",
                  marks=defect(reason="the line names neither the file nor the effect")),
     pytest.param("Nx * v * abs(v)", "Nx * max(v, 0.0)", ("'mine'", "branch", "abs"),
-                 id="takes the larger", marks=defect(reason="TypeError: '>' not supported")),
+                 id="takes the larger",
+                 marks=defect(reason="the line names neither the file nor the effect")),
     pytest.param("Nx * v * abs(v)", "Nx * __import__('numpy').sin(v)",
                  ("'mine'", "trialid.maths", "sin"), id="numpy",
-                 marks=defect(reason="TypeError: __array_ufunc__")),
+                 marks=defect(reason="the line names neither the file nor the effect")),
     pytest.param("Nx * v * abs(v)", "Nx * __import__('math').sin(v)",
                  ("'mine'", "trialid.maths", "sin"), id="math",
                  marks=defect(reason="the line names neither the file nor the effect")),
@@ -614,10 +613,9 @@ def test_a_roll_decay_needs_no_rudder_and_no_yaw() -> None:
     pytest.param("Nx * v * abs(v)", "Nx * v * __import__('trialid.maths').maths.sqrt(v)",
                  ("'mine'", "at rest"), id="a root without a slope at rest",
                  marks=defect(reason="the line does not name the effect")),
-    pytest.param("from trialid", "1 / 0\nfrom trialid", ("division by zero",), id="raises",
-                 marks=defect(reason="ZeroDivisionError")),
+    pytest.param("from trialid", "1 / 0\nfrom trialid", ("division by zero",), id="raises"),
     pytest.param("from trialid", "open('table.csv')\nfrom trialid", ("table.csv",),
-                 id="reads a file that is not there", marks=defect(reason="FileNotFoundError")),
+                 id="reads a file that is not there"),
 ])  # fmt: skip
 def test_a_users_effect_that_cannot_be_used(old: str, new: str, words: tuple[str, ...]) -> None:
     assert old in EFFECT
@@ -630,7 +628,6 @@ def test_a_users_effect_that_can_be_used() -> None:
     assert "mine" in finished()["model"]["effects"]
 
 
-@defect(reason="UnicodeDecodeError")
 def test_a_users_effect_of_another_encoding() -> None:
     with_effect("")
     Path("mine.py").write_bytes(b"# M\xfcller\n" + EFFECT.encode())
@@ -667,34 +664,28 @@ def test_a_ship_that_is_not_there() -> None:
     pytest.param("L = 175.0", 'L = "175"', ("[particulars] L = '175'", "not a number"),
                  id="a word for a number"),
     pytest.param("[mass]", "[mass", ("not valid TOML", "line"), id="not TOML"),
-    pytest.param("I_zz = ", "Izz = ", ("[mass]", "I_zz"), id="wrong mass",
-                 marks=defect(reason="the line names the ship, not its file")),
-    pytest.param("Yvdot = ", "Yv_dot = ", ("[mass]", "'Yv_dot'", "'Yvdot'"), id="wrong added mass",
-                 marks=defect(reason="accepted: the ship then has no added mass in sway")),
-    pytest.param("L = 175.0", "L = 0.0", ("[particulars] L", "0"), id="no length",
-                 marks=defect(reason="ZeroDivisionError")),
-    pytest.param("L = 175.0", "L = -175.0", ("[particulars] L", "-175"), id="negative length",
-                 marks=defect(reason="the line blames the masses")),
-    pytest.param("U0 = 7.33", "U0 = 0.0", ("[particulars] U0", "0"), id="no speed",
-                 marks=defect(reason="ZeroDivisionError after the whole fit")),
+    pytest.param("I_zz = ", "Izz = ", ("[mass]", "Izz", "'I_zz'"), id="wrong mass"),
+    pytest.param("Yvdot = ", "Yv_dot = ", ("[mass]", "Yv_dot", "'Yvdot'"), id="wrong added mass"),
+    pytest.param("L = 175.0", "L = 0.0", ("[particulars] L", "0", "positive"), id="no length"),
+    pytest.param("L = 175.0", "L = -175.0", ("[particulars] L", "-175", "positive"),
+                 id="negative length"),
+    pytest.param("U0 = 7.33", "U0 = 0.0", ("[particulars] U0", "0", "positive"), id="no speed"),
     pytest.param("Yv = -0.01189081", "Yv = nan", ("[coefficients] Yv", "nan"), id="nan",
                  marks=defect(reason="the line blames the start values")),
     pytest.param("[mass]\nm = 0.00792", "[mass]\nm = nan", ("[mass] m", "nan"), id="nan mass",
                  marks=defect(reason="the line names the ship, not its file")),
     pytest.param('system = "prime"', 'system = "prime"\ncoefficient_speed = "x"',
-                 ("coefficient_speed", "'x'"), id="a word for a speed",
-                 marks=defect(reason="ValueError")),
+                 ("coefficient_speed", "'x'", "not a number"), id="a word for a speed"),
 ])  # fmt: skip
 def test_a_ship_that_is_none(old: str, new: str, words: tuple[str, ...]) -> None:
     change("ship.toml", old, new)
     refused("ship.toml", *words)
 
 
-@defect(reason="TypeError")
 def test_a_ship_without_tables() -> None:
-    keys = ("name", "source", "system", "rudder_positive", "particulars", "mass")
-    Path("ship.toml").write_text("".join(f"{key} = 3\n" for key in keys), encoding="utf-8")
-    refused("ship.toml", "particulars", "table")
+    head, _, _ = Path("ship.toml").read_text(encoding="utf-8").partition("[particulars]")
+    Path("ship.toml").write_text(f"{head}particulars = 3\nmass = 3\n", encoding="utf-8")
+    refused("ship.toml", "particulars = 3", "[particulars]")
 
 
 def test_a_mass_matrix_that_cannot_be() -> None:
@@ -702,7 +693,6 @@ def test_a_mass_matrix_that_cannot_be() -> None:
     refused("S175Q", "mass matrix", "not positive", "added masses")
 
 
-@defect(reason="UnicodeDecodeError")
 def test_a_ship_of_another_encoding() -> None:
     ship = Path("ship.toml").read_bytes()
     Path("ship.toml").write_bytes(b"# M\xfcller\n" + ship)
@@ -720,7 +710,7 @@ def test_a_check_run_that_leaves_the_domain_is_said() -> None:
     with_check(too_much_rudder)
     result = finished()
     said = remarks(result, trial=1)
-    assert "simulation: v left the model's domain at t = 10.5 s" in said
+    assert "left the model's domain at t = 10.5 s" in said
     assert "not compared after that" in said
     page = Path("out/report.html").read_text(encoding="utf-8")
     assert "domain at t = 10.5 s" in page
@@ -830,7 +820,6 @@ def test_no_place_for_compiled_code_is_no_reason_to_fail(monkeypatch: pytest.Mon
     assert finished()["fit"]["converged"]
 
 
-@defect(reason="LLVM ends the process without a word")
 def test_torn_compiled_code_is_compiled_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TRIALID_CACHE", str(Path("kernels").resolve()))
     assert spawn("run", "short.toml", "--out", "first").returncode == 0
@@ -853,7 +842,6 @@ def test_wrong_input_in_a_real_process() -> None:
     assert listing() == before
 
 
-@defect(reason="TypeError: '>' not supported, status 1")
 def test_a_wrong_effect_in_a_real_process() -> None:
     with_effect(EFFECT.replace("return", "if v > 0.0:\n        return Force()\n    return", 1))
     outcome = spawn("run", "short.toml")
