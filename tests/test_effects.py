@@ -127,7 +127,8 @@ def test_a_ship_at_rest_stays_at_rest(name: str) -> None:
     theta |= {n: p.start for n, p in effect.parameters.items()}
     rest = dict.fromkeys(model.all_states, 0.0)
     rates = derivatives(model, rest, dict.fromkeys(model.recorded, 0.0), theta)
-    assert rates == pytest.approx(rest, abs=1e-12)
+    rolls = name == "static_list"  # a moment that does not ask for speed
+    assert (rates == pytest.approx(rest, abs=1e-12)) is not rolls
 
 
 @pytest.mark.parametrize("name", [n for n in CATALOGUE if n not in NOT_LINEAR])

@@ -139,7 +139,7 @@ def relative_error(
     >>> [float(x[0]) for x in relative_error(0.1, 0.02, np.array([0.5]), 400)]
     [0.01, 0.04]
     """
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         return noise / (S_imin * np.sqrt(samples)), undermodelling / S_imin
 
 
@@ -325,11 +325,14 @@ def assess(
     reference = np.array([s.reference for s in subjects])
     A = relative_sensitivities(psi, reference)
     covariance = coloured_covariance(A, residual, stretches)
+    hidden = minimum_sensitivity(A) <= 0.0  # the pseudo-inverse would give these an error of zero
+    covariance[hidden, :] = covariance[:, hidden] = np.nan
     rows = _rows(subjects, A, residual, covariance, noise, undermodelling)
     physical = np.array([s.kind == "physical" for s in subjects])
     clean = without_nuisance(A, physical)
     S_min, S_max, ratio = sensitivity_range(clean)
-    typical = float(np.median([r.n_effective for r in rows if r.kind == "physical"]))
+    seen = [r.n_effective for r in rows if r.kind == "physical" and np.isfinite(r.n_effective)]
+    typical = float(np.median(seen)) if seen else float(len(residual))
     names = [s.name for s in subjects if s.kind == "physical"]
     error = float(np.linalg.norm(residual)) / np.sqrt(typical)
     weak = weak_directions(clean, names, error)
@@ -357,7 +360,8 @@ def _rows(
             s.name, s.kind, s.unit, s.value, s.reference,
             float(S_i[i]), float(S_imin[i]), float(R_i[i]),
             _scaled(noise, x[i], s.reference), _scaled(undermodelling, m[i], s.reference),
-            float(coloured[i] * abs(s.reference)), float(white[i] * abs(s.reference)),
+            float(coloured[i] * abs(s.reference)),
+            float(white[i] * abs(s.reference)) if S_imin[i] > 0.0 else np.nan,
             float(n_effective[i]),
         )
         for i, s in enumerate(subjects)

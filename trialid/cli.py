@@ -70,7 +70,11 @@ def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
 
     recipe = load(pipeline)
     folder = out or Path("runs", pipeline.stem)
-    _check_replaceable(folder, recipe)
+    try:
+        _check_replaceable(folder, recipe)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise TrialidError(f"{_short(folder)}: {reason}; choose another --out") from error
     # The chain takes a second to import: a misspelt key is answered before.
     from trialid.pipeline import run as identify_from
     from trialid.pipeline import write
@@ -136,6 +140,12 @@ def _check_replaceable(folder: Path, recipe: "Recipe") -> None:
         )
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "result.json").is_file():
         raise TrialidError(f"{folder}: holds other files and no earlier run; choose another --out")
+
+
+def _short(folder: Path) -> str:
+    """A path short enough for one line."""
+    text = str(folder)
+    return text if len(text) <= 80 else f"{text[:40]}...{text[-37:]}"
 
 
 @contextmanager

@@ -5,6 +5,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -19,7 +20,7 @@ from trialid.diagnosis.missing_effect import confirmed, decide, refit
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
-from trialid.errors import RecipeError, nearest
+from trialid.errors import RecipeError, UnitError, nearest
 from trialid.identification.fit import Fit, identify
 from trialid.identification.gauss_newton import Iteration
 from trialid.identification.output_error import stretches
@@ -31,7 +32,7 @@ from trialid.report.page import write_page
 from trialid.report.series import OutputSeries, TrialSeries, write_csv
 from trialid.result import Diagnosed, Findings, plain
 from trialid.ship.effect import Effect
-from trialid.ship.model import ShipModel
+from trialid.ship.model import STATES, ShipModel
 from trialid.ship.particulars import read_ship
 from trialid.threads import one_thread
 from trialid.trial import Trial
@@ -65,6 +66,7 @@ def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
     catalogue = available(recipe)
     model = build_model(recipe, catalogue)
     settings = settings_of(recipe)
+    check_bounds(recipe, model, settings)
     progress("fitting", 0.3)
     fit = identify(trials, model, settings, _fit_progress(progress))
     before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
@@ -136,6 +138,7 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
                 f"{nearest(name, catalogue)}"
             )
         chosen.append(catalogue[name])
+    _check_states(recipe)
     model = ShipModel(read_ship(recipe.ship), recipe.model.states, tuple(chosen))
     for i, name in enumerate(recipe.identify.free):
         if name not in model.parameters:
@@ -144,6 +147,15 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
                 f"{name!r}; {nearest(name, model.parameters)}"
             )
     return model.with_values({n: _value(recipe, model, n) for n in recipe.model.values})
+
+
+def _check_states(recipe: Recipe) -> None:
+    for i, state in enumerate(recipe.model.states):
+        if state not in STATES:
+            raise RecipeError(
+                f"{where(recipe, f'model.states[{i}]')}: {state!r} cannot be simulated; "
+                f"{nearest(state, STATES)}"
+            )
 
 
 def _value(recipe: Recipe, model: ShipModel, name: str) -> float:
@@ -155,7 +167,27 @@ def _value(recipe: Recipe, model: ShipModel, name: str) -> float:
         )
     if given.unit is None:
         return given.value
-    return given.value * units.factor(given.unit, model.parameters[name].unit)
+    try:
+        return given.value * units.factor(given.unit, model.parameters[name].unit)
+    except UnitError as error:
+        raise UnitError(f"{where(recipe, f'model.values.{name}')}: {error}") from error
+
+
+def check_bounds(recipe: Recipe, model: ShipModel, settings: Settings) -> None:
+    """Refuse bounds that leave out the start, where no search could begin.
+
+    Raises
+    ------
+    RecipeError
+        In one line, with the key.
+    """
+    for name, (low, high) in settings.bounds.items():
+        start = model.stated(name) if name in model.parameters else None
+        if start is not None and not low <= start <= high:
+            raise RecipeError(
+                f"{where(recipe, f'identify.bounds.{name}')}: [{low:g}, {high:g}] leaves out the "
+                f"start {start:.6g}; widen it, or state another start in [model.values]"
+            )
 
 
 def settings_of(recipe: Recipe) -> Settings:
@@ -291,8 +323,19 @@ def write(done: Run, folder: Path) -> None:
         raise RecipeError(
             f"--out {folder}: exists and is not the folder of a run; name another place"
         )
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    made = [parent for parent in folder.parents if not parent.exists()]
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        _write_beside(done, folder)
+    finally:
+        if not folder.exists():
+            for parent in made:
+                with suppress(OSError):
+                    parent.rmdir()
+
+
+def _write_beside(done: Run, folder: Path) -> None:
+    work = Path(tempfile.mkdtemp(prefix=".trialid-", dir=folder.parent))
     new, old = work / "new", work / "old"
     try:
         new.mkdir()

@@ -244,7 +244,7 @@ def _stability(model: ShipModel, accuracy: Accuracy) -> Plain | None:
     plain_form = stability(values, names, accuracy.covariance)
     coupled_values = _values(model, (*PARTS, "m", "x_G", "z_G", "Kv", "Kr", "GM", *turning))
     coupled = None
-    if coupled_values is not None:
+    if coupled_values is not None and model.ship.particulars["U0"] > 0.0:
         full = coupled_values | _heel(model)
         coupled = _levers(stability(full, names, accuracy.covariance, coupled=True))
     return _levers(plain_form) | {"roll_coupled": coupled}

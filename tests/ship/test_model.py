@@ -48,15 +48,15 @@ def test_values_are_stated_then_the_ships(s175q: ShipModel) -> None:
     assert s175q.with_values({"Nr": -0.002}).value("Nr") == -0.002
     assert s175q.with_values({"m": 0.009}).value("m") == 0.009
     assert s175q.value("Krdot") == 0.0
-    assert (s175q + CATALOGUE["static_list"]).stated("K0") is None
+    assert (s175q + CATALOGUE["static_list"]).stated("a_0") is None
 
 
 def test_a_value_nobody_gives(s175q: ShipModel) -> None:
-    with pytest.raises(EffectError, match=r"'K0' has no value: ship 'S175Q'.*free it, or write"):
-        (s175q + CATALOGUE["static_list"]).value("K0")
-    with pytest.raises(EffectError, match="'K0' has no value"):
+    with pytest.raises(EffectError, match=r"'a_0' has no value: ship 'S175Q'.*free it, or write"):
+        (s175q + CATALOGUE["static_list"]).value("a_0")
+    with pytest.raises(EffectError, match="'a_0' has no value"):
         trace(s175q + CATALOGUE["static_list"], (), ("r",))
-    assert "K0" in trace(s175q + CATALOGUE["static_list"], ("K0",), ("r",)).free
+    assert "a_0" in trace(s175q + CATALOGUE["static_list"], ("a_0",), ("r",)).free
 
 
 @pytest.mark.parametrize(

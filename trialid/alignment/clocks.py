@@ -18,6 +18,8 @@ FEWEST = 4
 """Samples below which nothing can be said about a signal."""
 MOST = 10_000_000
 """Samples above which a wild stamp is the likelier explanation: it is a day at 100 Hz."""
+LONGEST = 1e6
+"""Duration [s] above which a wild stamp is likelier than a long trial: it is twelve days."""
 CALENDAR_NS = 10**17
 """Stamps above this count from 1970 (it is 1973) and are shown as dates."""
 
@@ -110,6 +112,11 @@ def common(
         raise AlignmentError(
             f"{where}: {duration:.6g} s hold {samples} samples {period:.6g} s apart, at least "
             f"{FEWEST} are needed; choose a shorter period or a longer window"
+        )
+    if samples > MOST and duration < LONGEST:
+        raise AlignmentError(
+            f"{where}: {duration:.6g} s hold {samples} samples at period = {period:.6g} s, at most "
+            f"{MOST} are taken; choose a longer period"
         )
     if samples > MOST:
         raise AlignmentError(

@@ -15,6 +15,9 @@ from trialid.recording import Channel, Recording
 RUDDERS = frozenset({"delta", "delta_order"})
 """Half of the literature and many loggers count the rudder to port: its side is never guessed."""
 
+MARKER = 1e30
+"""No measurement is as large: loggers write the largest number for what is not available."""
+
 Vector = NDArray[np.float64]
 
 
@@ -26,7 +29,8 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     channel = channel or find(source.channel, recordings, where)
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
     t = channel.t - round(source.delay * 1e9)
-    return Series(quantity, t, channel.y * factor, channel.clock)
+    y = np.where(np.abs(channel.y) < MARKER, channel.y, np.nan)
+    return Series(quantity, t, y * factor, channel.clock)
 
 
 def _quantity(source: SignalSource, where: str) -> Quantity:

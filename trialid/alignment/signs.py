@@ -107,6 +107,8 @@ def agreement(
 
 def _moving_parts(table: Vector) -> list[Vector]:
     """The parts of the record in which the cause moves as it does in the whole."""
+    if not len(table):
+        return []
     moves = MOVES * np.ptp(table[:, 0])
     return [part for part in np.array_split(table, PARTS) if np.ptp(part[:, 0]) > moves]
 

@@ -11,7 +11,7 @@ from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
-from trialid.simulation.integrate import Departure, Simulator, prepare
+from trialid.simulation.integrate import Departure, Simulator, prepare, signals_of
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -57,7 +57,7 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
     if not all(p.null == 0.0 for p in effect.parameters.values()):
         return "has no null at zero"
     known = {*model.all_states, *model.ship.particulars, "U", "u", *trial.signals}
-    lacking = [s for s in effect.signals if s not in known]
+    lacking = [s for s in signals_of(effect) if s not in known]
     if lacking:
         return f"needs {', '.join(lacking)}, which the record does not hold"
     taken = {*model.parameters, *(p for e in able.values() for p in e.parameters)}
@@ -109,9 +109,9 @@ def _with_trace(
     """Leave out sensors of signals that are not outputs."""
     kept, silent = {}, {}
     for name, effect in able.items():
-        sensor = name.startswith(("bias_", "delay_"))
-        if sensor and name.split("_", 1)[1] not in outputs:
-            silent[name] = f"{name.split('_', 1)[1]} is not an output"
+        unseen = [s for s in effect.measures if s not in outputs]
+        if unseen:
+            silent[name] = f"{unseen[0]} is not an output"
         else:
             kept[name] = effect
     return kept, silent

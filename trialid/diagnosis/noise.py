@@ -298,9 +298,8 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
     method = "dependence on the input"
     if not augmented.columns:
         return Split(method, "no candidate effect that acts linearly on the outputs")
-    period = fit.problem.trials[0].period
     raw = project(augmented.residual, augmented.psi, augmented.S)
-    residual, psi, S, parts = whitened(augmented, period)
+    residual, psi, S, parts = whitened(augmented)
     white = project(residual, psi, S)
     T = _visible_directions(raw.S, augmented.S, white.S)
     Z = white.S @ T
@@ -309,7 +308,7 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
     beta = np.asarray(np.linalg.lstsq(Z, white.residual, rcond=None)[0])
     inverse = np.linalg.inv(Z.T @ Z)
     left = white.residual - Z @ beta
-    covariance = inverse @ hac(Z * left[:, None], parts, period) @ inverse
+    covariance = inverse @ hac(Z * left[:, None], parts) @ inverse
     found = [
         _unexplained(fit, c, raw.S @ T, beta, covariance, augmented.stretches)
         for c in range(len(fit.problem.outputs))

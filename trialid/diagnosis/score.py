@@ -22,11 +22,12 @@ from trialid.ship.effect import Effect
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-WHITENING_SECONDS: Final = 10.0
-"""Memory of the autoregression that whitens the residual."""
+WINDOW_SHARE: Final = 1.0 / 20.0
+"""Lag window of the score's variance over the length of the trials: 60 s of 20 minutes, a few times
+the memory of waves and gusts, at full scale and, by Froude's law, at any other."""
 
-HAC_SECONDS: Final = 60.0
-"""Lag window of the score's variance: two to three times the longest correlation time."""
+WHITENING_SHARE: Final = 1.0 / 6.0
+"""Memory of the autoregression that whitens the residual, over the lag window."""
 
 VISIBLE: Final = 0.001
 """Below this share of its sensitivity left, an effect cannot be told from the free parameters."""
@@ -95,7 +96,7 @@ def rank(
     if not augmented.effects:
         return (), augmented
     raw = project(augmented.residual, augmented.psi, augmented.S)
-    residual, psi, S, parts = whitened(augmented, fit.problem.trials[0].period)
+    residual, psi, S, parts = whitened(augmented)
     white = project(residual, psi, S)
     made = [_score(fit, augmented, effect, raw, white, parts) for effect in augmented.effects]
     scored = _families(_holm([c for c in made if c is not None]), augmented, white.S, family_cos)
@@ -123,11 +124,15 @@ def project(residual: Vector, psi: Vector, S: Vector) -> Projected:
     return Projected(residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S))
 
 
-def whitened(
-    augmented: Augmented, period: float
-) -> tuple[Vector, Vector, Vector, tuple[Stretch, ...]]:
+def lag_window(parts: Sequence[Stretch]) -> int:
+    """Samples over which products of residual and sensitivity may be correlated."""
+    lengths = {s.trial: len(s.compared) for s in parts}
+    return max(round(WINDOW_SHARE * float(np.mean(list(lengths.values())))), 1)
+
+
+def whitened(augmented: Augmented) -> tuple[Vector, Vector, Vector, tuple[Stretch, ...]]:
     """Residual, base and candidate columns filtered by the inverse of the residual's colour."""
-    order = max(round(WHITENING_SECONDS / period), 1)
+    order = max(round(WHITENING_SHARE * lag_window(augmented.stretches)), 1)
     filters = _autoregressions(augmented, order)
     rows, made, at = [], [], 0
     every = np.column_stack([augmented.residual, augmented.psi, augmented.S])
@@ -197,23 +202,22 @@ def _score(
     beta, *_ = np.linalg.lstsq(s, e, rcond=1e-10)
     # with the effect's own scatter in the variance: a large effect scores less than it could,
     # and noise is taken for one less often (measured: 1 of 16 records instead of 3)
-    variance = hac(s * e[:, None], parts, fit.problem.trials[0].period)
+    variance = hac(s * e[:, None], parts)
     g = s.T @ e
     score = float(g @ np.linalg.pinv(variance, rcond=1e-10, hermitian=True) @ g)
     expected = {p: float(b / z) for p, b, z in zip(effect.parameters, beta, sizes, strict=True)}
     eps2 = max(fit.eps_rmsn**2 - _fall(raw, which, sizes), 0.0)
-    p = max(float(chdtrc(len(which), score)), _least_p(parts, fit)) if visibility > VISIBLE else 1.0
+    p = max(float(chdtrc(len(which), score)), _least_p(parts)) if visibility > VISIBLE else 1.0
     return Candidate(
         effect, expected, float(np.sqrt(eps2)), score, p, visibility, (effect.name,),
         _allowed(effect, expected),
     )  # fmt: skip
 
 
-def _least_p(parts: Sequence[Stretch], fit: Fit) -> float:
+def _least_p(parts: Sequence[Stretch]) -> float:
     """No smaller chance than the record's independent blocks can support: all of one sign."""
-    period = fit.problem.trials[0].period
-    lengths = {s.trial: len(s.compared) * period for s in parts}
-    return float(0.5 ** (sum(lengths.values()) / HAC_SECONDS))
+    lengths = {s.trial: len(s.compared) for s in parts}
+    return float(0.5 ** (sum(lengths.values()) / lag_window(parts)))
 
 
 def _fall(raw: Projected, which: Sequence[int], sizes: Vector) -> float:
@@ -227,12 +231,12 @@ def _allowed(effect: Effect, expected: Mapping[str, float]) -> bool:
     return all(p.low <= expected[n] <= p.high for n, p in effect.parameters.items())
 
 
-def hac(products: Vector, parts: Sequence[Stretch], period: float) -> Vector:
+def hac(products: Vector, parts: Sequence[Stretch]) -> Vector:
     """Variance of a sum of correlated products; (q, q), Bartlett weights.
 
     The outputs of one trial share their disturbances, so their products are added on the clock.
     """
-    lags = max(round(HAC_SECONDS / period), 1)
+    lags = lag_window(parts)
     total = np.zeros((products.shape[1],) * 2)
     for trial in sorted({s.trial for s in parts}):
         mine = [s for s in parts if s.trial == trial]

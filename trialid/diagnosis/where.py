@@ -52,9 +52,9 @@ def where(fit: Fit) -> tuple[Finding, ...]:
     parts = residuals(fit)
     for c, output in enumerate(fit.problem.outputs):
         rows = [w for r in parts for w in _windows(r, c)]
-        if len(rows) < 4:
-            continue
         total = sum(float(e @ e) for _, _, _, e in rows)
+        if len(rows) < 4 or total == 0.0:
+            continue
         typical = total / sum(len(e) for _, _, _, e in rows)
         standing = []
         for r, start, stop, e in rows:

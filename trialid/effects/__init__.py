@@ -1,6 +1,7 @@
 """The catalogue: every effect the package knows, by name."""
 
 from pathlib import Path
+from traceback import extract_tb
 from types import ModuleType
 
 from trialid.effects import heel, hull, outer, roll, rudder, sensors, steering_gear
@@ -50,10 +51,19 @@ def from_file(path: Path) -> dict[str, Effect]:
     module.__file__ = str(path)
     try:
         exec(compile(source, str(path), "exec"), module.__dict__)
+    except EffectError as error:
+        raise EffectError(f"effects file {path}{_line(path, error)}: {error}") from error
     except FAULTS as error:
-        raise EffectError(f"effects file {path}: {type(error).__name__}: {error}") from error
+        kind = type(error).__name__
+        raise EffectError(f"effects file {path}{_line(path, error)}: {kind}: {error}") from error
     found = {x.name: x for x in vars(module).values() if isinstance(x, Effect)}
     own = {n: e for n, e in found.items() if e.function.__module__ == module.__name__}
     if not own:
         raise EffectError(f"effects file {path}: declares no effect; write one with @effect")
     return own
+
+
+def _line(path: Path, error: BaseException) -> str:
+    """The last line of the file that ran, in words; a syntax error says its own."""
+    lines = [f.lineno for f in extract_tb(error.__traceback__) if f.filename == str(path)]
+    return f", line {lines[-1]}" if lines else ""

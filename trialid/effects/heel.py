@@ -50,7 +50,7 @@ def heel_drift(
     Yphiauv=0.008, Yphiaur=0.0036, Kphiauv=-0.00012, Kphiaur=-0.000055,
     Nphiauv=-0.0031, Nphiuar=-0.0014,
 ):  # fmt: skip
-    """Y, K, N of phi |u v| and phi |u r|, with N of phi u |r|: heel while drifting and turning."""
+    """Y, K, N = coefficients of phi |u v| and phi |u r| (N: phi u |r|): heel in drift and turns."""
     drifting, turning = phi * abs(u * v), phi * abs(u * r)
     return Force(
         Y=Yphiauv * drifting + Yphiaur * turning,

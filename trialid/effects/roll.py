@@ -47,9 +47,9 @@ def righting_arm_cubic(phi, rho, g, nabla, *, GM3=Parameter(2.0, "m", low=-50.0,
 
 
 @effect(source=BK99)
-def static_list(*, K0=Parameter(0.000001, low=-0.001, high=0.001)):
-    """K = K0: a steady heeling moment, from cargo or trim tanks."""
-    return Force(K=K0)
+def static_list(rho, g, nabla, *, a_0=Parameter(0.002, "m", low=-0.5, high=0.5)):
+    """K = rho g nabla a_0: a steady heeling arm, from cargo or trim tanks; at any speed."""
+    return Force(K=rho * g * nabla * a_0)
 
 
 EFFECTS = (

@@ -123,8 +123,8 @@ def _pooled(scored: Sequence[Score]) -> dict[str, float]:
     squares, counts = dict[str, float](), dict[str, int]()
     for score in scored:
         for c, eps in score.eps_rmsn.items():
-            squares[c] = squares.get(c, 0.0) + eps**2 * score.counts[c]
-            counts[c] = counts.get(c, 0) + score.counts[c]
+            squares[c] = squares.get(c, 0.0) + eps**2 * max(score.counts[c], 1)
+            counts[c] = counts.get(c, 0) + max(score.counts[c], 1)
     return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
 
 
@@ -247,6 +247,14 @@ def _huber(residual: Vector) -> Vector:
 
 def _why_no_start(problem: Problem) -> str:
     departure = linearise(problem, problem.start)
+    simulator = problem.simulator
+    finer = replace(problem, simulator=replace(simulator, substeps=16 * simulator.substeps))
+    if not isinstance(respond_all(finer, problem.start, False), Departure):
+        step = problem.trials[0].period / simulator.substeps
+        return (
+            f"steps of {step:g} s are too long for this model: {departure}, with finer steps not; "
+            "choose a shorter [align] period, or more [identify] substeps"
+        )
     return (
         f"the model cannot be simulated at its start values: {departure}; give nearer values in "
         "[model.values] or in the ship file, or narrower [identify] bounds"
@@ -290,6 +298,8 @@ def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
     if response.departure is not None:
         compared = compared & np.isfinite(response.y)
     eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
+    if response.departure is not None:  # what was lost has no error, however good its beginning
+        eps = dict.fromkeys(problem.outputs, np.inf)
     counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
     return Score(trial, response, compared, eps, counts)
 

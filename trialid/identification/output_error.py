@@ -217,7 +217,10 @@ def norms(
             )
         rms = float(np.sqrt(np.mean(y**2)))
         if rms == 0.0:
-            raise NotIdentifiable(f"output {name!r} does not move in the trials to fit")
+            raise NotIdentifiable(
+                f"output {name!r} does not move in the trials to fit; check the channel, or leave "
+                "it out of [identify] outputs"
+            )
         result.append(rms)
     return np.array(result)
 

@@ -14,7 +14,9 @@ from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.output_error import Norm, Problem, Unknown, norms, where_compared
 from trialid.ship.effect import Effect, Force, Parameter, Rate
 from trialid.ship.model import ShipModel, check_mass
-from trialid.simulation.integrate import Engine, Simulator, guess, initial, prepare
+from trialid.simulation.at_rest import check_at_rest
+from trialid.simulation.graph import SYMBOL, order
+from trialid.simulation.integrate import Engine, Simulator, guess, initial, inputs, prepare
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -24,7 +26,7 @@ STATE_SIZE: Final = {"u": 0.1, "v": 0.1, "p": 0.002, "r": 0.0005, "phi": 0.01, "
 """Typical error of a start guessed from the record [SI]: the scale of an initial state."""
 
 STILL_RUDDER: Final = 0.002
-"""[rad] A rudder that moves less than this over all trials excites nothing."""
+"""[rad rms] A rudder that moves less than this excites nothing; its sensor's noise is less."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ def pose(
 ) -> Problem:
     """What is unknown, and what a residual is made of."""
     fitted = tuple(t for t in trials if t.use == "fit")
-    _check_outputs(fitted, settings)
+    _check_outputs(trials, settings)
     full, per_trial = with_nuisance(model, settings)
     shared = tuple(n for n in settings.free if n not in per_trial)
     simulator = prepare(
@@ -68,6 +70,10 @@ def pose(
         settings.engine,
         settings.substeps,
     )
+    _check_simulated(simulator)
+    check_at_rest(simulator.model)
+    for trial in trials:
+        inputs(simulator, trial)
     unknowns = (*(_shared(simulator, n, settings) for n in shared),
                 *_nuisances(simulator, fitted, per_trial, settings))  # fmt: skip
     unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
@@ -89,6 +95,17 @@ def _check_outputs(trials: Sequence[Trial], settings: Settings) -> None:
                     f"trial {trial.name!r} has no signal {c!r}, which is an output to fit; "
                     f"map it in [trial.signals] ({nearest(c, trial.signals)})"
                 )
+
+
+def _check_simulated(simulator: Simulator) -> None:
+    """Refuse an output that no simulated motion reaches: an input has nothing to fit."""
+    states = simulator.equations.states
+    for name, node in simulator.equations.outputs.items():
+        if not any(n.op == SYMBOL and n.value in states for n in order([node])):
+            raise NotIdentifiable(
+                f"output {name!r} is not simulated, it is an input; take it out of [identify] "
+                f"outputs, or choose from what is simulated: {', '.join(states)}"
+            )
 
 
 def with_nuisance(model: ShipModel, settings: Settings) -> tuple[ShipModel, tuple[str, ...]]:
@@ -180,11 +197,11 @@ def _check_excitation(problem: Problem) -> None:
         )
     for name in ("delta", "delta_order"):
         if name in problem.simulator.equations.inputs:
-            moves = max(float(np.ptp(t.signals[name])) for t in problem.trials)
+            moves = max(float(np.std(t.signals[name])) for t in problem.trials)
             if moves < STILL_RUDDER:
                 listed = ", ".join(repr(t.name) for t in problem.trials)
                 raise NotIdentifiable(
-                    f"the rudder ({name}) moves less than {np.rad2deg(moves):.2f} deg in trial "
+                    f"the rudder ({name}) moves by only {np.rad2deg(moves):.2f} deg rms in trial "
                     f"{listed}: nothing excites the ship and no parameter can be found; use a "
                     "trial with a manoeuvre, or check the channel"
                 )

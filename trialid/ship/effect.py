@@ -4,7 +4,10 @@ import inspect
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
+
+import numpy as np
 
 from trialid.errors import EffectError, nearest
 from trialid.maths import Number
@@ -114,10 +117,27 @@ class Effect:
         """The first line of the docstring, which is the equation."""
         return (self.function.__doc__ or "").strip().splitlines()[0]
 
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Signals whose measurement it adds to or delays."""
+        values = dict.fromkeys(self.signals, 0.1) | {n: p.start for n, p in self.parameters.items()}
+        return tuple(n for p in self(values) if isinstance(p, Measured | Delayed) for n in p)
+
+    @property
+    def place(self) -> str:
+        """The effect and its file, as an error names them."""
+        return f"effect {self.name!r} of {Path(self.function.__code__.co_filename).name}"
+
     def __call__(self, values: Mapping[str, Number]) -> tuple[Result, ...]:
         """Evaluate from one mapping of signal and parameter values; always a tuple of forms."""
         wanted = (*self.signals, *self.parameters)
-        result = self.function(**{name: values[name] for name in wanted})
+        try:
+            result = self.function(**{name: values[name] for name in wanted})
+        except TypeError as error:
+            hint = "on a signal only + - * / ** abs and trialid.maths (sin, cos, sqrt, ...) work"
+            raise EffectError(f"{self.place}: {error}; {hint}") from error
+        except EffectError as error:
+            raise EffectError(f"{self.place}: {error}") from error
         return (result,) if isinstance(result, FORMS) else tuple(result)
 
 
@@ -174,15 +194,23 @@ def _signature(
                 "typical value"
             )
     given = {a.name: a.default for a in arguments if a.kind is a.KEYWORD_ONLY}
-    for parameter, start in given.items():
-        if start is inspect.Parameter.empty:
-            raise EffectError(
-                f"effect {name!r}: parameter {parameter!r} has no typical value; "
-                f"write `{parameter}=...` in the signature"
-            )
-    return signals, {
-        n: p if isinstance(p, Parameter) else Parameter(float(p)) for n, p in given.items()
-    }
+    return signals, {n: _parameter(name, n, start) for n, start in given.items()}
+
+
+def _parameter(effect: str, name: str, start: Any) -> Parameter:
+    if start is inspect.Parameter.empty:
+        raise EffectError(
+            f"effect {effect!r}: parameter {name!r} has no typical value; "
+            f"write `{name}=...` in the signature"
+        )
+    made = start if isinstance(start, Parameter) else Parameter(start)
+    number = isinstance(made.start, int | float)
+    if not number or made.start == 0.0 or not math.isfinite(made.start):
+        raise EffectError(
+            f"effect {effect!r}: the typical value of parameter {name!r} is {made.start!r}; "
+            "it sets the scale of everything relative and must be a number other than 0"
+        )
+    return made
 
 
 def _forms(
@@ -199,6 +227,9 @@ def _forms(
     except (ArithmeticError, TypeError, NameError, AttributeError, ValueError) as error:
         raise EffectError(f"effect {name!r} cannot be evaluated: {error}") from error
     results = result if isinstance(result, tuple) and not isinstance(result, Force) else (result,)
+    if not results:
+        names = ", ".join(form.__name__ for form in FORMS)
+        raise EffectError(f"effect {name!r} returns nothing; expected one of {names}")
     for part in results:
         if not isinstance(part, FORMS):
             names = ", ".join(form.__name__ for form in FORMS)
@@ -206,6 +237,7 @@ def _forms(
                 f"effect {name!r} returns {type(part).__name__}; expected one of {names}"
             )
         _check_names(name, part, signals)
+        _check_numbers(name, part)
     _check_rates(name, tuple(n for part in results if isinstance(part, Rate) for n in part), own)
     return tuple(type(part) for part in results)
 
@@ -226,6 +258,14 @@ def _check_rates(name: str, rates: tuple[str, ...], own: Mapping[str, Any]) -> N
             f"effect {name!r} gives the rate of {', '.join(rates) or 'nothing'}, and declares "
             f"the states {', '.join(own) or 'none'}; they must be the same"
         )
+
+
+def _check_numbers(name: str, part: Result) -> None:
+    for value in part if isinstance(part, Force) else part.values():
+        if not isinstance(value, int | float | np.number):
+            raise EffectError(
+                f"effect {name!r} returns {value!r} in {type(part).__name__}; expected a number"
+            )
 
 
 def _check_names(name: str, part: Result, signals: tuple[str, ...]) -> None:

@@ -214,7 +214,8 @@ def motion(
                 case Rate():
                     rates |= dict(part)
                 case Measured():
-                    measured |= {n: _known(effect, measured, n) + x for n, x in part.items()}
+                    _check_measured(effect, part, measured)
+                    measured |= {n: measured[n] + x for n, x in part.items()}
                 case Delayed():
                     delay |= {n: delay.get(n, 0.0) + x for n, x in part.items()}
     rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
@@ -228,13 +229,13 @@ def measured_by(
     return acting if Force in effect.forms else {**recorded, "U": acting["U"]}
 
 
-def _known(effect: Effect, measured: Mapping[str, Number], name: str) -> Number:
-    if name not in measured:
-        raise EffectError(
-            f"effect {effect.name!r} adds to {name!r}, which is neither simulated nor asked of the "
-            f"record; simulate {name!r} in [model] states, or leave the effect out"
-        )
-    return measured[name]
+def _check_measured(effect: Effect, part: Measured, measured: Mapping[str, Number]) -> None:
+    for name in part:
+        if name not in measured:
+            raise EffectError(
+                f"{effect.place} adds to the measurement of {name!r}, which the model neither "
+                f"simulates nor reads; leave the effect out, or simulate {name!r}"
+            )
 
 
 def _balance(

@@ -53,7 +53,7 @@ def read_ship(path: Path) -> Ship:
         The file is missing, not TOML, or lacks something a model cannot do without.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # some editors write a byte-order mark
     except OSError as error:
         raise ShipError(f"ship file {path}: cannot be read ({error.strerror})") from error
     except UnicodeDecodeError as error:
@@ -98,7 +98,7 @@ def _check_sections(path: Path, table: Mapping[str, Any]) -> None:
     if missing:
         raise ShipError(f"ship file {path}: [particulars] lacks {', '.join(missing)}")
     for key in PARTICULARS:
-        _positive(path, "[particulars] ", table["particulars"], key)
+        _positive(path, "[particulars] ", table["particulars"], key, zero=key == "U0")
     for key in table["mass"]:  # one with a slip in its name would silently be zero
         if key not in MASS_PARAMETERS:
             known = nearest(key, MASS_PARAMETERS)
@@ -106,12 +106,13 @@ def _check_sections(path: Path, table: Mapping[str, Any]) -> None:
 
 
 def _positive(
-    path: Path, where: str, rows: Mapping[str, Any], key: str, default: float = math.nan
-) -> float:
+    path: Path, where: str, rows: Mapping[str, Any], key: str, default: float = math.nan,
+    *, zero: bool = False,
+) -> float:  # fmt: skip
     value = rows.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ShipError(f"ship file {path}: {where}{key} = {value!r} is not a number")
-    if not 0.0 < value < math.inf:
+    if not (0.0 < value < math.inf or (zero and value == 0.0)):
         raise ShipError(f"ship file {path}: {where}{key} = {value!r}; expected a positive number")
     return float(value)
 
@@ -130,6 +131,7 @@ _MEANING: Final = {
 def _numbers(path: Path, table: Mapping[str, Any], section: str) -> dict[str, float]:
     rows = table.get(section, {})
     for key, value in rows.items():
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not number or not math.isfinite(value):
             raise ShipError(f"ship file {path}: [{section}] {key} = {value!r} is not a number")
     return {key: float(value) for key, value in rows.items()}

@@ -114,6 +114,11 @@ class Node:
             "use abs, maths.tanh or maths.clip"
         )
 
+    def __lt__(self, other: object) -> bool:
+        return bool(self)
+
+    __le__ = __gt__ = __ge__ = __lt__
+
     def __float__(self) -> float:
         raise EffectError(
             "an effect called a function that is not in trialid.maths on a signal; "

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from trialid.errors import EffectError, NotIdentifiable, nearest
 from trialid.quantities import SIGNALS
-from trialid.ship.model import ShipModel
+from trialid.ship.effect import Effect, Steered
+from trialid.ship.model import ShipModel, steered_signals
 from trialid.simulation import kernel
 from trialid.simulation.delay import delayed, shifted
 from trialid.simulation.graph import Node, gradient
@@ -191,13 +192,18 @@ def inputs(simulator: Simulator, trial: Trial) -> Vector:
         elif name == "u":
             columns.append(np.full(trial.samples, simulator.model.ship.particulars["U0"]))
         else:
-            users = [e.name for e in simulator.model.effects if name in e.signals]
+            users = [e.name for e in simulator.model.effects if name in signals_of(e)]
             raise NotIdentifiable(
                 f"trial {trial.name!r} has no signal {name!r}, which effect "
                 f"{', '.join(users)!r} needs: map it in [trial.signals], simulate it in [model] "
                 "states, or leave the effect out"
             )
     return np.column_stack(columns) if columns else np.zeros((trial.samples, 0))
+
+
+def signals_of(effect: Effect) -> tuple[str, ...]:
+    """Every signal an effect reads or adds to."""
+    return (*effect.signals, *(steered_signals(effect) if Steered in effect.forms else ()))
 
 
 def domain(model: ShipModel) -> Vector:
