@@ -1,0 +1,154 @@
+"""Zig-zags of a tanker model from 5 to 30 degrees: linear yaw is not enough, and what is missing.
+
+The release labels the columns wrongly. Column 7 is the rate of turn in deg/s (it is d psi/dt), and
+columns 5 and 6 are not u and v of the ship but the speed along and across the tank (they are
+dx0/dt and dy0/dt): the converter turns them by the heading.
+"""
+
+import shutil
+
+import numpy as np
+import pytest
+from real_record import DATA, HERE, with_candidates, with_effects
+
+from trialid import pipeline, recipe
+
+RECORDS = DATA / "kvlcc2_hsva_zigzag"
+pytestmark = [
+    pytest.mark.real_data,
+    pytest.mark.skipif(not RECORDS.is_dir(), reason=f"no real records {RECORDS}"),
+]
+
+PIPELINE = "kvlcc2_zigzag.toml"
+YAW = {
+    "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rav", "yaw_drag_rar",
+    "yaw_cubic_vvv", "yaw_cubic_cross", "yaw_cubic_rrr",
+}  # fmt: skip
+SWAY = {e.replace("yaw", "sway") for e in YAW}
+
+NOT_YET = (
+    "the autoregression over 10 s, under two ship lengths at this scale, whitens the effect away: "
+    "the expected Nrrr is 3 % of the fitted one, and only a delay of r stands out"
+)
+
+
+def columns(record):
+    """A record's columns by name, as it has them."""
+    names = "t", "x0", "y0", "psi", "along", "across", "r", "phi", "delta", "n", "thrust", "torque"
+    table = np.loadtxt(record, encoding="cp1252", skiprows=4)
+    return dict(zip(names, table.T, strict=True))
+
+
+def in_ship(c):
+    """Speed ahead and to starboard [m/s] from speed along and across the tank."""
+    psi = np.deg2rad(c["psi"])
+    u = c["along"] * np.cos(psi) + c["across"] * np.sin(psi)
+    v = c["across"] * np.cos(psi) - c["along"] * np.sin(psi)
+    return u, v
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The pipeline, its ship and the records as CSV, side by side."""
+    made = tmp_path_factory.mktemp("kvlcc2")
+    for name in (PIPELINE, "kvlcc2_hsva.toml"):
+        shutil.copy(HERE / name, made)
+    for record in RECORDS.glob("*.dat"):
+        c = columns(record)
+        table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
+        name = record.stem.removeprefix("HSVA_CPMC_KVLCC2_")
+        np.savetxt(made / f"{name}.csv", table, "%.9g", ",", header="t,u,v,r,delta", comments="")
+    return made
+
+
+def run(linear, *effects):
+    """The pipeline with effects, each written `effect: parameters`."""
+    pairs = [effect.split(": ") for effect in effects]
+    free = [p for _, names in pairs for p in names.split()]
+    done = pipeline.run(with_effects(linear, [name for name, _ in pairs], free)).result
+    fit = done["fit"]
+    print(f"{effects or 'linear'}: {fit['eps_rmsn']:.2%}, held out {fit['eps_rmsn_check']:.2%}")
+    return done
+
+
+def yaw_alone(linear):
+    """Yaw with the sway speed from the record: no drift of a nearly unstable ship."""
+    model = linear.model.model_copy(update={"states": ("r",)})
+    free = "Nv", "Nr", "Ndelta", "delta_0"
+    identify = linear.identify.model_copy(update={"outputs": ("r",), "free": free})
+    return linear.model_copy(update={"model": model, "identify": identify})
+
+
+def with_recorded_speed(linear):
+    u = recipe.SignalSource(channel="u", unit="m/s")
+    trials = tuple(t.model_copy(update={"signals": {**t.signals, "u": u}}) for t in linear.trials)
+    return linear.model_copy(update={"trials": trials})
+
+
+@pytest.fixture(scope="module")
+def linear(folder):
+    return recipe.load(folder / PIPELINE)
+
+
+@pytest.mark.parametrize("record", sorted(RECORDS.glob("*.dat")), ids=lambda path: path.stem[17:])
+def test_what_the_columns_hold(record):
+    c = columns(record)
+    rate = np.gradient(c["psi"], c["t"])
+    assert rate @ c["r"] / (c["r"] @ c["r"]) == pytest.approx(1.0, abs=0.01)
+    for speed, place in (("along", "x0"), ("across", "y0")):
+        assert np.std(c[speed] - np.gradient(c[place], c["t"])) < 0.001
+    _, v = in_ship(c)
+    assert np.corrcoef(v, c["r"])[0, 1] < -0.8  # a ship drifts outward
+    assert np.corrcoef(c["delta"], np.gradient(c["r"], c["t"]))[0, 1] < -0.7  # positive to port
+
+
+def test_the_error_falls_with_nonlinear_yaw_damping(linear):
+    """Ours: 22.4 % to 14.7, 14.6 and 13.7 %; held out 22.2 % to 14.7, 14.5 and 13.3 %."""
+    before = run(linear)["fit"]
+    for effects in (
+        ["yaw_drag_rar: Nrar"],
+        ["yaw_cubic_rrr: Nrrr"],
+        ["yaw_drag_rar: Nrar", "sway_drag_vav: Yvav"],
+    ):
+        after = run(linear, *effects)["fit"]
+        assert after["eps_rmsn"] < 0.75 * before["eps_rmsn"]
+        assert after["eps_rmsn_check"] < 0.75 * before["eps_rmsn_check"]
+
+
+def test_the_fitted_derivatives_are_near_those_of_captive_tests(linear):
+    """Of Yasukawa & Yoshimura (2015), with the nonlinear terms in the model."""
+    done = run(linear, "yaw_drag_rar: Nrar", "sway_drag_vav: Yvav")
+    value = {p["name"]: p["value"] for p in done["accuracy"]["parameters"]}
+    print({n: round(value[n], 5) for n in ("Yv", "Nv", "Nr", "Ydelta", "Ndelta", "Nrar", "Yvav")})
+    assert value["Nv"] == pytest.approx(-0.0089, rel=0.2)
+    assert value["Nr"] == pytest.approx(-0.0032, rel=0.2)
+    assert value["Nrar"] < 0.0
+    assert value["Yvav"] < 0.0
+
+
+def test_scaling_by_the_recorded_speed_makes_it_worse(linear):
+    """Ours: 7.9 % with the speed stated, 12.0 % with the speed read; held out 9.2 and 9.9 %."""
+    stated = run(yaw_alone(linear))["fit"]
+    read = run(yaw_alone(with_recorded_speed(linear)))["fit"]
+    assert stated["eps_rmsn"] < 0.8 * read["eps_rmsn"]
+    assert stated["eps_rmsn_check"] < read["eps_rmsn_check"]
+
+
+def test_nonlinear_yaw_damping_is_named_and_holds_on_the_other_runs(linear):
+    """Ours: Nrrr, 7.9 to 6.3 %, held out 9.2 to 7.2 %."""
+    done = pipeline.run(with_candidates(yaw_alone(linear), "all")).result
+    print(done["verdict"]["sentence"])
+    assert done["verdict"]["kind"] == "missing"
+    assert set(done["verdict"]["family"]) <= YAW
+    named = next(m for m in done["missing"] if m["effect"] == done["verdict"]["effect"])
+    assert named["eps_rmsn_refitted"] < 0.9 * done["fit"]["eps_rmsn"]
+    assert named["eps_rmsn_check"] < 0.9 * done["fit"]["eps_rmsn_check"]
+
+
+@pytest.mark.xfail(strict=True, reason=NOT_YET)
+def test_it_is_named_in_sway_and_yaw_together(linear):
+    done = pipeline.run(with_candidates(linear, "all")).result
+    print(done["verdict"]["sentence"])
+    assert done["verdict"]["kind"] == "missing"
+    assert set(done["verdict"]["family"]) <= YAW | SWAY
+    assert set(done["verdict"]["family"]) & YAW
