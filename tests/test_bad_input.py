@@ -221,7 +221,7 @@ def test_a_pipeline_that_is_none(content: bytes, words: tuple[str, ...]) -> None
                  ("trial[0].signals.r.unit", "'degg/s'", "not known", "'deg/s'"),
                  id="unknown unit"),
     pytest.param('"deg/s"', '"m/s"',
-                 ("trial[0].signals.r.unit", "'m/s'", "cannot become", "deg/s, rad/s"),
+                 ("trial[0].signals.r.unit", "'m/s'", "cannot become", "write deg, rad"),
                  id="unit of something else"),
     pytest.param(', positive = "starboard"', "",
                  ("trial[0].signals.delta.positive", "missing", "the ship turns",

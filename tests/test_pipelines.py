@@ -153,7 +153,7 @@ CANDIDATE = {
     "rank": int,
     "effect": str,
     "family": [str],
-    "parameters": {...: {"expected": NUMBER, "refitted": MAYBE}},
+    "parameters": {...: {"expected": MAYBE, "refitted": MAYBE}},
     "eps_rmsn_predicted": NUMBER,
     "eps_rmsn_refitted": MAYBE,
     "eps_rmsn_check": MAYBE,

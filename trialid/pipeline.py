@@ -21,7 +21,7 @@ from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
 from trialid.errors import RecipeError, UnitError, nearest
-from trialid.identification.fit import Fit, identify
+from trialid.identification.fit import Fit, identify, step_halving
 from trialid.identification.gauss_newton import Iteration
 from trialid.identification.output_error import stretches
 from trialid.identification.pose import Settings
@@ -41,6 +41,11 @@ Progress = Callable[[str, float | None], None]
 
 NEAR_ZERO: Final = 0.05
 """An estimate below this share of its typical size is scaled by the latter."""
+
+STEP_ERROR: Final = 0.05
+"""Share of the error that integration may make up before steps are made finer."""
+
+MOST_SUBSTEPS: Final = 16
 
 
 @dataclass(frozen=True)
@@ -68,7 +73,7 @@ def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
     settings = settings_of(recipe)
     check_bounds(recipe, model, settings)
     progress("fitting", 0.3)
-    fit = identify(trials, model, settings, _fit_progress(progress))
+    fit = fitted(trials, model, settings, progress)
     before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
     refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
                          lambda words: progress(words, 0.7)))  # fmt: skip
@@ -83,6 +88,21 @@ def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
     )  # fmt: skip
     progress("done", 1.0)
     return Run(recipe, findings, plain(findings), time_series(fit))
+
+
+def fitted(
+    trials: tuple[Trial, ...], model: ShipModel, settings: Settings, progress: Progress
+) -> Fit:
+    """The fit with integration steps so fine that they are no part of its error."""
+    fit = identify(trials, model, settings, _fit_progress(progress))
+    while (
+        max(step_halving(fit).values(), default=0.0) > STEP_ERROR * fit.eps_rmsn
+        and fit.settings.substeps < MOST_SUBSTEPS
+    ):
+        finer = replace(fit.settings, substeps=2 * fit.settings.substeps)
+        progress(f"fitting again with {finer.substeps} steps a sample", None)
+        fit = identify(trials, model, finer, _fit_progress(progress), near=fit.estimates)
+    return fit
 
 
 def align_trials(recipe: Recipe, progress: Progress) -> tuple[Trial, ...]:

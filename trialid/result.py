@@ -14,7 +14,7 @@ import trialid
 from trialid.accuracy import Accuracy, ParameterAccuracy
 from trialid.diagnosis.missing_effect import Refit, Verdict
 from trialid.diagnosis.noise import Split
-from trialid.diagnosis.score import Candidate
+from trialid.diagnosis.score import VISIBLE, Candidate
 from trialid.diagnosis.where import Finding
 from trialid.errors import EffectError
 from trialid.identification.fit import Fit, step_halving
@@ -150,6 +150,7 @@ def _fit(fit: Fit) -> Plain:
         "starts": {"agreeing": fit.agreeing[0], "of": fit.agreeing[1]},
         "samples": len(fit.residual),
         "step_halving": step_halving(fit) or None,
+        "substeps": fit.settings.substeps,
         "weighting": weighting(fit),
         "y_rms": dict(zip(fit.problem.outputs, map(float, fit.problem.y_rms), strict=True)),
     }
@@ -305,7 +306,7 @@ def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Findings) -> P
         "family": list(c.family),
         "parameters": {
             n: {
-                "expected": x,
+                "expected": x if c.visibility > VISIBLE else None,
                 "refitted": refit.estimates[n] if refit else None,
                 "unit": c.effect.parameters[n].unit,
             }
@@ -327,6 +328,8 @@ def _standing(c: Candidate, found: Findings) -> str:
         return "missing"
     if c.effect.name in found.verdict.family:
         return "same family"
+    if c.visibility <= VISIBLE:
+        return "not visible"
     if not c.allowed:
         return "unphysical"
     return "stands out" if c.p_value < 0.05 else "no evidence"
@@ -334,6 +337,8 @@ def _standing(c: Candidate, found: Findings) -> str:
 
 def _sentence(c: Candidate, refit: Fit | None, found: Findings) -> str:
     eps = found.before.fit.eps_rmsn
+    if c.visibility <= VISIBLE:
+        return f"{c.effect.name} leaves no trace here that the free parameters could not leave too"
     said = f"would bring the error from {eps:.2%} to {c.eps_predicted:.2%} (p = {c.p_value:.2g})"
     if refit is not None:
         said += f"; fitted, it brings it to {refit.eps_rmsn:.2%}"

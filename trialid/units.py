@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 TEXT: Final = re.compile(r"[A-Za-z%°µ][\w%°µ]*(\s?(\*\*?|/|\^|\s)\s?-?[\w%°µ]+)*|1(/[A-Za-z]\w*)?")
 """What a unit may look like; anything else would be evaluated as arithmetic."""
 
+ROTATION: Final = re.compile(r"rad|deg|°|rpm|rps|turn|rev|grad|arc|cycle", re.IGNORECASE)
+"""What an angle or a rate of turning has in its unit; `1/s` would be wrong by 2 pi or right."""
+
 COMMON = ("rad", "deg", "rad/s", "deg/s", "deg/min", "m/s", "kn", "km/h", "m", "s", "rpm", "1/s")
 
 
@@ -33,15 +36,20 @@ def factor(unit: str, si: str) -> float:
     0.514444
     >>> round(factor("deg/min", "rad/s") * 60 * 180, 6)
     3.141593
-    >>> factor("furlongs", "rad")
+    >>> factor("deg", "m/s")
     Traceback (most recent call last):
         ...
-    trialid.errors.UnitError: unit 'furlongs' cannot become 'rad'; units that can: deg, rad
+    trialid.errors.UnitError: unit 'deg' cannot become 'm/s'; units that can: km/h, kn, m/s
     """
     import pint
 
     if not TEXT.fullmatch(unit):
         raise UnitError(f"unit {unit!r} is not a unit text; write it like {', '.join(COMMON[:4])}")
+    if "rad" in si and not ROTATION.search(unit):
+        raise UnitError(
+            f"unit {unit!r} cannot become {si!r}: it does not say what turns; write deg, rad, "
+            "rpm or rps (turns in a second)"
+        )
     registry = _registry()
     try:
         return float(registry.Quantity(1.0, unit).to(si).magnitude)

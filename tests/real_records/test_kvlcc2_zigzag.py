@@ -26,11 +26,6 @@ YAW = {
 }  # fmt: skip
 SWAY = {e.replace("yaw", "sway") for e in YAW}
 
-NOT_YET = (
-    "the autoregression over 10 s, under two ship lengths at this scale, whitens the effect away: "
-    "the expected Nrrr is 3 % of the fitted one, and only a delay of r stands out"
-)
-
 
 def columns(record):
     """A record's columns by name, as it has them."""
@@ -145,7 +140,6 @@ def test_nonlinear_yaw_damping_is_named_and_holds_on_the_other_runs(linear):
     assert named["eps_rmsn_check"] < 0.9 * done["fit"]["eps_rmsn_check"]
 
 
-@pytest.mark.xfail(strict=True, reason=NOT_YET)
 def test_it_is_named_in_sway_and_yaw_together(linear):
     done = pipeline.run(with_candidates(linear, "all")).result
     print(done["verdict"]["sentence"])

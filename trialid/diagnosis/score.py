@@ -198,16 +198,19 @@ def _score(
     if not np.all(sizes > 0.0):
         return None
     visibility = float(np.mean(np.sum(raw.of(which, sizes) ** 2, axis=0)))
+    # expected value and fall from the residual as it is: the whitening is estimated from a residual
+    # that holds the effect, and may take a strong one away; the test of chance needs the whitening
+    beta, fall = _explained(raw, which, sizes)
     s, e = white.of(which, sizes), white.residual
-    beta, *_ = np.linalg.lstsq(s, e, rcond=1e-10)
     # with the effect's own scatter in the variance: a large effect scores less than it could,
     # and noise is taken for one less often (measured: 1 of 16 records instead of 3)
     variance = hac(s * e[:, None], parts)
     g = s.T @ e
     score = float(g @ np.linalg.pinv(variance, rcond=1e-10, hermitian=True) @ g)
     expected = {p: float(b / z) for p, b, z in zip(effect.parameters, beta, sizes, strict=True)}
-    eps2 = max(fit.eps_rmsn**2 - _fall(raw, which, sizes), 0.0)
-    p = max(float(chdtrc(len(which), score)), _least_p(parts)) if visibility > VISIBLE else 1.0
+    visible = visibility > VISIBLE
+    eps2 = max(fit.eps_rmsn**2 - (fall if visible else 0.0), 0.0)
+    p = max(float(chdtrc(len(which), score)), _least_p(parts)) if visible else 1.0
     return Candidate(
         effect, expected, float(np.sqrt(eps2)), score, p, visibility, (effect.name,),
         _allowed(effect, expected),
@@ -220,11 +223,11 @@ def _least_p(parts: Sequence[Stretch]) -> float:
     return float(0.5 ** (sum(lengths.values()) / lag_window(parts)))
 
 
-def _fall(raw: Projected, which: Sequence[int], sizes: Vector) -> float:
-    """Fall of eps_RMSn^2 by linearisation."""
+def _explained(raw: Projected, which: Sequence[int], sizes: Vector) -> tuple[Vector, float]:
+    """Coefficients in units of the sizes, and the fall of eps_RMSn^2, by linearisation."""
     s = raw.of(which, sizes)
-    beta, *_ = np.linalg.lstsq(s, raw.residual, rcond=1e-10)
-    return float(raw.residual @ (s @ beta))
+    beta = np.asarray(np.linalg.lstsq(s, raw.residual, rcond=1e-10)[0])
+    return beta, float(raw.residual @ (s @ beta))
 
 
 def _allowed(effect: Effect, expected: Mapping[str, float]) -> bool:

@@ -14,6 +14,7 @@ from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.output_error import Norm, Problem, Unknown, norms, where_compared
 from trialid.ship.effect import Effect, Force, Parameter, Rate
 from trialid.ship.model import ShipModel, check_mass
+from trialid.ship.rigid_body import MASS_PARAMETERS
 from trialid.simulation.at_rest import check_at_rest
 from trialid.simulation.graph import SYMBOL, order
 from trialid.simulation.integrate import Engine, Simulator, guess, initial, inputs, prepare
@@ -77,7 +78,7 @@ def pose(
     unknowns = (*(_shared(simulator, n, settings) for n in shared),
                 *_nuisances(simulator, fitted, per_trial, settings))  # fmt: skip
     unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
-    check_mass(simulator.model, {n: simulator.model.value(n) for n in simulator.model.parameters})
+    check_mass(simulator.model, {n: simulator.model.value(n) for n in MASS_PARAMETERS})
     compared = tuple(where_compared(t, simulator) for t in fitted)
     y_rms = norms(fitted, compared, settings.outputs, settings.norm)
     weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])

@@ -96,12 +96,27 @@ class ShipModel:
             Neither the pipeline nor the ship file gives it.
         """
         found = self.stated(name)
+        if found is None and not self._acts(name):
+            return 0.0
         if found is None:
             raise EffectError(
                 f"parameter {name!r} has no value: ship {self.ship.name!r} gives none; "
                 f"free it, or write [model.values] {name} = ..."
             )
         return found
+
+    def _acts(self, name: str) -> bool:
+        """Whether a parameter reaches anything that is simulated: Kv does not where roll is not."""
+        effect = next(e for e in self.effects if name in e.parameters)
+        if effect.forms != (Force,):
+            return True
+        signals = dict.fromkeys(effect.signals, 0.1)
+        nulls = {n: p.null for n, p in effect.parameters.items()}
+        [there] = effect({**signals, **nulls, name: effect.parameters[name].start})
+        [absent] = effect({**signals, **nulls})
+        rows = {ROWS[s] for s in self.states if s in ROWS}
+        moved = {row for row, a, b in zip(Force._fields, there, absent, strict=True) if a != b}
+        return bool(rows & moved) or not moved
 
     def stated(self, name: str) -> float | None:
         """A parameter's value if the pipeline or the ship file gives one."""
