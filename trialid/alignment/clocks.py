@@ -108,6 +108,13 @@ def common(
         )
     opening, duration = _cut((end - start) / 1e9, window, where)
     samples = math.floor(duration / period + 1e-6) + 1
+    _check_count(samples, duration, period, (start, end), where)
+    return Grid(start + round(opening * 1e9), period, samples)
+
+
+def _check_count(
+    samples: int, duration: float, period: float, ends: tuple[int, int], where: str
+) -> None:
     if samples < FEWEST:
         raise AlignmentError(
             f"{where}: {duration:.6g} s hold {samples} samples {period:.6g} s apart, at least "
@@ -120,10 +127,9 @@ def common(
         )
     if samples > MOST:
         raise AlignmentError(
-            f"{where}: the channels seem to last {duration:.4g} s, {moment(start)} to {moment(end)}"
-            "; a stamp is wild: cut the log, or choose a window"
+            f"{where}: the channels seem to last {duration:.4g} s, {moment(ends[0])} to "
+            f"{moment(ends[1])}; a stamp is wild: cut the log, or choose a window"
         )
-    return Grid(start + round(opening * 1e9), period, samples)
 
 
 def _cut(duration: float, window: tuple[float, float] | None, where: str) -> tuple[float, float]:

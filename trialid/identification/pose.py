@@ -59,7 +59,13 @@ def pose(
     settings: Settings,
     near: Mapping[str, float] = MappingProxyType({}),
 ) -> Problem:
-    """What is unknown, and what a residual is made of."""
+    """What is unknown, and what a residual is made of.
+
+    Raises
+    ------
+    NotIdentifiable, EffectError, ShipError
+        The trials or the model cannot carry the question; one line says why.
+    """
     fitted = tuple(t for t in trials if t.use == "fit")
     _check_outputs(trials, settings)
     full, per_trial = with_nuisance(model, settings)
@@ -71,14 +77,10 @@ def pose(
         settings.engine,
         settings.substeps,
     )
-    _check_simulated(simulator)
-    check_at_rest(simulator.model)
-    for trial in trials:
-        inputs(simulator, trial)
+    _check_ready(simulator, trials)
     unknowns = (*(_shared(simulator, n, settings) for n in shared),
                 *_nuisances(simulator, fitted, per_trial, settings))  # fmt: skip
     unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
-    check_mass(simulator.model, {n: simulator.model.value(n) for n in MASS_PARAMETERS})
     compared = tuple(where_compared(t, simulator) for t in fitted)
     y_rms = norms(fitted, compared, settings.outputs, settings.norm)
     weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
@@ -86,6 +88,15 @@ def pose(
     problem = Problem(simulator, fitted, unknowns, compared, y_rms, weights)
     _check_excitation(problem)
     return problem
+
+
+def _check_ready(simulator: Simulator, trials: Sequence[Trial]) -> None:
+    """Refuse a model that cannot be simulated in these trials."""
+    _check_simulated(simulator)
+    check_at_rest(simulator.model)
+    check_mass(simulator.model, {n: simulator.model.value(n) for n in MASS_PARAMETERS})
+    for trial in trials:
+        inputs(simulator, trial)
 
 
 def _check_outputs(trials: Sequence[Trial], settings: Settings) -> None:

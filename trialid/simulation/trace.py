@@ -81,14 +81,14 @@ def trace(model: ShipModel, free: Sequence[str], outputs: Sequence[str]) -> Equa
     inverse = {k: lift(graph, w) for k, w in solve(now.balance, rows).items()}
     right = {s: lift(graph, r) for s, r in (*now.balance.force.items(), *now.rates.items())}
     f = _state_rates(graph, model, right, inverse, rows)
-    names = model.all_states
+    names, given = model.all_states, list(free)
     W = {(names.index(a), names.index(b)): w for (a, b), w in inverse.items() if a in rows}
     W |= {(i, i): graph.constant(1.0) for i, s in enumerate(names) if s not in rows}
     mass = {k: lift(graph, m) for k, m in now.balance.mass.items()}
     symbols = [lift(graph, theta[n]) for n in free] + [x[s] for s in names]
     found = _drives(names, right, mass, f, symbols)
     G, drives = dict(zip(free, found, strict=False)), found[len(free) :]
-    ordered = tuple(sorted(free, key=lambda n: (sorted(G[n]), list(free).index(n))))
+    ordered = tuple(sorted(free, key=lambda n: (sorted(G[n]), given.index(n))))
     return Equations(
         graph=graph,
         states=names,
