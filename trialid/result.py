@@ -281,7 +281,8 @@ def _levers(s: Stability) -> Plain:
 def _finding(f: Finding) -> Plain:
     return {
         "output": f.output,
-        "finding": f.doing,
+        "finding": "stretch of time",
+        "doing": f.doing,
         "share": f.share,
         "excess": f.excess,
         "t_start": f.t_start,
