@@ -1,0 +1,85 @@
+"""The pipeline file: TOML in, frozen plain data out, every mistake named by file and key.
+
+Checked here: form, files, quantities, units, contradictions. Names of effects and parameters are
+checked by the model, which knows them; it says where with `where(recipe, key)`.
+"""
+
+import tomllib
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from trialid.errors import RecipeError
+from trialid.recipe.complaints import dotted, own_mistakes, problem, refusal
+from trialid.recipe.contradictions import contradictions
+from trialid.recipe.form import Recipe, SignalSource, TrialRecipe, neighbours
+
+__all__ = ["Recipe", "SignalSource", "TrialRecipe", "load", "signal_key", "sources", "where"]
+
+
+def load(path: Path) -> Recipe:
+    """Give the pipeline in a TOML file.
+
+    Raises
+    ------
+    RecipeError
+        In one line: the file, the key's full path, what is wrong, the nearest valid names.
+    """
+    table = _table(path)
+    try:
+        recipe = Recipe.model_validate({"name": path.stem, **table}, context=path)
+    except ValidationError as error:
+        raise refusal(path, [problem(one) for one in own_mistakes(error)]) from error
+    if problems := list(contradictions(recipe)):
+        raise refusal(path, problems)
+    return _with_shared_signals(recipe)
+
+
+def where(recipe: Recipe, key: str) -> str:
+    """Words that begin an error about a key: `pipelines/zigzag.toml: model.effects`."""
+    return f"{recipe.path}: {key}"
+
+
+def signal_key(recipe: Recipe, trial: TrialRecipe, quantity: str) -> str:
+    """Where a trial's signal is written: `trial[0].signals.u`, or `signals.u` when it is shared."""
+    if trial.signals.get(quantity) is recipe.signals.get(quantity, trial):
+        return dotted("signals", quantity)
+    place = [other.name for other in recipe.trials].index(trial.name)
+    return dotted("trial", place, "signals", quantity)
+
+
+def sources(recipe: Recipe) -> tuple[Path, ...]:
+    """Every file the pipeline reads, itself first."""
+    logs = chain.from_iterable(trial.logs for trial in recipe.trials)
+    return (recipe.path, recipe.ship, *recipe.model.effects_from, *logs)
+
+
+def _table(path: Path) -> dict[str, Any]:
+    text = _text(path)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        last = f"at line {text.count(chr(10)) + 1}, the end of the file"
+        said = str(error).replace("at end of document", last)
+        raise RecipeError(f"{path}: not TOML: {said}") from error
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")  # some editors write a byte-order mark
+    except FileNotFoundError as error:
+        raise RecipeError(f"{path}: no such pipeline file ({neighbours(path)})") from error
+    except UnicodeDecodeError as error:
+        raise RecipeError(f"{path}: not TOML: not UTF-8 text (byte {error.start})") from error
+    except OSError as error:
+        raise RecipeError(f"{path}: cannot be read ({error.strerror})") from error
+
+
+def _with_shared_signals(recipe: Recipe) -> Recipe:
+    trials = tuple(
+        trial.model_copy(update={"signals": {**recipe.signals, **trial.signals}})
+        for trial in recipe.trials
+    )
+    return recipe.model_copy(update={"trials": trials})

@@ -1,0 +1,114 @@
+"""What no single key of a pipeline file shows: contradictions, repetitions, unknown quantities."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from trialid import units
+from trialid.errors import UnitError, nearest
+from trialid.quantities import SIGNALS, Quantity
+from trialid.recipe.complaints import Problem, dotted
+from trialid.recipe.form import Recipe, SignalSource
+
+RUDDERS: Final = frozenset({"delta", "delta_order"})
+"""Signals whose sign no convention settles: indicators and SNAME have it opposite."""
+
+
+def contradictions(recipe: Recipe) -> Iterator[Problem]:
+    """Everything wrong that no single key shows."""
+    yield from _trial_problems(recipe)
+    yield from _signal_problems(recipe.signals, "signals")
+    for place, trial in enumerate(recipe.trials):
+        yield from _signal_problems(trial.signals, "trial", place, "signals")
+    yield from _output_problems(recipe)
+    yield from _repetitions(recipe)
+    yield from _quiet_problems(recipe)
+
+
+def _trial_problems(recipe: Recipe) -> Iterator[Problem]:
+    first: dict[str, int] = {}
+    for place, trial in enumerate(recipe.trials):
+        if first.setdefault(trial.name, place) != place:
+            at = dotted("trial", first[trial.name])
+            yield dotted("trial", place, "name"), f"{trial.name!r} is already the name of {at}"
+    if all(trial.use == "check" for trial in recipe.trials):
+        yield "trial", 'no trial to fit; at least one must have use = "fit"'
+
+
+def _signal_problems(signals: Mapping[str, SignalSource], *steps: str | int) -> Iterator[Problem]:
+    for name, source in signals.items():
+        if name not in SIGNALS:
+            yield dotted(*steps, name), f"unknown quantity; {_nearest_signal(name)}"
+            continue
+        if trouble := _side_trouble(SIGNALS[name], source.positive):
+            yield dotted(*steps, name, "positive"), trouble
+        if trouble := _unit_trouble(SIGNALS[name], source.unit):
+            yield dotted(*steps, name, "unit"), trouble
+
+
+def _nearest_signal(name: str) -> str:
+    """Words for an unknown signal; a name that logs use leads to ours.
+
+    >>> _nearest_signal("heading")
+    "did you mean 'psi'?"
+    """
+    for own, signal in SIGNALS.items():
+        if name.lower() in signal.aliases:
+            return f"did you mean {own!r}?"
+    return nearest(name, SIGNALS)
+
+
+def _side_trouble(quantity: Quantity, positive: str | None) -> str:
+    if quantity.mirror == 1 and positive is not None:
+        return f"{quantity.name!r} has no port or starboard ({quantity.meaning}); leave it out"
+    if quantity.name in RUDDERS and positive is None:
+        return (
+            'missing; write the side the ship turns to when it is positive: "starboard" or "port"'
+        )
+    return ""
+
+
+def _unit_trouble(quantity: Quantity, unit: str | None) -> str:
+    try:
+        units.factor(unit or quantity.unit, quantity.unit)
+    except UnitError as error:
+        return str(error)
+    return ""
+
+
+def _output_problems(recipe: Recipe) -> Iterator[Problem]:
+    outputs = recipe.identify.outputs
+    for place, name in enumerate(outputs):
+        if name not in SIGNALS:
+            key = dotted("identify", "outputs", place)
+            yield key, f"unknown quantity {name!r}; {_nearest_signal(name)}"
+    for section, table in (
+        (("identify", "weights"), recipe.identify.weights),
+        (("diagnose", "noise"), recipe.diagnose.noise),
+    ):
+        for name in table:
+            if name not in outputs:
+                hint = nearest(name, outputs)
+                yield dotted(*section, name), f"not one of identify.outputs; {hint}"
+
+
+def _repetitions(recipe: Recipe) -> Iterator[Problem]:
+    lists: dict[str, Iterable[object]] = {
+        "model.states": recipe.model.states,
+        "model.effects": recipe.model.effects,
+        "identify.free": recipe.identify.free,
+        "identify.outputs": recipe.identify.outputs,
+        "identify.nuisance": recipe.identify.nuisance,
+    }
+    for key, entries in lists.items():
+        for entry, times in Counter(entries).items():
+            if times > 1:
+                yield key, f"{str(entry)!r} stands there {times} times; once is enough"
+
+
+def _quiet_problems(recipe: Recipe) -> Iterator[Problem]:
+    names = [trial.name for trial in recipe.trials]
+    for place, stretch in enumerate(recipe.diagnose.quiet):
+        if stretch.trial not in names:
+            key = dotted("diagnose", "quiet", place, "trial")
+            yield key, f"no trial {stretch.trial!r}; {nearest(stretch.trial, names)}"
