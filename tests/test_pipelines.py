@@ -18,6 +18,7 @@ import pandas as pd
 import pytest
 
 import trialid
+from trialid.errors import RecipeError
 from trialid.pipeline import run, write
 from trialid.recipe import load
 
@@ -464,3 +465,12 @@ def test_its_size_is_found(hidden: Finished, truth: str) -> None:
     row = next(row for row in hidden.result["missing"] if row["effect"] == truth)
     for name, value in made.HIDDEN[1].items():
         assert row["parameters"][name]["refitted"] == pytest.approx(value, rel=0.25)
+
+
+def test_a_quiet_stretch_outside_its_trial_is_refused(tmp_path: Path) -> None:
+    text = HIDDEN_EFFECT.read_text(encoding="utf-8")
+    text = text.replace('"../sample_data', f'"{(ROOT / "sample_data").as_posix()}')
+    wrong = tmp_path / "quiet.toml"
+    wrong.write_text(text + '\nquiet = [{ trial = "zigzag-10", window = [0.0, 5000.0] }]\n')
+    with pytest.raises(RecipeError, match=r"diagnose.quiet\[0\].window: \[0, 5000\] s is outside"):
+        run(load(wrong))

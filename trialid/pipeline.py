@@ -68,6 +68,7 @@ def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
         The input is wrong; nothing is left behind.
     """
     trials = align_trials(recipe, progress)
+    check_quiet(recipe, trials)
     catalogue = available(recipe)
     model = build_model(recipe, catalogue)
     settings = settings_of(recipe)
@@ -122,8 +123,11 @@ def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
     recordings = ingest.read_together(trial.logs, [s.channel for s in sources])
     recordings = tuple(replace(r, path=_as_written(recipe, r.path)) for r in recordings)
     made = align(trial.name, trial.use, recordings, sources, recipe.align.period, trial.window)
-    if trial.speed is None or "u" in made.signals:
+    if trial.speed is None:
         return made
+    if "u" in made.signals:
+        remark = f"the stated speed {trial.speed:g} m/s is not used: u is recorded"
+        return replace(made, remarks=(*made.remarks, remark))
     signals = {**made.signals, "u": np.full(made.samples, trial.speed)}
     valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
     remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
@@ -289,6 +293,24 @@ def worth_refitting(recipe: Recipe, ranking: tuple[Candidate, ...]) -> tuple[Can
 def stated_noise(recipe: Recipe) -> dict[str, float]:
     """Sensor figures of the pipeline, from the unit of reports to SI."""
     return {c: x / units.shown(SIGNALS[c]) for c, x in recipe.diagnose.noise.items()}
+
+
+def check_quiet(recipe: Recipe, trials: tuple[Trial, ...]) -> None:
+    """Refuse a stretch declared quiet that its trial does not hold.
+
+    Raises
+    ------
+    RecipeError
+        In one line, with the key.
+    """
+    ends = {t.name: t.duration for t in trials}
+    for i, stretch in enumerate(recipe.diagnose.quiet):
+        start, stop = stretch.window
+        if start < 0.0 or stop > ends[stretch.trial] + 1e-9:
+            raise RecipeError(
+                f"{where(recipe, f'diagnose.quiet[{i}].window')}: [{start:g}, {stop:g}] s is "
+                f"outside trial {stretch.trial!r}, which lasts {ends[stretch.trial]:g} s"
+            )
 
 
 def _declared_quiet(recipe: Recipe) -> dict[str, list[tuple[float, float]]]:
