@@ -133,3 +133,34 @@ def test_absent_knowledge_stays_absent():
     for p in known.parameters:
         expected = 0.1 / (p.S_imin * np.sqrt(p.n_effective)) + 0.05 / p.S_imin
         assert p.relative_error == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_prior_adds_its_information_to_the_record():
+    """White noise: precisions add, for the parameter and for what is entangled with it."""
+    subjects = [Subject(n, "physical", "1", 1.0, 2.0) for n in "abcd"]
+    e = rng.standard_normal(400) / 20.0
+    e -= A @ np.linalg.lstsq(A, e, rcond=None)[0]
+    stretch = [Stretch(0, 0, slice(0, 400), np.ones(400, dtype=bool))]
+    known = [*subjects[:1], Subject("b", "physical", "1", 1.0, 2.0, prior=0.05), *subjects[2:]]
+    scaled = assess(known, A / 2.0, e, stretch, None, None)
+    H = A.T @ A / 4.0 / (float(e @ e) / 396)
+    H[1, 1] += 1.0 / 0.05**2
+    expected = np.sqrt(np.diag(np.linalg.inv(H)))
+    found = [p.white_error for p in scaled.parameters]
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    np.testing.assert_allclose([p.standard_error for p in scaled.parameters], expected, rtol=0.15)
+
+
+def test_what_only_the_prior_knows_has_the_priors_error():
+    twins = np.column_stack([A[:, 0], np.zeros(400)])
+    subjects = [
+        Subject("a", "physical", "1", 1.0, 1.0), Subject("b", "physical", "1", 1.0, 1.0, prior=0.3)
+    ]  # fmt: skip
+    e = rng.standard_normal(400) / 20.0
+    stretch = [Stretch(0, 0, slice(0, 400), np.ones(400, dtype=bool))]
+    rows = assess(subjects, twins, e, stretch, None, None).parameters
+    assert rows[1].S_imin == 0.0
+    assert rows[1].standard_error == pytest.approx(0.3, rel=1e-9)
+    alone = assess([*subjects[:1], Subject("b", "physical", "1", 1.0, 1.0)], twins, e, stretch,
+                   None, None).parameters  # fmt: skip
+    assert np.isnan(alone[1].standard_error)

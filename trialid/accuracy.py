@@ -153,31 +153,56 @@ class Stretch:
     compared: Mask
 
 
-def white_covariance(A: Vector, residual: Vector) -> Vector:
-    """Covariance of the relative parameters if the residual were white; (n_theta, n_theta)."""
+def row_variance(A: Vector, residual: Vector) -> float:
+    """Variance of one row of the residual, for as many parameters fitted as A has columns."""
     rows, columns = A.shape
-    variance = float(residual @ residual) / max(rows - columns, 1)
-    inverse = np.linalg.pinv(triangle(A))
-    return np.asarray(variance * inverse @ inverse.T)
+    return float(residual @ residual) / max(rows - columns, 1)
 
 
-def coloured_covariance(A: Vector, residual: Vector, stretches: Sequence[Stretch]) -> Vector:
+def white_covariance(A: Vector, residual: Vector, held: Vector | None = None) -> Vector:
+    """Covariance of the relative parameters if the residual were white; (n_theta, n_theta).
+
+    `held` as in `coloured_covariance`.
+    """
+    inverse = np.linalg.pinv(_with_priors(A, held))
+    return np.asarray(row_variance(A, residual) * inverse @ inverse.T)
+
+
+def _with_priors(A: Vector, held: Vector | None) -> Vector:
+    """R with R^T R = A^T A + diag(held)^2: each prior is one more row; (n_theta, n_theta)."""
+    R = triangle(A)
+    return R if held is None else triangle(np.concatenate([R, np.diag(held)]))
+
+
+def coloured_covariance(
+    A: Vector, residual: Vector, stretches: Sequence[Stretch], held: Vector | None = None
+) -> Vector:
     """Covariance of the relative parameters for the residual's own colour; (n_theta, n_theta).
 
     A sandwich: (A^T A)^-1 A^T C A (A^T A)^-1, where C holds the autocovariance of each output in
     each trial up to a lag of three correlation times (Bartlett weights), no correlation between.
     Morelli & Klein (1997), `Accuracy of aerodynamic model parameters estimated from flight test
     data`, in the time domain.
+
+    Parameters
+    ----------
+    held
+        What priors weigh: root of the row variance over the prior's relative standard deviation,
+        zero for a parameter without; (n_theta,).
     """
     rows, columns = A.shape
-    narrow = np.linalg.pinv(triangle(A))
+    narrow = np.linalg.pinv(_with_priors(A, held))
     inverse = narrow @ (A @ narrow).T
     meat = np.zeros((columns, columns))
     for stretch in stretches:
         e = _on_clock(residual[stretch.rows], stretch.compared)
         a = _on_clock(inverse[:, stretch.rows].T, stretch.compared)
         meat += a.T @ _correlated(a, autocovariance(e, stretch.compared))
-    return meat * rows / max(rows - columns, 1)
+    meat *= rows / max(rows - columns, 1)
+    if held is None:
+        return meat
+    pulled = (narrow @ narrow.T) * held
+    return np.asarray(meat + row_variance(A, residual) * pulled @ pulled.T)
 
 
 def _on_clock(values: NDArray[np.floating[Any]], compared: Mask) -> Vector:
@@ -300,6 +325,8 @@ class Subject:
     unit: str
     value: float
     reference: float
+    prior: float | None = None
+    """Standard deviation of what is known of it beforehand, in its unit."""
 
 
 def assess(
@@ -324,10 +351,14 @@ def assess(
     """
     reference = np.array([s.reference for s in subjects])
     A = relative_sensitivities(psi, reference)
-    covariance = coloured_covariance(A, residual, stretches)
-    hidden = minimum_sensitivity(A) <= 0.0  # the pseudo-inverse would give these an error of zero
+    held = _held(subjects, np.sqrt(row_variance(A, residual)))
+    covariance = coloured_covariance(A, residual, stretches, held)
+    white = white_covariance(A, residual, held)
+    # the pseudo-inverse would give an error of zero to what neither record nor prior knows
+    hidden = minimum_sensitivity(_with_priors(A, held)) <= 0.0
     covariance[hidden, :] = covariance[:, hidden] = np.nan
-    rows = _rows(subjects, A, residual, covariance, noise, undermodelling)
+    white[hidden, :] = white[:, hidden] = np.nan
+    rows = _rows(subjects, A, white, covariance, noise, undermodelling)
     physical = np.array([s.kind == "physical" for s in subjects])
     clean = without_nuisance(A, physical)
     S_min, S_max, ratio = sensitivity_range(clean)
@@ -340,20 +371,29 @@ def assess(
     return Accuracy(rows, S_min, S_max, ratio, typical, weak, scaled)
 
 
+def _held(subjects: Sequence[Subject], deviation: float) -> Vector | None:
+    """What the priors weigh against rows of this deviation; None where there is no prior."""
+    if all(s.prior is None for s in subjects):
+        return None
+    return np.array(
+        [0.0 if s.prior is None else deviation * abs(s.reference) / s.prior for s in subjects]
+    )
+
+
 def _rows(
     subjects: Sequence[Subject],
     A: Vector,
-    residual: Vector,
+    white: Vector,
     covariance: Vector,
     noise: float | None,
     undermodelling: float | None,
 ) -> tuple[ParameterAccuracy, ...]:
     R = triangle(A)  # R^T R = A^T A, and that is all that Eq. 10 to 13 look at
     S_i, S_imin, R_i = sensitivity(R), minimum_sensitivity(R), correlation_ratio(R)
-    white = np.sqrt(np.diag(white_covariance(A, residual)))
+    plain = np.sqrt(np.diag(white))
     coloured = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
-        n_effective = len(residual) * (white / coloured) ** 2
+        n_effective = len(A) * (plain / coloured) ** 2
     x, m = relative_error(noise or 0.0, undermodelling or 0.0, S_imin, n_effective)
     return tuple(
         ParameterAccuracy(
@@ -361,7 +401,7 @@ def _rows(
             float(S_i[i]), float(S_imin[i]), float(R_i[i]),
             _scaled(noise, x[i], s.reference), _scaled(undermodelling, m[i], s.reference),
             float(coloured[i] * abs(s.reference)),
-            float(white[i] * abs(s.reference)) if S_imin[i] > 0.0 else np.nan,
+            float(plain[i] * abs(s.reference)),
             float(n_effective[i]),
         )
         for i, s in enumerate(subjects)

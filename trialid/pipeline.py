@@ -327,7 +327,10 @@ def accuracy_of(fit: Fit, parts: Split) -> Accuracy:
         near_zero = abs(value) < NEAR_ZERO * unknown.size
         typical = unknown.kind == "nuisance" or near_zero
         reference = unknown.size if typical else float(value)
-        subjects.append(Subject(unknown.name, unknown.kind, unknown.unit, float(value), reference))
+        known = unknown.prior[1] if unknown.prior else None
+        subjects.append(
+            Subject(unknown.name, unknown.kind, unknown.unit, float(value), reference, known)
+        )
     return assess(
         subjects, fit.psi, fit.residual, stretches(fit.problem), parts.noise, parts.undermodelling
     )

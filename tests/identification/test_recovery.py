@@ -197,3 +197,30 @@ def test_nuisance_parameters_are_recovered():
             label = f"{name} [{trial.name}]"
             assert abs(fit.value(label) - truth) < 4.0 * errors[label], label
     assert fit.value("tau_phi [zigzag-20]") == pytest.approx(late, abs=0.15)
+
+
+def test_huber_weighs_even_where_the_search_starts_at_the_plain_optimum():
+    """The first pass moves nothing there, and is not the last for that."""
+    from dataclasses import replace
+
+    trials = noisy(white, 7)
+    hit = np.random.default_rng(8).random(trials[0].samples) < 0.02
+    struck = [with_noise(t, hit * 40.0 * GYRO, 0.0 * hit) for t in trials]
+    plain = identify(struck, MODEL, SETTINGS)
+    robust = replace(SETTINGS, loss="huber")
+    here = identify(struck, MODEL, robust, near=plain.estimates)
+    there = identify(struck, MODEL, robust)
+    errors = np.array([p.standard_error for p in accuracy(plain).physical])
+    assert np.all(np.abs(here.theta[:10] - there.theta[:10]) < 0.02 * errors)
+    assert np.any(np.abs(here.theta[:10] - plain.theta[:10]) > 0.1 * errors)
+
+
+def test_a_prior_holds_what_the_record_alone_would_not():
+    """Ydelta and Yv hardly part in roll and turn: with a prior on one, both keep their place."""
+    from dataclasses import replace
+
+    trials = noisy(waves, 19)
+    known = replace(SETTINGS, priors={"Ydelta": (MODEL.value("Ydelta"), 1e-5)})
+    fit = identify(trials, MODEL.with_values({"Ydelta": -0.004}), known)
+    assert fit.converged
+    assert fit.value("Ydelta") == pytest.approx(MODEL.value("Ydelta"), abs=3e-5)

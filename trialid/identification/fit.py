@@ -35,6 +35,10 @@ TOLERANCE: Final = 1e-5
 """Share of the residual left along the sensitivities: a thousandth of a standard error."""
 
 PASSES: Final = 12
+
+SETTLED: Final = 1e-6
+"""Typical sizes that a further pass may move any parameter when it is the last."""
+
 SAME_OPTIMUM: Final = 1e-6
 
 
@@ -187,12 +191,13 @@ def _search(problem: Problem, settings: Settings, start: Vector, progress: Progr
     """Minimise; again with new weights while a robust loss or a prior asks for it.
 
     A prior weighs in by the noise level of the record, and a robust loss by the residual, both of
-    which are known only after a fit: hence the passes, until nothing changes.
+    which are known only after a fit: hence the passes, until nothing changes. The first pass takes
+    the error of the start for noise, so that a prior holds what the record alone would not.
     """
     once = settings.loss == "squares" and not any(x.prior for x in problem.unknowns)
-    weights, noise = None, 0.0
+    weights, noise = None, 0.0 if once else _noise(problem, start)
     path: tuple[Iteration, ...] = ()
-    for _ in range(1 if once else PASSES):
+    for passed in range(1 if once else PASSES):
         minimum = minimise(
             _evaluator(problem, weights, noise),
             start,
@@ -205,14 +210,22 @@ def _search(problem: Problem, settings: Settings, start: Vector, progress: Progr
         )
         path += minimum.iterations
         moved = np.max(np.abs(minimum.theta - start) / [x.size for x in problem.unknowns])
-        if once or not minimum.iterations or (noise > 0.0 and moved < 1e-6):
+        if once or not minimum.iterations or (passed and moved < SETTLED):
             break
         start = minimum.theta
         point = linearise(problem, start)
         assert not isinstance(point, Departure)
         weights = _huber(point[0]) if settings.loss == "huber" else None
-        noise = float(np.linalg.norm(point[0])) / np.sqrt(len(point[0]) - len(start))
+        noise = _noise(problem, start)
     return _End(minimum, path)
+
+
+def _noise(problem: Problem, theta: Vector) -> float:
+    """Root mean square of a row of the residual, zero where nothing can be simulated."""
+    point = linearise(problem, theta)
+    if isinstance(point, Departure):
+        return 0.0
+    return float(np.linalg.norm(point[0])) / np.sqrt(len(point[0]) - len(theta))
 
 
 def _evaluator(
@@ -295,10 +308,10 @@ def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
     start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
     response = respond(problem.simulator, trial, values, start, sensitivities=False)
     compared = where_compared(trial, problem.simulator)
-    if response.departure is not None:
+    if response.departure is None:
+        eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
+    else:  # what was lost has no error, however good its beginning
         compared = compared & np.isfinite(response.y)
-    eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
-    if response.departure is not None:  # what was lost has no error, however good its beginning
         eps = dict.fromkeys(problem.outputs, np.inf)
     counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
     return Score(trial, response, compared, eps, counts)
