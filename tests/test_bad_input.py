@@ -677,7 +677,7 @@ def test_a_check_run_that_leaves_the_domain_is_said() -> None:
     result = finished()
     said = remarks(result, trial=1)
     assert "left the model's domain at t = 10.5 s" in said
-    assert "not compared after that" in said
+    assert "so the trial has no score" in said
     page = Path("out/report.html").read_text(encoding="utf-8")
     assert "domain at t = 10.5 s" in page
     series = pd.read_csv("out/series.csv")

@@ -119,7 +119,7 @@ def _trial(score: Any) -> Plain:
 
 def _departure(score: Any) -> list[str]:
     departure = score.response.departure
-    return [] if departure is None else [f"simulation: {departure}; not compared after that"]
+    return [] if departure is None else [f"simulation: {departure}; so the trial has no score"]
 
 
 def _model(fit: Fit) -> Plain:
