@@ -400,4 +400,4 @@ def _write_files(done: Run, folder: Path) -> None:
     write_csv(folder / "series.csv", done.series)
     write_mcap(folder / "predicted.mcap", done.result, done.series)
     write_page(folder / "report.html", done.result, done.series)
-    shutil.copyfile(done.recipe.path, folder / "pipeline.toml")
+    (folder / "pipeline.toml").write_bytes(done.recipe.content)
