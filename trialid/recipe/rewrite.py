@@ -22,6 +22,7 @@ def rewriting(path: Path, old: bytes, new: bytes) -> Iterator[Callable[[], None]
         The place cannot be written, or the file is no longer the old one.
     """
     target = path.resolve()
+    _check_unchanged(path, old)
     try:
         if not os.access(target, os.W_OK):
             raise PermissionError(13, "Permission denied")
@@ -31,8 +32,7 @@ def rewriting(path: Path, old: bytes, new: bytes) -> Iterator[Callable[[], None]
     ready = Path(name)
 
     def replace() -> None:
-        if target.read_bytes() != old:
-            raise RecipeError(f"{path}: was changed meanwhile and is left as it is; start again")
+        _check_unchanged(path, old)
         ready.replace(target)
 
     try:
@@ -44,3 +44,8 @@ def rewriting(path: Path, old: bytes, new: bytes) -> Iterator[Callable[[], None]
         yield replace
     finally:
         ready.unlink(missing_ok=True)
+
+
+def _check_unchanged(path: Path, old: bytes) -> None:
+    if not path.is_file() or path.read_bytes() != old:
+        raise RecipeError(f"{path}: was changed meanwhile and is left as it is; start again")

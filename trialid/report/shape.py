@@ -58,6 +58,27 @@ _BEFORE_AFTER = _keys("effect equation eps_rmsn eps_rmsn_check noise undermodell
     "by_output": Each(),
     "parameters": [_keys("name unit before after standard_error")],
 }
+_CHANGE = _keys(
+    "step effect equation eps_rmsn eps_rmsn_check noise undermodelling undermodelling_interval"
+    " eps_rmsn_foreseen not_foreseen"
+) | {
+    "by_output": Each(),
+    "by_output_check": Each(),
+    "verdict": [None],
+    "named": [None],
+    "taken_out": [None],
+    "parameters": [
+        _keys(
+            "name unit before after standard_error standard_error_before move move_in_errors"
+            " move_foreseen after_foreseen"
+        )
+    ],
+}
+_STEP = _keys("step added dropped eps_rmsn noise undermodelling eps_rmsn_check verdict version") | {
+    "effects": [None],
+    "free": [None],
+    "logs": [None],
+}
 
 SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "trials": [_TRIAL],
@@ -70,8 +91,11 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "where": [_keys("output finding share t_start t_end trial sentence")],
     "missing": [_MISSING],
     "verdict": _keys("kind effect sentence") | {"family": [None], "next_trial": Maybe({})},
-    "history": [_keys("added eps_rmsn noise undermodelling eps_rmsn_check") | {"effects": [None]}],
+    "history": [_STEP],
+    "history_remark": None,
+    "sources": [_keys("path sha256")],
     "before_after": Maybe(_BEFORE_AFTER),
+    "change": Maybe(_CHANGE),
 }
 
 
