@@ -79,11 +79,9 @@ def adding(recipe: Recipe, name: str) -> Edit:
         raise RecipeError(f"{where(recipe, 'model.effects')}: {name!r} is there already")
     catalogue = available(recipe)
     if name not in catalogue:
-        absent = [n for n in catalogue if n not in recipe.model.effects]
-        raise RecipeError(
-            f"{where(recipe, 'model.effects')}: there is no effect {name!r}; "
-            f"{nearest(name, absent)}; `trialid effects` lists them"
-        )
+        hint = nearest(name, catalogue)
+        hint = hint if hint.startswith("did") else "`trialid effects` lists what there is"
+        raise RecipeError(f"{where(recipe, 'model.effects')}: there is no effect {name!r}; {hint}")
     effect = catalogue[name]
     steps, _ = history.read(recipe.path)
     free = history.free_before(steps, name, tuple(effect.parameters))

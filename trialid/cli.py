@@ -214,18 +214,22 @@ def _stages(recipe: "Recipe", told: bool, shown: bool) -> "Iterator[Stage]":
     from trialid.change import present
     from trialid.report import steps
 
-    bar: list[Progress] = []
-    loop = stages(recipe, lambda sentence, share: bar[-1](sentence, share))
+    bars: list[Progress] = []
+
+    def show(sentence: str, fraction: float | None) -> None:
+        bars[-1](sentence, fraction)
+
+    loop = stages(recipe, show)
     if told:
         _print(steps.heading())
     while True:
         with _progress(shown=shown) as progress:
-            bar.append(progress)
+            bars.append(progress)
             stage = next(loop, None)
         if stage is None:
             return
         if told and stage.kept:
-            came = {} if stage.added is None else {"step": "added", "added": stage.added}
+            came = {"step": "added" if stage.added else "as written", "added": stage.added}
             _print(steps.line(present(stage.run.result) | came))
         yield stage
 

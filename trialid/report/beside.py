@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from trialid.report import labels, steps, wording
+from trialid.report.bars import foreseen_in_errors
 from trialid.report.shape import Run, whole
 from trialid.report.terminal import Words, add_row, new_table, number, percent, plain, times
 
@@ -66,10 +67,14 @@ def _pair(pair: Sequence[float | None] | None) -> tuple[str, str]:
 def _verdicts(change: Run) -> str:
     """The verdict before and after, with what was named."""
     pairs = zip(change["verdict"], change["named"], strict=True)
-    return "verdict: " + " -> ".join(
+    words = "verdict: " + " -> ".join(
         f"{kind or wording.DASH} ({name})" if name else str(kind or wording.DASH)
         for kind, name in pairs
     )
+    before, after = change["eps_rmsn_check"] or (None, None)
+    if change["step"] == "added" and None not in (before, after) and after >= before:
+        words += "; the held-out error does not fall: no trial speaks for this effect"
+    return words
 
 
 def _foreseen(change: Run) -> str:
@@ -129,10 +134,6 @@ def _distance(row: Row) -> float:
 def _moved(row: Row) -> tuple[str, str]:
     if row["before"] is None or row["after"] is None:
         return ("new" if row["before"] is None else "gone"), ""
-    error, ahead = row["standard_error_before"], row["move_foreseen"]
-    known = error and ahead is not None
-    return _signed(row["move_in_errors"]), _signed(ahead / error if known else None)
-
-
-def _signed(value: float | None) -> str:
-    return wording.DASH if value is None else f"{value:+.1f}"
+    moves = (row["move_in_errors"], foreseen_in_errors(row))
+    one, other = (wording.signed(move).replace(wording.MINUS, "-") for move in moves)
+    return one, other

@@ -54,10 +54,6 @@ _MISSING = _keys(
     "rank effect equation sentence eps_rmsn_predicted eps_rmsn_refitted eps_rmsn_check p_value"
     " visibility verdict"
 ) | {"family": [None], "parameters": Each(_keys("expected refitted"))}
-_BEFORE_AFTER = _keys("effect equation eps_rmsn eps_rmsn_check noise undermodelling") | {
-    "by_output": Each(),
-    "parameters": [_keys("name unit before after standard_error")],
-}
 _CHANGE = _keys(
     "step effect equation eps_rmsn eps_rmsn_check noise undermodelling undermodelling_interval"
     " eps_rmsn_foreseen not_foreseen"
@@ -74,6 +70,8 @@ _CHANGE = _keys(
         )
     ],
 }
+"""An effect that was added or dropped; of one that is only proposed, less is known."""
+
 _STEP = _keys("step added dropped eps_rmsn noise undermodelling eps_rmsn_check verdict version") | {
     "effects": [None],
     "free": [None],
@@ -94,7 +92,7 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "history": [_STEP],
     "history_remark": None,
     "sources": [_keys("path sha256")],
-    "before_after": Maybe(_BEFORE_AFTER),
+    "before_after": Maybe(_CHANGE),
     "change": Maybe(_CHANGE),
 }
 

@@ -144,7 +144,7 @@ def _change(run: Run) -> str:
     """The error before and after, fitted and held out."""
     pair = run["before_after"]
     if pair is None:
-        return "No effect was added."
+        return "No effect is proposed."
     check = pair["eps_rmsn_check"]
     held_out = f"held out {_pair(check)}" if check else "nothing held out"
     return f"With {pair['effect']}: fitted {_pair(pair['eps_rmsn'])}, {held_out}"
