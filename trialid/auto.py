@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from trialid import history
-from trialid.change import Edit, adding, present, proposed
+from trialid.change import Edit, adding, fitted_after, present, proposed
+from trialid.diagnosis.bias import foresee_adding
 from trialid.diagnosis.residual import effective_samples
 from trialid.diagnosis.score import cost
 from trialid.errors import TrialidError
@@ -55,7 +56,9 @@ def stages(recipe: Recipe, progress: Progress) -> Iterator[Stage]:
         added.append(name)
         try:
             edit = adding(stage.recipe, name)
-            run = examine(edit.after, trials, progress)
+            foreseen = foresee_adding(stage.run.findings.before.fit, edit.effect)
+            edit, fit = fitted_after(edit, trials, foreseen, progress)
+            run = examine(edit.after, trials, progress, fit)
         except TrialidError as error:
             stage = replace(stage, added=name, kept=False, end=f"with {name}: {error}")
         else:

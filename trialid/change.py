@@ -6,6 +6,7 @@ and one line more in the history.
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -30,12 +31,18 @@ from trialid.pipeline import (
     write,
 )
 from trialid.recipe import Recipe, read, where
-from trialid.recipe.edit import add_effect, drop_effect
+from trialid.recipe.edit import add_effect, drop_effect, start_at
 from trialid.recipe.rewrite import rewriting
 from trialid.result import SCHEMA, Plain
 from trialid.ship.effect import Effect
 from trialid.threads import one_thread
 from trialid.trial import Trial
+
+AS_FORESEEN: Final = 1.01
+"""An error above this many times the foreseen one is worth a second search."""
+
+BETTER: Final = 0.999
+"""An error must fall below this share for a start of one's own to be worth a line."""
 
 AS_BEFORE: Final = 1e-9
 """Relative difference up to which an earlier run and the fit at hand are the same."""
@@ -124,6 +131,18 @@ def _edited(
     return read(text.encode("utf-8"), recipe.path), said
 
 
+def written(edit: Edit) -> str:
+    """What is different in the file, in words: `effects + static_list, free + a_0`."""
+    old, new = edit.before, edit.after
+    sign = "+" if edit.step == "added" else "-"
+    free = set(old.identify.free) ^ set(new.identify.free)
+    words = [f"effects {sign} {edit.effect.name}"]
+    words += [f"free {sign} {n}" for n in edit.effect.parameters if n in free]
+    fresh = [n for n in new.model.values if n not in old.model.values]
+    words += [f"values.{n} = {new.model.values[n].value:g} (start)" for n in fresh]
+    return ", ".join(words)
+
+
 @one_thread
 def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     """Both models fitted and examined; nothing is written.
@@ -138,8 +157,9 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     """
     trials = align_trials(edit.before, progress)
     known = _before(edit, trials, folder, progress)
-    run = examine(edit.after, trials, progress)
     before, foreseen = (None, known) if isinstance(known, str) else known
+    edit, fit = fitted_after(edit, trials, foreseen, progress)
+    run = examine(edit.after, trials, progress, fit)
     steps, _ = history.read(edit.before.path)
     own = {key: edit.effect.name if key == edit.step else None for key in ("added", "dropped")}
     row = present(run.result) | {"step": edit.step} | own
@@ -152,6 +172,51 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     return Changed(edit, replace(run, result=result), (*base, row)[len(steps) :])
 
 
+def fitted_after(
+    edit: Edit, trials: tuple[Trial, ...], foreseen: Foreseen | str, progress: Progress
+) -> tuple[Edit, Fit]:
+    """The fit of the new model, and the edit with better starts where it needs them.
+
+    A new parameter starts at its typical value, which may be far off for this ship. If the search
+    from there fails, or ends above what linearisation foresaw, it begins again at the foreseen
+    values; if that is better, they are written into the file, which is then worth as much as this
+    fit.
+
+    Raises
+    ------
+    TrialidError
+        The new model cannot be fitted from either.
+    """
+    catalogue = available(edit.after)
+    near = _started(edit, foreseen)
+    try:
+        fit = fit_of(edit.after, trials, catalogue, progress)
+    except TrialidError:
+        if near is None:
+            raise
+        return near, fit_of(near.after, trials, catalogue, progress)
+    if near is None or isinstance(foreseen, str) or fit.eps_rmsn <= AS_FORESEEN * foreseen.eps_rmsn:
+        return edit, fit
+    with suppress(TrialidError):
+        again = fit_of(near.after, trials, catalogue, progress)
+        if again.eps_rmsn < BETTER * fit.eps_rmsn:
+            return near, again
+    return edit, fit
+
+
+def _started(edit: Edit, foreseen: Foreseen | str) -> Edit | None:
+    """The edit with foreseen values as starts; None where none is foreseen or some are stated."""
+    if edit.step != "added" or isinstance(foreseen, str):
+        return None
+    text = edit.after.text
+    for name, p in edit.effect.parameters.items():
+        if name in edit.after.model.values:
+            return None
+        value = float(np.clip(foreseen.values[name], p.low, p.high))
+        text = start_at(text, name, float(f"{value:.3g}"))
+    return replace(edit, after=read(text.encode("utf-8"), edit.after.path))
+
+
 def _before(
     edit: Edit, trials: tuple[Trial, ...], folder: Path, progress: Progress
 ) -> tuple[Plain, Foreseen | str] | str:
@@ -161,13 +226,19 @@ def _before(
     """
     try:
         fit = fit_of(edit.before, trials, available(edit.before), progress)
-        foresee = foresee_adding if edit.step == "added" else foresee_dropping
-        foreseen = foresee(fit, edit.effect)
+        foreseen = _foreseen(edit, fit)
         found = earlier(folder, edit.before, fit)
         found = found or dict(examine(edit.before, trials, progress, fit).result)
     except TrialidError as error:
         return f"the model before cannot be fitted: {error}"
     return found, foreseen
+
+
+def _foreseen(edit: Edit, fit: Fit) -> Foreseen | str:
+    if edit.step == "dropped":
+        return foresee_dropping(fit, edit.effect)
+    held = [n for n in edit.effect.parameters if n not in edit.after.identify.free]
+    return f"{held[0]} is not free" if held else foresee_adding(fit, edit.effect)
 
 
 def present(result: Mapping[str, Any]) -> Plain:

@@ -177,16 +177,18 @@ def _change(
 ) -> None:
     """Add or drop an effect, and show what it changed."""
     recipe, folder = _opened(pipeline, out)
-    from trialid.change import adding, carry_out, commit, dropping
+    from trialid.change import adding, carry_out, commit, dropping, written
 
     edit = (adding if step == "added" else dropping)(recipe, effect)
     with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
         done = carry_out(edit, folder, progress)
         with _writing(folder):
-            commit(recipe, edit.after, done.run, done.steps, folder)
+            commit(recipe, done.edit.after, done.run, done.steps, folder)
     for words in edit.taken_out:
         _complain(f"{pipeline}: taken out with {effect}: {words}")
-    _answer(done.run.result, folder, as_json, quiet, lambda result: _beside(result, pipeline))
+    back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
+    foot = f"{pipeline}: {written(done.edit)}\nUndo: {back}"
+    _answer(done.run.result, folder, as_json, quiet, lambda result: f"{_beside(result)}\n{foot}")
 
 
 def _grow(recipe: "Recipe", folder: Path, keep: bool, as_json: bool, quiet: bool) -> None:
@@ -261,14 +263,11 @@ def _answer(
         _print(f"{show(result)}\nReport: {folder / 'report.html'}")
 
 
-def _beside(result: Mapping[str, Any], pipeline: Path) -> str:
-    """The model before and after, and how to go back."""
+def _beside(result: Mapping[str, Any]) -> str:
+    """The model before and after."""
     from trialid.report.beside import beside
 
-    change = result["change"]
-    back = "drop" if change["step"] == "added" else "add"
-    undo = f"Undo: trialid {back} {pipeline} {change['effect']}"
-    return f"{_rendered(beside(result))}\n{undo}"
+    return _rendered(beside(result))
 
 
 @contextmanager

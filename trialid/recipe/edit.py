@@ -6,6 +6,7 @@ but for the names asked for, else the file is the user's to edit by hand.
 
 import copy
 import json
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
@@ -24,6 +25,9 @@ OWN_WORDS: Final[tuple[Keys, ...]] = (
     ("identify", "priors"), ("identify", "bounds"), ("model", "values"),
 )  # fmt: skip
 """Tables in which a user says something of one parameter."""
+
+BY_ADD: Final = "  # start, by linearisation"
+"""Marks a line that is not the user's."""
 
 BOM: Final = "\N{ZERO WIDTH NO-BREAK SPACE}"
 
@@ -57,6 +61,8 @@ def drop_effect(text: str, effect: str, parameters: Sequence[str]) -> tuple[str,
     free = _list(text, FREE)
     for name in [n for n in reversed(free) if n in parameters]:
         text = _without(text, FREE, name)
+    for name in parameters:
+        text = _without_start(text, name)
     text = _without(text, EFFECTS, effect)
     said = []
     for table in OWN_WORDS:
@@ -66,6 +72,48 @@ def drop_effect(text: str, effect: str, parameters: Sequence[str]) -> tuple[str,
                 said.append(f"{dotted(*table, name)} = {_inline(value)}")
                 text = _without_entry(text, table, name)
     return text, tuple(said)
+
+
+def start_at(text: str, name: str, value: float) -> str:
+    """The pipeline with a start for a parameter, in a line of its own below the effects.
+
+    `drop_effect` takes such a line out again byte for byte.
+
+    Raises
+    ------
+    RecipeError
+        As `add_effect`.
+    """
+    expected = copy.deepcopy(_data(text))
+    expected[EFFECTS[0]].setdefault("values", {})[name] = value
+    array = _source(text, EFFECTS)
+    at = text.find(array)
+    while at >= 0:
+        new = _with_line(text, at, at + len(array), f"values.{name} = {value}{BY_ADD}")
+        if _says(new, expected):
+            return new
+        at = text.find(array, at + 1)
+    new = _dumped(text, EFFECTS, "add", name, lambda model: model["values"].add(name, value))
+    if not _says(new, expected):
+        raise RecipeError(_by_hand(("model", "values"), "add", name))
+    return new
+
+
+def _with_line(text: str, start: int, stop: int, line: str) -> str:
+    """The text with a line after the one where a value ends, as far in and as deep as its key."""
+    before = text[:start].rpartition("\n")[2]
+    key = re.fullmatch(r"(\s*(?:[\w-]+\s*\.\s*)?)effects\s*=\s*", before)
+    if key is None:
+        return text
+    line = key[1] + line
+    ends = "\r\n" if "\r\n" in text else "\n"
+    at = text.find("\n", stop) + 1
+    return f"{text[:at]}{line}{ends}{text[at:]}" if at else f"{text}{ends}{line}"
+
+
+def _without_start(text: str, name: str) -> str:
+    line = rf"[ \t]*(?:[\w-]+\s*\.\s*)?values\.{re.escape(name)} = \S+{re.escape(BY_ADD)}"
+    return re.sub(rf"(?m)^{line}\r?\n|\r?\n{line}\Z", "", text, count=1)
 
 
 def _with(text: str, keys: Keys, name: str) -> str:
@@ -99,16 +147,20 @@ def _rewritten(
 def _without_entry(text: str, table: Keys, name: str) -> str:
     expected = copy.deepcopy(_data(text))
     del expected[table[0]][table[1]][name]
-    try:
-        document = tomlkit.parse(text.removeprefix(BOM))
-        section: Any = document[table[0]]
-        del section[table[1]][name]
-        new = text[: text.startswith(BOM)] + tomlkit.dumps(document)
-    except TOMLKitError as error:
-        raise RecipeError(_by_hand(table, "drop", name)) from error
+    new = _dumped(text, table, "drop", name, lambda section: section[table[1]].remove(name))
     if not _says(new, expected):
         raise RecipeError(_by_hand(table, "drop", name))
     return new
+
+
+def _dumped(text: str, keys: Keys, verb: str, name: str, change: Callable[[Any], object]) -> str:
+    """The text with one of its sections changed by TOML Kit."""
+    try:
+        document = tomlkit.parse(text.removeprefix(BOM))
+        change(document[keys[0]])
+        return text[: text.startswith(BOM)] + tomlkit.dumps(document)
+    except (TOMLKitError, KeyError) as error:
+        raise RecipeError(_by_hand(keys, verb, name)) from error
 
 
 def _by_hand(keys: Keys, verb: str, name: str) -> str:

@@ -72,7 +72,7 @@ def _verdicts(change: Run) -> str:
         for kind, name in pairs
     )
     before, after = change["eps_rmsn_check"] or (None, None)
-    if change["step"] == "added" and None not in (before, after) and after >= before:
+    if change["step"] == "added" and before and after and after >= before:
         words += "; the held-out error does not fall: no trial speaks for this effect"
     return words
 
