@@ -79,3 +79,6 @@ def test_what_is_not_linear_is_said():
     without, _ = pair(trials(-3e-5))
     assert "adds a state" in foresee_adding(without, CATALOGUE["rudder_servo"])
     assert "not an output" in foresee_adding(without, CATALOGUE["bias_psi"])
+    settings = replace(FIT, nuisance=("initial_state", "rudder_offset"))
+    nuisance = identify(trials(-3e-5), MODEL, settings)
+    assert "nuisance" in foresee_adding(nuisance, CATALOGUE["rudder_offset"])

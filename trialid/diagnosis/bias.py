@@ -40,6 +40,8 @@ class Foreseen:
 
 def foresee_adding(fit: Fit, effect: Effect) -> Foreseen | str:
     """What an effect would change; words instead where it cannot be linearised at its null."""
+    if effect.name in {e.name for e in fit.problem.simulator.model.effects}:
+        return "the fit has it already, as a nuisance of each trial"
     augmented = augment(fit, {effect.name: effect})
     if effect.name in augmented.left_out:
         return augmented.left_out[effect.name]
