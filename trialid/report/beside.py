@@ -25,7 +25,7 @@ def beside(result: Mapping[str, Any]) -> "RenderableType":
 
     run = whole(result)
     change = run["change"]
-    title = f"{run['pipeline'] or 'trialid'}: {change['effect']} {change['step']}"
+    title = f"{run['pipeline'] or 'trialid'}: {change['effect'] or 'an effect'} {change['step'] or 'changed'}"
     return Group(
         Words(title, 1, "bold"),
         Words(change["equation"] or "", 2, "dim"),
