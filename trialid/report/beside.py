@@ -1,6 +1,7 @@
 """A model before and after one effect was added or dropped, side by side on a terminal."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Final
 
 from trialid.report import labels, steps, wording
@@ -25,7 +26,8 @@ def beside(result: Mapping[str, Any]) -> "RenderableType":
 
     run = whole(result)
     change = run["change"]
-    title = f"{run['pipeline'] or 'trialid'}: {change['effect'] or 'an effect'} {change['step'] or 'changed'}"
+    done = f"{change['effect'] or 'an effect'} {change['step'] or 'changed'}"
+    title = f"{run['pipeline'] or 'trialid'}: {done}"
     return Group(
         Words(title, 1, "bold"),
         Words(change["equation"] or "", 2, "dim"),
@@ -66,7 +68,7 @@ def _pair(pair: Sequence[float | None] | None) -> tuple[str, str]:
 
 def _verdicts(change: Run) -> str:
     """The verdict before and after, with what was named."""
-    pairs = zip(change["verdict"], change["named"], strict=True)
+    pairs = zip_longest(change["verdict"], change["named"])
     words = "verdict: " + " -> ".join(
         f"{kind or wording.DASH} ({name})" if name else str(kind or wording.DASH)
         for kind, name in pairs
