@@ -196,7 +196,7 @@ def _families(
     def alike(one: Candidate, other: Candidate) -> bool:
         a, b = one.effect.name, other.effect.name
         shared = gram[np.ix_(columns[a], columns[b])]
-        return float(np.linalg.norm(scales[a] @ shared @ scales[b], 2)) > limit
+        return float(np.linalg.norm(scales[a] @ shared @ scales[b].T, 2)) > limit
 
     return [
         replace(c, family=(c.effect.name, *(
