@@ -25,8 +25,9 @@ from types import SimpleNamespace
 from typing import Final
 
 from hidden_scenarios import SCENARIOS
+from hidden_score import plainness
 from hidden_tables import ISSUE, SHORT, Row, report, thresholds, write
-from hidden_truth import FREE, NOISES, OUTPUTS, TRIAL_SETS, Scenario, guessed, record
+from hidden_truth import FREE, NOISES, OUTPUTS, TRIAL_SETS, Scenario, guessed, record, restored
 
 from trialid import pipeline
 from trialid.diagnosis.missing_effect import Refit, Verdict, confirmed, decide, refit
@@ -46,7 +47,7 @@ SEEDS: Final = 20
 SHORT_SEEDS: Final = 4
 SHORT_SCENARIOS: Final = (
     "yaw_drag_rar", "quadratic_roll_damping", "righting_arm_cubic", "delay_r", "gyro_cross_axis",
-    "odd_heel_yaw", "x_G + 1 % of L", "nothing",
+    "odd_switch", "x_G + 1 % of L", "nothing",
 )  # fmt: skip
 DEFAULTS: Final = SimpleNamespace(diagnose=DiagnoseRecipe())
 """A pipeline that says nothing in [diagnose]."""
@@ -107,16 +108,14 @@ def settings_of(model: ShipModel) -> Settings:
     return Settings(free, OUTPUTS, nuisance=("initial_state",))
 
 
-def true_candidate(scenario: Scenario, done: Diagnosis) -> tuple[int, Candidate] | None:
+def true_candidate(
+    scenario: Scenario, ranking: Sequence[Candidate]
+) -> tuple[int, Candidate] | None:
     """Place in the ranking, from 1, and score of what is hidden; None where it has neither."""
-    names = [e.name for e in scenario.effects]
-    for place, candidate in enumerate(done.ranking, 1):
-        if candidate.effect.name in names:
+    for place, candidate in enumerate(ranking, 1):
+        if candidate.effect.name in scenario.exact:
             return place, candidate
-    if not scenario.effects:
-        return None
-    alone, _ = rank(done.fit, {e.name: e for e in scenario.effects})
-    return (0, alone[0]) if alone else None
+    return None
 
 
 @one_thread
@@ -132,31 +131,32 @@ def run(task: Task) -> Row:
         done = diagnosed(trials, model, settings_of(model), watch)
     except TrialidError as error:
         return row.also(kind="error", name=str(error), seconds=watch.seconds)
-    return judged(row, scenario, done, watch)
+    if scenario.known:
+        with watch("truth"):
+            trials = record(scenario, noise, trial_set, seed, rudder=True)
+            row = row.also(plain=plainness(done.fit, trials, restored(scenario, done.fit.model)))
+    return judged(row, scenario, done).also(seconds=watch.seconds)
 
 
-def judged(row: Row, scenario: Scenario, done: Diagnosis, watch: Stopwatch) -> Row:
+def judged(row: Row, scenario: Scenario, done: Diagnosis) -> Row:
     """What the diagnosis said beside what is true."""
     verdict, named, family = done.verdict, done.named, done.verdict.family
-    found = true_candidate(scenario, done)
+    found = true_candidate(scenario, done.ranking)
     if found is not None:
         place, candidate = found
         row = row.also(
-            score=candidate.score,
-            p=candidate.p_value,
-            rank=place,
-            visibility=candidate.visibility,
-            eps_true=candidate.eps_predicted,
-        )
+            score=candidate.score, p=candidate.p_value, rank=place,
+            visibility=candidate.visibility, eps_true=candidate.eps_predicted,
+        )  # fmt: skip
     if named is not None:
         row = row.also(eps_predicted=named.candidate.eps_predicted, eps_after=named.fit.eps_rmsn)
     effect = CATALOGUE[verdict.effect] if verdict.effect else None
     return row.also(
         kind=verdict.kind, name=verdict.effect or "", family=family,
-        exact=bool({verdict.effect} & {e.name for e in scenario.effects}),
+        exact=verdict.effect in scenario.exact,
         right=bool({verdict.effect, *family} & scenario.right),
         physical=effect is not None and Force in effect.forms,
-        eps=done.fit.eps_rmsn, seconds=watch.seconds,
+        eps=done.fit.eps_rmsn,
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ chosen so that it can be seen. Whether it can is what the score says, run by run
 from collections.abc import Mapping
 from typing import Final
 
-from hidden_truth import DEG, Group, Scenario
+from hidden_truth import DEG, Gear, Group, Scenario, limited, servo
 
 from trialid.effects import CATALOGUE
 from trialid.maths import sin, tanh
@@ -25,35 +25,52 @@ TWINS: Final = (
 )
 """Pairs that no manoeuvre of a rudder separates: |cos| of their traces is 0.97 to 1.00."""
 
-
-@effect(source="made up for the benchmark: no ship does this")
-def odd_heel_yaw(r, phi, *, odd_N=0.0001):
-    """N = odd_N sin(3 phi / 0.1) |r|: a yaw moment that comes and goes with heel."""
-    return Force(N=odd_N * sin(phi * 30.0) * abs(r))
+MADE_UP: Final = "made up for the benchmark: no ship does this"
+"""The figure in each docstring is the largest |cos| of what the fit leaves of its trace with what
+it leaves of any effect of the catalogue, in the mixed trials."""
 
 
-@effect(source="made up for the benchmark: no ship does this", system="SI")
-def odd_switch(r, *, odd_Y=1e5):
-    """Y = odd_Y tanh(r / 0.0005): a side force that switches with the side of the turn."""
-    return Force(Y=odd_Y * tanh(r / 0.0005))
+@effect(source=MADE_UP)
+def odd_rudder(delta, *, odd_Ndelta=0.00007):
+    """N = odd_Ndelta sin(40 delta): a rudder moment that turns over every 4.5 deg; 0.36."""
+    return Force(N=odd_Ndelta * sin(40.0 * delta))
 
 
-@effect(source="made up for the benchmark: no ship does this")
-def odd_heel(v, phi, *, odd_K=0.01):
-    """K = odd_K v |v| phi |phi| / 0.01: drift that rights or heels by its own side."""
-    return Force(K=odd_K * v * abs(v) * phi * abs(phi) * 100.0)
+@effect(source=MADE_UP)
+def odd_switch(p, r, *, odd_Nswitch=0.00003):
+    """N = odd_Nswitch tanh(p / 0.005) tanh(r / 0.05): a moment that switches with two rates; 0.19.
+
+    The sign of roll rate and turn is all that counts.
+    """
+    return Force(N=odd_Nswitch * tanh(p / 0.005) * tanh(r / 0.05))
 
 
-@effect(source="made up for the benchmark: no ship does this")
-def odd_course(psi, *, odd_turn=0.0001):
-    """N = odd_turn sin(5 psi): a yaw moment with five periods in a turn of the compass."""
-    return Force(N=odd_turn * sin(psi * 5.0))
+@effect(source=MADE_UP)
+def odd_heel(v, phi, *, odd_Kvavphi=0.004):
+    """K = odd_Kvavphi v |v| phi: a heeling moment to one side, of drift times heel; 0.48."""
+    return Force(K=odd_Kvavphi * v * abs(v) * phi)
+
+
+@effect(source=MADE_UP)
+def odd_course(psi, *, odd_Y=0.0001):
+    """Y = odd_Y sin(8 psi): a side force with eight periods in a turn of the compass; 0.26."""
+    return Force(Y=odd_Y * sin(8.0 * psi))
 
 
 def _one(group: Group, name: str, values: Mapping[str, float]) -> Scenario:
     """An effect of the catalogue, with its own twins."""
     twins = frozenset(n for pair in TWINS if name in pair for n in pair)
     return Scenario(name, group, (CATALOGUE[name],), values, twins)
+
+
+def _gear(name: str, gear: Gear, *twins: str) -> Scenario:
+    """A steering gear between the order, which alone is recorded, and the rudder."""
+    return Scenario(name, "gear", names=frozenset([name]), twins=frozenset(twins), gear=gear)
+
+
+def _scored(scenario: Scenario) -> bool:
+    """Whether the catalogue has what is hidden, in a form that the diagnosis can score."""
+    return all(n in CATALOGUE for n in scenario.names)
 
 
 def _odd(made: Effect, value: float) -> Scenario:
@@ -120,13 +137,16 @@ SCENARIOS: Final[Mapping[str, Scenario]] = {
     for s in (
         *(_one("physics", name, values) for name, values in _PHYSICS.items()),
         *(_one("sensor", name, values) for name, values in _SENSORS.items()),
-        _odd(odd_heel_yaw, 0.0001),
-        _odd(odd_switch, 1e5),
-        _odd(odd_heel, 0.01),
+        _gear("rudder_servo", servo(1.5)),
+        _gear("rudder_servo_limited", limited(1.0, 1.2 * DEG)),
+        _odd(odd_rudder, 0.00007),
+        _odd(odd_switch, 0.00003),
+        _odd(odd_heel, 0.004),
         _odd(odd_course, 0.0001),
         Scenario("x_G + 1 % of L", "control", values={"x_G": 0.01}),
         Scenario("gyro scale + 3 %", "control", scale={"r": 1.03}),
         Scenario("roll scale + 3 %", "control", scale={"phi": 1.03}),
         Scenario("nothing", "nothing"),
     )
+    if _scored(s)
 }

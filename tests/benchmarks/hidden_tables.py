@@ -10,20 +10,21 @@ from typing import Any, Final
 import numpy as np
 
 DETECTABLE: Final = 30.0
-"""Score of what is hidden from which on it has to be named."""
+"""Likelihood ratio of what is hidden from which on it has to be named."""
 
 NEAR: Final = 0.2
 """Relative difference up to which a predicted and an achieved fall of the error agree."""
 
 IN_CATALOGUE: Final = ("physics", "sensor", "gear")
-STAGES: Final = ("simulate", "fit", "rank", "split", "refit", "decide")
+STAGES: Final = ("simulate", "fit", "rank", "split", "refit", "decide", "truth")
 
 
 @dataclass(frozen=True)
 class Row:
     """One run: what was hidden, what was said, and whether that is right.
 
-    `score`, `p`, `rank` and `visibility` are of what is hidden (rank 0: not in the catalogue).
+    `plain` says how plainly what is hidden stands in the record (`hidden_score`); `score`, `p`,
+    `rank` and `visibility` are the diagnosis's own figures of it.
     eps_RMSn: `eps` of the fit, `eps_true` as predicted with what is hidden, `eps_predicted` as
     predicted with what is named, `eps_after` as the refit with that came out.
     """
@@ -39,6 +40,7 @@ class Row:
     exact: bool = False
     right: bool = False
     physical: bool = False
+    plain: float | None = None
     score: float | None = None
     p: float | None = None
     rank: int | None = None
@@ -56,7 +58,7 @@ class Row:
     @property
     def detectable(self) -> bool:
         """Whether what is hidden stands out of the noise."""
-        return self.score is not None and self.score > DETECTABLE
+        return self.plain is not None and self.plain > DETECTABLE
 
     @property
     def named(self) -> bool:
@@ -168,7 +170,8 @@ def _near(row: Row) -> bool:
 
 
 HEAD: Final = (
-    "scenario", "group", "runs", "median score", "median rank", "detectable", "right", "exact",
+    "scenario", "group", "runs", "median plain", "median score", "median rank", "detectable",
+    "right", "exact",
     "wrong", "not in catalogue", "nothing", "cannot tell", "weak: right", "weak: wrong",
     "family size", "fall ratio", "within 20 %",
 )  # fmt: skip
@@ -177,15 +180,16 @@ HEAD: Final = (
 def scenario_line(rows: Sequence[Row]) -> list[str]:
     """One scenario under one noise; the verdicts in the middle are those of detectable runs.
 
-    Where there is no score (controls, nothing hidden) they are those of all runs.
+    Where plainness has no meaning (nothing hidden, a wrong scale) they are those of all runs.
     """
-    scored = any(r.score is not None for r in rows)
+    scored = any(r.plain is not None for r in rows)
     strong = [r for r in rows if r.detectable] if scored else list(rows)
     weak = [r for r in rows if not r.detectable] if scored else []
     ratios = [r.ratio for r in rows if r.ratio is not None]
     kinds = [r.kind for r in strong]
     return [
         rows[0].scenario, rows[0].group, str(len(rows)),
+        _median([r.plain for r in rows], ".0f"),
         _median([r.score for r in rows], ".0f"), _median([r.rank for r in rows], ".0f"),
         str(len(strong)) if scored else "-",
         str(sum(r.right for r in strong)), str(sum(r.exact for r in strong)),

@@ -60,11 +60,14 @@ class Scenario:
     Attributes
     ----------
     effects, values
-        What is added to the truth and is not in the fitted model, at this size.
+        What is added to the truth and is not in the fitted model, at this size (`values` may
+        also change the ship's own masses).
     group
         What a right diagnosis may say: a physical effect, a sensor or a gear at fault, something
         the catalogue does not hold, or nothing at all (a control that no record shows, or nothing
         hidden).
+    names
+        What the catalogue calls it, where that is not the name of `effects`.
     twins
         Names that count as right too: no record separates them from the truth.
     scale
@@ -77,14 +80,25 @@ class Scenario:
     group: Group
     effects: tuple[Effect, ...] = ()
     values: Mapping[str, float] = field(default_factory=dict)
+    names: frozenset[str] = frozenset()
     twins: frozenset[str] = frozenset()
     scale: Mapping[str, float] = field(default_factory=dict)
     gear: Gear | None = None
 
     @property
+    def exact(self) -> frozenset[str]:
+        """Its own name."""
+        return self.names or frozenset(e.name for e in self.effects)
+
+    @property
     def right(self) -> frozenset[str]:
         """Every name that is right."""
-        return self.twins | {e.name for e in self.effects}
+        return self.exact | self.twins
+
+    @property
+    def known(self) -> bool:
+        """Whether a model with it can be made, so that one can say how plainly it stands."""
+        return bool(self.effects or self.values or self.gear)
 
 
 @dataclass(frozen=True)
@@ -134,24 +148,33 @@ def guessed(scenario: Scenario, seed: int) -> ShipModel:
     )
 
 
+def restored(scenario: Scenario, model: ShipModel) -> ShipModel:
+    """A model with what is hidden put back at its true size."""
+    for effect in scenario.effects:
+        model = model + effect
+    return model.with_values(scenario.values)
+
+
 @functools.cache
 def _truth(scenario: Scenario) -> Simulator:
     """The true ship, ready to run."""
     model = replace(without(scenario), states=(*MODEL.states, "psi")) + CATALOGUE["outer_force"]
-    for effect in scenario.effects:
-        model = model + effect
-    return prepare(model.with_values({"scale_ext": 1.0, **scenario.values}), (), OUTPUTS)
+    return prepare(restored(scenario, model.with_values({"scale_ext": 1.0})), (), OUTPUTS)
 
 
-def record(scenario: Scenario, noise: str, trial_set: str, seed: int) -> tuple[Trial, ...]:
-    """Every trial of a set as logged."""
+def record(
+    scenario: Scenario, noise: str, trial_set: str, seed: int, rudder: bool = False
+) -> tuple[Trial, ...]:
+    """Every trial of a set as logged; with `rudder` the true rudder even where only orders are."""
     simulator = _truth(scenario)
     made = []
     for manoeuvre in TRIAL_SETS[trial_set]:
         rng = generator(seed, scenario.name, noise, trial_set, manoeuvre.name)
         forces = disturbance(noise, manoeuvre, rng)
-        made.append(_logged(scenario, _sailed(simulator, scenario, manoeuvre, forces, rng),
-                            manoeuvre, noise, rng))  # fmt: skip
+        passage = _sailed(simulator, scenario, manoeuvre, forces, rng)
+        made.append(_logged(scenario, passage, manoeuvre, noise, rng))
+        if scenario.gear is not None and not rudder:
+            made[-1] = _ordered(made[-1], passage)
     return tuple(made)
 
 
@@ -275,9 +298,8 @@ def _logged(
     """What the sensors log of a passage."""
     each = round(PERIOD / STEP)
     y, n = passage.y[::each], len(passage.y[::each])
-    rudder = ("delta", passage.delta) if scenario.gear is None else ("delta_order", passage.order)
     signals = {
-        rudder[0]: rudder[1][::each].copy(),
+        "delta": passage.delta[::each].copy(),
         "n": np.full(n, SHAFT),
         "u": passage.states["u"][::each] + LOG * rng.standard_normal(n),
         "psi": passage.states["psi"][::each] + COMPASS * rng.standard_normal(n),
@@ -289,3 +311,51 @@ def _logged(
             signals[c] = signals[c] + wave[c] * coloured(rng, n, 0.6, PERIOD)
     valid = {c: np.ones(n, dtype=bool) for c in signals}
     return Trial(manoeuvre.name, manoeuvre.use, PERIOD, signals, valid)
+
+
+def _ordered(trial: Trial, passage: Passage) -> Trial:
+    """The same record with the rudder's order in place of its angle."""
+    order = {"delta_order": passage.order[:: round(PERIOD / STEP)].copy()}
+    signals = {n: x for n, x in trial.signals.items() if n != "delta"} | order
+    valid = {n: np.ones(trial.samples, dtype=bool) for n in signals}
+    return Trial(trial.name, trial.use, PERIOD, signals, valid)
+
+
+def servo(T: float) -> Gear:
+    """A rudder that follows its order with time constant T [s]."""
+
+    def follow(order: Vector, step: float) -> Vector:
+        keep = np.exp(-step / T)
+        return np.asarray(lfilter([0.5 - 0.5 * keep] * 2, [1.0, -keep], order))
+
+    return follow
+
+
+def limited(T: float, rate: float) -> Gear:
+    """The same with a pump that moves the rudder no faster than `rate` [rad/s]."""
+
+    def follow(order: Vector, step: float) -> Vector:
+        most, share, delta = rate * step, 1.0 - np.exp(-step / T), np.zeros(len(order))
+        for k in range(1, len(order)):
+            move = (order[k - 1] - delta[k - 1]) * share
+            delta[k] = delta[k - 1] + min(max(move, -most), most)
+        return delta
+
+    return follow
+
+
+def backlash(width: float) -> Gear:
+    """A rudder with play: it moves when the order has taken up `width` [rad]."""
+
+    def follow(order: Vector, step: float) -> Vector:
+        half, delta = 0.5 * width, np.zeros(len(order))
+        for k in range(1, len(order)):
+            delta[k] = min(max(delta[k - 1], order[k] - half), order[k] + half)
+        return delta
+
+    return follow
+
+
+def deadband(half: float) -> Gear:
+    """A gear that does not answer orders below `half` [rad], and larger ones by so much less."""
+    return lambda order, step: order - np.clip(order, -half, half)
