@@ -135,7 +135,7 @@ def test_a_ship_at_rest_stays_at_rest(name: str) -> None:
 def test_absent_at_null(name: str) -> None:
     effect = CATALOGUE[name]
     for seed in range(DRAWS):
-        at = values(effect, seed) | {n: p.null for n, p in effect.parameters.items()}
+        at = values(effect, seed) | effect.nulls
         assert not any(flat(effect, at).values())
 
 
@@ -168,7 +168,7 @@ COEFFICIENTS = [
 def test_a_coefficient_does_what_its_letters_say(name: str, coefficient: str) -> None:
     """Yvar is v |r| in Y: the letters after `a` stand inside the modulus, d is the rudder."""
     effect = CATALOGUE[name]
-    nothing = {n: p.null for n, p in effect.parameters.items()}
+    nothing = effect.nulls
     for seed in range(DRAWS):
         at = values(effect, seed) | nothing
         product, inside = 1.0, False

@@ -10,7 +10,10 @@ KNOWN = {
     "rho": (1000.0, 1025.0), "g": (9.8, 9.82), "nabla": (2e4, 2.2e4), "p": (-0.05, 0.05),
     "r": (-0.02, 0.02),
 }  # fmt: skip
-SPAN = {"m/s": 1.5, "rad/s": 0.1, "rad": 0.4, "N": 1e5, "N m": 1e6, "m": 1.0, "1": 1.0}
+SPAN = {
+    "s": 300.0, "m/s^2": 0.2, "rad/s^2": 0.01, "m/s": 1.5, "rad/s": 0.1, "rad": 0.4, "N": 1e5,
+    "N m": 1e6, "m": 1.0, "1": 1.0,
+}  # fmt: skip
 """Unit to the size of a quantity that has no row of its own yet."""
 
 

@@ -113,6 +113,19 @@ SIGNALS = _table(
             aliases=_aliases("rpm shaft_speed propeller_rate"),
         ),
         Quantity("U", "U", "m/s", "m/s", "speed through the water sqrt(u^2 + v^2)", speed=1),
+        Quantity("t", "t", "s", "s", "time since the start of the trial", length=1, speed=-1),
+        Quantity("u_dot", "du/dt", "m/s^2", "m/s^2", "rate of the surge speed"),
+        Quantity("v_dot", "dv/dt", "m/s^2", "m/s^2", "rate of the sway speed", mirror=-1),
+        Quantity("p_dot", "dp/dt", "rad/s^2", "deg/s^2", "roll acceleration", mirror=-1),
+        Quantity("r_dot", "dr/dt", "rad/s^2", "deg/s^2", "yaw acceleration", mirror=-1),
+        Quantity(
+            "r_ref",
+            "r_ref",
+            "rad/s",
+            "deg/s",
+            "yaw rate of a reference sensor, an input",
+            mirror=-1,
+        ),
         Quantity("X_ext", "X_ext", "N", "N", "known outer force ahead (tug, tow line, test rig)"),
         Quantity(
             "Y_ext", "Y_ext", "N", "N", "known outer force to starboard at the origin", mirror=-1
@@ -135,3 +148,12 @@ PARTICULARS = _table(
 """Constants of the ship and the water an effect may ask for."""
 
 QUANTITIES = SIGNALS | PARTICULARS
+
+ACCELERATIONS = ("u_dot", "v_dot", "p_dot", "r_dot")
+"""Signals that the equations give and only a sensor may read."""
+
+MASS_PARAMETERS = (
+    "m", "x_G", "z_G", "I_xx", "I_zz",
+    "Xudot", "Yvdot", "Ypdot", "Yrdot", "Kvdot", "Kpdot", "Krdot", "Nvdot", "Npdot", "Nrdot",
+)  # fmt: skip
+"""Primed; those a ship file does not give are zero, except m, I_xx and I_zz."""

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from trialid.accuracy import Stretch
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
+from trialid.quantities import ACCELERATIONS
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
-from trialid.simulation.integrate import Departure, Simulator, prepare, signals_of
+from trialid.simulation.integrate import Departure, Simulator, prepare, recorded, signals_of
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -52,17 +53,30 @@ def candidates_for(
 
 
 def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, Effect]) -> str:
-    if effect.states:
-        return "adds a state: not linear at its null"
-    if not all(p.null == 0.0 for p in effect.parameters.values()):
+    if effect.scanned:
+        return "not linear at its null"
+    if not linear_parameters(effect):
         return "has no null at zero"
-    known = {*model.all_states, *model.ship.particulars, "U", "u", *trial.signals}
-    lacking = [s for s in signals_of(effect) if s not in known]
+    known = {
+        *model.all_states,
+        *effect.states,
+        *model.ship.particulars,
+        "U",
+        "u",
+        "t",
+        *ACCELERATIONS,
+    }
+    lacking = [s for s in signals_of(effect) if s not in known and not recorded(trial, s)]
     if lacking:
         return f"needs {', '.join(lacking)}, which the record does not hold"
     taken = {*model.parameters, *(p for e in able.values() for p in e.parameters)}
     clash = sorted(taken & set(effect.parameters))
     return f"parameter {clash[0]!r} is already there" if clash else ""
+
+
+def linear_parameters(effect: Effect) -> tuple[str, ...]:
+    """The parameters by which it is scored: those at which zero means that it is absent."""
+    return tuple(n for n, p in effect.parameters.items() if p.null == 0.0 and not p.scan)
 
 
 def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
@@ -81,8 +95,8 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     model = base
     for effect in able.values():
         model = model + effect
-    columns = tuple(p for e in able.values() for p in e.parameters)
-    model = model.with_values(dict.fromkeys(columns, 0.0))
+    columns = tuple(p for e in able.values() for p in linear_parameters(e))
+    model = model.with_values({n: x for e in able.values() for n, x in e.nulls.items()})
     free = (*problem.simulator.equations.free, *columns)
     substeps = problem.simulator.substeps
     simulator = prepare(model, free, problem.outputs, fit.settings.engine, substeps)

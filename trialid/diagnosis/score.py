@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc  # scipy.stats would take another 0.4 s to import
 
 from trialid.accuracy import Stretch
-from trialid.diagnosis.augment import Augmented, augment
+from trialid.diagnosis.augment import Augmented, augment, linear_parameters
 from trialid.diagnosis.residual import effective_samples
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
@@ -193,7 +193,8 @@ def _score(
     parts: Sequence[Stretch],
 ) -> Candidate | None:
     """The score test of one effect; None when it leaves no trace at all."""
-    which = [augmented.columns.index(p) for p in effect.parameters]
+    names = linear_parameters(effect)
+    which = [augmented.columns.index(p) for p in names]
     sizes = np.linalg.norm(augmented.S[:, which], axis=0)
     if not np.all(sizes > 0.0):
         return None
@@ -207,7 +208,7 @@ def _score(
     variance = hac(s * e[:, None], parts)
     g = s.T @ e
     score = float(g @ np.linalg.pinv(variance, rcond=1e-10, hermitian=True) @ g)
-    expected = {p: float(b / z) for p, b, z in zip(effect.parameters, beta, sizes, strict=True)}
+    expected = {p: float(b / z) for p, b, z in zip(names, beta, sizes, strict=True)}
     visible = visibility > VISIBLE
     eps2 = max(fit.eps_rmsn**2 - (fall if visible else 0.0), 0.0)
     p = max(float(chdtrc(len(which), score)), _least_p(parts)) if visible else 1.0
@@ -231,7 +232,9 @@ def _explained(raw: Projected, which: Sequence[int], sizes: Vector) -> tuple[Vec
 
 
 def _allowed(effect: Effect, expected: Mapping[str, float]) -> bool:
-    return all(p.low <= expected[n] <= p.high for n, p in effect.parameters.items())
+    return all(
+        effect.parameters[n].low <= x <= effect.parameters[n].high for n, x in expected.items()
+    )
 
 
 def hac(products: Vector, parts: Sequence[Stretch]) -> Vector:
@@ -282,7 +285,7 @@ def _families(
     """Name with each candidate those whose visible traces are nearly parallel to its own."""
     bases = {}
     for c in scored:
-        columns = [augmented.columns.index(p) for p in c.effect.parameters]
+        columns = [augmented.columns.index(p) for p in c.expected]
         Q, _ = np.linalg.qr(
             S[:, columns] / np.maximum(np.linalg.norm(S[:, columns], axis=0), 1e-300)
         )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from trialid.errors import ShipError, nearest
-from trialid.ship.rigid_body import MASS_PARAMETERS
+from trialid.quantities import MASS_PARAMETERS
 
 REQUIRED: Final = ("name", "source", "system", "rudder_positive", "particulars", "mass")
 OPTIONAL: Final = ("coefficients", "coefficient_speed", "notes")
