@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from trialid.accuracy import Stretch
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
-from trialid.quantities import ACCELERATIONS
-from trialid.ship.effect import Effect
-from trialid.ship.model import ShipModel
+from trialid.quantities import ACCELERATIONS, PARTICULARS
+from trialid.ship.effect import Effect, Steered
+from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import Departure, Simulator, prepare, recorded, signals_of
 from trialid.trial import Trial
 
@@ -68,10 +68,21 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
     }
     lacking = [s for s in signals_of(effect) if s not in known and not recorded(trial, s)]
     if lacking:
-        return f"needs {', '.join(lacking)}, which the record does not hold"
+        where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
+        return f"needs {', '.join(lacking)}, which the {where} does not hold"
+    for s in effect.acts_on(Steered):
+        if s in model.states:
+            return f"acts on the record of {s}, which is simulated"
+        if s in STATES and _varies(trial, s) is bool(effect.states):
+            return f"stands in for a record of {s}" if effect.states else f"needs a record of {s}"
     taken = {*model.parameters, *(p for e in able.values() for p in e.parameters)}
     clash = sorted(taken & set(effect.parameters))
     return f"parameter {clash[0]!r} is already there" if clash else ""
+
+
+def _varies(trial: Trial, signal: str) -> bool:
+    """Whether a motion is recorded: a stated approach speed is one number all along."""
+    return bool(np.ptp(trial.signals.get(signal, np.zeros(1))) > 0.0)
 
 
 def linear_parameters(effect: Effect) -> tuple[str, ...]:
@@ -123,7 +134,7 @@ def _with_trace(
     """Leave out sensors of signals that are not outputs."""
     kept, silent = {}, {}
     for name, effect in able.items():
-        unseen = [s for s in effect.measures if s not in outputs]
+        unseen = [s for s in effect.measures if s in STATES and s not in outputs]
         if unseen:
             silent[name] = f"{unseen[0]} is not an output"
         else:
