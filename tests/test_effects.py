@@ -45,9 +45,9 @@ FORCED_AT_REST = {"static_list", "steady_wind"}
 
 NO_NULL = {
     "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "rudder_backlash",
-    "propeller_thrust", "propeller_rudder",
+    "propeller_thrust", "propeller_rudder", "rudder_race",
 }  # fmt: skip
-"""Parameters inside the formula (time constants, diameters): never absent."""
+"""Never absent: parameters inside the formula (time constants), or instead of another effect."""
 
 NOT_LINEAR = NO_NULL | {"rudder_deadband"}
 """No superposition."""

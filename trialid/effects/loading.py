@@ -36,13 +36,13 @@ def gravity_centre_lower(*, dz_G=Parameter(0.003, low=-0.05, high=0.05)):
 
 @effect(source=LOADING)
 def yaw_inertia_error(*, dI_zz=Parameter(0.00005, low=-0.001, high=0.001)):
-    """I_zz = I_zz + dI_zz: mass lies further fore and aft than stated."""
+    """I_zz = I_zz + dI_zz: mass, or water that turns with it (-N_rdot), is further fore and aft."""
     return Mass(I_zz=dI_zz)
 
 
 @effect(source=LOADING)
 def roll_inertia_error(*, dI_xx=Parameter(0.000002, low=-0.0001, high=0.0001)):
-    """I_xx = I_xx + dI_xx: mass lies further from the roll axis than stated."""
+    """I_xx = I_xx + dI_xx: mass, or water that rolls with it (-K_pdot), is further from the axis."""
     return Mass(I_xx=dI_xx)
 
 
@@ -50,18 +50,6 @@ def roll_inertia_error(*, dI_xx=Parameter(0.000002, low=-0.0001, high=0.0001)):
 def sway_added_mass_error(*, dYvdot=Parameter(-0.0007, low=-0.02, high=0.02)):
     """Yvdot = Yvdot + dYvdot: water that moves sideways with the hull."""
     return Mass(Yvdot=dYvdot)
-
-
-@effect(source=SN82)
-def yaw_added_inertia_error(*, dNrdot=Parameter(-0.00004, low=-0.001, high=0.001)):
-    """Nrdot = Nrdot + dNrdot: water that turns with the hull."""
-    return Mass(Nrdot=dNrdot)
-
-
-@effect(source=SN82)
-def roll_added_inertia_error(*, dKpdot=Parameter(-0.0000004, low=-0.00003, high=0.00003)):
-    """Kpdot = Kpdot + dKpdot: water that rolls with the hull."""
-    return Mass(Kpdot=dKpdot)
 
 
 @effect(source=SN82)
@@ -78,6 +66,6 @@ def sway_roll_added_mass_error(*, dKvdot=Parameter(0.00002, low=-0.003, high=0.0
 
 EFFECTS = (
     metacentric_height_error, displacement_error, gravity_centre_ahead, gravity_centre_lower,
-    yaw_inertia_error, roll_inertia_error, sway_added_mass_error, yaw_added_inertia_error,
-    roll_added_inertia_error, sway_yaw_added_mass_error, sway_roll_added_mass_error,
+    yaw_inertia_error, roll_inertia_error, sway_added_mass_error, sway_yaw_added_mass_error,
+    sway_roll_added_mass_error,
 )  # fmt: skip

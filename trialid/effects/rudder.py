@@ -78,8 +78,9 @@ def rudder_flow_asymmetry(
 @effect(source="model tests at constant shaft speed")
 def rudder_race(
     delta, U0, *,
-    Y_race=Parameter(-0.003, low=-0.05, high=0.0), K_race=Parameter(0.0001, low=0.0, high=0.002),
-    N_race=Parameter(0.0015, low=0.0, high=0.02),
+    Y_race=Parameter(-0.003, low=-0.05, high=0.0, null=None),
+    K_race=Parameter(0.0001, low=0.0, high=0.002, null=None),
+    N_race=Parameter(0.0015, low=0.0, high=0.02, null=None),
 ):  # fmt: skip
     """Y, K, N = Y_race, K_race, N_race times delta U0 / U: rudder force that goes as U U0.
 
