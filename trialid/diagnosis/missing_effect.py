@@ -111,7 +111,7 @@ def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
     samples = effective_samples(fit)
 
     def price(r: Refit) -> float:
-        return cost(r.fit.eps_rmsn, len(r.candidate.expected), samples)
+        return cost(r.fit.eps_rmsn, len(r.candidate.effect.parameters), samples)
 
     able = [
         r
@@ -130,13 +130,13 @@ def rivals(
     """Effects that this record cannot tell from the named one: alike in trace, or as good."""
     samples = effective_samples(fit)
     fitted = {r.candidate.effect.name: r.fit.eps_rmsn for r in refits}
-    best = cost(named.fit.eps_rmsn, len(named.candidate.expected), samples)
+    best = cost(named.fit.eps_rmsn, len(named.candidate.effect.parameters), samples)
     close = [
         c.effect.name
         for c in ranking
         if c.allowed
         and c is not named.candidate
-        and cost(fitted.get(c.effect.name, c.eps_predicted), len(c.expected), samples)
+        and cost(fitted.get(c.effect.name, c.eps_predicted), len(c.effect.parameters), samples)
         < best + DECISIVE
     ]
     alike = [n for n in named.candidate.family[1:] if n not in close]
