@@ -21,12 +21,19 @@ Vector = NDArray[np.float64]
 class Projected:
     """Residual and candidate columns with everything the base columns reach taken out.
 
-    `Q` are orthonormal columns of what the base reaches.
+    Attributes
+    ----------
+    Q
+        Orthonormal columns of what the base reaches.
+    gram, moment
+        S^T S and S^T residual.
     """
 
     residual: Vector
     S: Vector
     Q: Vector
+    gram: Vector
+    moment: Vector
 
 
 @dataclass(frozen=True)
@@ -51,7 +58,8 @@ def project(residual: Vector, psi: Vector, S: Vector) -> Projected:
     """Take out of the residual and the candidates what the base columns reach."""
     norms = np.linalg.norm(psi, axis=0)
     Q, _ = np.linalg.qr(psi[:, norms > 0.0] / norms[norms > 0.0])
-    return Projected(residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S), Q)
+    e, S = residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S)
+    return Projected(e, S, Q, S.T @ S, S.T @ e)
 
 
 def gather(
@@ -91,9 +99,8 @@ def _left_over(raw: Projected, groups: Sequence[tuple[int, ...]], slow: int) -> 
 
 def explained(rows: Projected, group: Sequence[int]) -> tuple[Vector, float]:
     """Coefficients of a candidate's columns, and the fall of the sum of squares; (q,)."""
-    s = rows.S[:, group]
-    sizes = np.maximum(np.linalg.norm(s, axis=0), 1e-300)
-    gram = (s / sizes).T @ (s / sizes)
-    moment = (s / sizes).T @ rows.residual
-    beta = np.linalg.pinv(gram, rcond=1e-10, hermitian=True) @ moment
-    return np.asarray(beta / sizes), float(moment @ beta)
+    gram, moment = rows.gram[np.ix_(group, group)], rows.moment[list(group)]
+    sizes = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    inverse = np.linalg.pinv(gram / np.outer(sizes, sizes), rcond=1e-10, hermitian=True)
+    beta = inverse @ (moment / sizes)
+    return np.asarray(beta / sizes), float(moment / sizes @ beta)

@@ -94,7 +94,7 @@ def rank(
     def standing(c: Candidate) -> tuple[bool, bool, float]:
         return not c.allowed, c.p_value >= level, price(c, len(white.residual))
 
-    scored = _families(_best_of_each(made), augmented, white.S, family_cos)
+    scored = _families(_best_of_each(made), augmented, family_cos)
     return tuple(sorted(scored, key=standing)), augmented
 
 
@@ -138,8 +138,8 @@ def _candidate(
 def _explained(rows: Projected, trace: Trace) -> tuple[dict[str, float], float]:
     """Parameter values, and the fall of the sum of squares, by linearisation or as tried."""
     if trace.tried:
-        [s] = rows.S[:, trace.columns].T
-        return dict(trace.tried), float(2.0 * (rows.residual @ s) - s @ s)
+        [i] = trace.columns
+        return dict(trace.tried), float(2.0 * rows.moment[i] - rows.gram[i, i])
     beta, fall = explained(rows, trace.columns)
     return dict(zip(trace.parameters, map(float, beta), strict=True)), fall
 
@@ -158,18 +158,19 @@ def _best_of_each(made: Sequence[Candidate]) -> list[Candidate]:
     return list(best.values())
 
 
-def _families(
-    scored: Sequence[Candidate], augmented: Augmented, S: Vector, limit: float
-) -> list[Candidate]:
+def _families(scored: Sequence[Candidate], augmented: Augmented, limit: float) -> list[Candidate]:
     """Name with each candidate those whose visible traces are nearly parallel to its own."""
-    gram = S.T @ S
+    gram = augmented.evidence.white.gram
     columns = {c.effect.name: _columns(c, augmented) for c in scored}
     scales = {n: _inverse_root(gram[np.ix_(at, at)]) for n, at in columns.items()}
 
     def alike(one: Candidate, other: Candidate) -> bool:
         a, b = one.effect.name, other.effect.name
         shared = gram[np.ix_(columns[a], columns[b])]
-        return float(np.linalg.norm(scales[a] @ shared @ scales[b].T, 2)) > limit
+        cosines = scales[a] @ shared @ scales[b].T
+        if min(cosines.shape) == 1:  # a vector's length, without a decomposition
+            return float(np.sqrt(np.sum(cosines**2))) > limit
+        return float(np.linalg.norm(cosines, 2)) > limit
 
     return [
         replace(c, family=(c.effect.name, *(

@@ -42,7 +42,7 @@ def yaw_inertia_error(*, dI_zz=Parameter(0.00005, low=-0.001, high=0.001)):
 
 @effect(source=LOADING)
 def roll_inertia_error(*, dI_xx=Parameter(0.000002, low=-0.0001, high=0.0001)):
-    """I_xx = I_xx + dI_xx: mass, or water that rolls with it (-K_pdot), is further from the axis."""
+    """I_xx = I_xx + dI_xx: mass, or water that rolls with it (-K_pdot), is further off the axis."""
     return Mass(I_xx=dI_xx)
 
 
