@@ -5,13 +5,17 @@ is the same, and it does not know which of the two runs through it.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.ship.model import ShipModel, derivatives, motion
+from trialid.maths import exp
+from trialid.ship.effect import Delayed
+from trialid.ship.model import ShipModel, derivatives, late, readings
+from trialid.ship.model import slope as slope_of
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -121,7 +125,7 @@ def simulate(
     named = independent({**theta, **{f"{s}(0)": start[s] for s in model.all_states}})
     parameters = {n: named[n] for n in theta}
     x = {s: named[f"{s}(0)"] for s in model.all_states}
-    inputs = {s: trial.signals[s] for s in model.recorded}
+    inputs = _inputs(model, trial, parameters)
     step = trial.period / substeps
     seen = [x]
     for k in range(trial.samples - 1):
@@ -137,7 +141,7 @@ def simulate(
 def _advance(
     model: ShipModel,
     x: Mapping[str, Any],
-    inputs: Mapping[str, Vector],
+    inputs: Mapping[str, Any],
     k: int,
     clock: tuple[int, int, float],
     theta: Mapping[str, Dual],
@@ -147,30 +151,57 @@ def _advance(
     rate: dict[str, Any] = dict.fromkeys(x, 0.0)
     for ahead, weight in RK4:
         along = (j + ahead) / substeps
-        now = {s: float(u[k] * (1.0 - along) + u[k + 1] * along) for s, u in inputs.items()}
+        now = {s: u[k] * (1.0 - along) + u[k + 1] * along for s, u in inputs.items()}
         rate = derivatives(model, {s: x[s] + ahead * step * rate[s] for s in x}, now, theta)
         total = {s: total[s] + weight * step * rate[s] for s in x}
     return {s: x[s] + total[s] for s in x}
 
 
+def _inputs(model: ShipModel, trial: Trial, theta: Mapping[str, Dual]) -> dict[str, Sequence[Any]]:
+    """Recorded signals, a late one shifted as a dual number: nothing is left to correct for."""
+    recorded = {**trial.signals, "t": trial.t}
+    inputs: dict[str, Sequence[Any]] = {
+        s: [float(a) for a in recorded[s]] for s in model.recorded if s in recorded
+    }
+    for name in model.late_inputs:
+        [effect] = [e for e in model.effects if name in e.acts_on(Delayed)]
+        [part] = effect(theta)
+        inputs[name] = _late(inputs[name], [part[name] / trial.period] * trial.samples)
+        inputs[late(name)] = [part[name]] * trial.samples
+        inputs[slope_of(name)] = [0.0] * trial.samples
+    return inputs
+
+
 def _recorded(
     model: ShipModel,
     seen: list[dict[str, Any]],
-    inputs: Mapping[str, Vector],
+    inputs: Mapping[str, Sequence[Any]],
     theta: Mapping[str, Dual],
     output: str,
     period: float,
 ) -> list[Any]:
-    instants = [
-        motion(model, x, {s: float(u[k]) for s, u in inputs.items()}, theta)
-        for k, x in enumerate(seen)
-    ]
-    exact = [now.measured[output] for now in instants]
-    delay = instants[0].delay.get(output)
-    return exact if delay is None else _late(exact, delay / period)
+    instants = []
+    for k, x in enumerate(seen):
+        here = {s: u[k] for s, u in inputs.items()}
+        instants.append(readings(model, x, here, theta, derivatives(model, x, here, theta)))
+    y = [now.measured[output] for now in instants]
+    for tau in instants[0].lags.get(output, ()):
+        y = _slow(y, tau / period)
+    delays = [now.delay.get(output) for now in instants]
+    return y if delays[0] is None else _late(y, [d / period for d in delays])
 
 
-def _late(y: list[Any], lag: Any) -> list[Any]:
+def _slow(y: list[Any], ratio: Any) -> list[Any]:
+    """T dz/dt = y - z over each step with a straight y: the textbook solution."""
+    z = [y[0]]
+    fading = exp(-1.0 / ratio)
+    for before, now in pairwise(y):
+        tangent = now - before  # per sample; the particular solution is y - T slope
+        z.append(now - ratio * tangent + (z[-1] - before + ratio * tangent) * fading)
+    return z
+
+
+def _late(y: Sequence[Any], lags: Sequence[Any]) -> list[Any]:
     """Textbook cubic Hermite through the samples, slopes by the five-point difference."""
     last = len(y) - 1
 
@@ -180,10 +211,10 @@ def _late(y: list[Any], lag: Any) -> list[Any]:
     def rate(k: int) -> Any:
         return (at(k - 2) - 8.0 * at(k - 1) + 8.0 * at(k + 1) - at(k + 2)) / 12.0
 
-    whole = math.ceil(_value(lag))
-    w = whole - lag
     late = []
-    for k in range(len(y)):
+    for k, lag in enumerate(lags):
+        whole = math.ceil(_value(lag))
+        w = whole - lag
         a = k - whole
         ends = at(a) * (1.0 + 2.0 * w) * (1.0 - w) ** 2 + at(a + 1) * (w * w * (3.0 - 2.0 * w))
         late.append(ends + rate(a) * (w * (1.0 - w) ** 2) + rate(a + 1) * (w * w * (w - 1.0)))

@@ -8,9 +8,12 @@ from trialid.quantities import QUANTITIES
 KNOWN = {
     "u": (5.0, 9.0), "n": (5.0, 9.0), "U": (5.0, 9.0), "U0": (7.0, 8.0), "L": (170.0, 180.0),
     "rho": (1000.0, 1025.0), "g": (9.8, 9.82), "nabla": (2e4, 2.2e4), "p": (-0.05, 0.05),
-    "r": (-0.02, 0.02),
+    "r": (-0.02, 0.02), "n_p": (5.0, 9.0), "n_s": (5.0, 9.0), "T": (8.0, 9.0), "h": (12.0, 40.0),
 }  # fmt: skip
-SPAN = {"m/s": 1.5, "rad/s": 0.1, "rad": 0.4, "N": 1e5, "N m": 1e6, "m": 1.0, "1": 1.0}
+SPAN = {
+    "s": 300.0, "m/s^2": 0.2, "rad/s^2": 0.01, "m/s": 1.5, "rad/s": 0.1, "rad": 0.4, "N": 1e5,
+    "N m": 1e6, "m": 1.0, "1": 1.0,
+}  # fmt: skip
 """Unit to the size of a quantity that has no row of its own yet."""
 
 

@@ -110,9 +110,73 @@ SIGNALS = _table(
             "rad/s",
             "rpm",
             "propeller shaft speed, positive ahead",
+            length=-1,
+            speed=1,
             aliases=_aliases("rpm shaft_speed propeller_rate"),
         ),
+        Quantity(
+            "n_p",
+            "n_p",
+            "rad/s",
+            "rpm",
+            "shaft speed of the port propeller, positive ahead",
+            length=-1,
+            speed=1,
+            aliases=_aliases("rpm_port"),
+        ),
+        Quantity(
+            "n_s",
+            "n_s",
+            "rad/s",
+            "rpm",
+            "shaft speed of the starboard propeller, positive ahead",
+            length=-1,
+            speed=1,
+            aliases=_aliases("rpm_starboard"),
+        ),
+        Quantity(
+            "V_aw",
+            "V_aw",
+            "m/s",
+            "m/s",
+            "speed of the apparent wind",
+            speed=1,
+            aliases=_aliases("aws apparent_wind_speed"),
+        ),
+        Quantity(
+            "gamma_aw",
+            "gamma_aw",
+            "rad",
+            "deg",
+            "where the apparent wind comes from, off the bow, positive starboard",
+            mirror=-1,
+            angle=True,
+            aliases=_aliases("awa apparent_wind_angle"),
+        ),
+        Quantity("h", "h", "m", "m", "depth of the water", length=1, aliases=_aliases("depth")),
+        Quantity(
+            "alpha_w",
+            "alpha_w",
+            "rad",
+            "deg",
+            "slope of the waves across the ship, positive water lower to starboard",
+            mirror=-1,
+            aliases=_aliases("wave_slope"),
+        ),
         Quantity("U", "U", "m/s", "m/s", "speed through the water sqrt(u^2 + v^2)", speed=1),
+        Quantity("t", "t", "s", "s", "time since the start of the trial", length=1, speed=-1),
+        Quantity("u_dot", "du/dt", "m/s^2", "m/s^2", "rate of the surge speed"),
+        Quantity("v_dot", "dv/dt", "m/s^2", "m/s^2", "rate of the sway speed", mirror=-1),
+        Quantity("p_dot", "dp/dt", "rad/s^2", "deg/s^2", "roll acceleration", mirror=-1),
+        Quantity("r_dot", "dr/dt", "rad/s^2", "deg/s^2", "yaw acceleration", mirror=-1),
+        Quantity(
+            "r_ref",
+            "r_ref",
+            "rad/s",
+            "deg/s",
+            "yaw rate of a reference sensor, an input",
+            mirror=-1,
+        ),
         Quantity("X_ext", "X_ext", "N", "N", "known outer force ahead (tug, tow line, test rig)"),
         Quantity(
             "Y_ext", "Y_ext", "N", "N", "known outer force to starboard at the origin", mirror=-1
@@ -130,8 +194,19 @@ PARTICULARS = _table(
         Quantity("g", "g", "m/s^2", "m/s^2", "acceleration of gravity", length=-1, speed=2),
         Quantity("nabla", "nabla", "m^3", "m^3", "volume of displacement", length=3),
         Quantity("U0", "U_0", "m/s", "m/s", "approach speed of the trial", speed=1),
+        Quantity("T", "T", "m", "m", "draught, where the ship file gives it", length=1),
+        Quantity("B", "B", "m", "m", "beam, where the ship file gives it", length=1),
     )
 )
 """Constants of the ship and the water an effect may ask for."""
 
 QUANTITIES = SIGNALS | PARTICULARS
+
+ACCELERATIONS = ("u_dot", "v_dot", "p_dot", "r_dot")
+"""Signals that the equations give and only a sensor may read."""
+
+MASS_PARAMETERS = (
+    "m", "x_G", "z_G", "I_xx", "I_zz",
+    "Xudot", "Yvdot", "Ypdot", "Yrdot", "Kvdot", "Kpdot", "Krdot", "Nvdot", "Npdot", "Nrdot",
+)  # fmt: skip
+"""Primed; those a ship file does not give are zero, except m, I_xx and I_zz."""

@@ -129,7 +129,7 @@ class Case:
         model, eq = self.simulator.model, self.simulator.equations
         theta = np.array([model.value(n) for n in eq.parameters])
         x0 = np.array([integrate.guess(model, self.trial, s) for s in eq.states])
-        u = np.ascontiguousarray(integrate.inputs(self.simulator, self.trial))
+        u = np.ascontiguousarray(integrate.inputs(self.simulator, self.trial, {}))
         return theta, x0, u, integrate.domain(model), self.trial.period, 1
 
     @classmethod

@@ -68,4 +68,4 @@ def test_unseen_effects_are_left_out_with_a_reason():
     left_out = augment(fit, CATALOGUE).left_out
     assert "X_ext" in left_out["outer_force"] or "null" in left_out["outer_force"]
     assert left_out["bias_psi"] == "psi is not an output"
-    assert "state" in left_out["rudder_servo"]
+    assert "linear" in left_out["rudder_servo"]

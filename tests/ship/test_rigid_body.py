@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from trialid.quantities import MASS_PARAMETERS
 from trialid.ship.effect import Force
-from trialid.ship.rigid_body import MASS_PARAMETERS, rigid_body
+from trialid.ship.rigid_body import rigid_body
 
 BODY = dict.fromkeys(MASS_PARAMETERS, 0.0) | {
     "m": 3.0, "x_G": 0.4, "z_G": -0.2, "I_xx": 0.7, "I_zz": 5.0,

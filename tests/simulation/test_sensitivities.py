@@ -35,6 +35,41 @@ def late_lift(u, v, r, phi, delta, lift, L, *, a_l=9e5, T_l=Parameter(3.0, "s"),
 '''
 
 
+OWN_SENSORS = '''
+from trialid.ship.effect import Delayed, Lagged, Mass, Measured, Parameter, effect
+
+
+@effect(source="made up: a rudder that acts late")
+def late_rudder(*, tau_delta=Parameter(0.8, "s")):
+    """delta acts tau_delta after its record."""
+    return Delayed(delta=tau_delta)
+
+
+@effect(source="made up: a slow gyro on a clock that drifts")
+def slow_gyro(t, *, T_gyro=Parameter(0.9, "s"), drift=Parameter(0.02)):
+    """r behind two equal low-passes, one in each effect; late by drift t."""
+    return Lagged(r=T_gyro), Delayed(r=drift * t)
+
+
+@effect(source="made up")
+def slower_gyro(*, T_slow=Parameter(2.1, "s")):
+    """A second low-pass."""
+    return Lagged(r=T_slow)
+
+
+@effect(source="made up: a pendulum above the axis")
+def pendulum(u, r, v_dot, p_dot, *, k_v=Parameter(0.11, "s^2/m"), k_p=Parameter(0.4, "s^2")):
+    """phi_measured = phi + k_v (dv/dt + u r) - k_p dp/dt."""
+    return Measured(phi=k_v * (v_dot + u * r) - k_p * p_dot)
+
+
+@effect(source="made up: cargo moved")
+def cargo(*, dx_G=Parameter(0.01), dI_zz=Parameter(0.0001)):
+    """x_G + dx_G and I_zz + dI_zz."""
+    return Mass(x_G=dx_G, I_zz=dI_zz)
+'''
+
+
 def variant(name: str, everything: ShipModel, folder: Path) -> ShipModel:
     match name:
         case "recorded rudder":
@@ -45,12 +80,23 @@ def variant(name: str, everything: ShipModel, folder: Path) -> ShipModel:
             model = everything + CATALOGUE[name]
             return model.with_values({"T_servo": 1.2, "rate_max": 0.05})
     file = folder / "own.py"
+    if name == "late inputs and slow sensors":
+        file.write_text(OWN_SENSORS, encoding="utf-8")
+        everything = everything - "delay_r"
+        for own in from_file(file).values():
+            everything = everything + own
+            typical = {n: p.start for n, p in own.parameters.items()}
+            everything = everything.with_values(typical)
+        return everything
     file.write_text(OWN_EFFECT, encoding="utf-8")
     model = everything + from_file(file)["late_lift"]
     return model.with_values({"a_l": 9e5, "T_l": 3.0, "s_l": 0.6, "q_l": 0.3})
 
 
-VARIANTS = ("recorded rudder", "rudder_servo", "rudder_servo_limited", "a user's own effect")
+VARIANTS = (
+    "recorded rudder", "rudder_servo", "rudder_servo_limited", "a user's own effect",
+    "late inputs and slow sensors",
+)  # fmt: skip
 
 
 def run(

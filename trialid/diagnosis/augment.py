@@ -1,36 +1,73 @@
-"""Sensitivities to effects the model does not have, all from one simulation per trial."""
+"""Traces of effects the model does not have: sensitivities at their null, or differences."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy import Stretch
+from trialid.diagnosis.evidence import Evidence, gather
+from trialid.diagnosis.scan import secants
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
-from trialid.ship.effect import Effect
-from trialid.ship.model import ShipModel
-from trialid.simulation.integrate import Departure, Simulator, prepare, signals_of
+from trialid.quantities import ACCELERATIONS, PARTICULARS
+from trialid.ship.effect import Effect, Steered
+from trialid.ship.model import STATES, ShipModel
+from trialid.simulation.integrate import Departure, Simulator, prepare, recorded, signals_of
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class Trace:
+    """One way an effect can show: by its parameters near their null, or at one value tried.
+
+    Attributes
+    ----------
+    columns
+        Where it stands in `Augmented.S`.
+    parameters
+        What the columns are by; empty where a value was tried.
+    tried
+        The values tried; empty where the effect is linear at its null.
+    """
+
+    effect: Effect
+    columns: tuple[int, ...]
+    parameters: tuple[str, ...] = ()
+    tried: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Augmented:
     """Residual, base and candidate columns, normed and stacked alike.
 
-    `columns` names the candidate parameters in the order of `S`.
+    Attributes
+    ----------
+    traces
+        What the columns of `S` are.
     """
 
-    effects: tuple[Effect, ...]
-    columns: tuple[str, ...]
+    traces: tuple[Trace, ...]
     residual: Vector
     psi: Vector
     S: Vector
     stretches: tuple[Stretch, ...]
     left_out: Mapping[str, str]
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """Every effect with a trace."""
+        return tuple({t.effect.name: t.effect for t in self.traces}.values())
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """The same rows less what the fitted parameters reach, raw and white."""
+        groups = [t.columns for t in self.traces]
+        return gather(self.residual, self.psi, self.S, self.stretches, groups)
 
 
 def candidates_for(
@@ -52,37 +89,88 @@ def candidates_for(
 
 
 def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, Effect]) -> str:
-    if effect.states:
-        return "adds a state: not linear at its null"
-    if not all(p.null == 0.0 for p in effect.parameters.values()):
-        return "has no null at zero"
-    known = {*model.all_states, *model.ship.particulars, "U", "u", *trial.signals}
-    lacking = [s for s in signals_of(effect) if s not in known]
+    if not effect.scanned and not linear_parameters(effect):
+        return "nothing in it can be zero"
+    known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
+    known |= set(ACCELERATIONS)
+    lacking = [s for s in signals_of(effect) if s not in known and not recorded(trial, s)]
+    lacking += [
+        s for s in effect.states.values() if s and s not in known and not recorded(trial, s)
+    ]
     if lacking:
-        return f"needs {', '.join(lacking)}, which the record does not hold"
-    taken = {*model.parameters, *(p for e in able.values() for p in e.parameters)}
+        where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
+        return f"needs {', '.join(lacking)}, which the {where} does not hold"
+    doubled = sorted(set(effect.states) & {*model.all_states, *trial.signals})
+    if doubled:
+        held = "simulated" if doubled[0] in model.all_states else "recorded"
+        return f"gives {doubled[0]}, which is {held} already"
+    others = [e for e in able.values() if not e.scanned]
+    taken = {*model.parameters, *(p for e in others for p in e.parameters)}
     clash = sorted(taken & set(effect.parameters))
-    return f"parameter {clash[0]!r} is already there" if clash else ""
+    if clash:
+        return f"parameter {clash[0]!r} is already there"
+    return _steers_wrongly(model, trial, effect)
+
+
+def _steers_wrongly(model: ShipModel, trial: Trial, effect: Effect) -> str:
+    """Why an effect cannot change a motion that is an input: it needs a record, or is instead."""
+    for s in sorted({*effect.acts_on(Steered)} & set(STATES)):
+        if s in model.states:
+            return f"acts on the record of {s}, which is simulated"
+        if _varies(trial, s) is bool(effect.states):
+            return f"stands in for a record of {s}" if effect.states else f"needs a record of {s}"
+    return ""
+
+
+def _varies(trial: Trial, signal: str) -> bool:
+    """Whether a motion is recorded: a stated approach speed is one number all along."""
+    return bool(np.ptp(trial.signals.get(signal, np.zeros(1))) > 0.0)
+
+
+def linear_parameters(effect: Effect) -> tuple[str, ...]:
+    """The parameters by which it is scored: those at which zero means that it is absent."""
+    return tuple(n for n, p in effect.parameters.items() if p.null == 0.0 and not p.scan)
 
 
 def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
-    """Sensitivities to every candidate at its null.
+    """Traces of every candidate.
 
     A candidate that cannot be simulated, or acts on nothing that is an output, is left out with
     the reason.
     """
     problem = fit.problem
-    base = problem.simulator.model
-    shared = {x.column: a for x, a in zip(problem.unknowns, fit.theta, strict=True)
-              if x.trial is None}  # fmt: skip
-    base = base.with_values(shared)
+    base = _fitted_model(fit)
     able, left_out = candidates_for(base, problem.trials[0], catalogue)
     able, silent = _with_trace(able, problem.outputs)
+    linear = [e for e in able.values() if not e.scanned]
+    residual, psi, S = _linear(fit, base, linear)
+    names = [p for e in linear for p in linear_parameters(e)]
+    traces = [
+        Trace(e, tuple(names.index(p) for p in linear_parameters(e)), linear_parameters(e))
+        for e in linear
+    ]
+    tried_, columns = _scanned(fit, base, [e for e in able.values() if e.scanned], len(names))
+    return Augmented(
+        (*traces, *tried_), residual, psi, np.column_stack([S, *columns]), stretches(problem),
+        left_out | silent,
+    )  # fmt: skip
+
+
+def _fitted_model(fit: Fit) -> ShipModel:
+    """The model as it was simulated, nuisance effects included, with its fitted values."""
+    shared = {x.column: float(a) for x, a in zip(fit.problem.unknowns, fit.theta, strict=True)
+              if x.trial is None}  # fmt: skip
+    return fit.problem.simulator.model.with_values(shared)
+
+
+def _linear(fit: Fit, base: ShipModel, effects: Sequence[Effect]) -> tuple[Vector, Vector, Vector]:
+    """Residual, base columns and sensitivities at the null, all from one simulation a trial."""
+    problem = fit.problem
     model = base
-    for effect in able.values():
+    for effect in effects:
         model = model + effect
-    columns = tuple(p for e in able.values() for p in e.parameters)
-    model = model.with_values(dict.fromkeys(columns, 0.0))
+    columns = tuple(p for e in effects for p in linear_parameters(e))
+    model = model.with_values({n: x for e in effects for n, x in e.nulls.items()})
     free = (*problem.simulator.equations.free, *columns)
     substeps = problem.simulator.substeps
     simulator = prepare(model, free, problem.outputs, fit.settings.engine, substeps)
@@ -91,10 +179,20 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     assert not isinstance(point, Departure)
     residual, psi = point
     n = len(fit.theta)
-    return Augmented(
-        tuple(able.values()), columns, residual, psi[:, :n], psi[:, n:], stretches(problem),
-        left_out | silent,
-    )  # fmt: skip
+    return residual, psi[:, :n], psi[:, n:]
+
+
+def _scanned(
+    fit: Fit, base: ShipModel, effects: Sequence[Effect], first: int
+) -> tuple[list[Trace], list[Vector]]:
+    """Effects that are not linear at their null, at each of the values to try."""
+    traces, columns = list[Trace](), list[Vector]()
+    for effect in effects:
+        for values, column in secants(fit, base, effect):
+            if column.any():
+                traces.append(Trace(effect, (first + len(columns),), (), values))
+                columns.append(column)
+    return traces, columns
 
 
 def _with_columns(problem: Problem, simulator: Simulator, columns: Sequence[str]) -> Problem:
@@ -109,7 +207,7 @@ def _with_trace(
     """Leave out sensors of signals that are not outputs."""
     kept, silent = {}, {}
     for name, effect in able.items():
-        unseen = [s for s in effect.measures if s not in outputs]
+        unseen = [s for s in effect.measures if s in STATES and s not in outputs]
         if unseen:
             silent[name] = f"{unseen[0]} is not an output"
         else:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from trialid.accuracy import Kind, Stretch, normed_rms
 from trialid.errors import NotIdentifiable
 from trialid.simulation.delay import margin
-from trialid.simulation.integrate import Departure, Response, Simulator, respond
+from trialid.simulation.integrate import Departure, Response, Simulator, recorded, respond
 from trialid.trial import Mask, Trial
 
 Vector = NDArray[np.float64]
@@ -171,8 +171,9 @@ def where_compared(trial: Trial, simulator: Simulator) -> Mask:
     """Where an output and every input were measured, away from ends a delay may spoil; (N, n_y)."""
     inputs = np.ones(trial.samples, dtype=bool)
     for name in simulator.equations.inputs:
-        if name in trial.valid:
-            inputs &= trial.valid[name]
+        source = recorded(trial, name)
+        if source is not None and source in trial.valid:
+            inputs &= trial.valid[source]
     columns = []
     for c in simulator.outputs:
         mask = inputs & trial.valid[c]

@@ -12,12 +12,20 @@ from trialid.accuracy import Kind
 from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.output_error import Norm, Problem, Unknown, norms, where_compared
+from trialid.quantities import MASS_PARAMETERS
 from trialid.ship.effect import Effect, Force, Parameter, Rate
 from trialid.ship.model import ShipModel, check_mass
-from trialid.ship.rigid_body import MASS_PARAMETERS
 from trialid.simulation.at_rest import check_at_rest
 from trialid.simulation.graph import SYMBOL, order
-from trialid.simulation.integrate import Engine, Simulator, guess, initial, inputs, prepare
+from trialid.simulation.integrate import (
+    Engine,
+    Simulator,
+    guess,
+    initial,
+    inputs,
+    prepare,
+    recorded,
+)
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -96,7 +104,7 @@ def _check_ready(simulator: Simulator, trials: Sequence[Trial]) -> None:
     check_at_rest(simulator.model)
     check_mass(simulator.model, {n: simulator.model.value(n) for n in MASS_PARAMETERS})
     for trial in trials:
-        inputs(simulator, trial)
+        inputs(simulator, trial, simulator.fixed)
 
 
 def _check_outputs(trials: Sequence[Trial], settings: Settings) -> None:
@@ -113,7 +121,8 @@ def _check_simulated(simulator: Simulator) -> None:
     """Refuse an output that no simulated motion reaches: an input has nothing to fit."""
     states = simulator.equations.states
     for name, node in simulator.equations.outputs.items():
-        if not any(n.op == SYMBOL and n.value in states for n in order([node])):
+        moved_by = {*states, f"{name}_ref"}
+        if not any(n.op == SYMBOL and n.value in moved_by for n in order([node])):
             raise NotIdentifiable(
                 f"output {name!r} is not simulated, it is an input; take it out of [identify] "
                 f"outputs, or choose from what is simulated: {', '.join(states)}"
@@ -147,7 +156,8 @@ def _with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> S
             missing[name] = settings.priors[name][0]
         elif model.stated(name) is None:
             parameter = model.parameters[name]
-            missing[name] = parameter.null if is_sensor(model, name) else parameter.start
+            absent = parameter.null if is_sensor(model, name) else None
+            missing[name] = parameter.start if absent is None else absent
     return model.with_values(missing) if missing else model
 
 
@@ -178,8 +188,9 @@ def _nuisances(
         for name in names:
             p: Parameter = model.parameters[name]
             label = f"{name} [{trial.name}]"
+            null = p.start if p.null is None else p.null
             made.append(
-                Unknown(label, name, i, p.null, abs(p.start), p.low, p.high, p.unit, "nuisance")
+                Unknown(label, name, i, null, abs(p.start), p.low, p.high, p.unit, "nuisance")
             )
         if "initial_state" in settings.nuisance:
             made += [_initial(model, trial, i, s) for s in model.states]
@@ -191,6 +202,12 @@ def _initial(model: ShipModel, trial: Trial, index: int, state: str) -> Unknown:
     unit = {"u": "m/s", "v": "m/s", "p": "rad/s", "r": "rad/s"}.get(state, "rad")
     label = f"{initial(state)} [{trial.name}]"
     return Unknown(label, initial(state), index, start, size, -np.inf, np.inf, unit, "nuisance")
+
+
+def _record(trial: Trial, name: str) -> Vector:
+    source = recorded(trial, name)
+    assert source is not None  # a trial without it has been refused
+    return trial.signals[source]
 
 
 def _check_excitation(problem: Problem) -> None:
@@ -209,7 +226,7 @@ def _check_excitation(problem: Problem) -> None:
         )
     for name in ("delta", "delta_order"):
         if name in problem.simulator.equations.inputs:
-            moves = max(float(np.std(t.signals[name])) for t in problem.trials)
+            moves = max(float(np.std(_record(t, name))) for t in problem.trials)
             if moves < STILL_RUDDER:
                 listed = ", ".join(repr(t.name) for t in problem.trials)
                 raise NotIdentifiable(

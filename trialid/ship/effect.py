@@ -11,7 +11,7 @@ import numpy as np
 
 from trialid.errors import EffectError, nearest
 from trialid.maths import Number
-from trialid.quantities import QUANTITIES, SIGNALS
+from trialid.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, QUANTITIES, SIGNALS
 
 System = Literal["prime", "SI"]
 
@@ -57,11 +57,21 @@ class Steered(_Named):
 
 
 class Delayed(_Named):
-    """How late an output is recorded [s]."""
+    """How late an output is recorded, or how much later than recorded an input acts [s]."""
 
 
-Result = Force | Rate | Measured | Steered | Delayed
-FORMS: Final = (Force, Rate, Measured, Steered, Delayed)
+class Lagged(_Named):
+    """Time constant of a sensor's first-order low-pass on an output [s]."""
+
+
+class Mass(_Named):
+    """What is added to the ship's mass parameters, primed."""
+
+
+Result = Force | Rate | Measured | Steered | Delayed | Lagged | Mass
+FORMS: Final = (Force, Rate, Measured, Steered, Delayed, Lagged, Mass)
+SENSORS: Final = (Measured, Delayed, Lagged)
+"""Forms of what happens between a motion and its record."""
 
 
 @dataclass(frozen=True)
@@ -77,14 +87,18 @@ class Parameter:
     low, high
         Physical range.
     null
-        The value at which the effect is absent.
+        The value at which the effect is absent; None for a number that shapes the effect and
+        cannot switch it off, as the frequency of a tank.
+    scan
+        Values tried where the effect is not linear at its null, as the speed of a steering gear.
     """
 
     start: float
     unit: str = "1"
     low: float = -math.inf
     high: float = math.inf
-    null: float = 0.0
+    null: float | None = 0.0
+    scan: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -100,7 +114,7 @@ class Effect:
     states
         States it adds, with the signal each starts from (None: from zero).
     forms
-        What it returns: any of `Force, Rate, Measured, Steered, Delayed`.
+        What it returns: any of `FORMS`.
     """
 
     name: str
@@ -118,10 +132,24 @@ class Effect:
         return (self.function.__doc__ or "").strip().splitlines()[0]
 
     @property
-    def measures(self) -> tuple[str, ...]:
-        """Signals whose measurement it adds to or delays."""
+    def nulls(self) -> dict[str, float]:
+        """Parameter values at which it is absent; what only shapes it stays typical."""
+        return {n: p.start if p.null is None else p.null for n, p in self.parameters.items()}
+
+    @property
+    def scanned(self) -> bool:
+        """Whether it is not linear at its null, so that values have to be tried."""
+        return any(p.scan for p in self.parameters.values())
+
+    def acts_on(self, *forms: type) -> tuple[str, ...]:
+        """Names in its results of these forms, as the signals that it delays."""
         values = dict.fromkeys(self.signals, 0.1) | {n: p.start for n, p in self.parameters.items()}
-        return tuple(n for p in self(values) if isinstance(p, Measured | Delayed) for n in p)
+        return tuple(n for p in self(values) if isinstance(p, forms) and p for n in dict(p))
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Signals whose record it changes: adds to, delays or filters."""
+        return self.acts_on(*SENSORS)
 
     @property
     def place(self) -> str:
@@ -148,8 +176,8 @@ def effect(
 
     Positional arguments are signals; keyword-only arguments are parameters, written as a typical
     value (a primed coefficient) or as a `Parameter` with its unit. In the prime system signals
-    arrive primed (v/U, rL/U) and a Force leaves primed; in SI both are SI. Everything that is not
-    a Force is SI.
+    arrive primed (v/U, rL/U) and a Force leaves primed; in SI both are SI. A Mass is primed,
+    everything else is SI.
 
     >>> @effect(source="textbook")
     ... def yaw_damping(r, *, Nr=-0.002):
@@ -174,8 +202,10 @@ def effect(
         own = dict(states or {})
         signals, parameters = _signature(name, function, own)
         forms = _forms(name, function, signals, parameters, own)
-        made: System = system if Force in forms else "SI"
-        _check_states(name, own, forms, made)
+        made: System = system if Force in forms or Mass in forms else "SI"
+        _check_states(name, own, made)
+        _check_readings(name, signals, forms)
+        _check_scan(name, parameters)
         return Effect(name, function, signals, parameters, own, forms, made, source)
 
     return declare
@@ -242,9 +272,34 @@ def _forms(
     return tuple(type(part) for part in results)
 
 
-def _check_states(
-    name: str, own: Mapping[str, Any], forms: tuple[type, ...], system: System
-) -> None:
+def _check_readings(name: str, signals: tuple[str, ...], forms: tuple[type, ...]) -> None:
+    """Accelerations follow from the forces, so only a sensor may read them; masses are constant."""
+    early = [s for s in signals if s in ACCELERATIONS]
+    if early and not set(forms) <= set(SENSORS):
+        raise EffectError(
+            f"effect {name!r} reads {early[0]!r}, which follows from the forces; only a sensor "
+            "(Measured, Delayed, Lagged) may read an acceleration: write a Mass instead"
+        )
+    if Mass in forms and (forms != (Mass,) or not set(signals) <= set(PARTICULARS)):
+        raise EffectError(
+            f"effect {name!r} gives a Mass; masses are constant: let it read no signal and give "
+            "nothing else"
+        )
+
+
+def _check_scan(name: str, parameters: Mapping[str, Parameter]) -> None:
+    """Where one parameter is scanned the others must shape the effect or be scanned too."""
+    if not any(p.scan for p in parameters.values()):
+        return
+    for parameter, p in parameters.items():
+        if not p.scan and p.null is not None:
+            raise EffectError(
+                f"effect {name!r}: parameter {parameter!r} stands beside a scanned one; give it a "
+                "scan too, or null=None"
+            )
+
+
+def _check_states(name: str, own: Mapping[str, Any], system: System) -> None:
     if own and system == "prime":
         raise EffectError(
             f"effect {name!r} has a force and states of its own; a state is SI, so declare the "
@@ -271,10 +326,11 @@ def _check_numbers(name: str, part: Result) -> None:
 def _check_names(name: str, part: Result, signals: tuple[str, ...]) -> None:
     if isinstance(part, Force):
         return
-    known = {*SIGNALS, *signals}
+    mass = isinstance(part, Mass)
+    known = {*MASS_PARAMETERS} if mass else {*SIGNALS, *signals}
     for signal in part:
         if signal not in known:
             raise EffectError(
-                f"effect {name!r} returns {type(part).__name__}({signal}=...), "
-                f"and {signal!r} is not a signal ({nearest(signal, known)})"
+                f"effect {name!r} returns {type(part).__name__}({signal}=...), and {signal!r} is "
+                f"not a {'mass parameter' if mass else 'signal'} ({nearest(signal, known)})"
             )

@@ -8,11 +8,22 @@ from typing import Final
 
 from trialid.errors import EffectError, ShipError, nearest
 from trialid.maths import Number, sqrt
-from trialid.quantities import PARTICULARS
-from trialid.ship.effect import Delayed, Effect, Force, Measured, Parameter, Rate, Steered
+from trialid.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS
+from trialid.ship.effect import (
+    SENSORS,
+    Delayed,
+    Effect,
+    Force,
+    Lagged,
+    Mass,
+    Measured,
+    Parameter,
+    Rate,
+    Steered,
+)
 from trialid.ship.particulars import Ship
 from trialid.ship.prime import mass_scale, prime_parameter, prime_signal, primed_coefficient
-from trialid.ship.rigid_body import MASS_PARAMETERS, ROWS, Balance, rigid_body
+from trialid.ship.rigid_body import ROWS, Balance, rigid_body
 
 STATES: Final = ("u", "v", "p", "r", "phi", "psi")
 KINEMATICS: Final = {"phi": "p", "psi": "r"}  # horizontal axes: the heading rate is r
@@ -82,10 +93,17 @@ class ShipModel:
     def recorded(self) -> tuple[str, ...]:
         """Signals that must come from the record (u is the approach speed when it does not)."""
         wanted = {s for e in self.effects for s in e.signals} | {"u"}
-        wanted |= {s for e in self.effects if Steered in e.forms for s in steered_signals(e)}
+        wanted |= {s for e in self.effects for s in e.acts_on(Steered)}
         wanted |= {"r"} if "psi" in self.states else set()
-        known = {*self.all_states, *PARTICULARS, "U"}
+        wanted |= {n for s in self.late_inputs for n in (s, late(s), slope(s))}
+        known = {*self.all_states, *PARTICULARS, *ACCELERATIONS, "U"}
         return tuple(sorted(wanted - known))
+
+    @cached_property
+    def late_inputs(self) -> tuple[str, ...]:
+        """Inputs that act later than they are recorded."""
+        delayed = {s for e in self.effects for s in e.acts_on(Delayed)}
+        return tuple(sorted(delayed - {*STATES, *self.all_states}))
 
     def value(self, name: str) -> float:
         """A parameter's value in the prime system or its unit: stated, the ship's, or typical.
@@ -111,9 +129,8 @@ class ShipModel:
         if effect.forms != (Force,):
             return True
         signals = dict.fromkeys(effect.signals, 0.1)
-        nulls = {n: p.null for n, p in effect.parameters.items()}
-        [there] = effect({**signals, **nulls, name: effect.parameters[name].start})
-        [absent] = effect({**signals, **nulls})
+        [there] = effect({**signals, **effect.nulls, name: effect.parameters[name].start})
+        [absent] = effect({**signals, **effect.nulls})
         rows = {ROWS[s] for s in self.states if s in ROWS}
         moved = {row for row, a, b in zip(Force._fields, there, absent, strict=True) if a != b}
         return bool(rows & moved) or not moved
@@ -170,18 +187,28 @@ def _check_signals(model: ShipModel) -> None:
                     f"ship {model.ship.name!r}: [mass] {name} is missing or not positive; "
                     f"state {state!r} needs it"
                 )
+    for effect in model.effects:
+        for name in effect.signals:
+            if name in PARTICULARS and name not in model.ship.particulars:
+                raise ShipError(
+                    f"ship {model.ship.name!r}: [particulars] lacks {name}; effect "
+                    f"{effect.name!r} needs it"
+                )
 
 
-def steered_signals(effect: Effect) -> tuple[str, ...]:
-    """Inputs that an effect adds to."""
-    values = dict.fromkeys(effect.signals, 0.1)
-    values |= {n: p.start for n, p in effect.parameters.items()}
-    return tuple(n for part in effect(values) if isinstance(part, Steered) for n in part)
+def late(signal: str) -> str:
+    """The input that holds by how much a late input was shifted [s]."""
+    return f"{signal} late"
+
+
+def slope(signal: str) -> str:
+    """The input that holds the derivative of a late input by its delay [unit/s]."""
+    return f"{signal} slope"
 
 
 @dataclass(frozen=True)
 class Motion:
-    """Everything the equations give at one instant, on any kind of number.
+    """The equations of motion at one instant, on any kind of number.
 
     Attributes
     ----------
@@ -189,16 +216,10 @@ class Motion:
         Mass matrix and right-hand sides of the simulated force equations.
     rates
         Time derivatives of the other states: kinematics, actuators, sensors.
-    measured
-        Output name to what is recorded, before delay.
-    delay
-        Output name to its delay [s].
     """
 
     balance: Balance
     rates: Mapping[str, Number]
-    measured: Mapping[str, Number]
-    delay: Mapping[str, Number]
 
 
 def motion(
@@ -207,7 +228,7 @@ def motion(
     inputs: Mapping[str, Number],
     theta: Mapping[str, Number],
 ) -> Motion:
-    """All equations of the model at one instant.
+    """All equations of motion at one instant.
 
     Parameters
     ----------
@@ -218,23 +239,66 @@ def motion(
     """
     recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
     signals = _signals(model, recorded, theta)
-    measured = {**recorded, "U": signals["U"]}
-    force, rates, delay = Force(), dict[str, Number](), dict[str, Number]()
+    force, rates = Force(), dict[str, Number]()
     for effect in model.effects:
+        if not {Force, Rate} & set(effect.forms):
+            continue
+        seen = measured_by(effect, recorded, signals)
+        for part in effect(_values(model, effect, seen, theta)):
+            if isinstance(part, Force):
+                force = _add(force, _to_SI(model, effect, part, signals))
+            elif isinstance(part, Rate):
+                rates |= dict(part)
+    rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
+    return Motion(_balance(model, signals, force, theta), rates)
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What the sensors make of a motion, on any kind of number.
+
+    Attributes
+    ----------
+    measured
+        Signal to what is recorded of it, before delay and low-pass.
+    delay
+        Output to its delay [s].
+    lags
+        Output to the time constants of its sensor's low-passes [s].
+    """
+
+    measured: Mapping[str, Number]
+    delay: Mapping[str, Number]
+    lags: Mapping[str, tuple[Number, ...]]
+
+
+def readings(
+    model: ShipModel,
+    states: Mapping[str, Number],
+    inputs: Mapping[str, Number],
+    theta: Mapping[str, Number],
+    rates: Mapping[str, Number],
+) -> Readings:
+    """What is recorded of one instant; `rates` are the time derivatives of the states."""
+    recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
+    recorded |= {a: rates.get(a[0], 0.0) for a in ACCELERATIONS}
+    signals = _signals(model, recorded, theta)
+    measured = {**recorded, "U": signals["U"]}
+    delay, lags = dict[str, Number](), dict[str, tuple[Number, ...]]()
+    for effect in model.effects:
+        if not set(SENSORS) & set(effect.forms):
+            continue
         seen = measured_by(effect, recorded, signals)
         for part in effect(_values(model, effect, seen, theta)):
             match part:
-                case Force():
-                    force = _add(force, _to_SI(model, effect, part, signals))
-                case Rate():
-                    rates |= dict(part)
                 case Measured():
-                    _check_measured(effect, part, measured)
-                    measured |= {n: measured[n] + x for n, x in part.items()}
+                    base = _read_so_far(effect, part, measured)
+                    measured |= {n: base[n] + x for n, x in part.items()}
                 case Delayed():
                     delay |= {n: delay.get(n, 0.0) + x for n, x in part.items()}
-    rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
-    return Motion(_balance(model, signals, force, theta), rates, measured, delay)
+                case Lagged():
+                    lags |= {n: (*lags.get(n, ()), x) for n, x in part.items()}
+    return Readings(measured, delay, lags)
 
 
 def measured_by(
@@ -244,13 +308,20 @@ def measured_by(
     return acting if Force in effect.forms else {**recorded, "U": acting["U"]}
 
 
-def _check_measured(effect: Effect, part: Measured, measured: Mapping[str, Number]) -> None:
+def _read_so_far(
+    effect: Effect, part: Measured, measured: Mapping[str, Number]
+) -> Mapping[str, Number]:
+    """The records an effect adds to; one that a reference sensor gives begins at nothing."""
+    base = dict(measured)
     for name in part:
-        if name not in measured:
+        if name not in base and f"{name}_ref" in effect.signals:
+            base[name] = 0.0
+        if name not in base:
             raise EffectError(
                 f"{effect.place} adds to the measurement of {name!r}, which the model neither "
                 f"simulates nor reads; leave the effect out, or simulate {name!r}"
             )
+    return base
 
 
 def _balance(
@@ -258,7 +329,7 @@ def _balance(
 ) -> Balance:
     """The rigid-body balance of the simulated rows; a motion that is not simulated keeps still."""
     L, rho = model.ship.particulars["L"], model.ship.particulars["rho"]
-    mass = {n: theta[n] * mass_scale(n, L, rho) for n in MASS_PARAMETERS}
+    mass = {n: x * mass_scale(n, L, rho) for n, x in _masses(model, theta).items()}
     moves = {s: signals.get(s, 0.0) for s in ("u", "v", "p", "r", "phi")}
     full = rigid_body(moves, force, mass)
     rows = [s for s in ROWS if s in model.states]
@@ -268,11 +339,25 @@ def _balance(
     )
 
 
+def _masses(model: ShipModel, theta: Mapping[str, Number]) -> dict[str, Number]:
+    """The mass parameters with what effects add to them, primed."""
+    masses = {n: theta[n] for n in MASS_PARAMETERS}
+    particulars = {**model.ship.particulars, "U": model.ship.particulars["U0"]}
+    for effect in model.effects:
+        if Mass in effect.forms:
+            for part in effect(_values(model, effect, particulars, theta)):
+                masses |= {n: masses[n] + x for n, x in dict(part).items()}
+    return masses
+
+
 def _signals(
     model: ShipModel, recorded: Mapping[str, Number], theta: Mapping[str, Number]
 ) -> dict[str, Number]:
     """States and inputs as they act on the ship, particulars and the speed U; SI."""
     signals = dict(recorded)
+    for name, tau in _late_by(model, signals, theta).items():
+        # the record comes shifted by the current delay: the value stands, and so does the slope
+        signals[name] = signals[name] + (tau - signals[late(name)]) * signals[slope(name)]
     for effect in model.effects:
         if Steered in effect.forms:
             for part in effect({**signals, **theta}):
@@ -281,6 +366,19 @@ def _signals(
     u, v = signals["u"], signals.get("v", 0.0)
     signals["U"] = sqrt(u * u + v * v + STANDSTILL**2)
     return signals
+
+
+def _late_by(
+    model: ShipModel, signals: Mapping[str, Number], theta: Mapping[str, Number]
+) -> dict[str, Number]:
+    """By how much each late input is late [s]."""
+    total: dict[str, Number] = {}
+    for effect in model.effects if model.late_inputs else ():
+        if Delayed in effect.forms and set(effect.acts_on(Delayed)) & set(model.late_inputs):
+            for part in effect({**signals, **theta}):
+                if isinstance(part, Delayed):
+                    total |= {n: total.get(n, 0.0) + x for n, x in part.items()}
+    return {n: x for n, x in total.items() if n in model.late_inputs}
 
 
 def _values(
@@ -369,7 +467,8 @@ def check_mass(model: ShipModel, theta: Mapping[str, float]) -> None:
         A leading minor of the (symmetrised) sway-roll-yaw matrix is not positive.
     """
     still = {s: 0.0 for s in ("v", "p", "r", "phi")} | {"u": 1.0}
-    balance = _balance(model, still, Force(), theta)
+    nulls = {n: x for e in model.effects for n, x in e.nulls.items()}
+    balance = _balance(model, still, Force(), {**nulls, **theta})
     rows = [s for s in ("v", "p", "r") if s in model.states]
     for size in range(1, len(rows) + 1):
         part = rows[:size]

@@ -97,23 +97,19 @@ def primed_coefficient(ship: Ship, effect: Effect, name: str) -> float:
 
 
 def _steers_rudder(effect: Effect) -> bool:
-    if Steered not in effect.forms:
-        return False
-    values = dict.fromkeys(effect.signals, 0.1) | {n: p.start for n, p in effect.parameters.items()}
-    return any(isinstance(part, Steered) and "delta" in part for part in effect(values))
+    return "delta" in effect.acts_on(Steered)
 
 
 def _probe(effect: Effect, name: str, signals: Mapping[str, float]) -> Force:
     """What one unit of a parameter adds to the forces."""
-    nulls = {n: p.null for n, p in effect.parameters.items()}
-    [with_it] = effect({**signals, **nulls, name: 1.0})
-    [without] = effect({**signals, **nulls})
+    [with_it] = effect({**signals, **effect.nulls, name: 1.0})
+    [without] = effect({**signals, **effect.nulls})
     return Force(*(a - b for a, b in zip(with_it, without, strict=True)))
 
 
 def _some_signals(ship: Ship, effect: Effect) -> dict[str, float]:
     U = ship.coefficient_speed
-    known = {"u": U, "U": U, **{n: ship.particulars[n] for n in PARTICULARS}}
+    known = {"u": U, "U": U, **{n: x for n, x in ship.particulars.items() if n in PARTICULARS}}
     return {s: known.get(s, 0.1) for s in effect.signals}
 
 

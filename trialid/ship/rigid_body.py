@@ -9,12 +9,6 @@ from trialid.ship.effect import Force
 ROWS: Final = {"u": "X", "v": "Y", "p": "K", "r": "N"}
 """State to the equation that drives it."""
 
-MASS_PARAMETERS: Final = (
-    "m", "x_G", "z_G", "I_xx", "I_zz",
-    "Xudot", "Yvdot", "Ypdot", "Yrdot", "Kvdot", "Kpdot", "Krdot", "Nvdot", "Npdot", "Nrdot",
-)  # fmt: skip
-"""Primed; those a ship file does not give are zero, except m, I_xx and I_zz."""
-
 
 class Balance(NamedTuple):
     """Mass matrix and right-hand sides of `mass @ acceleration = force`, by state name."""

@@ -1,4 +1,4 @@
-"""A signal read later or earlier than it was sampled, smoothly and with its exact derivative."""
+"""A signal read later than it was sampled, or through a slow sensor, with exact derivatives."""
 
 from typing import Final
 
@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
+Whole = NDArray[np.int_]
 SLOPE: Final = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Fourth-order central difference: the slope per sample at the middle of five samples."""
 
@@ -13,8 +14,8 @@ REACH: Final = 3
 """Samples on either side that an interpolated value looks at."""
 
 
-def taps(w: float) -> tuple[Vector, Vector]:
-    """Weights of six neighbours for the value at fraction w after the third, and d/dw; (6,), (6,).
+def taps(w: float | Vector) -> tuple[Vector, Vector]:
+    """Weights of six neighbours for the value at fraction w after the third, and d/dw; (6, ...).
 
     Cubic Hermite between the third and fourth sample with slopes by central differences: it
     passes through the samples, its slope is continuous, and cubics are exact.
@@ -29,39 +30,70 @@ def taps(w: float) -> tuple[Vector, Vector]:
     return value, slope
 
 
-def _hermite(left: float, right: float, slope_left: float, slope_right: float) -> Vector:
-    weights = np.zeros(6)
+def _hermite(
+    left: float | Vector,
+    right: float | Vector,
+    slope_left: float | Vector,
+    slope_right: float | Vector,
+) -> Vector:
+    weights = np.zeros((6, *np.shape(left)))
     weights[2] += left
     weights[3] += right
-    weights[0:5] += slope_left * SLOPE
-    weights[1:6] += slope_right * SLOPE
+    weights[0:5] += np.multiply.outer(SLOPE, slope_left)
+    weights[1:6] += np.multiply.outer(SLOPE, slope_right)
     return weights
 
 
-def delayed(y: Vector, lag: float) -> tuple[Vector, Vector]:
+def delayed(y: Vector, lag: float | Vector) -> tuple[Vector, Vector]:
     """The samples y(k - lag) and their derivative by the lag [1/sample]; like y, (N, ...).
 
-    Beyond the ends the outermost sample stands; `margin` says how many samples that spoils.
+    The lag is one number, or one for each sample where a clock drifts; (N,). Beyond the ends the
+    outermost sample stands; `margin` says how many samples that spoils.
     """
-    whole = int(np.ceil(lag))
+    whole = np.ceil(lag).astype(int)
     value, slope = taps(whole - lag)
     return _weighed(y, whole, value), _weighed(y, whole, -slope)
 
 
-def shifted(y: Vector, lag: float) -> Vector:
+def shifted(y: Vector, lag: float | Vector) -> Vector:
     """The first of `delayed` alone: what a delay makes of sensitivities; like y, (N, ...)."""
-    whole = int(np.ceil(lag))
+    whole = np.ceil(lag).astype(int)
     return _weighed(y, whole, taps(whole - lag)[0])
 
 
-def _weighed(y: Vector, whole: int, weights: Vector) -> Vector:
-    """Six neighbours of each sample, all moved by whole samples, times their weights."""
+def _weighed(y: Vector, whole: Whole, weights: Vector) -> Vector:
+    """Six neighbours of each sample, moved by whole samples, times their weights."""
     n = len(y)
-    near = y[np.clip(np.arange(-whole - 2, n - whole + 3), 0, n - 1)]
-    total = weights[0] * near[:n]
-    for i in range(1, 6):
-        total += weights[i] * near[i : i + n]
-    return np.asarray(total)
+    first = np.arange(n) - whole - 2
+    beside = (slice(None), *(None,) * (y.ndim - 1))  # weights of a sample, over all its columns
+    total = np.zeros_like(y, dtype=float)
+    for i in range(6):
+        weight = weights[i][beside] if weights.ndim > 1 else weights[i]
+        total += weight * y[np.clip(first + i, 0, n - 1)]
+    return total
+
+
+def lagged(y: Vector, tau: float, period: float) -> tuple[Vector, Vector]:
+    """What a first-order low-pass makes of samples, and its derivative by tau; like y, (N, ...).
+
+    tau dz/dt = y - z, exact for a signal that is straight between samples, at rest when it starts.
+    At tau = 0 it is the signal itself, and the derivative the backward difference.
+
+    >>> z, slope = lagged(np.array([0.0, 1.0, 1.0]), 0.0, 1.0)
+    >>> z, slope
+    (array([0., 1., 1.]), array([ 0., -1.,  0.]))
+    """
+    from scipy.signal import lfilter  # 0.2 s to import: only a record with a slow sensor needs it
+
+    ratio = tau / period
+    a = np.exp(-1.0 / ratio) if ratio > 0.0 else 0.0
+    a_slope = a / ratio**2 / period if ratio > 0.0 else 0.0
+    kept = ratio * (1.0 - a)
+    kept_slope = (1.0 - a) / period - ratio * a_slope
+    z = lfilter([1.0 - kept, kept - a], [1.0, -a], y - y[:1], axis=0) + y[:1]
+    y_before, z_before = (np.concatenate([x[:1], x[:-1]]) for x in (y, z))
+    drive = a_slope * (z_before - y_before) + kept_slope * (y_before - y)
+    return z, np.asarray(lfilter([1.0], [1.0, -a], drive, axis=0))
 
 
 def margin(low: float, high: float, period: float) -> int:

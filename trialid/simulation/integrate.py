@@ -3,17 +3,17 @@
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import EffectError, NotIdentifiable, nearest
 from trialid.quantities import SIGNALS
-from trialid.ship.effect import Effect, Steered
-from trialid.ship.model import ShipModel, steered_signals
+from trialid.ship.effect import Delayed, Effect, Steered
+from trialid.ship.model import ShipModel, late, slope
 from trialid.simulation import kernel
-from trialid.simulation.delay import delayed, shifted
+from trialid.simulation.delay import delayed, lagged, shifted
 from trialid.simulation.graph import Node, gradient
 from trialid.simulation.kernel import Kernel
 from trialid.simulation.reference import Reference, evaluator
@@ -152,7 +152,7 @@ def respond(
     known = {**simulator.fixed, **values}
     theta = np.array([known[n] for n in eq.parameters])
     x0 = np.array([start.get(s, guess(simulator.model, trial, s)) for s in eq.states])
-    u = inputs(simulator, trial)
+    u = inputs(simulator, trial, known)
     run = simulator.engine
     limit = domain(simulator.model)
     arguments = (theta, x0, u, limit, trial.period, simulator.substeps)
@@ -177,33 +177,71 @@ def guess(model: ShipModel, trial: Trial, state: str) -> float:
     return model.ship.particulars["U0"] if state == "u" else 0.0
 
 
-def inputs(simulator: Simulator, trial: Trial) -> Vector:
+IDEAL: Final = {"delta": "delta_order"}
+"""What an input follows exactly where it is not recorded itself: a perfect steering gear."""
+
+
+def recorded(trial: Trial, name: str) -> str | None:
+    """The record that serves as this input: its own, or that of what it follows."""
+    for candidate in (name, IDEAL.get(name, name)):
+        if candidate in trial.signals:
+            return candidate
+    return None
+
+
+def inputs(simulator: Simulator, trial: Trial, known: Mapping[str, float]) -> Vector:
     """The recorded signals the equations need; (N, n_u). Speed not recorded is the approach speed.
+
+    Parameters
+    ----------
+    known
+        Values of all parameters: some may delay an input.
 
     Raises
     ------
     NotIdentifiable
         The trial lacks a signal.
     """
-    columns = []
-    for name in simulator.equations.inputs:
-        if name in trial.signals:
-            columns.append(trial.signals[name])
-        elif name == "u":
-            columns.append(np.full(trial.samples, simulator.model.ship.particulars["U0"]))
-        else:
-            users = [e.name for e in simulator.model.effects if name in signals_of(e)]
-            raise NotIdentifiable(
-                f"trial {trial.name!r} has no signal {name!r}, which effect "
-                f"{', '.join(users)!r} needs: map it in [trial.signals], simulate it in [model] "
-                "states, or leave the effect out"
-            )
-    return np.column_stack(columns) if columns else np.zeros((trial.samples, 0))
+    model = simulator.model
+    columns = {n: _input(model, trial, n) for n in simulator.equations.inputs if n in SIGNALS}
+    for name, tau in late_by(model, known).items():
+        columns[name], by_lag = delayed(columns[name], tau / trial.period)
+        columns[late(name)] = np.full(trial.samples, tau)
+        columns[slope(name)] = by_lag / trial.period
+    made = [columns[n] for n in simulator.equations.inputs]
+    return np.column_stack(made) if made else np.zeros((trial.samples, 0))
+
+
+def late_by(model: ShipModel, known: Mapping[str, float]) -> dict[str, float]:
+    """By how much each late input acts after it is recorded [s]."""
+    total = dict.fromkeys(model.late_inputs, 0.0)
+    for effect in model.effects if total else ():
+        if set(effect.acts_on(Delayed)) & set(total):
+            values = {p: known.get(p, 0.0) for p in effect.parameters}
+            for part in effect(dict.fromkeys(effect.signals, 0.0) | values):
+                if isinstance(part, Delayed):
+                    total |= {n: total[n] + float(x) for n, x in part.items() if n in total}
+    return total
+
+
+def _input(model: ShipModel, trial: Trial, name: str) -> Vector:
+    if name == "t":
+        return trial.t
+    source = recorded(trial, name)
+    if source is not None:
+        return trial.signals[source]
+    if name == "u":
+        return np.full(trial.samples, model.ship.particulars["U0"])
+    users = [e.name for e in model.effects if name in signals_of(e)]
+    raise NotIdentifiable(
+        f"trial {trial.name!r} has no signal {name!r}, which effect {', '.join(users)!r} needs: "
+        "map it in [trial.signals], simulate it in [model] states, or leave the effect out"
+    )
 
 
 def signals_of(effect: Effect) -> tuple[str, ...]:
-    """Every signal an effect reads or adds to."""
-    return (*effect.signals, *(steered_signals(effect) if Steered in effect.forms else ()))
+    """Every signal an effect reads, adds to as it acts, or delays."""
+    return (*effect.signals, *effect.acts_on(Steered, Delayed))
 
 
 def domain(model: ShipModel) -> Vector:
@@ -247,13 +285,20 @@ class _Readout:
         )  # every output is a state of its own: S is what is asked for
         self.value = evaluator(nodes, symbols, scalar=False)
         self.slope = evaluator([slopes[c][i] for c, i in self.entries], symbols, scalar=False)
-        delays = [eq.delays[c] for c in outputs]
-        free = [table[s] for s in eq.free]
-        self.late = [not _zero(d) for d in delays]
-        self.delay = evaluator(delays, symbols, scalar=False)
-        self.delay_slope = evaluator(
-            [d for node in delays for d in gradient(node, free)], symbols, scalar=False
-        )
+        self.delay = {c: _Timing(eq, eq.delays[c], table) for c in outputs}
+        self.lags = {c: [_Timing(eq, lag, table) for lag in eq.lags[c]] for c in outputs}
+
+
+class _Timing:
+    """A delay or a time constant, and its derivatives by the free parameters."""
+
+    def __init__(self, eq: Equations, node: Node, table: Mapping[str, Node]) -> None:
+        symbols = (*eq.states, *eq.inputs, *eq.parameters)
+        slopes = gradient(node, [table[s] for s in eq.free])
+        self.absent = _zero(node)
+        self.by = [i for i, d in enumerate(slopes) if not _zero(d)]
+        self.value = evaluator([node], symbols, scalar=False)
+        self.slopes = evaluator([slopes[i] for i in self.by], symbols, scalar=False)
 
 
 def _zero(node: Node) -> bool:
@@ -268,42 +313,48 @@ def _outputs(
     symbols = [*X.T, *u.T, *theta]
     y = np.column_stack([np.broadcast_to(c, len(X)) for c in read.value(symbols)])
     if S is None:
-        return _late(simulator, trial, y, None, theta)
+        return _late(simulator, trial, y, None, symbols)
     dy = _slopes(simulator, S, read.slope(symbols))
-    return _late(simulator, trial, y, dy, theta)
+    return _late(simulator, trial, y, dy, symbols)
 
 
 def _slopes(simulator: Simulator, S: Vector, slopes: Sequence[Vector | float]) -> Vector:
     """Sensitivities of the outputs from those of the kept states, in place where they are alike."""
     read, free, width = simulator.readout, simulator.equations.free, len(simulator.columns)
     dy = S[..., :width] if read.plain else np.zeros((len(S), len(simulator.outputs), width))
-    for (c, i), slope in zip(read.entries, slopes, strict=True):
+    for (c, i), factor in zip(read.entries, slopes, strict=True):
         name = read.by[i]
         if name not in read.kept:
-            dy[:, c, free.index(name)] += slope
+            dy[:, c, free.index(name)] += factor
         elif not read.plain:
-            factor = np.broadcast_to(slope, len(S))[:, None]
-            dy[:, c] += factor * S[:, read.kept.index(name), :width]
+            wide = np.broadcast_to(factor, len(S))[:, None]
+            dy[:, c] += wide * S[:, read.kept.index(name), :width]
     return dy
 
 
 def _late(
-    simulator: Simulator, trial: Trial, y: Vector, dy: Vector | None, theta: Vector
+    simulator: Simulator, trial: Trial, y: Vector, dy: Vector | None, symbols: Sequence[Any]
 ) -> tuple[Vector, Vector | None]:
-    """Apply the delays of the outputs, with the derivative by each delay."""
+    """Apply the low-passes and delays of the outputs, with the derivatives by their parameters."""
     read = simulator.readout
-    if not any(read.late):
-        return y, dy
-    eq = simulator.equations
-    symbols = [0.0] * (len(eq.states) + len(eq.inputs)) + list(theta)
-    delays = read.delay(symbols)
-    slopes = np.reshape(read.delay_slope(symbols), (len(simulator.outputs), len(eq.free)))
-    for c, tau in enumerate(delays):
-        if not read.late[c]:
+    for c, output in enumerate(simulator.outputs):
+        for lag in read.lags[output]:
+            [tau] = lag.value(symbols)
+            y[:, c], by_tau = lagged(y[:, c], float(tau), trial.period)
+            if dy is not None:
+                dy[:, c] = lagged(dy[:, c], float(tau), trial.period)[0]
+                _add_slopes(dy[:, c], lag, by_tau, symbols)
+        if read.delay[output].absent:
             continue
-        y[:, c], rate = delayed(y[:, c], tau / trial.period)
+        [tau] = read.delay[output].value(symbols)
+        y[:, c], by_lag = delayed(y[:, c], tau / trial.period)
         if dy is not None:
             dy[:, c] = shifted(dy[:, c], tau / trial.period)
-            for i in np.flatnonzero(slopes[c]):
-                dy[:, c, i] += rate * (slopes[c, i] / trial.period)
+            _add_slopes(dy[:, c], read.delay[output], by_lag / trial.period, symbols)
     return y, dy
+
+
+def _add_slopes(dy: Vector, timing: _Timing, by_time: Vector, symbols: Sequence[Any]) -> None:
+    """Chain rule, in place: what a parameter does to a time, and the time to the output."""
+    for i, slope_ in zip(timing.by, timing.slopes(symbols), strict=True):
+        dy[:, i] += by_time * slope_

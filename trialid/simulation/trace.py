@@ -1,11 +1,12 @@
 """A ship model as graph expressions: what a kernel or the reference needs, derived once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Final
 
 from trialid.errors import EffectError
-from trialid.ship.model import Motion, ShipModel, motion, solve
+from trialid.ship.model import Motion, Readings, ShipModel, motion, readings, solve
 from trialid.simulation.graph import SYMBOL, Graph, Node, gradient, lift, order
 
 BLOCK: Final = 8
@@ -35,8 +36,8 @@ class Equations:
         Per free parameter the nonzeros row -> expression.
     outputs
         Output name to its measured value, before delay.
-    delays
-        Output name to its delay [s].
+    delays, lags
+        Output name to its delay [s], and to the time constants of its sensor's low-passes [s].
     """
 
     graph: Graph
@@ -50,6 +51,7 @@ class Equations:
     G: tuple[Mapping[int, Node], ...]
     outputs: Mapping[str, Node]
     delays: Mapping[str, Node]
+    lags: Mapping[str, tuple[Node, ...]]
 
     @property
     def kept(self) -> tuple[int, ...]:
@@ -81,6 +83,7 @@ def trace(model: ShipModel, free: Sequence[str], outputs: Sequence[str]) -> Equa
     inverse = {k: lift(graph, w) for k, w in solve(now.balance, rows).items()}
     right = {s: lift(graph, r) for s, r in (*now.balance.force.items(), *now.rates.items())}
     f = _state_rates(graph, model, right, inverse, rows)
+    sensed = _sensed(model, x, inputs, theta, f)
     names, given = model.all_states, list(free)
     W = {(names.index(a), names.index(b)): w for (a, b), w in inverse.items() if a in rows}
     W |= {(i, i): graph.constant(1.0) for i, s in enumerate(names) if s not in rows}
@@ -99,9 +102,22 @@ def trace(model: ShipModel, free: Sequence[str], outputs: Sequence[str]) -> Equa
         J=_jacobian(graph, W, drives),
         W=W,
         G=tuple(G[n] for n in ordered),
-        outputs={c: _output(graph, model, now.measured, c) for c in outputs},
-        delays={c: lift(graph, now.delay.get(c, 0.0)) for c in outputs},
+        outputs={c: _output(graph, model, sensed.measured, c) for c in outputs},
+        delays={c: lift(graph, sensed.delay.get(c, 0.0)) for c in outputs},
+        lags={c: tuple(lift(graph, x) for x in sensed.lags.get(c, ())) for c in outputs},
     )
+
+
+@contextmanager
+def _differentiable() -> Iterator[None]:
+    """Say in words what an effect did that has no derivative."""
+    try:
+        yield
+    except TypeError as error:
+        raise EffectError(
+            f"an effect does what cannot be differentiated ({error}); without branches, min and "
+            "max, use abs and trialid.maths (sin, cos, sqrt, exp, tanh, arctan, clip)"
+        ) from error
 
 
 def _traced(
@@ -110,13 +126,19 @@ def _traced(
     inputs: Mapping[str, Node],
     theta: Mapping[str, Node | float],
 ) -> Motion:
-    try:
+    with _differentiable():
         return motion(model, states, inputs, theta)
-    except TypeError as error:
-        raise EffectError(
-            f"an effect does what cannot be differentiated ({error}); without branches, min and "
-            "max, use abs and trialid.maths (sin, cos, sqrt, exp, tanh, arctan, clip)"
-        ) from error
+
+
+def _sensed(
+    model: ShipModel,
+    states: Mapping[str, Node],
+    inputs: Mapping[str, Node],
+    theta: Mapping[str, Node | float],
+    rates: Mapping[str, Node],
+) -> Readings:
+    with _differentiable():
+        return readings(model, states, inputs, theta, rates)
 
 
 def _parameters(graph: Graph, model: ShipModel, free: Sequence[str]) -> dict[str, Node | float]:

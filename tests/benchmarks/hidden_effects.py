@@ -1,0 +1,251 @@
+r"""Hide one effect after the other in a simulated ship and count how well the diagnosis names them.
+
+    PYTHONPATH=. python tests/benchmarks/hidden_effects.py              # all of it, for the record
+    PYTHONPATH=. python tests/benchmarks/hidden_effects.py --short      # what CI runs
+    PYTHONPATH=. python tests/benchmarks/hidden_effects.py --seeds 4 --noise white \
+        --scenarios yaw_drag_rar,nothing --jobs 2 --out first.md
+
+Every run makes a record of the true ship (`hidden_truth`), fits the model that lacks what is hidden
+(`hidden_scenarios`) and takes the package's own way from fit to verdict. A run depends on its
+scenario, noise, trial set and seed alone, so results do not depend on `--jobs`, nor on what else
+was asked for. `--scenarios typical` hides every other effect of the catalogue at the size its file
+calls typical. `--out` takes `.csv` (one row a run) or `.md` (the tables, with the rows beside them
+in a `.csv`). Exit status 1 where a threshold is missed.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Final
+
+from hidden_scenarios import SCENARIOS, TYPICAL
+from hidden_score import plainness
+from hidden_tables import ISSUE, SHORT, Row, report, thresholds, write
+from hidden_truth import FREE, NOISES, OUTPUTS, TRIAL_SETS, Scenario, guessed, record, restored
+
+from trialid import pipeline
+from trialid.diagnosis.missing_effect import Refit, Verdict, confirmed, decide, refit
+from trialid.diagnosis.noise import split
+from trialid.diagnosis.score import Candidate, rank
+from trialid.effects import CATALOGUE
+from trialid.errors import TrialidError
+from trialid.identification.fit import Fit
+from trialid.identification.pose import Settings
+from trialid.recipe.form import DiagnoseRecipe
+from trialid.ship.effect import Force
+from trialid.ship.model import ShipModel
+from trialid.threads import one_thread
+from trialid.trial import Trial
+
+SEEDS: Final = 20
+SHORT_SEEDS: Final = 4
+SHORT_SCENARIOS: Final = (
+    "yaw_drag_rar", "quadratic_roll_damping", "righting_arm_cubic", "delay_r", "gyro_cross_axis",
+    "odd_switch", "x_G + 1 % of L", "nothing",
+)  # fmt: skip
+EVERY: Final = {**SCENARIOS, **TYPICAL}
+DEFAULTS: Final = SimpleNamespace(diagnose=DiagnoseRecipe())
+"""A pipeline that says nothing in [diagnose]."""
+
+SHORT_NOISES: Final = ("white", "process")
+
+Task = tuple[str, str, str, int]
+"""Scenario, noise, trial set, seed."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The package's way from trials to a verdict, with what is counted here."""
+
+    fit: Fit
+    ranking: Sequence[Candidate]
+    named: Refit | None
+    verdict: Verdict
+
+
+class Stopwatch:
+    """Processor seconds by stage."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def __call__(self, stage: str) -> Iterator[None]:
+        """Count what runs inside."""
+        before = time.process_time()
+        yield
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.process_time() - before
+
+
+def diagnosed(
+    trials: Sequence[Trial], model: ShipModel, settings: Settings, watch: Stopwatch
+) -> Diagnosis:
+    """From trials to a verdict as `trialid.pipeline.run` goes, with its own functions."""
+    asked = DEFAULTS.diagnose
+    with watch("fit"):
+        fit = pipeline.fitted(tuple(trials), model, settings, lambda words, share: None)
+    with watch("rank"):
+        ranking, augmented = rank(fit, CATALOGUE, asked.family_cos, asked.level)
+    with watch("split"):
+        parts, _ = split(fit, augmented, {})
+    with watch("refit"):
+        worth = pipeline.worth_refitting(DEFAULTS, ranking)
+        refits = refit(fit, trials, worth, lambda words: None)
+    with watch("decide"):
+        verdict = decide(fit, ranking, refits, parts, asked.level)
+        named = confirmed(fit, refits, asked.level)
+    return Diagnosis(fit, ranking, named, verdict)
+
+
+def settings_of(model: ShipModel) -> Settings:
+    """What is fitted: the linear parameters that the model has, and where each trial starts."""
+    free = tuple(n for n in FREE if n in model.parameters)
+    return Settings(free, OUTPUTS, nuisance=("initial_state",))
+
+
+def true_candidate(
+    scenario: Scenario, ranking: Sequence[Candidate]
+) -> tuple[int, Candidate] | None:
+    """Place in the ranking, from 1, and score of what is hidden; None where it has neither."""
+    for place, candidate in enumerate(ranking, 1):
+        if candidate.effect.name in scenario.exact:
+            return place, candidate
+    return None
+
+
+@one_thread
+def run(task: Task) -> Row:
+    """One record made, diagnosed and judged."""
+    name, noise, trial_set, seed = task
+    scenario, watch = EVERY[name], Stopwatch()
+    with watch("simulate"):
+        trials = record(scenario, noise, trial_set, seed)
+    model = guessed(scenario, seed)
+    row = Row(name, scenario.group, noise, trial_set, seed)
+    try:
+        done = diagnosed(trials, model, settings_of(model), watch)
+    except TrialidError as error:
+        return row.also(kind="error", name=str(error), seconds=watch.seconds)
+    if scenario.known:
+        with watch("truth"):
+            trials = record(scenario, noise, trial_set, seed, rudder=True)
+            row = row.also(plain=plainness(done.fit, trials, restored(scenario, done.fit.model)))
+    return judged(row, scenario, done).also(seconds=watch.seconds)
+
+
+def judged(row: Row, scenario: Scenario, done: Diagnosis) -> Row:
+    """What the diagnosis said beside what is true."""
+    verdict, named, family = done.verdict, done.named, done.verdict.family
+    found = true_candidate(scenario, done.ranking)
+    if found is not None:
+        place, candidate = found
+        row = row.also(
+            score=candidate.score, p=candidate.p_value, rank=place,
+            visibility=candidate.visibility, eps_true=candidate.eps_predicted,
+        )  # fmt: skip
+    if named is not None:
+        row = row.also(eps_predicted=named.candidate.eps_predicted, eps_after=named.fit.eps_rmsn)
+    effect = CATALOGUE[verdict.effect] if verdict.effect else None
+    return row.also(
+        kind=verdict.kind, name=verdict.effect or "", family=family,
+        exact=verdict.effect in scenario.exact,
+        right=bool({verdict.effect, *family} & scenario.right),
+        physical=effect is not None and Force in effect.forms,
+        eps=done.fit.eps_rmsn,
+    )  # fmt: skip
+
+
+def tasks(asked: argparse.Namespace) -> list[Task]:
+    """Every run that is asked for, in the order of the tables."""
+    seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
+    return [
+        (name, noise, trial_set, seed)
+        for trial_set, noise, name, seed in product(
+            asked.trials, asked.noise, asked.scenarios, seeds
+        )
+    ]
+
+
+def run_all(todo: Sequence[Task], jobs: int) -> list[Row]:
+    """Rows in the order of the tasks, whatever the number of processes."""
+    if jobs == 1:
+        return [_told(row, i, len(todo)) for i, row in enumerate(map(run, todo), 1)]
+    with ProcessPoolExecutor(jobs) as pool:
+        # few at a time: neighbours share the compiled truth of their scenario
+        rows = pool.map(run, todo, chunksize=4)
+        return [_told(row, i, len(todo)) for i, row in enumerate(rows, 1)]
+
+
+def _told(row: Row, done: int, of: int) -> Row:
+    said = f"{row.kind} {row.name}".strip()
+    print(
+        f"{done}/{of} {row.scenario}, {row.noise}, {row.trials}, seed {row.seed}: {said}",
+        file=sys.stderr,
+    )
+    return row
+
+
+def _names(known: Sequence[str]) -> Callable[[str], list[str]]:
+    """A list with commas of known names."""
+
+    def parse(text: str) -> list[str]:
+        names = [n for word in text.split(",") for n in (TYPICAL if word == "typical" else [word])]
+        for name in names:
+            if name not in known:
+                raise argparse.ArgumentTypeError(f"{name!r} is none of {', '.join(known)}")
+        return names
+
+    return parse
+
+
+def options() -> argparse.Namespace:
+    """The command line, with the short form's own defaults."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--short", action="store_true", help="the form that CI runs")
+    parser.add_argument("--seeds", type=int, help="records of each scenario and noise")
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument(
+        "--scenarios",
+        type=_names(tuple(EVERY)),
+        help="with commas; `typical` for the rest of the catalogue",
+    )
+    parser.add_argument("--noise", type=_names(NOISES), help="with commas")
+    parser.add_argument("--trials", type=_names(tuple(TRIAL_SETS)), help="with commas")
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    parser.add_argument("--out", type=Path, help="FILE.md or FILE.csv")
+    asked = parser.parse_args()
+    if asked.out is not None and asked.out.suffix not in (".md", ".csv"):
+        parser.error(f"--out {asked.out}: a name that ends in .md or .csv is needed")
+    short = asked.short
+    asked.seeds = asked.seeds or (SHORT_SEEDS if short else SEEDS)
+    asked.scenarios = asked.scenarios or list(SHORT_SCENARIOS if short else SCENARIOS)
+    asked.noise = asked.noise or list(SHORT_NOISES if short else NOISES)
+    asked.trials = asked.trials or (["mixed"] if short else list(TRIAL_SETS))
+    return asked
+
+
+def main() -> int:
+    """Run, print, write; 1 where a threshold is missed."""
+    asked = options()
+    began = time.perf_counter()
+    rows = run_all(tasks(asked), asked.jobs)
+    limits = SHORT if asked.short else ISSUE
+    text = report(rows, limits)
+    print(text)
+    print(f"{len(rows)} runs in {time.perf_counter() - began:.0f} s", file=sys.stderr)
+    if asked.out is not None:
+        write(asked.out.with_suffix(".csv"), rows)
+        if asked.out.suffix == ".md":
+            asked.out.write_text(f"# Hidden effects\n\n{text}", encoding="utf-8")
+    return 0 if all(t.kept for t in thresholds(rows, limits)) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
