@@ -1,6 +1,7 @@
 """`trialid run --auto`: what is missing is added until the evidence ends."""
 
 import json
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -91,7 +92,9 @@ class Model:
             settings=SimpleNamespace(free=tuple(range(self.free))),
         )  # fmt: skip
         verdict = SimpleNamespace(kind=kind, effect=self.named)
-        return SimpleNamespace(before=SimpleNamespace(fit=fit), verdict=verdict)
+        effect = SimpleNamespace(name=self.named)
+        ranking = (SimpleNamespace(effect=effect, inflation=1.0),)
+        return SimpleNamespace(before=SimpleNamespace(fit=fit), verdict=verdict, ranking=ranking)
 
 
 def loop(monkeypatch: pytest.MonkeyPatch, *models: Model | Exception) -> list[auto.Stage]:
@@ -112,8 +115,17 @@ def loop(monkeypatch: pytest.MonkeyPatch, *models: Model | Exception) -> list[au
     monkeypatch.setattr(auto, "adding", adding)
     monkeypatch.setattr(auto, "foresee_adding", lambda *_: "")
     monkeypatch.setattr(auto, "fitted_after", lambda edit, *_: (edit, None))
-    monkeypatch.setattr(auto, "effective_samples", lambda fit: 1000.0)
+    monkeypatch.setattr(auto, "misfits", misfits)
+    monkeypatch.setattr(auto, "check_gain", check_gain)
     return list(auto.stages(SimpleNamespace(), lambda words, share: None))  # type: ignore[arg-type]
+
+
+def misfits(fits: Any) -> Any:
+    return [1000.0 * (fit.eps_rmsn / fits[0].eps_rmsn) ** 2 for fit in fits], None, 1000
+
+
+def check_gain(old: Any, new: Any, colour: None) -> tuple[float, float] | None:
+    return None if old.eps_check is None else (old.eps_check - new.eps_check, 0.01)
 
 
 def test_it_goes_on_while_something_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -123,8 +135,8 @@ def test_it_goes_on_while_something_is_named(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.mark.parametrize(("worse", "words"), [
-    (Model(None, 0.05, 0.2), "the held-out error does not fall with a"),
-    (Model(None, 0.05, 0.3), "the held-out error does not fall with a"),
+    (Model(None, 0.05, 0.3), "the held-out error rises with a"),
+    (Model(None, 0.05, math.inf), "the held-out error rises with a"),
     (Model(None, 0.0999, 0.1, free=6), "does not fall by the price of the parameters with a"),
     (Model(None, 0.095, 0.1, free=40), "the price of the parameters"),
     (SimulationError("lost at t = 3 s"), "with a: lost at t = 3 s"),

@@ -13,8 +13,7 @@ import numpy as np
 from trialid import history
 from trialid.change import Edit, adding, fitted_after, present, proposed
 from trialid.diagnosis.bias import foresee_adding
-from trialid.diagnosis.residual import effective_samples
-from trialid.diagnosis.score import cost
+from trialid.diagnosis.likelihood import check_gain, misfits
 from trialid.errors import TrialidError
 from trialid.pipeline import Progress, Run, align_trials, examine
 from trialid.recipe import Recipe
@@ -69,7 +68,7 @@ def stages(recipe: Recipe, progress: Progress) -> Iterator[Stage]:
 def judged(stage: Stage, edit: Edit, run: Run, added: Sequence[str]) -> Stage:
     """The stage that follows: the new model if it is the better one, else the old one kept."""
     name = edit.effect.name
-    trouble = _no_better(stage.run, run)
+    trouble = _no_better(stage.run, run, name)
     if trouble:
         return replace(stage, added=name, kept=False, end=f"{trouble} with {name}")
     return Stage(edit.after, run, name, True, _end(run, added))
@@ -87,14 +86,20 @@ def _end(run: Run, added: Sequence[str]) -> str:
     return ""
 
 
-def _no_better(before: Run, after: Run) -> str:
-    """What does not fall, empty where all falls; each parameter more pays its price (Schwarz)."""
+def _no_better(before: Run, after: Run, name: str) -> str:
+    """What speaks against an effect once it is in the model, empty where nothing does.
+
+    The verdict's own measures: each parameter pays its price (Schwarz), and held-out trials must
+    not speak against it beyond chance.
+    """
     old, new = before.findings.before.fit, after.findings.before.fit
-    if old.eps_check is not None and not (new.eps_check or np.inf) < old.eps_check:
-        return "the held-out error does not fall"
-    samples = effective_samples(old)
+    (plain, grown), colour, rows = misfits([old, new])
+    gain = check_gain(old, new, colour)
+    if new.eps_check == np.inf or (gain is not None and gain[0] <= -gain[1]):
+        return "the held-out error rises"
+    inflation = next(c.inflation for c in before.findings.ranking if c.effect.name == name)
     more = len(new.settings.free) - len(old.settings.free)
-    if cost(new.eps_rmsn, more, samples) >= cost(old.eps_rmsn, 0, samples):
+    if (plain - grown) / inflation <= more * float(np.log(rows)):
         return "the error does not fall by the price of the parameters"
     return ""
 

@@ -81,7 +81,7 @@ def run(
     sought; report, tables and data go to a folder.
 
     With --auto the effect that is named is added, in memory, and all is done again, until no effect
-    is named or the error on held-out trials no longer falls; the results are of the last model.
+    is named or what is added makes it no better; the results are of the last model.
     """
     if keep and not auto:
         raise click.UsageError("--write goes with --auto: a plain run changes no file")

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy import row_variance
-from trialid.diagnosis.augment import augment
+from trialid.diagnosis.augment import Augmented, Trace, augment, linear_parameters
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Unknown, linearise
 from trialid.ship.effect import Effect
@@ -45,37 +45,46 @@ def foresee_adding(fit: Fit, effect: Effect) -> Foreseen | str:
     augmented = augment(fit, {effect.name: effect})
     if effect.name in augmented.left_out:
         return augmented.left_out[effect.name]
-    residual, psi, S = _with_priors(fit, augmented.residual, augmented.psi, augmented.S)
+    each = [_by_trace(fit, augmented, trace) for trace in augmented.traces]
+    return min(each, key=lambda f: f.eps_rmsn) if each else "it changes no output in this record"
+
+
+def _by_trace(fit: Fit, augmented: Augmented, trace: Trace) -> Foreseen:
+    """What one trace of an effect foresees: by its slopes at the null, or by one value tried."""
+    S = augmented.S[:, list(trace.columns)]
+    residual, psi, S = _with_priors(fit, augmented.residual, augmented.psi, S)
     shift = _mimicked(psi, S)
     visible = S - psi @ shift
     sizes = np.maximum(np.linalg.norm(S, axis=0), 1e-300)
     beta = np.linalg.lstsq(visible / sizes, residual, rcond=1e-10)[0] / sizes
-    left = residual - visible @ beta
-    values = dict(zip(augmented.columns, map(float, beta), strict=True))
-    return Foreseen(_named(fit.problem.unknowns, -shift @ beta), values, _eps(fit, left))
+    slopes = dict(zip(trace.parameters, map(float, beta), strict=True)) if not trace.tried else {}
+    typical = {n: p.start for n, p in trace.effect.parameters.items()}
+    return Foreseen(
+        _named(fit.problem.unknowns, -shift @ beta),
+        {**typical, **trace.tried, **slopes},
+        _eps(fit, residual - visible @ beta),
+    )
 
 
 def foresee_dropping(fit: Fit, effect: Effect) -> Foreseen | str:
     """What leaving an effect out would change; words where it cannot be linearised."""
-    nulls = {n: p.null for n, p in effect.parameters.items()}
-    if effect.states or not all(map(np.isfinite, nulls.values())):
-        return "adds a state: not linear at its null"
-    values = {n: fit.model.value(n) for n in effect.parameters}
-    found = _columns(fit, tuple(effect.parameters))
+    linear = linear_parameters(effect)
+    if effect.scanned or effect.states or not linear:
+        return "not linear at its null"
+    found = _columns(fit, linear)
     if isinstance(found, Departure):
         return f"cannot be simulated: {found}"
     residual, every = found
-    own = [x.column in nulls for x in fit.problem.unknowns]
-    kept = [i for i, mine in enumerate(own) if not mine]
-    theirs = [x for x, mine in zip(fit.problem.unknowns, own, strict=True) if not mine]
     names = [x.column for x in fit.problem.unknowns]
-    fixed = [n for n in effect.parameters if n not in names]
-    which = [names.index(n) if n in names else len(names) + fixed.index(n) for n in nulls]
+    kept = [i for i, n in enumerate(names) if n not in effect.parameters]
+    theirs = [fit.problem.unknowns[i] for i in kept]
+    fixed = [n for n in linear if n not in names]
+    which = [names.index(n) if n in names else len(names) + fixed.index(n) for n in linear]
     residual, psi, S = _with_priors(fit, residual, every[:, kept], every[:, which], theirs)
     shift = _mimicked(psi, S)
-    step = np.array([nulls[n] - values[n] for n in effect.parameters])
+    step = -np.array([fit.model.value(n) for n in linear])  # back to zero, which is their null
     left = residual - (S - psi @ shift) @ step
-    return Foreseen(_named(theirs, -shift @ step), nulls, _eps(fit, left))
+    return Foreseen(_named(theirs, -shift @ step), dict.fromkeys(linear, 0.0), _eps(fit, left))
 
 
 def _columns(fit: Fit, parameters: Sequence[str]) -> tuple[Vector, Vector] | Departure:
