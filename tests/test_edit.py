@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from trialid.errors import RecipeError
 from trialid.recipe.array_text import with_name, without_name
-from trialid.recipe.edit import add_effect, drop_effect
+from trialid.recipe.edit import add_effect, drop_effect, start_at
 from trialid.recipe.rewrite import rewriting
 
 ROOT = Path(__file__).parent.parent
@@ -160,6 +160,25 @@ def test_a_prior_goes_however_it_is_written(entry: str) -> None:
     assert data["identify"]["free"] == ["Yv"]
     assert not data["identify"].get("priors")
     assert text.startswith("# top\n")
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("ends", ["\n", "\r\n"])
+def test_a_start_is_put_in_and_taken_out(form: str, ends: str) -> None:
+    """In a line of its own where the form of the file has lines."""
+    text = FORMS[form].format('["a"]', '["b"]').replace("\n", ends)
+    started = start_at(start_at(edited(text), "P1", 0.5), "P2", -2e-5)
+    values = tomllib.loads(started)["model"]["values"]
+    assert (values["P1"], values["P2"]) == (0.5, -2e-5)
+    dropped, said = drop_effect(started, "new", OWN)
+    if form in ("inline", "apart"):
+        assert said == ("model.values.P1 = 0.5", "model.values.P2 = -2e-05")
+        old = tomllib.loads(text)
+        new = tomllib.loads(dropped)
+        assert new["model"].pop("values", {}) == old["model"].pop("values", {})
+        assert new == old
+    else:
+        assert (dropped, said) == (text, ())
 
 
 @pytest.mark.parametrize(("text", "words"), [

@@ -9,6 +9,7 @@ import json
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
+from operator import delitem, setitem
 from typing import Any, Final
 
 import tomlkit
@@ -93,10 +94,14 @@ def start_at(text: str, name: str, value: float) -> str:
         if _says(new, expected):
             return new
         at = text.find(array, at + 1)
-    new = _dumped(text, EFFECTS, "add", name, lambda model: model["values"].add(name, value))
+    new = _dumped(text, EFFECTS, "add", name, lambda model: setitem(_values(model), name, value))
     if not _says(new, expected):
         raise RecipeError(_by_hand(("model", "values"), "add", name))
     return new
+
+
+def _values(model: Any) -> Any:
+    return model.setdefault("values", tomlkit.inline_table())
 
 
 def _with_line(text: str, start: int, stop: int, line: str) -> str:
@@ -147,7 +152,7 @@ def _rewritten(
 def _without_entry(text: str, table: Keys, name: str) -> str:
     expected = copy.deepcopy(_data(text))
     del expected[table[0]][table[1]][name]
-    new = _dumped(text, table, "drop", name, lambda section: section[table[1]].remove(name))
+    new = _dumped(text, table, "drop", name, lambda section: delitem(section[table[1]], name))
     if not _says(new, expected):
         raise RecipeError(_by_hand(table, "drop", name))
     return new
