@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.leftover import graded, sides, spectrum, stretches, words
+from trialid.diagnosis.leftover import graded, heading, offset, sides, spectrum, stretches, words
 from trialid.diagnosis.leftover.chance import Colour, colour, holm
 from trialid.diagnosis.leftover.finding import Examined, Finding, Spectrum
 from trialid.diagnosis.leftover.record import Leftover, leftover
@@ -103,8 +103,8 @@ def _questions(left: Leftover, hue: Colour, c: int) -> Iterator[tuple[str, Exami
     for scale in scales:
         yield scale.kind, graded.graded(left, hue, c, scale)
     yield "side", sides.side(left, hue, c)
-    yield "heading sector", sides.heading(left, hue, c)
-    yield "mean offset", sides.offset(left, hue, c)
+    yield "heading sector", heading.by_heading(left, hue, c)
+    yield "mean offset", offset.offset(left, hue, c)
     seen = spectrum.spectra(left, c)
     yield "frequency", seen if isinstance(seen, str) else spectrum.follows_rudder(left, c, seen)
 

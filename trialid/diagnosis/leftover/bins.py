@@ -99,5 +99,11 @@ def in_reports(left: Leftover, output: int) -> float:
     return float(left.fit.problem.y_rms[output]) * shown(left.outputs[output])
 
 
+def explained(left: Leftover, output: int, mean: Vector, held: Squares) -> float:
+    """Share of an output's squared error that normed means in slices make up."""
+    power = float((left.eps[:, output] ** 2).sum() / left.compared[:, output].sum())
+    return min(float(held.samples @ mean**2) / power, 1.0)
+
+
 def _plain(values: Vector) -> tuple[float, ...]:
     return tuple(float(v) for v in values)

@@ -8,7 +8,14 @@ from numpy.typing import NDArray
 from scipy.signal import hilbert
 
 from trialid.diagnosis.leftover import words
-from trialid.diagnosis.leftover.bins import bars, in_reports, members, nice_edges, weights
+from trialid.diagnosis.leftover.bins import (
+    bars,
+    explained,
+    in_reports,
+    members,
+    nice_edges,
+    weights,
+)
 from trialid.diagnosis.leftover.chance import Colour, Means, Squares, means, squares, trend
 from trialid.diagnosis.leftover.finding import Examined, Finding
 from trialid.diagnosis.leftover.record import Leftover, mirror, shown, unit
@@ -143,8 +150,7 @@ def _finding(
         said.append(_means(left, output, scale, edges, off, mean))
         if not squares:
             standing[off] = True
-            share = float(sum(each.samples[k] * mean.value[k] ** 2 for k in off))
-            share = min(share / _power(left, output), 1.0)
+            share = explained(left, output, np.where(standing, mean.value, 0.0), each)
             said[-1] += f" ({words.share(share)} of its squared error)"
     excess = float(each.share[standing].sum() / each.samples[standing].sum())
     label = f"|{scale.signal}|" if scale.kind != "speed" else scale.signal
@@ -184,10 +190,6 @@ def _means(
         value = float(mean.value[k]) * in_reports(left, output)
         amount = f"{words.figure(value)} {unit(name)} too {low if value > 0.0 else high}"
         parts.append(f"{amount} between {edges[k]:g} and {edges[k + 1]:g} {scale.unit}")
-    counted = "" if mirror(name) > 0 or name == scale.signal else f", counted {scale.side}"
-    return f"by {scale.words}, the prediction is on average {' and '.join(parts)}{counted}"
-
-
-def _power(left: Leftover, output: int) -> float:
-    """Mean square of an output's normed residual."""
-    return float((left.eps[:, output] ** 2).sum() / left.compared[:, output].sum())
+    counted = "" if mirror(name) > 0 or name == scale.signal else f" and counted {scale.side}"
+    by = f", by {scale.words}{counted}"
+    return f"the prediction is on average {' and '.join(parts)}{by}"

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -109,7 +110,7 @@ def leftover(fit: Fit) -> Leftover:
     """What a fit leaves over on the trials it was made of."""
     parts = tuple(residuals(fit))
     ends = np.cumsum([0, *(r.trial.samples for r in parts)])
-    spans = tuple(slice(int(a), int(b)) for a, b in zip(ends[:-1], ends[1:], strict=True))
+    spans = tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
     eps = np.concatenate([r.eps for r in parts])
     return Leftover(fit, parts, eps, np.concatenate([r.compared for r in parts]), spans)
 

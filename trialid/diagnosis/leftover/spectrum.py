@@ -42,7 +42,7 @@ NARROW: Final = 2.2
 
 SHIP: Final = "where the ship itself moves: frequency alone cannot say whether model or noise"
 SENSOR: Final = "looks like sensor noise"
-OUTSIDE: Final = "looks like the sea or the wind"
+OUTSIDE: Final = "looks like the sea, the wind or the sensor"
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def spectra(left: Leftover, output: int) -> Spectra | str:
     E, Y = np.array([_tapered(both[s]) for s in segments]).transpose(2, 0, 1)
     examined = _moving(X)
     examined[0] = False
-    omega = 2.0 * np.pi * np.fft.rfftfreq(length, period)
+    omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(length, period), dtype=np.float64)
     doubled = np.r_[1.0, np.full(len(omega) - 1, 2.0)]
     error, moved = [(np.abs(x) ** 2).sum(axis=0) * doubled for x in (E, Y)]
     return Spectra(omega, error, moved, _coherence(X, E, examined), examined,
@@ -144,7 +144,8 @@ def picture(s: Spectra) -> Spectrum:
     """The spectrum as shares of the squared error per rad/s."""
     total = float(s.error.sum()) * float(s.frequency[1])
     parts = (s.frequency, s.error / total, s.coherent / total, s.coherence)
-    return Spectrum(*(tuple(float(v) for v in x) for x in parts), s.threshold)
+    frequency, density, coherent, coherence = [tuple(float(v) for v in x) for x in parts]
+    return Spectrum(frequency, density, coherent, coherence, s.threshold)
 
 
 def follows_rudder(left: Leftover, output: int, s: Spectra) -> Examined:
@@ -166,7 +167,7 @@ def follows_rudder(left: Leftover, output: int, s: Spectra) -> Examined:
         left.outputs[output], "frequency", share, share,
         float(s.error[low : high + 1].mean() / s.error[1:].mean()), 1.0,
         f"{name}: {words.share(band)} of its squared error lies {where}, and {words.share(share)} "
-        "follows the rudder (coherent): the model, not the noise",
+        "is coherent with the rudder: the model, not the noise",
         picture(s),
     ),))  # fmt: skip
 
@@ -194,7 +195,7 @@ def rest(left: Leftover, output: int, s: Spectra) -> str:
     sums = np.cumsum(other) / other.sum()
     low, high = (int(np.searchsorted(sums, q)) + 1 for q in (0.15, 0.85))
     peak = int(np.argmax(other)) + 1
-    about = f"{words.share(share)} of its squared error does not follow the rudder in proportion"
+    about = f"{words.share(share)} of its squared error is not coherent with the rudder"
     place = f"{words.name(left.outputs[output])}: {about}; most of it lies "
     band = slice(low, high + 1)
     if float(s.predicted[band].sum()) > float(s.error[band].sum()):

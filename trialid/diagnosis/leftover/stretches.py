@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -45,7 +46,7 @@ def windows(left: Leftover) -> list[Window]:
         length = max(round(WINDOW * left.time_scale / part.trial.period), 8)
         count = max(round((span.stop - span.start) / length), 1)
         ends = np.linspace(span.start, span.stop, count + 1).round().astype(int)
-        made += [Window(i, int(a), int(b)) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        made += [Window(i, int(a), int(b)) for a, b in pairwise(ends)]
     return made
 
 
