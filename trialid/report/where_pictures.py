@@ -5,6 +5,7 @@ measured less predicted. Spectra: the residual's, and in it what follows the rud
 result does not hold is left out; a picture without numbers is no picture.
 """
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -76,12 +77,10 @@ class Picture:
 
 def picture(given: Mapping[str, Any] | None) -> Picture | None:
     """A picture from a result's plain data, or None where that does not hold one."""
+    form = given.get("form") if given else None
     try:
-        match given:
-            case {"form": "bars"}:
-                return _bars(given)
-            case {"form": "spectrum"}:
-                return _spectrum(given)
+        if given and form in _DRAWN:
+            return _DRAWN[form](given)
     except (LookupError, TypeError, ValueError, ZeroDivisionError):  # of another version
         return None
     return None
@@ -91,7 +90,7 @@ def _bars(given: Mapping[str, Any]) -> Picture:
     by, unit = _worded(given["by"]), _worded(given["unit"])
     _worded(given["mean_unit"])
     places = _places(given["edges"])
-    top = max(max(given["mean_square"]), 1.0)
+    top = max(*given["mean_square"], 1.0)
     scale = TALLEST * (FLOOR - TOP) / top
     names = given["names"] or _ranges(given["edges"], unit)
     boxes, whiskers = [], []
@@ -127,12 +126,12 @@ def _places(edges: Sequence[float]) -> list[tuple[float, float]]:
     first, last = edges[0], edges[-1]
     scale = (WIDTH - LEFT - RIGHT) / (last - first)
     at = [LEFT + scale * (edge - first) for edge in edges]
-    return list(zip(at[:-1], at[1:], strict=True))
+    return list(itertools.pairwise(at))
 
 
 def _ranges(edges: Sequence[float], unit: str) -> list[str]:
     return [f"{a:.6g} to {b:.6g} {unit}"
-            for a, b in zip(edges[:-1], edges[1:], strict=True)]  # fmt: skip
+            for a, b in itertools.pairwise(edges)]  # fmt: skip
 
 
 def _title(given: Mapping[str, Any], name: str, k: int) -> str:
@@ -227,3 +226,6 @@ def _last(density: Sequence[float]) -> int:
 def _round_step(least: float) -> float:
     power = 10.0 ** math.floor(math.log10(least))
     return next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= least)
+
+
+_DRAWN = {"bars": _bars, "spectrum": _spectrum}

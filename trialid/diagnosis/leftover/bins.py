@@ -27,7 +27,7 @@ def nice_edges(x: Vector, between: bool = False) -> Vector:
     >>> nice_edges(np.linspace(0.0, 1.0, 1000)).tolist()
     [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
     >>> nice_edges(np.repeat([0.0, 10.0, 20.0], 100), between=True).tolist()
-    [0.0, 2.5, 12.5, 22.5]
+    [0.0, 7.5, 17.5, 22.5]
     """
     low, high = float(x.min()), float(x.max())
     if high <= low:

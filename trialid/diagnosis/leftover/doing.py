@@ -68,10 +68,11 @@ def _rolling(left: Leftover, stretch: slice) -> str:
     here = phi[stretch]
     t = np.arange(len(here)) - 0.5 * (len(here) - 1)
     swing = here - here.mean() - t * float(t @ here) / max(float(t @ t), 1e-300)
-    passes = int(np.count_nonzero(np.diff(np.sign(swing))))
-    if passes < 3 or float(np.std(swing)) < ROLLING * float(np.std(phi)):
+    passes = np.flatnonzero(np.diff(np.sign(swing)))
+    if len(passes) < 3 or float(np.std(swing)) < ROLLING * float(np.std(phi)):
         return ""
-    period = 2.0 * len(here) / passes * left.parts[0].trial.period
+    samples = 2.0 * float(passes[-1] - passes[0]) / (len(passes) - 1)
+    period = samples * left.parts[0].trial.period
     return f"rolling at its natural frequency, period {period:.0f} s"
 
 

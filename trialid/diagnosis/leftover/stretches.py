@@ -78,7 +78,9 @@ def failing(left: Leftover, colour: Colour, output: int) -> Examined | str:
     least = min(float(p.min()) * len(p), 1.0)
     if least > LEVEL:
         return Examined(least)
-    runs = _runs(rows, [tried[k] for k in np.argsort(p) if p[k] <= LEVEL / len(p)])
+    worse = {spell[0] for k, spell in enumerate(tried) if len(spell) == 1 and held.ratio[k] > 1.0}
+    standing = [tried[k] for k in np.argsort(p, kind="stable") if p[k] <= LEVEL / len(p)]
+    runs = [run for run in (_trimmed(r, worse) for r in _runs(rows, standing)) if run]
     found = [_finding(left, colour, output, rows, run) for run in runs]
     return Examined(least, tuple(sorted(found, key=lambda f: -f.beyond)[:MOST]))
 
@@ -96,6 +98,12 @@ def _runs(rows: list[Window], standing: Sequence[Sequence[int]]) -> list[list[in
         else:
             runs.append([k])
     return runs
+
+
+def _trimmed(run: list[int], worse: set[int]) -> list[int]:
+    """A run without the windows at its ends that are no worse than the average."""
+    kept = [i for i, k in enumerate(run) if k in worse]
+    return run[kept[0] : kept[-1] + 1] if kept else []
 
 
 def _finding(
