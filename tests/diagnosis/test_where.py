@@ -194,6 +194,19 @@ def test_a_disturbed_stretch_is_found_merged_and_named():
     assert finding.excess > 3.0
 
 
+def test_noise_at_one_rudder_angle_alone_is_not_said_to_grow_with_it():
+    """Twice the noise in the 10-10 only: the bin about 10 deg, not all above it."""
+    trials = record(13, white)
+    louder = trials[1].signals["r"] + np.deg2rad(0.1) * np.random.default_rng(14).standard_normal(
+        trials[1].samples
+    )
+    trials[1] = replace(trials[1], signals={**trials[1].signals, "r": louder})
+    finding = only(found(trials).findings, "r", "rudder amplitude")
+    assert "between 7.5 and 12.5 deg of rudder angle, " in finding.sentence
+    assert "grows" not in finding.sentence
+    assert finding.picture.standing == (False, True, False)
+
+
 # --- words and bins -----------------------------------------------------------------------------
 
 

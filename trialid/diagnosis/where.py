@@ -88,7 +88,7 @@ def where(fit: Fit, level: float = LEVEL) -> Where:
         seen = spectrum.spectra(left, c)
         if not isinstance(seen, str):
             rest.append(Rest(output, spectrum.rest(left, c, seen), spectrum.picture(seen)))
-    p = holm([a.p_value for a in asked])
+    p = holm([max(a.p_value, hue.least) for a in asked])
     standing = [replace(f, p_value=x) for a, x in zip(asked, p, strict=True) if x <= level
                 for f in a.findings]  # fmt: skip
     found = sorted(standing, key=lambda f: -f.beyond)

@@ -130,7 +130,7 @@ def _places(edges: Sequence[float]) -> list[tuple[float, float]]:
 
 
 def _ranges(edges: Sequence[float], unit: str) -> list[str]:
-    return [f"{a:.6g} to {b:.6g} {unit}"
+    return [f"{_edge(a)} to {_edge(b)} {unit}"
             for a, b in itertools.pairwise(edges)]  # fmt: skip
 
 
@@ -170,8 +170,13 @@ def _ticks(given: Mapping[str, Any], places: Sequence[tuple[float, float]]) -> l
     ticks: list[Tick] = []
     for x, edge in zip(at, given["edges"], strict=True):
         if not ticks or x - ticks[-1].x > 34.0:
-            ticks.append(Tick(x, f"{edge:.6g}".replace("-", wording.MINUS)))
+            ticks.append(Tick(x, _edge(edge)))
     return ticks
+
+
+def _edge(value: float) -> str:
+    words = f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.6g}"
+    return words.replace("-", wording.MINUS)
 
 
 def _shortened(name: str, room: int) -> str:

@@ -38,12 +38,14 @@ class Colour:
     """How each output's normed residual hangs together in time; (lags, n_y) each.
 
     `covariance` is Bartlett weighted, so that no sum has a negative variance; `squared` is the
-    squared autocorrelation as it is. `independent` counts independent squares; (n_y,).
+    squared autocorrelation as it is. `independent` counts independent squares; (n_y,). `least` is
+    the smallest chance the record's independent blocks can support: all of one sign.
     """
 
     covariance: Vector
     squared: Vector
     independent: Vector
+    least: float
 
 
 def colour(left: Leftover) -> Colour:
@@ -58,7 +60,8 @@ def colour(left: Leftover) -> Colour:
     c = total / np.maximum(np.round(pairs), 1.0)
     rho2 = (c / np.where(c[0] > 0.0, c[0], 1.0)) ** 2
     count = left.compared.sum(axis=0)
-    return Colour(weights * c, rho2, np.asarray(count / (1.0 + 2.0 * rho2[1:].sum(axis=0))))
+    independent = np.asarray(count / (1.0 + 2.0 * rho2[1:].sum(axis=0)))
+    return Colour(weights * c, rho2, independent, float(0.5 ** (len(left.eps) / lags)))
 
 
 def _lagged(x: Vector, lags: int) -> Vector:

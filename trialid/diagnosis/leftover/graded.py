@@ -19,6 +19,7 @@ from trialid.diagnosis.leftover.bins import (
 from trialid.diagnosis.leftover.chance import Colour, Means, Squares, means, squares, trend
 from trialid.diagnosis.leftover.finding import Examined, Finding
 from trialid.diagnosis.leftover.record import Leftover, mirror, shown, unit
+from trialid.trial import Mask
 
 Vector = NDArray[np.float64]
 
@@ -111,40 +112,39 @@ def graded(left: Leftover, colour: Colour, output: int, scale: Scale) -> Examine
     bins = inside.shape[1]
     if bins < 2:
         return Examined(1.0)
-    tails = np.cumsum(inside[:, ::-1], axis=1)[:, ::-1][:, 1:] > 0
-    above, each = squares(left, colour, output, tails), squares(left, colour, output, inside)
+    each = squares(left, colour, output, inside)
+    parts = _contiguous(bins)
+    some = squares(left, colour, output, inside @ parts)
     mirrored = mirror(left.outputs[output]) < 0
     sign = scale.sign if mirrored else np.ones(len(left.eps))
     mean = None
     if sign is not None:
         w = weights(inside, left.compared[:, output], sign)
         mean = means(left, colour, output, w)
-    tests = [trend(left, colour, output, scale.size), float(above.p.min()) * len(above.p)]
+    tests = [trend(left, colour, output, scale.size), float(some.p.min()) * len(some.p)]
     tests += [] if mean is None else [mean.joint]
     least = min(len(tests) * min(tests), 1.0)
     if least > LEVEL:
         return Examined(least)
     limit = LEVEL / len(tests)
     finding = _finding(
-        left, output, scale, edges, above, each,
+        left, output, scale, edges, parts[:, int(np.argmin(some.p))], each,
         mean if tests[-1] <= limit else None, min(tests[:2]) <= limit,
     )  # fmt: skip
     return Examined(least, (finding,))
 
 
 def _finding(
-    left: Leftover, output: int, scale: Scale, edges: Vector, above: Squares, each: Squares,
+    left: Leftover, output: int, scale: Scale, edges: Vector, part: Mask, each: Squares,
     mean: Means | None, squares: bool,
 ) -> Finding:  # fmt: skip
-    """The tail that stands out most, and the bins whose means do."""
+    """The bins that together stand out most, and those whose means do."""
     standing = np.zeros(len(each.ratio), dtype=bool)
     said, samples, share = [], 0.0, 0.0
     if squares:
-        j = int(np.argmin(above.p))
-        up = above.ratio[j] > 1.0
-        standing = (np.arange(len(standing)) > j) == up
+        standing = part if _worse(each, part) else ~part
         samples, share = float(each.samples[standing].sum()), float(each.share[standing].sum())
-        said.append(_tail(scale, edges[j + 1], each, up) + words.held(samples, share))
+        said.append(_place(scale, edges, standing, each) + words.held(samples, share))
     if mean is not None:
         off = _apart(mean)
         said.append(_means(left, output, scale, edges, off, mean))
@@ -170,13 +170,34 @@ def _apart(mean: Means) -> list[int]:
     return [first, other] if abs(z[other]) > 2.0 and z[other] * z[first] < 0.0 else [first]
 
 
-def _tail(scale: Scale, edge: float, each: Squares, up: bool) -> str:
-    """How the error goes with the size, as far as the bins bear it out, and beyond which edge."""
-    steps = np.sign(np.diff(each.ratio)).sum()
-    steady = abs(steps) >= 0.6 * (len(each.ratio) - 1) and (steps > 0.0) == up
-    trend = f"its error {'grows' if up else 'falls'} with the {scale.words}: " if steady else ""
-    where = f"{'above' if up else 'below'} {edge:g} {scale.unit}"
-    return f"{trend}{where}, " if steady else f"{where} of {scale.words}, "
+def _contiguous(bins: int) -> Mask:
+    """All above an edge, and every bin that is neither the first nor the last; (bins, q)."""
+    above = [np.arange(bins) > j for j in range(bins - 1)]
+    alone = [np.arange(bins) == j for j in range(1, bins - 1)]
+    return np.column_stack(above + alone)
+
+
+def _worse(each: Squares, part: Mask) -> bool:
+    """Whether bins hold more of the squared error than of the samples."""
+    return bool(each.share[part].sum() > each.samples[part].sum())
+
+
+def _place(scale: Scale, edges: Vector, standing: Mask, each: Squares) -> str:
+    """Which sizes stand out, and how the error goes with the size where the bins bear it out."""
+    first, last = (int(k) for k in np.flatnonzero(standing)[[0, -1]])
+    low, high = f"{edges[first]:g}", f"{edges[last + 1]:g} {scale.unit}"
+    if not standing[first:last].all():
+        gap = np.flatnonzero(~standing)
+        place = f"outside {edges[gap[0]]:g} to {edges[gap[-1] + 1]:g} {scale.unit}"
+    elif last + 1 == len(standing):
+        place = f"above {low} {scale.unit}"
+    else:
+        place = f"below {high}" if first == 0 else f"between {low} and {high}"
+    up = last + 1 == len(standing)
+    steps = float(np.sign(np.diff(each.ratio)).sum()) * (1.0 if up else -1.0)
+    if (up or first == 0) and steps >= 0.6 * (len(standing) - 1):
+        return f"its error {'grows' if up else 'falls'} with the {scale.words}: {place}, "
+    return f"{place} of {scale.words}, "
 
 
 def _means(
