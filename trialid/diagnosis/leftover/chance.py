@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import next_fast_len
+from scipy.fft import next_fast_len, rfft
 from scipy.special import chdtri, fdtr, fdtrc, stdtr  # scipy.stats takes 0.4 s to import
 
 from trialid.diagnosis.leftover.record import Leftover
@@ -86,8 +86,11 @@ def along(columns: Vector, kernel: Vector, spans: Sequence[slice]) -> Vector:
     """The diagonal of `gram`; (q,)."""
     total = np.zeros(columns.shape[1])
     for span in spans:
-        P, weights = _transformed(columns[span], kernel)
-        total += weights @ (P.real**2 + P.imag**2)
+        piece = columns[span]
+        here = piece.any(axis=0)  # a stretch lies in one trial
+        if here.any():
+            P, weights = _transformed(piece[:, here], kernel)
+            total[here] += weights @ (P.real**2 + P.imag**2)
     return total
 
 
@@ -102,7 +105,7 @@ def _transformed(piece: Vector, kernel: Vector) -> tuple[NDArray[np.complex128],
     spectrum[1:] *= 2.0
     if size % 2 == 0:
         spectrum[-1] *= 0.5
-    return np.fft.rfft(piece, size, axis=0), np.asarray(spectrum)
+    return rfft(piece.T, size).T, np.asarray(spectrum)  # along rows: twice as fast
 
 
 @dataclass(frozen=True)
