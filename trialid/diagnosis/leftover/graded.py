@@ -99,7 +99,7 @@ def _speed(left: Leftover) -> Scale | str:
     assert u is not None
     middle = float(np.abs(u.mean()))
     if float(np.quantile(u, 0.99) - np.quantile(u, 0.01)) < STEADY * middle or middle == 0.0:
-        return f"the speed stays within {STEADY:.0%} of its mean"
+        return f"the speed stays within {words.share(STEADY)} of its mean"
     turn = left.signal("r")
     sign = None if turn is None else np.sign(turn)
     return Scale("speed", "speed", unit(name), "u", u * shown(name), sign, SIDES["r"])
