@@ -20,6 +20,11 @@ DECISIVE: Final = 6.0
 """Difference of twice the log likelihood that decides: odds of 20 to 1."""
 
 
+FAINT: Final = 0.02
+"""Share of its trace that an effect must keep beside the free parameters to be named: a centre of
+gravity or a scale keeps less, and then errors of other fixed parameters look like it."""
+
+
 @dataclass(frozen=True)
 class Refit:
     """A candidate added to the model and fitted."""
@@ -86,6 +91,8 @@ def decide(
     named = confirmed(fit, refits, level)
     if whole.gap:
         return Verdict("not in catalogue", None, (), _gap(named, whole))
+    if named is not None and named.candidate.visibility < FAINT:
+        return Verdict("cannot tell", None, (), _faint(named))
     if named is not None:
         return _missing(fit, named, rivals(fit, named, ranking, refits))
     if parts.undermodelling_interval is None:
@@ -110,6 +117,15 @@ def _gap(named: Refit | None, whole: Completeness) -> str:
     return (
         "something is missing that the catalogue does not hold: its effects gain "
         f"{share:.0%} of what a force of a simple shape would{closest}"
+    )
+
+
+def _faint(named: Refit) -> str:
+    candidate = named.candidate
+    return (
+        f"{candidate.effect.name} would explain a part of the error, but "
+        f"{1.0 - candidate.visibility:.1%} of what it does the free parameters do as well: a small "
+        "error elsewhere in the model looks the same"
     )
 
 
