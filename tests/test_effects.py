@@ -13,7 +13,7 @@ from typical import draw
 
 from trialid.effects import CATALOGUE, FILES
 from trialid.quantities import PARTICULARS, QUANTITIES, SIGNALS
-from trialid.ship.effect import Delayed, Effect, Force, Measured, Rate, Steered
+from trialid.ship.effect import FORMS, Effect, Force
 from trialid.ship.model import STATES, ShipModel, derivatives
 from trialid.ship.particulars import read_ship
 from trialid.ship.prime import prime_parameter, prime_signal
@@ -25,13 +25,38 @@ SHIP = read_ship(Path(__file__).parent.parent / "sample_data" / "ships" / "s175q
 L, U = 175.0, 7.3
 EVERY = pytest.mark.parametrize("name", CATALOGUE)
 
-ASYMMETRIC = {
+PUSHES = {
     "static_list", "rudder_offset", "bias_v", "bias_p", "bias_r", "bias_phi", "bias_psi",
+    "hull_asymmetry", "propeller_side_force", "steady_wind", "current_in_sway",
 }  # fmt: skip
-"""Constant, so that port and starboard differ."""
+"""Something to one side that is there on a straight course too."""
 
-NOT_LINEAR = {"rudder_servo", "rudder_servo_limited", "propeller_thrust", "propeller_rudder"}
-"""Parameters inside the formula (time constants, diameters): no null, no superposition."""
+ASYMMETRIC = PUSHES | {
+    "rudder_flow_asymmetry",
+    "rudder_feedback_curve",
+    "lever_arm_y",
+    "current_in_surge",
+    "current_in_speed_record",
+}
+"""Port and starboard differ."""
+
+FORCED_AT_REST = {"static_list", "steady_wind"}
+"""Forces that do not ask for speed."""
+
+NO_NULL = {
+    "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "rudder_backlash",
+    "propeller_thrust", "propeller_rudder", "rudder_race",
+}  # fmt: skip
+"""Never absent: parameters inside the formula (time constants), or instead of another effect."""
+
+NOT_LINEAR = NO_NULL | {"rudder_deadband"}
+"""No superposition."""
+
+EVEN_STATES = {"u_lost"}
+"""States of an effect's own that the mirror leaves alone."""
+
+TWINS = {"n_p": "n_s", "n_s": "n_p"}
+"""What the mirror exchanges."""
 
 FORCE_MIRROR = {"X": 1, "Y": -1, "K": -1, "N": -1}
 DRAWS, MANY = 6, 40
@@ -63,23 +88,27 @@ def flat(effect: Effect, at: Mapping[str, Any]) -> dict[str, Any]:
 
 def sign(name: str) -> int:
     """How the mirror treats a signal; a state of an effect's own is taken as odd."""
-    return QUANTITIES[name].mirror if name in QUANTITIES else -1
+    if name in QUANTITIES:
+        return QUANTITIES[name].mirror
+    return 1 if name in EVEN_STATES else -1
 
 
 def result_sign(key: str) -> int:
     form, name = key.split(".")
-    if form == "Delayed":
+    if form in {"Delayed", "Lagged", "Mass"}:
         return 1
     return FORCE_MIRROR[name] if form == "Force" else sign(name)
 
 
 def mirrored(effect: Effect, at: Mapping[str, float]) -> dict[str, float]:
-    return {n: x * sign(n) if n in effect.signals else x for n, x in at.items()}
+    changed = {n: at[m] if (m := TWINS.get(n)) in at else x for n, x in at.items()}
+    return {n: x * sign(n) if n in effect.signals else x for n, x in changed.items()}
 
 
 def straight(effect: Effect, at: Mapping[str, float]) -> dict[str, float]:
     """Upright on a straight course: everything the mirror reverses is zero."""
-    return {n: 0.0 if n in effect.signals and sign(n) < 0 else x for n, x in at.items()}
+    even = at | ({"n_s": at["n_p"]} if "n_s" in at else {})
+    return {n: 0.0 if n in effect.signals and sign(n) < 0 else x for n, x in even.items()}
 
 
 def in_graph(effect: Effect, at: Mapping[str, float]) -> tuple[dict[str, Node], dict[str, Node]]:
@@ -114,7 +143,7 @@ def test_nothing_happens_on_a_straight_course(name: str) -> None:
     for seed in range(DRAWS):
         at = straight(effect, values(effect, seed))
         sideways = [x for k, x in flat(effect, at).items() if result_sign(k) < 0]
-        assert np.any(sideways) if name in ASYMMETRIC else not np.any(sideways), sideways
+        assert np.any(sideways) if name in PUSHES else not np.any(sideways), sideways
 
 
 @EVERY
@@ -127,16 +156,22 @@ def test_a_ship_at_rest_stays_at_rest(name: str) -> None:
     theta |= {n: p.start for n, p in effect.parameters.items()}
     rest = dict.fromkeys(model.all_states, 0.0)
     rates = derivatives(model, rest, dict.fromkeys(model.recorded, 0.0), theta)
-    rolls = name == "static_list"  # a moment that does not ask for speed
-    assert (rates == pytest.approx(rest, abs=1e-12)) is not rolls
+    assert (rates == pytest.approx(rest, abs=1e-12)) == (name not in FORCED_AT_REST)
 
 
-@pytest.mark.parametrize("name", [n for n in CATALOGUE if n not in NOT_LINEAR])
+def without_rates(results: Mapping[str, Any]) -> dict[str, Any]:
+    return {k: x for k, x in results.items() if not k.startswith("Rate.")}
+
+
+@pytest.mark.parametrize("name", [n for n in CATALOGUE if n not in NO_NULL])
 def test_absent_at_null(name: str) -> None:
+    """Nothing acts, whatever its own states do; or these never leave zero and then nothing acts."""
     effect = CATALOGUE[name]
     for seed in range(DRAWS):
         at = values(effect, seed) | effect.nulls
-        assert not any(flat(effect, at).values())
+        quiet = at | dict.fromkeys(effect.states, 0.0)
+        ignored = not any(without_rates(flat(effect, at)).values())
+        assert ignored or not any(flat(effect, quiet).values())
 
 
 @EVERY
@@ -148,9 +183,14 @@ def test_parameters_superpose(name: str) -> None:
 
 def superposes(effect: Effect, seed: int) -> bool:
     a, b = values(effect, seed), values(effect, seed + 100)
-    b |= {s: a[s] for s in effect.signals}
-    mixed = {n: 2.0 * a[n] - 3.0 * b[n] if n in effect.parameters else a[n] for n in a}
-    left, one, two = flat(effect, mixed), flat(effect, a), flat(effect, b)
+    same = {*effect.signals, *(n for n, p in effect.parameters.items() if p.null is None)}
+    b |= {n: a[n] for n in same}
+    if Force not in effect.forms:  # what is scored drives the states, which begin at zero
+        a, b = (at | dict.fromkeys(effect.states, 0.0) for at in (a, b))
+    mixed = {n: a[n] if n in same else 2.0 * a[n] - 3.0 * b[n] for n in a}
+    left, one, two = (flat(effect, at) for at in (mixed, a, b))
+    if Force in effect.forms:
+        left, one, two = (without_rates(x) for x in (left, one, two))
     size = {k: 1e-13 * (abs(one[k]) + abs(two[k])) for k in one}
     return all(left[k] == pytest.approx(2.0 * one[k] - 3.0 * two[k], abs=size[k]) for k in left)
 
@@ -307,8 +347,9 @@ def test_declaration(name: str) -> None:
         assert p.low < p.high, parameter
         assert p.low <= p.start <= p.high, parameter
         assert p.start != p.null, parameter
-        assert name in NOT_LINEAR or p.low <= p.null <= p.high, parameter
-    assert set(effect.forms) <= {Force, Rate, Measured, Steered, Delayed}
+        assert name in NO_NULL or p.null is None or p.low <= p.null <= p.high, parameter
+        assert all(p.low <= x <= p.high for x in p.scan), parameter
+    assert set(effect.forms) <= set(FORMS)
 
 
 @EVERY

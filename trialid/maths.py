@@ -39,4 +39,6 @@ def clip(x: Number, limit: Number) -> Number:
     (0.5, -0.1)
     """
     own = getattr(x, "clip_to", None)
+    if own is None and hasattr(limit, "clip_to"):  # a number held by a limit that is free
+        own = (0.0 * limit + x).clip_to
     return own(limit) if own is not None else np.minimum(np.maximum(x, -limit), limit)

@@ -2,17 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy import Stretch
+from trialid.diagnosis.evidence import Evidence, gather
 from trialid.diagnosis.scan import secants
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
-from trialid.quantities import ACCELERATIONS
-from trialid.ship.effect import Effect
-from trialid.ship.model import ShipModel
+from trialid.quantities import ACCELERATIONS, PARTICULARS
+from trialid.ship.effect import Effect, Steered
+from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import Departure, Simulator, prepare, recorded, signals_of
 from trialid.trial import Trial
 
@@ -61,6 +63,12 @@ class Augmented:
         """Every effect with a trace."""
         return tuple({t.effect.name: t.effect for t in self.traces}.values())
 
+    @cached_property
+    def evidence(self) -> Evidence:
+        """The same rows less what the fitted parameters reach, raw and white."""
+        groups = [t.columns for t in self.traces]
+        return gather(self.residual, self.psi, self.S, self.stretches, groups)
+
 
 def candidates_for(
     model: ShipModel, trial: Trial, catalogue: Mapping[str, Effect]
@@ -86,9 +94,12 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
     known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
     known |= set(ACCELERATIONS)
     lacking = [s for s in signals_of(effect) if s not in known and not recorded(trial, s)]
-    lacking += [s for s in effect.states.values() if s and not recorded(trial, s)]
+    lacking += [
+        s for s in effect.states.values() if s and s not in known and not recorded(trial, s)
+    ]
     if lacking:
-        return f"needs {', '.join(lacking)}, which the record does not hold"
+        where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
+        return f"needs {', '.join(lacking)}, which the {where} does not hold"
     doubled = sorted(set(effect.states) & {*model.all_states, *trial.signals})
     if doubled:
         held = "simulated" if doubled[0] in model.all_states else "recorded"
@@ -96,7 +107,24 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
     others = [e for e in able.values() if not e.scanned]
     taken = {*model.parameters, *(p for e in others for p in e.parameters)}
     clash = sorted(taken & set(effect.parameters))
-    return f"parameter {clash[0]!r} is already there" if clash else ""
+    if clash:
+        return f"parameter {clash[0]!r} is already there"
+    return _steers_wrongly(model, trial, effect)
+
+
+def _steers_wrongly(model: ShipModel, trial: Trial, effect: Effect) -> str:
+    """Why an effect cannot change a motion that is an input: it needs a record, or is instead."""
+    for s in sorted({*effect.acts_on(Steered)} & set(STATES)):
+        if s in model.states:
+            return f"acts on the record of {s}, which is simulated"
+        if _varies(trial, s) is bool(effect.states):
+            return f"stands in for a record of {s}" if effect.states else f"needs a record of {s}"
+    return ""
+
+
+def _varies(trial: Trial, signal: str) -> bool:
+    """Whether a motion is recorded: a stated approach speed is one number all along."""
+    return bool(np.ptp(trial.signals.get(signal, np.zeros(1))) > 0.0)
 
 
 def linear_parameters(effect: Effect) -> tuple[str, ...]:
@@ -179,7 +207,7 @@ def _with_trace(
     """Leave out sensors of signals that are not outputs."""
     kept, silent = {}, {}
     for name, effect in able.items():
-        unseen = [s for s in effect.measures if s not in outputs]
+        unseen = [s for s in effect.measures if s in STATES and s not in outputs]
         if unseen:
             silent[name] = f"{unseen[0]} is not an output"
         else:

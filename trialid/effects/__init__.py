@@ -4,11 +4,27 @@ from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
 
-from trialid.effects import heel, hull, outer, roll, rudder, sensors, steering_gear
+from trialid.effects import (
+    environment,
+    heel,
+    hull,
+    loading,
+    outer,
+    propulsion,
+    roll,
+    rudder,
+    sensor_timing,
+    sensors,
+    steering_gear,
+)  # fmt: skip
 from trialid.errors import EffectError, nearest
 from trialid.ship.effect import Effect
 
-FILES: tuple[ModuleType, ...] = (hull, heel, roll, rudder, steering_gear, outer, sensors)
+FILES: tuple[ModuleType, ...] = (
+    hull, heel, roll, rudder, steering_gear, propulsion, environment, outer, loading, sensors,
+    sensor_timing,
+)  # fmt: skip
+"""In the order a person reads a ship: the hull first, the sensors last."""
 
 CATALOGUE: dict[str, Effect] = {e.name: e for file in FILES for e in file.EFFECTS}
 

@@ -25,21 +25,59 @@ def roll_rate_yaw(p, *, Np=Parameter(0.0002, low=-0.005, high=0.005)):
 
 
 @effect(source=SN82)
-def heel_sway_cubic(v, r, phi, *, Yvvphi=0.046, Yvphiphi=0.003, Yrrphi=0.0093, Yrphiphi=-0.0014):
+def roll_rate_sway(p, *, Yp=Parameter(0.0002, low=-0.005, high=0.005)):
+    """Y = Yp p: side force of rolling."""
+    return Force(Y=Yp * p)
+
+
+@effect(source="bow flare, wedge of the heeled waterline; size by judgement")
+def heel_yaw_modulus(phi, *, Nphiaphi=Parameter(-0.001, low=-0.01, high=0.01)):
+    """N = Nphi|phi| phi |phi|: the yaw moment of heel grows faster than the heel."""
+    return Force(N=Nphiaphi * phi * abs(phi))
+
+
+@effect(source=BC93)
+def heel_yaw_drift(v, phi, *, Nvaphi=Parameter(-0.003, low=-0.05, high=0.05)):
+    """N = Nv|phi| v |phi|: drift moment that changes with heel to either side."""
+    return Force(N=Nvaphi * v * abs(phi))
+
+
+@effect(source="ONR Tumblehome model: rudder force times cos(phi); a ventilated rudder loses more")
+def rudder_heeled(delta, phi, *, N_heeled=Parameter(-0.0015, low=-0.05, high=0.005)):
+    """N = N_heeled delta phi^2,  Y = -2 N: a rudder, aft, that loses grip as the ship heels."""
+    N = N_heeled * delta * phi**2
+    return Force(Y=-2.0 * N, N=N)
+
+
+@effect(source=SN82)
+def heel_sway_cubic(
+    v, r, phi, *,
+    Yvvphi=Parameter(0.046, low=-0.5, high=0.5), Yvphiphi=Parameter(0.003, low=-0.1, high=0.1),
+    Yrrphi=Parameter(0.0093, low=-0.1, high=0.1), Yrphiphi=Parameter(-0.0014, low=-0.05, high=0.05),
+):  # fmt: skip
     """Y = Yvvphi v^2 phi + Yvphiphi v phi^2 + Yrrphi r^2 phi + Yrphiphi r phi^2."""
     return Force(Y=(Yvvphi * v * v + Yrrphi * r * r) * phi + (Yvphiphi * v + Yrphiphi * r) * phi**2)
 
 
 @effect(source=SN82)
 def heel_roll_cubic(
-    v, r, phi, *, Kvvphi=-0.0012, Kvphiphi=-0.00008, Krrphi=-0.00024, Krphiphi=0.000036
-):
+    v, r, phi, *,
+    Kvvphi=Parameter(-0.0012, low=-0.02, high=0.02),
+    Kvphiphi=Parameter(-0.00008, low=-0.003, high=0.003),
+    Krrphi=Parameter(-0.00024, low=-0.005, high=0.005),
+    Krphiphi=Parameter(0.000036, low=-0.001, high=0.001),
+):  # fmt: skip
     """K = Kvvphi v^2 phi + Kvphiphi v phi^2 + Krrphi r^2 phi + Krphiphi r phi^2."""
     return Force(K=(Kvvphi * v * v + Krrphi * r * r) * phi + (Kvphiphi * v + Krphiphi * r) * phi**2)
 
 
 @effect(source=SN82)
-def heel_yaw_cubic(v, r, phi, *, Nvvphi=-0.019, Nvphiphi=-0.0054, Nrrphi=-0.0039, Nrphiphi=0.0024):
+def heel_yaw_cubic(
+    v, r, phi, *,
+    Nvvphi=Parameter(-0.019, low=-0.2, high=0.2), Nvphiphi=Parameter(-0.0054, low=-0.1, high=0.1),
+    Nrrphi=Parameter(-0.0039, low=-0.05, high=0.05),
+    Nrphiphi=Parameter(0.0024, low=-0.05, high=0.05),
+):  # fmt: skip
     """N = Nvvphi v^2 phi + Nvphiphi v phi^2 + Nrrphi r^2 phi + Nrphiphi r phi^2."""
     return Force(N=(Nvvphi * v * v + Nrrphi * r * r) * phi + (Nvphiphi * v + Nrphiphi * r) * phi**2)
 
@@ -47,8 +85,11 @@ def heel_yaw_cubic(v, r, phi, *, Nvvphi=-0.019, Nvphiphi=-0.0054, Nrrphi=-0.0039
 @effect(source=BC93)
 def heel_drift(
     u, v, r, phi, *,
-    Yphiauv=0.008, Yphiaur=0.0036, Kphiauv=-0.00012, Kphiaur=-0.000055,
-    Nphiauv=-0.0031, Nphiuar=-0.0014,
+    Yphiauv=Parameter(0.008, low=-0.1, high=0.1), Yphiaur=Parameter(0.0036, low=-0.05, high=0.05),
+    Kphiauv=Parameter(-0.00012, low=-0.003, high=0.003),
+    Kphiaur=Parameter(-0.000055, low=-0.001, high=0.001),
+    Nphiauv=Parameter(-0.0031, low=-0.05, high=0.05),
+    Nphiuar=Parameter(-0.0014, low=-0.02, high=0.02),
 ):  # fmt: skip
     """Y, K, N = coefficients of phi |u v| and phi |u r| (N: phi u |r|): heel in drift and turns."""
     drifting, turning = phi * abs(u * v), phi * abs(u * r)
@@ -60,12 +101,13 @@ def heel_drift(
 
 
 @effect(source=SN82)
-def surge_heel(phi, *, Xphiphi=-0.0002):
+def surge_heel(phi, *, Xphiphi=Parameter(-0.0002, low=-0.005, high=0.001)):
     """X = Xphiphi phi^2: resistance of a heeled hull."""
     return Force(X=Xphiphi * phi**2)
 
 
 EFFECTS = (
-    heel_sway, heel_yaw, roll_rate_yaw, heel_sway_cubic, heel_roll_cubic, heel_yaw_cubic,
+    heel_sway, heel_yaw, roll_rate_yaw, roll_rate_sway, heel_yaw_modulus, heel_yaw_drift,
+    rudder_heeled, heel_sway_cubic, heel_roll_cubic, heel_yaw_cubic,
     heel_drift, surge_heel,
 )  # fmt: skip

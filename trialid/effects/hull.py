@@ -1,10 +1,16 @@
 """Hydrodynamic forces on the hull: linear, second-order modulus and third-order terms; primed."""
 
-from trialid.ship.effect import Force, Parameter, effect
+from trialid.maths import Number, sqrt
+from trialid.ship.effect import Force, Parameter, Rate, effect
 
 BK99 = "Blanke & Knudsen (1999), section 4"
 SN82 = "Son & Nomoto (1982), container ship S-175"
 BC93 = "Blanke & Christensen (1993), multipurpose naval vessel"
+CST65 = "Chislett & Strom-Tejsen (1965), Mariner"
+PCC = "SSPA Seaman model of a wind-powered car carrier (wPCC), 1/29.5"
+
+STRIPS = tuple((i + 0.5) / 10 - 0.5 for i in range(10))
+"""Middles of ten equal pieces of the hull, from aft, over L."""
 
 
 @effect(source=BK99)
@@ -85,6 +91,76 @@ def roll_drag_rav(v, r, *, Krav=Parameter(0.0001, low=-0.02, high=0.02)):
     return Force(K=Krav * r * abs(v))
 
 
+@effect(source=BC93)
+def roll_drag_rar(r, *, Krar=Parameter(0.00005, low=-0.01, high=0.01)):
+    """K = Kr|r| r |r|: heeling moment of fast turning."""
+    return Force(K=Krar * r * abs(r))
+
+
+@effect(source=PCC)
+def cross_flow_drag(v, r, T, *, C_D=Parameter(0.9, low=0.0, high=6.0)):
+    """Y, N = -1/2 rho C_D T int |v + x r| (v + x r) {1, x} dx: drag of the flow across the hull.
+
+    One number for all of the second-order terms in v and r, on a hull of the same draught T all
+    along; ten strips.
+    """
+    across = [abs(v + x * r) * (v + x * r) for x in STRIPS]
+    Y = -C_D * T / len(STRIPS) * sum(across)
+    N = -C_D * T / len(STRIPS) * sum(x * w for x, w in zip(STRIPS, across, strict=True))
+    return Force(Y=Y, N=N)
+
+
+def _froude_gain(g: Number, U0: Number) -> Number:
+    """F - F0 of primed numbers, where the speed is 1 and g is 1 / F^2."""
+    return (1.0 - U0) / sqrt(g)
+
+
+@effect(source=PCC)
+def sway_froude(v, g, U0, *, Yv_F=Parameter(-0.006, low=-0.3, high=0.3)):
+    """Y = Yv_F v (F - F0): drift force that changes with the Froude number F = U / sqrt(g L)."""
+    return Force(Y=Yv_F * v * _froude_gain(g, U0))
+
+
+@effect(source=PCC)
+def yaw_froude_v(v, g, U0, *, Nv_F=Parameter(0.0075, low=-0.3, high=0.3)):
+    """N = Nv_F v (F - F0): drift moment that changes with the Froude number."""
+    return Force(N=Nv_F * v * _froude_gain(g, U0))
+
+
+@effect(source=PCC)
+def yaw_froude_r(r, g, U0, *, Nr_F=Parameter(-0.0035, low=-0.3, high=0.3)):
+    """N = Nr_F r (F - F0): yaw damping that changes with the Froude number."""
+    return Force(N=Nr_F * r * _froude_gain(g, U0))
+
+
+@effect(source=CST65)
+def hull_asymmetry(
+    *, Y0=Parameter(-0.00004, low=-0.0005, high=0.0005), N0=Parameter(0.00003, low=-3e-4, high=3e-4)
+):
+    """Y = Y0,  N = N0: a hull or a propeller that is not the same to port and to starboard."""
+    return Force(Y=Y0, N=N0)
+
+
+MEMORY = "Nomoto-type lag of the lift on the hull; size by judgement"
+
+
+@effect(source=MEMORY, system="SI", states={"r_late": None})
+def yaw_memory(
+    u, r, r_late, L, rho, *,
+    N_late=Parameter(-0.0003, low=-0.01, high=0.01),
+    tau_late=Parameter(1.0, low=0.2, high=5.0, null=None),
+):  # fmt: skip
+    """N = N_late (r_late - r), d(r_late)/dt = (r - r_late) u / (tau_late L): lift that comes late.
+
+    r_late is the rate of turn that the flow has settled to; in a steady turn nothing is left.
+    """
+    settled = r_late - r
+    return (
+        Force(N=0.5 * rho * L**4 * u * N_late * settled),
+        Rate(r_late=-settled * u / (tau_late * L)),
+    )
+
+
 @effect(source=SN82)
 def sway_cubic_vvv(v, *, Yvvv=Parameter(-0.1, low=-2.0, high=0.0)):
     """Y = Yvvv v^3: sway damping at large drift."""
@@ -126,7 +202,12 @@ def yaw_cubic_rrr(r, *, Nrrr=Parameter(-0.0023, low=-0.1, high=0.0)):
 
 
 @effect(source=SN82)
-def roll_cubic(v, r, *, Kvvv=0.0028, Kvvr=-0.00059, Kvrr=0.00106, Krrr=-0.000046):
+def roll_cubic(
+    v, r, *,
+    Kvvv=Parameter(0.0028, low=-0.03, high=0.03), Kvvr=Parameter(-0.00059, low=-0.01, high=0.01),
+    Kvrr=Parameter(0.00106, low=-0.01, high=0.01),
+    Krrr=Parameter(-0.000046, low=-0.001, high=0.001),
+):  # fmt: skip
     """K = Kvvv v^3 + Kvvr v^2 r + Kvrr v r^2 + Krrr r^3: heeling moment of tight turns."""
     return Force(K=Kvvv * v**3 + Kvvr * v**2 * r + Kvrr * v * r**2 + Krrr * r**3)
 
@@ -138,7 +219,11 @@ def surge_resistance(u, *, Xuu=Parameter(-0.0004, high=0.0)):
 
 
 @effect(source=SN82)
-def surge_turning(v, r, *, Xvr=-0.0031, Xvv=-0.0039, Xrr=0.0002):
+def surge_turning(
+    v, r, *,
+    Xvr=Parameter(-0.0031, low=-0.05, high=0.05), Xvv=Parameter(-0.0039, low=-0.05, high=0.05),
+    Xrr=Parameter(0.0002, low=-0.005, high=0.005),
+):  # fmt: skip
     """X = Xvr v r + Xvv v^2 + Xrr r^2: speed lost in turns."""
     return Force(X=Xvr * v * r + Xvv * v**2 + Xrr * r**2)
 
@@ -147,7 +232,8 @@ EFFECTS = (
     linear_hull, centripetal_added_mass,
     sway_drag_vav, sway_drag_var, sway_drag_rav, sway_drag_rar,
     yaw_drag_vav, yaw_drag_var, yaw_drag_rav, yaw_drag_rar,
-    roll_drag_vav, roll_drag_var, roll_drag_rav,
+    roll_drag_vav, roll_drag_var, roll_drag_rav, roll_drag_rar, cross_flow_drag,
+    sway_froude, yaw_froude_v, yaw_froude_r, hull_asymmetry, yaw_memory,
     sway_cubic_vvv, sway_cubic_cross, sway_cubic_rrr,
     yaw_cubic_vvv, yaw_cubic_cross, yaw_cubic_rrr, roll_cubic,
     surge_resistance, surge_turning,

@@ -1,6 +1,7 @@
 """Roll damping and the righting arm."""
 
-from trialid.ship.effect import Force, Parameter, effect
+from trialid.maths import sqrt
+from trialid.ship.effect import Force, Parameter, Rate, effect
 
 SN82 = "Son & Nomoto (1982), container ship S-175"
 ITTC = "ITTC Recommended Procedure 7.5-02-07-04.5, numerical estimation of roll damping"
@@ -17,7 +18,7 @@ def linear_roll(
 
 
 @effect(source=SN82)
-def heel_roll(phi, *, Kphi=-0.00002):
+def heel_roll(phi, *, Kphi=Parameter(-0.00002, low=-0.0005, high=0.0005)):
     """K = Kphi phi: heeling moment of the flow on a heeled hull."""
     return Force(K=Kphi * phi)
 
@@ -47,6 +48,42 @@ def righting_arm_cubic(phi, rho, g, nabla, *, GM3=Parameter(2.0, "m", low=-50.0,
 
 
 @effect(source=BK99)
+def righting_arm_quintic(phi, rho, g, nabla, *, GM5=Parameter(20.0, "m", low=-1000.0, high=1000.0)):
+    """K = -rho g nabla GM5 phi^5: the righting arm at large heel."""
+    return Force(K=-rho * g * nabla * GM5 * phi**5)
+
+
+@effect(source="squat and the wave along the hull; size by judgement")
+def righting_arm_speed(phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-50.0, high=50.0)):
+    """K = -rho g nabla GM_F (F^2 - F0^2) phi: GM changes with the Froude number F = U / sqrt(g L).
+
+    In primes g is 1 / F^2 and F0 / F is U0, so that g (F^2 - F0^2) is 1 - U0^2.
+    """
+    return Force(K=-rho * nabla * GM_F * (1.0 - U0 * U0) * phi)
+
+
+@effect(
+    source="free surface or U-tube tank, linear", system="SI", states={"q_t": "phi", "w_t": None}
+)
+def anti_roll_tank(
+    phi, q_t, w_t, L, rho, g, nabla, *,
+    s_t=Parameter(0.1, "m", low=0.0, high=3.0),
+    omega_t=Parameter(1.5, low=0.3, high=10.0, null=None),
+    zeta_t=Parameter(0.15, low=0.01, high=2.0, null=None),
+):  # fmt: skip
+    """K = rho g nabla s_t q_t: water in a tank that follows the roll with a frequency of its own.
+
+    d(q_t)/dt = w_t,  d(w_t)/dt = w^2 (phi - q_t) - 2 zeta_t w w_t  with  w = omega_t sqrt(g / L).
+    s_t is the metacentric height that the free surface costs in slow motion.
+    """
+    w = omega_t * sqrt(g / L)
+    return (
+        Force(K=rho * g * nabla * s_t * q_t),
+        Rate(q_t=w_t, w_t=w * w * (phi - q_t) - 2.0 * zeta_t * w * w_t),
+    )
+
+
+@effect(source=BK99)
 def static_list(rho, g, nabla, *, a_0=Parameter(0.002, "m", low=-0.5, high=0.5)):
     """K = rho g nabla a_0: a steady heeling arm, from cargo or trim tanks; at any speed."""
     return Force(K=rho * g * nabla * a_0)
@@ -54,5 +91,5 @@ def static_list(rho, g, nabla, *, a_0=Parameter(0.002, "m", low=-0.5, high=0.5))
 
 EFFECTS = (
     linear_roll, heel_roll, still_water_roll_damping, quadratic_roll_damping, cubic_roll_damping,
-    righting_arm_cubic, static_list,
+    righting_arm_cubic, righting_arm_quintic, righting_arm_speed, anti_roll_tank, static_list,
 )  # fmt: skip

@@ -2,16 +2,16 @@
 
 import math
 
-from trialid.maths import Number, arctan, cos, sin, sqrt
+from trialid.maths import Number, arctan, clip, cos, sin, sqrt
 from trialid.ship.effect import Force, Parameter, Steered, effect
 
 BK99 = "Blanke & Knudsen (1999), section 4"
 SN82 = "Son & Nomoto (1982), container ship S-175"
+BC93 = "Blanke & Christensen (1993), multipurpose naval vessel"
+CST65 = "Chislett & Strom-Tejsen (1965), Mariner"
 TURN = 2.0 * math.pi
 PI = math.pi
 STANDSTILL = 1e-12  # (m/s)^2: quotients keep their limit at rest
-
-CST65 = "Chislett & Strom-Tejsen (1965), Mariner"
 
 
 @effect(source=BK99)
@@ -35,10 +35,78 @@ def surge_rudder(delta, *, Xdd=Parameter(-0.002, low=-0.05, high=0.0)):
     return Force(X=Xdd * delta**2)
 
 
+@effect(source=CST65)
+def rudder_in_drift(
+    v, delta, *,
+    Yvvd=Parameter(-0.012, low=-0.2, high=0.2), Nvvd=Parameter(0.005, low=-0.1, high=0.1),
+):  # fmt: skip
+    """Y = Yvvd v^2 delta,  N = Nvvd v^2 delta: the rudder at large drift."""
+    return Force(Y=Yvvd * v**2 * delta, N=Nvvd * v**2 * delta)
+
+
+@effect(source=CST65)
+def drift_with_rudder(
+    v, delta, *,
+    Yvdd=Parameter(-0.00004, low=-0.02, high=0.02), Nvdd=Parameter(0.00013, low=-0.02, high=0.02),
+):  # fmt: skip
+    """Y = Yvdd v delta^2,  N = Nvdd v delta^2: drift with the rudder put over."""
+    return Force(Y=Yvdd * v * delta**2, N=Nvdd * v * delta**2)
+
+
+@effect(source="rudders stall at 20 to 35 deg; 23 deg in " + BC93)
+def rudder_stall(
+    delta, *,
+    N_stall=Parameter(-0.0015, low=-0.05, high=0.0),
+    delta_stall=Parameter(0.45, "rad", low=0.2, high=0.9, null=None),
+):  # fmt: skip
+    """N = N_stall (delta beyond +- delta_stall),  Y = -2 N: lift that breaks off; aft."""
+    N = N_stall * (delta - clip(delta, delta_stall))
+    return Force(Y=-2.0 * N, N=N)
+
+
+@effect(source="MMG: flow straightening gamma_R differs by 20 % to port and starboard")
+def rudder_flow_asymmetry(
+    v, r, *,
+    N_flow=Parameter(0.00015, low=-0.003, high=0.003),
+    l_flow=Parameter(-0.8, low=-2.0, high=0.0, null=None),
+):  # fmt: skip
+    """N = N_flow |v + l_flow r|,  Y = -2 N: drift feeds the rudder unlike on each side."""
+    N = N_flow * abs(v + l_flow * r)
+    return Force(Y=-2.0 * N, N=N)
+
+
+@effect(source="model tests at constant shaft speed")
+def rudder_race(
+    delta, U0, *,
+    Y_race=Parameter(-0.003, low=-0.05, high=0.0, null=None),
+    K_race=Parameter(0.0001, low=0.0, high=0.002, null=None),
+    N_race=Parameter(0.0015, low=0.0, high=0.02, null=None),
+):  # fmt: skip
+    """Y, K, N = Y_race, K_race, N_race times delta U0 / U: rudder force that goes as U U0.
+
+    Instead of linear_rudder, whose force goes as U^2: at constant shaft speed the propeller's race
+    keeps part of the flow over the rudder when the ship slows down.
+    """
+    race = delta * U0  # primed, so that U0 is U0 / U
+    return Force(Y=Y_race * race, K=K_race * race, N=N_race * race)
+
+
 @effect(source="neutral angle of a single-screw ship; indicator zero")
 def rudder_offset(*, delta_0=Parameter(0.01, "rad", low=-0.1, high=0.1)):
     """delta = delta + delta_0: the recorded zero is not the angle that keeps the ship straight."""
     return Steered(delta=delta_0)
+
+
+@effect(source="indicator gain")
+def rudder_scale(delta, *, e_delta=Parameter(0.05, low=-0.5, high=0.5)):
+    """delta = delta + e_delta delta: an indicator that reads too little; acts as Ydelta does."""
+    return Steered(delta=e_delta * delta)
+
+
+@effect(source="linkage of a rudder feedback unit: 1 to 2 deg at 35 deg")
+def rudder_feedback_curve(delta, *, a_delta=Parameter(0.07, "1/rad", low=-0.5, high=0.5)):
+    """delta = delta + a_delta delta^2: an indicator wrong to one side."""
+    return Steered(delta=a_delta * delta**2)
 
 
 def _inflow(
@@ -97,5 +165,7 @@ def propeller_rudder(
 
 
 EFFECTS = (
-    linear_rudder, rudder_cubic, surge_rudder, rudder_offset, propeller_thrust, propeller_rudder,
+    linear_rudder, rudder_cubic, rudder_in_drift, drift_with_rudder, rudder_stall,
+    rudder_flow_asymmetry, rudder_race, surge_rudder, rudder_offset, rudder_scale,
+    rudder_feedback_curve, propeller_thrust, propeller_rudder,
 )  # fmt: skip

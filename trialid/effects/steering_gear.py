@@ -1,10 +1,13 @@
 """The steering gear between order and rudder."""
 
 from trialid.maths import clip
-from trialid.ship.effect import Parameter, Rate, effect
+from trialid.ship.effect import Delayed, Parameter, Rate, Steered, effect
+
+FOLLOWS = {"delta": "delta_order"}
+"""The rudder becomes a state that starts where its order starts."""
 
 
-@effect(source="Son & Nomoto (1982): time constant 1 s", states={"delta": "delta_order"})
+@effect(source="Son & Nomoto (1982): time constant 1 s", states=FOLLOWS)
 def rudder_servo(
     delta_order, delta, *, T_delta=Parameter(1.0, "s", low=0.05, high=20.0, scan=(0.5, 1.5, 4.0))
 ):
@@ -12,7 +15,7 @@ def rudder_servo(
     return Rate(delta=(delta_order - delta) / T_delta)
 
 
-@effect(source="SOLAS II-1/29.3: 65 deg in 28 s at least", states={"delta": "delta_order"})
+@effect(source="SOLAS II-1/29.3: 65 deg in 28 s at least", states=FOLLOWS)
 def rudder_servo_limited(
     delta_order, delta, *,
     T_servo=Parameter(1.0, "s", low=0.05, high=20.0, null=None),
@@ -22,4 +25,57 @@ def rudder_servo_limited(
     return Rate(delta=clip((delta_order - delta) / T_servo, rate_max))
 
 
-EFFECTS = (rudder_servo, rudder_servo_limited)
+@effect(
+    source="hydraulic gear with proportional control: 0.5 to 2 rad/s, damping 0.6 to 1",
+    states=FOLLOWS | {"delta_rate": None},
+)
+def rudder_servo_second_order(
+    delta_order, delta, delta_rate, *,
+    omega_servo=Parameter(1.0, "rad/s", low=0.1, high=20.0, scan=(0.5, 1.0, 2.0)),
+    zeta_servo=Parameter(0.8, low=0.1, high=3.0, null=None),
+):  # fmt: skip
+    """d2(delta)/dt2 = w^2 (delta_order - delta) - 2 zeta_servo w d(delta)/dt: it overshoots.
+
+    w is omega_servo.
+    """
+    drive = omega_servo * (delta_order - delta) - 2.0 * zeta_servo * delta_rate
+    return Rate(delta=delta_rate, delta_rate=omega_servo * drive)
+
+
+@effect(source="play of the linkage: 0.2 to 1.5 deg", states=FOLLOWS)
+def rudder_backlash(
+    delta_order, delta, *,
+    b_play=Parameter(0.01, "rad", low=0.0, high=0.1, scan=(0.004, 0.01, 0.025)),
+    T_play=Parameter(0.3, "s", low=0.1, high=20.0, null=None),
+):  # fmt: skip
+    """d(delta)/dt = (e - clip(e, b_play)) / T_play,  e = delta_order - delta: play in the linkage.
+
+    The rudder stays where it is until its order has moved b_play ahead of it, then follows at that
+    distance; T_play is how quickly.
+    """
+    e = delta_order - delta
+    return Rate(delta=(e - clip(e, b_play)) / T_play)
+
+
+@effect(source="dead band of the control valve: 0.2 to 1 deg")
+def rudder_deadband(delta, *, b_dead=Parameter(0.009, "rad", low=0.0, high=0.1)):
+    """delta = delta - clip(delta, b_dead): small angles do nothing, large ones act b_dead less."""
+    return Steered(delta=-clip(delta, b_dead))
+
+
+@effect(source="logging and control: 0.1 to 2 s")
+def rudder_record_delay(*, tau_delta=Parameter(0.5, "s", low=-5.0, high=5.0)):
+    """delta acts at t what is recorded at t - tau_delta: a late gear, or a clock of its own."""
+    return Delayed(delta=tau_delta)
+
+
+@effect(source="unsynchronised loggers: 1e-5 to 1e-4")
+def clock_drift_delta(t, *, drift_delta=Parameter(0.00005, low=-0.005, high=0.005)):
+    """delta acts at t what is recorded at t - drift_delta t: the rudder's clock runs fast."""
+    return Delayed(delta=drift_delta * t)
+
+
+EFFECTS = (
+    rudder_servo, rudder_servo_limited, rudder_servo_second_order, rudder_backlash,
+    rudder_deadband, rudder_record_delay, clock_drift_delta,
+)  # fmt: skip

@@ -187,6 +187,13 @@ def _check_signals(model: ShipModel) -> None:
                     f"ship {model.ship.name!r}: [mass] {name} is missing or not positive; "
                     f"state {state!r} needs it"
                 )
+    for effect in model.effects:
+        for name in effect.signals:
+            if name in PARTICULARS and name not in model.ship.particulars:
+                raise ShipError(
+                    f"ship {model.ship.name!r}: [particulars] lacks {name}; effect "
+                    f"{effect.name!r} needs it"
+                )
 
 
 def late(signal: str) -> str:

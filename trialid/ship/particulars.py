@@ -9,10 +9,12 @@ from typing import Any, Final, Literal
 
 from trialid.errors import ShipError, nearest
 from trialid.quantities import MASS_PARAMETERS
+from trialid.quantities import PARTICULARS as KNOWN
 
 REQUIRED: Final = ("name", "source", "system", "rudder_positive", "particulars", "mass")
 OPTIONAL: Final = ("coefficients", "coefficient_speed", "notes")
 PARTICULARS: Final = ("L", "rho", "g", "nabla", "U0")
+"""Those no model can do without; T and B are for the effects that ask for them."""
 SECTIONS: Final = ("particulars", "mass", "coefficients")
 
 
@@ -97,7 +99,7 @@ def _check_sections(path: Path, table: Mapping[str, Any]) -> None:
     missing = [key for key in PARTICULARS if key not in table["particulars"]]
     if missing:
         raise ShipError(f"ship file {path}: [particulars] lacks {', '.join(missing)}")
-    for key in PARTICULARS:
+    for key in (k for k in KNOWN if k in table["particulars"]):
         _positive(path, "[particulars] ", table["particulars"], key, zero=key == "U0")
     for key in table["mass"]:  # one with a slip in its name would silently be zero
         if key not in MASS_PARAMETERS:

@@ -109,7 +109,7 @@ def _probe(effect: Effect, name: str, signals: Mapping[str, float]) -> Force:
 
 def _some_signals(ship: Ship, effect: Effect) -> dict[str, float]:
     U = ship.coefficient_speed
-    known = {"u": U, "U": U, **{n: ship.particulars[n] for n in PARTICULARS}}
+    known = {"u": U, "U": U, **{n: x for n, x in ship.particulars.items() if n in PARTICULARS}}
     return {s: known.get(s, 0.1) for s in effect.signals}
 
 

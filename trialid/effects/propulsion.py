@@ -1,0 +1,59 @@
+"""What the propeller does besides pushing: speed, race, side force."""
+
+from trialid.ship.effect import Force, Parameter, Rate, Steered, effect
+
+SN82 = "Son & Nomoto (1982), container ship S-175"
+STANDSTILL = 1e-12  # (m/s)^2: quotients keep their limit for a ship without approach speed
+
+
+@effect(source=SN82)
+def rudder_slipstream(
+    delta, U0, *,
+    N_slip=Parameter(0.0015, low=0.0, high=0.03),
+    z_slip=Parameter(0.03, low=0.0, high=0.2, null=None),
+):  # fmt: skip
+    """N = N_slip delta (U0 / U - 1),  Y = -2 N,  K = 2 z_slip N: the race keeps the rudder awake.
+
+    At constant shaft speed the flow over a rudder aft, x = -L/2, falls less than the ship's speed;
+    with N_slip = Ndelta the force goes as U U0.
+    """
+    N = N_slip * delta * (U0 - 1.0)  # primed: the speed is 1
+    return Force(Y=-2.0 * N, K=2.0 * z_slip * N, N=N)
+
+
+@effect(
+    source=SN82 + ": 2 % of speed lost at 5 deg of rudder, 50 % at 35 deg", states={"u_lost": None}
+)
+def surge_loss(
+    u, r, u_lost, L, *,
+    k_lost=Parameter(5.0, low=0.0, high=50.0),
+    tau_lost=Parameter(10.0, low=1.0, high=100.0, null=None),
+):  # fmt: skip
+    """u = u - u_lost,  d(u_lost)/dt = (k_lost (r L)^2 - u u_lost) / (tau_lost L): speed loss.
+
+    In turns, for a record without speed; with u simulated, surge_resistance and surge_turning say
+    the same.
+    """
+    return Steered(u=-u_lost), Rate(u_lost=(k_lost * (r * L) ** 2 - u * u_lost) / (tau_lost * L))
+
+
+@effect(source="diesel at constant fuel: van Berlekom & Goddard (1972), tanker")
+def shaft_speed_drop(n, u, U0, *, k_n=Parameter(0.2, low=0.0, high=1.5)):
+    """n = n + k_n n (u / U0 - 1): the shaft slows down with the ship; n is recorded as ordered."""
+    return Steered(n=k_n * n * (u - U0) * U0 / (U0 * U0 + STANDSTILL))
+
+
+@effect(source="wheel effect of a single screw; right-handed ahead: bow to port; size by judgement")
+def propeller_side_force(n, *, N_n=Parameter(-1e-9, low=-2e-8, high=2e-8)):
+    """N = N_n n^2,  Y = -2 N: a turning screw, aft, also pushes sideways."""
+    N = N_n * n * n
+    return Force(Y=-2.0 * N, N=N)
+
+
+@effect(source="thrust of two shafts at some distance from the middle; size by judgement")
+def twin_screws(n_p, n_s, *, N_twin=Parameter(2e-10, low=0.0, high=1e-8)):
+    """N = N_twin (n_p |n_p| - n_s |n_s|): two screws that do not turn alike."""
+    return Force(N=N_twin * (n_p * abs(n_p) - n_s * abs(n_s)))
+
+
+EFFECTS = (rudder_slipstream, surge_loss, shaft_speed_drop, propeller_side_force, twin_screws)
