@@ -66,6 +66,7 @@ class Diagnosis:
 
     fit: Fit
     ranking: Sequence[Candidate]
+    refits: Sequence[Refit]
     named: Refit | None
     verdict: Verdict
 
@@ -101,7 +102,7 @@ def diagnosed(
     with watch("decide"):
         verdict = decide(fit, ranking, refits, parts, asked.level)
         named = confirmed(fit, refits, asked.level)
-    return Diagnosis(fit, ranking, named, verdict)
+    return Diagnosis(fit, ranking, refits, named, verdict)
 
 
 def settings_of(model: ShipModel) -> Settings:
@@ -152,13 +153,17 @@ def judged(row: Row, scenario: Scenario, done: Diagnosis) -> Row:
         )  # fmt: skip
     if named is not None:
         row = row.also(eps_predicted=named.candidate.eps_predicted, eps_after=named.fit.eps_rmsn)
+    tried = min(done.refits, key=lambda r: r.fit.eps_rmsn, default=None)
+    if tried is not None:
+        row = row.also(tried=tried.candidate.effect.name, eps_tried=tried.fit.eps_rmsn,
+                       eps_check_tried=tried.fit.eps_check)  # fmt: skip
     effect = CATALOGUE[verdict.effect] if verdict.effect else None
     return row.also(
         kind=verdict.kind, name=verdict.effect or "", family=family,
         exact=verdict.effect in scenario.exact,
         right=bool({verdict.effect, *family} & scenario.right),
         physical=effect is not None and Force in effect.forms,
-        eps=done.fit.eps_rmsn,
+        eps=done.fit.eps_rmsn, eps_check=done.fit.eps_check,
     )  # fmt: skip
 
 
