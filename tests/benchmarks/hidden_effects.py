@@ -31,7 +31,8 @@ from hidden_tables import ISSUE, SHORT, Row, report, thresholds, write
 from hidden_truth import FREE, NOISES, OUTPUTS, TRIAL_SETS, Scenario, guessed, record, restored
 
 from trialid import pipeline
-from trialid.diagnosis.missing_effect import Refit, Verdict, confirmed, decide, refit
+from trialid.diagnosis.completeness import completeness
+from trialid.diagnosis.missing_effect import Refit, Verdict, decide, refit
 from trialid.diagnosis.noise import split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.effects import CATALOGUE
@@ -66,6 +67,7 @@ class Diagnosis:
 
     fit: Fit
     ranking: Sequence[Candidate]
+    refits: Sequence[Refit]
     named: Refit | None
     verdict: Verdict
 
@@ -99,9 +101,10 @@ def diagnosed(
         worth = pipeline.worth_refitting(DEFAULTS, ranking)
         refits = refit(fit, trials, worth, lambda words: None)
     with watch("decide"):
-        verdict = decide(fit, ranking, refits, parts, asked.level)
-        named = confirmed(fit, refits, asked.level)
-    return Diagnosis(fit, ranking, named, verdict)
+        whole = completeness(fit, augmented)
+        verdict = decide(fit, ranking, refits, parts, whole, asked.level)
+        named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
+    return Diagnosis(fit, ranking, refits, named, verdict)
 
 
 def settings_of(model: ShipModel) -> Settings:
@@ -152,13 +155,17 @@ def judged(row: Row, scenario: Scenario, done: Diagnosis) -> Row:
         )  # fmt: skip
     if named is not None:
         row = row.also(eps_predicted=named.candidate.eps_predicted, eps_after=named.fit.eps_rmsn)
+    tried = min(done.refits, key=lambda r: r.fit.eps_rmsn, default=None)
+    if tried is not None:
+        row = row.also(tried=tried.candidate.effect.name, eps_tried=tried.fit.eps_rmsn,
+                       eps_check_tried=tried.fit.eps_check)  # fmt: skip
     effect = CATALOGUE[verdict.effect] if verdict.effect else None
     return row.also(
         kind=verdict.kind, name=verdict.effect or "", family=family,
         exact=verdict.effect in scenario.exact,
         right=bool({verdict.effect, *family} & scenario.right),
         physical=effect is not None and Force in effect.forms,
-        eps=done.fit.eps_rmsn,
+        eps=done.fit.eps_rmsn, eps_check=done.fit.eps_check,
     )  # fmt: skip
 
 

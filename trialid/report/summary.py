@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 TRIALS = 5
-PARAMETERS = 12
+PARAMETERS = 10
 WORST = 8
 CANDIDATES = 4
+FINDINGS = 3
 """How many rows each part may have; together they keep the summary under 40 lines."""
 
 
@@ -38,6 +39,7 @@ def summary(result: Mapping[str, Any]) -> "RenderableType":
         title,
         _errors(run),
         Words(_made_of(run), 2),
+        *_where(run),
         Text(),
         *_parameters(run),
         *_ranking(run),
@@ -76,6 +78,13 @@ def _made_of(run: Run) -> str:
         f"made of noise {_part(split, 'noise')} and model {_part(split, 'undermodelling')}"
         f", told apart by {split['method']}"
     )
+
+
+def _where(run: Run) -> "Iterable[RenderableType]":
+    """The largest findings of where the model fails, a line each; the page has them in full."""
+    for finding in run["where"][:FINDINGS]:
+        if finding["sentence"]:
+            yield Words(f"fails: {finding['sentence']}", 1)
 
 
 def _part(split: Run, part: str) -> str:
