@@ -124,7 +124,7 @@ def _gap(named: Refit | None, whole: Completeness) -> str:
 
 
 def _is_faint(fit: Fit, named: Refit) -> bool:
-    """Whether little of the effect shows and it explains little: the model's other errors may do."""
+    """Whether little of the effect shows, and it explains little: other errors may look so."""
     fall = 1.0 - (named.fit.eps_rmsn / fit.eps_rmsn) ** 2
     return named.candidate.visibility < FAINT and fall < DOMINANT
 
