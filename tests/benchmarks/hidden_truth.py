@@ -71,7 +71,7 @@ class Scenario:
     twins
         Names that count as right too: no record separates them from the truth.
     scale
-        Output to the factor its sensor is wrong by.
+        Signal to the factor its sensor is wrong by.
     gear
         Ordered rudder and step [s] to the true rudder; the record then holds the order alone.
     """
@@ -306,9 +306,10 @@ def _logged(
     }
     white, wave = {"r": GYRO, "phi": INCLINOMETER}, {"r": 0.03 * DEG, "phi": 0.3 * DEG}
     for i, c in enumerate(OUTPUTS):
-        signals[c] = y[:, i] * scenario.scale.get(c, 1.0) + white[c] * rng.standard_normal(n)
+        signals[c] = y[:, i] + white[c] * rng.standard_normal(n)
         if noise != "white":
             signals[c] = signals[c] + wave[c] * coloured(rng, n, 0.6, PERIOD)
+    signals = {c: x * scenario.scale.get(c, 1.0) for c, x in signals.items()}
     valid = {c: np.ones(n, dtype=bool) for c in signals}
     return Trial(manoeuvre.name, manoeuvre.use, PERIOD, signals, valid)
 

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy import Stretch
+from trialid.diagnosis.evidence import Evidence, gather
 from trialid.diagnosis.scan import secants
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
@@ -60,6 +62,12 @@ class Augmented:
     def effects(self) -> tuple[Effect, ...]:
         """Every effect with a trace."""
         return tuple({t.effect.name: t.effect for t in self.traces}.values())
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """The same rows less what the fitted parameters reach, raw and white."""
+        groups = [t.columns for t in self.traces]
+        return gather(self.residual, self.psi, self.S, self.stretches, groups)
 
 
 def candidates_for(

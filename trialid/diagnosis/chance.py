@@ -22,7 +22,7 @@ from trialid.diagnosis.variance import lag_window
 Vector = NDArray[np.float64]
 Whole = NDArray[np.int_]
 
-DRAWS: Final = 1999
+DRAWS: Final = 999
 SEED: Final = 1999
 """Any other would do; the same makes a second run give the same numbers."""
 
@@ -38,10 +38,13 @@ class Chance:
         blocks are many and nothing is missing.
     p_value
         How often the best of all candidates scores as well by chance alone.
+    inflation
+        Variance of the score over what it would be if the rows were independent.
     """
 
     score: float
     p_value: float
+    inflation: float = 1.0
 
 
 def against_chance(
@@ -73,13 +76,13 @@ def against_chance(
     moved = signs @ np.add.reduceat(Q * e[:, None], starts, axis=0)  # what a refit takes up
     spans = [slice(a, b) for a, b in zip(starts, [*starts[1:], len(e)], strict=True)]
     found = [_scores(e, Q, S[:, list(g)], spans, signs, moved) for g in groups]
-    scores = np.column_stack([score for score, _ in found])
-    p = np.column_stack([p for _, p in found])
+    scores = np.column_stack([score for score, _, _ in found])
+    p = np.column_stack([p for _, p, _ in found])
     best = np.sort(p[1:].min(axis=1))
     beaten = np.searchsorted(best, p[0] * (1.0 + 1e-9), side="right")
     return [
-        Chance(float(t), float((1 + b) / (len(best) + 1)))
-        for t, b in zip(scores[0], beaten, strict=True)
+        Chance(float(t), float((1 + b) / (len(best) + 1)), inflation)
+        for t, b, (*_, inflation) in zip(scores[0], beaten, found, strict=True)
     ]
 
 
@@ -107,8 +110,8 @@ def _signs(count: int) -> Vector:
 
 def _scores(
     e: Vector, Q: Vector, S: Vector, spans: Sequence[slice], signs: Vector, moved: Vector
-) -> tuple[Vector, Vector]:
-    """Score and nominal chance of one group in every draw; (1 + DRAWS,) each."""
+) -> tuple[Vector, Vector, float]:
+    """Score and nominal chance of one group in every draw (1 + DRAWS,), and the inflation."""
     q = S.shape[1]
     S = S / np.maximum(np.linalg.norm(S, axis=0), 1e-300)
     products = np.array([S[span].T @ e[span] for span in spans])  # (blocks, q)
@@ -117,14 +120,17 @@ def _scores(
     terms = signs[:, :, None] * products
     terms -= (moved @ reach.reshape(-1, moved.shape[1]).T).reshape(terms.shape)
     sums = terms.sum(axis=1)
-    coefficients = sums @ np.linalg.pinv(grams.sum(axis=0), rcond=1e-10, hermitian=True)
+    total = np.linalg.pinv(grams.sum(axis=0), rcond=1e-10, hermitian=True)
+    coefficients = sums @ total
     terms -= (coefficients @ grams.reshape(-1, q).T).reshape(terms.shape)
     variance = np.einsum("rbi,rbj->rij", terms, terms)
     scores = np.einsum("ri,rij,rj->r", sums, _inverse(variance), sums)
     weight = np.trace(grams, axis1=1, axis2=2)
     degrees = max(float(weight.sum() ** 2 / (weight @ weight)) - 1.0, q + 1.0)
     rest = degrees - q + 1.0
-    return scores, np.asarray(fdtrc(q, rest, scores * rest / (degrees * q)))
+    left = float(e @ e) - float(sums[0] @ total @ sums[0])
+    inflation = float(np.trace(total @ variance[0])) / q / max(left / len(e), 1e-300)
+    return scores, np.asarray(fdtrc(q, rest, scores * rest / (degrees * q))), inflation
 
 
 def _inverse(matrices: Vector) -> Vector:

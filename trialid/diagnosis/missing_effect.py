@@ -6,13 +6,13 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.likelihood import check_gain, misfits
 from trialid.diagnosis.noise import Split
-from trialid.diagnosis.residual import effective_samples
-from trialid.diagnosis.score import Candidate, cost
+from trialid.diagnosis.score import Candidate, price
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.pose import Settings
-from trialid.ship.effect import Effect
+from trialid.ship.effect import Effect, Force, Mass, Rate
 from trialid.trial import Trial
 
 DECISIVE: Final = 6.0
@@ -103,41 +103,62 @@ def _no_split(parts: Split) -> str:
 
 
 def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
-    """The best of the refits that stand every check, a parameter more paying its price.
+    """The likeliest of the refits that stand every check, a parameter more paying its price.
 
-    The price is that of Schwarz (1978) with the effective number of samples: an effect of four
-    parameters must explain more than one of one parameter.
+    The price is that of Schwarz (1978): an effect of four parameters must explain more than one of
+    one parameter. Where a sensor, a clock or the rudder's zero explains the record as well as a
+    force does, it is tried first.
     """
-    samples = effective_samples(fit)
-
-    def price(r: Refit) -> float:
-        return cost(r.fit.eps_rmsn, len(r.candidate.effect.parameters), samples)
-
-    able = [
-        r
-        for r in refits
-        if r.candidate.p_value < level
-        and r.candidate.allowed
-        and price(r) < cost(fit.eps_rmsn, 0, samples)
-        and (fit.eps_check is None or (r.fit.eps_check or np.inf) < fit.eps_check)
+    able = [r for r in refits if r.candidate.p_value < level and r.candidate.allowed]
+    if not able:
+        return None
+    plain, *costs = _costs(fit, able)
+    _, colour, _ = misfits([fit, *(r.fit for r in able)])
+    standing = [
+        (c, r)
+        for c, r in zip(costs, able, strict=True)
+        if c < plain and _holds(check_gain(fit, r.fit, colour))
     ]
-    return min(able, key=price, default=None)
+    if not standing:
+        return None
+    least = min(c for c, _ in standing)
+    close = [(c, r) for c, r in standing if c < least + DECISIVE]
+    return min(close, key=lambda x: (not is_instrumental(x[1].candidate.effect), x[0]))[1]
+
+
+def is_instrumental(effect: Effect) -> bool:
+    """Whether it is about sensors, clocks or the rudder's record, not about the ship."""
+    return not {Force, Rate, Mass} & set(effect.forms)
+
+
+def _holds(gain: tuple[float, float] | None) -> bool:
+    """Whether held-out trials do not speak against it: their error does not rise beyond chance."""
+    return gain is None or gain[0] > -gain[1]
+
+
+def _costs(fit: Fit, refits: Sequence[Refit]) -> list[float]:
+    """Schwarz's cost of the fit as it is, then with each effect in it."""
+    squares, _, rows = misfits([fit, *(r.fit for r in refits)])
+    each = float(np.log(rows))
+    added = [0, *(len(r.candidate.effect.parameters) for r in refits)]
+    inflation = refits[0].candidate.inflation
+    return [s / inflation + n * each for s, n in zip(squares, added, strict=True)]
 
 
 def rivals(
     fit: Fit, named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]
 ) -> tuple[str, ...]:
     """Effects that this record cannot tell from the named one: alike in trace, or as good."""
-    samples = effective_samples(fit)
-    fitted = {r.candidate.effect.name: r.fit.eps_rmsn for r in refits}
-    best = cost(named.fit.eps_rmsn, len(named.candidate.effect.parameters), samples)
+    plain, *costs = _costs(fit, refits)
+    known = {r.candidate.effect.name: c for r, c in zip(refits, costs, strict=True)}
+    _, _, rows = misfits([fit])
+    best = known[named.candidate.effect.name]
     close = [
         c.effect.name
         for c in ranking
         if c.allowed
         and c is not named.candidate
-        and cost(fitted.get(c.effect.name, c.eps_predicted), len(c.effect.parameters), samples)
-        < best + DECISIVE
+        and known.get(c.effect.name, plain + price(c, rows)) < best + DECISIVE
     ]
     alike = [n for n in named.candidate.family[1:] if n not in close]
     return (*close, *alike)

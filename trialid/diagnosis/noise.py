@@ -30,9 +30,7 @@ from trialid.diagnosis.residual import (
     rudder,
     slowness,
 )
-from trialid.diagnosis.score import project
 from trialid.diagnosis.variance import hac
-from trialid.diagnosis.whitening import whitened
 from trialid.identification.fit import Fit
 from trialid.trial import Mask
 
@@ -300,9 +298,9 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
     method = "dependence on the input"
     if not augmented.traces:
         return Split(method, "no candidate effect that acts linearly on the outputs")
-    raw = project(augmented.residual, augmented.psi, augmented.S)
-    residual, psi, S, parts = whitened(augmented)
-    white = project(residual, psi, S)
+    raw, white, parts = (
+        augmented.evidence.raw, augmented.evidence.white, augmented.evidence.parts,
+    )  # fmt: skip
     T = _visible_directions(raw.S, augmented.S, white.S)
     Z = white.S @ T
     if len(Z) < 20 * Z.shape[1]:

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from trialid.diagnosis.augment import Augmented, Trace, augment
 from trialid.diagnosis.chance import Chance, against_chance
-from trialid.diagnosis.residual import effective_samples
-from trialid.diagnosis.whitening import whitened
+from trialid.diagnosis.evidence import Projected, explained
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
 
@@ -35,6 +34,8 @@ class Candidate:
         Parameter values by linearisation, or the best of those tried.
     eps_predicted
         eps_RMSn by linearisation with the effect in the model.
+    gain
+        Twice the log likelihood that it gains over the model as it is, by linearisation.
     score
         The test statistic, chi-square of as many degrees as parameters.
     p_value
@@ -45,28 +46,20 @@ class Candidate:
         Effects this record cannot separate from it, |cos| above the limit.
     allowed
         Whether the expected values lie in their physical range.
+    inflation
+        By how much rows that are not quite independent make chance greater.
     """
 
     effect: Effect
     expected: Mapping[str, float]
     eps_predicted: float
+    gain: float
     score: float
     p_value: float
     visibility: float
     family: tuple[str, ...]
     allowed: bool
-
-
-@dataclass(frozen=True)
-class Projected:
-    """Residual and candidate columns with everything the base columns reach taken out.
-
-    `Q` are orthonormal columns of what the base reaches.
-    """
-
-    residual: Vector
-    S: Vector
-    Q: Vector
+    inflation: float = 1.0
 
 
 def rank(
@@ -87,88 +80,68 @@ def rank(
     augmented = augment(fit, catalogue)
     if not augmented.traces:
         return (), augmented
-    raw = project(augmented.residual, augmented.psi, augmented.S)
-    residual, psi, S, parts = whitened(augmented)
-    white = project(residual, psi, S)
+    evidence = augmented.evidence
     seen = [t for t in augmented.traces if _leaves_a_trace(augmented, t)]
-    visible = [t for t in seen if _visibility(augmented, raw, t) > VISIBLE]
+    visible = [t for t in seen if _visibility(augmented, t) > VISIBLE]
+    white = evidence.white
     groups = [t.columns for t in visible]
-    chances = against_chance(white.residual, white.Q, white.S, groups, parts)
+    chances = against_chance(white.residual, white.Q, white.S, groups, evidence.parts)
+    # one figure for all: that of a single candidate is known too poorly to rank by
+    inflation = max(float(np.median([c.inflation for c in chances] or [1.0])), 1.0)
     tested = dict(zip(map(id, visible), chances, strict=True))
-    never = Chance(0.0, 1.0)
-    made = [_candidate(fit, augmented, raw, t, tested.get(id(t), never)) for t in seen]
-    samples = effective_samples(fit)
+    made = [_candidate(fit, augmented, t, tested.get(id(t)), inflation) for t in seen]
 
     def standing(c: Candidate) -> tuple[bool, bool, float]:
-        return not c.allowed, c.p_value >= level, price(c, samples)
+        return not c.allowed, c.p_value >= level, price(c, len(white.residual))
 
-    scored = _families(_best_of_each(made), augmented, white.S, family_cos)
+    scored = _families(_best_of_each(made), augmented, family_cos)
     return tuple(sorted(scored, key=standing)), augmented
 
 
-def price(c: Candidate, samples: float) -> float:
-    """Schwarz's cost of the model with this effect, by linearisation."""
-    return cost(c.eps_predicted, len(c.effect.parameters), samples)
-
-
-def cost(eps: float, parameters: int, samples: float) -> float:
-    """Schwarz (1978): twice the negative log likelihood, each parameter at the price of ln(N).
-
-    >>> cost(0.04, 1, 1000.0) < cost(0.04, 4, 1000.0) < cost(0.05, 1, 1000.0)
-    True
-    """
-    return samples * 2.0 * float(np.log(max(eps, 1e-300))) + parameters * float(np.log(samples))
-
-
-def project(residual: Vector, psi: Vector, S: Vector) -> Projected:
-    """Take out of the residual and the candidates what the base columns reach."""
-    norms = np.linalg.norm(psi, axis=0)
-    Q, _ = np.linalg.qr(psi[:, norms > 0.0] / norms[norms > 0.0])
-    return Projected(residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S), Q)
+def price(c: Candidate, rows: int) -> float:
+    """Schwarz's (1978) cost of the model with this effect: each parameter pays ln N."""
+    return len(c.effect.parameters) * float(np.log(rows)) - c.gain
 
 
 def _leaves_a_trace(augmented: Augmented, trace: Trace) -> bool:
     return bool(np.all(np.any(augmented.S[:, trace.columns] != 0.0, axis=0)))
 
 
-def _visibility(augmented: Augmented, raw: Projected, trace: Trace) -> float:
+def _visibility(augmented: Augmented, trace: Trace) -> float:
     """Share of the squared trace left when the base columns have taken theirs, over columns."""
     whole = np.sum(augmented.S[:, trace.columns] ** 2, axis=0)
-    return float(np.mean(np.sum(raw.S[:, trace.columns] ** 2, axis=0) / whole))
+    left = np.sum(augmented.evidence.raw.S[:, trace.columns] ** 2, axis=0)
+    return float(np.mean(left / whole))
 
 
 def _candidate(
-    fit: Fit, augmented: Augmented, raw: Projected, trace: Trace, chance: Chance
+    fit: Fit, augmented: Augmented, trace: Trace, chance: Chance | None, inflation: float
 ) -> Candidate:
-    """What one trace of an effect says.
+    """What one trace of an effect says; one that is not visible explains nothing.
 
-    Value and fall come from the residual as it is: the whitening is estimated from a residual that
-    holds the effect, and may take a strong one away; only the test of chance needs it.
+    Value and fall come from the residual as it is: they are what a refit will find.
     """
-    visibility = _visibility(augmented, raw, trace)
-    values, fall = _tried(raw, trace) if trace.tried else _explained(raw, trace)
-    eps2 = max(fit.eps_rmsn**2 - (fall if visibility > VISIBLE else 0.0), 0.0)
-    inside = all(trace.effect.parameters[n].low <= x <= trace.effect.parameters[n].high
-                 for n, x in values.items())  # fmt: skip
+    evidence = augmented.evidence
+    values, fall = _explained(evidence.raw, trace)
+    _, gain = _explained(evidence.white, trace)
+    if chance is None:
+        chance, fall, gain = Chance(0.0, 1.0), 0.0, 0.0
+    parameters = trace.effect.parameters
+    inside = all(parameters[n].low <= x <= parameters[n].high for n, x in values.items())
     return Candidate(
-        trace.effect, values, float(np.sqrt(eps2)), chance.score, chance.p_value, visibility,
-        (trace.effect.name,), inside and (fall > 0.0 or not trace.tried),
+        trace.effect, values, float(np.sqrt(max(fit.eps_rmsn**2 - fall, 0.0))), gain / inflation,
+        chance.score, chance.p_value, _visibility(augmented, trace), (trace.effect.name,),
+        inside and (fall > 0.0 or not trace.tried), inflation,
     )  # fmt: skip
 
 
-def _explained(raw: Projected, trace: Trace) -> tuple[dict[str, float], float]:
-    """Parameter values, and the fall of eps_RMSn^2, by linearisation."""
-    s = raw.S[:, trace.columns]
-    sizes = np.maximum(np.linalg.norm(s, axis=0), 1e-300)
-    beta = np.asarray(np.linalg.lstsq(s / sizes, raw.residual, rcond=1e-10)[0]) / sizes
-    values = dict(zip(trace.parameters, map(float, beta), strict=True))
-    return values, float(raw.residual @ (s @ beta))
-
-
-def _tried(raw: Projected, trace: Trace) -> tuple[dict[str, float], float]:
-    """The values tried, and the fall of eps_RMSn^2 with the effect at just these values."""
-    [s] = raw.S[:, trace.columns].T
-    return dict(trace.tried), float(2.0 * (raw.residual @ s) - s @ s)
+def _explained(rows: Projected, trace: Trace) -> tuple[dict[str, float], float]:
+    """Parameter values, and the fall of the sum of squares, by linearisation or as tried."""
+    if trace.tried:
+        [i] = trace.columns
+        return dict(trace.tried), float(2.0 * rows.moment[i] - rows.gram[i, i])
+    beta, fall = explained(rows, trace.columns)
+    return dict(zip(trace.parameters, map(float, beta), strict=True)), fall
 
 
 def _best_of_each(made: Sequence[Candidate]) -> list[Candidate]:
@@ -179,24 +152,25 @@ def _best_of_each(made: Sequence[Candidate]) -> list[Candidate]:
         if known is None:
             best[c.effect.name] = c
         else:
-            better = min(known, c, key=lambda x: x.eps_predicted)
+            better = max(known, c, key=lambda x: x.gain)
             sure = min(known.p_value, c.p_value)
             best[c.effect.name] = replace(better, p_value=sure, score=max(known.score, c.score))
     return list(best.values())
 
 
-def _families(
-    scored: Sequence[Candidate], augmented: Augmented, S: Vector, limit: float
-) -> list[Candidate]:
+def _families(scored: Sequence[Candidate], augmented: Augmented, limit: float) -> list[Candidate]:
     """Name with each candidate those whose visible traces are nearly parallel to its own."""
-    gram = S.T @ S
+    gram = augmented.evidence.white.gram
     columns = {c.effect.name: _columns(c, augmented) for c in scored}
     scales = {n: _inverse_root(gram[np.ix_(at, at)]) for n, at in columns.items()}
 
     def alike(one: Candidate, other: Candidate) -> bool:
         a, b = one.effect.name, other.effect.name
         shared = gram[np.ix_(columns[a], columns[b])]
-        return float(np.linalg.norm(scales[a] @ shared @ scales[b].T, 2)) > limit
+        cosines = scales[a] @ shared @ scales[b].T
+        if min(cosines.shape) == 1:  # a vector's length, without a decomposition
+            return float(np.sqrt(np.sum(cosines**2))) > limit
+        return float(np.linalg.norm(cosines, 2)) > limit
 
     return [
         replace(c, family=(c.effect.name, *(

@@ -1,62 +1,74 @@
-"""Residual and sensitivities through the inverse of the residual's colour."""
+"""Columns through the inverse of the noise's colour, so that their rows are independent."""
 
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy import Stretch
-from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.variance import lag_window
 from trialid.trial import Mask
 
 Vector = NDArray[np.float64]
+Colour = Mapping[int, Vector]
+"""Output to the coefficients (1, -a_1, ...) / s of an autoregression that s drives."""
 
-WHITENING_SHARE: Final = 1.0 / 6.0
-"""Memory of the autoregression that whitens the residual, over the lag window."""
+MEMORY_SHARE: Final = 1.0 / 6.0
+"""Memory of the autoregression over the lag window: 10 s of 20 minutes, a wave or two."""
+
+ROWS_FOR_EACH: Final = 4
+"""Rows that a coefficient needs; shorter records are left as they are."""
 
 
-def whitened(augmented: Augmented) -> tuple[Vector, Vector, Vector, tuple[Stretch, ...]]:
-    """Residual, base and candidate columns filtered by the inverse of the residual's colour."""
-    order = max(round(WHITENING_SHARE * lag_window(augmented.stretches)), 1)
-    filters = _autoregressions(augmented, order)
+def memory(parts: Sequence[Stretch]) -> int:
+    """Samples that an autoregression of these records looks back."""
+    return max(round(MEMORY_SHARE * lag_window(parts)), 1)
+
+
+def colour_of(residual: Vector, parts: Sequence[Stretch]) -> Colour:
+    """Autoregressions of each output's residual, by least squares over all trials; (M,)."""
+    order = memory(parts)
+    found = {}
+    for output in sorted({s.output for s in parts}):
+        mine = [s for s in parts if s.output == output]
+        pieces = [_windows(residual, s, order) for s in mine]
+        W = np.concatenate(pieces)
+        if len(W) < ROWS_FOR_EACH * order:
+            size = float(np.sqrt(np.mean(np.concatenate([residual[s.rows] for s in mine]) ** 2)))
+            found[output] = np.array([1.0 / (size or 1.0)])
+            continue
+        X, y = W[:, -2::-1], W[:, -1]
+        a = np.linalg.solve(X.T @ X + 1e-12 * np.trace(X.T @ X) * np.eye(order), X.T @ y)
+        scale = float(np.std(y - X @ a)) or 1.0
+        found[output] = np.concatenate([[1.0], -a]) / scale
+    return found
+
+
+def _windows(residual: Vector, part: Stretch, order: int) -> Vector:
+    """Runs of order + 1 compared values, oldest first; (n, order + 1)."""
+    e = np.zeros(len(part.compared))
+    e[part.compared] = residual[part.rows]
+    if len(e) <= order:
+        return np.zeros((0, order + 1))
+    whole = np.lib.stride_tricks.sliding_window_view(part.compared, order + 1).all(axis=1)
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(e, order + 1)[whole])
+
+
+def whitened(
+    columns: Vector, parts: Sequence[Stretch], colour: Colour
+) -> tuple[Vector, tuple[Stretch, ...]]:
+    """Columns filtered by the inverse of the colour, and which rows they now are; (M, n)."""
     rows, made, at = [], [], 0
-    every = np.column_stack([augmented.residual, augmented.psi, augmented.S])
-    for stretch in augmented.stretches:
-        full = np.zeros((len(stretch.compared), every.shape[1]))
-        full[stretch.compared] = every[stretch.rows]
-        out, valid = _filtered(full, stretch.compared, filters[stretch.output])
+    for part in parts:
+        full = np.zeros((len(part.compared), columns.shape[1]))
+        full[part.compared] = columns[part.rows]
+        out, valid = _filtered(full, part.compared, colour[part.output])
         count = int(valid.sum())
         rows.append(out[valid])
-        made.append(Stretch(stretch.trial, stretch.output, slice(at, at + count), valid))
+        made.append(Stretch(part.trial, part.output, slice(at, at + count), valid))
         at += count
-    done = np.concatenate(rows)
-    n = augmented.psi.shape[1]
-    return done[:, 0], done[:, 1 : n + 1], done[:, n + 1 :], tuple(made)
-
-
-def _autoregressions(augmented: Augmented, order: int) -> dict[int, Vector]:
-    """Coefficients 1, -a_1, ... of each output's residual, by least squares over all trials."""
-    filters = {}
-    for output in sorted({s.output for s in augmented.stretches}):
-        targets, lags = [], []
-        for stretch in augmented.stretches:
-            if stretch.output == output:
-                e = np.zeros(len(stretch.compared))
-                e[stretch.compared] = augmented.residual[stretch.rows]
-                past = np.lib.stride_tricks.sliding_window_view(e, order)[:-1, ::-1]
-                whole = np.lib.stride_tricks.sliding_window_view(stretch.compared, order + 1)
-                keep = whole.all(axis=1)
-                targets.append(e[order:][keep])
-                lags.append(past[keep])
-        X, y = np.concatenate(lags), np.concatenate(targets)
-        if len(y) < 4 * order:
-            filters[output] = np.array([1.0])
-            continue
-        a, *_ = np.linalg.lstsq(X, y, rcond=None)
-        scale = float(np.std(y - X @ a)) or 1.0
-        filters[output] = np.concatenate([[1.0], -a]) / scale
-    return filters
+    return np.concatenate(rows), tuple(made)
 
 
 def _filtered(full: Vector, compared: Mask, a: Vector) -> tuple[Vector, Mask]:
