@@ -185,7 +185,7 @@ def test_a_memory_leaves_nothing_in_a_steady_turn() -> None:
     assert fresh["r_late"] == pytest.approx(0.01 * U0 / (2.0 * L))
 
 
-def test_a_tank_rings_at_its_own_frequency_and_costs_righting_arm() -> None:
+def test_a_tank_rings_at_its_own_frequency_and_lets_slow_heel_alone() -> None:
     shape = {"omega_t": 1.5, "zeta_t": 0.1}
     w = 1.5 * math.sqrt(G / L)
     free = rates("anti_roll_tank", shape, q_t=0.1)
@@ -193,7 +193,9 @@ def test_a_tank_rings_at_its_own_frequency_and_costs_righting_arm() -> None:
     damped = rates("anti_roll_tank", shape, w_t=0.1)
     assert damped["w_t"] == pytest.approx(-2.0 * 0.1 * w * 0.1)
     slow = forces("anti_roll_tank", shape | {"s_t": 0.2}, phi=0.1, q_t=0.1)
-    assert slow["K"] == pytest.approx(RHO * G * NABLA * 0.2 * 0.1, rel=1e-6)
+    assert slow["K"] == pytest.approx(0.0, abs=1.0)
+    late = forces("anti_roll_tank", shape | {"s_t": 0.2}, phi=0.1, q_t=0.04)
+    assert late["K"] == pytest.approx(-RHO * G * NABLA * 0.2 * 0.06, rel=1e-6)
 
 
 def test_a_pendulum_reads_outward_heel_too_large() -> None:

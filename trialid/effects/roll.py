@@ -71,14 +71,14 @@ def anti_roll_tank(
     omega_t=Parameter(1.5, low=0.3, high=10.0, null=None),
     zeta_t=Parameter(0.15, low=0.01, high=2.0, null=None),
 ):  # fmt: skip
-    """K = rho g nabla s_t q_t: water in a tank that follows the roll with a frequency of its own.
+    """K = rho g nabla s_t (q_t - phi): water in a tank that swings with a frequency of its own.
 
     d(q_t)/dt = w_t,  d(w_t)/dt = w^2 (phi - q_t) - 2 zeta_t w w_t  with  w = omega_t sqrt(g / L).
-    s_t is the metacentric height that the free surface costs in slow motion.
+    In slow motion the water follows the roll: GM is what the free surface leaves, s_t its cost.
     """
     w = omega_t * sqrt(g / L)
     return (
-        Force(K=rho * g * nabla * s_t * q_t),
+        Force(K=rho * g * nabla * s_t * (q_t - phi)),
         Rate(q_t=w_t, w_t=w * w * (phi - q_t) - 2.0 * zeta_t * w * w_t),
     )
 

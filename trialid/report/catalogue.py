@@ -179,7 +179,7 @@ def _plain_parameter(p: Parameter) -> dict[str, Any]:
         "unit": p.unit,
         "low": None if math.isinf(p.low) else p.low,
         "high": None if math.isinf(p.high) else p.high,
-        "null": p.null,
+        "null": None if p.scan else p.null,
         "scan": list(p.scan),
     }
 
