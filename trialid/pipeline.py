@@ -16,7 +16,8 @@ from trialid import effects, ingest, units
 from trialid.accuracy import Accuracy, Subject, assess
 from trialid.alignment import SignalSource, align
 from trialid.diagnosis.augment import Augmented
-from trialid.diagnosis.missing_effect import confirmed, decide, refit
+from trialid.diagnosis.completeness import completeness
+from trialid.diagnosis.missing_effect import decide, refit
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
@@ -76,16 +77,17 @@ def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
     progress("fitting", 0.3)
     fit = fitted(trials, model, settings, progress)
     before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
+    whole = completeness(fit, augmented)
     refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
                          lambda words: progress(words, 0.7)))  # fmt: skip
-    level = recipe.diagnose.level
-    named = confirmed(fit, refits, level)
+    verdict = decide(fit, ranking, refits, before.split, whole, recipe.diagnose.level)
     after = None
-    if named is not None:
-        after = diagnose(recipe, named.fit, catalogue, progress)[0]
+    for named in refits:
+        if named.candidate.effect.name == verdict.effect:
+            after = diagnose(recipe, named.fit, catalogue, progress)[0]
     findings = Findings(
         recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
-        decide(fit, ranking, refits, before.split, level), stretches_that_fail(fit), after,
+        verdict, stretches_that_fail(fit), after,
     )  # fmt: skip
     progress("done", 1.0)
     return Run(recipe, findings, plain(findings), time_series(fit))

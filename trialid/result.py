@@ -5,17 +5,18 @@ Numbers are SI unless a unit stands beside them; what is not known is None, neve
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
 
 import trialid
 from trialid.accuracy import Accuracy, ParameterAccuracy
+from trialid.diagnosis.leftover.finding import Bars, Finding, Spectrum
 from trialid.diagnosis.missing_effect import Refit, Verdict
 from trialid.diagnosis.noise import Split
 from trialid.diagnosis.score import VISIBLE, Candidate
-from trialid.diagnosis.where import Finding
+from trialid.diagnosis.where import Where
 from trialid.errors import EffectError
 from trialid.identification.fit import Fit, step_halving
 from trialid.ship.model import ShipModel
@@ -49,7 +50,7 @@ class Findings:
     left_out: Mapping[str, str]
     refits: tuple[Refit, ...]
     verdict: Verdict
-    where: tuple[Finding, ...]
+    where: Where
     after: Diagnosed | None
 
 
@@ -68,7 +69,8 @@ def plain(found: Findings) -> Plain:
             "fit": _fit(fit),
             "split": _split(found.before.split, found.before.routes),
             "accuracy": _accuracy(fit, found.before.accuracy),
-            "where": [_finding(f) for f in found.where],
+            "where": [_finding(f) for f in found.where.findings],
+            "where_else": _where_else(found.where),
             "missing": _missing(found),
             "not_tried": dict(found.left_out),
             "verdict": _verdict(found.verdict),
@@ -281,14 +283,35 @@ def _levers(s: Stability) -> Plain:
 def _finding(f: Finding) -> Plain:
     return {
         "output": f.output,
-        "finding": "stretch of time",
+        "finding": f.kind,
         "doing": f.doing,
         "share": f.share,
         "excess": f.excess,
+        "p_value": f.p_value,
         "t_start": f.t_start,
         "t_end": f.t_end,
         "trial": f.trial,
         "sentence": f.sentence,
+        "picture": _picture(f.picture),
+    }
+
+
+def _picture(picture: Bars | Spectrum) -> Plain:
+    """What a finding's picture is drawn from, in the units of reports."""
+    form = "bars" if isinstance(picture, Bars) else "spectrum"
+    return {"form": form, **asdict(picture)}
+
+
+def _where_else(found: Where) -> Plain:
+    """What is no finding: shares by output, the noise described, what could not be examined."""
+    return {
+        "by_output": [asdict(row) for row in found.by_output],
+        "rest": [
+            {"output": r.output, "sentence": r.sentence, "picture": _picture(r.picture)}
+            for r in found.rest
+        ],
+        "not_examined": list(found.not_examined),
+        "questions": found.questions,
     }
 
 

@@ -39,7 +39,7 @@ MODEL: Final = ShipModel(
 )
 """What the person who fits knows of the ship, less what a scenario hides."""
 
-FREE: Final = ("Yv", "Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
+FREE: Final = ("Yv", "Ydelta", "Nv", "Nr", "Ndelta", "Kv", "Kdelta", "Kp", "GM")
 START_ERROR: Final = 0.15
 """A free parameter starts up to this share off the truth, as from a regression formula."""
 

@@ -5,6 +5,7 @@ import pytest
 from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 
 from trialid.diagnosis.augment import augment, candidates_for
+from trialid.diagnosis.completeness import completeness
 from trialid.diagnosis.missing_effect import confirmed, decide, refit, replace
 from trialid.diagnosis.noise import split
 from trialid.diagnosis.score import rank
@@ -33,7 +34,12 @@ def diagnosed(trials, model):
     standing = [c for c in ranking if c.allowed and c.p_value < 0.05][:3]
     refits = refit(fit, trials, standing, lambda words: None)
     parts, _ = split(fit, augmented, {})
-    return fit, ranking, refits, decide(fit, ranking, refits, parts, 0.05)
+    return (
+        fit,
+        ranking,
+        refits,
+        decide(fit, ranking, refits, parts, completeness(fit, augmented), 0.05),
+    )
 
 
 def test_missing_roll_damping_is_named_and_the_error_falls():

@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trialid.report import bars, labels, panels, wording
+from trialid.report import bars, labels, panels, where_pictures, wording
 from trialid.report.series import TrialSeries
 from trialid.report.shape import Run, whole
 
@@ -75,6 +75,7 @@ def _environment() -> "jinja2.Environment":
         "short_hash": wording.short_hash,
         "labelled": labels.labelled,
         "symbol": labels.symbol,
+        "picture": where_pictures.picture,
         "in_shown_unit": labels.shown,
     }
     return environment

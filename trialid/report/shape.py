@@ -58,6 +58,7 @@ _BEFORE_AFTER = _keys("effect equation eps_rmsn eps_rmsn_check noise undermodell
     "by_output": Each(),
     "parameters": [_keys("name unit before after standard_error")],
 }
+_FINDING = _keys("output finding doing share excess p_value t_start t_end trial sentence picture")
 
 SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "trials": [_TRIAL],
@@ -67,7 +68,13 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     | _keys("method why")
     | {"by_output": Each(_SPLIT), "routes": [_SPLIT | _keys("method available why")]},
     "accuracy": _ACCURACY,
-    "where": [_keys("output finding share t_start t_end trial sentence")],
+    "where": [_FINDING],
+    "where_else": {
+        "by_output": [_keys("output share sentence")],
+        "rest": [_keys("output sentence picture")],
+        "not_examined": [None],
+        "questions": None,
+    },
     "missing": [_MISSING],
     "verdict": _keys("kind effect sentence") | {"family": [None], "next_trial": Maybe({})},
     "history": [_keys("added eps_rmsn noise undermodelling eps_rmsn_check") | {"effects": [None]}],

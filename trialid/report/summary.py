@@ -13,9 +13,10 @@ if TYPE_CHECKING:
 
 WIDTH = 98
 TRIALS = 5
-PARAMETERS = 12
+PARAMETERS = 10
 WORST = 8
 CANDIDATES = 4
+FINDINGS = 3
 """How many rows each part may have; together they keep the summary under 40 lines."""
 
 
@@ -30,6 +31,7 @@ def summary(result: Mapping[str, Any]) -> "RenderableType":
         title,
         _errors(run),
         Text(_made_of(run)),
+        *_where(run),
         Text(),
         *_parameters(run),
         *_ranking(run),
@@ -69,6 +71,15 @@ def _made_of(run: Run) -> str:
         f", told apart by {split['method']}"
     )
     return _cut(words, 2)
+
+
+def _where(run: Run) -> "Iterable[RenderableType]":
+    """The largest findings of where the model fails, a line each; the page has them in full."""
+    from rich.text import Text
+
+    for finding in run["where"][:FINDINGS]:
+        if finding["sentence"]:
+            yield Text(_cut(f"fails: {finding['sentence']}", 1))
 
 
 def _part(split: Run, part: str) -> str:
