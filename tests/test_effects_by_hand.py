@@ -86,7 +86,7 @@ def test_froude_terms_vanish_at_the_approach_speed_and_grow_with_f(name: str) ->
     for u in (U0, 5.0, 9.0):
         at = {"v": 0.5} if not name.endswith("_r") else {"r": 0.01}
         U = math.hypot(u, at.get("v", 0.0))
-        gain = (U - U0) / math.sqrt(G * L)
+        gain = (u - U0) / math.sqrt(G * L)
         moved = at.get("v", 0.0) / U + at.get("r", 0.0) * L / U
         found = forces(name, {p: 0.02}, u=u, **at)
         for letter in {"sway_froude": "Y"}.get(name, "N"):
@@ -102,7 +102,7 @@ def test_a_righting_arm_that_changes_with_speed() -> None:
 
 
 def test_the_race_keeps_the_force_on_the_rudder() -> None:
-    """With N_slip = Ndelta the force on the rudder goes as U U0, as that of rudder_race does."""
+    """With N_slip = Ndelta the force on the rudder goes as u U0, as that of rudder_race does."""
     u, delta, Ndelta = 4.0, 0.3, 0.0015
     base = {"Ydelta": -0.003, "Kdelta": 0.0, "Ndelta": Ndelta}
     steady = forces("linear_rudder", base, u=u, delta=delta)
@@ -111,7 +111,7 @@ def test_the_race_keeps_the_force_on_the_rudder() -> None:
     assert steady["N"] + more["N"] == pytest.approx(race * L * Ndelta, rel=1e-6)
     assert steady["Y"] + more["Y"] == pytest.approx(race * -0.003, rel=1e-6)
     instead = CATALOGUE["rudder_race"](
-        {"delta": delta, "U0": U0 / u, "Y_race": -0.003, "K_race": 0.0, "N_race": Ndelta}
+        {"u": 1.0, "delta": delta, "U0": U0 / u, "Y_race": -0.003, "K_race": 0.0, "N_race": Ndelta}
     )[0]
     assert instead.N * 0.5 * RHO * L**3 * u**2 == pytest.approx(race * L * Ndelta)
 

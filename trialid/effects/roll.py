@@ -54,12 +54,12 @@ def righting_arm_quintic(phi, rho, g, nabla, *, GM5=Parameter(20.0, "m", low=-10
 
 
 @effect(source="squat and the wave along the hull; size by judgement")
-def righting_arm_speed(phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-50.0, high=50.0)):
-    """K = -rho g nabla GM_F (F^2 - F0^2) phi: GM changes with the Froude number F = U / sqrt(g L).
+def righting_arm_speed(u, phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-50.0, high=50.0)):
+    """K = -rho g nabla GM_F (F^2 - F0^2) phi: GM changes with the Froude number F = u / sqrt(g L).
 
-    In primes g is 1 / F^2 and F0 / F is U0, so that g (F^2 - F0^2) is 1 - U0^2.
+    g L (F^2 - F0^2) is u^2 - U0^2, and in primes the length is 1.
     """
-    return Force(K=-rho * nabla * GM_F * (1.0 - U0 * U0) * phi)
+    return Force(K=-rho * nabla * GM_F * (u * u - U0 * U0) * phi)
 
 
 @effect(

@@ -77,17 +77,17 @@ def rudder_flow_asymmetry(
 
 @effect(source="model tests at constant shaft speed")
 def rudder_race(
-    delta, U0, *,
+    u, delta, U0, *,
     Y_race=Parameter(-0.003, low=-0.05, high=0.0, null=None),
     K_race=Parameter(0.0001, low=0.0, high=0.002, null=None),
     N_race=Parameter(0.0015, low=0.0, high=0.02, null=None),
 ):  # fmt: skip
-    """Y, K, N = Y_race, K_race, N_race times delta U0 / U: rudder force that goes as U U0.
+    """Y, K, N = Y_race, K_race, N_race times delta u U0 / U^2: rudder force as u U0.
 
     Instead of linear_rudder, whose force goes as U^2: at constant shaft speed the propeller's race
     keeps part of the flow over the rudder when the ship slows down.
     """
-    race = delta * U0  # primed, so that U0 is U0 / U
+    race = delta * u * U0
     return Force(Y=Y_race * race, K=K_race * race, N=N_race * race)
 
 
