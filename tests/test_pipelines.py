@@ -97,6 +97,7 @@ FIT = {
     "eps_rmsn": NUMBER,
     "eps_rmsn_by_output": BY_OUTPUT,
     "eps_rmsn_check": MAYBE,
+    "eps_rmsn_check_by_output": ({...: NUMBER}, None),
     "V": NUMBER,
     "iterations": [{"V": NUMBER, "eps_rmsn": NUMBER, "step": NUMBER}],
     "converged": bool,
@@ -207,8 +208,14 @@ VERDICT = {
     "next_trial": (dict, None),
 }
 STAGE = {
+    "step": {"as written", "added", "dropped", "proposed"},
     "effects": [str],
     "added": (str, None),
+    "dropped": (str, None),
+    "verdict": (str, None),
+    "free": [str],
+    "logs": [str],
+    "version": str,
     "eps_rmsn": NUMBER,
     "noise": MAYBE,
     "undermodelling": MAYBE,
@@ -228,6 +235,7 @@ RESULT = {
     "missing": [CANDIDATE],
     "verdict": VERDICT,
     "history": [STAGE],
+    "sources": [{"path": str, "sha256": str}],
 }
 
 

@@ -57,7 +57,7 @@ class Findings:
 def plain(found: Findings) -> Plain:
     """Everything as plain data, ready for `json.dumps`."""
     fit = found.before.fit
-    return _finite(
+    return finite(
         {
             "schema": SCHEMA,
             "version": trialid.__version__,
@@ -80,12 +80,12 @@ def plain(found: Findings) -> Plain:
     )
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """Infinite and undefined numbers have no place in JSON: they are not known."""
     if isinstance(value, Mapping):
-        return {k: _finite(v) for k, v in value.items()}
+        return {k: finite(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(v) for v in value]
+        return [finite(v) for v in value]
     if isinstance(value, float | np.floating):
         return float(value) if math.isfinite(value) else None
     return value
@@ -143,6 +143,7 @@ def _fit(fit: Fit) -> Plain:
         "eps_rmsn": fit.eps_rmsn,
         "eps_rmsn_by_output": fit.eps_by_output,
         "eps_rmsn_check": fit.eps_check,
+        "eps_rmsn_check_by_output": fit.eps_check_by_output or None,
         "V": fit.V,
         "iterations": [
             {"V": i.V, "eps_rmsn": math.sqrt(2.0 * i.V), "step": i.step} for i in fit.iterations
@@ -380,20 +381,27 @@ def _verdict(v: Verdict) -> Plain:
 
 
 def _history(found: Findings) -> list[Plain]:
-    rows = [_stage(found.before, None)]
+    """The model as it is, then the one proposed; earlier steps are the history file's to tell."""
+    rows = [_stage(found.before, "as written", None) | {"verdict": found.verdict.kind}]
     if found.after is not None:
-        rows.append(_stage(found.after, found.verdict.effect))
+        rows.append(_stage(found.after, "proposed", found.verdict.effect))
     return rows
 
 
-def _stage(d: Diagnosed, added: str | None) -> Plain:
+def _stage(d: Diagnosed, step: str, added: str | None) -> Plain:
     return {
+        "step": step,
         "effects": [e.name for e in d.fit.model.effects],
         "added": added,
+        "dropped": None,
         "eps_rmsn": d.fit.eps_rmsn,
         "noise": d.split.noise,
         "undermodelling": d.split.undermodelling,
         "eps_rmsn_check": d.fit.eps_check,
+        "verdict": None,
+        "free": list(d.fit.settings.free),
+        "logs": [g.sha256 for s in d.fit.scores for g in s.trial.logs],
+        "version": trialid.__version__,
     }
 
 

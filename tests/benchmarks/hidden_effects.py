@@ -67,6 +67,7 @@ class Diagnosis:
 
     fit: Fit
     ranking: Sequence[Candidate]
+    refits: Sequence[Refit]
     named: Refit | None
     verdict: Verdict
 
@@ -103,7 +104,7 @@ def diagnosed(
         whole = completeness(fit, augmented)
         verdict = decide(fit, ranking, refits, parts, whole, asked.level)
         named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
-    return Diagnosis(fit, ranking, named, verdict)
+    return Diagnosis(fit, ranking, refits, named, verdict)
 
 
 def settings_of(model: ShipModel) -> Settings:
@@ -154,13 +155,17 @@ def judged(row: Row, scenario: Scenario, done: Diagnosis) -> Row:
         )  # fmt: skip
     if named is not None:
         row = row.also(eps_predicted=named.candidate.eps_predicted, eps_after=named.fit.eps_rmsn)
+    tried = min(done.refits, key=lambda r: r.fit.eps_rmsn, default=None)
+    if tried is not None:
+        row = row.also(tried=tried.candidate.effect.name, eps_tried=tried.fit.eps_rmsn,
+                       eps_check_tried=tried.fit.eps_check)  # fmt: skip
     effect = CATALOGUE[verdict.effect] if verdict.effect else None
     return row.also(
         kind=verdict.kind, name=verdict.effect or "", family=family,
         exact=verdict.effect in scenario.exact,
         right=bool({verdict.effect, *family} & scenario.right),
         physical=effect is not None and Force in effect.forms,
-        eps=done.fit.eps_rmsn,
+        eps=done.fit.eps_rmsn, eps_check=done.fit.eps_check,
     )  # fmt: skip
 
 

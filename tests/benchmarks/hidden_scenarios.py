@@ -1,7 +1,8 @@
 """What the hidden-effects benchmark hides, as data: the effect, its size, and what counts as right.
 
 Sizes are those of published ships (the S-175 where it has the term) or of sensor practice; none is
-chosen so that it can be seen. Whether it can is what the score says, run by run.
+chosen so that it can be seen: whether it can, `hidden_score` says run by run. Only what is made up
+to be outside the catalogue has a size that shows.
 """
 
 from collections.abc import Mapping
@@ -44,19 +45,19 @@ TWINS: Final = (
 holds the other as a limit."""
 
 MADE_UP: Final = "made up for the benchmark: no ship does this"
-"""The figure in each docstring is the largest |cos| of what the fit leaves of its trace with what
-it leaves of any effect of the catalogue, in the mixed trials."""
+"""Of what the fit leaves of their traces in the mixed trials, the |cos| with what it leaves of any
+effect of the catalogue is at most 0.33 (nothing else hidden, white noise, seed 0)."""
 
 
 @effect(source=MADE_UP)
 def odd_rudder(delta, *, odd_Ndelta=0.00007):
-    """N = odd_Ndelta sin(40 delta): a rudder moment that turns over every 4.5 deg; 0.36."""
+    """N = odd_Ndelta sin(40 delta): a rudder moment that turns over every 4.5 deg."""
     return Force(N=odd_Ndelta * sin(40.0 * delta))
 
 
 @effect(source=MADE_UP)
 def odd_switch(p, r, *, odd_Nswitch=0.00003):
-    """N = odd_Nswitch tanh(p / 0.005) tanh(r / 0.05): a moment that switches with two rates; 0.19.
+    """N = odd_Nswitch tanh(p / 0.005) tanh(r / 0.05): a moment that switches with two rates.
 
     The sign of roll rate and turn is all that counts.
     """
@@ -64,14 +65,14 @@ def odd_switch(p, r, *, odd_Nswitch=0.00003):
 
 
 @effect(source=MADE_UP)
-def odd_heel(v, phi, *, odd_Kvavphi=0.004):
-    """K = odd_Kvavphi v |v| phi: a heeling moment to one side, of drift times heel; 0.48."""
-    return Force(K=odd_Kvavphi * v * abs(v) * phi)
+def odd_heel(v, phi, *, odd_Kvav=0.0002):
+    """K = odd_Kvav v |v| sin(60 phi): a heeling moment of drift that comes and goes with heel."""
+    return Force(K=odd_Kvav * v * abs(v) * sin(60.0 * phi))
 
 
 @effect(source=MADE_UP)
 def odd_course(psi, *, odd_Y=0.0001):
-    """Y = odd_Y sin(8 psi): a side force with eight periods in a turn of the compass; 0.26."""
+    """Y = odd_Y sin(8 psi): a side force with eight periods in a turn of the compass."""
     return Force(Y=odd_Y * sin(8.0 * psi))
 
 
@@ -189,7 +190,6 @@ _CONTROLS: Final = (
     Scenario("x_G + 1 % of L", "control", values={"x_G": 0.01}),
     Scenario("gyro scale + 3 %", "control", scale={"r": 1.03}),
     Scenario("roll scale + 3 %", "control", scale={"phi": 1.03}),
-    Scenario("rudder scale + 5 %", "control", scale={"delta": 1.05}),
 )
 """Wrong by as much as happens, and behind the fitted parameters: no record shows them."""
 
@@ -201,7 +201,7 @@ SCENARIOS: Final[Mapping[str, Scenario]] = {
         *(_gear(name, x) for name, x in _GEARS.items() if name in CATALOGUE),
         _odd(odd_rudder, 0.00007),
         _odd(odd_switch, 0.00003),
-        _odd(odd_heel, 0.004),
+        _odd(odd_heel, 0.0002),
         _odd(odd_course, 0.0001),
         *_CONTROLS,
         Scenario("nothing", "nothing"),

@@ -26,7 +26,8 @@ class Row:
     `plain` says how plainly what is hidden stands in the record (`hidden_score`); `score`, `p`,
     `rank` and `visibility` are the diagnosis's own figures of it.
     eps_RMSn: `eps` of the fit, `eps_true` as predicted with what is hidden, `eps_predicted` as
-    predicted with what is named, `eps_after` as the refit with that came out.
+    predicted with what is named, `eps_after` as the refit with that came out; `eps_check` of the
+    held-out trial. `tried` is the refit that came out best, named or not.
     """
 
     scenario: str
@@ -49,6 +50,10 @@ class Row:
     eps: float | None = None
     eps_predicted: float | None = None
     eps_after: float | None = None
+    eps_check: float | None = None
+    tried: str = ""
+    eps_tried: float | None = None
+    eps_check_tried: float | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
 
     def also(self, **values: Any) -> "Row":
@@ -202,6 +207,11 @@ def scenario_line(rows: Sequence[Row]) -> list[str]:
     ]  # fmt: skip
 
 
+def total_line(rows: Sequence[Row]) -> list[str]:
+    """All scenarios of one group under one noise."""
+    return ["(all)", *scenario_line(rows)[1:]]
+
+
 def _median(values: Sequence[float | None], form: str) -> str:
     known = [x for x in values if x is not None]
     return format(float(np.median(known)), form) if known else "-"
@@ -235,6 +245,7 @@ def report(rows: Sequence[Row], limits: Limits) -> str:
     parts.append("\n".join(f"* {t}" for t in thresholds(rows, limits)))
     for (trials, noise), some in _grouped(rows, lambda r: (r.trials, r.noise)):
         lines = [scenario_line(mine) for _, mine in _grouped(some, lambda r: r.scenario)]
+        lines += [total_line(mine) for _, mine in _grouped(some, lambda r: r.group)]
         parts += [f"## {trials}, {noise}", table(HEAD, lines)]
     parts += ["## Wrong names", "\n".join(f"* {x}" for x in wrong_names(rows)) or "none"]
     parts += ["## Processor time a run", times(rows)]

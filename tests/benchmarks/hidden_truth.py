@@ -40,6 +40,8 @@ MODEL: Final = ShipModel(
 """What the person who fits knows of the ship, less what a scenario hides."""
 
 FREE: Final = ("Yv", "Ydelta", "Nv", "Nr", "Ndelta", "Kv", "Kdelta", "Kp", "GM")
+"""What is fitted: the nine linear parameters of the confusability table."""
+
 START_ERROR: Final = 0.15
 """A free parameter starts up to this share off the truth, as from a regression formula."""
 

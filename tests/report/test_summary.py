@@ -78,5 +78,5 @@ def test_nothing_known_is_said_in_words():
     text = "\n".join(lines({}))
     assert "no route to the noise was open" in text
     assert "No verdict." in text
-    assert "No effect was added." in text
+    assert "No effect is proposed." in text
     assert "None" not in text

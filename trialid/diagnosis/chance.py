@@ -64,15 +64,10 @@ def against_chance(
     """
     if not groups:
         return []
-    blocks = _blocks(parts)
-    count = int(blocks.max()) + 1
-    order = np.argsort(blocks, kind="stable")
-    starts = np.searchsorted(blocks[order], np.arange(count))
-    signs = _signs(count)
-    e, Q, S = residual[order], Q[order], S[order]
-    moved = signs @ np.add.reduceat(Q * e[:, None], starts, axis=0)  # what a refit takes up
-    spans = [slice(a, b) for a, b in zip(starts, [*starts[1:], len(e)], strict=True)]
-    found = [_scores(e, Q, S[:, list(g)], spans, signs, moved) for g in groups]
+    sums = _sums(residual, Q, S, parts)
+    signs = _signs(len(sums.products))
+    moved = signs @ sums.moved  # what a refit of the parameters takes up in each draw
+    found = [_scores(sums, list(g), signs, moved) for g in groups]
     scores = np.column_stack([score for score, _ in found])
     p = np.column_stack([p for _, p in found])
     best = np.sort(p[1:].min(axis=1))
@@ -99,6 +94,35 @@ def _blocks(parts: Sequence[Stretch]) -> Whole:
     return np.unique(blocks, return_inverse=True)[1]  # a block in a gap holds nothing
 
 
+@dataclass(frozen=True)
+class _Sums:
+    """Sums of products over each block of time.
+
+    Attributes
+    ----------
+    products, grams, reach
+        S^T e (blocks, n_S), S^T S (blocks, n_S, n_S) and S^T Q (blocks, n_S, n_theta).
+    moved
+        Q^T e; (blocks, n_theta).
+    """
+
+    products: Vector
+    grams: Vector
+    reach: Vector
+    moved: Vector
+
+
+def _sums(e: Vector, Q: Vector, S: Vector, parts: Sequence[Stretch]) -> _Sums:
+    blocks = _blocks(parts)
+    rows = [np.flatnonzero(blocks == b) for b in range(int(blocks.max()) + 1)]
+    S = S / np.maximum(np.linalg.norm(S, axis=0), 1e-300)
+    pieces = [(S[at], Q[at], e[at]) for at in rows]
+    return _Sums(
+        np.array([s.T @ x for s, _, x in pieces]), np.array([s.T @ s for s, _, _ in pieces]),
+        np.array([s.T @ q for s, q, _ in pieces]), np.array([q.T @ x for _, q, x in pieces]),
+    )  # fmt: skip
+
+
 def _signs(count: int) -> Vector:
     """The signs as observed, then random ones; (1 + DRAWS, blocks)."""
     drawn = np.random.default_rng(SEED).integers(0, 2, (DRAWS, count)) * 2.0 - 1.0
@@ -106,22 +130,20 @@ def _signs(count: int) -> Vector:
 
 
 def _scores(
-    e: Vector, Q: Vector, S: Vector, spans: Sequence[slice], signs: Vector, moved: Vector
+    sums: _Sums, group: Sequence[int], signs: Vector, moved: Vector
 ) -> tuple[Vector, Vector]:
     """Score and nominal chance of one group in every draw; (1 + DRAWS,) each."""
-    q = S.shape[1]
-    S = S / np.maximum(np.linalg.norm(S, axis=0), 1e-300)
-    products = np.array([S[span].T @ e[span] for span in spans])  # (blocks, q)
-    grams = np.array([S[span].T @ S[span] for span in spans])  # (blocks, q, q)
-    reach = np.array([S[span].T @ Q[span] for span in spans])  # (blocks, q, n_theta)
+    q = len(group)
+    products, reach = sums.products[:, group], sums.reach[:, group]
+    grams = sums.grams[:, group][:, :, group]
     terms = signs[:, :, None] * products
     terms -= (moved @ reach.reshape(-1, moved.shape[1]).T).reshape(terms.shape)
-    sums = terms.sum(axis=1)
+    totals = terms.sum(axis=1)
     total = np.linalg.pinv(grams.sum(axis=0), rcond=1e-10, hermitian=True)
-    coefficients = sums @ total
+    coefficients = totals @ total
     terms -= (coefficients @ grams.reshape(-1, q).T).reshape(terms.shape)
     variance = np.einsum("rbi,rbj->rij", terms, terms)
-    scores = np.einsum("ri,rij,rj->r", sums, _inverse(variance), sums)
+    scores = np.einsum("ri,rij,rj->r", totals, _inverse(variance), totals)
     weight = np.trace(grams, axis1=1, axis2=2)
     degrees = max(float(weight.sum() ** 2 / (weight @ weight)) - 1.0, q + 1.0)
     rest = degrees - q + 1.0

@@ -21,8 +21,11 @@ DECISIVE: Final = 6.0
 
 
 FAINT: Final = 0.02
-"""Share of its trace that an effect must keep beside the free parameters to be named: a centre of
-gravity or a scale keeps less, and then errors of other fixed parameters look like it."""
+"""Share of its trace that an effect must keep beside the free parameters to be named for a small
+part of the error: a centre of gravity or a scale keeps less, and other errors look like it."""
+
+DOMINANT: Final = 0.2
+"""Share of the squared error from which on an effect is named however little of it shows."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +94,7 @@ def decide(
     named = confirmed(fit, refits, level)
     if whole.gap:
         return Verdict("not in catalogue", None, (), _gap(named, whole))
-    if named is not None and named.candidate.visibility < FAINT:
+    if named is not None and _is_faint(fit, named):
         return Verdict("cannot tell", None, (), _faint(named))
     if named is not None:
         return _missing(fit, named, rivals(fit, named, ranking, refits))
@@ -118,6 +121,12 @@ def _gap(named: Refit | None, whole: Completeness) -> str:
         "something is missing that the catalogue does not hold: its effects gain "
         f"{share:.0%} of what a force of a simple shape would{closest}"
     )
+
+
+def _is_faint(fit: Fit, named: Refit) -> bool:
+    """Whether little of the effect shows, and it explains little: other errors may look so."""
+    fall = 1.0 - (named.fit.eps_rmsn / fit.eps_rmsn) ** 2
+    return named.candidate.visibility < FAINT and fall < DOMINANT
 
 
 def _faint(named: Refit) -> str:
