@@ -137,16 +137,16 @@ def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bo
 def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> None:
     """List the effects a model can be made of, or tell all about the one called NAME."""
     from trialid.effects import CATALOGUE, find, from_file
-    from trialid.report.catalogue import listing, plain, sheet
+    from trialid.report.catalogue import listing, plain, plain_listing, sheet
 
     own = {n: e for path in own_files for n, e in from_file(path).items()}
-    chosen = {name: find(name, own)} if name else {**CATALOGUE, **own}
+    everything = {**CATALOGUE, **own}
     if as_json:
-        _print(json.dumps([plain(e) for e in chosen.values()], indent=2, allow_nan=False))
-    elif name:
-        _print(_rendered(*sheet(chosen[name])))
+        data = plain(find(name, own)) if name else plain_listing(everything)
+        _print(json.dumps(data, indent=2, allow_nan=False))
     else:
-        _print(_rendered(listing(chosen)))
+        shown = sheet(find(name, own)) if name else listing(everything)
+        _print(_rendered(*shown, width=None if name else _file_width()))
 
 
 def main() -> None:
@@ -333,11 +333,16 @@ def _summary(result: Mapping[str, Any]) -> str:
     return _rendered(summary(result))
 
 
-def _rendered(*parts: Any) -> str:
+def _file_width() -> int | None:
+    """Room for whole lines where no terminal cuts them: in a file or a pipe."""
+    return None if sys.stdout.isatty() or "COLUMNS" in os.environ else 160
+
+
+def _rendered(*parts: Any, width: int | None = None) -> str:
     """Give what rich makes of them as text for this stdout, in colour where it is a terminal."""
     from rich.console import Console
 
-    console = Console()
+    console = Console(width=width)
     with console.capture() as capture:
         for part in parts:
             console.print(part, markup=False, highlight=False)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 
-from trialid.diagnosis.augment import augment
+from trialid.diagnosis.augment import augment, candidates_for
 from trialid.diagnosis.completeness import completeness
 from trialid.diagnosis.missing_effect import confirmed, decide, refit, replace
 from trialid.diagnosis.noise import split
@@ -74,4 +74,25 @@ def test_unseen_effects_are_left_out_with_a_reason():
     left_out = augment(fit, CATALOGUE).left_out
     assert "X_ext" in left_out["outer_force"] or "null" in left_out["outer_force"]
     assert left_out["bias_psi"] == "psi is not an output"
-    assert "delta_order" in left_out["rudder_servo"]
+    assert left_out["rudder_servo"] == "needs delta_order, which the record does not hold"
+    assert left_out["apparent_wind"] == "needs V_aw, gamma_aw, which the record does not hold"
+    assert left_out["rudder_race"] == "nothing in it can be zero"
+    no_draught = {n: x for n, x in MODEL.ship.particulars.items() if n != "T"}
+    bare = replace(MODEL, ship=replace(MODEL.ship, particulars=no_draught))
+    _, why = candidates_for(bare, fit.problem.trials[0], CATALOGUE)
+    assert why["cross_flow_drag"] == "needs T, which the ship file does not hold"
+
+
+def test_an_effect_of_a_speed_record_wants_one_and_its_stand_in_does_not():
+    trial = zigzag(10, MODEL)
+    still, moving = np.full(trial.samples, 7.0), 7.0 + 0.1 * np.sin(trial.t)
+    stated, measured = (replace(trial, signals={**trial.signals, "u": u}) for u in (still, moving))
+    without_u = replace(MODEL, states=tuple(s for s in MODEL.states if s != "u"))
+    for record_of_u, able, unable in (
+        (stated, "surge_loss", "current_in_speed_record"),
+        (measured, "current_in_speed_record", "surge_loss"),
+    ):
+        signals = {**record_of_u.signals, "psi": trial.t}
+        found, why = candidates_for(without_u, replace(trial, signals=signals), CATALOGUE)
+        assert able in found
+        assert unable in why

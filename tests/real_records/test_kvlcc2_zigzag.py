@@ -25,6 +25,8 @@ YAW = {
     "yaw_cubic_vvv", "yaw_cubic_cross", "yaw_cubic_rrr",
 }  # fmt: skip
 SWAY = {e.replace("yaw", "sway") for e in YAW}
+BOTH = {"cross_flow_drag"}
+"""Nonlinear damping of sway and yaw in one number."""
 
 
 def columns(record):
@@ -130,11 +132,11 @@ def test_scaling_by_the_recorded_speed_makes_it_worse(linear):
 
 
 def test_nonlinear_yaw_damping_is_named_and_holds_on_the_other_runs(linear):
-    """Ours: Nrrr, 7.9 to 6.3 %, held out 9.2 to 7.2 %."""
+    """Ours: C_D, 7.9 to 6.3 %, held out 9.2 to 6.7 %; Nrrr does 6.3 and 7.2 %."""
     done = pipeline.run(with_candidates(yaw_alone(linear), "all")).result
     print(done["verdict"]["sentence"])
     assert done["verdict"]["kind"] == "missing"
-    assert set(done["verdict"]["family"]) <= YAW
+    assert set(done["verdict"]["family"]) <= YAW | BOTH
     named = next(m for m in done["missing"] if m["effect"] == done["verdict"]["effect"])
     assert named["eps_rmsn_refitted"] < 0.9 * done["fit"]["eps_rmsn"]
     assert named["eps_rmsn_check"] < 0.9 * done["fit"]["eps_rmsn_check"]
@@ -144,5 +146,5 @@ def test_it_is_named_in_sway_and_yaw_together(linear):
     done = pipeline.run(with_candidates(linear, "all")).result
     print(done["verdict"]["sentence"])
     assert done["verdict"]["kind"] == "missing"
-    assert set(done["verdict"]["family"]) <= YAW | SWAY
+    assert set(done["verdict"]["family"]) <= YAW | SWAY | BOTH
     assert set(done["verdict"]["family"]) & YAW

@@ -23,7 +23,10 @@ from trialid.trial import Trial
 SHIPS = Path(__file__).parents[2] / "sample_data" / "ships"
 
 SMALL = ("linear_hull", "linear_rudder")
-TWINS = {"propeller_thrust", "rudder_servo"}  # share parameters or states with a twin that stays
+TWINS = {
+    "propeller_thrust", "rudder_servo", "rudder_servo_second_order", "rudder_backlash",
+}  # fmt: skip
+"""Share parameters or states with a twin that stays."""
 
 ELSEWHERE = f"""
 import numpy as np
@@ -88,6 +91,18 @@ def test_the_whole_catalogue_in_one_kernel(s175q: Ship, lively: Callable[..., Tr
     np.testing.assert_allclose(compiled.y, plain.y, rtol=1e-12, atol=1e-15)
     size = np.abs(plain.S).max(axis=0)
     assert np.max(np.abs(compiled.S - plain.S) / np.where(size > 0.0, size, 1.0)) < 1e-12
+
+
+@pytest.mark.parametrize("gear", ["rudder_servo_second_order", "rudder_backlash"])
+def test_other_gears_in_a_kernel(small: ShipModel, lively: Callable[..., Trial], gear: str) -> None:
+    values = {n: p.start for n, p in CATALOGUE[gear].parameters.items()}
+    model = (small + CATALOGUE[gear]).with_values(values)
+    compiled, plain = (
+        respond(prepare(model, tuple(values), ("r",), engine), lively(60), values, {})
+        for engine in ("compiled", "numpy")
+    )
+    np.testing.assert_allclose(compiled.y, plain.y, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(compiled.S, plain.S, rtol=1e-11, atol=1e-15)
 
 
 def test_sim_and_sens_walk_the_same_path(

@@ -93,10 +93,8 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
         return "nothing in it can be zero"
     known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
     known |= set(ACCELERATIONS)
-    lacking = [s for s in signals_of(effect) if s not in known and not recorded(trial, s)]
-    lacking += [
-        s for s in effect.states.values() if s and s not in known and not recorded(trial, s)
-    ]
+    asked = dict.fromkeys((*signals_of(effect), *filter(None, effect.states.values())))
+    lacking = [s for s in asked if s not in known and not recorded(trial, s)]
     if lacking:
         where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
         return f"needs {', '.join(dict.fromkeys(lacking))}, which the {where} does not hold"

@@ -110,27 +110,27 @@ def cross_flow_drag(v, r, T, *, C_D=Parameter(0.9, low=0.0, high=6.0)):
     return Force(Y=Y, N=N)
 
 
-def _froude_gain(g: Number, U0: Number) -> Number:
-    """F - F0 of primed numbers, where the speed is 1 and g is 1 / F^2."""
-    return (1.0 - U0) / sqrt(g)
+def _froude_gain(u: Number, g: Number, U0: Number) -> Number:
+    """F - F0 of primed numbers, with the length 1."""
+    return (u - U0) / sqrt(g)
 
 
 @effect(source=PCC)
-def sway_froude(v, g, U0, *, Yv_F=Parameter(-0.006, low=-0.3, high=0.3)):
-    """Y = Yv_F v (F - F0): drift force that changes with the Froude number F = U / sqrt(g L)."""
-    return Force(Y=Yv_F * v * _froude_gain(g, U0))
+def sway_froude(u, v, g, U0, *, Yv_F=Parameter(-0.006, low=-0.3, high=0.3)):
+    """Y = Yv_F v (F - F0): drift force that changes with the Froude number F = u / sqrt(g L)."""
+    return Force(Y=Yv_F * v * _froude_gain(u, g, U0))
 
 
 @effect(source=PCC)
-def yaw_froude_v(v, g, U0, *, Nv_F=Parameter(0.0075, low=-0.3, high=0.3)):
+def yaw_froude_v(u, v, g, U0, *, Nv_F=Parameter(0.0075, low=-0.3, high=0.3)):
     """N = Nv_F v (F - F0): drift moment that changes with the Froude number."""
-    return Force(N=Nv_F * v * _froude_gain(g, U0))
+    return Force(N=Nv_F * v * _froude_gain(u, g, U0))
 
 
 @effect(source=PCC)
-def yaw_froude_r(r, g, U0, *, Nr_F=Parameter(-0.0035, low=-0.3, high=0.3)):
+def yaw_froude_r(u, r, g, U0, *, Nr_F=Parameter(-0.0035, low=-0.3, high=0.3)):
     """N = Nr_F r (F - F0): yaw damping that changes with the Froude number."""
-    return Force(N=Nr_F * r * _froude_gain(g, U0))
+    return Force(N=Nr_F * r * _froude_gain(u, g, U0))
 
 
 @effect(source=CST65)

@@ -1,4 +1,4 @@
-"""Loading: mass, where it is, how it is spread, and the water that moves with it.
+"""Mass, where it is, how it is spread, and the water that moves with it.
 
 Within one trial these are constant, and mostly hide behind the linear coefficients: the score test
 says how little of each is visible. Coefficients are primed.
@@ -42,7 +42,7 @@ def yaw_inertia_error(*, dI_zz=Parameter(0.00005, low=-0.001, high=0.001)):
 
 @effect(source=LOADING)
 def roll_inertia_error(*, dI_xx=Parameter(0.000002, low=-0.0001, high=0.0001)):
-    """I_xx = I_xx + dI_xx: mass, or water that rolls with it (-K_pdot), is further off the axis."""
+    """I_xx = I_xx + dI_xx: mass, or water that rolls with it (-K_pdot), is further out."""
     return Mass(I_xx=dI_xx)
 
 

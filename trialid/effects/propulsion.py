@@ -8,21 +8,21 @@ STANDSTILL = 1e-12  # (m/s)^2: quotients keep their limit for a ship without app
 
 @effect(source=SN82)
 def rudder_slipstream(
-    delta, U0, *,
+    u, delta, U0, *,
     N_slip=Parameter(0.0015, low=0.0, high=0.03),
     z_slip=Parameter(0.03, low=0.0, high=0.2, null=None),
 ):  # fmt: skip
-    """N = N_slip delta (U0 / U - 1),  Y = -2 N,  K = 2 z_slip N: the race keeps the rudder awake.
+    """N = N_slip delta u (U0 - u) / U^2,  Y = -2 N,  K = 2 z_slip N: the race feeds the rudder.
 
     At constant shaft speed the flow over a rudder aft, x = -L/2, falls less than the ship's speed;
-    with N_slip = Ndelta the force goes as U U0.
+    with N_slip = Ndelta the force goes as u U0.
     """
-    N = N_slip * delta * (U0 - 1.0)  # primed: the speed is 1
+    N = N_slip * delta * u * (U0 - u)
     return Force(Y=-2.0 * N, K=2.0 * z_slip * N, N=N)
 
 
 @effect(
-    source=SN82 + ": 2 % of speed lost at 5 deg of rudder, 50 % at 35 deg", states={"u_lost": None}
+    source=SN82 + ": 10 % of speed lost at 5 deg of rudder, 55 % at 35 deg", states={"u_lost": None}
 )
 def surge_loss(
     u, r, u_lost, L, *,

@@ -54,12 +54,12 @@ def righting_arm_quintic(phi, rho, g, nabla, *, GM5=Parameter(20.0, "m", low=-10
 
 
 @effect(source="squat and the wave along the hull; size by judgement")
-def righting_arm_speed(phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-50.0, high=50.0)):
-    """K = -rho g nabla GM_F (F^2 - F0^2) phi: GM changes with the Froude number F = U / sqrt(g L).
+def righting_arm_speed(u, phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-50.0, high=50.0)):
+    """K = -rho g nabla GM_F (F^2 - F0^2) phi: GM changes with the Froude number F = u / sqrt(g L).
 
-    In primes g is 1 / F^2 and F0 / F is U0, so that g (F^2 - F0^2) is 1 - U0^2.
+    g L (F^2 - F0^2) is u^2 - U0^2, and in primes the length is 1.
     """
-    return Force(K=-rho * nabla * GM_F * (1.0 - U0 * U0) * phi)
+    return Force(K=-rho * nabla * GM_F * (u * u - U0 * U0) * phi)
 
 
 @effect(
@@ -71,14 +71,14 @@ def anti_roll_tank(
     omega_t=Parameter(1.5, low=0.3, high=10.0, null=None),
     zeta_t=Parameter(0.15, low=0.01, high=2.0, null=None),
 ):  # fmt: skip
-    """K = rho g nabla s_t q_t: water in a tank that follows the roll with a frequency of its own.
+    """K = rho g nabla s_t (q_t - phi): water in a tank that swings with a frequency of its own.
 
     d(q_t)/dt = w_t,  d(w_t)/dt = w^2 (phi - q_t) - 2 zeta_t w w_t  with  w = omega_t sqrt(g / L).
-    s_t is the metacentric height that the free surface costs in slow motion.
+    In slow motion the water follows the roll: GM is what the free surface leaves, s_t its cost.
     """
     w = omega_t * sqrt(g / L)
     return (
-        Force(K=rho * g * nabla * s_t * q_t),
+        Force(K=rho * g * nabla * s_t * (q_t - phi)),
         Rate(q_t=w_t, w_t=w * w * (phi - q_t) - 2.0 * zeta_t * w * w_t),
     )
 

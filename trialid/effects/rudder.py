@@ -77,17 +77,17 @@ def rudder_flow_asymmetry(
 
 @effect(source="model tests at constant shaft speed")
 def rudder_race(
-    delta, U0, *,
+    u, delta, U0, *,
     Y_race=Parameter(-0.003, low=-0.05, high=0.0, null=None),
     K_race=Parameter(0.0001, low=0.0, high=0.002, null=None),
     N_race=Parameter(0.0015, low=0.0, high=0.02, null=None),
 ):  # fmt: skip
-    """Y, K, N = Y_race, K_race, N_race times delta U0 / U: rudder force that goes as U U0.
+    """Y, K, N = Y_race, K_race, N_race times delta u U0 / U^2: rudder force as u U0.
 
     Instead of linear_rudder, whose force goes as U^2: at constant shaft speed the propeller's race
     keeps part of the flow over the rudder when the ship slows down.
     """
-    race = delta * U0  # primed, so that U0 is U0 / U
+    race = delta * u * U0
     return Force(Y=Y_race * race, K=K_race * race, N=N_race * race)
 
 
@@ -125,7 +125,10 @@ def _race(inflow: Number, n: Number, D_P: Number, KT0: Number, KT1: Number) -> N
 @effect(source=SN82, system="SI")
 def propeller_thrust(
     u, v, r, n, L, rho, *,
-    D_P=Parameter(6.533, "m"), KT0=0.527, KT1=-0.455, t_P=0.175, w_P=0.184, tau_P=1.09, x_P=-0.526,
+    D_P=Parameter(6.533, "m", null=None), KT0=Parameter(0.527, null=None),
+    KT1=Parameter(-0.455, null=None), t_P=Parameter(0.175, null=None),
+    w_P=Parameter(0.184, null=None), tau_P=Parameter(1.09, null=None),
+    x_P=Parameter(-0.526, null=None),
 ):  # fmt: skip
     """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s)."""
     race = _race(_inflow(u, v, r, L, w_P, tau_P, x_P), n, D_P, KT0, KT1)
@@ -135,10 +138,16 @@ def propeller_thrust(
 @effect(source=SN82, system="SI")
 def propeller_rudder(
     u, v, r, n, delta, L, rho, *,
-    D_P=Parameter(6.533, "m"), A_R=Parameter(33.0376, "m^2"), Lambda_R=1.8219,
-    KT0=0.527, KT1=-0.455, t_P=0.175, w_P=0.184, tau_P=1.09, x_P=-0.526,
-    k_R=0.631, eps_R=0.921, x_R=-0.5, gamma_R=0.088, l_R=-0.156, l_Rrrr=-0.275, l_Rrrv=1.96,
-    c_RX=0.71, a_H=0.237, z_R=0.033, x_H=-0.48,
+    D_P=Parameter(6.533, "m", null=None), A_R=Parameter(33.0376, "m^2", null=None),
+    Lambda_R=Parameter(1.8219, null=None), KT0=Parameter(0.527, null=None),
+    KT1=Parameter(-0.455, null=None), t_P=Parameter(0.175, null=None),
+    w_P=Parameter(0.184, null=None), tau_P=Parameter(1.09, null=None),
+    x_P=Parameter(-0.526, null=None), k_R=Parameter(0.631, null=None),
+    eps_R=Parameter(0.921, null=None), x_R=Parameter(-0.5, null=None),
+    gamma_R=Parameter(0.088, null=None), l_R=Parameter(-0.156, null=None),
+    l_Rrrr=Parameter(-0.275, null=None), l_Rrrv=Parameter(1.96, null=None),
+    c_RX=Parameter(0.71, null=None), a_H=Parameter(0.237, null=None),
+    z_R=Parameter(0.033, null=None), x_H=Parameter(-0.48, null=None),
 ):  # fmt: skip
     """F_N = -1/2 rho A_R f (u_R^2 + v_R^2) sin(alpha_R): a rudder in the propeller's race.
 
