@@ -39,10 +39,9 @@ MODEL: Final = ShipModel(
 )
 """What the person who fits knows of the ship, less what a scenario hides."""
 
-FREE: Final = (
-    "Yv", "Yr", "Ydelta", "Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM",
-)  # fmt: skip
-"""What is fitted: everything linear that the ship does by herself and by her rudder."""
+FREE: Final = ("Yv", "Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
+"""What is fitted. Yr and Ydelta are held: sway is not recorded, and something has to say how large
+it is."""
 
 START_ERROR: Final = 0.15
 """A free parameter starts up to this share off the truth, as from a regression formula."""
