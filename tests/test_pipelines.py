@@ -97,6 +97,7 @@ FIT = {
     "eps_rmsn": NUMBER,
     "eps_rmsn_by_output": BY_OUTPUT,
     "eps_rmsn_check": MAYBE,
+    "eps_rmsn_check_by_output": ({...: NUMBER}, None),
     "V": NUMBER,
     "iterations": [{"V": NUMBER, "eps_rmsn": NUMBER, "step": NUMBER}],
     "converged": bool,
@@ -141,14 +142,51 @@ ACCURACY = {
     "parameters": [PARAMETER],
     "stability": (STABILITY, None),
 }
+BARS = {
+    "form": {"bars"},
+    "by": str,
+    "unit": str,
+    "edges": [NUMBER],
+    "names": [str],
+    "samples": [NUMBER],
+    "share": [NUMBER],
+    "mean_square": [NUMBER],
+    "low": [NUMBER],
+    "high": [NUMBER],
+    "mean": ([NUMBER], None),
+    "error": ([NUMBER], None),
+    "mean_unit": str,
+    "standing": [bool],
+}
+SPECTRUM = {
+    "form": {"spectrum"},
+    "frequency": [NUMBER],
+    "density": [NUMBER],
+    "coherent": [NUMBER],
+    "coherence": [NUMBER],
+    "threshold": NUMBER,
+}
 FINDING = {
     "output": str,
-    "finding": str,
+    "finding": {
+        "stretch", "rudder amplitude", "turn-rate amplitude", "roll amplitude", "side",
+        "heading sector", "speed", "frequency", "mean offset",
+    },
+    "doing": (str, None),
     "share": NUMBER,
-    "t_start": NUMBER,
-    "t_end": NUMBER,
-    "trial": str,
+    "excess": NUMBER,
+    "p_value": NUMBER,
+    "t_start": MAYBE,
+    "t_end": MAYBE,
+    "trial": (str, None),
     "sentence": str,
+    "picture": (BARS, SPECTRUM),
+}  # fmt: skip
+WHERE_ELSE = {
+    "by_output": [{"output": str, "share": NUMBER, "sentence": str}],
+    "rest": [{"output": str, "sentence": str, "picture": SPECTRUM}],
+    "not_examined": [str],
+    "questions": int,
 }
 CANDIDATE = {
     "rank": int,
@@ -170,8 +208,14 @@ VERDICT = {
     "next_trial": (dict, None),
 }
 STAGE = {
+    "step": {"as written", "added", "dropped", "proposed"},
     "effects": [str],
     "added": (str, None),
+    "dropped": (str, None),
+    "verdict": (str, None),
+    "free": [str],
+    "logs": [str],
+    "version": str,
     "eps_rmsn": NUMBER,
     "noise": MAYBE,
     "undermodelling": MAYBE,
@@ -187,9 +231,11 @@ RESULT = {
     "split": SPLIT,
     "accuracy": ACCURACY,
     "where": [FINDING],
+    "where_else": WHERE_ELSE,
     "missing": [CANDIDATE],
     "verdict": VERDICT,
     "history": [STAGE],
+    "sources": [{"path": str, "sha256": str}],
 }
 
 
@@ -251,7 +297,10 @@ def test_numbers_are_possible(finished: Finished) -> None:
         assert [log for log in trial["logs"] if len(log["sha256"]) != 64] == []
         assert trial["duration"] == pytest.approx(trial["period"] * (trial["samples"] - 1))
     assert [i for i in _intervals(result["split"]) if not (len(i) == 2 and i[0] <= i[1])] == []
-    assert [f for f in result["where"] if not f["t_start"] < f["t_end"]] == []
+    stretches = [f for f in result["where"] if f["finding"] == "stretch"]
+    assert [f for f in stretches if not f["t_start"] < f["t_end"]] == []
+    assert [f for f in result["where"] if not 0.0 <= f["p_value"] <= 0.05] == []
+    assert sum(row["share"] for row in result["where_else"]["by_output"]) == pytest.approx(1.0)
     assert [f for f in result["where"] if not 0.0 < f["share"] <= 1.0] == []
     for candidate in result["missing"]:
         assert 0.0 <= candidate["p_value"] <= 1.0

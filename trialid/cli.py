@@ -7,7 +7,7 @@ import io
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -19,6 +19,7 @@ import trialid
 from trialid.errors import TrialidError
 
 if TYPE_CHECKING:
+    from trialid.auto import Stage
     from trialid.recipe import Recipe
 
 WRONG_INPUT: Final = 2
@@ -50,47 +51,77 @@ def commands() -> None:
     """Turn a sea trial into a ship model you can trust."""
 
 
+def _of_a_run(command: Callable[..., None]) -> Callable[..., None]:
+    """What every command that fits takes: a pipeline, and where and how to answer."""
+    for option in (
+        click.option("--quiet", is_flag=True, help="No progress and no summary."),
+        click.option("--json", "as_json", is_flag=True, help="Print result.json, nothing else."),
+        click.option(
+            "--out",
+            type=click.Path(path_type=Path),
+            help="Folder for the results; by default runs/ and the pipeline's name. "
+            "An earlier run in it is replaced.",
+        ),
+        click.argument("pipeline", type=click.Path(path_type=Path)),
+    ):
+        command = option(command)
+    return command
+
+
 @commands.command()
-@click.argument("pipeline", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder for the results; by default runs/ and the pipeline's name. "
-    "An earlier run in it is replaced.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Print result.json, and nothing else.")
-@click.option("--quiet", is_flag=True, help="No progress and no summary.")
-def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+@_of_a_run
+@click.option("--auto", is_flag=True, help="Add what is missing until nothing more is named.")
+@click.option("--write", "keep", is_flag=True, help="With --auto: write the effects into PIPELINE.")
+def run(
+    pipeline: Path, out: Path | None, as_json: bool, quiet: bool, auto: bool, keep: bool
+) -> None:
     """Fit a ship model to the logs of PIPELINE, a TOML file, and report what it is worth.
 
     Logs are aligned, the free parameters fitted and rated, the misfit located, the missing effect
     sought; report, tables and data go to a folder.
-    """
-    from trialid.recipe import load
 
-    recipe = load(pipeline)
-    folder = out or Path("runs", pipeline.stem)
-    try:
-        _check_replaceable(folder, recipe)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise TrialidError(f"{_short(folder)}: {reason}; choose another --out") from error
+    With --auto the effect that is named is added, in memory, and all is done again, until no effect
+    is named or what is added makes it no better; the results are of the last model.
+    """
+    if keep and not auto:
+        raise click.UsageError("--write goes with --auto: a plain run changes no file")
+    recipe, folder = _opened(pipeline, out)
+    if auto:
+        _grow(recipe, folder, keep, as_json, quiet)
+        return
     # The chain takes a second to import: a misspelt key is answered before.
     from trialid.pipeline import run as identify_from
     from trialid.pipeline import write
 
     with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
         done = identify_from(recipe, progress)
-        try:
+        with _writing(folder):
             write(done, folder)
-        except OSError as error:
-            raise TrialidError(
-                f"{folder}: cannot be written ({error.strerror or error})"
-            ) from error
-    if as_json:
-        _print(json.dumps(done.result, indent=2, allow_nan=False))
-    elif not quiet:
-        _print(f"{_summary(done.result)}\nReport: {folder / 'report.html'}")
+    _answer(done.result, folder, as_json, quiet, _summary)
+
+
+@commands.command()
+@_of_a_run
+@click.argument("effect")
+def add(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Write EFFECT into PIPELINE, fit again, and show the model before and after.
+
+    Its parameters become free; comments and form of the file are kept. The error, what it is made
+    of and every parameter that moved stand side by side, and the step goes into the history beside
+    the pipeline. `trialid drop` undoes it.
+    """
+    _change("added", pipeline, effect, out, as_json, quiet)
+
+
+@commands.command()
+@_of_a_run
+@click.argument("effect")
+def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Take EFFECT out of PIPELINE, fit again, and show the model before and after.
+
+    After `trialid add` the file is as it was, byte for byte.
+    """
+    _change("dropped", pipeline, effect, out, as_json, quiet)
 
 
 @commands.command()
@@ -127,6 +158,127 @@ def main() -> None:
     commands(prog_name="trialid")
 
 
+def _opened(pipeline: Path, out: Path | None) -> tuple["Recipe", Path]:
+    """The pipeline, and the folder for its results, which may be replaced."""
+    from trialid.recipe import load
+
+    recipe = load(pipeline)
+    folder = out or Path("runs", pipeline.stem)
+    try:
+        _check_replaceable(folder, recipe)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise TrialidError(f"{_short(folder)}: {reason}; choose another --out") from error
+    return recipe, folder
+
+
+def _change(
+    step: str, pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool
+) -> None:
+    """Add or drop an effect, and show what it changed."""
+    recipe, folder = _opened(pipeline, out)
+    from trialid.change import adding, carry_out, commit, dropping, written
+
+    edit = (adding if step == "added" else dropping)(recipe, effect)
+    with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
+        done = carry_out(edit, folder, progress)
+        with _writing(folder):
+            commit(recipe, done.edit.after, done.run, done.steps, folder)
+    for words in edit.taken_out:
+        _complain(f"{pipeline}: taken out with {effect}: {words}")
+    back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
+    foot = f"{pipeline}: {written(done.edit)}\nUndo: {back}"
+    _answer(done.run.result, folder, as_json, quiet, lambda result: f"{_beside(result)}\n{foot}")
+
+
+def _grow(recipe: "Recipe", folder: Path, keep: bool, as_json: bool, quiet: bool) -> None:
+    """Add what is missing, one line for each step, and show the last model."""
+    from trialid.auto import concluded
+    from trialid.change import commit
+    from trialid.pipeline import write
+
+    told = not (as_json or quiet)
+    done = list(_stages(recipe, told, shown=not quiet and sys.stderr.isatty()))
+    last, steps = concluded(done)
+    with _writing(folder):
+        if keep and steps:
+            commit(recipe, done[-1].recipe, last, steps, folder)
+        else:
+            write(last, folder)
+    if told:
+        _print(_loop_ended(done, recipe.path, keep))
+    _answer(last.result, folder, as_json, quiet, _summary)
+
+
+def _stages(recipe: "Recipe", told: bool, shown: bool) -> "Iterator[Stage]":
+    """The loop's stages; the bar is gone while a line is printed."""
+    from trialid.auto import stages
+    from trialid.change import present
+    from trialid.report import steps
+
+    bars: list[Progress] = []
+
+    def show(sentence: str, fraction: float | None) -> None:
+        bars[-1](sentence, fraction)
+
+    loop = stages(recipe, show)
+    if told:
+        _print(steps.heading())
+    while True:
+        with _progress(shown=shown) as progress:
+            bars.append(progress)
+            stage = next(loop, None)
+        if stage is None:
+            return
+        if told and stage.kept:
+            came = {"step": "added" if stage.added else "as written", "added": stage.added}
+            _print(steps.line(present(stage.run.result) | came))
+        yield stage
+
+
+def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
+    """Why no more was added, and what the file holds now."""
+    added = [str(stage.added) for stage in done if stage.added and stage.kept]
+    words = f"Added no more: {done[-1].end}."
+    if not added:
+        return f"{words}\n"
+    if keep:
+        return f"{words}\n{pipeline} now has {', '.join(added)}.\n"
+    return f"{words}\n{pipeline} is as it was; --write puts {', '.join(added)} into it.\n"
+
+
+def _answer(
+    result: Mapping[str, Any],
+    folder: Path,
+    as_json: bool,
+    quiet: bool,
+    show: Callable[[Mapping[str, Any]], str],
+) -> None:
+    """Print a result the way that was asked for."""
+    if result.get("history_remark"):
+        _complain(result["history_remark"])
+    if as_json:
+        _print(json.dumps(result, indent=2, allow_nan=False))
+    elif not quiet:
+        _print(f"{show(result)}\nReport: {folder / 'report.html'}")
+
+
+def _beside(result: Mapping[str, Any]) -> str:
+    """The model before and after."""
+    from trialid.report.beside import beside
+
+    return _rendered(beside(result))
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    """A place that cannot be written is the user's to mend."""
+    try:
+        yield
+    except OSError as error:
+        raise TrialidError(f"{folder}: cannot be written ({error.strerror or error})") from error
+
+
 def _check_replaceable(folder: Path, recipe: "Recipe") -> None:
     """Refuse, before the work, to replace a folder that holds anything but an earlier run."""
     from trialid.recipe import sources
@@ -152,7 +304,7 @@ def _short(folder: Path) -> str:
 def _progress(*, shown: bool) -> Iterator[Progress]:
     """Give the function that shows progress on stderr, or one that keeps silent."""
     if not shown:
-        yield lambda sentence, fraction: None
+        yield _silent
         return
     from rich.console import Console
     from rich.progress import BarColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -168,6 +320,10 @@ def _progress(*, shown: bool) -> Iterator[Progress]:
             bars.update(task, description=sentence, total=total, completed=fraction or 0.0)
 
         yield show
+
+
+def _silent(sentence: str, fraction: float | None) -> None:
+    """Show nothing."""
 
 
 def _summary(result: Mapping[str, Any]) -> str:

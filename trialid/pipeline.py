@@ -1,5 +1,6 @@
 """The whole chain: logs, alignment, fit, accuracy, what the error is made of, what is missing."""
 
+import hashlib
 import json
 import os
 import shutil
@@ -12,11 +13,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from trialid import effects, ingest, units
+from trialid import effects, history, ingest, units
 from trialid.accuracy import Accuracy, Subject, assess
 from trialid.alignment import SignalSource, align
 from trialid.diagnosis.augment import Augmented
-from trialid.diagnosis.missing_effect import confirmed, decide, refit
+from trialid.diagnosis.completeness import completeness
+from trialid.diagnosis.missing_effect import decide, refit
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
@@ -67,28 +69,71 @@ def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
     TrialidError
         The input is wrong; nothing is left behind.
     """
-    trials = align_trials(recipe, progress)
+    return examine(recipe, align_trials(recipe, progress), progress)
+
+
+@one_thread
+def examine(
+    recipe: Recipe, trials: tuple[Trial, ...], progress: Progress, fit: Fit | None = None
+) -> Run:
+    """Everything from aligned trials on; `fit` where the model is fitted already.
+
+    Raises
+    ------
+    TrialidError
+        As `run`.
+    """
     check_quiet(recipe, trials)
+    steps, remark = history.read(recipe.path)
     catalogue = available(recipe)
+    fit = fit or fit_of(recipe, trials, catalogue, progress)
+    before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
+    whole = completeness(fit, augmented)
+    refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
+                         lambda words: progress(words, 0.7)))  # fmt: skip
+    verdict = decide(fit, ranking, refits, before.split, whole, recipe.diagnose.level)
+    after = None
+    for named in refits:
+        if named.candidate.effect.name == verdict.effect:
+            after = diagnose(recipe, named.fit, catalogue, progress)[0]
+    findings = Findings(
+        recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
+        verdict, stretches_that_fail(fit), after,
+    )  # fmt: skip
+    progress("done", 1.0)
+    result = plain(findings)
+    present, *proposed = result["history"]
+    result["history"] = [*history.continued(steps, present), *proposed]
+    result |= {"history_remark": remark or None, "sources": sources_of(recipe)}
+    return Run(recipe, findings, result, time_series(fit))
+
+
+def fit_of(
+    recipe: Recipe, trials: tuple[Trial, ...], catalogue: Mapping[str, Effect], progress: Progress
+) -> Fit:
+    """The fit of the pipeline's model.
+
+    Raises
+    ------
+    TrialidError
+        The model or the record does not allow one.
+    """
     model = build_model(recipe, catalogue)
     settings = settings_of(recipe)
     check_bounds(recipe, model, settings)
     progress("fitting", 0.3)
-    fit = fitted(trials, model, settings, progress)
-    before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
-    refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
-                         lambda words: progress(words, 0.7)))  # fmt: skip
-    level = recipe.diagnose.level
-    named = confirmed(fit, refits, level)
-    after = None
-    if named is not None:
-        after = diagnose(recipe, named.fit, catalogue, progress)[0]
-    findings = Findings(
-        recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
-        decide(fit, ranking, refits, before.split, level), stretches_that_fail(fit), after,
-    )  # fmt: skip
-    progress("done", 1.0)
-    return Run(recipe, findings, plain(findings), time_series(fit))
+    return fitted(trials, model, settings, progress)
+
+
+def sources_of(recipe: Recipe) -> list[dict[str, str]]:
+    """What the result rests on besides the logs: the ship and the user's own effects."""
+    return [
+        {
+            "path": _as_written(recipe, path).as_posix(),
+            "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
+        }
+        for path in (recipe.ship, *recipe.model.effects_from)
+    ]
 
 
 def fitted(
@@ -400,4 +445,4 @@ def _write_files(done: Run, folder: Path) -> None:
     write_csv(folder / "series.csv", done.series)
     write_mcap(folder / "predicted.mcap", done.result, done.series)
     write_page(folder / "report.html", done.result, done.series)
-    shutil.copyfile(done.recipe.path, folder / "pipeline.toml")
+    (folder / "pipeline.toml").write_bytes(done.recipe.content)

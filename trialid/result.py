@@ -5,17 +5,18 @@ Numbers are SI unless a unit stands beside them; what is not known is None, neve
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
 
 import trialid
 from trialid.accuracy import Accuracy, ParameterAccuracy
+from trialid.diagnosis.leftover.finding import Bars, Finding, Spectrum
 from trialid.diagnosis.missing_effect import Refit, Verdict
 from trialid.diagnosis.noise import Split
 from trialid.diagnosis.score import VISIBLE, Candidate
-from trialid.diagnosis.where import Finding
+from trialid.diagnosis.where import Where
 from trialid.errors import EffectError
 from trialid.identification.fit import Fit, step_halving
 from trialid.ship.model import ShipModel
@@ -49,14 +50,14 @@ class Findings:
     left_out: Mapping[str, str]
     refits: tuple[Refit, ...]
     verdict: Verdict
-    where: tuple[Finding, ...]
+    where: Where
     after: Diagnosed | None
 
 
 def plain(found: Findings) -> Plain:
     """Everything as plain data, ready for `json.dumps`."""
     fit = found.before.fit
-    return _finite(
+    return finite(
         {
             "schema": SCHEMA,
             "version": trialid.__version__,
@@ -68,7 +69,8 @@ def plain(found: Findings) -> Plain:
             "fit": _fit(fit),
             "split": _split(found.before.split, found.before.routes),
             "accuracy": _accuracy(fit, found.before.accuracy),
-            "where": [_finding(f) for f in found.where],
+            "where": [_finding(f) for f in found.where.findings],
+            "where_else": _where_else(found.where),
             "missing": _missing(found),
             "not_tried": dict(found.left_out),
             "verdict": _verdict(found.verdict),
@@ -78,12 +80,12 @@ def plain(found: Findings) -> Plain:
     )
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """Infinite and undefined numbers have no place in JSON: they are not known."""
     if isinstance(value, Mapping):
-        return {k: _finite(v) for k, v in value.items()}
+        return {k: finite(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(v) for v in value]
+        return [finite(v) for v in value]
     if isinstance(value, float | np.floating):
         return float(value) if math.isfinite(value) else None
     return value
@@ -141,6 +143,7 @@ def _fit(fit: Fit) -> Plain:
         "eps_rmsn": fit.eps_rmsn,
         "eps_rmsn_by_output": fit.eps_by_output,
         "eps_rmsn_check": fit.eps_check,
+        "eps_rmsn_check_by_output": fit.eps_check_by_output or None,
         "V": fit.V,
         "iterations": [
             {"V": i.V, "eps_rmsn": math.sqrt(2.0 * i.V), "step": i.step} for i in fit.iterations
@@ -281,14 +284,35 @@ def _levers(s: Stability) -> Plain:
 def _finding(f: Finding) -> Plain:
     return {
         "output": f.output,
-        "finding": "stretch of time",
+        "finding": f.kind,
         "doing": f.doing,
         "share": f.share,
         "excess": f.excess,
+        "p_value": f.p_value,
         "t_start": f.t_start,
         "t_end": f.t_end,
         "trial": f.trial,
         "sentence": f.sentence,
+        "picture": _picture(f.picture),
+    }
+
+
+def _picture(picture: Bars | Spectrum) -> Plain:
+    """What a finding's picture is drawn from, in the units of reports."""
+    form = "bars" if isinstance(picture, Bars) else "spectrum"
+    return {"form": form, **asdict(picture)}
+
+
+def _where_else(found: Where) -> Plain:
+    """What is no finding: shares by output, the noise described, what could not be examined."""
+    return {
+        "by_output": [asdict(row) for row in found.by_output],
+        "rest": [
+            {"output": r.output, "sentence": r.sentence, "picture": _picture(r.picture)}
+            for r in found.rest
+        ],
+        "not_examined": list(found.not_examined),
+        "questions": found.questions,
     }
 
 
@@ -357,20 +381,27 @@ def _verdict(v: Verdict) -> Plain:
 
 
 def _history(found: Findings) -> list[Plain]:
-    rows = [_stage(found.before, None)]
+    """The model as it is, then the one proposed; earlier steps are the history file's to tell."""
+    rows = [_stage(found.before, "as written", None) | {"verdict": found.verdict.kind}]
     if found.after is not None:
-        rows.append(_stage(found.after, found.verdict.effect))
+        rows.append(_stage(found.after, "proposed", found.verdict.effect))
     return rows
 
 
-def _stage(d: Diagnosed, added: str | None) -> Plain:
+def _stage(d: Diagnosed, step: str, added: str | None) -> Plain:
     return {
+        "step": step,
         "effects": [e.name for e in d.fit.model.effects],
         "added": added,
+        "dropped": None,
         "eps_rmsn": d.fit.eps_rmsn,
         "noise": d.split.noise,
         "undermodelling": d.split.undermodelling,
         "eps_rmsn_check": d.fit.eps_check,
+        "verdict": None,
+        "free": list(d.fit.settings.free),
+        "logs": [g.sha256 for s in d.fit.scores for g in s.trial.logs],
+        "version": trialid.__version__,
     }
 
 

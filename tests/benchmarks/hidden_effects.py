@@ -41,7 +41,8 @@ from hidden_truth import (
 )
 
 from trialid import pipeline
-from trialid.diagnosis.missing_effect import Refit, Verdict, confirmed, decide, refit
+from trialid.diagnosis.completeness import completeness
+from trialid.diagnosis.missing_effect import Refit, Verdict, decide, refit
 from trialid.diagnosis.noise import split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.effects import CATALOGUE
@@ -110,8 +111,9 @@ def diagnosed(
         worth = pipeline.worth_refitting(DEFAULTS, ranking)
         refits = refit(fit, trials, worth, lambda words: None)
     with watch("decide"):
-        verdict = decide(fit, ranking, refits, parts, asked.level)
-        named = confirmed(fit, refits, asked.level)
+        whole = completeness(fit, augmented)
+        verdict = decide(fit, ranking, refits, parts, whole, asked.level)
+        named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
     return Diagnosis(fit, ranking, refits, named, verdict)
 
 

@@ -39,9 +39,8 @@ MODEL: Final = ShipModel(
 )
 """What the person who fits knows of the ship, less what a scenario hides."""
 
-FREE: Final = ("Yv", "Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
-"""What is fitted. Yr and Ydelta are held: sway is not recorded, and something has to say how large
-it is."""
+FREE: Final = ("Yv", "Ydelta", "Nv", "Nr", "Ndelta", "Kv", "Kdelta", "Kp", "GM")
+"""What is fitted: the nine linear parameters of the confusability table."""
 
 START_ERROR: Final = 0.15
 """A free parameter starts up to this share off the truth, as from a regression formula."""

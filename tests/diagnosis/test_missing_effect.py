@@ -5,6 +5,7 @@ import pytest
 from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 
 from trialid.diagnosis.augment import augment
+from trialid.diagnosis.completeness import completeness
 from trialid.diagnosis.missing_effect import confirmed, decide, refit, replace
 from trialid.diagnosis.noise import split
 from trialid.diagnosis.score import rank
@@ -33,7 +34,12 @@ def diagnosed(trials, model):
     standing = [c for c in ranking if c.allowed and c.p_value < 0.05][:3]
     refits = refit(fit, trials, standing, lambda words: None)
     parts, _ = split(fit, augmented, {})
-    return fit, ranking, refits, decide(fit, ranking, refits, parts, 0.05)
+    return (
+        fit,
+        ranking,
+        refits,
+        decide(fit, ranking, refits, parts, completeness(fit, augmented), 0.05),
+    )
 
 
 def test_missing_roll_damping_is_named_and_the_error_falls():
@@ -68,4 +74,4 @@ def test_unseen_effects_are_left_out_with_a_reason():
     left_out = augment(fit, CATALOGUE).left_out
     assert "X_ext" in left_out["outer_force"] or "null" in left_out["outer_force"]
     assert left_out["bias_psi"] == "psi is not an output"
-    assert "linear" in left_out["rudder_servo"]
+    assert "delta_order" in left_out["rudder_servo"]

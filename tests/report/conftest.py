@@ -215,36 +215,73 @@ def _routes() -> list[dict[str, Any]]:
     ]
 
 
+BARS = {
+    "form": "bars",
+    "by": "rate of turn |r|",
+    "unit": "deg/s",
+    "edges": [0.0, 0.2, 0.5, 0.8],
+    "names": [],
+    "samples": [0.5, 0.3, 0.2],
+    "share": [0.15, 0.23, 0.62],
+    "mean_square": [0.3, 0.77, 3.1],
+    "low": [0.25, 0.7, 2.4],
+    "high": [0.37, 0.86, 4.2],
+    "mean": [0.001, 0.002, -0.06],
+    "error": [0.002, 0.002, 0.004],
+    "mean_unit": "deg/s",
+    "standing": [False, False, True],
+}
+SPECTRUM = {
+    "form": "spectrum",
+    "frequency": [0.05 * k for k in range(40)],
+    "density": [1.0 / (1.0 + k) for k in range(40)],
+    "coherent": [0.5 / (1.0 + k) for k in range(40)],
+    "coherence": [0.5] * 40,
+    "threshold": 0.3,
+}
+
+
+def _finding(output: str, kind: str, share: float, sentence: str, picture: Any) -> dict[str, Any]:
+    return {
+        "output": output,
+        "finding": kind,
+        "doing": None,
+        "share": share,
+        "excess": 3.1,
+        "p_value": 0.0012,
+        "t_start": None,
+        "t_end": None,
+        "trial": None,
+        "sentence": sentence,
+        "picture": picture,
+    }
+
+
 def _where() -> list[dict[str, Any]]:
+    speed = "61.7 % of the squared yaw-rate error stands where |r| exceeds 0.5 deg/s."
+    band = "41.2 % of it is coherent with the rudder below 0.03 Hz: model, not noise."
+    turns = "Roll is too large in the steady turns to port."
+    first = {"trial": "zigzag-20", "t_start": 640.0, "t_end": 760.0, "doing": "rudder reversals"}
+    last = {"trial": "binary", "t_start": 212.5, "t_end": 398.5, "doing": "steady turn to port"}
+    in_time = BARS | {"by": "time in binary", "unit": "s", "mean": None, "error": None}
     return [
-        {
-            "output": "r",
-            "finding": "amplitude",
-            "share": 0.617,
-            "t_start": 640.0,
-            "t_end": 760.0,
-            "trial": "zigzag-20",
-            "sentence": "61.7 % of the squared yaw-rate error stands where |r| exceeds 0.5 deg/s.",
-        },
-        {
-            "output": "r",
-            "finding": "frequency",
-            "share": 0.412,
-            "t_start": None,
-            "t_end": None,
-            "trial": None,
-            "sentence": "41.2 % of it is coherent with the rudder below 0.03 Hz: model, not noise.",
-        },
-        {
-            "output": "phi",
-            "finding": "stretch",
-            "share": 0.337,
-            "t_start": 212.5,
-            "t_end": 398.5,
-            "trial": "binary",
-            "sentence": "Roll is too large in the steady turns to port.",
-        },
+        _finding("r", "turn-rate amplitude", 0.617, speed, BARS) | first,
+        _finding("r", "frequency", 0.412, band, SPECTRUM),
+        _finding("phi", "stretch", 0.337, turns, in_time) | last,
     ]
+
+
+def _where_else() -> dict[str, Any]:
+    waves = "roll angle phi: 63 % of its squared error is not coherent with the rudder."
+    return {
+        "by_output": [
+            {"output": "phi", "share": 0.633, "sentence": "phi holds 63.3 %"},
+            {"output": "r", "share": 0.367, "sentence": "r holds 36.7 %"},
+        ],
+        "rest": [{"output": "phi", "sentence": waves, "picture": SPECTRUM}],
+        "not_examined": ["heading sector: no heading in the record"],
+        "questions": 14,
+    }
 
 
 def _before_after() -> dict[str, Any]:
@@ -280,7 +317,12 @@ def _history() -> list[dict[str, Any]]:
     first = {"effects": base, "added": None, "eps_rmsn": 0.1264, "eps_rmsn_check": 0.1437}
     then = {"eps_rmsn": 0.0871, "eps_rmsn_check": 0.0912, "noise": 0.0838, "undermodelling": 0.0237}
     grown = {"effects": [*base, "yaw_damping_cubic"], "added": "yaw_damping_cubic"}
-    return [first | {"noise": 0.0841, "undermodelling": 0.0944}, grown | then]
+    rows = [first | {"noise": 0.0841, "undermodelling": 0.0944}, grown | then]
+    known = {"dropped": None, "verdict": "missing", "free": ["Nr"], "logs": [], "version": "0.1.0"}
+    return [
+        known | {"step": step} | row
+        for step, row in zip(("as written", "proposed"), rows, strict=True)
+    ]
 
 
 def _accuracy() -> dict[str, Any]:
@@ -373,6 +415,7 @@ def make_result() -> dict[str, Any]:
         "split": _split(),
         "accuracy": _accuracy(),
         "where": _where(),
+        "where_else": _where_else(),
         "missing": _missing(),
         "verdict": _verdict(),
         "history": _history(),

@@ -28,7 +28,7 @@ def test_parameter_bars_stop_at_their_axis(result):
 
 
 def test_changes_share_one_scale(result):
-    rows = bars.changes(whole(result))
+    rows = bars.changes(whole(result)["before_after"])
     assert [row.label for row in rows] == [
         "fitted trials",
         "held out",
@@ -37,7 +37,3 @@ def test_changes_share_one_scale(result):
     ]
     assert max(row.before_length for row in rows) == 100
     assert rows[0].after_length == pytest.approx(100 * 0.0871 / 0.1437)
-
-
-def test_nothing_added_nothing_drawn():
-    assert bars.changes(whole({})) == []

@@ -94,8 +94,9 @@ def _numbers(value):
         case int() | float():
             yield value
         case dict():
-            for each in value.values():
-                yield from _numbers(each)
+            for key, each in value.items():
+                if key != "picture":  # drawn, not printed
+                    yield from _numbers(each)
         case list():
             for each in value:
                 yield from _numbers(each)

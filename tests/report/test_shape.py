@@ -5,8 +5,10 @@ from trialid.report.shape import SHAPE, Each, Maybe, whole
 
 def test_a_full_result_is_left_as_it_is(result):
     run = whole(result)
-    for key in ("trials", "model", "fit", "missing", "history", "before_after", "where"):
+    for key in ("trials", "model", "fit", "missing", "history", "where"):
         assert run[key] == result[key]
+    pair = {k: v for k, v in result["before_after"].items() if k != "parameters"}
+    assert run["before_after"] | pair == run["before_after"]
 
 
 def test_everything_is_there_and_unknown_when_nothing_is_given():

@@ -20,6 +20,7 @@ def crowded(result):
     run["trials"] = [row | {"name": f"trial {k} " * 9} for k, row in enumerate(run["trials"] * 6)]
     run["fit"]["eps_rmsn_by_output"] = dict.fromkeys(("u", "v", "p", "r", "phi", "psi"), 0.1)
     run["missing"] = run["missing"] * 5
+    run["where"] = [row | {"sentence": row["sentence"] * 9} for row in run["where"] * 4]
     run["missing"][0]["verdict"] = "not within its physical range, and of the wrong sign " * 3
     run["verdict"]["sentence"] = "There is a great deal to say about this. " * 30
     run["verdict"]["next_trial"]["sentence"] = "And about the next trial. " * 30
@@ -46,6 +47,7 @@ def test_what_a_reader_must_learn(result):
         "noise 8.41 % (8.02 to 8.81 %) and model 9.44 % (9.07 to 9.79 %)",
         "Nr         1      -0.0022453  4.3e-06  4.00",
         "1 yaw_damping_cubic",
+        "fails: 61.7 % of the squared yaw-rate error stands where",
         "The model lacks nonlinear yaw damping",
         "With yaw_damping_cubic: fitted 12.6 % -> 8.71 %, held out 14.4 % -> 9.12 %",
     ):
@@ -76,5 +78,5 @@ def test_nothing_known_is_said_in_words():
     text = "\n".join(lines({}))
     assert "no route to the noise was open" in text
     assert "No verdict." in text
-    assert "No effect was added." in text
+    assert "No effect is proposed." in text
     assert "None" not in text

@@ -99,7 +99,7 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
     ]
     if lacking:
         where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
-        return f"needs {', '.join(lacking)}, which the {where} does not hold"
+        return f"needs {', '.join(dict.fromkeys(lacking))}, which the {where} does not hold"
     doubled = sorted(set(effect.states) & {*model.all_states, *trial.signals})
     if doubled:
         held = "simulated" if doubled[0] in model.all_states else "recorded"

@@ -38,13 +38,10 @@ class Chance:
         blocks are many and nothing is missing.
     p_value
         How often the best of all candidates scores as well by chance alone.
-    inflation
-        Variance of the score over what it would be if the rows were independent.
     """
 
     score: float
     p_value: float
-    inflation: float = 1.0
 
 
 def against_chance(
@@ -76,13 +73,13 @@ def against_chance(
     moved = signs @ np.add.reduceat(Q * e[:, None], starts, axis=0)  # what a refit takes up
     spans = [slice(a, b) for a, b in zip(starts, [*starts[1:], len(e)], strict=True)]
     found = [_scores(e, Q, S[:, list(g)], spans, signs, moved) for g in groups]
-    scores = np.column_stack([score for score, _, _ in found])
-    p = np.column_stack([p for _, p, _ in found])
+    scores = np.column_stack([score for score, _ in found])
+    p = np.column_stack([p for _, p in found])
     best = np.sort(p[1:].min(axis=1))
     beaten = np.searchsorted(best, p[0] * (1.0 + 1e-9), side="right")
     return [
-        Chance(float(t), float((1 + b) / (len(best) + 1)), inflation)
-        for t, b, (*_, inflation) in zip(scores[0], beaten, found, strict=True)
+        Chance(float(t), float((1 + b) / (len(best) + 1)))
+        for t, b in zip(scores[0], beaten, strict=True)
     ]
 
 
@@ -110,8 +107,8 @@ def _signs(count: int) -> Vector:
 
 def _scores(
     e: Vector, Q: Vector, S: Vector, spans: Sequence[slice], signs: Vector, moved: Vector
-) -> tuple[Vector, Vector, float]:
-    """Score and nominal chance of one group in every draw (1 + DRAWS,), and the inflation."""
+) -> tuple[Vector, Vector]:
+    """Score and nominal chance of one group in every draw; (1 + DRAWS,) each."""
     q = S.shape[1]
     S = S / np.maximum(np.linalg.norm(S, axis=0), 1e-300)
     products = np.array([S[span].T @ e[span] for span in spans])  # (blocks, q)
@@ -128,9 +125,7 @@ def _scores(
     weight = np.trace(grams, axis1=1, axis2=2)
     degrees = max(float(weight.sum() ** 2 / (weight @ weight)) - 1.0, q + 1.0)
     rest = degrees - q + 1.0
-    left = float(e @ e) - float(sums[0] @ total @ sums[0])
-    inflation = float(np.trace(total @ variance[0])) / q / max(left / len(e), 1e-300)
-    return scores, np.asarray(fdtrc(q, rest, scores * rest / (degrees * q))), inflation
+    return scores, np.asarray(fdtrc(q, rest, scores * rest / (degrees * q)))
 
 
 def _inverse(matrices: Vector) -> Vector:
@@ -138,3 +133,15 @@ def _inverse(matrices: Vector) -> Vector:
     if matrices.shape[-1] == 1:
         return np.asarray(1.0 / np.maximum(matrices, 1e-300))
     return np.asarray(np.linalg.pinv(matrices, rcond=1e-10, hermitian=True))
+
+
+def inflation(noise: Vector, S: Vector, parts: Sequence[Stretch]) -> float:
+    """Variance of a score over what it is for independent rows: the median of all columns; >= 1.
+
+    `noise` is the residual less what is taken to be missing; (M,).
+    """
+    blocks = _blocks(parts)
+    sums = np.zeros((int(blocks.max()) + 1, S.shape[1]))
+    np.add.at(sums, blocks, S * noise[:, None])
+    white = np.mean(noise**2) * np.sum(S**2, axis=0)
+    return max(float(np.median(np.sum(sums**2, axis=0)[white > 0.0] / white[white > 0.0])), 1.0)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy import Stretch
+from trialid.diagnosis.chance import inflation
 from trialid.diagnosis.whitening import Colour, colour_of, memory, whitened
 
 Vector = NDArray[np.float64]
@@ -46,12 +47,15 @@ class Evidence:
         In units of the noise: a row of noise has variance 1.
     parts
         Which rows of `white` are which output of which trial.
+    inflation
+        By how much rows that are not quite independent make chance greater.
     """
 
     raw: Projected
     white: Projected
     parts: tuple[Stretch, ...]
     colour: Colour
+    inflation: float
 
 
 def project(residual: Vector, psi: Vector, S: Vector) -> Projected:
@@ -77,24 +81,31 @@ def gather(
         Columns of `S` that belong to one candidate.
     """
     raw = project(residual, psi, S)
-    colour = colour_of(_left_over(raw, groups, memory(stretches)), stretches)
+    best = _best(raw, groups, memory(stretches))
+    colour = colour_of(_without(raw, best), stretches)
     rows, parts = whitened(np.column_stack([residual, psi, S]), stretches, colour)
     n = psi.shape[1]
     white = project(rows[:, 0], rows[:, 1 : n + 1], rows[:, n + 1 :])
-    return Evidence(raw, white, parts, colour)
+    chance = inflation(_without(white, best), white.S, parts) if len(white.S.T) else 1.0
+    return Evidence(raw, white, parts, colour, chance)
 
 
-def _left_over(raw: Projected, groups: Sequence[tuple[int, ...]], slow: int) -> Vector:
-    """The residual less what the best candidate explains, parameters at Schwarz's price."""
+def _best(raw: Projected, groups: Sequence[tuple[int, ...]], slow: int) -> tuple[int, ...]:
+    """The candidate that explains most of the residual, parameters at Schwarz's price; or none."""
     samples = len(raw.residual) / slow
     total = float(raw.residual @ raw.residual)
-    best, least = np.zeros(0), 0.0
+    best, least = tuple[int, ...](), 0.0
     for group in groups:
-        beta, fall = explained(raw, group)
+        _, fall = explained(raw, group)
         cost = samples * np.log(max(1.0 - fall / total, 1e-12)) + len(group) * np.log(samples)
         if cost < least:
-            best, least = raw.S[:, group] @ beta, cost
-    return raw.residual - best if len(best) else raw.residual
+            best, least = group, cost
+    return best
+
+
+def _without(rows: Projected, group: Sequence[int]) -> Vector:
+    """The residual less what a candidate explains; (M,)."""
+    return np.asarray(rows.residual - rows.S[:, group] @ explained(rows, group)[0])
 
 
 def explained(rows: Projected, group: Sequence[int]) -> tuple[Vector, float]:

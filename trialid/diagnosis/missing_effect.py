@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.completeness import Completeness
 from trialid.diagnosis.likelihood import check_gain, misfits
 from trialid.diagnosis.noise import Split
 from trialid.diagnosis.score import Candidate, price
@@ -17,6 +18,11 @@ from trialid.trial import Trial
 
 DECISIVE: Final = 6.0
 """Difference of twice the log likelihood that decides: odds of 20 to 1."""
+
+
+FAINT: Final = 0.02
+"""Share of its trace that an effect must keep beside the free parameters to be named: a centre of
+gravity or a scale keeps less, and then errors of other fixed parameters look like it."""
 
 
 @dataclass(frozen=True)
@@ -69,14 +75,24 @@ class Verdict:
 
 
 def decide(
-    fit: Fit, ranking: Sequence[Candidate], refits: Sequence[Refit], parts: Split, level: float
+    fit: Fit,
+    ranking: Sequence[Candidate],
+    refits: Sequence[Refit],
+    parts: Split,
+    whole: Completeness,
+    level: float,
 ) -> Verdict:
     """From scores and refits to a verdict: missing, nothing missing, not in catalogue, cannot tell.
 
     An effect is named only if its score stands out over the whole catalogue, its refitted value
-    is physical, and the error falls on the held-out trials too where there are any.
+    is physical, held-out trials do not speak against it, and no force of another shape explains
+    far more.
     """
     named = confirmed(fit, refits, level)
+    if whole.gap:
+        return Verdict("not in catalogue", None, (), _gap(named, whole))
+    if named is not None and named.candidate.visibility < FAINT:
+        return Verdict("cannot tell", None, (), _faint(named))
     if named is not None:
         return _missing(fit, named, rivals(fit, named, ranking, refits))
     if parts.undermodelling_interval is None:
@@ -93,6 +109,24 @@ def decide(
         f"no effect stands out against the noise; a model error of up to {high:.1%} would not "
         f"be seen ({parts.method})",
     )  # fmt: skip
+
+
+def _gap(named: Refit | None, whole: Completeness) -> str:
+    closest = f"; the closest is {named.candidate.effect.name}" if named else ""
+    share = max(whole.catalogue, 0.0) / whole.any_shape
+    return (
+        "something is missing that the catalogue does not hold: its effects gain "
+        f"{share:.0%} of what a force of a simple shape would{closest}"
+    )
+
+
+def _faint(named: Refit) -> str:
+    candidate = named.candidate
+    return (
+        f"{candidate.effect.name} would explain a part of the error, but "
+        f"{1.0 - candidate.visibility:.1%} of what it does the free parameters do as well: a small "
+        "error elsewhere in the model looks the same"
+    )
 
 
 def _no_split(parts: Split) -> str:

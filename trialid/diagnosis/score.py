@@ -86,10 +86,8 @@ def rank(
     white = evidence.white
     groups = [t.columns for t in visible]
     chances = against_chance(white.residual, white.Q, white.S, groups, evidence.parts)
-    # one figure for all: that of a single candidate is known too poorly to rank by
-    inflation = max(float(np.median([c.inflation for c in chances] or [1.0])), 1.0)
     tested = dict(zip(map(id, visible), chances, strict=True))
-    made = [_candidate(fit, augmented, t, tested.get(id(t)), inflation) for t in seen]
+    made = [_candidate(fit, augmented, t, tested.get(id(t))) for t in seen]
 
     def standing(c: Candidate) -> tuple[bool, bool, float]:
         return not c.allowed, c.p_value >= level, price(c, len(white.residual))
@@ -114,9 +112,7 @@ def _visibility(augmented: Augmented, trace: Trace) -> float:
     return float(np.mean(left / whole))
 
 
-def _candidate(
-    fit: Fit, augmented: Augmented, trace: Trace, chance: Chance | None, inflation: float
-) -> Candidate:
+def _candidate(fit: Fit, augmented: Augmented, trace: Trace, chance: Chance | None) -> Candidate:
     """What one trace of an effect says; one that is not visible explains nothing.
 
     Value and fall come from the residual as it is: they are what a refit will find.
@@ -129,9 +125,10 @@ def _candidate(
     parameters = trace.effect.parameters
     inside = all(parameters[n].low <= x <= parameters[n].high for n, x in values.items())
     return Candidate(
-        trace.effect, values, float(np.sqrt(max(fit.eps_rmsn**2 - fall, 0.0))), gain / inflation,
+        trace.effect, values, float(np.sqrt(max(fit.eps_rmsn**2 - fall, 0.0))),
+        gain / evidence.inflation,
         chance.score, chance.p_value, _visibility(augmented, trace), (trace.effect.name,),
-        inside and (fall > 0.0 or not trace.tried), inflation,
+        inside and (fall > 0.0 or not trace.tried), evidence.inflation,
     )  # fmt: skip
 
 

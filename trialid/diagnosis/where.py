@@ -1,97 +1,122 @@
-"""Where the model fails: stretches of time that hold more of the error than their share."""
+"""Where the model fails: by output, stretch of time, amplitude, side, heading, speed, frequency.
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+Every slice of the residual is a question to chance. A question has one p-value, corrected for
+its bins; over all questions Holm's correction holds the chance of any finding in a record that
+leaves nothing but noise at 5 %.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trialid.diagnosis.residual import Residual, effective_of, residuals, rudder
+from trialid.diagnosis.leftover import graded, heading, offset, sides, spectrum, stretches, words
+from trialid.diagnosis.leftover.chance import Colour, colour, holm
+from trialid.diagnosis.leftover.finding import Examined, Finding, Spectrum
+from trialid.diagnosis.leftover.record import Leftover, leftover
 from trialid.identification.fit import Fit
 
-Vector = NDArray[np.float64]
-
-WINDOW_SECONDS: Final = 60.0
-STANDS_OUT: Final = 3.0
-"""Standard errors by which a window's mean square must exceed that of all windows."""
-
-REVERSAL: Final = np.deg2rad(3.0)
-TURNING: Final = 0.5
-"""A share of the largest rate of turn; above it the ship is turning."""
-
-MOST: Final = 3
-"""Findings for each output."""
+LEVEL: Final = 0.05
 
 
 @dataclass(frozen=True)
-class Finding:
-    """A stretch of one trial in which an output is predicted worse than elsewhere."""
+class OutputShare:
+    """One output's share of the squared error of all, weights included."""
 
     output: str
-    trial: str
-    t_start: float
-    t_end: float
     share: float
-    excess: float
-    doing: str
-
-    @property
-    def sentence(self) -> str:
-        """The finding in words."""
-        return (
-            f"{self.output} in {self.trial!r}, {self.t_start:.0f} to {self.t_end:.0f} s, "
-            f"{self.doing}: "
-            f"{self.share:.0%} of its squared error, {self.excess:.1f} times the average stretch"
-        )
+    sentence: str
 
 
-def where(fit: Fit) -> tuple[Finding, ...]:
-    """Windows of time that stand out against the scatter of all windows, worst first."""
-    found: list[Finding] = []
-    parts = residuals(fit)
-    for c, output in enumerate(fit.problem.outputs):
-        rows = [w for r in parts for w in _windows(r, c)]
-        total = sum(float(e @ e) for _, _, _, e in rows)
-        if len(rows) < 4 or total == 0.0:
+@dataclass(frozen=True)
+class Rest:
+    """What of an output's residual does not follow the rudder, in words and as a spectrum."""
+
+    output: str
+    sentence: str
+    picture: Spectrum
+
+
+@dataclass(frozen=True)
+class Where:
+    """Where the model fails.
+
+    Attributes
+    ----------
+    findings
+        What stands out against the noise, the most of the error first.
+    by_output
+        Shares of the squared error, largest first.
+    rest
+        The noise, described.
+    not_examined
+        Slices this record does not allow, with the reason.
+    questions
+        How many were put, over all outputs.
+    """
+
+    findings: tuple[Finding, ...]
+    by_output: tuple[OutputShare, ...]
+    rest: tuple[Rest, ...]
+    not_examined: tuple[str, ...]
+    questions: int
+
+
+def where(fit: Fit, level: float = LEVEL) -> Where:
+    """Slices of the residual that stand out against chance, the most of the error first.
+
+    Parameters
+    ----------
+    level
+        Chance of any finding in a record that leaves nothing but noise.
+    """
+    left = leftover(fit)
+    hue = colour(left)
+    asked: list[Examined] = []
+    absent: dict[str, None] = {}
+    rest: list[Rest] = []
+    for c, output in enumerate(left.outputs):
+        if not np.any(left.eps[:, c]):
+            absent[f"{output}: nothing is left over"] = None
             continue
-        typical = total / sum(len(e) for _, _, _, e in rows)
-        standing = []
-        for r, start, stop, e in rows:
-            excess = float(np.mean(e**2) / typical)
-            if excess > 1.0 + STANDS_OUT * np.sqrt(2.0 / effective_of(e)):
-                times = start * r.trial.period, stop * r.trial.period
-                share = float((e @ e) / total)
-                standing.append(
-                    Finding(output, r.trial.name, *times, share, excess, _doing(r, start, stop))
-                )
-        found += sorted(standing, key=lambda f: -f.share)[:MOST]
-    return tuple(found)
+        for subject, answer in _questions(left, hue, c):
+            if isinstance(answer, str):
+                absent[f"{subject}: {answer}"] = None
+            else:
+                asked.append(answer)
+        seen = spectrum.spectra(left, c)
+        if not isinstance(seen, str):
+            rest.append(Rest(output, spectrum.rest(left, c, seen), spectrum.picture(seen)))
+    p = holm([max(a.p_value, hue.least) for a in asked])
+    standing = [replace(f, p_value=x) for a, x in zip(asked, p, strict=True) if x <= level
+                for f in a.findings]  # fmt: skip
+    found = sorted(standing, key=lambda f: -f.beyond)
+    return Where(tuple(found), _by_output(fit), tuple(rest), tuple(absent), len(asked))
 
 
-def _windows(r: Residual, output: int) -> Sequence[tuple[Residual, int, int, Vector]]:
-    length = max(round(WINDOW_SECONDS / r.trial.period), 8)
-    made = []
-    for start in range(0, r.trial.samples - length // 2, length):
-        stop = min(start + length, r.trial.samples)
-        e = r.eps[start:stop, output][r.compared[start:stop, output]]
-        if len(e) >= length // 2:
-            made.append((r, start, stop, e))
-    return made
+def _questions(left: Leftover, hue: Colour, c: int) -> Iterator[tuple[str, Examined | str]]:
+    """Every slice of one output: what was asked, and the answer or why there is none."""
+    yield "stretch", stretches.failing(left, hue, c)
+    scales, absent = graded.scales(left)
+    yield from absent.items()
+    for scale in scales:
+        yield scale.kind, graded.graded(left, hue, c, scale)
+    yield "side", sides.side(left, hue, c)
+    yield "heading sector", heading.by_heading(left, hue, c)
+    yield "mean offset", offset.offset(left, hue, c)
+    seen = spectrum.spectra(left, c)
+    yield "frequency", seen if isinstance(seen, str) else spectrum.follows_rudder(left, c, seen)
 
 
-def _doing(r: Residual, start: int, stop: int) -> str:
-    """What the ship was doing, from rudder and rate of turn."""
-    delta = rudder(r.trial)
-    turn = r.trial.signals.get("r")
-    if delta is not None:
-        here = delta[start:stop]
-        if here.max() > REVERSAL and here.min() < -REVERSAL:
-            return "the rudder reversing"
-        if turn is None or np.abs(turn).max() == 0.0:
-            return "the rudder held" if np.ptp(here) < REVERSAL else "the rudder moving"
-    if turn is not None:
-        mean, largest = float(turn[start:stop].mean()), float(np.abs(turn).max())
-        if abs(mean) > TURNING * largest:
-            return "turning to starboard" if mean > 0.0 else "turning to port"
-    return "on a nearly straight course"
+def _by_output(fit: Fit) -> tuple[OutputShare, ...]:
+    weights = dict(zip(fit.problem.outputs, map(float, fit.problem.weights), strict=True))
+    parts = {c: (weights[c] * eps) ** 2 for c, eps in fit.eps_by_output.items()}
+    total = sum(parts.values()) or 1.0
+    rows = [
+        OutputShare(
+            c, x / total, f"{words.name(c)} holds {words.share(x / total)} of the squared error"
+        )
+        for c, x in parts.items()
+    ]
+    return tuple(sorted(rows, key=lambda row: -row.share))

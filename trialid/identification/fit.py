@@ -103,9 +103,13 @@ class Fit:
     @property
     def eps_check(self) -> float | None:
         """Error over the held-out trials, None where there are none."""
-        checks = [s for s in self.scores if s.trial.use == "check"]
-        pooled = list(_pooled(checks).values())
+        pooled = list(self.eps_check_by_output.values())
         return float(np.sqrt(np.mean(np.square(pooled)))) if pooled else None
+
+    @property
+    def eps_check_by_output(self) -> dict[str, float]:
+        """The same, output by output; empty where there are none."""
+        return _pooled([s for s in self.scores if s.trial.use == "check"])
 
     @property
     def explanation(self) -> str:

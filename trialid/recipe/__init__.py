@@ -14,9 +14,18 @@ from pydantic import ValidationError
 from trialid.errors import RecipeError
 from trialid.recipe.complaints import dotted, own_mistakes, problem, refusal
 from trialid.recipe.contradictions import contradictions
-from trialid.recipe.form import Recipe, SignalSource, TrialRecipe, neighbours
+from trialid.recipe.form import Origin, Recipe, SignalSource, TrialRecipe, neighbours
 
-__all__ = ["Recipe", "SignalSource", "TrialRecipe", "load", "signal_key", "sources", "where"]
+__all__ = [
+    "Recipe",
+    "SignalSource",
+    "TrialRecipe",
+    "load",
+    "read",
+    "signal_key",
+    "sources",
+    "where",
+]
 
 
 def load(path: Path) -> Recipe:
@@ -27,9 +36,20 @@ def load(path: Path) -> Recipe:
     RecipeError
         In one line: the file, the key's full path, what is wrong, the nearest valid names.
     """
-    table = _table(path)
+    return read(_content(path), path)
+
+
+def read(content: bytes, path: Path) -> Recipe:
+    """Give the pipeline that stands, or is to stand, in a file.
+
+    Raises
+    ------
+    RecipeError
+        As `load`.
+    """
+    table = _table(content, path)
     try:
-        recipe = Recipe.model_validate({"name": path.stem, **table}, context=path)
+        recipe = Recipe.model_validate({"name": path.stem, **table}, context=Origin(path, content))
     except ValidationError as error:
         raise refusal(path, [problem(one) for one in own_mistakes(error)]) from error
     if problems := list(contradictions(recipe)):
@@ -56,8 +76,11 @@ def sources(recipe: Recipe) -> tuple[Path, ...]:
     return (recipe.path, recipe.ship, *recipe.model.effects_from, *logs)
 
 
-def _table(path: Path) -> dict[str, Any]:
-    text = _text(path)
+def _table(content: bytes, path: Path) -> dict[str, Any]:
+    try:
+        text = content.decode("utf-8-sig")  # some editors write a byte-order mark
+    except UnicodeDecodeError as error:
+        raise RecipeError(f"{path}: not TOML: not UTF-8 text (byte {error.start})") from error
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -66,13 +89,11 @@ def _table(path: Path) -> dict[str, Any]:
         raise RecipeError(f"{path}: not TOML: {said}") from error
 
 
-def _text(path: Path) -> str:
+def _content(path: Path) -> bytes:
     try:
-        return path.read_text(encoding="utf-8-sig")  # some editors write a byte-order mark
+        return path.read_bytes()
     except FileNotFoundError as error:
         raise RecipeError(f"{path}: no such pipeline file ({neighbours(path)})") from error
-    except UnicodeDecodeError as error:
-        raise RecipeError(f"{path}: not TOML: not UTF-8 text (byte {error.start})") from error
     except OSError as error:
         raise RecipeError(f"{path}: cannot be read ({error.strerror})") from error
 

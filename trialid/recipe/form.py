@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, cast
+from typing import Annotated, Any, Final, Literal, NamedTuple, cast
 
 from pydantic import (
     AfterValidator,
@@ -24,8 +24,15 @@ LISTED_AT_MOST: Final = 8
 """How many file names an error lists before it only counts them."""
 
 
+class Origin(NamedTuple):
+    """The file a pipeline stands in, and all that it holds."""
+
+    path: Path
+    content: bytes
+
+
 def _existing(path: Path, info: ValidationInfo) -> Path:
-    found = cast(Path, info.context).parent / path
+    found = cast(Origin, info.context).path.parent / path
     if found.is_file():
         return found
     if found.is_dir():
@@ -218,13 +225,23 @@ class Recipe(Section):
     signals: Mapping[str, SignalSource] = {}
     align: AlignRecipe = AlignRecipe()
     diagnose: DiagnoseRecipe = DiagnoseRecipe()
-    _path: Path = PrivateAttr()
+    _origin: Origin = PrivateAttr()
 
-    def model_post_init(self, context: Path) -> None:
-        """Keep the file's own path, which `where` needs and no key may set."""
-        self._path = context
+    def model_post_init(self, context: Origin) -> None:
+        """Keep where it was read from, which `where` needs and no key may set."""
+        self._origin = context
 
     @property
     def path(self) -> Path:
         """The pipeline file, as the caller named it."""
-        return self._path
+        return self._origin.path
+
+    @property
+    def content(self) -> bytes:
+        """What was read; the file may hold something else by now."""
+        return self._origin.content
+
+    @property
+    def text(self) -> str:
+        """What was read, as text with its own line ends."""
+        return self.content.decode("utf-8")

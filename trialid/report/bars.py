@@ -103,19 +103,30 @@ def _total(row: Mapping[str, Any]) -> float:
     return (row["noise_error"] or 0.0) + (row["undermodelling_error"] or 0.0)
 
 
-def changes(run: Run) -> list[Change]:
-    """The error before and after the effect was added: fitted, held out, by output."""
-    pair = run["before_after"]
-    if pair is None:
-        return []
+def changes(pair: Mapping[str, Any]) -> list[Change]:
+    """The error before and after a change of the model: fitted, held out, by output."""
     rows = [("fitted trials", pair["eps_rmsn"], False), ("held out", pair["eps_rmsn_check"], True)]
     rows += [(labels.labelled(name), each, False) for name, each in pair["by_output"].items()]
+    rows += [
+        (f"{labels.labelled(name)}, held out", each, True)
+        for name, each in pair["by_output_check"].items()
+    ]
     known = [(label, *each, held_out) for label, each, held_out in rows if each is not None]
     longest = _longest([error for _, *each, _ in known for error in each])
     return [
         Change(label, before, after, _length(before, longest), _length(after, longest), held_out)
         for label, before, after, held_out in known
     ]
+
+
+def foreseen_in_errors(row: Mapping[str, Any]) -> float | None:
+    """A foreseen move in standard errors of the fit before.
+
+    >>> foreseen_in_errors({"move_foreseen": 0.3, "standard_error_before": 0.1})
+    3.0
+    """
+    move, error = row["move_foreseen"], row["standard_error_before"]
+    return float(f"{move / error:.12g}") if error and move is not None else None
 
 
 def _longest(values: Sequence[float | None]) -> float:

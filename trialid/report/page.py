@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trialid.report import bars, labels, panels, wording
+from trialid.report import bars, labels, panels, where_pictures, wording
 from trialid.report.series import TrialSeries
 from trialid.report.shape import Run, whole
 
@@ -40,7 +40,7 @@ def page(result: Mapping[str, Any], series: Sequence[TrialSeries]) -> str:
             no_check=_no_check(run),
             named=_named(run),
             heading=VERDICTS.get(run["verdict"]["kind"], "No verdict"),
-            changes=bars.changes(run),
+            compared=_compared(run),
             split=bars.split_bars(run),
             physical=list(zip(physical, parameter_bars, strict=True)),
             nuisance=nuisance,
@@ -51,6 +51,19 @@ def page(result: Mapping[str, Any], series: Sequence[TrialSeries]) -> str:
             assets=_assets(),
         )
     )
+
+
+def _compared(run: Run) -> list[tuple[Run, list[bars.Change], str]]:
+    """What was done to the model, then what the verdict proposes: pair, bars and heading."""
+    done, ahead = run["change"], run["before_after"]
+    titles = {"added": "Before and after adding", "dropped": "Before and after dropping"}
+    found = []
+    if done is not None:
+        found.append((done, bars.changes(done), titles.get(done["step"], "Before and after")))
+    if ahead is not None:
+        title = "Before and after adding" if done is None else "What adding this would change:"
+        found.append((ahead, bars.changes(ahead), title))
+    return found
 
 
 def _environment() -> "jinja2.Environment":
@@ -73,8 +86,11 @@ def _environment() -> "jinja2.Environment":
         "prose": wording.prose,
         "shown": wording.shown,
         "short_hash": wording.short_hash,
+        "signed": wording.signed,
+        "foreseen_in_errors": bars.foreseen_in_errors,
         "labelled": labels.labelled,
         "symbol": labels.symbol,
+        "picture": where_pictures.picture,
         "in_shown_unit": labels.shown,
     }
     return environment

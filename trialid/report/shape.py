@@ -54,10 +54,30 @@ _MISSING = _keys(
     "rank effect equation sentence eps_rmsn_predicted eps_rmsn_refitted eps_rmsn_check p_value"
     " visibility verdict"
 ) | {"family": [None], "parameters": Each(_keys("expected refitted"))}
-_BEFORE_AFTER = _keys("effect equation eps_rmsn eps_rmsn_check noise undermodelling") | {
+_CHANGE = _keys(
+    "step effect equation eps_rmsn eps_rmsn_check noise undermodelling undermodelling_interval"
+    " eps_rmsn_foreseen not_foreseen"
+) | {
     "by_output": Each(),
-    "parameters": [_keys("name unit before after standard_error")],
+    "by_output_check": Each(),
+    "verdict": [None],
+    "named": [None],
+    "taken_out": [None],
+    "parameters": [
+        _keys(
+            "name unit before after standard_error standard_error_before move move_in_errors"
+            " move_foreseen after_foreseen"
+        )
+    ],
 }
+"""An effect that was added or dropped; of one that is only proposed, less is known."""
+
+_STEP = _keys("step added dropped eps_rmsn noise undermodelling eps_rmsn_check verdict version") | {
+    "effects": [None],
+    "free": [None],
+    "logs": [None],
+}
+_FINDING = _keys("output finding doing share excess p_value t_start t_end trial sentence picture")
 
 SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "trials": [_TRIAL],
@@ -67,11 +87,20 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     | _keys("method why")
     | {"by_output": Each(_SPLIT), "routes": [_SPLIT | _keys("method available why")]},
     "accuracy": _ACCURACY,
-    "where": [_keys("output finding share t_start t_end trial sentence")],
+    "where": [_FINDING],
+    "where_else": {
+        "by_output": [_keys("output share sentence")],
+        "rest": [_keys("output sentence picture")],
+        "not_examined": [None],
+        "questions": None,
+    },
     "missing": [_MISSING],
     "verdict": _keys("kind effect sentence") | {"family": [None], "next_trial": Maybe({})},
-    "history": [_keys("added eps_rmsn noise undermodelling eps_rmsn_check") | {"effects": [None]}],
-    "before_after": Maybe(_BEFORE_AFTER),
+    "history": [_STEP],
+    "history_remark": None,
+    "sources": [_keys("path sha256")],
+    "before_after": Maybe(_CHANGE),
+    "change": Maybe(_CHANGE),
 }
 
 

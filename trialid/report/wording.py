@@ -60,6 +60,15 @@ def by_error(value: float | None, error: float | None) -> str:
     return number(value, min(max(digits, 2), 7))
 
 
+def signed(value: float | None) -> str:
+    """A move with its sign, one place.
+
+    >>> signed(2.44), signed(None)
+    ('+2.4', '\N{EN DASH}')
+    """
+    return DASH if value is None else f"{value:+.1f}".replace("-", MINUS)
+
+
 def prose(sentence: str) -> str:
     """A sentence whose percent signs stay on the line of their numbers."""
     return re.sub(r"(?<=\d) %", THIN + "%", sentence)

@@ -1,0 +1,105 @@
+"""Whether the catalogue holds what is missing: its best effects against forces of any shape."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.diagnosis.augment import Augmented
+from trialid.diagnosis.probes import probes
+from trialid.diagnosis.whitening import whitened
+from trialid.identification.fit import Fit
+
+Vector = NDArray[np.float64]
+Group = tuple[int, ...]
+
+STEPS: Final = 3
+"""Effects, or forces, that may be missing at once."""
+
+WORTH: Final = 10.0
+"""Twice the log likelihood by which forces of any shape must be better to speak of a gap."""
+
+SHARE: Final = 0.5
+"""Share of what they gain that the catalogue must miss."""
+
+
+@dataclass(frozen=True)
+class Completeness:
+    """What the catalogue explains, and what forces of any simple shape would.
+
+    Both are gains in twice the log likelihood, with every coefficient and the search at their
+    price.
+    """
+
+    catalogue: float
+    any_shape: float
+
+    @property
+    def gap(self) -> bool:
+        """Whether the catalogue misses most of what can be explained."""
+        missed = self.any_shape - self.catalogue
+        return missed > max(WORTH, SHARE * self.any_shape)
+
+
+def completeness(fit: Fit, augmented: Augmented) -> Completeness:
+    """Forward selection from the catalogue, and from the catalogue and forces of any shape."""
+    evidence = augmented.evidence
+    tried = probes(fit)
+    white, _ = whitened(tried.columns, augmented.stretches, evidence.colour)
+    white -= evidence.white.Q @ (evidence.white.Q.T @ white)
+    first = evidence.white.S.shape[1]
+    # single precision: the sums are compared by their tenths, and there are thousands of them
+    Z = np.concatenate([evidence.white.S, white], axis=1, dtype=np.float32, casting="same_kind")
+    moment = (Z.T @ evidence.white.residual.astype(np.float32)).astype(float)
+    search = _Search((Z.T @ Z).astype(float), moment, len(Z), evidence.inflation)
+    effects = [t.columns for t in augmented.traces]
+    forces = [tuple(first + i for i in g) for g in tried.groups]
+    return Completeness(search.gain(effects, []), search.gain(effects, forces))
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Sums of products of whitened columns, and what a gain has to pay."""
+
+    gram: Vector
+    moment: Vector
+    rows: int
+    inflation: float
+
+    def gain(self, effects: Sequence[Group], forces: Sequence[Group]) -> float:
+        """What a forward selection gains; effects and forces pay for the search among their own.
+
+        Each coefficient pays ln N (Schwarz, 1978), each step 2 ln J for one of J (Chen & Chen,
+        2008).
+        """
+        steps = [(g, len(effects)) for g in effects] + [(g, len(forces)) for g in forces]
+        chosen, total = list[int](), 0.0
+        for _ in range(STEPS):
+            known = self._explained(chosen)
+            found = [
+                (self._net(chosen, g, known) - 2.0 * np.log(among), g)
+                for g, among in steps
+                if not set(g) & set(chosen)
+            ]
+            gained, group = max(found, key=lambda x: x[0], default=(0.0, ()))
+            if gained <= 0.0:
+                break
+            chosen += group
+            total += float(gained)
+        return total
+
+    def _net(self, chosen: Sequence[int], group: Group, known: float) -> float:
+        gain = (self._explained([*chosen, *group]) - known) / self.inflation
+        return gain - len(group) * float(np.log(self.rows))
+
+    def _explained(self, columns: Sequence[int]) -> float:
+        """Fall of the whitened sum of squares with these columns."""
+        if not columns:
+            return 0.0
+        gram = self.gram[np.ix_(columns, columns)]
+        sizes = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+        scaled = self.moment[list(columns)] / sizes
+        inverse = np.linalg.pinv(gram / np.outer(sizes, sizes), rcond=1e-5, hermitian=True)
+        return float(scaled @ inverse @ scaled)

@@ -1,0 +1,1 @@
+"""What a fit leaves over, cut in slices: by time, amplitude, side, heading, speed, frequency."""
