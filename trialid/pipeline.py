@@ -17,7 +17,7 @@ from trialid import effects, history, ingest, units
 from trialid.accuracy import Accuracy, Subject, assess
 from trialid.alignment import SignalSource, align
 from trialid.diagnosis.augment import Augmented
-from trialid.diagnosis.completeness import completeness
+from trialid.diagnosis.completeness import Completeness, completeness
 from trialid.diagnosis.missing_effect import decide, refit
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
@@ -34,8 +34,8 @@ from trialid.report.page import write_page
 from trialid.report.series import OutputSeries, TrialSeries, write_csv
 from trialid.result import Diagnosed, Findings, plain
 from trialid.ship.effect import Effect
-from trialid.ship.model import STATES, ShipModel
-from trialid.ship.particulars import read_ship
+from trialid.ship.model import STATES, ShipModel, needs_ship
+from trialid.ship.particulars import NO_SHIP, read_ship
 from trialid.threads import one_thread
 from trialid.trial import Trial
 
@@ -88,7 +88,8 @@ def examine(
     catalogue = available(recipe)
     fit = fit or fit_of(recipe, trials, catalogue, progress)
     before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
-    whole = completeness(fit, augmented)
+    # where nothing moves no force is missing, of whatever shape
+    whole = completeness(fit, augmented) if recipe.model.states else Completeness(0.0, 0.0)
     refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
                          lambda words: progress(words, 0.7)))  # fmt: skip
     verdict = decide(fit, ranking, refits, before.split, whole, recipe.diagnose.level)
@@ -133,6 +134,7 @@ def sources_of(recipe: Recipe) -> list[dict[str, str]]:
             "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
         }
         for path in (recipe.ship, *recipe.model.effects_from)
+        if path is not None
     ]
 
 
@@ -207,8 +209,11 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
                 f"{nearest(name, catalogue)}"
             )
         chosen.append(catalogue[name])
+        if trouble := _senseless(recipe, catalogue[name]):
+            raise RecipeError(f"{where(recipe, f'model.effects[{i}]')}: {name} {trouble}")
     _check_states(recipe)
-    model = ShipModel(read_ship(recipe.ship), recipe.model.states, tuple(chosen))
+    ship = NO_SHIP if recipe.ship is None else read_ship(recipe.ship)
+    model = ShipModel(ship, recipe.model.states, tuple(chosen))
     for i, name in enumerate(recipe.identify.free):
         if name not in model.parameters:
             raise RecipeError(
@@ -317,7 +322,7 @@ def candidates(recipe: Recipe, catalogue: Mapping[str, Effect]) -> dict[str, Eff
     """
     asked = recipe.diagnose.candidates
     if asked == "all":
-        return dict(catalogue)
+        return {n: e for n, e in catalogue.items() if not _senseless(recipe, e)}
     if asked == "none":
         return {}
     for i, name in enumerate(asked):
@@ -327,6 +332,16 @@ def candidates(recipe: Recipe, catalogue: Mapping[str, Effect]) -> dict[str, Eff
                 f"{nearest(name, catalogue)}"
             )
     return {n: catalogue[n] for n in asked}
+
+
+def _senseless(recipe: Recipe, effect: Effect) -> str:
+    """Why an effect has no place among sensors alone, empty where it has one."""
+    if recipe.ship is None and needs_ship(effect):
+        return "is about a ship, and the pipeline names none; write ship = ..., or leave it out"
+    own = {*effect.signals} & {*recipe.identify.outputs} - {*recipe.model.states}
+    if own:
+        return f"reads {min(own)}, an output that is not simulated: it would explain itself"
+    return ""
 
 
 def worth_refitting(recipe: Recipe, ranking: tuple[Candidate, ...]) -> tuple[Candidate, ...]:

@@ -66,6 +66,15 @@ def lag_r(*, T_r=Parameter(0.5, "s", low=0.0, high=20.0)):
     return Lagged(r=T_r)
 
 
+@effect(source="compasses that smooth their rate of turn in two stages: 1 to 10 s each")
+def lag_twice_r(*, T_rr=Parameter(0.5, "s", low=0.0, high=20.0)):
+    """(1 + T_rr d/dt)^2 r_measured = r: a rate of turn behind two low-passes of one time constant.
+
+    At small T_rr it is a lag of 2 T_rr, and a delay; the longer, the more it is neither.
+    """
+    return Lagged(r=T_rr), Lagged(r=T_rr)
+
+
 @effect(source=PRACTICE)
 def lag_phi(*, T_phi=Parameter(0.5, "s", low=0.0, high=20.0)):
     """T_phi d(phi_measured)/dt = phi - phi_measured: a roll angle behind a low-pass."""
@@ -116,7 +125,7 @@ def clock_drift_psi(t, *, drift_psi=Parameter(0.00005, low=-0.005, high=0.005)):
 
 EFFECTS: tuple[Effect, ...] = (
     delay_u, delay_v, delay_p, delay_r, delay_phi, delay_psi,
-    lag_u, lag_v, lag_p, lag_r, lag_phi, lag_psi,
+    lag_u, lag_v, lag_p, lag_r, lag_twice_r, lag_phi, lag_psi,
     clock_drift_u, clock_drift_v, clock_drift_p, clock_drift_r,
     clock_drift_phi, clock_drift_psi,
 )  # fmt: skip

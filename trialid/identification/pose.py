@@ -174,7 +174,8 @@ def _shared(simulator: Simulator, name: str, settings: Settings) -> Unknown:
     low, high = settings.bounds.get(name, (parameter.low, parameter.high))
     start = simulator.model.value(name)
     size = abs(start) if start else abs(parameter.start)
-    kind: Kind = "nuisance" if is_sensor(simulator.model, name) else "physical"
+    beside = is_sensor(simulator.model, name) and simulator.model.states
+    kind: Kind = "nuisance" if beside else "physical"  # where nothing moves, sensors are the matter
     prior = settings.priors.get(name)
     return Unknown(name, name, None, start, size, low, high, parameter.unit, kind, prior)
 

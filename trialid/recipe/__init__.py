@@ -73,7 +73,8 @@ def signal_key(recipe: Recipe, trial: TrialRecipe, quantity: str) -> str:
 def sources(recipe: Recipe) -> tuple[Path, ...]:
     """Every file the pipeline reads, itself first."""
     logs = chain.from_iterable(trial.logs for trial in recipe.trials)
-    return (recipe.path, recipe.ship, *recipe.model.effects_from, *logs)
+    ship = () if recipe.ship is None else (recipe.ship,)
+    return (recipe.path, *ship, *recipe.model.effects_from, *logs)
 
 
 def _table(content: bytes, path: Path) -> dict[str, Any]:

@@ -16,6 +16,7 @@ RUDDERS: Final = frozenset({"delta", "delta_order"})
 
 def contradictions(recipe: Recipe) -> Iterator[Problem]:
     """Everything wrong that no single key shows."""
+    yield from _ship_problems(recipe)
     yield from _trial_problems(recipe)
     yield from _signal_problems(recipe.signals, "signals")
     for place, trial in enumerate(recipe.trials):
@@ -23,6 +24,15 @@ def contradictions(recipe: Recipe) -> Iterator[Problem]:
     yield from _output_problems(recipe)
     yield from _repetitions(recipe)
     yield from _quiet_problems(recipe)
+
+
+def _ship_problems(recipe: Recipe) -> Iterator[Problem]:
+    if recipe.ship is None and recipe.model.states:
+        states = ", ".join(recipe.model.states)
+        yield "ship", (
+            f"missing; {states} can be simulated for a ship only: name her file, or write "
+            "states = [] to compare sensors"
+        )
 
 
 def _trial_problems(recipe: Recipe) -> Iterator[Problem]:

@@ -154,7 +154,7 @@ class GivenValue(Section):
 class ModelRecipe(Section):
     """What is simulated, by which effects, with which values given by hand."""
 
-    states: SomeNames
+    states: Names
     effects: Names
     effects_from: tuple[PythonFile, ...] = ()
     values: Mapping[str, Annotated[GivenValue, BeforeValidator(_with_value)]] = {}
@@ -215,10 +215,13 @@ class DiagnoseRecipe(Section):
 
 
 class Recipe(Section):
-    """A pipeline file, complete: defaults filled in, paths resolved from the file's folder."""
+    """A pipeline file, complete: defaults filled in, paths resolved from the file's folder.
+
+    `ship` None: sensors only, with no motion simulated between them.
+    """
 
     name: str
-    ship: ReadFile
+    ship: ReadFile | None = None
     trials: Annotated[tuple[TrialRecipe, ...], Field(alias="trial", min_length=1)]
     model: ModelRecipe
     identify: IdentifyRecipe

@@ -196,6 +196,11 @@ def _check_signals(model: ShipModel) -> None:
                 )
 
 
+def needs_ship(effect: Effect) -> bool:
+    """Whether an effect pushes a ship, adds to her mass or reads her particulars."""
+    return bool({Force, Mass} & set(effect.forms) or set(effect.signals) & set(PARTICULARS))
+
+
 def late(signal: str) -> str:
     """The input that holds by how much a late input was shifted [s]."""
     return f"{signal} late"
@@ -283,7 +288,7 @@ def readings(
     recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
     recorded |= {a: rates.get(a[0], 0.0) for a in ACCELERATIONS}
     signals = _signals(model, recorded, theta)
-    measured = {**recorded, "U": signals["U"]}
+    measured = {**recorded, "U": signals["U"]} | dict.fromkeys(_from_reference(model), 0.0)
     delay, lags = dict[str, Number](), dict[str, tuple[Number, ...]]()
     for effect in model.effects:
         if not set(SENSORS) & set(effect.forms):
@@ -292,8 +297,8 @@ def readings(
         for part in effect(_values(model, effect, seen, theta)):
             match part:
                 case Measured():
-                    base = _read_so_far(effect, part, measured)
-                    measured |= {n: base[n] + x for n, x in part.items()}
+                    _check_known(effect, part, measured)
+                    measured |= {n: measured[n] + x for n, x in part.items()}
                 case Delayed():
                     delay |= {n: delay.get(n, 0.0) + x for n, x in part.items()}
                 case Lagged():
@@ -308,20 +313,24 @@ def measured_by(
     return acting if Force in effect.forms else {**recorded, "U": acting["U"]}
 
 
-def _read_so_far(
-    effect: Effect, part: Measured, measured: Mapping[str, Number]
-) -> Mapping[str, Number]:
-    """The records an effect adds to; one that a reference sensor gives begins at nothing."""
-    base = dict(measured)
+def _from_reference(model: ShipModel) -> tuple[str, ...]:
+    """Signals that a reference sensor gives alone: their record is what is to be explained."""
+    return tuple(
+        n
+        for e in model.effects
+        for n in e.acts_on(Measured)
+        if f"{n}_ref" in e.signals and n not in model.all_states
+    )
+
+
+def _check_known(effect: Effect, part: Measured, measured: Mapping[str, Number]) -> None:
+    """Refuse what is added to a record that nothing gives."""
     for name in part:
-        if name not in base and f"{name}_ref" in effect.signals:
-            base[name] = 0.0
-        if name not in base:
+        if name not in measured:
             raise EffectError(
                 f"{effect.place} adds to the measurement of {name!r}, which the model neither "
                 f"simulates nor reads; leave the effect out, or simulate {name!r}"
             )
-    return base
 
 
 def _balance(

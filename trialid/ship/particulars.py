@@ -46,6 +46,21 @@ class Ship:
     notes: str = ""
 
 
+NO_SHIP: Final = Ship(
+    name="none",
+    source="sensors alone: nothing is simulated",
+    system="prime",
+    rudder_positive="starboard",
+    particulars={"L": 175.0, "rho": 1025.0, "g": 9.81, "nabla": 1.0, "U0": 0.0},
+    mass={},
+    coefficients={},
+)
+"""Stands where sensors are compared and no ship is known.
+
+Its length only says what is slow (time windows go by Froude's law); no effect may read it.
+"""
+
+
 def read_ship(path: Path) -> Ship:
     """Read a ship file (TOML).
 
