@@ -14,18 +14,20 @@ from trialid import auto, recipe
 
 PIPELINE = Path(__file__).parent / "two_rates.toml"
 FINE = 0.01  # s
+HELD = 25.0  # s, an order of the helmsman
 DEG = np.deg2rad(1.0)
 DELAY, BIAS, NOISE = 0.6, 0.04 * DEG, 0.01 * DEG
 
 
 def turning(duration, seed):
-    """A boat's rate of turn: a helmsman's slow orders and what the sea adds; [rad/s]."""
+    """A boat's rate of turn: a helmsman's orders and a sea of three waves; [rad/s]."""
     rng = np.random.default_rng(seed)
-    n = round(duration / FINE) + 1
-    order = np.repeat(rng.uniform(-6.0, 6.0, n // 1500 + 1), 1500)[:n] * DEG
-    return low_pass(low_pass(order, 2.0), 1.0) + 0.5 * DEG * low_pass(
-        rng.standard_normal(n) * np.sqrt(1.0 / FINE), 1.0
-    )
+    t = FINE * np.arange(round(duration / FINE) + 1)
+    orders = rng.uniform(-6.0, 6.0, round(duration / HELD) + 1) * DEG
+    turn = low_pass(low_pass(orders[(t / HELD).astype(int)], 2.0), 1.0)
+    phases = rng.uniform(0.0, 2.0 * np.pi, 3)
+    sea = sum(np.sin(w * t + a) for w, a in zip((1.1, 1.5, 2.3), phases, strict=True))
+    return turn + 0.2 * DEG * sea
 
 
 def low_pass(x, T):
