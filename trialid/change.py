@@ -178,9 +178,9 @@ def fitted_after(
     """The fit of the new model, and the edit with better starts where it needs them.
 
     A new parameter starts at its typical value, which may be far off for this ship. If the search
-    from there fails, or ends above what linearisation foresaw, it begins again at the foreseen
-    values; if that is better, they are written into the file, which is then worth as much as this
-    fit.
+    from there fails, ends nowhere, loses a held-out trial or ends above what linearisation foresaw,
+    it begins again at the foreseen values; if that is better, they are written into the file, which
+    is then worth as much as this fit.
 
     Raises
     ------
@@ -195,13 +195,23 @@ def fitted_after(
         if near is None:
             raise
         return near, fit_of(near.after, trials, catalogue, progress)
-    if near is None or isinstance(foreseen, str) or fit.eps_rmsn <= AS_FORESEEN * foreseen.eps_rmsn:
+    if near is None or isinstance(foreseen, str):
+        return edit, fit
+    if _sound(fit) and fit.eps_rmsn <= AS_FORESEEN * foreseen.eps_rmsn:
         return edit, fit
     with suppress(TrialidError):
         again = fit_of(near.after, trials, catalogue, progress)
-        if again.eps_rmsn < BETTER * fit.eps_rmsn:
+        if _sound(again) and (not _sound(fit) or again.eps_rmsn < BETTER * fit.eps_rmsn):
             return near, again
     return edit, fit
+
+
+def _sound(fit: Fit) -> bool:
+    """Whether a search arrived, and at a model that stays with the held-out trials.
+
+    In the wilds of parameter space an unstable ship may fit the trials she was fitted to.
+    """
+    return fit.converged and fit.eps_check != np.inf
 
 
 def _started(edit: Edit, foreseen: Foreseen | str) -> Edit | None:
