@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from trialid.recipe import Recipe
+from trialid import auto
+from trialid.recipe import Recipe, load
 
 HERE = Path(__file__).parent
 DATA = HERE.parents[2] / "shared" / "data"
@@ -21,3 +22,26 @@ def with_candidates(recipe: Recipe, candidates, period=None) -> Recipe:
     if period is not None:
         changes["align"] = recipe.align.model_copy(update={"period": period})
     return recipe.model_copy(update=changes)
+
+
+def stages(pipeline: Path, changes) -> list[auto.Stage]:
+    """What the loop does with a pipeline file whose words are changed; printed as it goes."""
+    text = pipeline.read_text(encoding="utf-8")
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    pipeline.write_text(text, encoding="utf-8")
+    done = []
+    for stage in auto.stages(load(pipeline), lambda words, share: None):
+        done.append(stage)
+        fit, verdict = stage.run.result["fit"], stage.run.result["verdict"]
+        check = fit["eps_rmsn_check"]
+        held_out = "" if check is None else f", held out {check:.2%}"
+        kept = "" if stage.kept else " not kept:"
+        print(f"{stage.added}:{kept} {fit['eps_rmsn']:.2%}{held_out}; {verdict['sentence']}")
+    return done
+
+
+def added(done) -> list[str]:
+    """The effects that were added and stayed."""
+    return [str(stage.added) for stage in done[1:] if stage.kept]

@@ -9,9 +9,10 @@ import shutil
 
 import numpy as np
 import pytest
-from real_record import DATA, HERE, with_candidates, with_effects
+from real_record import DATA, HERE, added, stages, with_candidates, with_effects
 
 from trialid import pipeline, recipe
+from trialid.effects import CATALOGUE
 
 RECORDS = DATA / "kvlcc2_hsva_zigzag"
 pytestmark = [
@@ -148,3 +149,20 @@ def test_it_is_named_in_sway_and_yaw_together(linear):
     assert done["verdict"]["kind"] == "missing"
     assert set(done["verdict"]["family"]) <= YAW | SWAY | BOTH
     assert set(done["verdict"]["family"]) & YAW
+
+
+def test_the_loop_lowers_the_held_out_error_by_a_quarter_and_more(folder, tmp_path):
+    """Ours: Nv|v|, then Yvvv; 22.3 to 14.3 %, held out 22.2 to 13.8 %; what is left is said.
+
+    Nothing that goes by the speed is added: the shaft turned at constant revolutions.
+    """
+    copy = shutil.copytree(folder, tmp_path / "kvlcc2")
+    done = stages(copy / PIPELINE, {'candidates = "none"': 'candidates = "all"'})
+    first, *_ = names = added(done)
+    assert first in YAW | SWAY
+    assert set(names) & YAW
+    assert [n for n in names if "u" in CATALOGUE[n].signals] == []
+    before, after = (s.run.result["fit"]["eps_rmsn_check"] for s in (done[0], done[-1]))
+    assert after < 0.75 * before
+    if done[-1].run.result["split"]["interval"]["undermodelling"][0] > 0.0:
+        assert done[-1].run.result["verdict"]["kind"] != "nothing missing"
