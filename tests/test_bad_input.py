@@ -205,7 +205,7 @@ def test_a_pipeline_that_is_not_there_leads_to_the_one_that_is() -> None:
 
 
 @pytest.mark.parametrize(("content", "words"), [
-    pytest.param(b"", ("ship", "missing"), id="empty"),
+    pytest.param(b"", ("trial", "missing"), id="empty"),
     pytest.param(b"ship: x\n", ("not TOML", "line 1"), id="not TOML"),
     pytest.param(bytes(range(256)), ("not UTF-8",), id="binary"),
 ])  # fmt: skip

@@ -27,7 +27,7 @@ from trialid.identification.fit import Fit, identify, step_halving
 from trialid.identification.gauss_newton import Iteration
 from trialid.identification.output_error import stretches
 from trialid.identification.pose import Settings
-from trialid.quantities import SIGNALS
+from trialid.quantities import PARTICULARS, SIGNALS
 from trialid.recipe import Recipe, TrialRecipe, where
 from trialid.report.overlay import write_mcap
 from trialid.report.page import write_page
@@ -36,6 +36,7 @@ from trialid.result import Diagnosed, Findings, plain
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES, ShipModel, needs_ship
 from trialid.ship.particulars import NO_SHIP, read_ship
+from trialid.simulation.at_rest import check_at_rest
 from trialid.threads import one_thread
 from trialid.trial import Trial
 
@@ -214,6 +215,7 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
     _check_states(recipe)
     ship = NO_SHIP if recipe.ship is None else read_ship(recipe.ship)
     model = ShipModel(ship, recipe.model.states, tuple(chosen))
+    _check_own(model, catalogue)
     for i, name in enumerate(recipe.identify.free):
         if name not in model.parameters:
             raise RecipeError(
@@ -221,6 +223,21 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
                 f"{name!r}; {nearest(name, model.parameters)}"
             )
     return model.with_values({n: _value(recipe, model, n) for n in recipe.model.values})
+
+
+def _check_own(model: ShipModel, catalogue: Mapping[str, Effect]) -> None:
+    """Refuse a user's own effect that gives no number at rest: it would spoil the search too.
+
+    Raises
+    ------
+    EffectError
+        The message names it.
+    """
+    for name, effect in catalogue.items():
+        own = effects.CATALOGUE.get(name) is not effect
+        asked = {*effect.signals} & {*PARTICULARS}
+        if own and asked <= {*model.ship.particulars}:
+            check_at_rest(ShipModel(model.ship, model.states, (effect,)))
 
 
 def _check_states(recipe: Recipe) -> None:
@@ -338,8 +355,8 @@ def _senseless(recipe: Recipe, effect: Effect) -> str:
     """Why an effect has no place among sensors alone, empty where it has one."""
     if recipe.ship is None and needs_ship(effect):
         return "is about a ship, and the pipeline names none; write ship = ..., or leave it out"
-    own = {*effect.signals} & {*recipe.identify.outputs} - {*recipe.model.states}
-    if own:
+    own = {*effect.signals} & {*recipe.identify.outputs}
+    if own and not recipe.model.states:
         return f"reads {min(own)}, an output that is not simulated: it would explain itself"
     return ""
 

@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from traceback import extract_tb
 from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
@@ -70,6 +71,10 @@ class Mass(_Named):
 
 Result = Force | Rate | Measured | Steered | Delayed | Lagged | Mass
 FORMS: Final = (Force, Rate, Measured, Steered, Delayed, Lagged, Mass)
+SIZES: Final = (0.001, 0.1, 1.0, 10.0, 1000.0)
+"""Values of all signals at which an effect is tried: it may have no number at some, as at a length
+of 0.1 m, but not at all."""
+
 SENSORS: Final = (Measured, Delayed, Lagged)
 """Forms of what happens between a motion and its record."""
 
@@ -153,8 +158,18 @@ class Effect:
 
     @property
     def place(self) -> str:
-        """The effect and its file, as an error names them."""
-        return f"effect {self.name!r} of {Path(self.function.__code__.co_filename).name}"
+        """The effect, its file and the line where it begins, as an error names them."""
+        return self._at(self.function.__code__.co_firstlineno)
+
+    def _at(self, line: int) -> str:
+        file = Path(self.function.__code__.co_filename).name
+        return f"effect {self.name!r} of {file}, line {line}"
+
+    def _line(self, error: BaseException) -> str:
+        """The place, with the line of its file that did it."""
+        file = self.function.__code__.co_filename
+        lines = [f.lineno for f in extract_tb(error.__traceback__) if f.filename == file]
+        return self._at(lines[-1]) if lines else self.place
 
     def __call__(self, values: Mapping[str, Number]) -> tuple[Result, ...]:
         """Evaluate from one mapping of signal and parameter values; always a tuple of forms."""
@@ -163,9 +178,9 @@ class Effect:
             result = self.function(**{name: values[name] for name in wanted})
         except TypeError as error:
             hint = "on a signal only + - * / ** abs and trialid.maths (sin, cos, sqrt, ...) work"
-            raise EffectError(f"{self.place}: {error}; {hint}") from error
+            raise EffectError(f"{self._line(error)}: {error}; {hint}") from error
         except EffectError as error:
-            raise EffectError(f"{self.place}: {error}") from error
+            raise EffectError(f"{self._line(error)}: {error}") from error
         return (result,) if isinstance(result, FORMS) else tuple(result)
 
 
@@ -268,8 +283,31 @@ def _forms(
             )
         _check_names(name, part, signals)
         _check_numbers(name, part)
+    if not any(_finite(function, signals, parameters, size) for size in SIZES):
+        raise EffectError(
+            f"effect {name!r} returns nan or inf, whatever its signals are; look for a nan, a "
+            "division by zero or a root of a negative number"
+        )
     _check_rates(name, tuple(n for part in results if isinstance(part, Rate) for n in part), own)
     return tuple(type(part) for part in results)
+
+
+def _finite(
+    function: Callable[..., Any],
+    signals: tuple[str, ...],
+    parameters: Mapping[str, Parameter],
+    size: float,
+) -> bool:
+    """Whether all it returns are numbers where every signal has this value."""
+    values = dict.fromkeys(signals, size) | {n: p.start for n, p in parameters.items()}
+    try:
+        with np.errstate(all="ignore"):
+            result = function(**values)
+    except (ArithmeticError, ValueError):
+        return False
+    parts = (result,) if isinstance(result, FORMS) else result
+    numbers = (x for p in parts for x in (p if isinstance(p, Force) else p.values()))
+    return bool(np.all(np.isfinite(list(numbers))))
 
 
 def _check_readings(name: str, signals: tuple[str, ...], forms: tuple[type, ...]) -> None:

@@ -155,8 +155,20 @@ class Node:
 
 
 def lift(graph: Graph, value: Any) -> Node:
-    """A node of this graph for a node or a number."""
-    return value if isinstance(value, Node) else graph.constant(value)
+    """A node of this graph for a node or a number.
+
+    Raises
+    ------
+    EffectError
+        It is nan or inf.
+    """
+    if isinstance(value, Node):
+        return value
+    if not math.isfinite(value):
+        raise EffectError(
+            f"{value} came up in it; look for a division by zero or a root of a negative number"
+        )
+    return graph.constant(value)
 
 
 def add(a: Node, b: Node) -> Node:
