@@ -29,9 +29,12 @@ def contradictions(recipe: Recipe) -> Iterator[Problem]:
 def _ship_problems(recipe: Recipe) -> Iterator[Problem]:
     if recipe.ship is None and recipe.model.states:
         states = ", ".join(recipe.model.states)
-        yield "ship", (
-            f"missing; {states} can be simulated for a ship only: name her file, or write "
-            "states = [] to compare sensors"
+        yield (
+            "ship",
+            (
+                f"missing; {states} can be simulated for a ship only: name her file, or write "
+                "states = [] to compare sensors"
+            ),
         )
 
 

@@ -169,7 +169,7 @@ class Effect:
         """The place, with the line of its file that did it."""
         file = self.function.__code__.co_filename
         lines = [f.lineno for f in extract_tb(error.__traceback__) if f.filename == file]
-        return self._at(lines[-1]) if lines else self.place
+        return self._at(lines[-1] or 0) if lines else self.place
 
     def __call__(self, values: Mapping[str, Number]) -> tuple[Result, ...]:
         """Evaluate from one mapping of signal and parameter values; always a tuple of forms."""
