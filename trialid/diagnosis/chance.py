@@ -137,7 +137,7 @@ def _scores(
     products, reach = sums.products[:, group], sums.reach[:, group]
     grams = sums.grams[:, group][:, :, group]
     terms = signs[:, :, None] * products
-    terms -= (moved @ reach.reshape(-1, moved.shape[1]).T).reshape(terms.shape)
+    terms -= np.einsum("rp,bqp->rbq", moved, reach, optimize=True)
     totals = terms.sum(axis=1)
     total = np.linalg.pinv(grams.sum(axis=0), rcond=1e-10, hermitian=True)
     coefficients = totals @ total
