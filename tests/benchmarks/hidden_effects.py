@@ -28,7 +28,17 @@ from typing import Final
 from hidden_scenarios import SCENARIOS, TYPICAL
 from hidden_score import plainness
 from hidden_tables import ISSUE, SHORT, Row, report, thresholds, write
-from hidden_truth import FREE, NOISES, OUTPUTS, TRIAL_SETS, Scenario, guessed, record, restored
+from hidden_truth import (
+    FREE,
+    NOISES,
+    OUTPUTS,
+    TRIAL_SETS,
+    Scenario,
+    guessed,
+    record,
+    restored,
+    without,
+)
 
 from trialid import pipeline
 from trialid.diagnosis.completeness import completeness
@@ -139,7 +149,10 @@ def run(task: Task) -> Row:
     if scenario.known:
         with watch("truth"):
             trials = record(scenario, noise, trial_set, seed, rudder=True)
-            row = row.also(plain=plainness(done.fit, trials, restored(scenario, done.fit.model)))
+            true = without(scenario)
+            values = {n: true.value(n) for n in done.fit.settings.free}
+            plain = plainness(done.fit, trials, restored(scenario, true), values)
+            row = row.also(plain=plain)
     return judged(row, scenario, done).also(seconds=watch.seconds)
 
 

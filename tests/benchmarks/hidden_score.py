@@ -6,7 +6,7 @@ noise is known; unlike the package's score it is not bounded by the length of th
 keeps its meaning when the diagnosis changes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -22,7 +22,9 @@ MEMORY: Final = 40.0
 """[s] of the autoregression that whitens: the memory of the slowest gusts."""
 
 
-def plainness(fit: Fit, trials: Sequence[Trial], truth: ShipModel) -> float:
+def plainness(
+    fit: Fit, trials: Sequence[Trial], truth: ShipModel, values: Mapping[str, float]
+) -> float:
     """Twice the log-likelihood ratio of the true model to the fitted one.
 
     Parameters
@@ -30,9 +32,11 @@ def plainness(fit: Fit, trials: Sequence[Trial], truth: ShipModel) -> float:
     trials
         The same records for the true model: where a gear is hidden, with the true rudder.
     truth
-        The fitted model with what is hidden; it is fitted again, what is hidden held as it is.
+        The model with what is hidden; it is fitted, what is hidden held as it is.
+    values
+        True values of the fitted parameters, from which that fit starts: no other minimum is meant.
     """
-    known = identify(trials, truth, fit.settings, near=fit.estimates)
+    known = identify(trials, truth, fit.settings, near={**fit.estimates, **values})
     total = 0.0
     for c in range(len(fit.problem.outputs)):
         mine, other = (_residuals(f, c) for f in (fit, known))

@@ -139,7 +139,7 @@ def thresholds(rows: Sequence[Row], limits: Limits) -> list[Threshold]:
     seen = [r for r in mixed if r.group in IN_CATALOGUE and r.detectable]
     odd = [r for r in mixed if r.group == "outside" and r.detectable]
     sensors = [r for r in mixed if r.group == "sensor"]
-    controls = [r for r in mixed if r.group == "control"]
+    controls = [r for r in mixed if r.group == "control" and not r.detectable]
     drops = [r for r in seen if r.right and r.ratio is not None]
     made = [
         _held("right family, of detectable", seen, lambda r: r.right, limits.right, True),
@@ -151,7 +151,8 @@ def thresholds(rows: Sequence[Row], limits: Limits) -> list[Threshold]:
               limits.outside_seen, True),
         _held("sensor fault named a physical effect", sensors, lambda r: r.physical,
               limits.sensor_physical),
-        _held("control named", controls, lambda r: r.named, limits.control),
+        _held("control named, where it does not stand out", controls, lambda r: r.named,
+              limits.control),
     ]  # fmt: skip
     for noise in dict.fromkeys(r.noise for r in mixed):
         quiet = [r for r in mixed if r.group == "nothing" and r.noise == noise]

@@ -21,7 +21,7 @@ STEPS: Final = 3
 WORTH: Final = 10.0
 """Twice the log likelihood by which forces of any shape must be better to speak of a gap."""
 
-SHARE: Final = 0.5
+SHARE: Final = 0.25
 """Share of what they gain that the catalogue must miss."""
 
 
@@ -38,7 +38,7 @@ class Completeness:
 
     @property
     def gap(self) -> bool:
-        """Whether the catalogue misses most of what can be explained."""
+        """Whether the catalogue misses much of what can be explained."""
         missed = self.any_shape - self.catalogue
         return missed > max(WORTH, SHARE * self.any_shape)
 
