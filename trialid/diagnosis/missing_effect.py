@@ -25,6 +25,9 @@ FAINT: Final = 0.02
 """Share of its trace that an effect must keep beside the free parameters to be named for a small
 part of the error: a centre of gravity or a scale keeps less, and other errors look like it."""
 
+AGAINST: Final = 2.0
+"""Standard errors by which held-out trials must become worse to speak against an effect."""
+
 DOMINANT: Final = 0.2
 """Share of the squared error from which on an effect is named however little of it shows."""
 
@@ -167,17 +170,17 @@ def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
         return None
     least = min(c for c, _ in standing)
     close = [(c, r) for c, r in standing if c < least + DECISIVE]
-    return min(close, key=lambda x: (not is_instrumental(x[1].candidate.effect), x[0]))[1]
+    return min(close, key=lambda x: (_is_faint(fit, x[1]), not _is_instrumental(x[1]), x[0]))[1]
 
 
-def is_instrumental(effect: Effect) -> bool:
+def _is_instrumental(refit: Refit) -> bool:
     """Whether it is about sensors, clocks or the rudder's record, not about the ship."""
-    return not {Force, Rate, Mass} & set(effect.forms)
+    return not {Force, Rate, Mass} & set(refit.candidate.effect.forms)
 
 
 def _holds(gain: tuple[float, float] | None) -> bool:
     """Whether held-out trials do not speak against it: their error does not rise beyond chance."""
-    return gain is None or gain[0] > -gain[1]
+    return gain is None or gain[0] > -AGAINST * gain[1]
 
 
 def _costs(fit: Fit, refits: Sequence[Refit]) -> list[float]:
