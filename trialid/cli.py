@@ -19,6 +19,7 @@ import trialid
 from trialid.errors import TrialidError
 
 if TYPE_CHECKING:
+    from trialid.pipeline import Run
     from trialid.recipe import Recipe
 
 WRONG_INPUT: Final = 2
@@ -60,7 +61,13 @@ def commands() -> None:
 )
 @click.option("--json", "as_json", is_flag=True, help="Print result.json, and nothing else.")
 @click.option("--quiet", is_flag=True, help="No progress and no summary.")
-def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+@click.option(
+    "--draft",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Where something is missing that no known effect makes: write it as a .py file to edit.",
+)
+def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool, draft: Path | None) -> None:
     """Fit a ship model to the logs of PIPELINE, a TOML file, and report what it is worth.
 
     Logs are aligned, the free parameters fitted and rated, the misfit located, the missing effect
@@ -75,12 +82,13 @@ def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise TrialidError(f"{_short(folder)}: {reason}; choose another --out") from error
+    _check_draft(draft)
     # The chain takes a second to import: a misspelt key is answered before.
     from trialid.pipeline import run as identify_from
     from trialid.pipeline import write
 
     with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
-        done = identify_from(recipe, progress)
+        done = identify_from(recipe, progress, force=draft is not None)
         try:
             write(done, folder)
         except OSError as error:
@@ -91,6 +99,10 @@ def run(pipeline: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
         _print(json.dumps(done.result, indent=2, allow_nan=False))
     elif not quiet:
         _print(f"{_summary(done.result)}\nReport: {folder / 'report.html'}")
+    if draft is not None:
+        said = _write_draft(draft, done)
+        if not quiet:
+            click.echo(said, err=as_json)
 
 
 @commands.command()
@@ -140,6 +152,36 @@ def _check_replaceable(folder: Path, recipe: "Recipe") -> None:
         )
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "result.json").is_file():
         raise TrialidError(f"{folder}: holds other files and no earlier run; choose another --out")
+
+
+def _check_draft(draft: Path | None) -> None:
+    """Refuse, before the work, a place where no new effect file can be."""
+    if draft is None:
+        return
+    if draft.exists():
+        raise TrialidError(f"--draft {draft}: exists; name another file, or move it away")
+    if draft.suffix != ".py":
+        raise TrialidError(f"--draft {draft}: an effect file ends in .py")
+    if not draft.parent.is_dir():
+        raise TrialidError(f"--draft {draft}: there is no folder {draft.parent}; make it first")
+
+
+def _write_draft(draft: Path, done: "Run") -> str:
+    """Write the effect file; what was written or why nothing, in one line."""
+    from trialid.diagnosis.draft import draft as drafted
+    from trialid.diagnosis.draft import why_none
+
+    found = done.findings.force
+    assert found is not None
+    text = drafted(found, done.recipe.name)
+    if text is None:
+        return why_none(found)
+    try:
+        with draft.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        raise TrialidError(f"--draft {draft}: {(error.strerror or str(error)).lower()}") from error
+    return f"Draft: {draft}"
 
 
 def _short(folder: Path) -> str:

@@ -17,6 +17,7 @@ from trialid.accuracy import Accuracy, Subject, assess
 from trialid.alignment import SignalSource, align
 from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.missing_effect import confirmed, decide, refit
+from trialid.diagnosis.missing_force import missing_force
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
@@ -59,8 +60,10 @@ class Run:
 
 
 @one_thread
-def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
+def run(recipe: Recipe, progress: Progress = lambda words, share: None, force: bool = False) -> Run:
     """Everything from a pipeline, nothing written.
+
+    With `force` the missing force is sought whatever the verdict, beside a named effect.
 
     Raises
     ------
@@ -83,9 +86,14 @@ def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
     after = None
     if named is not None:
         after = diagnose(recipe, named.fit, catalogue, progress)[0]
+    verdict = decide(fit, ranking, refits, before.split, level)
+    sought = None
+    if force or verdict.kind == "not in catalogue":
+        progress("looking for the missing force", 0.9)
+        sought = missing_force(named.fit if named is not None else fit, level)
     findings = Findings(
         recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
-        decide(fit, ranking, refits, before.split, level), stretches_that_fail(fit), after,
+        verdict, stretches_that_fail(fit), after, sought,
     )  # fmt: skip
     progress("done", 1.0)
     return Run(recipe, findings, plain(findings), time_series(fit))
