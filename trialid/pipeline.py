@@ -28,6 +28,7 @@ from trialid.identification.output_error import stretches
 from trialid.identification.pose import Settings
 from trialid.quantities import SIGNALS
 from trialid.recipe import Recipe, TrialRecipe, where
+from trialid.report.force import force_series, write_force_csv
 from trialid.report.overlay import write_mcap
 from trialid.report.page import write_page
 from trialid.report.series import OutputSeries, TrialSeries, write_csv
@@ -407,5 +408,8 @@ def _write_files(done: Run, folder: Path) -> None:
     (folder / "result.json").write_text(text + "\n", encoding="utf-8")
     write_csv(folder / "series.csv", done.series)
     write_mcap(folder / "predicted.mcap", done.result, done.series)
-    write_page(folder / "report.html", done.result, done.series)
+    forces = force_series(done.findings.force) if done.findings.force is not None else ()
+    if forces:
+        write_force_csv(folder / "missing_force.csv", forces)
+    write_page(folder / "report.html", done.result, done.series, forces)
     shutil.copyfile(done.recipe.path, folder / "pipeline.toml")

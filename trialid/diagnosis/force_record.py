@@ -22,6 +22,9 @@ FINENESS: Final = 8
 MOST_KNOTS: Final = 900
 """Knots over all trials; longer records get wider ones."""
 
+MEMORY: Final = 20.0
+"""Knots after which a record is taken to be independent of what was before: the longest memory."""
+
 DISTINCT: Final = 1e-5
 """Combinations of terms that answer with less than this share of the largest are left out."""
 
@@ -46,6 +49,11 @@ class Record:
     def residual(self) -> list[Vector]:
         """The residual of each trial, zero where nothing was compared; (n, n_y)."""
         return [z[:, :, -1] for z in self.columns]
+
+    @property
+    def least_p(self) -> float:
+        """No smaller chance than independent stretches of the record can support."""
+        return float(0.5 ** (sum(len(k) for k in self.knots) / MEMORY))
 
     @property
     def free(self) -> int:

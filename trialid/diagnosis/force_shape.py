@@ -133,7 +133,7 @@ def shape(record: Record, of: Answers, noise: Colour, level: float) -> Shape:
         found = _added(levels, record.free, chosen, made.rows)
         j = int(np.argmin(found))
         gain = float(least - found[j])
-        p = min(1.0, len(of.terms) * float(chdtrc(1, max(gain, 0.0))))
+        p = min(1.0, max(len(of.terms) * float(chdtrc(1, max(gain, 0.0))), record.least_p))
         if gain < np.log(made.rows) or p >= level or (steps and gain < WORTH * steps[0][0]):
             break
         rivals = np.flatnonzero(found < found[j] + max(DECISIVE, SKETCH * gain))

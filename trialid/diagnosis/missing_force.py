@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc
 
 from trialid.diagnosis.force_likelihood import (
-    MEMORIES,
     NONE,
     Estimate,
     Intensity,
@@ -225,9 +224,8 @@ def _no_force(record: Record, noise: Colour) -> float:
 
 
 def _chance(record: Record, gain: float, equations: int) -> float:
-    """Chance of a gain from noise over all equations, not below what independent blocks support."""
-    blocks = sum(len(k) for k in record.knots) / MEMORIES[-1]
-    return min(1.0, max(equations * float(chdtrc(2, gain)), 0.5**blocks))
+    """Chance of a gain from noise, over all equations."""
+    return min(1.0, max(equations * float(chdtrc(2, gain)), record.least_p))
 
 
 def _equation(record: Record, of: _Sought, p: float, level: float) -> Equation:

@@ -58,6 +58,23 @@ _BEFORE_AFTER = _keys("effect equation eps_rmsn eps_rmsn_check noise undermodell
     "by_output": Each(),
     "parameters": [_keys("name unit before after standard_error")],
 }
+_FORCE = _keys("named sentence") | {
+    "possible": [None],
+    "effects": [None],
+    "equations": [
+        _keys(
+            "equation unit explains log_likelihood_ratio p_value symmetry shape_explains"
+            " terms_tried sentence"
+        )
+        | {
+            "signals": [None],
+            "shape": [
+                _keys("name term coefficient standard_error share p_value symmetry")
+                | {"rivals": [None]}
+            ],
+        }
+    ],
+}
 
 SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "trials": [_TRIAL],
@@ -72,6 +89,7 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "verdict": _keys("kind effect sentence") | {"family": [None], "next_trial": Maybe({})},
     "history": [_keys("added eps_rmsn noise undermodelling eps_rmsn_check") | {"effects": [None]}],
     "before_after": Maybe(_BEFORE_AFTER),
+    "missing_force": Maybe(_FORCE),
 }
 
 
