@@ -15,8 +15,8 @@ from trialid.trial import Trial
 FREE = ("Nv", "Nr", "Ndelta", "Yv", "Kv", "Kr", "Kdelta", "Kp", "GM")
 FIT = replace(SETTINGS, free=FREE)
 AMPLITUDES = (5, 10, 20)
-SIZES = {"Y": 3e4, "K": 1e5, "N": 2e6}
-"""Outer forces [N, N m] that add a tenth to the error that wave noise makes."""
+SIZES = {"Y": 3e4, "K": 2e5, "N": 2e6}
+"""Outer forces [N, N m] that add a tenth or two to the error that wave noise makes."""
 
 
 @effect(source="test")

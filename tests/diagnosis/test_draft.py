@@ -107,7 +107,8 @@ def test_run_drafts_what_the_pipeline_then_runs_with(sample, tmp_path):
     [made] = from_file(file).values()
     text = sample.read_text(encoding="utf-8")
     text = text.replace("effects = [", f'effects_from = ["mine.py"]\neffects = [\n  "{made.name}",')
-    text = text.replace("free     = [", f'free     = ["{next(iter(made.parameters))}", ')
+    drafted = "".join(f'"{name}", ' for name in made.parameters)
+    text = text.replace("free     = [", f"free     = [{drafted}")
     (sample.parent / "with_mine.toml").write_text(text, encoding="utf-8")
     after = run(sample.parent / "with_mine.toml", "--out", tmp_path / "after", "--quiet")
     assert after.exit_code == 0, after.output

@@ -127,7 +127,7 @@ def answers(record: Record, row: str) -> Answers:
 
     A term that moves nothing is left out.
     """
-    known = set.intersection(*(set(p.signals) for p in record.paths))
+    known = {n for n in record.paths[0].signals if all(_whole(p, n) for p in record.paths)}
     terms = dictionary(row, tuple(known))
     hats, forces, H, G = [], [], [], []
     for p, knots in zip(record.paths, record.knots, strict=True):
@@ -147,6 +147,11 @@ def answers(record: Record, row: str) -> Answers:
         tuple(h / knot for h in H), tuple(G),
         tuple(h / knot for h in hats), tuple(f[:, seen] / size[seen] for f in forces), _apart(G),
     )  # fmt: skip
+
+
+def _whole(path: Path, signal: str) -> bool:
+    """Whether a trial has this signal all the time."""
+    return signal in path.signals and bool(np.all(np.isfinite(path.signals[signal])))
 
 
 def _apart(G: Sequence[Vector]) -> Vector:

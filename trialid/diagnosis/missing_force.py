@@ -13,7 +13,7 @@ sought, and the band of the force is as wide as that leaves it.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -39,7 +39,7 @@ from trialid.threads import one_thread
 
 Vector = NDArray[np.float64]
 
-PASSES: Final = 4
+PASSES: Final = 3
 """Times the noise is estimated from what a force leaves over."""
 
 DRAWS: Final = 4
@@ -126,16 +126,12 @@ def missing_force(fit: Fit, level: float = 0.05) -> MissingForce:
     plain = colour(record.residual, record.compared, record.order)
     start = colour(_beyond(record, every), record.compared, record.order)
     null = _no_force(record, plain)
-    sought = sorted((_seek(record, a, start, null) for a in every), key=lambda s: -s.gain)
-    chances = [_chance(record, s.gain, len(every)) for s in sought]
-    possible = tuple(
-        s.answers.row
-        for s, p in zip(sought, chances, strict=True)
-        if p < level and s.gain > sought[0].gain - DECISIVE
-    )
+    sought = {a.row: _seek(record, a, start, null) for a in every}
+    said = [_equation(record, s, len(every)) for s in sought.values()]
+    said.sort(key=lambda e: -e.gain)
+    possible = tuple(e.row for e in said if e.p_value < level and e.gain > said[0].gain - DECISIVE)
     found = tuple(
-        _equation(record, s, p, level if s.answers.row in possible else 0.0)
-        for s, p in zip(sought, chances, strict=True)
+        _shaped(record, sought[e.row], e, level) if e.row in possible else e for e in said
     )
     named = possible[0] if len(possible) == 1 else None
     model = fit.model
@@ -160,19 +156,29 @@ def _seek(record: Record, of: Answers, start: Colour, null: float) -> _Sought:
     """The force, the noise it leaves over, and again, as long as both become more likely."""
     mixed = of.mixed
     columns = [_beside(z, g) for z, g in zip(record.columns, mixed, strict=True)]
-    noise, near, least = start, NONE, np.inf
-    best: _Sought | None = None
-    for _ in range(PASSES):
-        made = sums(of.H, columns, record.compared, noise, record.free)
-        force, found = most_likely(made, near)
-        if found > least - SETTLED:
-            break
-        near, least, guess = force, found, estimate(made, force)
-        best = _Sought(of, max(null - found, 0.0), force, noise, guess)
-        drawn = [e for one in draws(guess, DRAWS) for e in _left(record, of.H, mixed, one)]
+    best = _with_noise(record, of, columns, start, NONE, null)
+    for _ in range(PASSES - 1):
+        drawn = [e for one in draws(best.estimate, DRAWS) for e in _left(record, of.H, mixed, one)]
         noise = colour(drawn, record.compared * DRAWS, record.order)
-    assert best is not None
+        found = _with_noise(record, of, columns, noise, best.intensity, null)
+        if found.gain < best.gain + SETTLED:
+            break
+        best = found
     return best
+
+
+def _with_noise(
+    record: Record,
+    of: Answers,
+    columns: Sequence[Vector],
+    noise: Colour,
+    near: Intensity,
+    null: float,
+) -> _Sought:
+    """The most likely force beside noise of this colour."""
+    made = sums(of.H, columns, record.compared, noise, record.free)
+    force, found = most_likely(made, near)
+    return _Sought(of, float(null - found), force, noise, estimate(made, force))
 
 
 def _beside(columns: Vector, more: Vector) -> Vector:
@@ -223,20 +229,27 @@ def _no_force(record: Record, noise: Colour) -> float:
     return deviance(sums(nothing, record.columns, record.compared, noise, record.free), NONE)
 
 
-def _chance(record: Record, gain: float, equations: int) -> float:
-    """Chance of a gain from noise, over all equations."""
-    return min(1.0, max(equations * float(chdtrc(2, gain)), record.least_p))
+def _equation(record: Record, of: _Sought, equations: int) -> Equation:
+    """What is said of one equation, before its shape is sought.
 
-
-def _equation(record: Record, of: _Sought, p: float, level: float) -> Equation:
-    """What is said of one equation; its shape is sought where a level of significance is given."""
+    A force that leaves more error than it found is none, however likely: the colour of the noise
+    then lets slow errors pass.
+    """
     total = sum(float(np.sum(e**2)) for e in record.residual)
     left = _left(record, of.answers.H, of.answers.mixed, of.estimate)
-    explained = 1.0 - sum(float(np.sum(e**2)) for e in left) / total if of.gain > 0.0 else 0.0
-    made = shape(record, of.answers, of.noise, level) if level > 0.0 else Shape((), (), 0.0)
-    return Equation(
-        of.answers.row, float(of.gain), p, explained, _courses(record, of, made), made
-    )  # fmt: skip
+    explained = 1.0 - sum(float(np.sum(e**2)) for e in left) / total
+    gain = of.gain if explained > 0.0 else 0.0
+    gain = max(gain, 0.0)
+    p = min(1.0, max(equations * float(chdtrc(2, gain)), record.least_p))
+    none = Shape((), (), 0.0)
+    courses = _courses(record, of, none)
+    return Equation(of.answers.row, gain, p, max(explained, 0.0), courses, none)
+
+
+def _shaped(record: Record, of: _Sought, e: Equation, level: float) -> Equation:
+    """The same with its shape."""
+    made = shape(record, of.answers, of.noise, level)
+    return replace(e, shape=made, courses=_courses(record, of, made))
 
 
 def _courses(record: Record, of: _Sought, made: Shape) -> tuple[Course, ...]:
@@ -260,7 +273,7 @@ def _sentence(found: Sequence[Equation], possible: Sequence[str], free: Sequence
     best = found[0]
     if not possible:
         return (
-            f"no force in any equation explains more of the error than noise would "
+            f"no force in any equation stands out against noise of any colour "
             f"(best: {WORDS[best.row]} {best.row}, p = {best.p_value:.2g})"
         )
     unseen = f"; what {_listed(free)} can take by changing is not seen" if free else ""
