@@ -17,8 +17,8 @@ from trialid.ship.effect import Effect, Force, Mass, Rate
 from trialid.trial import Trial
 
 DECISIVE: Final = 10.0
-"""Difference of twice the log likelihood that decides: odds of 150 to 1, for colour and gradient are
-estimates themselves (6, odds of 20, left 2.4 % wrong names instead of 2)."""
+"""Difference of twice the log likelihood that decides: odds of 150 to 1, for the noise's colour is
+an estimate itself."""
 
 
 FAINT: Final = 0.02
@@ -102,9 +102,20 @@ def decide(
         return Verdict("cannot tell", None, (), _faint(named))
     if named is not None:
         return _missing(fit, named, rivals(fit, named, ranking, refits))
+    return _unnamed(parts, whole)
+
+
+def _unnamed(parts: Split, whole: Completeness) -> Verdict:
+    """What to say where no effect stands out."""
     if parts.undermodelling_interval is None:
         return Verdict("cannot tell", None, (), _no_split(parts))
     low, high = parts.undermodelling_interval
+    if low > 0.0 and whole.any_shape <= 0.0:
+        return Verdict(
+            "cannot tell", None, (),
+            f"an error of {low:.1%} to {high:.1%} is more than the noise ({parts.method}), but no "
+            "effect and no force of a simple shape shows in it: rougher weather looks the same",
+        )  # fmt: skip
     if low > 0.0:
         return Verdict(
             "not in catalogue", None, (),
