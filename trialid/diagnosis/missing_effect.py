@@ -21,7 +21,10 @@ DECISIVE: Final = 10.0
 an estimate itself."""
 
 
-FAINT: Final = 0.02
+CLOSE: Final = 6.0
+"""The same for what is tried first: odds of 20 to 1 and less are no preference."""
+
+FAINT: Final = 0.025
 """Share of its trace that an effect must keep beside the free parameters to be named for a small
 part of the error: a centre of gravity or a scale keeps less, and other errors look like it."""
 
@@ -180,8 +183,9 @@ def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
     if not standing:
         return None
     least = min(c for c, _ in standing)
-    close = [(c, r) for c, r in standing if c < least + DECISIVE]
-    return min(close, key=lambda x: (_is_faint(fit, x[1]), not _is_instrumental(x[1]), x[0]))[1]
+    close = [(c, r) for c, r in standing if c < least + CLOSE]
+    faint = [x for x in close if _is_faint(fit, x[1])]  # one of them makes all of them doubtful
+    return min(faint or close, key=lambda x: (not _is_instrumental(x[1]), x[0]))[1]
 
 
 def _is_instrumental(refit: Refit) -> bool:
