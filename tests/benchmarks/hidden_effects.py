@@ -63,16 +63,15 @@ SHORT_SCENARIOS: Final = (
 )  # fmt: skip
 EVERY: Final = {**SCENARIOS, **TYPICAL}
 CORE: Final = (
-    "sway_drag_vav", "sway_drag_var", "sway_drag_rar", "yaw_drag_vav", "yaw_drag_rav",
-    "yaw_drag_rar", "roll_drag_vav", "roll_drag_rav", "sway_cubic_vvv", "yaw_cubic_cross",
-    "yaw_cubic_rrr", "roll_cubic", "centripetal_added_mass", "heel_yaw", "roll_rate_yaw",
-    "heel_drift", "quadratic_roll_damping", "righting_arm_cubic", "static_list", "rudder_cubic",
-    "rudder_slipstream", "propeller_side_force", "surge_rudder", "steady_wind", "rudder_offset",
-    "bias_r", "bias_phi", "delay_r", "lag_phi", "gyro_cross_axis", "rudder_record_delay",
-    "rudder_servo", "rudder_servo_limited", "rudder_backlash", "odd_rudder", "odd_switch",
-    "odd_heel", "odd_course", "x_G + 1 % of L", "gyro scale + 3 %", "roll scale + 3 %", "nothing",
+    "sway_drag_vav", "sway_drag_rar", "yaw_drag_rav", "yaw_drag_rar", "roll_drag_rav",
+    "yaw_cubic_cross", "roll_cubic", "centripetal_added_mass", "roll_rate_yaw", "heel_drift",
+    "quadratic_roll_damping", "righting_arm_cubic", "static_list", "rudder_cubic",
+    "rudder_slipstream", "steady_wind", "rudder_offset", "bias_r", "delay_r", "lag_phi",
+    "gyro_cross_axis", "rudder_record_delay", "rudder_servo", "rudder_servo_limited",
+    "rudder_backlash", "odd_rudder", "odd_switch", "odd_heel", "odd_course", "x_G + 1 % of L",
+    "gyro scale + 3 %", "roll scale + 3 %", "nothing",
 )  # fmt: skip
-"""Thirty-four effects from every part of the ship, and what must not be named."""
+"""Twenty-five effects from every part of the ship, and what must not be named."""
 
 DEFAULTS: Final = SimpleNamespace(diagnose=DiagnoseRecipe())
 """A pipeline that says nothing in [diagnose]."""

@@ -12,6 +12,7 @@ from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.probes import probes
 from trialid.diagnosis.whitening import whitened
 from trialid.identification.fit import Fit
+from trialid.ship.rigid_body import ROWS
 
 Vector = NDArray[np.float64]
 Group = tuple[int, ...]
@@ -46,6 +47,9 @@ class Completeness:
 
 def completeness(fit: Fit, augmented: Augmented) -> Completeness:
     """Forward selection from the catalogue, and from the catalogue and forces of any shape."""
+    moved = set(ROWS) & set(fit.problem.simulator.equations.states)
+    if not augmented.traces or not moved:
+        return Completeness(0.0, 0.0)  # nothing to compare, or no equation that a force acts in
     evidence = augmented.evidence
     tried = probes(fit)
     white, _ = whitened(tried.columns, augmented.stretches, evidence.colour)

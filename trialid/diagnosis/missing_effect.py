@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.completeness import Completeness
-from trialid.diagnosis.likelihood import check_gain, misfits
+from trialid.diagnosis.likelihood import check_gain, misfits, speaks_against
 from trialid.diagnosis.noise import Split
 from trialid.diagnosis.score import Candidate, price
 from trialid.errors import TrialidError
@@ -20,16 +20,12 @@ DECISIVE: Final = 10.0
 """Difference of twice the log likelihood that decides: odds of 150 to 1, for the noise's colour is
 an estimate itself."""
 
-
 CLOSE: Final = 6.0
 """The same for what is tried first: odds of 20 to 1 and less are no preference."""
 
 FAINT: Final = 0.025
 """Share of its trace that an effect must keep beside the free parameters to be named for a small
 part of the error: a centre of gravity or a scale keeps less, and other errors look like it."""
-
-AGAINST: Final = 2.0
-"""Standard errors by which held-out trials must become worse to speak against an effect."""
 
 DOMINANT: Final = 0.2
 """Share of the squared error from which on an effect is named however little of it shows."""
@@ -178,7 +174,7 @@ def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
     standing = [
         (c, r)
         for c, r in zip(costs, able, strict=True)
-        if c < plain and _holds(check_gain(fit, r.fit, colour))
+        if c < plain and not speaks_against(check_gain(fit, r.fit, colour))
     ]
     if not standing:
         return None
@@ -191,11 +187,6 @@ def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
 def _is_instrumental(refit: Refit) -> bool:
     """Whether it is about sensors, clocks or the rudder's record, not about the ship."""
     return not {Force, Rate, Mass} & set(refit.candidate.effect.forms)
-
-
-def _holds(gain: tuple[float, float] | None) -> bool:
-    """Whether held-out trials do not speak against it: their error does not rise beyond chance."""
-    return gain is None or gain[0] > -AGAINST * gain[1]
 
 
 def _costs(fit: Fit, refits: Sequence[Refit]) -> list[float]:
