@@ -40,7 +40,7 @@ STUBS = """
 import sys, types
 from pathlib import Path
 
-def run(recipe, progress):
+def run(recipe, progress, force=False):
     progress("fitting", 0.5)
     {body}
     return types.SimpleNamespace(result={{"schema": "trialid-result/1", "long": "x" * {size}}})
@@ -75,7 +75,9 @@ def quietly(progress: Callable[[str, float | None], None]) -> None:
 def stub(monkeypatch: pytest.MonkeyPatch, working: Stub = quietly) -> None:
     """Put a stand-in for the chain and the summary where the command imports them."""
 
-    def run(recipe: Recipe, progress: Callable[[str, float | None], None]) -> Done:
+    def run(
+        recipe: Recipe, progress: Callable[[str, float | None], None], force: bool = False
+    ) -> Done:
         working(progress)
         return Done(RESULT)
 

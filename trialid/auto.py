@@ -8,12 +8,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-import numpy as np
-
 from trialid import history
 from trialid.change import Edit, adding, fitted_after, present, proposed
 from trialid.diagnosis.bias import foresee_adding
-from trialid.diagnosis.likelihood import check_gain, misfits
+from trialid.diagnosis.likelihood import objection
 from trialid.errors import TrialidError
 from trialid.pipeline import Progress, Run, align_trials, examine
 from trialid.recipe import Recipe
@@ -87,21 +85,10 @@ def _end(run: Run, added: Sequence[str]) -> str:
 
 
 def _no_better(before: Run, after: Run, name: str) -> str:
-    """What speaks against an effect once it is in the model, empty where nothing does.
-
-    The verdict's own measures: each parameter pays its price (Schwarz), and held-out trials must
-    not speak against it beyond chance.
-    """
+    """What speaks against an effect once it is in the model, empty where nothing does."""
     old, new = before.findings.before.fit, after.findings.before.fit
-    (plain, grown), colour, rows = misfits([old, new])
-    gain = check_gain(old, new, colour)
-    if new.eps_check == np.inf or (gain is not None and gain[0] <= -gain[1]):
-        return "the held-out error rises"
     inflation = next(c.inflation for c in before.findings.ranking if c.effect.name == name)
-    more = len(new.settings.free) - len(old.settings.free)
-    if (plain - grown) / inflation <= more * float(np.log(rows)):
-        return "the error does not fall by the price of the parameters"
-    return ""
+    return objection(old, new, len(new.settings.free) - len(old.settings.free), inflation)
 
 
 def concluded(done: Sequence[Stage]) -> tuple[Run, tuple[history.Step, ...]]:

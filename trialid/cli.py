@@ -20,6 +20,7 @@ from trialid.errors import TrialidError
 
 if TYPE_CHECKING:
     from trialid.auto import Stage
+    from trialid.pipeline import Run
     from trialid.recipe import Recipe
 
 WRONG_INPUT: Final = 2
@@ -72,9 +73,16 @@ def _of_a_run(command: Callable[..., None]) -> Callable[..., None]:
 @_of_a_run
 @click.option("--auto", is_flag=True, help="Add what is missing until nothing more is named.")
 @click.option("--write", "keep", is_flag=True, help="With --auto: write the effects into PIPELINE.")
+@click.option(
+    "--draft",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Where something is missing that no known effect makes: write it as a .py file to edit.",
+)
 def run(
-    pipeline: Path, out: Path | None, as_json: bool, quiet: bool, auto: bool, keep: bool
-) -> None:
+    pipeline: Path, out: Path | None, as_json: bool, quiet: bool, auto: bool, keep: bool,
+    draft: Path | None,
+) -> None:  # fmt: skip
     """Fit a ship model to the logs of PIPELINE, a TOML file, and report what it is worth.
 
     Logs are aligned, the free parameters fitted and rated, the misfit located, the missing effect
@@ -85,7 +93,10 @@ def run(
     """
     if keep and not auto:
         raise click.UsageError("--write goes with --auto: a plain run changes no file")
+    if draft is not None and auto:
+        raise click.UsageError("--draft goes with a plain run: add what is known first")
     recipe, folder = _opened(pipeline, out)
+    _check_draft(draft)
     if auto:
         _grow(recipe, folder, keep, as_json, quiet)
         return
@@ -94,10 +105,14 @@ def run(
     from trialid.pipeline import write
 
     with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
-        done = identify_from(recipe, progress)
+        done = identify_from(recipe, progress, force=draft is not None)
         with _writing(folder):
             write(done, folder)
     _answer(done.result, folder, as_json, quiet, _summary)
+    if draft is not None:
+        said = _write_draft(draft, done)
+        if not quiet:
+            click.echo(said, err=as_json)
 
 
 @commands.command()
@@ -292,6 +307,36 @@ def _check_replaceable(folder: Path, recipe: "Recipe") -> None:
         )
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "result.json").is_file():
         raise TrialidError(f"{folder}: holds other files and no earlier run; choose another --out")
+
+
+def _check_draft(draft: Path | None) -> None:
+    """Refuse, before the work, a place where no new effect file can be."""
+    if draft is None:
+        return
+    if draft.exists():
+        raise TrialidError(f"--draft {draft}: exists; name another file, or move it away")
+    if draft.suffix != ".py":
+        raise TrialidError(f"--draft {draft}: an effect file ends in .py")
+    if not draft.parent.is_dir():
+        raise TrialidError(f"--draft {draft}: there is no folder {draft.parent}; make it first")
+
+
+def _write_draft(draft: Path, done: "Run") -> str:
+    """Write the effect file; what was written or why nothing, in one line."""
+    from trialid.diagnosis.draft import draft as drafted
+    from trialid.diagnosis.draft import why_none
+
+    found = done.findings.force
+    assert found is not None
+    text = drafted(found, done.recipe.name)
+    if text is None:
+        return why_none(found)
+    try:
+        with draft.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        raise TrialidError(f"--draft {draft}: {(error.strerror or str(error)).lower()}") from error
+    return f"Draft: {draft}"
 
 
 def _short(folder: Path) -> str:

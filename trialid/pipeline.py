@@ -19,6 +19,7 @@ from trialid.alignment import SignalSource, align
 from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.completeness import Completeness, completeness
 from trialid.diagnosis.missing_effect import decide, refit
+from trialid.diagnosis.missing_force import missing_force
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
@@ -29,6 +30,7 @@ from trialid.identification.output_error import stretches
 from trialid.identification.pose import Settings
 from trialid.quantities import PARTICULARS, SIGNALS
 from trialid.recipe import Recipe, TrialRecipe, where
+from trialid.report.force import force_series, write_force_csv
 from trialid.report.overlay import write_mcap
 from trialid.report.page import write_page
 from trialid.report.series import OutputSeries, TrialSeries, write_csv
@@ -62,20 +64,26 @@ class Run:
 
 
 @one_thread
-def run(recipe: Recipe, progress: Progress = lambda words, share: None) -> Run:
+def run(recipe: Recipe, progress: Progress = lambda words, share: None, force: bool = False) -> Run:
     """Everything from a pipeline, nothing written.
+
+    With `force` the missing force is sought whatever the verdict, beside a named effect.
 
     Raises
     ------
     TrialidError
         The input is wrong; nothing is left behind.
     """
-    return examine(recipe, align_trials(recipe, progress), progress)
+    return examine(recipe, align_trials(recipe, progress), progress, force=force)
 
 
 @one_thread
 def examine(
-    recipe: Recipe, trials: tuple[Trial, ...], progress: Progress, fit: Fit | None = None
+    recipe: Recipe,
+    trials: tuple[Trial, ...],
+    progress: Progress,
+    fit: Fit | None = None,
+    force: bool = False,
 ) -> Run:
     """Everything from aligned trials on; `fit` where the model is fitted already.
 
@@ -88,26 +96,37 @@ def examine(
     steps, remark = history.read(recipe.path)
     catalogue = available(recipe)
     fit = fit or fit_of(recipe, trials, catalogue, progress)
-    before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
-    # where nothing moves no force is missing, of whatever shape
-    whole = completeness(fit, augmented) if recipe.model.states else Completeness(0.0, 0.0)
-    refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
-                         lambda words: progress(words, 0.7)))  # fmt: skip
-    verdict = decide(fit, ranking, refits, before.split, whole, recipe.diagnose.level)
-    after = None
-    for named in refits:
-        if named.candidate.effect.name == verdict.effect:
-            after = diagnose(recipe, named.fit, catalogue, progress)[0]
-    findings = Findings(
-        recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
-        verdict, stretches_that_fail(fit), after,
-    )  # fmt: skip
+    findings = _findings(recipe, fit, catalogue, progress, force)
     progress("done", 1.0)
     result = plain(findings)
     present, *proposed = result["history"]
     result["history"] = [*history.continued(steps, present), *proposed]
     result |= {"history_remark": remark or None, "sources": sources_of(recipe)}
     return Run(recipe, findings, result, time_series(fit))
+
+
+def _findings(
+    recipe: Recipe, fit: Fit, catalogue: Mapping[str, Effect], progress: Progress, force: bool
+) -> Findings:
+    """What the error is made of, where it is, what is missing, and the model with it."""
+    trials = [s.trial for s in fit.scores]
+    level = recipe.diagnose.level
+    before, ranking, augmented = diagnose(recipe, fit, catalogue, progress)
+    refits = tuple(refit(fit, trials, worth_refitting(recipe, ranking),
+                         lambda words: progress(words, 0.7)))  # fmt: skip
+    moves = bool(recipe.model.states)  # else no force is missing, of whatever shape
+    whole = completeness(fit, augmented) if moves else Completeness(0.0, 0.0)
+    verdict = decide(fit, ranking, refits, before.split, whole, level)
+    named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
+    after = diagnose(recipe, named.fit, catalogue, progress)[0] if named else None
+    sought = None
+    if moves and (force or verdict.kind == "not in catalogue"):
+        progress("looking for the missing force", 0.9)
+        sought = missing_force(named.fit if named else fit, level)
+    return Findings(
+        recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
+        verdict, stretches_that_fail(fit), after, sought,
+    )  # fmt: skip
 
 
 def fit_of(
@@ -476,5 +495,8 @@ def _write_files(done: Run, folder: Path) -> None:
     (folder / "result.json").write_text(text + "\n", encoding="utf-8")
     write_csv(folder / "series.csv", done.series)
     write_mcap(folder / "predicted.mcap", done.result, done.series)
-    write_page(folder / "report.html", done.result, done.series)
+    forces = force_series(done.findings.force) if done.findings.force is not None else ()
+    if forces:
+        write_force_csv(folder / "missing_force.csv", forces)
+    write_page(folder / "report.html", done.result, done.series, forces)
     (folder / "pipeline.toml").write_bytes(done.recipe.content)

@@ -14,11 +14,13 @@ import trialid
 from trialid.accuracy import Accuracy, ParameterAccuracy
 from trialid.diagnosis.leftover.finding import Bars, Finding, Spectrum
 from trialid.diagnosis.missing_effect import Refit, Verdict
+from trialid.diagnosis.missing_force import MissingForce
 from trialid.diagnosis.noise import Split
 from trialid.diagnosis.score import VISIBLE, Candidate
 from trialid.diagnosis.where import Where
 from trialid.errors import EffectError
 from trialid.identification.fit import Fit, step_halving
+from trialid.report.force import missing_force_data
 from trialid.ship.model import ShipModel
 from trialid.ship.stability import PARTS, Stability, stability
 
@@ -40,7 +42,8 @@ class Diagnosed:
 class Findings:
     """All that a run found.
 
-    `after` is the confirmed refit, diagnosed in its turn; None where no effect was named.
+    `after` is the confirmed refit, diagnosed in its turn; None where no effect was named. `force`
+    is None where nobody asked and the verdict is another.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Findings:
     verdict: Verdict
     where: Where
     after: Diagnosed | None
+    force: MissingForce | None = None
 
 
 def plain(found: Findings) -> Plain:
@@ -73,6 +77,7 @@ def plain(found: Findings) -> Plain:
             "where_else": _where_else(found.where),
             "missing": _missing(found),
             "not_tried": dict(found.left_out),
+            "missing_force": None if found.force is None else missing_force_data(found.force),
             "verdict": _verdict(found.verdict),
             "history": _history(found),
             "before_after": _before_after(found),

@@ -62,6 +62,17 @@ SHORT_SCENARIOS: Final = (
     "odd_switch", "x_G + 1 % of L", "nothing",
 )  # fmt: skip
 EVERY: Final = {**SCENARIOS, **TYPICAL}
+CORE: Final = (
+    "sway_drag_vav", "sway_drag_rar", "yaw_drag_rav", "yaw_drag_rar", "roll_drag_rav",
+    "yaw_cubic_cross", "roll_cubic", "centripetal_added_mass", "roll_rate_yaw", "heel_drift",
+    "quadratic_roll_damping", "righting_arm_cubic", "static_list", "rudder_cubic",
+    "rudder_slipstream", "steady_wind", "rudder_offset", "bias_r", "delay_r", "lag_phi",
+    "gyro_cross_axis", "rudder_record_delay", "rudder_servo", "rudder_servo_limited",
+    "rudder_backlash", "odd_rudder", "odd_switch", "odd_heel", "odd_course", "x_G + 1 % of L",
+    "gyro scale + 3 %", "roll scale + 3 %", "nothing",
+)  # fmt: skip
+"""Twenty-five effects from every part of the ship, and what must not be named."""
+
 DEFAULTS: Final = SimpleNamespace(diagnose=DiagnoseRecipe())
 """A pipeline that says nothing in [diagnose]."""
 
@@ -245,7 +256,7 @@ def options() -> argparse.Namespace:
         parser.error(f"--out {asked.out}: a name that ends in .md or .csv is needed")
     short = asked.short
     asked.seeds = asked.seeds or (SHORT_SEEDS if short else SEEDS)
-    asked.scenarios = asked.scenarios or list(SHORT_SCENARIOS if short else SCENARIOS)
+    asked.scenarios = asked.scenarios or list(SHORT_SCENARIOS if short else CORE)
     asked.noise = asked.noise or list(SHORT_NOISES if short else NOISES)
     asked.trials = asked.trials or (["mixed"] if short else list(TRIAL_SETS))
     return asked

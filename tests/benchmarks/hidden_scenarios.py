@@ -21,9 +21,10 @@ from hidden_truth import (
     servo,
 )
 
+from trialid.diagnosis.augment import linear_parameters
 from trialid.effects import CATALOGUE
 from trialid.maths import sin, tanh
-from trialid.ship.effect import Effect, Force, Mass, Rate, effect
+from trialid.ship.effect import Effect, Force, Mass, Rate, Steered, effect
 
 TWINS: Final = (
     {"yaw_drag_rar", "yaw_cubic_rrr"},
@@ -94,13 +95,16 @@ def _typical(name: str) -> Scenario | None:
     """An effect that has no row below, at the size its file calls typical; None if none can see it.
 
     That it is part of the ship the person knows, drives the rudder from orders that are not
-    logged, reads or changes a signal that the record does not hold, or shares a number with the
-    known ship.
+    logged, reads or changes a signal that the record does not hold, shares a number with the known
+    ship, stands for a motion that is simulated, or is not to be sought at all.
     """
     hidden = CATALOGUE[name]
     record = {*MODEL.states, "psi", "delta", "n", "U", "t", *MODEL.ship.particulars, *hidden.states}
     shared = set(hidden.parameters) & set(MODEL.parameters)
     if shared or "delta" in hidden.states or not {*hidden.signals} <= record:
+        return None
+    steered = {*hidden.acts_on(Steered)} & {*MODEL.states}
+    if steered or not (hidden.scanned or linear_parameters(hidden)):
         return None
     if not {*hidden.measures} <= {*OUTPUTS}:
         return None

@@ -62,8 +62,9 @@ class Row:
 
     @property
     def detectable(self) -> bool:
-        """Whether what is hidden stands out of the noise."""
-        return self.plain is not None and self.plain > DETECTABLE
+        """Whether what is hidden stands out of the noise: by its score, or else by the truth."""
+        seen = self.plain if self.score is None else self.score
+        return seen is not None and seen > DETECTABLE
 
     @property
     def named(self) -> bool:
@@ -139,7 +140,7 @@ def thresholds(rows: Sequence[Row], limits: Limits) -> list[Threshold]:
     seen = [r for r in mixed if r.group in IN_CATALOGUE and r.detectable]
     odd = [r for r in mixed if r.group == "outside" and r.detectable]
     sensors = [r for r in mixed if r.group == "sensor"]
-    controls = [r for r in mixed if r.group == "control" and not r.detectable]
+    controls = [r for r in mixed if r.group == "control"]
     drops = [r for r in seen if r.right and r.ratio is not None]
     made = [
         _held("right family, of detectable", seen, lambda r: r.right, limits.right, True),
@@ -151,7 +152,7 @@ def thresholds(rows: Sequence[Row], limits: Limits) -> list[Threshold]:
               limits.outside_seen, True),
         _held("sensor fault named a physical effect", sensors, lambda r: r.physical,
               limits.sensor_physical),
-        _held("control named, where it does not stand out", controls, lambda r: r.named,
+        _held("control named", controls, lambda r: r.named,
               limits.control),
     ]  # fmt: skip
     for noise in dict.fromkeys(r.noise for r in mixed):

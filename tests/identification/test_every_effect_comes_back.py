@@ -86,3 +86,23 @@ def test_an_effect_comes_back(name: str) -> None:
     for parameter, x in truth.items():
         assert fit.estimates[parameter] == pytest.approx(x, rel=1e-3), parameter
     assert fit.eps_rmsn < 1e-4
+
+
+def test_two_gyros_are_compared_without_a_ship() -> None:
+    """Nothing is simulated: gain, offset, delay and low-pass of one sensor against another."""
+    truth = {"k_ref": 1.03, "b_r": 0.0008, "tau_r": 0.4, "T_r": 0.9}
+    effects = tuple(CATALOGUE[n] for n in ("reference_rate", "bias_r", "delay_r", "lag_r"))
+    model = ShipModel(MODEL.ship, (), effects)
+    t = PERIOD * np.arange(SAMPLES)
+    signals = {"r_ref": 0.01 * np.sin(0.2 * t) + 0.005 * np.sin(0.7 * t + 0.3), "r": 0.0 * t}
+    valid = {n: np.ones(SAMPLES, dtype=bool) for n in signals}
+    trial = Trial("two gyros", "fit", PERIOD, signals, valid)
+    made = prepare(model.with_values(truth), (), ("r",))
+    r = respond(made, trial, {}, {}, sensitivities=False).y[:, 0]
+    noise = 1e-4 * np.random.default_rng(0).standard_normal(SAMPLES)
+    trial = replace(trial, signals=signals | {"r": r + noise})
+    begin = {"k_ref": 1.0, "b_r": 0.0, "tau_r": 0.1, "T_r": 0.3}
+    fit = identify([trial], model.with_values(begin), Settings(tuple(truth), ("r",), nuisance=()))
+    assert fit.estimates == pytest.approx(truth, abs=0.03)
+    assert fit.estimates["b_r"] == pytest.approx(0.0008, abs=2e-5)
+    assert fit.estimates["k_ref"] == pytest.approx(1.03, abs=0.005)

@@ -6,11 +6,13 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtrc, chdtri  # scipy.stats would take another 0.4 s to import
 
 from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.probes import probes
 from trialid.diagnosis.whitening import whitened
 from trialid.identification.fit import Fit
+from trialid.ship.rigid_body import ROWS
 
 Vector = NDArray[np.float64]
 Group = tuple[int, ...]
@@ -45,6 +47,9 @@ class Completeness:
 
 def completeness(fit: Fit, augmented: Augmented) -> Completeness:
     """Forward selection from the catalogue, and from the catalogue and forces of any shape."""
+    moved = set(ROWS) & set(fit.problem.simulator.equations.states)
+    if not augmented.traces or not moved:
+        return Completeness(0.0, 0.0)  # nothing to compare, or no equation that a force acts in
     evidence = augmented.evidence
     tried = probes(fit)
     white, _ = whitened(tried.columns, augmented.stretches, evidence.colour)
@@ -71,8 +76,8 @@ class _Search:
     def gain(self, effects: Sequence[Group], forces: Sequence[Group]) -> float:
         """What a forward selection gains; effects and forces pay for the search among their own.
 
-        Each coefficient pays ln N (Schwarz, 1978), each step 2 ln J for one of J (Chen & Chen,
-        2008).
+        One coefficient pays ln N (Schwarz, 1978), several what is as rare by chance; each step
+        pays 2 ln J for one of J (Chen & Chen, 2008).
         """
         steps = [(g, len(effects)) for g in effects] + [(g, len(forces)) for g in forces]
         chosen, total = list[int](), 0.0
@@ -92,7 +97,7 @@ class _Search:
 
     def _net(self, chosen: Sequence[int], group: Group, known: float) -> float:
         gain = (self._explained([*chosen, *group]) - known) / self.inflation
-        return gain - len(group) * float(np.log(self.rows))
+        return gain - float(chdtri(len(group), chdtrc(1, np.log(self.rows))))
 
     def _explained(self, columns: Sequence[int]) -> float:
         """Fall of the whitened sum of squares with these columns."""

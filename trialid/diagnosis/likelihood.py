@@ -1,6 +1,7 @@
 """How likely the records are under one model against another, by whitened residuals."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from trialid.trial import Mask
 
 Vector = NDArray[np.float64]
 
+AGAINST: Final = 2.0
+"""Standard errors by which held-out trials must become worse to speak against an effect."""
+
 
 def misfits(fits: Sequence[Fit]) -> tuple[list[float], Colour, int]:
     """Whitened sum of squares of each fit over the trials to fit, the colour, and how many rows.
@@ -26,6 +30,25 @@ def misfits(fits: Sequence[Fit]) -> tuple[list[float], Colour, int]:
     colour = colour_of(columns[:, best], parts)
     white, _ = whitened(columns, parts, colour)
     return [float(x) for x in np.sum(white**2, axis=0)], colour, len(white)
+
+
+def objection(before: Fit, after: Fit, more: int, inflation: float) -> str:
+    """What speaks against a model with more parameters, empty where nothing does.
+
+    Each parameter pays its price (Schwarz, 1978), and held-out trials must not become worse beyond
+    chance.
+    """
+    (plain, grown), colour, rows = misfits([before, after])
+    if after.eps_check == np.inf or speaks_against(check_gain(before, after, colour)):
+        return "the held-out error rises"
+    if (plain - grown) / inflation <= more * float(np.log(rows)):
+        return "the error does not fall by the price of the parameters"
+    return ""
+
+
+def speaks_against(gain: tuple[float, float] | None) -> bool:
+    """Whether held-out trials, where there are any, become worse by more than chance."""
+    return gain is not None and gain[0] <= -AGAINST * gain[1]
 
 
 def check_gain(before: Fit, after: Fit, colour: Colour) -> tuple[float, float] | None:

@@ -79,11 +79,11 @@ def path(fit: Fit, index: int, every: int) -> Path:
     symbols = [*X.T, *u.T, *theta]
     rows = tuple(ROWS[s] for s in simulator.equations.states if s in ROWS)
     J, W = _system(simulator, symbols, len(at))
-    step = every * trial.period
+    step, t = every * trial.period, np.asarray(at * trial.period, dtype=np.float64)
     E, P = _exponential(0.5 * step * (J[1:] + J[:-1]))
     D = step * P @ (0.5 * (W[1:] + W[:-1]))
     return Path(
-        index, trial.name, at, at * trial.period, _acting(simulator, trial, X, u, values, at),
+        index, trial.name, at, t, _acting(simulator, trial, X, u, values, at),
         E, D, _slopes(simulator, symbols, len(at)) * row_scale(problem)[:, None],
         np.asarray(_delays(simulator, symbols) / step),
         rows,

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.completeness import Completeness
-from trialid.diagnosis.likelihood import check_gain, misfits
+from trialid.diagnosis.likelihood import check_gain, misfits, speaks_against
 from trialid.diagnosis.noise import Split
 from trialid.diagnosis.score import Candidate, price
 from trialid.errors import TrialidError
@@ -16,11 +16,14 @@ from trialid.identification.pose import Settings
 from trialid.ship.effect import Effect, Force, Mass, Rate
 from trialid.trial import Trial
 
-DECISIVE: Final = 6.0
-"""Difference of twice the log likelihood that decides: odds of 20 to 1."""
+DECISIVE: Final = 10.0
+"""Difference of twice the log likelihood that decides: odds of 150 to 1, for the noise's colour is
+an estimate itself."""
 
+CLOSE: Final = 6.0
+"""The same for what is tried first: odds of 20 to 1 and less are no preference."""
 
-FAINT: Final = 0.02
+FAINT: Final = 0.025
 """Share of its trace that an effect must keep beside the free parameters to be named for a small
 part of the error: a centre of gravity or a scale keeps less, and other errors look like it."""
 
@@ -98,9 +101,20 @@ def decide(
         return Verdict("cannot tell", None, (), _faint(named))
     if named is not None:
         return _missing(fit, named, rivals(fit, named, ranking, refits))
+    return _unnamed(parts, whole)
+
+
+def _unnamed(parts: Split, whole: Completeness) -> Verdict:
+    """What to say where no effect stands out."""
     if parts.undermodelling_interval is None:
         return Verdict("cannot tell", None, (), _no_split(parts))
     low, high = parts.undermodelling_interval
+    if low > 0.0 and whole.any_shape <= 0.0:
+        return Verdict(
+            "cannot tell", None, (),
+            f"an error of {low:.1%} to {high:.1%} is more than the noise ({parts.method}), but no "
+            "effect and no force of a simple shape shows in it: rougher weather looks the same",
+        )  # fmt: skip
     if low > 0.0:
         return Verdict(
             "not in catalogue", None, (),
@@ -160,23 +174,19 @@ def confirmed(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
     standing = [
         (c, r)
         for c, r in zip(costs, able, strict=True)
-        if c < plain and _holds(check_gain(fit, r.fit, colour))
+        if c < plain and not speaks_against(check_gain(fit, r.fit, colour))
     ]
     if not standing:
         return None
     least = min(c for c, _ in standing)
-    close = [(c, r) for c, r in standing if c < least + DECISIVE]
-    return min(close, key=lambda x: (not is_instrumental(x[1].candidate.effect), x[0]))[1]
+    close = [(c, r) for c, r in standing if c < least + CLOSE]
+    faint = [x for x in close if _is_faint(fit, x[1])]  # one of them makes all of them doubtful
+    return min(faint or close, key=lambda x: (not _is_instrumental(x[1]), x[0]))[1]
 
 
-def is_instrumental(effect: Effect) -> bool:
+def _is_instrumental(refit: Refit) -> bool:
     """Whether it is about sensors, clocks or the rudder's record, not about the ship."""
-    return not {Force, Rate, Mass} & set(effect.forms)
-
-
-def _holds(gain: tuple[float, float] | None) -> bool:
-    """Whether held-out trials do not speak against it: their error does not rise beyond chance."""
-    return gain is None or gain[0] > -gain[1]
+    return not {Force, Rate, Mass} & set(refit.candidate.effect.forms)
 
 
 def _costs(fit: Fit, refits: Sequence[Refit]) -> list[float]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from trialid.diagnosis.augment import Augmented, Trace, augment
 from trialid.diagnosis.chance import Chance, against_chance
-from trialid.diagnosis.evidence import Projected, explained
+from trialid.diagnosis.evidence import Evidence, Projected, explained
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
 
@@ -22,6 +22,10 @@ Vector = NDArray[np.float64]
 
 VISIBLE: Final = 0.001
 """Below this share of its sensitivity left, an effect cannot be told from the free parameters."""
+
+
+OUTSIDE: Final = 2.5
+"""Standard errors by which a value must lie outside its range to be unphysical."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,7 @@ class Candidate:
     family
         Effects this record cannot separate from it, |cos| above the limit.
     allowed
-        Whether the expected values lie in their physical range.
+        Whether the expected values lie in their physical range, chance apart.
     inflation
         By how much rows that are not quite independent make chance greater.
     """
@@ -122,14 +126,30 @@ def _candidate(fit: Fit, augmented: Augmented, trace: Trace, chance: Chance | No
     _, gain = _explained(evidence.white, trace)
     if chance is None:
         chance, fall, gain = Chance(0.0, 1.0), 0.0, 0.0
-    parameters = trace.effect.parameters
-    inside = all(parameters[n].low <= x <= parameters[n].high for n, x in values.items())
     return Candidate(
         trace.effect, values, float(np.sqrt(max(fit.eps_rmsn**2 - fall, 0.0))),
         gain / evidence.inflation,
         chance.score, chance.p_value, _visibility(augmented, trace), (trace.effect.name,),
-        inside and (fall > 0.0 or not trace.tried), evidence.inflation,
+        fall > 0.0 if trace.tried else _in_range(evidence, trace), evidence.inflation,
     )  # fmt: skip
+
+
+def _in_range(evidence: Evidence, trace: Trace) -> bool:
+    """Whether no parameter lies outside its physical range by more than chance would put it there.
+
+    By the whitened rows, which know the values best: a weakly seen term of several must not reject
+    the others, and a wrong sign of a single one is as sure as its score.
+    """
+    rows, parameters = evidence.white, trace.effect.parameters
+    beta, _ = explained(rows, trace.columns)
+    gram = rows.gram[np.ix_(trace.columns, trace.columns)]
+    sizes = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    inverse = np.linalg.pinv(gram / np.outer(sizes, sizes), rcond=1e-10, hermitian=True)
+    errors = np.sqrt(evidence.inflation * np.diag(inverse)) / sizes
+    return all(
+        parameters[n].low - OUTSIDE * e <= x <= parameters[n].high + OUTSIDE * e
+        for n, x, e in zip(trace.parameters, beta, errors, strict=True)
+    )
 
 
 def _explained(rows: Projected, trace: Trace) -> tuple[dict[str, float], float]:

@@ -41,12 +41,11 @@ def _long_run(m: Vector, lags: int) -> Vector:
     n = len(m)
     size = 1 << (n + lags).bit_length()
     spectrum = np.fft.rfft(m, size, axis=0)
-    weights = np.maximum(1.0 - np.arange(lags + 1) / (lags + 1), 0.0)
-    result = np.zeros((m.shape[1],) * 2)
-    for i in range(m.shape[1]):
-        for j in range(m.shape[1]):
-            c = np.fft.irfft(spectrum[:, i].conj() * spectrum[:, j], size)
-            result[i, j] = float(
-                weights[0] * c[0] + weights[1:] @ (c[1 : lags + 1] + c[size - lags :][::-1])
-            )
-    return result
+    weights = np.zeros(size)
+    weights[: lags + 1] = 1.0 - np.arange(lags + 1) / (lags + 1)
+    weights[size - lags :] = weights[lags:0:-1]
+    # the weighted sum of all covariances is one product of spectra with that of the weights
+    window = np.fft.rfft(weights).real
+    parts = np.full(len(window), 2.0)
+    parts[0] = parts[-1] = 1.0
+    return np.asarray((spectrum.conj() * (window * parts)[:, None]).T @ spectrum).real / size

@@ -63,9 +63,9 @@ def heel_sway_cubic(
 def heel_roll_cubic(
     v, r, phi, *,
     Kvvphi=Parameter(-0.0012, low=-0.02, high=0.02),
-    Kvphiphi=Parameter(-0.00008, low=-0.003, high=0.003),
+    Kvphiphi=Parameter(-0.00008, low=-0.01, high=0.01),
     Krrphi=Parameter(-0.00024, low=-0.005, high=0.005),
-    Krphiphi=Parameter(0.000036, low=-0.001, high=0.001),
+    Krphiphi=Parameter(0.000036, low=-0.004, high=0.004),
 ):  # fmt: skip
     """K = Kvvphi v^2 phi + Kvphiphi v phi^2 + Krrphi r^2 phi + Krphiphi r phi^2."""
     return Force(K=(Kvvphi * v * v + Krrphi * r * r) * phi + (Kvphiphi * v + Krphiphi * r) * phi**2)

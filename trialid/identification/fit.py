@@ -13,7 +13,10 @@ from trialid.identification.output_error import (
     Problem,
     linearise,
     loss,
+    measured,
+    output_error,
     respond_all,
+    row_scale,
     scores,
     where_compared,
 )
@@ -22,6 +25,8 @@ from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import (
     Departure,
     Response,
+    guess,
+    initial,
     respond,
 )
 from trialid.threads import one_thread
@@ -40,6 +45,9 @@ SETTLED: Final = 1e-6
 """Typical sizes that a further pass may move any parameter when it is the last."""
 
 SAME_OPTIMUM: Final = 1e-6
+
+START_STEPS: Final = 3
+"""Steps to where a held-out trial starts: nearly linear, and quickly forgotten."""
 
 
 @dataclass(frozen=True)
@@ -301,17 +309,17 @@ def _finish(
 def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
     """Simulate one trial with the fitted parameters.
 
-    A trial to check has no nuisance parameters of its own: sensors keep the mean of the fitted
-    ones, and the motion starts as recorded.
+    A trial to check has no parameters of its own but where its motion starts, if the fit leaves
+    that free too: sensors keep the mean of the fitted ones.
     """
+    compared = where_compared(trial, problem.simulator)
     if trial.use == "fit":
-        index = problem.trials.index(trial)
-        values = problem.values(theta, index)
+        values = problem.values(theta, problem.trials.index(trial))
+        start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
     else:
         values = _mean_values(problem, theta)
-    start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+        start = _own_start(problem, trial, compared, values)
     response = respond(problem.simulator, trial, values, start, sensitivities=False)
-    compared = where_compared(trial, problem.simulator)
     if response.departure is None:
         eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
     else:  # what was lost has no error, however good its beginning
@@ -319,6 +327,30 @@ def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
         eps = dict.fromkeys(problem.outputs, np.inf)
     counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
     return Score(trial, response, compared, eps, counts)
+
+
+def _own_start(
+    problem: Problem, trial: Trial, compared: Mask, values: Mapping[str, float]
+) -> dict[str, float]:
+    """Where the motion of a trial to check starts; recorded samples alone would add their noise."""
+    simulator = problem.simulator
+    free = [s for s in simulator.model.states
+            if any(x.column == initial(s) for x in problem.unknowns)]  # fmt: skip
+    start = {s: guess(simulator.model, trial, s) for s in free}
+    if not free:
+        return start
+    columns = [simulator.columns.index(initial(s)) for s in free]
+    scale = np.broadcast_to(row_scale(problem), compared.shape)[compared]
+    for _ in range(START_STEPS):
+        response = respond(simulator, trial, values, start)
+        if response.departure is not None or response.S is None:
+            break
+        gap = output_error(measured(trial, problem.outputs), response.y)[compared] * scale
+        slopes = response.S[:, :, columns][compared] * scale[:, None]
+        sizes = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+        step = np.linalg.lstsq(slopes / sizes, gap, rcond=1e-8)[0] / sizes
+        start = {s: start[s] + float(x) for s, x in zip(free, step, strict=True)}
+    return start
 
 
 def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:

@@ -208,7 +208,7 @@ class DiagnoseRecipe(Section):
 
     candidates: Annotated[Literal["all", "none"] | Names, PlainValidator(_candidates)] = "all"
     noise: Mapping[str, Positive] = {}
-    refit: Whole = 3
+    refit: Whole = 4
     family_cos: Annotated[Number, Field(gt=0, le=1)] = 0.9
     level: Annotated[Number, Field(gt=0, lt=1)] = 0.05
     quiet: tuple[QuietStretch, ...] = ()

@@ -5,7 +5,8 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trialid.report import bars, labels, panels, where_pictures, wording
+from trialid.report import bars, force_plots, labels, panels, where_pictures, wording
+from trialid.report.force import ForceSeries
 from trialid.report.series import TrialSeries
 from trialid.report.shape import Run, whole
 
@@ -22,12 +23,19 @@ VERDICTS = {
 """What the four kinds of verdict are called at the top of the page."""
 
 
-def write_page(path: str | Path, result: Mapping[str, Any], series: Sequence[TrialSeries]) -> None:
+def write_page(
+    path: str | Path,
+    result: Mapping[str, Any],
+    series: Sequence[TrialSeries],
+    forces: Sequence[ForceSeries] = (),
+) -> None:
     """`report.html`: opens offline, asks the network for nothing."""
-    Path(path).write_text(page(result, series), encoding="utf-8")
+    Path(path).write_text(page(result, series, forces), encoding="utf-8")
 
 
-def page(result: Mapping[str, Any], series: Sequence[TrialSeries]) -> str:
+def page(
+    result: Mapping[str, Any], series: Sequence[TrialSeries], forces: Sequence[ForceSeries] = ()
+) -> str:
     """The page as text."""
     run = whole(result)
     physical, nuisance = _by_kind(run)
@@ -48,6 +56,7 @@ def page(result: Mapping[str, Any], series: Sequence[TrialSeries]) -> str:
             outputs=_outputs(run),
             shown_trials=_shown_trials(run, series),
             plots=panels.trial_panels(series, run),
+            forces=force_plots.pictures(run, forces),
             assets=_assets(),
         )
     )

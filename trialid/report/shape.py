@@ -78,6 +78,23 @@ _STEP = _keys("step added dropped eps_rmsn noise undermodelling eps_rmsn_check v
     "logs": [None],
 }
 _FINDING = _keys("output finding doing share excess p_value t_start t_end trial sentence picture")
+_FORCE = _keys("named sentence") | {
+    "possible": [None],
+    "effects": [None],
+    "equations": [
+        _keys(
+            "equation unit explains log_likelihood_ratio p_value symmetry shape_explains"
+            " terms_tried sentence"
+        )
+        | {
+            "signals": [None],
+            "shape": [
+                _keys("name term coefficient standard_error share p_value symmetry")
+                | {"rivals": [None]}
+            ],
+        }
+    ],
+}
 
 SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "trials": [_TRIAL],
@@ -101,6 +118,7 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
     "sources": [_keys("path sha256")],
     "before_after": Maybe(_CHANGE),
     "change": Maybe(_CHANGE),
+    "missing_force": Maybe(_FORCE),
 }
 
 

@@ -280,7 +280,7 @@ class _Readout:
             (c, i) for c, row in enumerate(slopes) for i, d in enumerate(row) if not _zero(d)
         ]
         states = [(c, self.by[i], slopes[c][i]) for c, i in self.entries if self.by[i] in self.kept]
-        alike = len(outputs) == len(self.kept) and all(d.is_constant(1.0) for *_, d in states)
+        alike = len(self.kept) == len(outputs) and all(d.is_constant(1.0) for *_, d in states)
         self.plain = alike and [(c, s) for c, s, _ in states] == list(enumerate(self.kept))
         # every output is a state of its own: S is what is asked for
         self.value = evaluator(nodes, symbols, scalar=False)

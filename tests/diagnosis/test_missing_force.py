@@ -1,0 +1,119 @@
+"""A hidden force is found in its equation, with its course and its shape; noise has none."""
+
+import time
+
+import numpy as np
+import pytest
+from hidden_force import (
+    fit_of,
+    odd_shape,
+    pushed,
+    rudder_in_heel,
+    stiffness,
+    turning_in_heel,
+)
+from s175q import white, zigzag
+
+from trialid.diagnosis.linear_response import path, response
+from trialid.diagnosis.missing_force import missing_force
+from trialid.identification.output_error import row_scale
+
+
+def within_band(found, row, forces):
+    """Share of the time in which a force lies within two standard errors."""
+    inside = []
+    for course, force in zip(found.equation(row).courses, forces, strict=True):
+        true = np.interp(course.t, 0.5 * np.arange(len(force)), force)
+        inside.append(np.abs(true - course.force) < 2.0 * course.error)
+    return float(np.mean(np.concatenate(inside)))
+
+
+def test_linear_response_is_that_of_the_engine():
+    fit, _ = fit_of(None, 1)
+    p = path(fit, 1, 1)
+    bump = np.exp(-(((p.t - 300.0) / 15.0) ** 2))
+    trial = zigzag(10)
+    for row, size in (("X", 1e3), ("Y", 1e3), ("K", 1e4), ("N", 1e5)):
+        there, back = (pushed(trial, row, s * size * bump) for s in (0.5, -0.5))
+        gaps = [there.signals[c] - back.signals[c] for c in fit.problem.outputs]
+        wanted = np.column_stack(gaps) * row_scale(fit.problem)
+        found = response(p, row, size * bump[:, None])[:, :, 0]
+        # the path is that of the fit, a few percent from the truth's
+        assert np.abs(found - wanted).max() < 0.05 * np.abs(wanted).max(), row
+
+
+def test_noise_has_no_force():
+    for noise in ({}, {"noise": white}):
+        found = missing_force(fit_of(None, 2, **noise)[0])
+        assert found.named is None
+        assert found.possible == ()
+        assert "no force" in found.sentence
+
+
+def test_an_outer_force_is_found_with_its_course_and_follows_no_signal():
+    fit, forces = fit_of("N", 3)
+    found = missing_force(fit)
+    assert found.named == "N"
+    assert found.equation("N").shape.terms == ()
+    assert "follows no signal" in found.sentence
+    assert within_band(found, "N", forces) > 0.9
+    course = found.equation("N").courses[1]
+    true = np.interp(course.t, 0.5 * np.arange(len(forces[1])), forces[1])
+    assert np.corrcoef(course.force, true)[0, 1] > 0.6
+
+
+def test_a_hidden_effect_is_found_with_its_shape():
+    found = missing_force(fit_of(rudder_in_heel, 4)[0])
+    assert found.named == "N"
+    term = found.equation("N").shape.terms[0]
+    assert term.term.words == "delta |phi|"
+    assert term.coefficient == pytest.approx(-0.005, rel=0.2)
+    assert term.term.mirror == "odd"
+    assert found.equation("N").shape.explains == pytest.approx(
+        found.equation("N").explains, rel=0.25
+    )
+
+
+def test_three_trials_take_three_seconds_and_the_same_comes_out_again():
+    fit, _ = fit_of(turning_in_heel, 5)
+    begin = time.process_time()
+    found = missing_force(fit)
+    assert time.process_time() - begin < 6.0  # 3 s where nothing else runs
+    assert found.sentence == missing_force(fit).sentence
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("hidden", "row"),
+    [("N", "N"), ("Y", "Y"), ("K", "K"), (odd_shape, "N"), (turning_in_heel, "N"),
+     (rudder_in_heel, "N"), (stiffness, "K")],
+)  # fmt: skip
+def test_the_right_equation_is_named(hidden, row):
+    """In nine of ten of twenty records, and the band holds an outer force.
+
+    Of the time within two standard errors: 0.93 in yaw, 0.95 in sway, 0.84 in roll.
+    """
+    named, shares, terms = [], [], []
+    for seed in range(20):
+        fit, forces = fit_of(hidden, 100 + seed, *([white] if seed % 2 else []))
+        found = missing_force(fit)
+        named.append(found.named)
+        terms.append(tuple(t.term.words for t in found.equation(row).shape.terms))
+        if forces:
+            shares.append(within_band(found, row, forces))
+    print(hidden, {n: named.count(n) for n in set(named)}, {t: terms.count(t) for t in set(terms)})
+    assert named.count(row) >= 18
+    if shares:
+        print("within two standard errors:", np.mean(shares), min(shares))
+        assert np.mean(shares) > (0.8 if row == "K" else 0.9)  # roll noise is slow near resonance
+
+
+@pytest.mark.study
+def test_noise_alone_names_no_equation():
+    """In at most 2 of 40 records, waves and white noise."""
+    found = [
+        missing_force(fit_of(None, 200 + s, *([white] if s % 2 else []))[0]) for s in range(40)
+    ]
+    alarms = sum(f.possible != () for f in found)
+    print("alarms", alarms, "least p", min(f.equations[0].p_value for f in found))
+    assert alarms <= 2
