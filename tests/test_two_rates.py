@@ -14,7 +14,7 @@ from trialid import auto, recipe
 
 PIPELINE = Path(__file__).parent / "two_rates.toml"
 FINE = 0.01  # s
-HELD = 25.0  # s, an order of the helmsman
+HELD = 30.0  # s, an order of the helmsman
 DEG = np.deg2rad(1.0)
 DELAY, BIAS, NOISE = 0.6, 0.04 * DEG, 0.01 * DEG
 
@@ -118,10 +118,10 @@ def test_one_pole_is_named_where_there_is_one(tmp_path):
 
 
 def test_nothing_is_named_where_the_sensors_agree(tmp_path):
-    write_logs(tmp_path, poles=(), delay=0.0, bias=0.0)
     """What resampling two clocks leaves, 0.2 % of the signal, may be called more than noise."""
+    write_logs(tmp_path, poles=(), delay=0.0, bias=0.0)
     (only,) = found(pipeline(tmp_path))
-    assert only.run.result["verdict"]["kind"] in {"nothing missing", "not in catalogue"}
+    assert only.run.result["verdict"]["kind"] != "missing"
     assert only.run.result["fit"]["eps_rmsn"] < 0.005
 
 

@@ -38,7 +38,7 @@ TWINS: Final = (
     {"righting_arm_cubic", "righting_arm_quintic"},
     {"static_list", "bias_phi"},
     {"rudder_offset", "propeller_side_force", "hull_asymmetry"},
-    {"delay_r", "lag_r"},
+    {"delay_r", "lag_r", "lag_twice_r"},
     {"delay_phi", "lag_phi"},
     {"rudder_servo", "rudder_servo_limited", "rudder_servo_second_order"},
 )

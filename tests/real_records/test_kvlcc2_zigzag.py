@@ -23,7 +23,7 @@ pytestmark = [
 PIPELINE = "kvlcc2_zigzag.toml"
 YAW = {
     "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rav", "yaw_drag_rar",
-    "yaw_cubic_vvv", "yaw_cubic_cross", "yaw_cubic_rrr",
+    "yaw_cubic_vvv", "yaw_cubic_cross", "yaw_cubic_rrr", "cross_flow_drag",
 }  # fmt: skip
 SWAY = {e.replace("yaw", "sway") for e in YAW}
 BOTH = {"cross_flow_drag"}

@@ -70,7 +70,7 @@ def lag_r(*, T_r=Parameter(0.5, "s", low=0.0, high=20.0)):
 def lag_twice_r(*, T_rr=Parameter(0.5, "s", low=0.0, high=20.0)):
     """(1 + T_rr d/dt)^2 r_measured = r: a rate of turn behind two low-passes of one time constant.
 
-    At small T_rr it is a lag of 2 T_rr, and a delay; the longer, the more it is neither.
+    A small T_rr is a delay of 2 T_rr, the longer the less.
     """
     return Lagged(r=T_rr), Lagged(r=T_rr)
 
