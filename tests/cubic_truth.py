@@ -106,7 +106,7 @@ def write_logs(folder, coloured, seed):
         np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=head, comments="")
 
 
-def noise_share(name, result):
-    """What a trial's error would be if nothing but the sensors' noise were left, as eps_RMSn."""
+def noise_share(result):
+    """What the error would be if nothing but the sensors' noise were left, as eps_RMSn."""
     rms = result["fit"]["y_rms"]
     return float(np.sqrt(np.mean([(NOISE[s] / rms[s]) ** 2 for s in rms])))

@@ -91,6 +91,7 @@ def _environment() -> "jinja2.Environment":
         "percent": wording.percent,
         "percent_range": wording.percent_range,
         "by_error": wording.by_error,
+        "doubtful": wording.doubtful,
         "breakable": _breakable,
         "prose": wording.prose,
         "shown": wording.shown,

@@ -113,6 +113,8 @@ def _parameters(run: Run) -> "Iterable[RenderableType]":
     yield table
     if short:
         yield Text(f"... and {len(rows) - len(shown)} more, all less uncertain", style="dim")
+    if doubt := wording.doubtful(rows):
+        yield Words(doubt, 2)
 
 
 def _doubt(row: Mapping[str, Any]) -> float:

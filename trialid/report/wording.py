@@ -2,7 +2,8 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 DASH = "\N{EN DASH}"
 MINUS = "\N{MINUS SIGN}"
@@ -81,6 +82,47 @@ def shown(unit: str | None) -> tuple[str, float]:
     (('m/s', 1.0), 'deg/s')
     """
     return _SHOWN.get(unit or "", (unit or "", 1.0))
+
+
+HALF = 0.5
+"""A parameter that may be off by more than this share of its value is not to be believed."""
+
+NAMED = 10
+"""Doubtful parameters a sentence names before it only counts them."""
+
+
+def doubtful(parameters: Sequence[Mapping[str, Any]]) -> str:
+    """Which of the physical parameters are not to be believed, in a sentence; none, no words.
+
+    By Eq. 14 where noise and model error could be told apart, else by the standard error alone.
+
+    >>> rows = [{"name": n, "kind": "physical", "value": 2.0, "standard_error": 0.1,
+    ...          "relative_error": e} for n, e in (("Yv", 0.2), ("Nr", 0.7))]
+    >>> doubtful(rows)
+    'Not to be believed: Nr; it may be off by more than half of its value (Eq. 14).'
+    >>> doubtful(rows[:1])
+    ''
+    """
+    rows = [row for row in parameters if row["kind"] != "nuisance"]
+    names = [row["name"] for row in rows if not _share(row) <= HALF]
+    if not names:
+        return ""
+    told = [row["relative_error"] for row in rows if row["relative_error"] is not None]
+    by = "Eq. 14" if told else "by noise alone; the model's part is not known"
+    left = len(names) - NAMED
+    listed = ", ".join(names[:NAMED]) + (f" and {left} more" if left > 0 else "")
+    each = "it may be off by more than half of its value"
+    each = each if len(names) == 1 else each.replace("it", "each", 1)
+    return f"Not to be believed: {listed}; {each} ({by})."
+
+
+def _share(row: Mapping[str, Any]) -> float:
+    """How far a parameter may be off, as a share of its value; not a number where nobody knows."""
+    if row["relative_error"] is not None:
+        return float(row["relative_error"])
+    if row["standard_error"] is None or not row["value"]:
+        return math.nan
+    return float(abs(row["standard_error"] / row["value"]))
 
 
 def short_hash(digest: str | None) -> str:

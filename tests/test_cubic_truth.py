@@ -1,0 +1,120 @@
+"""A truth that is of another class than the model, and what the loop makes of it.
+
+The logs are of the whole S-175; the model has second-order terms, most of them held at the values
+of another ship file. No model within reach is right: the error has to fall to the noise all the
+same, and what cannot be believed has to be said.
+"""
+
+import shutil
+
+import cubic_truth
+import numpy as np
+import pytest
+from cubic_truth import ROOT, SHIPS
+
+from trialid import auto, recipe
+from trialid.report import wording
+from trialid.report.page import page
+from trialid.ship.particulars import read_ship
+
+pytestmark = pytest.mark.study
+
+MODULI = '''"sway_drag_vav", "sway_drag_var", "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rar",
+  "roll_drag_vav", "roll_drag_var",'''
+CASES = {
+    "white": (cubic_truth.white, 0, {}),
+    "waves": (cubic_truth.waves, 0, {}),
+    "bare": (  # fewer known terms, and a heading to fit
+        cubic_truth.waves, 1,
+        {
+            MODULI: '"sway_drag_vav", "yaw_drag_rar",',
+            '"r", "phi"]\neffects': '"r", "phi", "psi"]\neffects',
+            'outputs = ["r", "phi"]': 'outputs = ["r", "phi", "psi"]',
+        },
+    ),
+}  # fmt: skip
+OF_THE_WRONG_CLASS = {"Yvav", "Nvav", "Nrar", "Nvvv", "Kvvv", "Kvvr", "Kvrr", "Krrr"}
+"""What the truth has otherwise or with other values: only a fit's own numbers stand for them."""
+
+
+@pytest.fixture(scope="module", params=CASES)
+def done(request, tmp_path_factory):
+    """The stages of the loop, its history printed."""
+    coloured, seed, changes = CASES[request.param]
+    folder = tmp_path_factory.mktemp("cubic")
+    text = (ROOT / "tests" / "cubic_truth.toml").read_text(encoding="utf-8")
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "cubic.toml").write_text(text, encoding="utf-8")
+    shutil.copy(SHIPS / "s175q.toml", folder)
+    cubic_truth.write_logs(folder, coloured, seed)
+    made = []
+    print(f"\n{request.param}")
+    for stage in auto.stages(recipe.load(folder / "cubic.toml"), lambda words, share: None):
+        made.append(stage)
+        _tell(stage)
+    return made
+
+
+def _tell(stage):
+    result = stage.run.result
+    fit, split = result["fit"], result["split"]
+    parts = "/".join(
+        "-" if split[part] is None else f"{split[part]:.2%}" for part in ("noise", "undermodelling")
+    )
+    print(
+        f"{stage.added}, {'kept' if stage.kept else 'not kept'}: {fit['eps_rmsn']:.2%}, check "
+        f"{fit['eps_rmsn_check']:.2%} (sensors {cubic_truth.noise_share(result):.2%}), noise/model "
+        f"{parts}; {result['verdict']['kind']} {result['verdict']['effect']}"
+    )
+
+
+def beyond_noise(stage):
+    """What is left of the error on the check trial when the sensors' noise is taken off."""
+    result = stage.run.result
+    whole = result["fit"]["eps_rmsn_check"] ** 2 - cubic_truth.noise_share(result) ** 2
+    return float(np.sqrt(max(whole, 0.0)))
+
+
+def test_the_check_error_comes_down_to_the_noise(done):
+    """Ours: 11.0 to 9.0, 11.1 to 8.8 and 9.4 to 7.4 %, of which the sensors' 8.6, 8.6 and 7.0 %.
+
+    At most twice the noise is asked for; what lies beyond the noise must fall by half as well,
+    for twice the noise is no high fence.
+    """
+    last = done[-1]
+    print(f"beyond the noise: {beyond_noise(done[0]):.2%} to {beyond_noise(last):.2%}")
+    assert last.run.result["fit"]["eps_rmsn_check"] < 1.2 * cubic_truth.noise_share(last.run.result)
+    assert beyond_noise(last) < 0.5 * beyond_noise(done[0])
+    assert done[0].run.result["verdict"]["effect"] == "rudder_slipstream"
+    assert last.run.result["verdict"]["kind"] in {"nothing missing", "cannot tell"}
+
+
+def test_the_report_says_what_is_not_to_be_believed(done):
+    """All that stands for a term of another class is on the list, where it is not zero."""
+    last = done[-1].run
+    rows = last.result["accuracy"]["parameters"]
+    said = wording.doubtful(rows)
+    print(said)
+    doubted = set(said.partition(": ")[2].partition(";")[0].split(", "))
+    wrong = {r["name"] for r in rows if r["name"] in OF_THE_WRONG_CLASS and r["value"] != 0.0}
+    assert wrong
+    assert wrong <= doubted
+    html = page(last.result, last.series)
+    assert said in html
+
+
+def test_what_is_believed_is_right_to_half_its_value(done):
+    """Against the S-175 linearised on its straight course, rudder and propeller in it."""
+    rows = done[-1].run.result["accuracy"]["parameters"]
+    truth = read_ship(SHIPS / "s175q.toml").coefficients
+    believed = [
+        r for r in rows
+        if r["kind"] == "physical" and not wording.doubtful([r]) and r["name"] in truth
+        and r["name"] not in OF_THE_WRONG_CLASS
+    ]  # fmt: skip
+    print({r["name"]: round(r["value"] / truth[r["name"]], 3) for r in believed})
+    assert {"GM", "Kdelta"} <= {r["name"] for r in believed}
+    for row in believed:
+        assert abs(row["value"] / truth[row["name"]] - 1.0) < 0.5, row["name"]
