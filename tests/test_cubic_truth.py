@@ -19,8 +19,8 @@ from trialid.ship.particulars import read_ship
 
 pytestmark = pytest.mark.study
 
-MODULI = '''"sway_drag_vav", "sway_drag_var", "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rar",
-  "roll_drag_vav", "roll_drag_var",'''
+MODULI = """"sway_drag_vav", "sway_drag_var", "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rar",
+  "roll_drag_vav", "roll_drag_var","""
 CASES = {
     "white": (cubic_truth.white, 0, {}),
     "waves": (cubic_truth.waves, 0, {}),

@@ -55,6 +55,19 @@ def test_what_a_reader_must_learn(result):
     assert lines(result)[-1].startswith("With yaw_damping_cubic")
 
 
+def test_what_is_not_to_be_believed_is_said(result):
+    run = copy.deepcopy(result)
+    physical = [r for r in run["accuracy"]["parameters"] if r["kind"] != "nuisance"]
+    for row in physical:
+        row["relative_error"] = 0.2
+    assert "Not to be believed" not in "\n".join(lines(run))
+    physical[0]["relative_error"] = 0.51
+    name = physical[0]["name"]
+    assert f"Not to be believed: {name}; it may be off by more" in "\n".join(lines(run))
+    physical[1]["relative_error"] = physical[1]["standard_error"] = None
+    assert f"{name}, {physical[1]['name']}; each may be off" in "\n".join(lines(run))
+
+
 def test_many_parameters_show_the_least_certain(result):
     run = copy.deepcopy(result)
     rows = run["accuracy"]["parameters"][:10]
