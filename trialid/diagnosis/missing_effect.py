@@ -85,7 +85,7 @@ def decide(
     ranking: Sequence[Candidate],
     refits: Sequence[Refit],
     parts: Split,
-    whole: Completeness,
+    whole: Completeness | None,
     level: float,
 ) -> Verdict:
     """From scores and refits to a verdict: missing, nothing missing, not in catalogue, cannot tell.
@@ -95,7 +95,7 @@ def decide(
     far more.
     """
     named = confirmed(fit, refits, level)
-    if whole.gap:
+    if whole is not None and whole.gap:
         return Verdict("not in catalogue", None, (), _gap(named, whole))
     if named is not None and _is_faint(fit, named):
         return Verdict("cannot tell", None, (), _faint(named))
@@ -104,12 +104,12 @@ def decide(
     return _unnamed(parts, whole)
 
 
-def _unnamed(parts: Split, whole: Completeness) -> Verdict:
+def _unnamed(parts: Split, whole: Completeness | None) -> Verdict:
     """What to say where no effect stands out."""
     if parts.undermodelling_interval is None:
         return Verdict("cannot tell", None, (), _no_split(parts))
     low, high = parts.undermodelling_interval
-    if low > 0.0 and whole.any_shape <= 0.0:
+    if low > 0.0 and whole is not None and whole.any_shape <= 0.0:
         return Verdict(
             "cannot tell", None, (),
             f"an error of {low:.1%} to {high:.1%} is more than the noise ({parts.method}), but no "
