@@ -20,6 +20,9 @@ DECISIVE: Final = 10.0
 """Difference of twice the log likelihood that decides: odds of 150 to 1, for the noise's colour is
 an estimate itself."""
 
+BEYOND_DOUBT: Final = 100.0
+"""The same for effects whose traces look alike: fitted, they are this far apart."""
+
 CLOSE: Final = 6.0
 """The same for what is tried first: odds of 20 to 1 and less are no preference."""
 
@@ -213,7 +216,8 @@ def rivals(
         and c is not named.candidate
         and known.get(c.effect.name, plain + price(c, rows)) < best + DECISIVE
     ]
-    alike = [n for n in named.candidate.family[1:] if n not in close]
+    apart = {n for n, c in known.items() if c > best + BEYOND_DOUBT}
+    alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
     return (*close, *alike)
 
 
