@@ -136,7 +136,7 @@ def test_a_short_pipeline_has_defaults_for_the_rest(folder: Path) -> None:
     assert (identify.max_iterations, identify.substeps) == (50, 1)
     diagnose = recipe.diagnose
     assert (diagnose.candidates, diagnose.noise, diagnose.quiet) == ("all", {}, ())
-    assert (diagnose.refit, diagnose.family_cos, diagnose.level) == (3, 0.9, 0.05)
+    assert (diagnose.refit, diagnose.family_cos, diagnose.level) == (4, 0.9, 0.05)
 
 
 def test_every_key_arrives(folder: Path) -> None:

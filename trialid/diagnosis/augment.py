@@ -127,7 +127,7 @@ def _varies(trial: Trial, signal: str) -> bool:
 
 def linear_parameters(effect: Effect) -> tuple[str, ...]:
     """The parameters by which it is scored: those at which zero means that it is absent."""
-    return tuple(n for n, p in effect.parameters.items() if p.null == 0.0 and not p.scan)
+    return () if effect.scanned else tuple(n for n, p in effect.parameters.items() if p.null == 0.0)
 
 
 def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
@@ -147,7 +147,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
         Trace(e, tuple(names.index(p) for p in linear_parameters(e)), linear_parameters(e))
         for e in linear
     ]
-    tried_, columns = _scanned(fit, base, [e for e in able.values() if e.scanned], len(names))
+    tried_, columns = _scanned(fit, base, [e for e in able.values() if e.tried], len(names))
     return Augmented(
         (*traces, *tried_), residual, psi, np.column_stack([S, *columns]), stretches(problem),
         left_out | silent,
@@ -183,7 +183,7 @@ def _linear(fit: Fit, base: ShipModel, effects: Sequence[Effect]) -> tuple[Vecto
 def _scanned(
     fit: Fit, base: ShipModel, effects: Sequence[Effect], first: int
 ) -> tuple[list[Trace], list[Vector]]:
-    """Effects that are not linear at their null, at each of the values to try."""
+    """Effects at each of the values to try."""
     traces, columns = list[Trace](), list[Vector]()
     for effect in effects:
         for values, column in secants(fit, base, effect):

@@ -45,11 +45,14 @@ class Completeness:
         return missed > max(WORTH, SHARE * self.any_shape)
 
 
-def completeness(fit: Fit, augmented: Augmented) -> Completeness:
-    """Forward selection from the catalogue, and from the catalogue and forces of any shape."""
+def completeness(fit: Fit, augmented: Augmented) -> Completeness | None:
+    """Forward selection from the catalogue, and from the catalogue and forces of any shape.
+
+    None where there is nothing to compare, or no equation that a force acts in.
+    """
     moved = set(ROWS) & set(fit.problem.simulator.equations.states)
     if not augmented.traces or not moved:
-        return Completeness(0.0, 0.0)  # nothing to compare, or no equation that a force acts in
+        return None
     evidence = augmented.evidence
     tried = probes(fit)
     white, _ = whitened(tried.columns, augmented.stretches, evidence.colour)

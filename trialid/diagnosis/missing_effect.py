@@ -20,6 +20,9 @@ DECISIVE: Final = 10.0
 """Difference of twice the log likelihood that decides: odds of 150 to 1, for the noise's colour is
 an estimate itself."""
 
+BEYOND_DOUBT: Final = 100.0
+"""The same for effects whose traces look alike: fitted, they are this far apart."""
+
 CLOSE: Final = 6.0
 """The same for what is tried first: odds of 20 to 1 and less are no preference."""
 
@@ -85,7 +88,7 @@ def decide(
     ranking: Sequence[Candidate],
     refits: Sequence[Refit],
     parts: Split,
-    whole: Completeness,
+    whole: Completeness | None,
     level: float,
 ) -> Verdict:
     """From scores and refits to a verdict: missing, nothing missing, not in catalogue, cannot tell.
@@ -95,7 +98,7 @@ def decide(
     far more.
     """
     named = confirmed(fit, refits, level)
-    if whole.gap:
+    if whole is not None and whole.gap:
         return Verdict("not in catalogue", None, (), _gap(named, whole))
     if named is not None and _is_faint(fit, named):
         return Verdict("cannot tell", None, (), _faint(named))
@@ -104,12 +107,12 @@ def decide(
     return _unnamed(parts, whole)
 
 
-def _unnamed(parts: Split, whole: Completeness) -> Verdict:
+def _unnamed(parts: Split, whole: Completeness | None) -> Verdict:
     """What to say where no effect stands out."""
     if parts.undermodelling_interval is None:
         return Verdict("cannot tell", None, (), _no_split(parts))
     low, high = parts.undermodelling_interval
-    if low > 0.0 and whole.any_shape <= 0.0:
+    if low > 0.0 and whole is not None and whole.any_shape <= 0.0:
         return Verdict(
             "cannot tell", None, (),
             f"an error of {low:.1%} to {high:.1%} is more than the noise ({parts.method}), but no "
@@ -213,7 +216,8 @@ def rivals(
         and c is not named.candidate
         and known.get(c.effect.name, plain + price(c, rows)) < best + DECISIVE
     ]
-    alike = [n for n in named.candidate.family[1:] if n not in close]
+    apart = {n for n, c in known.items() if c > best + BEYOND_DOUBT}
+    alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
     return (*close, *alike)
 
 

@@ -58,7 +58,8 @@ def _changed(
         return
     model, simulator = base + effect, problem.simulator
     free = simulator.equations.free
-    made = prepare(model.with_values(effect.nulls), free, problem.outputs, "compiled",
+    typical = {n: p.start for n, p in effect.parameters.items()}  # a zero would be folded away
+    made = prepare(model.with_values(typical), free, problem.outputs, "compiled",
                    simulator.substeps)  # fmt: skip
     for values in tried(effect):
         fixed = replace(made, model=model.with_values(values))

@@ -201,11 +201,9 @@ def _families(scored: Sequence[Candidate], augmented: Augmented, limit: float) -
 
 def _columns(c: Candidate, augmented: Augmented) -> tuple[int, ...]:
     """Where the trace stands that the candidate was made of."""
-    [trace] = [
-        t
-        for t in augmented.traces
-        if t.effect.name == c.effect.name and (not t.tried or dict(t.tried) == dict(c.expected))
-    ]
+    own = [t for t in augmented.traces if t.effect.name == c.effect.name]
+    exact = [t for t in own if t.tried and dict(t.tried) == dict(c.expected)]
+    trace = (exact or own)[0]
     return trace.columns
 
 

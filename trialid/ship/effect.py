@@ -95,7 +95,8 @@ class Parameter:
         The value at which the effect is absent; None for a number that shapes the effect and
         cannot switch it off, as the frequency of a tank.
     scan
-        Values tried where the effect is not linear at its null, as the speed of a steering gear.
+        Values tried where the effect is not linear at its null, as the speed of a steering gear,
+        or may be far from it, as a sensor of many seconds.
     """
 
     start: float
@@ -142,9 +143,14 @@ class Effect:
         return {n: p.start if p.null is None else p.null for n, p in self.parameters.items()}
 
     @property
-    def scanned(self) -> bool:
-        """Whether it is not linear at its null, so that values have to be tried."""
+    def tried(self) -> bool:
+        """Whether there are values to try: it may be too strong for its slope at the null."""
         return any(p.scan for p in self.parameters.values())
+
+    @property
+    def scanned(self) -> bool:
+        """Whether it is not linear at its null at all, so that values have to be tried."""
+        return self.tried and Rate in self.forms
 
     def acts_on(self, *forms: type) -> tuple[str, ...]:
         """Names in its results of these forms, as the signals that it delays."""

@@ -5,7 +5,6 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import hilbert
 
 from trialid.diagnosis.leftover import words
 from trialid.diagnosis.leftover.bins import (
@@ -83,12 +82,19 @@ def _amplitude(left: Leftover, signal: str, spoken: str) -> Scale | str:
         return f"the {spoken} never changes"
     size = np.abs(x)
     if signal == "phi":  # a roll that passes through zero is no small roll
-        size = np.concatenate([np.abs(hilbert(x[span])) for span in left.spans])
+        size = np.concatenate([_envelope(x[span]) for span in left.spans])
     kinds = {"delta": "rudder amplitude", "r": "turn-rate amplitude", "phi": "roll amplitude"}
     return Scale(
         kinds[signal], f"{spoken} amplitude" if signal == "phi" else spoken, unit(signal),
         signal, size * shown(signal), np.sign(x), SIDES[signal], signal == "delta",
     )  # fmt: skip
+
+
+def _envelope(x: Vector) -> Vector:
+    """Amplitude of an oscillation at every moment, by its analytic signal; (n,)."""
+    spectrum = np.fft.fft(x)
+    frequency = np.fft.fftfreq(len(x))
+    return np.asarray(np.abs(np.fft.ifft(spectrum * (1.0 + np.sign(frequency)))))
 
 
 def _speed(left: Leftover) -> Scale | str:
