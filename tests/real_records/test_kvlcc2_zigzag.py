@@ -152,7 +152,7 @@ def test_it_is_named_in_sway_and_yaw_together(linear):
 
 
 def test_the_loop_lowers_the_held_out_error_by_a_quarter_and_more(folder, tmp_path):
-    """Ours: Nv|v|, then Yvvv; 22.3 to 14.3 %, held out 22.2 to 13.8 %; what is left is said.
+    """Ours: cross-flow drag; 22.3 to 13.8 %, held out 20.4 to 12.9 %; what is left is said.
 
     Nothing that goes by the speed is added: the shaft turned at constant revolutions.
     """
