@@ -133,6 +133,10 @@ def test_it_runs_by_the_command_too(tmp_path, monkeypatch):
     assert (outcome.exit_code, outcome.stderr) == (0, "")
     assert "lag_twice_r is missing" in outcome.stdout
     assert (tmp_path / "runs" / "two_rates" / "report.html").is_file()
+    outcome = trialid_("run", "two_rates.toml", "--draft", "mine.py")
+    assert (outcome.exit_code, outcome.stderr) == (0, "")
+    assert "No draft: nothing is simulated" in outcome.stdout
+    assert not (tmp_path / "mine.py").exists()
 
 
 @pytest.mark.parametrize(("changes", "words"), [

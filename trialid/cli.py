@@ -327,7 +327,8 @@ def _write_draft(draft: Path, done: "Run") -> str:
     from trialid.diagnosis.draft import why_none
 
     found = done.findings.force
-    assert found is not None
+    if found is None:
+        return "No draft: nothing is simulated, so that no force can be missing."
     text = drafted(found, done.recipe.name)
     if text is None:
         return why_none(found)
