@@ -191,6 +191,7 @@ def _missing() -> list[dict[str, Any]]:
             }
         )
     rows[7]["verdict"] = "not visible"
+    rows[7] |= {"visibility": 0.00041, "eps_rmsn_predicted": 0.1264, "p_value": 1.0, "cosines": {}}
     rows[7]["parameters"]["c8"]["expected"] = None
     rows[8]["verdict"] = "unphysical"
     return rows
@@ -354,7 +355,7 @@ def _accuracy() -> dict[str, Any]:
                 "sentence": "Kv and Yp can grow together by 137 % and the error hardly moves.",
                 "parameters": ["Kv", "Yp"],
                 "relative_error": 1.37,
-                "moves": {"Kv": 0.94, "Yp": -0.997},
+                "moves": {"Kv": 0.94, "Yp": 0.997},
             }
         ],
     }

@@ -18,7 +18,7 @@ OPENS: Final = {
     "repeated manoeuvre": "run one manoeuvre twice, with the same rudder orders",
     "periods of a periodic test": "run a test in which the rudder repeats itself several times",
     "quiet stretch": "record a minute or more of steady course, rudder at rest, in the same sea",
-    "stated sensor figure": "state what the sensors scatter: `noise = { ... }` under [diagnose]",
+    "stated sensor figure": "state how much each sensor scatters, as noise under [diagnose]",
 }
 """What would open a route to the noise that this record does not have."""
 
@@ -68,7 +68,7 @@ def _unfinished(run: Run) -> Iterable[Advice]:
 def _planned(run: Run) -> Iterable[Advice]:
     following = run["verdict"]["next_trial"] or {}
     if following.get("sentence"):
-        yield Advice(f"Run this trial next: {following['sentence']}")
+        yield Advice(f"Run this trial next: {following['sentence'].rstrip('.')}.")
 
 
 def _missing(run: Run) -> Iterable[Advice]:
@@ -110,7 +110,7 @@ def _nothing(run: Run) -> Iterable[Advice]:
 def _outside(run: Run) -> Iterable[Advice]:
     first = next((row for row in run["where"] if row["sentence"]), None)
     if first is not None:
-        yield Advice(f"Look where the model fails first: {first['sentence']}.")
+        yield Advice(f"Look where the model fails first: {first['sentence'].rstrip('.')}.")
     yield Advice(
         "Write the force that your ship may have as an effect in a Python file of your own, and "
         "name the file under [model]; it is then tried beside the catalogue:",

@@ -17,6 +17,9 @@ from trialid.report.shape import Run
 MOST: Final = 13
 """Steps drawn: the last ones; the table has all."""
 
+OWN: Final = "this report"
+"""What stands under the step that is this report's own model."""
+
 LEFT, RIGHT = 52.0, 12.0
 TOP, FLOOR = 24.0, 204.0
 BAR, GAP = 30.0, 6.0
@@ -78,10 +81,10 @@ def descent(run: Run) -> Descent | None:
     if not shown:
         return None
     top = max(_reach(row, run) for row in shown) or 1.0
-    step = max(88.0, min(190.0, (1100.0 - LEFT - RIGHT) / len(shown)))
+    step = max(76.0, min(190.0, (1100.0 - LEFT - RIGHT) / len(shown)))
     present = _present(shown)
     columns = tuple(
-        _column(row, run, LEFT + (k + 0.5) * step, top, row is present)
+        _column(row, run, LEFT + (k + 0.5) * step, top, _words(row, row is present, step))
         for k, row in enumerate(shown)
     )
     lines = max(len(column.words) for column in columns)
@@ -123,18 +126,18 @@ def _height(value: float, top: float) -> float:
     return (FLOOR - TOP) * value / top
 
 
-def _column(row: Run, run: Run, x: float, top: float, present: bool) -> Column:
+def _column(row: Run, run: Run, x: float, top: float, words: Sequence[str]) -> Column:
     noise, model, error = row["noise"], row["undermodelling"], row["eps_rmsn"]
     check = row["eps_rmsn_check"] if _number(row["eps_rmsn_check"]) else None
     apart = _number(noise) and _number(model)
     ends = interval(row, run)
     return Column(
-        x, tuple(_words(row, present)), _said(row), FLOOR - _height(error, top), _bare(error),
+        x, tuple(words), _said(row), FLOOR - _height(error, top), _bare(error),
         _bar("noise", noise, x - BAR - 0.5 * GAP, top, None) if apart else None,
         _bar("model", model, x + 0.5 * GAP, top, ends) if apart else None,
         None if apart else _bar("noise and model not told apart", error, x - 0.5 * BAR, top, None),
         None if check is None else FLOOR - _height(check, top),
-        "" if check is None else _bare(check), present, row["step"] == "proposed",
+        "" if check is None else _bare(check), words[-1] == OWN, row["step"] == "proposed",
     )  # fmt: skip
 
 
@@ -167,14 +170,14 @@ def done(row: Mapping[str, Any]) -> str:
             return str(other or "as written")
 
 
-def _words(row: Run, present: bool) -> list[str]:
+def _words(row: Run, present: bool, step: float) -> list[str]:
     """A label in short lines, broken at underscores."""
-    parts = textwrap.wrap(done(row).replace("_", "_\N{ZERO WIDTH SPACE} "), 15)
+    parts = textwrap.wrap(done(row).replace("_", "_\N{ZERO WIDTH SPACE} "), int(step / 6.8))
     lines = [part.replace("\N{ZERO WIDTH SPACE} ", "").replace("\N{ZERO WIDTH SPACE}", "")
              for part in parts]  # fmt: skip
     if row["step"] == "proposed":
         lines.append("(proposed)")
-    return [*lines, "this report"] if present else lines
+    return [*lines, OWN] if present else lines
 
 
 def _said(row: Run) -> str:
@@ -206,7 +209,7 @@ def fell(run: Run) -> str:
         return "No step has an error."
     first, last = known[0], known[-1]
     if first is last:
-        return f"One model so far: {_said(last)}.{_zero(last, run)}"
+        return f"One model so far, {_said(last)}.{_zero(last, run)}"
     words = f"The error goes from {_pair(first, last, 'eps_rmsn')}"
     parts = (("held out", "eps_rmsn_check"), ("the model part", "undermodelling"),
              ("the noise part", "noise"))  # fmt: skip

@@ -130,7 +130,7 @@
       series: [{ label: "\u00a0", value: (u, v) => (v === null || v === undefined ? "" : v.toFixed(1) + " s") }, ...lines],
       scales: { x: { time: false } },
       axes: axes(withClock),
-      legend: { mount: (u, legend) => plot.top.append(legend), markers: { width: 2 } },
+      legend: { mount: (u, legend) => { legend.setAttribute("role", "presentation"); plot.top.append(legend); }, markers: { width: 2 } },
       cursor: {
         y: false,
         drag: { x: true, y: false, setScale: false },
@@ -173,8 +173,8 @@
   /* The window in words, for eyes and for screen readers. */
   function tell(trial) {
     const { min, max } = trial.window;
-    const all = min <= trial.from && max >= trial.to;
-    trial.told.textContent = all ? "" : rounded(min) + " s to " + rounded(max) + " s";
+    const all = max - min > trial.to - trial.from - 0.5 * trial.period;
+    trial.told.textContent = all ? "" : min.toFixed(1) + " s to " + max.toFixed(1) + " s";
   }
 
   const KEYS = { ArrowLeft: "earlier", ArrowRight: "later", "+": "closer", "=": "closer", "-": "wider", "0": "all" };
@@ -196,7 +196,7 @@
 
   function move(trial, name) {
     const [from, to] = MOVES[name](trial.window.min, trial.window.max);
-    show(trial, Math.max(from, trial.from), Math.min(to, trial.to));
+    show(trial, from, to);
   }
 
   function draw(plot) {

@@ -1,6 +1,7 @@
 """The report page: one HTML file with everything inside, made from the result and the series."""
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -82,6 +83,7 @@ def _proposed(run: Run) -> Compared | None:
     return pair, bars.changes(pair), title, "proposed"
 
 
+@cache
 def _environment() -> "jinja2.Environment":
     import jinja2
 
