@@ -14,8 +14,13 @@
 
   /* base64 of little-endian float32 to numbers; a gap, NaN, becomes the null that uPlot leaves open */
   function numbers(text) {
-    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-    return Array.from(new Float32Array(bytes.buffer), (v) => (Number.isNaN(v) ? null : v));
+    const packed = atob(text);
+    const bytes = new Uint8Array(packed.length);
+    for (let k = 0; k < packed.length; k++) bytes[k] = packed.charCodeAt(k);
+    const floats = new Float32Array(bytes.buffer);
+    const values = new Array(floats.length);
+    for (let k = 0; k < floats.length; k++) values[k] = Number.isNaN(floats[k]) ? null : floats[k];
+    return values;
   }
 
   function clock(t) {
