@@ -60,6 +60,16 @@ def test_two_copies_of_a_parameter_have_no_sensitivity_of_their_own_and_are_name
     )
 
 
+def test_moves_along_a_weak_direction_change_the_output_by_the_noise_alone():
+    near = np.column_stack([A[:, 0], -3.0 * (A[:, 0] + 0.02 * A[:, 1])])
+    [weak] = weak_directions(near, ["a", "b"], 0.01)
+    moves = np.array([weak.moves["a"], weak.moves["b"]])
+    assert np.linalg.norm(near @ moves) == pytest.approx(0.01)
+    assert np.linalg.norm(moves) == pytest.approx(weak.relative_error)
+    assert moves[0] * moves[1] > 0.0
+    assert np.linalg.norm(near @ (moves * [1.0, -1.0])) > 0.1
+
+
 def test_a_parameter_without_trace_is_named():
     dead = np.column_stack([A, np.zeros(400)])
     assert minimum_sensitivity(dead)[4] == 0.0

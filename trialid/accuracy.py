@@ -6,8 +6,8 @@ H_rn itself is never formed or inverted: sensitivities come from the singular va
 factor of A.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -291,11 +291,16 @@ class ParameterAccuracy:
 
 @dataclass(frozen=True)
 class Weakness:
-    """A direction of parameter space that the record hardly sees."""
+    """A direction of parameter space that the record hardly sees.
+
+    `moves` is how far noise lets its parameters go together: one standard error of the
+    combination, as a share of each parameter's size, up or down.
+    """
 
     parameters: tuple[str, ...]
     sentence: str
     relative_error: float
+    moves: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -459,10 +464,13 @@ def weak_directions(A: Vector, names: Sequence[str], error: float) -> tuple[Weak
         shares = np.abs(direction)
         leading = np.argsort(-shares)
         parts = tuple(kept[i] for i in leading if shares[i] >= SHARE)
-        size = float(np.linalg.norm(direction / norms[alive]))
-        relative = error / value * size if value > 0.0 else float("inf")
+        along = direction / norms[alive]
+        deviation = error / value if value > 0.0 else float("inf")
+        relative = deviation * float(np.linalg.norm(along))
         if relative > WELL_KNOWN:
-            found.append(Weakness(parts, _weak_sentence(parts, 1.0 / max(value, 1e-300)), relative))
+            words = _weak_sentence(parts, 1.0 / max(value, 1e-300))
+            moves = {n: deviation * float(along[kept.index(n)]) for n in parts}
+            found.append(Weakness(parts, words, relative, moves))
     return tuple(found)
 
 

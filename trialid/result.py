@@ -215,7 +215,7 @@ def _accuracy(fit: Fit, accuracy: Accuracy) -> Plain:
         "parameters": [_parameter(p) for p in accuracy.parameters],
         "weak": [
             {"sentence": w.sentence, "parameters": list(w.parameters),
-             "relative_error": w.relative_error}
+             "relative_error": w.relative_error, "moves": dict(w.moves)}
             for w in accuracy.weak
         ],
         "stability": _stability(fit.model, accuracy),
@@ -334,14 +334,8 @@ def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Findings) -> P
         "effect": c.effect.name,
         "equation": c.effect.equation,
         "family": list(c.family),
-        "parameters": {
-            n: {
-                "expected": x if c.visibility > VISIBLE else None,
-                "refitted": refit.estimates[n] if refit else None,
-                "unit": c.effect.parameters[n].unit,
-            }
-            for n, x in c.expected.items()
-        },
+        "cosines": dict(c.cosines),
+        "parameters": {n: _expected(c, n, refit) for n in c.expected},
         "eps_rmsn_predicted": c.eps_predicted,
         "eps_rmsn_refitted": refit.eps_rmsn if refit else None,
         "eps_rmsn_check": refit.eps_check if refit else None,
@@ -350,6 +344,18 @@ def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Findings) -> P
         "visibility": c.visibility,
         "verdict": _standing(c, found),
         "sentence": _sentence(c, refit, found),
+    }
+
+
+def _expected(c: Candidate, name: str, refit: Fit | None) -> Plain:
+    """A parameter of a candidate, with the ends of its physical range; None where open."""
+    parameter = c.effect.parameters[name]
+    return {
+        "expected": c.expected[name] if c.visibility > VISIBLE else None,
+        "refitted": refit.estimates[name] if refit else None,
+        "unit": parameter.unit,
+        "low": parameter.low,
+        "high": parameter.high,
     }
 
 
@@ -402,6 +408,7 @@ def _stage(d: Diagnosed, step: str, added: str | None) -> Plain:
         "eps_rmsn": d.fit.eps_rmsn,
         "noise": d.split.noise,
         "undermodelling": d.split.undermodelling,
+        "undermodelling_interval": list(d.split.undermodelling_interval or ()) or None,
         "eps_rmsn_check": d.fit.eps_check,
         "verdict": None,
         "free": list(d.fit.settings.free),

@@ -8,7 +8,7 @@ from trialid.diagnosis.augment import augment, candidates_for
 from trialid.diagnosis.completeness import completeness
 from trialid.diagnosis.missing_effect import confirmed, decide, refit, replace
 from trialid.diagnosis.noise import split
-from trialid.diagnosis.score import rank
+from trialid.diagnosis.score import VISIBLE, rank
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 
@@ -55,7 +55,15 @@ def test_missing_roll_damping_is_named_and_the_error_falls():
 
 def test_twins_are_one_family():
     """r|r| and r^3 cannot be separated by zig-zags: both are named, neither alone."""
-    _, _, _, verdict = diagnosed(record(MODEL, 2), WITHOUT)
+    _, ranking, _, verdict = diagnosed(record(MODEL, 2), WITHOUT)
+    known = {c.effect.name: c for c in ranking}
+    assert known["yaw_drag_rar"].cosines["yaw_cubic_rrr"] > 0.9
+    for name, c in known.items():
+        assert tuple(c.cosines) == c.family[1:]
+        for other, cosine in c.cosines.items():
+            assert 0.9 < cosine <= 1.0
+            back = known[other].cosines.get(name)
+            assert c.visibility <= VISIBLE or back == pytest.approx(cosine)
     assert verdict.kind == "missing"
     assert {"yaw_drag_rar", "yaw_cubic_rrr"} <= set(verdict.family)
     assert "cannot tell it from" in verdict.sentence

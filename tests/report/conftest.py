@@ -171,22 +171,29 @@ def _missing() -> list[dict[str, Any]]:
                 "rank": rank,
                 "effect": effect,
                 "family": family,
+                "cosines": {name: 0.951 + 0.001 * rank for name in family[:1]},
                 "equation": equation,
                 "sentence": f"{effect.replace('_', ' ')} would take the error to {eps:.3f}.",
                 "parameters": {
-                    f"c{rank}": {"expected": -0.00213 * rank, "refitted": -0.00251 * rank}
-                    if refitted
-                    else {"expected": 0.00717 * rank, "refitted": None}
+                    f"c{rank}": {"unit": "1", "low": -0.05, "high": 0.05}
+                    | (
+                        {"expected": -0.00213 * rank, "refitted": -0.00251 * rank}
+                        if refitted
+                        else {"expected": 0.00717 * rank, "refitted": None}
+                    )
                 },
                 "eps_rmsn_predicted": eps,
                 "eps_rmsn_refitted": eps * 0.969 if refitted else None,
                 "eps_rmsn_check": eps * 1.0144 if refitted else None,
                 "p_value": p,
                 "visibility": seen,
-                "verdict": "missing" if rank == 1 else "does not stand out",
+                "verdict": "missing" if rank == 1 else "no evidence",
             }
         )
-    rows[7]["verdict"] = "not visible in this record"
+    rows[7]["verdict"] = "not visible"
+    rows[7] |= {"visibility": 0.00041, "eps_rmsn_predicted": 0.1264, "p_value": 1.0, "cosines": {}}
+    rows[7]["parameters"]["c8"]["expected"] = None
+    rows[8]["verdict"] = "unphysical"
     return rows
 
 
@@ -320,8 +327,10 @@ def _history() -> list[dict[str, Any]]:
     rows = [first | {"noise": 0.0841, "undermodelling": 0.0944}, grown | then]
     known = {"dropped": None, "verdict": "missing", "free": ["Nr"], "logs": [], "version": "0.1.0"}
     return [
-        known | {"step": step} | row
-        for step, row in zip(("as written", "proposed"), rows, strict=True)
+        known | {"step": step} | row | {"undermodelling_interval": ends}
+        for step, row, ends in zip(
+            ("as written", "proposed"), rows, ([0.0907, 0.0979], [0.0, 0.0412]), strict=True
+        )
     ]
 
 
@@ -346,6 +355,7 @@ def _accuracy() -> dict[str, Any]:
                 "sentence": "Kv and Yp can grow together by 137 % and the error hardly moves.",
                 "parameters": ["Kv", "Yp"],
                 "relative_error": 1.37,
+                "moves": {"Kv": 0.94, "Yp": 0.997},
             }
         ],
     }
@@ -404,6 +414,7 @@ def make_result() -> dict[str, Any]:
         "schema": "trialid-result/1",
         "version": "0.1.0",
         "pipeline": "container ship, zig-zags and a binary test",
+        "file": "container_ship.toml",
         "trials": [_trial(k, name, use) for k, (name, use) in enumerate(TRIALS)],
         "model": {
             "states": ["v", "p", "r", "phi"],
@@ -417,6 +428,7 @@ def make_result() -> dict[str, Any]:
         "where": _where(),
         "where_else": _where_else(),
         "missing": _missing(),
+        "not_tried": {"steady_wind": "needs psi, which the record does not hold"},
         "verdict": _verdict(),
         "history": _history(),
         "before_after": _before_after(),

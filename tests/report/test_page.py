@@ -1,4 +1,5 @@
 import copy
+import html as html_module
 import json
 import math
 import re
@@ -95,7 +96,7 @@ def _numbers(value):
             yield value
         case dict():
             for key, each in value.items():
-                if key != "picture":  # drawn, not printed
+                if key not in ("picture", "low", "high"):  # drawn, or read from
                     yield from _numbers(each)
         case list():
             for each in value:
@@ -218,17 +219,93 @@ def test_a_long_ranking_keeps_its_tail_closed(result, series):
     run = copy.deepcopy(result)
     run["missing"] = [row | {"rank": k} for k, row in enumerate(run["missing"] * 4, start=1)]
     read = Reader(page(run, series[:1]))
-    assert "36 more candidates" in read.text
-    assert read.tags.count("details") == 1
+    assert "29 more candidates" in read.text
+    assert "4 that this record cannot see" in read.text
+    assert "1 not tried" in read.text
+    assert ("details", "open", None) not in read.attributes
+    for row in run["missing"]:
+        assert row["effect"].replace("_", "_ ") in read.text, row["effect"]
+
+
+PRESSED = """<script>
+const [told, panels] = document.querySelectorAll("#trial-0 .window, #trial-0 .panels");
+panels.focus();
+const windows = [document.activeElement === panels];
+for (const key of ["+", "ArrowRight", "ArrowRight", "ArrowRight", "-", "+", "0", "ArrowLeft"]) {
+  panels.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  windows.push(told.textContent);
+}
+document.documentElement.dataset.windows = JSON.stringify(windows);
+</script>"""
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="needs chromium")
-def test_a_browser_draws_the_plots(tmp_path, html):
+def test_a_browser_draws_the_plots_and_keys_move_them(tmp_path, html):
     path = tmp_path / "report.html"
-    path.write_text(html, encoding="utf-8")
+    path.write_text(html + PRESSED, encoding="utf-8")
     quiet = "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync"
     still = "--disable-background-networking --disable-component-update --window-size=1280,9000"
     profile = f"--user-data-dir={tmp_path / 'profile'}"
     command = ["chromium", "--headless", *quiet.split(), *still.split(), profile, "--dump-dom"]
-    shown = subprocess.run([*command, path.as_uri()], capture_output=True, timeout=60, check=True)
-    assert shown.stdout.count(b"<canvas") == 4 * 6
+    done = subprocess.run([*command, path.as_uri()], capture_output=True, timeout=60, check=True)
+    shown = done.stdout.decode()
+    assert shown.count("<canvas") == 4 * 6
+    windows = html_module.unescape(re.search(r'data-windows="(.*?)"', shown)[1])
+    part = json.loads(windows)
+    half = part[1]
+    assert part[0] is True
+    assert half == "30.0 s to 89.9 s"
+    assert part[3] == part[4] == "60.0 s to 119.9 s"  # moved to the end, no further
+    assert part[5] == ""  # zoomed out: the whole trial
+    assert part[6] == half
+    assert part[7] == part[8] == ""  # the whole trial cannot be moved
+
+
+def test_whoever_has_no_mouse_or_no_eyes_finds_everything(html):
+    read = Reader(html)
+    heads = [a for a in read.attributes if a[:2] == ("th", "scope")]
+    assert len(heads) == read.tags.count("th")
+    first_link = next(v for t, n, v in read.attributes if (t, n) == ("a", "href"))
+    assert first_link == "#verdict"
+    groups = [v for t, n, v in read.attributes if n == "aria-label" and "Arrow keys" in (v or "")]
+    assert len(groups) == 4
+    ids = {v for _, n, v in read.attributes if n == "id"}
+    for _, name, value in read.attributes:
+        if name in ("aria-labelledby", "aria-describedby"):
+            assert set(value.split()) <= ids
+    pictures = re.findall(r"<svg [^>]*role=\"img\"[^>]*>", html)
+    assert pictures
+    assert all("aria-label" in each for each in pictures)
+    hidden = re.findall(r'<ul class="legend" aria-hidden="true">.*?</ul>', html, re.DOTALL)
+    drawn = len(pictures) + sum(each.count("<svg") for each in hidden)
+    assert drawn == read.tags.count("svg")
+
+
+def test_the_page_goes_from_the_verdict_to_what_to_do_next(html):
+    order = re.findall(r'<section id="([\w-]+)"', html)
+    assert order == ["verdict", "history", "trials", "error", "where", "missing", "proposed",
+                     "parameters", "next", "fit", "origin"]  # fmt: skip
+
+
+def test_hostile_names_are_text_in_every_section(result, series):
+    """Every word of the result that is no key of the page's own is set to markup."""
+    named = {"effect", "family", "added", "equation", "sentence", "file", "name", "why", "path"}
+
+    def spoilt(value, key=""):
+        match value:
+            case dict():
+                return {k: spoilt(v, k) for k, v in value.items()}
+            case list():
+                return [spoilt(each, key) for each in value]
+            case str() if key in named:
+                return HOSTILE
+            case _:
+                return value
+
+    run = spoilt(result) | {"not_tried": {HOSTILE: HOSTILE}, "history_remark": HOSTILE}
+    run["missing"][0] |= {"cosines": {HOSTILE: 0.95}, "parameters": {HOSTILE: {"expected": 1.0}}}
+    run["accuracy"]["weak"][0] |= {"parameters": [HOSTILE] * 2, "moves": {HOSTILE: 1.0, "a": 1.0}}
+    read = Reader(page(run, series[:1]))
+    assert read.tags.count("script") == 2
+    assert "img" not in read.tags
+    assert read.text.count(HOSTILE) > 20

@@ -3,6 +3,7 @@ import json
 import math
 
 import numpy as np
+import pytest
 
 from trialid.report.panels import trial_panels
 from trialid.report.shape import whole
@@ -45,6 +46,21 @@ def test_findings_stand_in_the_panel_they_speak_of(result, series):
         ("zigzag-20", "yaw rate"): [[640.0, 760.0]],
         ("binary", "roll angle"): [[212.5, 398.5]],
     }
+
+
+def test_noise_lines_stand_at_twice_the_noise(result, series):
+    trial, *_ = trial_panels(series, whole(result))
+    levels = {p["title"]: p["noise"] for p in trial["panels"] if p["kind"] == "output"}
+    assert levels["yaw rate"] == pytest.approx(2 * 0.0453 * 0.00731 * 180 / math.pi)
+    assert levels["roll angle"] == pytest.approx(2 * 0.1103 * 0.0311 * 180 / math.pi)
+    bare, *_ = trial_panels(series, whole({}))
+    assert {p["noise"] for p in bare["panels"] if p["kind"] == "output"} == {None}
+
+
+def test_a_long_trial_costs_a_page_four_bytes_a_number(result, series):
+    text = json.dumps(trial_panels(series, whole(result)))
+    numbers = sum(len(t.t) * (len(t.inputs) + 2 * len(t.outputs)) for t in series)
+    assert len(text) < 1.02 * numbers * 4 * 4 / 3 + 10_000
 
 
 def test_a_clock_with_a_step_is_given_sample_by_sample(series):

@@ -6,7 +6,7 @@ by an autoregression first, and what chance can do is drawn over blocks of time.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -48,6 +48,8 @@ class Candidate:
         Share of the effect's trace that no free parameter can mimic.
     family
         Effects this record cannot separate from it, |cos| above the limit.
+    cosines
+        |cos| between its visible trace and that of each other member of the family.
     allowed
         Whether the expected values lie in their physical range, chance apart.
     inflation
@@ -64,6 +66,7 @@ class Candidate:
     family: tuple[str, ...]
     allowed: bool
     inflation: float = 1.0
+    cosines: Mapping[str, float] = field(default_factory=dict)
 
 
 def rank(
@@ -181,22 +184,23 @@ def _families(scored: Sequence[Candidate], augmented: Augmented, limit: float) -
     columns = {c.effect.name: _columns(c, augmented) for c in scored}
     scales = {n: _inverse_root(gram[np.ix_(at, at)]) for n, at in columns.items()}
 
-    def alike(one: Candidate, other: Candidate) -> bool:
+    def cosine(one: Candidate, other: Candidate) -> float:
         a, b = one.effect.name, other.effect.name
         shared = gram[np.ix_(columns[a], columns[b])]
         cosines = scales[a] @ shared @ scales[b].T
         if min(cosines.shape) == 1:  # a vector's length, without a decomposition
-            return float(np.sqrt(np.sum(cosines**2))) > limit
-        return float(np.linalg.norm(cosines, 2)) > limit
+            return float(np.sqrt(np.sum(cosines**2)))
+        return float(np.linalg.norm(cosines, 2))
+
+    def alike(c: Candidate) -> dict[str, float]:
+        others = [o for o in scored if o is not c and o.visibility > VISIBLE]
+        found = {o.effect.name: cosine(c, o) for o in others}
+        return {name: min(cos, 1.0) for name, cos in found.items() if cos > limit}
 
     return [
-        replace(c, family=(c.effect.name, *(
-            o.effect.name
-            for o in scored
-            if o is not c and o.visibility > VISIBLE and alike(c, o)
-        )))
-        for c in scored
-    ]  # fmt: skip
+        replace(c, family=(c.effect.name, *near), cosines=near)
+        for c, near in zip(scored, map(alike, scored), strict=True)
+    ]
 
 
 def _columns(c: Candidate, augmented: Augmented) -> tuple[int, ...]:

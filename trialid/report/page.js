@@ -14,8 +14,13 @@
 
   /* base64 of little-endian float32 to numbers; a gap, NaN, becomes the null that uPlot leaves open */
   function numbers(text) {
-    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-    return Array.from(new Float32Array(bytes.buffer), (v) => (Number.isNaN(v) ? null : v));
+    const packed = atob(text);
+    const bytes = new Uint8Array(packed.length);
+    for (let k = 0; k < packed.length; k++) bytes[k] = packed.charCodeAt(k);
+    const floats = new Float32Array(bytes.buffer);
+    const values = new Array(floats.length);
+    for (let k = 0; k < floats.length; k++) values[k] = Number.isNaN(floats[k]) ? null : floats[k];
+    return values;
   }
 
   function clock(t) {
@@ -37,6 +42,7 @@
       },
       {
         kind: "residual", title: "residual of " + label, unit: panel.unit, stretches: panel.stretches, zero: true,
+        noise: panel.noise,
         lines: [{ label: "measured \u2212 predicted", stroke: "residual", width: 1 }],
         values: () => read().slice(2),
       },
@@ -79,15 +85,23 @@
     u.ctx.fillRect(left, u.bbox.top, right - left, u.bbox.height);
   }
 
-  function zeroLine(u) {
-    const y = Math.round(u.valToPos(0, "y", true)) + 0.5;
+  function level(u, value, dashes) {
+    const y = Math.round(u.valToPos(value, "y", true)) + 0.5;
     if (y < u.bbox.top || y > u.bbox.top + u.bbox.height) return;
-    u.ctx.strokeStyle = colour("soft");
+    u.ctx.save();
+    u.ctx.strokeStyle = colour(dashes.length ? "model" : "soft");
     u.ctx.lineWidth = 1;
+    u.ctx.setLineDash(dashes);
     u.ctx.beginPath();
     u.ctx.moveTo(u.bbox.left, y);
     u.ctx.lineTo(u.bbox.left + u.bbox.width, y);
     u.ctx.stroke();
+    u.ctx.restore();
+  }
+
+  /* Zero under the residual; over it, how far noise alone goes. */
+  function noiseLines(u, drawing) {
+    if (drawing.noise) [drawing.noise, -drawing.noise].forEach((value) => level(u, value, [6, 4]));
   }
 
   function rounded(value) {
@@ -121,7 +135,7 @@
       series: [{ label: "\u00a0", value: (u, v) => (v === null || v === undefined ? "" : v.toFixed(1) + " s") }, ...lines],
       scales: { x: { time: false } },
       axes: axes(withClock),
-      legend: { mount: (u, legend) => plot.top.append(legend), markers: { width: 2 } },
+      legend: { mount: (u, legend) => { legend.setAttribute("role", "presentation"); plot.top.append(legend); }, markers: { width: 2 } },
       cursor: {
         y: false,
         drag: { x: true, y: false, setScale: false },
@@ -131,7 +145,8 @@
       },
       hooks: {
         drawClear: [(u) => shade(u, plot)],
-        drawAxes: [(u) => drawing.zero && zeroLine(u)],
+        drawAxes: [(u) => drawing.zero && level(u, 0, [])],
+        draw: [(u) => noiseLines(u, drawing)],
         setSelect: [(u) => choose(u, trial)],
       },
     };
@@ -157,6 +172,23 @@
     const start = Math.min(Math.max(from, trial.from), trial.to - width);
     trial.window = { min: start, max: start + width };
     trial.plots.forEach((plot) => plot.chart && plot.chart.setScale("x", trial.window));
+    tell(trial);
+  }
+
+  /* The window in words, for eyes and for screen readers. */
+  function tell(trial) {
+    const { min, max } = trial.window;
+    const all = max - min > trial.to - trial.from - 0.5 * trial.period;
+    trial.told.textContent = all ? "" : min.toFixed(1) + " s to " + max.toFixed(1) + " s";
+  }
+
+  const KEYS = { ArrowLeft: "earlier", ArrowRight: "later", "+": "closer", "=": "closer", "-": "wider", "0": "all" };
+
+  function pressed(event, trial) {
+    const name = KEYS[event.key];
+    if (!name || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    move(trial, name);
   }
 
   const MOVES = {
@@ -169,7 +201,7 @@
 
   function move(trial, name) {
     const [from, to] = MOVES[name](trial.window.min, trial.window.max);
-    show(trial, Math.max(from, trial.from), Math.min(to, trial.to));
+    show(trial, from, to);
   }
 
   function draw(plot) {
@@ -216,7 +248,10 @@
 
   function build(trial) {
     const article = document.getElementById("trial-" + trial.index);
-    article.querySelector(".panels").append(...trial.plots.map(place));
+    const panels = article.querySelector(".panels");
+    panels.append(...trial.plots.map(place));
+    panels.addEventListener("keydown", (event) => pressed(event, trial));
+    trial.told = article.querySelector(".window");
     article.querySelectorAll("[data-move]").forEach((button) => {
       button.addEventListener("click", () => move(trial, button.dataset.move));
     });
@@ -240,10 +275,11 @@
   plots.filter((plot) => !plot.chart).forEach((plot) => seen.observe(plot.box));
 
   const fitted = () => plots.forEach((plot) => {
-    if (plot.chart) plot.chart.setSize({ width: plot.box.clientWidth, height: plot.chart.height });
+    const width = plot.box.clientWidth;
+    if (plot.chart && !onPaper() && plot.chart.width !== width) plot.chart.setSize({ width, height: plot.chart.height });
   });
   const redraw = () => plots.filter((plot) => plot.chart).forEach(draw);
-  window.addEventListener("resize", fitted);
+  new ResizeObserver(fitted).observe(document.querySelector("main"));
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 
   /* Paper: every plot, in the light colours, as wide as the sheet; closed tables opened. */
@@ -264,7 +300,9 @@
     button.addEventListener("click", () => {
       const [from, to] = [Number(button.dataset.from), Number(button.dataset.to)];
       show(trial, from - (to - from) / 2, to + (to - from) / 2);
-      document.getElementById("trial-" + trial.index).scrollIntoView();
+      const article = document.getElementById("trial-" + trial.index);
+      article.scrollIntoView();
+      article.querySelector(".panels").focus({ preventScroll: true });
     });
   });
 })();

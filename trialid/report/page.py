@@ -1,11 +1,22 @@
 """The report page: one HTML file with everything inside, made from the result and the series."""
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trialid.report import bars, force_plots, labels, panels, where_pictures, wording
+from trialid.report import (
+    advice,
+    bars,
+    descent,
+    force_plots,
+    labels,
+    panels,
+    ranking,
+    where_pictures,
+    wording,
+)
 from trialid.report.force import ForceSeries
 from trialid.report.series import TrialSeries
 from trialid.report.shape import Run, whole
@@ -16,7 +27,7 @@ if TYPE_CHECKING:
 
 VERDICTS = {
     "missing": "An effect is missing",
-    "nothing missing": "Nothing is missing",
+    "nothing missing": "Nothing is missing that this record could show",
     "not in catalogue": "Something is missing that the catalogue does not hold",
     "cannot tell": "This record cannot tell",
 }
@@ -48,7 +59,13 @@ def page(
             no_check=_no_check(run),
             named=_named(run),
             heading=VERDICTS.get(run["verdict"]["kind"], "No verdict"),
-            compared=_compared(run),
+            done=_done(run),
+            proposed=_proposed(run),
+            descent=descent.descent(run),
+            fell=descent.fell(run),
+            ranked=ranking.ranking(run),
+            advised=advice.advice(run),
+            trust=advice.trust(run),
             split=bars.split_bars(run),
             physical=list(zip(physical, parameter_bars, strict=True)),
             nuisance=nuisance,
@@ -62,19 +79,30 @@ def page(
     )
 
 
-def _compared(run: Run) -> list[tuple[Run, list[bars.Change], str]]:
-    """What was done to the model, then what the verdict proposes: pair, bars and heading."""
-    done, ahead = run["change"], run["before_after"]
+Compared = tuple[Run, list[bars.Change], str, str]
+"""A model before and after: the pair, its bars, the heading, and the section's id."""
+
+
+def _done(run: Run) -> Compared | None:
+    """What this command did to the model."""
+    pair = run["change"]
+    if pair is None:
+        return None
     titles = {"added": "Before and after adding", "dropped": "Before and after dropping"}
-    found = []
-    if done is not None:
-        found.append((done, bars.changes(done), titles.get(done["step"], "Before and after")))
-    if ahead is not None:
-        title = "Before and after adding" if done is None else "What adding this would change:"
-        found.append((ahead, bars.changes(ahead), title))
-    return found
+    title = titles.get(pair["step"], "Before and after")
+    return pair, bars.changes(pair), title, "change"
 
 
+def _proposed(run: Run) -> Compared | None:
+    """What the verdict proposes, tried."""
+    pair = run["before_after"]
+    if pair is None:
+        return None
+    title = "What adding this would change:" if run["change"] else "Before and after adding"
+    return pair, bars.changes(pair), title, "proposed"
+
+
+@cache
 def _environment() -> "jinja2.Environment":
     import jinja2
 
@@ -97,6 +125,9 @@ def _environment() -> "jinja2.Environment":
         "shown": wording.shown,
         "short_hash": wording.short_hash,
         "signed": wording.signed,
+        "points": wording.points,
+        "model_interval": descent.interval,
+        "moves": advice.moves,
         "foreseen_in_errors": bars.foreseen_in_errors,
         "labelled": labels.labelled,
         "symbol": labels.symbol,

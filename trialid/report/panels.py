@@ -66,12 +66,20 @@ def _output(output: OutputSeries, trial: TrialSeries, run: Run) -> Panel:
         "unit": labels.shown_unit(output.name),
         "measured": encoded(output.observed * factor),
         "predicted": encoded(output.predicted * factor),
+        "noise": _noise(output.name, run, factor),
         "stretches": [
             [finding["t_start"], finding["t_end"]]
             for finding in run["where"]
             if _stands_in(finding, output.name, trial.name)
         ],
     }
+
+
+def _noise(output: str, run: Run, factor: float) -> float | None:
+    """Twice the RMS that noise alone has in an output: what lies beyond is hardly noise."""
+    part = (run["split"]["by_output"].get(output) or {}).get("noise")
+    size = run["fit"]["y_rms"].get(output)
+    return None if part is None or size is None else 2.0 * part * size * factor
 
 
 def _stands_in(finding: Mapping[str, Any], output: str, trial: str) -> bool:

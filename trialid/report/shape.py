@@ -48,12 +48,16 @@ _ACCURACY = _keys("S_min S_max R n_effective weighting scaling") | {
         _keys("L_r L_v margin standard_error stable")
         | {"roll_coupled": Maybe(_keys("L_r L_v margin standard_error stable"))}
     ),
-    "weak": [_keys("sentence relative_error") | {"parameters": [None]}],
+    "weak": [_keys("sentence relative_error") | {"parameters": [None], "moves": Each()}],
 }
 _MISSING = _keys(
     "rank effect equation sentence eps_rmsn_predicted eps_rmsn_refitted eps_rmsn_check p_value"
     " visibility verdict"
-) | {"family": [None], "parameters": Each(_keys("expected refitted"))}
+) | {
+    "family": [None],
+    "cosines": Each(),
+    "parameters": Each(_keys("expected refitted unit low high")),
+}
 _CHANGE = _keys(
     "step effect equation eps_rmsn eps_rmsn_check noise undermodelling undermodelling_interval"
     " eps_rmsn_foreseen not_foreseen"
@@ -76,6 +80,7 @@ _STEP = _keys("step added dropped eps_rmsn noise undermodelling eps_rmsn_check v
     "effects": [None],
     "free": [None],
     "logs": [None],
+    "undermodelling_interval": None,
 }
 _FINDING = _keys("output finding doing share excess p_value t_start t_end trial sentence picture")
 _FORCE = _keys("named sentence") | {
@@ -96,7 +101,7 @@ _FORCE = _keys("named sentence") | {
     ],
 }
 
-SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
+SHAPE: dict[str, Any] = _keys("schema version pipeline file") | {
     "trials": [_TRIAL],
     "model": {"states": [None], "effects": [None], "free": [None], "inputs": [None]},
     "fit": _FIT,
@@ -112,6 +117,7 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline") | {
         "questions": None,
     },
     "missing": [_MISSING],
+    "not_tried": Each(),
     "verdict": _keys("kind effect sentence") | {"family": [None], "next_trial": Maybe({})},
     "history": [_STEP],
     "history_remark": None,

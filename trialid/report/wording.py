@@ -70,6 +70,17 @@ def signed(value: float | None) -> str:
     return DASH if value is None else f"{value:+.1f}".replace("-", MINUS)
 
 
+def points(drop: float | None) -> str:
+    """A drop of a percentage, in percentage points; a rise has a plus sign.
+
+    >>> points(0.0151), points(-0.002)
+    ('\N{MINUS SIGN}1.51', '+0.20')
+    """
+    if drop is None:
+        return DASH
+    return ("+" if drop < 0.0 else MINUS) + f"{abs(100.0 * drop):.2f}"
+
+
 def prose(sentence: str) -> str:
     """A sentence whose percent signs stay on the line of their numbers."""
     return re.sub(r"(?<=\d) %", THIN + "%", sentence)

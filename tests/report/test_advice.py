@@ -1,0 +1,107 @@
+import copy
+import shlex
+
+import click
+import pytest
+
+from trialid.cli import commands as known_commands
+from trialid.report.advice import advice, moves, trust
+from trialid.report.shape import whole
+from trialid.report.wording import THIN
+
+
+def advised(result, **changed):
+    run = copy.deepcopy(result)
+    for key, value in changed.items():
+        run[key] = run[key] | value if isinstance(value, dict) else value
+    return advice(whole(run))
+
+
+def verdict(kind, effect=None, family=()):
+    return {"kind": kind, "effect": effect, "family": list(family), "next_trial": None}
+
+
+MISSING = verdict("missing", "yaw_drag", ["yaw_drag", "heel_yaw", "sway_drag", "current"])
+
+
+def test_what_is_missing_is_added_by_commands_that_exist(result):
+    commands = [each.command for each in advised(result, verdict=MISSING) if each.command]
+    assert commands == [
+        "trialid add container_ship.toml yaw_drag",
+        "trialid effects yaw_drag",
+        "trialid add container_ship.toml heel_yaw",
+        "trialid add container_ship.toml sway_drag",
+        "trialid run --auto container_ship.toml",
+    ]
+    for command in commands:
+        name, verb, *words = shlex.split(command)
+        assert name == "trialid"
+        known = known_commands.commands[verb]
+        context = click.Context(known)
+        known.parse_args(context, [word for word in words if not word.endswith(".toml")] + (
+            [__file__] if words[-1].endswith(".toml") or verb == "add" else []
+        ))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("kind", "says"),
+    [
+        ("nothing missing", "A model error of up to 9.79 % would not be seen"),
+        ("not in catalogue", "Look where the model fails first: 61.7 % of the squared"),
+        ("cannot tell", "The record itself leaves it open"),
+    ],
+)
+def test_every_kind_of_verdict_has_its_advice(result, kind, says):
+    words = " ".join(each.words for each in advised(result, verdict=verdict(kind)))
+    assert says in words.replace(THIN, " ")
+    assert "trialid add" not in " ".join(e.command for e in advised(result, verdict=verdict(kind)))
+
+
+def test_a_record_that_cannot_part_noise_names_only_closed_routes(result):
+    routes = [
+        {"method": "repeated manoeuvre", "available": False},
+        {"method": "quiet stretch", "available": True},
+    ]
+    split = {"noise": None, "routes": routes}
+    words = " ".join(e.words for e in advised(result, verdict=verdict("cannot tell"), split=split))
+    assert "run one manoeuvre twice" in words
+    assert "steady course" not in words
+
+
+def test_a_fit_that_did_not_converge_comes_first(result):
+    first = advised(result, fit={"converged": False}, verdict=MISSING)[0]
+    assert first.words.startswith("The fit did not converge")
+
+
+def test_a_run_without_held_out_trials_is_told_to_hold_one_back(result):
+    fitted = [trial | {"use": "fit"} for trial in result["trials"]]
+    assert any("Hold one back" in e.words for e in advised(result, trials=fitted))
+    assert any("Add a second trial" in e.words for e in advised(result, trials=fitted[:1]))
+    assert not any("held out" in e.words for e in advised(result))
+
+
+def test_loose_parameters_are_named_and_nuisances_are_not(result):
+    run = copy.deepcopy(result)
+    run["accuracy"]["parameters"][-1]["relative_error"] = 9.0
+    run["verdict"] = verdict("nothing missing")
+    words = " ".join(e.words for e in advice(whole(run)))
+    assert "more than its own size: Yp." in words
+    assert "To part Kv from Yp" in words
+
+
+def test_nothing_known_gives_no_advice():
+    assert advice(whole({})) == ()
+
+
+def test_moves_say_which_go_together_and_which_against():
+    words = moves({"moves": {"a": 0.2, "b": -0.1, "c": 0.3}}).replace(THIN, " ")
+    assert words == "a by 20 %, b by 10 % and c by 30 % of their size, a, c up while b down, or " \
+                    "the reverse"  # fmt: skip
+    assert moves({"moves": None}) == moves({"moves": {"a": 0.1}}) == ""
+
+
+def test_the_table_of_parameters_is_summed_up(result):
+    words = trust(whole(result)).replace(THIN, " ")
+    assert words.startswith("Best known is Ndelta, to 2.52 %; of 10 parameters 1 may be wrong by")
+    assert "9.44 % now and 2.37 % with yaw_damping_cubic" in words
+    assert trust(whole({})) == ""

@@ -1,0 +1,113 @@
+import copy
+
+import pytest
+
+from trialid.report.descent import FLOOR, MOST, OWN, descent, done, fell, interval
+from trialid.report.shape import whole
+
+
+def grown(result, steps):
+    """A history of so many steps, each a tenth better than the one before."""
+    run = copy.deepcopy(result)
+    first = run["history"][0] | {"undermodelling_interval": None}
+    rows = [first]
+    for k in range(1, steps):
+        rows.append(
+            first
+            | {"step": "added", "added": f"an_effect_with_number_{k}"}
+            | {key: first[key] * 0.9**k for key in ("eps_rmsn", "undermodelling")}
+        )
+    run["history"] = rows
+    return whole(run)
+
+
+def height(bar):
+    return FLOOR - bar.y
+
+
+def test_bars_are_as_tall_as_their_parts_and_dots_stand_at_the_errors(result):
+    drawn = descent(whole(result))
+    before, after = drawn.columns
+    assert height(before.model) / height(before.noise) == pytest.approx(0.0944 / 0.0841)
+    assert height(after.model) / height(before.model) == pytest.approx(0.0237 / 0.0944)
+    assert height(before) / height(before.noise) == pytest.approx(0.1264 / 0.0841)
+    assert (FLOOR - after.check) / height(after.noise) == pytest.approx(0.0912 / 0.0838)
+    assert (before.noise.number, before.error, before.check_error) == ("8.41", "12.6", "14.4")
+
+
+def test_whiskers_are_the_interval_of_the_model_part(result):
+    before, after = descent(whole(result)).columns
+    top, bottom = (FLOOR - y for y in before.model.whisker)
+    assert top / bottom == pytest.approx(0.0979 / 0.0907)
+    assert after.model.whisker[1] == FLOOR
+    assert before.noise.whisker is None
+
+
+def test_an_older_history_takes_intervals_from_the_run(result):
+    run = whole(result)
+    run["before_after"]["undermodelling_interval"] = [0.0, 0.04]
+    for row in run["history"]:
+        row["undermodelling_interval"] = None
+    present, proposed = run["history"]
+    assert interval(present, run) == (0.0907, 0.0979)
+    assert interval(proposed, run) == (0.0, 0.04)
+    run["history"].insert(0, present | {"eps_rmsn": 0.2})
+    assert interval(run["history"][0], run) is None
+
+
+@pytest.mark.parametrize("steps", [1, 2, 13, 20])
+def test_any_number_of_steps_is_drawn_within_the_page(result, steps):
+    drawn = descent(grown(result, steps))
+    assert len(drawn.columns) == min(steps, MOST)
+    assert drawn.left_out == max(steps - MOST, 0)
+    assert drawn.width <= 1132
+    assert drawn.width > drawn.columns[-1].x >= drawn.columns[0].x > 52
+    step = (drawn.width - 64) / len(drawn.columns)
+    assert all(6.7 * len(w) <= step for column in drawn.columns for w in column.words)
+    assert bool(drawn.line) == (steps > 1)
+    assert [OWN in column.words for column in drawn.columns].count(True) == 1
+
+
+def test_an_error_not_told_apart_is_one_bar(result):
+    run = whole(result)
+    run["history"][0] |= {"noise": None, "undermodelling": None}
+    first, second = descent(run).columns
+    assert (first.noise, first.model) == (None, None)
+    assert height(first.whole) == pytest.approx(height(first))
+    assert second.whole is None
+
+
+def test_without_errors_there_is_no_picture(result):
+    run = whole(result)
+    for row in run["history"]:
+        row["eps_rmsn"] = None
+    assert descent(run) is None
+    assert fell(run) == "No step has an error."
+    assert descent(whole({})) is None
+
+
+def test_an_error_of_zero_is_drawn(result):
+    run = whole(result)
+    keys = ("eps_rmsn", "eps_rmsn_check", "noise", "undermodelling")
+    for row in run["history"]:
+        row.update(dict.fromkeys(keys, 0.0), undermodelling_interval=[0.0, 0.0])
+    assert {height(column) for column in descent(run).columns} == {0.0}
+
+
+def test_what_the_picture_shows_is_said(result):
+    words = fell(whole(result)).replace("\N{NARROW NO-BREAK SPACE}", " ")
+    assert "from 12.6 % to 8.71 %, held out from 14.4 % to 9.12 %" in words
+    assert "the model part from 9.44 % to 2.37 %" in words
+    assert "holds zero" in words
+    assert "a model error below 4.12 % would not be seen" in words
+    run = whole(result)
+    run["history"][-1]["undermodelling_interval"] = [0.01, 0.04]
+    assert "holds zero" not in fell(run)
+
+
+def test_what_was_done_is_told_by_sign():
+    known = {"added": "a", "dropped": "b"}
+    assert done(known | {"step": "added"}) == "+ a"
+    assert done(known | {"step": "dropped"}) == "\N{MINUS SIGN} b"
+    assert done(known | {"step": "as written"}) == "as written"
+    assert done({"step": "added", "added": None, "dropped": None}) == "added"

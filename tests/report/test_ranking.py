@@ -1,0 +1,90 @@
+import pytest
+
+from trialid.report.ranking import ranking, reason, remark
+from trialid.report.shape import whole
+
+NOW = {"fit": {"eps_rmsn": 0.10, "eps_rmsn_check": 0.12}}
+
+
+def row(**known):
+    plain = {"effect": "an_effect", "eps_rmsn_predicted": 0.08, "eps_rmsn_refitted": 0.08}
+    run = whole(NOW | {"missing": [plain | {"verdict": "stands out"} | known]})
+    return run["missing"][0], run
+
+
+def test_every_candidate_stands_in_one_place(result):
+    run = whole(result)
+    ranked = ranking(run)
+    placed = [leader.row["effect"] for leader in ranked.leaders]
+    placed += [each["effect"] for each in ranked.others + ranked.hidden]
+    placed += [each["effect"] for each, _ in ranked.ruled_out]
+    assert sorted(placed) == sorted(each["effect"] for each in run["missing"])
+    assert placed[:3] == [each["effect"] for each in run["missing"][:3]]
+    assert ranked.not_tried == (("needs psi, which the record does not hold", ("steady_wind",)),)
+
+
+def test_where_none_was_fitted_the_first_that_stand_out_lead():
+    rows = [{"effect": str(k), "verdict": "stands out"} for k in range(5)]
+    ranked = ranking(whole({"missing": rows}))
+    assert [leader.row["effect"] for leader in ranked.leaders] == ["0", "1", "2"]
+    assert [each["effect"] for each in ranked.others] == ["3", "4"]
+
+
+def test_bars_share_a_scale_and_drops_count_from_now():
+    _, run = row(eps_rmsn_refitted=0.07, eps_rmsn_check=0.09)
+    (leader,) = ranking(run).leaders
+    assert [bar.length for bar in leader.bars] == pytest.approx(
+        [100 * eps / 0.12 for eps in (0.10, 0.08, 0.07, 0.12, 0.09)]
+    )
+    assert [bar.drop for bar in leader.bars] == [
+        None, pytest.approx(0.02), pytest.approx(0.03), None, pytest.approx(0.03),
+    ]  # fmt: skip
+
+
+def test_a_family_tells_how_alike_its_members_are():
+    known, run = row(family=["an_effect", "other"], cosines={"other": 0.96})
+    run["verdict"] |= {"effect": "an_effect", "family": ["an_effect", "rival", "other"]}
+    (leader,) = ranking(run).leaders
+    assert [(a.effect, a.cosine) for a in leader.family] == [("other", 0.96), ("rival", None)]
+    assert leader.family[0].differs == pytest.approx(0.28)
+    assert known["family"] == ["an_effect", "other"]
+
+
+@pytest.mark.parametrize(
+    ("refitted", "says"),
+    [
+        (0.0770, ""),
+        (0.0830, ""),
+        (0.0740, "1.3 times what was foreseen: the effect is too strong for a straight line"),
+        (0.0850, "or it is not the one that is missing"),
+        (0.1100, "gains only 0"),
+        (None, ""),
+    ],
+)
+def test_a_gain_off_by_more_than_a_fifth_is_explained(refitted, says):
+    found = remark(*row(eps_rmsn_refitted=refitted))
+    assert says in found
+    assert bool(found) == bool(says)
+
+
+def test_a_sign_that_turned_is_told():
+    turned = {"c": {"expected": -1.0, "refitted": 0.5}, "d": {"expected": 1.0, "refitted": 2.0}}
+    assert remark(*row(parameters=turned)).startswith("c changes its sign when fitted")
+
+
+@pytest.mark.parametrize(
+    ("parameter", "why"),
+    [
+        ({"expected": 0.2, "low": -1.0, "high": 0.0}, "c would have to be 0.2000, the wrong sign"),
+        (
+            {"expected": -3.0, "low": -2.0, "high": None, "unit": "m"},
+            "c would have to be \N{MINUS SIGN}3.000 m, below its physical limit of "
+            "\N{MINUS SIGN}2.000 m",
+        ),
+        ({"expected": 0.1, "low": -1.0, "high": 1.0}, "no value that it may physically have"),
+        ({"expected": None, "low": None, "high": None}, "no value that it may physically have"),
+    ],
+)
+def test_why_an_effect_is_ruled_out(parameter, why):
+    known, _ = row(parameters={"c": parameter})
+    assert reason(known).startswith(why)

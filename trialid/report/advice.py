@@ -1,0 +1,211 @@
+"""What to do next, by the verdict: commands that exist, trials and lines the record calls for."""
+
+import shlex
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from trialid.report import wording
+from trialid.report.shape import Run
+
+RIVALS: Final = 2
+"""Other members of the family whose command is written out."""
+
+LOOSE: Final = 1.0
+"""Relative error of Eq. 14 from which on a parameter is not to be used by itself."""
+
+OPENS: Final = {
+    "repeated manoeuvre": "run one manoeuvre twice, with the same rudder orders",
+    "periods of a periodic test": "run a test in which the rudder repeats itself several times",
+    "quiet stretch": "record a minute or more of steady course, rudder at rest, in the same sea",
+    "stated sensor figure": "state how much each sensor scatters, as noise under [diagnose]",
+}
+"""What would open a route to the noise that this record does not have."""
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One thing to do: what and why, and the command or the line of the pipeline file for it."""
+
+    words: str
+    command: str = ""
+
+
+def advice(run: Run) -> tuple[Advice, ...]:
+    """What to do next, most urgent first."""
+    kind = run["verdict"]["kind"]
+    by_kind = {
+        "missing": _missing,
+        "nothing missing": _nothing,
+        "not in catalogue": _outside,
+        "cannot tell": _unclear,
+    }
+    found = [*_unfinished(run), *_planned(run)]
+    if kind in by_kind:
+        found += by_kind[kind](run)
+    return (*found, *_unchecked(run), *_loose(run))
+
+
+def command(run: Run, verb: str, *words: str) -> str:
+    """A command of trialid on this run's pipeline.
+
+    >>> command({"file": "my trial.toml"}, "add", "static_list")
+    "trialid add 'my trial.toml' static_list"
+    """
+    file = run["file"] or "PIPELINE"
+    return shlex.join(["trialid", verb, file, *words])
+
+
+def _unfinished(run: Run) -> Iterable[Advice]:
+    if run["fit"]["converged"] is False:
+        yield Advice(
+            "The fit did not converge: rely on nothing here before it does. Start the search from "
+            "several places, under [identify]:",
+            "starts = 5",
+        )
+
+
+def _planned(run: Run) -> Iterable[Advice]:
+    following = run["verdict"]["next_trial"] or {}
+    if following.get("sentence"):
+        yield Advice(f"Run this trial next: {following['sentence'].rstrip('.')}.")
+
+
+def _missing(run: Run) -> Iterable[Advice]:
+    effect = run["verdict"]["effect"]
+    if not effect:
+        return
+    yield Advice(
+        "Put the effect into the pipeline and fit again; the report then shows before and after. "
+        "What is added, trialid drop takes out again.",
+        command(run, "add", effect),
+    )
+    yield Advice(
+        "Read what it stands for, and whether your ship can have it:",
+        shlex.join(["trialid", "effects", effect]),
+    )
+    others = [name for name in run["verdict"]["family"] if name != effect]
+    for name in others[:RIVALS]:
+        yield Advice(
+            f"This record cannot tell it from {name}. If that is the likelier one on this ship:",
+            command(run, "add", name),
+        )
+    yield Advice(
+        "Or let it add effect after effect until none is named; the file stays as it is:",
+        shlex.join(["trialid", "run", "--auto", run["file"] or "PIPELINE"]),
+    )
+
+
+def _nothing(run: Run) -> Iterable[Advice]:
+    ends = (run["split"]["interval"] or {}).get("undermodelling")
+    limit = f" A model error of up to {wording.percent(ends[1])} would not be seen." if ends else ""
+    yield Advice(
+        "No effect is to be added on the strength of this record."
+        + limit
+        + " Use the model within "
+        "the rudder angles, speeds and heel that the trials cover."
+    )
+
+
+def _outside(run: Run) -> Iterable[Advice]:
+    first = next((row for row in run["where"] if row["sentence"]), None)
+    if first is not None:
+        yield Advice(f"Look where the model fails first: {first['sentence'].rstrip('.')}.")
+    yield Advice(
+        "Write the force that your ship may have as an effect in a Python file of your own, and "
+        "name the file under [model]; it is then tried beside the catalogue:",
+        'effects_from = ["my_effects.py"]',
+    )
+
+
+def _unclear(run: Run) -> Iterable[Advice]:
+    if run["split"]["noise"] is not None:
+        yield Advice(
+            "The record itself leaves it open. What settles it is a trial in which the effect does "
+            "something that the free parameters cannot do as well, or parameters known from a "
+            "model test, held fixed or given as priors."
+        )
+        return
+    closed = {row["method"] for row in run["split"]["routes"] if not row["available"]}
+    ways = [words for method, words in OPENS.items() if method in closed]
+    if ways:
+        yield Advice(
+            "Noise and model error cannot be told apart. Any one of these opens a way: "
+            + "; ".join(ways) + "."
+        )  # fmt: skip
+
+
+def _unchecked(run: Run) -> Iterable[Advice]:
+    trials = run["trials"]
+    if not trials or any(trial["use"] == "check" for trial in trials):
+        return
+    words = "No trial was held out, so nothing here was tested on data that the fit had not seen. "
+    if len(trials) > 1:
+        words += "Hold one back, in its [[trial]]:"
+    else:
+        words += "Add a second trial to the pipeline and hold it back, in its [[trial]]:"
+    yield Advice(words, 'use = "check"')
+
+
+def _loose(run: Run) -> Iterable[Advice]:
+    physical = [r for r in run["accuracy"]["parameters"] if r["kind"] != "nuisance"]
+    rows = [r for r in physical if (r["relative_error"] or 0.0) > LOOSE]
+    if rows and run["verdict"]["kind"] != "missing":
+        names = ", ".join(str(row["name"]) for row in rows)
+        yield Advice(
+            f"Do not use by itself what may be wrong by more than its own size: {names}. "
+            "Together the parameters still predict what the trials show."
+        )
+    for weak in run["accuracy"]["weak"]:
+        if len(weak["parameters"]) > 1:
+            yield Advice(
+                f"To part {' from '.join(map(str, weak['parameters'][:2]))}: a trial in which they "
+                "act differently, such as another rudder angle or another rhythm of the rudder; "
+                "more of the same shrinks only the noise."
+            )
+
+
+def trust(run: Run) -> str:
+    """The accuracy table in two sentences."""
+    rows = [
+        r
+        for r in run["accuracy"]["parameters"]
+        if r["kind"] != "nuisance" and r["relative_error"] is not None
+    ]
+    if not rows:
+        return ""
+    best = min(rows, key=lambda r: r["relative_error"])
+    loose = sum(r["relative_error"] > LOOSE for r in rows)
+    words = f"Best known is {best['name']}, to {wording.percent(best['relative_error'])}"
+    if loose:
+        words += f"; of {len(rows)} parameters {loose} may be wrong by more than their own size"
+    parts = (run["before_after"] or {}).get("undermodelling")
+    effect = run["verdict"]["effect"]
+    if effect and parts:
+        words += (
+            ". The model term goes with the model part of the error: that is "
+            f"{wording.percent(parts[0])} now and {wording.percent(parts[1])} with {effect}, so "
+            "add that first and read the table then"
+        )
+    return words + "."
+
+
+def moves(weak: Run) -> str:
+    """How far a weak direction's parameters go together unseen, in words.
+
+    >>> moves({"moves": {"Nr": 0.108, "Nv": 0.157}}).replace(wording.THIN, " ")
+    'Nr by 11 % and Nv by 16 % of their size, both up or both down'
+    """
+    found = {name: move for name, move in (weak["moves"] or {}).items() if move is not None}
+    if len(found) < 2:
+        return ""
+    sizes = [f"{name} by {wording.percent(abs(move), 2)}" for name, move in found.items()]
+    listed = ", ".join(sizes[:-1]) + " and " + sizes[-1]
+    signs = {move > 0.0 for move in found.values()}
+    if len(signs) == 1:
+        word = "both up or both down" if len(found) == 2 else "all up or all down"
+    else:
+        up = [name for name, move in found.items() if move > 0.0]
+        down = [name for name, move in found.items() if move <= 0.0]
+        word = f"{', '.join(up)} up while {', '.join(down)} down, or the reverse"
+    return f"{listed} of their size, {word}"
