@@ -11,9 +11,6 @@ from trialid.report.shape import Run
 RIVALS: Final = 2
 """Other members of the family whose command is written out."""
 
-LOOSE: Final = 1.0
-"""Relative error of Eq. 14 from which on a parameter is not to be used by itself."""
-
 OPENS: Final = {
     "repeated manoeuvre": "run one manoeuvre twice, with the same rudder orders",
     "periods of a periodic test": "run a test in which the rudder repeats itself several times",
@@ -112,9 +109,13 @@ def _outside(run: Run) -> Iterable[Advice]:
     if first is not None:
         yield Advice(f"Look where the model fails first: {first['sentence'].rstrip('.')}.")
     yield Advice(
-        "Write the force that your ship may have as an effect in a Python file of your own, and "
-        "name the file under [model]; it is then tried beside the catalogue:",
-        'effects_from = ["my_effects.py"]',
+        "Have the force that is missing written down as an effect in a Python file, and edit it:",
+        shlex.join(["trialid", "run", "--draft", "my_effect.py", run["file"] or "PIPELINE"]),
+    )
+    yield Advice(
+        "Name that file, or one you wrote yourself, under [model]; its effects are then tried "
+        "beside the catalogue:",
+        'effects_from = ["my_effect.py"]',
     )
 
 
@@ -148,13 +149,11 @@ def _unchecked(run: Run) -> Iterable[Advice]:
 
 
 def _loose(run: Run) -> Iterable[Advice]:
-    physical = [r for r in run["accuracy"]["parameters"] if r["kind"] != "nuisance"]
-    rows = [r for r in physical if (r["relative_error"] or 0.0) > LOOSE]
-    if rows and run["verdict"]["kind"] != "missing":
-        names = ", ".join(str(row["name"]) for row in rows)
+    doubt = wording.doubtful(run["accuracy"]["parameters"])
+    if doubt and run["verdict"]["kind"] in ("nothing missing", "cannot tell"):
         yield Advice(
-            f"Do not use by itself what may be wrong by more than its own size: {names}. "
-            "Together the parameters still predict what the trials show."
+            f"{doubt} Do not use such a parameter by itself; together they still predict what the "
+            "trials show."
         )
     for weak in run["accuracy"]["weak"]:
         if len(weak["parameters"]) > 1:
@@ -166,7 +165,7 @@ def _loose(run: Run) -> Iterable[Advice]:
 
 
 def trust(run: Run) -> str:
-    """The accuracy table in two sentences."""
+    """What the accuracy table comes to, beside those not to be believed."""
     rows = [
         r
         for r in run["accuracy"]["parameters"]
@@ -175,10 +174,7 @@ def trust(run: Run) -> str:
     if not rows:
         return ""
     best = min(rows, key=lambda r: r["relative_error"])
-    loose = sum(r["relative_error"] > LOOSE for r in rows)
     words = f"Best known is {best['name']}, to {wording.percent(best['relative_error'])}"
-    if loose:
-        words += f"; of {len(rows)} parameters {loose} may be wrong by more than their own size"
     parts = (run["before_after"] or {}).get("undermodelling")
     effect = run["verdict"]["effect"]
     if effect and parts:
