@@ -11,6 +11,8 @@ from trialid.diagnosis.noise import split
 from trialid.diagnosis.score import VISIBLE, rank
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
+from trialid.maths import sqrt
+from trialid.ship.effect import Force, effect
 
 FREE = ("Nv", "Nr", "Ndelta", "Yv", "Kv", "Kr", "Kdelta", "Kp", "GM")
 WITHOUT = MODEL - "yaw_drag_rar"
@@ -75,6 +77,19 @@ def test_false_alarms_are_counted():
     kinds = [diagnosed(record(MODEL, 100 + seed), MODEL)[3].kind for seed in range(40)]
     print({kind: kinds.count(kind) for kind in set(kinds)})
     assert kinds.count("missing") <= 3
+
+
+@effect(source="made up: a root of what becomes negative")
+def rooted(r, *, a_root=0.001):
+    """N = a_root sqrt(0.02 + r'): no number once the ship turns fast to port."""
+    return Force(N=a_root * (sqrt(0.02 + r) - sqrt(0.02)))
+
+
+def test_a_candidate_that_is_no_number_along_the_record_is_left_out_alone():
+    fit = identify(record(MODEL, 3), MODEL, FIT)
+    augmented = augment(fit, {**CATALOGUE, "rooted": rooted})
+    assert "no number" in augmented.left_out["rooted"]
+    assert "yaw_cubic_rrr" in {e.name for e in augmented.effects}
 
 
 def test_unseen_effects_are_left_out_with_a_reason():

@@ -141,7 +141,13 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     able, left_out = candidates_for(base, problem.trials[0], catalogue)
     able, silent = _with_trace(able, problem.outputs)
     linear = [e for e in able.values() if not e.scanned]
-    residual, psi, S = _linear(fit, base, linear)
+    point = _linear(fit, base, linear)
+    if isinstance(point, Departure):
+        linear, lost = _apart(fit, base, linear)
+        left_out |= lost
+        point = _linear(fit, base, linear)
+        assert not isinstance(point, Departure)
+    residual, psi, S = point
     names = [p for e in linear for p in linear_parameters(e)]
     traces = [
         Trace(e, tuple(names.index(p) for p in linear_parameters(e)), linear_parameters(e))
@@ -161,7 +167,23 @@ def _fitted_model(fit: Fit) -> ShipModel:
     return fit.problem.simulator.model.with_values(shared)
 
 
-def _linear(fit: Fit, base: ShipModel, effects: Sequence[Effect]) -> tuple[Vector, Vector, Vector]:
+def _apart(
+    fit: Fit, base: ShipModel, effects: Sequence[Effect]
+) -> tuple[list[Effect], dict[str, str]]:
+    """Effects that can be simulated along the record, tried one by one, and why the others not."""
+    kept, lost = list[Effect](), dict[str, str]()
+    for effect in effects:
+        point = _linear(fit, base, [effect])
+        if isinstance(point, Departure):
+            lost[effect.name] = f"is no number along the record: {point}"
+        else:
+            kept.append(effect)
+    return kept, lost
+
+
+def _linear(
+    fit: Fit, base: ShipModel, effects: Sequence[Effect]
+) -> tuple[Vector, Vector, Vector] | Departure:
     """Residual, base columns and sensitivities at the null, all from one simulation a trial."""
     problem = fit.problem
     model = base
@@ -174,7 +196,8 @@ def _linear(fit: Fit, base: ShipModel, effects: Sequence[Effect]) -> tuple[Vecto
     simulator = prepare(model, free, problem.outputs, fit.settings.engine, substeps)
     point = linearise(_with_columns(problem, simulator, columns),
                       np.append(fit.theta, np.zeros(len(columns))))  # fmt: skip
-    assert not isinstance(point, Departure)
+    if isinstance(point, Departure):
+        return point
     residual, psi = point
     n = len(fit.theta)
     return residual, psi[:, :n], psi[:, n:]
