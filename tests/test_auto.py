@@ -12,6 +12,7 @@ from test_bad_input import trialid_
 
 from trialid import auto
 from trialid.change import Edit
+from trialid.diagnosis import likelihood
 from trialid.errors import SimulationError
 from trialid.recipe import load
 
@@ -115,8 +116,8 @@ def loop(monkeypatch: pytest.MonkeyPatch, *models: Model | Exception) -> list[au
     monkeypatch.setattr(auto, "adding", adding)
     monkeypatch.setattr(auto, "foresee_adding", lambda *_: "")
     monkeypatch.setattr(auto, "fitted_after", lambda edit, *_: (edit, None))
-    monkeypatch.setattr(auto, "misfits", misfits)
-    monkeypatch.setattr(auto, "check_gain", check_gain)
+    monkeypatch.setattr(likelihood, "misfits", misfits)
+    monkeypatch.setattr(likelihood, "check_gain", check_gain)
     return list(auto.stages(SimpleNamespace(), lambda words, share: None))  # type: ignore[arg-type]
 
 
