@@ -111,3 +111,10 @@ def test_what_was_done_is_told_by_sign():
     assert done(known | {"step": "dropped"}) == "\N{MINUS SIGN} b"
     assert done(known | {"step": "as written"}) == "as written"
     assert done({"step": "added", "added": None, "dropped": None}) == "added"
+
+
+def test_a_sign_stays_with_its_name(result):
+    run = grown(result, 13)
+    for row in run["history"][1:]:
+        row["added"] = "righting_arm_cubic"
+    assert descent(run).columns[1].words == ("+\N{NO-BREAK SPACE}righting_", "arm_cubic")

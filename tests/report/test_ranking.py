@@ -47,6 +47,9 @@ def test_a_family_tells_how_alike_its_members_are():
     (leader,) = ranking(run).leaders
     assert [(a.effect, a.cosine) for a in leader.family] == [("other", 0.96), ("rival", None)]
     assert leader.family[0].differs == pytest.approx(0.28)
+    assert not any(a.told_apart for a in leader.family)
+    run["verdict"]["family"] = ["an_effect"]
+    assert [a.told_apart for a in ranking(run).leaders[0].family] == [True]
     assert known["family"] == ["an_effect", "other"]
 
 
@@ -70,6 +73,12 @@ def test_a_gain_off_by_more_than_a_fifth_is_explained(refitted, says):
 def test_a_sign_that_turned_is_told():
     turned = {"c": {"expected": -1.0, "refitted": 0.5}, "d": {"expected": 1.0, "refitted": 2.0}}
     assert remark(*row(parameters=turned)).startswith("c changes its sign when fitted")
+
+
+def test_a_value_that_stops_at_its_limit_is_told():
+    ends = {"low": -0.1, "high": 0.1}
+    at = {"c": ends | {"expected": 0.02, "refitted": 0.1}, "d": ends | {"refitted": 0.09}}
+    assert remark(*row(parameters=at)) == "c stops at the end of the physical range."
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ the held-out ones. A whisker is the interval of the model part, where the run kn
 """
 
 import math
-import textwrap
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -172,12 +172,28 @@ def done(row: Mapping[str, Any]) -> str:
 
 def _words(row: Run, present: bool, step: float) -> list[str]:
     """A label in short lines, broken at underscores."""
-    parts = textwrap.wrap(done(row).replace("_", "_\N{ZERO WIDTH SPACE} "), int(step / 6.8))
-    lines = [part.replace("\N{ZERO WIDTH SPACE} ", "").replace("\N{ZERO WIDTH SPACE}", "")
-             for part in parts]  # fmt: skip
+    sign, _, name = done(row).rpartition(" ")
+    whole = f"{sign}\N{NO-BREAK SPACE}{name}" if sign in ("+", wording.MINUS) else done(row)
+    lines = broken(whole, int(step / 6.8))
     if row["step"] == "proposed":
         lines.append("(proposed)")
     return [*lines, OWN] if present else lines
+
+
+def broken(text: str, room: int) -> list[str]:
+    """A text in lines of so many characters, broken after underscores and spaces.
+
+    >>> broken("righting_arm_cubic", 11)
+    ['righting_', 'arm_cubic']
+    """
+    first, *others = re.split("(?<=[_ ])", text)
+    lines = [first]
+    for piece in others:
+        if len(lines[-1]) + len(piece.rstrip()) <= room:
+            lines[-1] += piece
+        else:
+            lines.append(piece)
+    return [line.rstrip() for line in lines]
 
 
 def _said(row: Run) -> str:

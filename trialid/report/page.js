@@ -282,14 +282,17 @@
   new ResizeObserver(fitted).observe(document.querySelector("main"));
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 
-  /* Paper: every plot, in the light colours, as wide as the sheet; closed tables opened. */
+  /* Paper: every plot, in the light colours, as wide as the sheet; closed tables opened, and closed again after. */
+  let closed = [];
   window.addEventListener("beforeprint", () => {
     document.documentElement.dataset.print = "";
-    document.querySelectorAll("details").forEach((each) => { each.open = true; });
+    closed = [...document.querySelectorAll("details:not([open])")];
+    closed.forEach((each) => { each.open = true; });
     plots.forEach(draw);
   });
   window.addEventListener("afterprint", () => {
     delete document.documentElement.dataset.print;
+    closed.forEach((each) => { each.open = false; });
     redraw();
   });
 

@@ -1,6 +1,7 @@
 """The candidates as the page tells of them: who leads, who is ruled out, and why."""
 
 import itertools
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -31,11 +32,15 @@ class ErrorBar:
 
 @dataclass(frozen=True)
 class Alike:
-    """A member of a family: |cos| to the candidate, None where it is as likely but not parallel."""
+    """A member of a family: |cos| to the candidate, None where it is as likely but not parallel.
+
+    `told_apart` where the verdict names the one and does not name the other beside it.
+    """
 
     effect: str
     cosine: float | None
     differs: float | None
+    told_apart: bool
 
 
 @dataclass(frozen=True)
@@ -103,22 +108,34 @@ def _family(row: Run, run: Run) -> Iterable[Alike]:
     names = [*row["family"], *(run["verdict"]["family"] if named else ())]
     for name in dict.fromkeys(n for n in names if n != row["effect"]):
         cosine = row["cosines"].get(name)
-        yield Alike(name, cosine, None if cosine is None else max(1.0 - cosine**2, 0.0) ** 0.5)
+        differs = None if cosine is None else max(1.0 - cosine**2, 0.0) ** 0.5
+        yield Alike(name, cosine, differs, named and name not in run["verdict"]["family"])
 
 
 def remark(row: Run, run: Run) -> str:
-    """What came out otherwise than foreseen: the gain by more than a fifth, or a sign."""
+    """What came out otherwise than foreseen: the gain by more than a fifth, a sign, a limit."""
     turned = [
         name
         for name, p in row["parameters"].items()
         if p["expected"] and p["refitted"] and p["expected"] * p["refitted"] < 0.0
     ]
     said = [_gain(row, run)]
+    ends = [name for name, p in row["parameters"].items() if _at_an_end(p)]
+    if ends:
+        word = "stops" if len(ends) == 1 else "stop"
+        said.append(f"{' and '.join(ends)} {word} at the end of the physical range.")
     if turned:
         word = "changes its sign" if len(turned) == 1 else "change their signs"
         names = " and ".join(turned)
         said.append(f"{names} {word} when fitted: that part of it this record does not settle.")
     return " ".join(filter(None, said))
+
+
+def _at_an_end(p: Mapping[str, Any]) -> bool:
+    """Whether a fitted value lies on a limit that the search may not cross."""
+    value = p["refitted"]
+    ends = [end for end in (p["low"], p["high"]) if end is not None]
+    return value is not None and any(math.isclose(value, end, rel_tol=1e-6) for end in ends)
 
 
 def _gain(row: Run, run: Run) -> str:
