@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, chdtri  # scipy.stats would take another 0.4 s to import
 
 from trialid.diagnosis.augment import Augmented
-from trialid.diagnosis.probes import probes
+from trialid.diagnosis.evidence import Evidence, Projected, gather, likeliest, without
+from trialid.diagnosis.probes import Probes, probes
 from trialid.diagnosis.whitening import whitened
 from trialid.identification.fit import Fit
 from trialid.ship.rigid_body import ROWS
@@ -53,8 +54,8 @@ def completeness(fit: Fit, augmented: Augmented) -> Completeness | None:
     moved = set(ROWS) & set(fit.problem.simulator.equations.states)
     if not augmented.traces or not moved:
         return None
-    evidence = augmented.evidence
     tried = probes(fit)
+    evidence = _with_colour(augmented, tried)
     white, _ = whitened(tried.columns, augmented.stretches, evidence.colour)
     white -= evidence.white.Q @ (evidence.white.Q.T @ white)
     first = evidence.white.S.shape[1]
@@ -65,6 +66,24 @@ def completeness(fit: Fit, augmented: Augmented) -> Completeness | None:
     effects = [t.columns for t in augmented.traces]
     forces = [tuple(first + i for i in g) for g in tried.groups]
     return Completeness(search.gain(effects, []), search.gain(effects, forces))
+
+
+def _with_colour(augmented: Augmented, tried: Probes) -> Evidence:
+    """The evidence, by the noise's colour without the best force where that beats every effect.
+
+    Else what is missing would pass for the colour of the noise, and nothing would show.
+    """
+    known = augmented.evidence
+    left = tried.columns - known.raw.Q @ (known.raw.Q.T @ tried.columns)
+    forces = Projected(known.raw.residual, left, known.raw.Q, left.T @ left,
+                       left.T @ known.raw.residual)  # fmt: skip
+    effects = [t.columns for t in augmented.traces]
+    _, cost = likeliest(known.raw, effects, augmented.stretches)
+    force, force_cost = likeliest(forces, tried.groups, augmented.stretches)
+    if force_cost >= cost:
+        return known
+    return gather(augmented.residual, augmented.psi, augmented.S, augmented.stretches, effects,
+                  without(forces, force))  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -72,6 +72,7 @@ def gather(
     S: Vector,
     stretches: Sequence[Stretch],
     groups: Sequence[tuple[int, ...]],
+    noise: Vector | None = None,
 ) -> Evidence:
     """Everything the tests need, from normed stacked rows.
 
@@ -79,31 +80,38 @@ def gather(
     ----------
     groups
         Columns of `S` that belong to one candidate.
+    noise
+        What is taken for noise where it is known better than from the candidates; (M,).
     """
     raw = project(residual, psi, S)
-    best = _best(raw, groups, memory(stretches))
-    colour = colour_of(_without(raw, best), stretches)
+    best, _ = likeliest(raw, groups, stretches)
+    colour = colour_of(without(raw, best) if noise is None else noise, stretches)
     rows, parts = whitened(np.column_stack([residual, psi, S]), stretches, colour)
     n = psi.shape[1]
     white = project(rows[:, 0], rows[:, 1 : n + 1], rows[:, n + 1 :])
-    chance = inflation(_without(white, best), white.S, parts) if len(white.S.T) else 1.0
+    chance = inflation(without(white, best), white.S, parts) if len(white.S.T) else 1.0
     return Evidence(raw, white, parts, colour, chance)
 
 
-def _best(raw: Projected, groups: Sequence[tuple[int, ...]], slow: int) -> tuple[int, ...]:
-    """The candidate that explains most of the residual, parameters at Schwarz's price; or none."""
-    samples = len(raw.residual) / slow
+def likeliest(
+    raw: Projected, groups: Sequence[tuple[int, ...]], stretches: Sequence[Stretch]
+) -> tuple[tuple[int, ...], float]:
+    """The candidate that explains most of the residual at Schwarz's price, or none, and its cost.
+
+    As many rows count as one as an autoregression of these records looks back.
+    """
+    samples = len(raw.residual) / memory(stretches)
     total = float(raw.residual @ raw.residual)
     best, least = tuple[int, ...](), 0.0
     for group in groups:
         _, fall = explained(raw, group)
         cost = samples * np.log(max(1.0 - fall / total, 1e-12)) + len(group) * np.log(samples)
         if cost < least:
-            best, least = group, cost
-    return best
+            best, least = group, float(cost)
+    return best, least
 
 
-def _without(rows: Projected, group: Sequence[int]) -> Vector:
+def without(rows: Projected, group: Sequence[int]) -> Vector:
     """The residual less what a candidate explains; (M,)."""
     return np.asarray(rows.residual - rows.S[:, group] @ explained(rows, group)[0])
 
