@@ -154,6 +154,8 @@ def _verdict(run: Run) -> "Iterable[RenderableType]":
 def _change(run: Run) -> str:
     """The error before and after, fitted and held out."""
     pair = run["before_after"]
+    if pair is None and run["verdict"]["kind"] == "not in catalogue":
+        return "No effect is proposed; --draft FILE writes the force that is missing, to be edited."
     if pair is None:
         return "No effect is proposed."
     check = pair["eps_rmsn_check"]
