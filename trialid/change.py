@@ -15,6 +15,7 @@ import numpy as np
 
 import trialid
 from trialid import history
+from trialid.assembly import available
 from trialid.comparison import compared
 from trialid.diagnosis.bias import Foreseen, foresee_adding, foresee_dropping
 from trialid.errors import RecipeError, TrialidError, nearest
@@ -24,7 +25,6 @@ from trialid.pipeline import (
     Progress,
     Run,
     align_trials,
-    available,
     examine,
     fit_of,
     sources_of,

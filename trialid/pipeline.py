@@ -13,9 +13,19 @@ from typing import Any, Final
 
 import numpy as np
 
-from trialid import effects, history, ingest, units
+from trialid import history, ingest
 from trialid.accuracy import Accuracy, Subject, assess
 from trialid.alignment import SignalSource, align
+from trialid.assembly import (
+    available,
+    build_model,
+    candidates,
+    check_bounds,
+    check_quiet,
+    declared_quiet,
+    settings_of,
+    stated_noise,
+)
 from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.completeness import Completeness, completeness
 from trialid.diagnosis.missing_effect import decide, refit
@@ -23,22 +33,19 @@ from trialid.diagnosis.missing_force import missing_force
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
-from trialid.errors import RecipeError, UnitError, nearest
+from trialid.errors import RecipeError
 from trialid.identification.fit import Fit, identify, step_halving
 from trialid.identification.gauss_newton import Iteration
 from trialid.identification.output_error import stretches
 from trialid.identification.pose import Settings
-from trialid.quantities import PARTICULARS, SIGNALS
-from trialid.recipe import Recipe, TrialRecipe, where
+from trialid.recipe import Recipe, TrialRecipe
 from trialid.report.force import force_series, write_force_csv
 from trialid.report.overlay import write_mcap
 from trialid.report.page import write_page
 from trialid.report.series import OutputSeries, TrialSeries, write_csv
 from trialid.result import Diagnosed, Findings, plain
 from trialid.ship.effect import Effect
-from trialid.ship.model import STATES, ShipModel, needs_ship
-from trialid.ship.particulars import NO_SHIP, read_ship
-from trialid.simulation.at_rest import check_at_rest
+from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.trial import Trial
 
@@ -207,123 +214,6 @@ def _as_written(recipe: Recipe, path: Path) -> Path:
     return Path(os.path.relpath(path.resolve(), folder))
 
 
-def available(recipe: Recipe) -> dict[str, Effect]:
-    """The catalogue and the user's own effects, by name."""
-    own = [effects.from_file(path) for path in recipe.model.effects_from]
-    return {**effects.CATALOGUE, **{n: e for found in own for n, e in found.items()}}
-
-
-def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
-    """The ship with the pipeline's states, effects and values.
-
-    Raises
-    ------
-    RecipeError
-        An effect, a free parameter or a value the model does not have.
-    """
-    chosen = []
-    for i, name in enumerate(recipe.model.effects):
-        if name not in catalogue:
-            raise RecipeError(
-                f"{where(recipe, f'model.effects[{i}]')}: there is no effect {name!r}; "
-                f"{nearest(name, catalogue)}"
-            )
-        chosen.append(catalogue[name])
-        if trouble := _senseless(recipe, catalogue[name]):
-            raise RecipeError(f"{where(recipe, f'model.effects[{i}]')}: {name} {trouble}")
-    _check_states(recipe)
-    ship = NO_SHIP if recipe.ship is None else read_ship(recipe.ship)
-    model = ShipModel(ship, recipe.model.states, tuple(chosen))
-    _check_own(model, catalogue)
-    for i, name in enumerate(recipe.identify.free):
-        if name not in model.parameters:
-            raise RecipeError(
-                f"{where(recipe, f'identify.free[{i}]')}: no effect of the model has the parameter "
-                f"{name!r}; {nearest(name, model.parameters)}"
-            )
-    return model.with_values({n: _value(recipe, model, n) for n in recipe.model.values})
-
-
-def _check_own(model: ShipModel, catalogue: Mapping[str, Effect]) -> None:
-    """Refuse a user's own effect that gives no number at rest: it would spoil the search too.
-
-    Raises
-    ------
-    EffectError
-        The message names it.
-    """
-    for name, effect in catalogue.items():
-        own = effects.CATALOGUE.get(name) is not effect
-        asked = {*effect.signals} & {*PARTICULARS}
-        if own and asked <= {*model.ship.particulars}:
-            check_at_rest(ShipModel(model.ship, model.states, (effect,)))
-
-
-def _check_states(recipe: Recipe) -> None:
-    for i, state in enumerate(recipe.model.states):
-        if state not in STATES:
-            raise RecipeError(
-                f"{where(recipe, f'model.states[{i}]')}: {state!r} cannot be simulated; "
-                f"{nearest(state, STATES)}"
-            )
-
-
-def _value(recipe: Recipe, model: ShipModel, name: str) -> float:
-    given = recipe.model.values[name]
-    if name not in model.parameters:
-        raise RecipeError(
-            f"{where(recipe, f'model.values.{name}')}: no effect of the model has this parameter; "
-            f"{nearest(name, model.parameters)}"
-        )
-    if given.unit is None:
-        return given.value
-    try:
-        return given.value * units.factor(given.unit, model.parameters[name].unit)
-    except UnitError as error:
-        raise UnitError(f"{where(recipe, f'model.values.{name}')}: {error}") from error
-
-
-def check_bounds(recipe: Recipe, model: ShipModel, settings: Settings) -> None:
-    """Refuse bounds that leave out the start, where no search could begin.
-
-    Raises
-    ------
-    RecipeError
-        In one line, with the key.
-    """
-    for name, (low, high) in settings.bounds.items():
-        start = model.stated(name) if name in model.parameters else None
-        if start is not None and not low <= start <= high:
-            raise RecipeError(
-                f"{where(recipe, f'identify.bounds.{name}')}: [{low:g}, {high:g}] leaves out the "
-                f"start {start:.6g}; widen it, or state another start in [model.values]"
-            )
-
-
-def settings_of(recipe: Recipe) -> Settings:
-    """The pipeline's `[identify]` as the identifier takes it.
-
-    Raises
-    ------
-    RecipeError
-        A prior or a bound of a parameter that is not free.
-    """
-    r = recipe.identify
-    for table, names in (("priors", r.priors), ("bounds", r.bounds)):
-        for name in names:
-            if name not in r.free:
-                raise RecipeError(
-                    f"{where(recipe, f'identify.{table}.{name}')}: {name!r} is not free; "
-                    f"{nearest(name, r.free)}"
-                )
-    return Settings(
-        free=r.free, outputs=r.outputs, nuisance=r.nuisance, weights=r.weights, loss=r.loss,
-        priors={n: (p.mean, p.std) for n, p in r.priors.items()}, bounds=r.bounds,
-        starts=r.starts, spread=r.spread, seed=r.seed, max_iterations=r.max_iterations,
-        norm=r.norm, substeps=r.substeps, engine=r.engine,
-    )  # fmt: skip
-
-
 def _fit_progress(progress: Progress) -> Callable[[Iteration], None]:
     count = 0
 
@@ -344,76 +234,14 @@ def diagnose(
     ranking, augmented = rank(
         fit, candidates(recipe, catalogue), recipe.diagnose.family_cos, recipe.diagnose.level
     )
-    best, routes = split(fit, augmented, stated_noise(recipe), _declared_quiet(recipe))
+    best, routes = split(fit, augmented, stated_noise(recipe), declared_quiet(recipe))
     return Diagnosed(fit, accuracy_of(fit, best), best, routes), ranking, augmented
-
-
-def candidates(recipe: Recipe, catalogue: Mapping[str, Effect]) -> dict[str, Effect]:
-    """Effects to try: all, none, or those the pipeline lists.
-
-    Raises
-    ------
-    RecipeError
-        A listed effect does not exist.
-    """
-    asked = recipe.diagnose.candidates
-    if asked == "all":
-        return {n: e for n, e in catalogue.items() if not _senseless(recipe, e)}
-    if asked == "none":
-        return {}
-    for i, name in enumerate(asked):
-        if name not in catalogue:
-            raise RecipeError(
-                f"{where(recipe, f'diagnose.candidates[{i}]')}: there is no effect {name!r}; "
-                f"{nearest(name, catalogue)}"
-            )
-    return {n: catalogue[n] for n in asked}
-
-
-def _senseless(recipe: Recipe, effect: Effect) -> str:
-    """Why an effect has no place among sensors alone, empty where it has one."""
-    if recipe.ship is None and needs_ship(effect):
-        return "is about a ship, and the pipeline names none; write ship = ..., or leave it out"
-    own = {*effect.signals} & {*recipe.identify.outputs}
-    if own and not recipe.model.states:
-        return f"reads {min(own)}, an output that is not simulated: it would explain itself"
-    return ""
 
 
 def worth_refitting(recipe: Recipe, ranking: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     """The best candidates that stand out and are physical."""
     standing = [c for c in ranking if c.allowed and c.p_value < recipe.diagnose.level]
     return tuple(standing[: recipe.diagnose.refit])
-
-
-def stated_noise(recipe: Recipe) -> dict[str, float]:
-    """Sensor figures of the pipeline, from the unit of reports to SI."""
-    return {c: x / units.shown(SIGNALS[c]) for c, x in recipe.diagnose.noise.items()}
-
-
-def check_quiet(recipe: Recipe, trials: tuple[Trial, ...]) -> None:
-    """Refuse a stretch declared quiet that its trial does not hold.
-
-    Raises
-    ------
-    RecipeError
-        In one line, with the key.
-    """
-    ends = {t.name: t.duration for t in trials}
-    for i, stretch in enumerate(recipe.diagnose.quiet):
-        start, stop = stretch.window
-        if start < 0.0 or stop > ends[stretch.trial] + 1e-9:
-            raise RecipeError(
-                f"{where(recipe, f'diagnose.quiet[{i}].window')}: [{start:g}, {stop:g}] s is "
-                f"outside trial {stretch.trial!r}, which lasts {ends[stretch.trial]:g} s"
-            )
-
-
-def _declared_quiet(recipe: Recipe) -> dict[str, list[tuple[float, float]]]:
-    declared: dict[str, list[tuple[float, float]]] = {}
-    for stretch in recipe.diagnose.quiet:
-        declared.setdefault(stretch.trial, []).append(stretch.window)
-    return declared
 
 
 def accuracy_of(fit: Fit, parts: Split) -> Accuracy:

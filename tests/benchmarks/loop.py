@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final, TypeVar
 
-from trialid import pipeline, recipe
+from trialid import assembly, pipeline, recipe
 from trialid.diagnosis.completeness import completeness
 from trialid.diagnosis.score import rank
 from trialid.identification.fit import identify
@@ -43,8 +43,8 @@ def ranking() -> float:
     """Print what follows a fit of three 20-minute trials, and give it in fits."""
     asked = recipe.load(ROOT / "pipelines" / "hidden_effect.toml")
     trials = pipeline.align_trials(asked, lambda words, share: None)
-    catalogue = pipeline.available(asked)
-    model, settings = pipeline.build_model(asked, catalogue), pipeline.settings_of(asked)
+    catalogue = assembly.available(asked)
+    model, settings = assembly.build_model(asked, catalogue), assembly.settings_of(asked)
     fitting, fit = least(lambda: identify(trials, model, settings))
     ranked, (candidates, augmented) = least(lambda: rank(fit, catalogue))
     compared, _ = least(lambda: completeness(fit, augmented))
