@@ -27,7 +27,7 @@ from typing import Final
 
 from hidden_scenarios import SCENARIOS, TYPICAL
 from hidden_score import plainness
-from hidden_tables import ISSUE, SHORT, Row, report, thresholds, write
+from hidden_tables import FULL, SHORT, Row, report, thresholds, write
 from hidden_truth import (
     FREE,
     NOISES,
@@ -267,7 +267,7 @@ def main() -> int:
     asked = options()
     began = time.perf_counter()
     rows = run_all(tasks(asked), asked.jobs)
-    limits = SHORT if asked.short else ISSUE
+    limits = SHORT if asked.short else FULL
     text = report(rows, limits)
     print(text)
     print(f"{len(rows)} runs in {time.perf_counter() - began:.0f} s", file=sys.stderr)

@@ -129,7 +129,7 @@ class Limits:
     near: float = 0.90
 
 
-ISSUE: Final = Limits()
+FULL: Final = Limits()
 SHORT: Final = Limits(0.80, 0.10, 0.25, 0.25, 0.50, 0.0, 0.0, 0.75)
 """A handful of runs: one that goes wrong may not stop the line, three may."""
 
