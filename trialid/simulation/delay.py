@@ -10,6 +10,9 @@ Whole = NDArray[np.int_]
 SLOPE: Final = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Fourth-order central difference: the slope per sample at the middle of five samples."""
 
+BLOCK: Final = 64
+"""Samples of a recursion that one product of matrices steps through."""
+
 REACH: Final = 3
 """Samples on either side that an interpolated value looks at."""
 
@@ -64,12 +67,16 @@ def shifted(y: Vector, lag: float | Vector) -> Vector:
 def _weighed(y: Vector, whole: Whole, weights: Vector) -> Vector:
     """Six neighbours of each sample, moved by whole samples, times their weights."""
     n = len(y)
-    first = np.arange(n) - whole - 2
+    if weights.ndim == 1:  # one delay for all: neighbours are slices of one longer record
+        near = y[np.clip(np.arange(-int(whole) - 2, n - int(whole) + 3), 0, n - 1)]
+        total = weights[0] * near[:n]
+        for i in range(1, 6):
+            total += weights[i] * near[i : i + n]
+        return np.asarray(total)
     beside = (slice(None), *(None,) * (y.ndim - 1))  # weights of a sample, over all its columns
-    total = np.zeros_like(y, dtype=float)
+    first, total = np.arange(n) - whole - 2, np.zeros_like(y, dtype=float)
     for i in range(6):
-        weight = weights[i][beside] if weights.ndim > 1 else weights[i]
-        total += weight * y[np.clip(first + i, 0, n - 1)]
+        total += weights[i][beside] * y[np.clip(first + i, 0, n - 1)]
     return total
 
 
@@ -83,17 +90,34 @@ def lagged(y: Vector, tau: float, period: float) -> tuple[Vector, Vector]:
     >>> z, slope
     (array([0., 1., 1.]), array([ 0., -1.,  0.]))
     """
-    from scipy.signal import lfilter  # 0.2 s to import: only a record with a slow sensor needs it
-
+    y_before = np.concatenate([y[:1], y[:-1]])
+    if tau == 0.0:
+        return y, (y_before - y) / period
     ratio = tau / period
-    a = np.exp(-1.0 / ratio) if ratio > 0.0 else 0.0
-    a_slope = a / ratio**2 / period if ratio > 0.0 else 0.0
+    a = np.exp(-1.0 / ratio)
+    a_slope = a / ratio**2 / period
     kept = ratio * (1.0 - a)
     kept_slope = (1.0 - a) / period - ratio * a_slope
-    z = lfilter([1.0 - kept, kept - a], [1.0, -a], y - y[:1], axis=0) + y[:1]
-    y_before, z_before = (np.concatenate([x[:1], x[:-1]]) for x in (y, z))
+    z = y[:1] + _recursive((1.0 - kept) * (y - y[:1]) + (kept - a) * (y_before - y[:1]), a)
+    z_before = np.concatenate([z[:1], z[:-1]])
     drive = a_slope * (z_before - y_before) + kept_slope * (y_before - y)
-    return z, np.asarray(lfilter([1.0], [1.0, -a], drive, axis=0))
+    return z, _recursive(drive, a)
+
+
+def _recursive(x: Vector, a: float) -> Vector:
+    """z(k) = a z(k-1) + x(k) from rest, block by block; like x, (N, ...)."""
+    columns = x.reshape(len(x), -1)
+    ahead = np.subtract.outer(np.arange(BLOCK), np.arange(BLOCK))
+    band = np.where(ahead >= 0, a ** np.maximum(ahead, 0), 0.0)
+    fading = (a ** np.arange(1, BLOCK + 1))[:, None]
+    z = np.empty_like(columns)
+    carried = np.zeros((1, columns.shape[1]))
+    for k in range(0, len(x), BLOCK):
+        part = columns[k : k + BLOCK]
+        rows = len(part)
+        z[k : k + rows] = band[:rows, :rows] @ part + fading[:rows] * carried
+        carried = z[k + rows - 1 : k + rows]
+    return z.reshape(x.shape)
 
 
 def margin(low: float, high: float, period: float) -> int:
