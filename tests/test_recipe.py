@@ -176,7 +176,7 @@ def test_an_absolute_path_stays(folder: Path, tmp_path_factory: pytest.TempPathF
     log = tmp_path_factory.mktemp("elsewhere") / "log.csv"
     log.touch()
     recipe = load(short(folder, '"logs/zigzag20.csv"', repr(str(log))))
-    assert recipe.trials[0].logs == (log,)
+    assert [one.path for one in recipe.trials[0].logs] == [log]
 
 
 def test_a_signal_says_channel_unit_side_angle_and_delay(folder: Path) -> None:
@@ -284,9 +284,18 @@ def test_without_neighbours_of_its_kind_a_missing_file_says_so(folder: Path) -> 
     assert "there is no folder" in refusal(short(folder, "logs/", "log/"))
 
 
-def test_a_folder_is_no_log(folder: Path) -> None:
-    message = refusal(short(folder, "logs/zigzag20.csv", "logs"))
-    assert message == "trial[0].logs[0]: 'logs' is a folder; name the file in it"
+def test_a_folder_of_logs_is_a_log(folder: Path) -> None:
+    recipe = load(short(folder, "logs/zigzag20.csv", "logs"))
+    assert [one.path.name for one in recipe.trials[0].logs] == ["logs"]
+
+
+def test_a_log_with_what_it_does_not_say_itself(folder: Path) -> None:
+    log = '{ path = "logs/zigzag20.csv", zone = "Europe/Oslo" }'
+    recipe = load(short(folder, '"logs/zigzag20.csv"', log))
+    assert recipe.trials[0].logs[0].zone == "Europe/Oslo"
+    message = refusal(short(folder, '"logs/zigzag20.csv"', log.replace("Oslo", "Olso")))
+    assert message.startswith("trial[0].logs[0].zone: 'Europe/Olso' is no time zone; write it like")
+    assert "did you mean 'Europe/Oslo'" in message
 
 
 def test_effects_come_from_python_files(folder: Path) -> None:

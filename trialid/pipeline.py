@@ -38,6 +38,7 @@ from trialid.identification.fit import Fit, identify, step_halving
 from trialid.identification.gauss_newton import Iteration
 from trialid.identification.output_error import stretches
 from trialid.identification.pose import Settings
+from trialid.ingest import Aids, LogFile
 from trialid.recipe import Recipe, TrialRecipe
 from trialid.report.force import force_series, write_force_csv
 from trialid.report.overlay import write_mcap
@@ -191,10 +192,11 @@ def align_trials(recipe: Recipe, progress: Progress) -> tuple[Trial, ...]:
 
 def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
     sources = [
-        SignalSource(q, s.channel, s.unit, s.positive, s.angle, s.delay)
+        SignalSource(q, s.channel, s.unit, s.positive, s.angle, s.delay, s.gain, s.offset)
         for q, s in trial.signals.items()
     ]
-    recordings = ingest.read_together(trial.logs, [s.channel for s in sources])
+    logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
+    recordings = ingest.read_together(logs, [s.channel for s in sources])
     recordings = tuple(replace(r, path=_as_written(recipe, r.path)) for r in recordings)
     made = align(trial.name, trial.use, recordings, sources, recipe.align.period, trial.window)
     if trial.speed is None:

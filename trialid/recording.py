@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,15 @@ class Channel:
         The unit the log itself states, or None when it states none.
     clock
         Which of a message's times `t` is, in words for the report: `header stamp`, `column t`.
+    description
+        What the format says it is, in words: `PGN 127245 rudder, source 11, instance 0, position`.
+    quantity
+        Name in the dictionary of quantities, where the format itself defines which it is.
+    positive
+        The side the format's own convention counts as positive, where it has one. What boats
+        really send is another matter: the pipeline states the side.
+    received
+        When the recorder got the samples [ns], where `t` is another time; (N,).
     """
 
     name: str
@@ -31,10 +41,15 @@ class Channel:
     y: NDArray[np.float64]
     unit: str | None = None
     clock: str = ""
+    description: str = ""
+    quantity: str | None = None
+    positive: Literal["starboard", "port"] | None = None
+    received: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
-        for array in (self.t, self.y):
-            array.setflags(write=False)
+        for array in (self.t, self.y, self.received):
+            if array is not None:
+                array.setflags(write=False)
 
 
 @dataclass(frozen=True)

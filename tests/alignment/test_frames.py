@@ -91,3 +91,10 @@ def test_a_quaternion_is_in_radians():
     with pytest.raises(AlignmentError, match=r"the log states 'rad' .* the pipeline 'deg'"):
         angle(log, "phi", "roll", unit="deg")
     np.testing.assert_allclose(angle(log, "phi", "roll", unit="rad"), 0.1 * np.sin(T), atol=1e-9)
+
+
+def test_gain_and_offset_come_before_the_unit_and_the_side():
+    share = channel("servo:deflection", T, np.sin(T / 5))
+    source = SignalSource("delta_order", "servo:deflection", "deg", "port", gain=35.0, offset=2.0)
+    found = align("t", "fit", [recording(share)], [source], 0.5).signals["delta_order"]
+    np.testing.assert_allclose(found, -np.radians(35 * np.sin(T / 5) + 2), atol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 from sample_writers import write_logs
 
 from trialid.alignment import SignalSource, align
-from trialid.ingest import read, read_together
+from trialid.ingest import LogFile, read, read_together
 
 START = 1_700_000_000_000_000_000
 REAL = Path(__file__).parents[3] / "shared/data/kvlcc2_roll_decay/model_test_21337.csv"
@@ -79,7 +79,9 @@ def json_and_csv(folder):
 @pytest.mark.parametrize("write", [keelson, ros2, json_and_csv])
 def test_log_to_trial(tmp_path, write):
     paths, sources = write(tmp_path)
-    recordings = read_together(paths, [source.channel for source in sources])
+    recordings = read_together(
+        [LogFile(path) for path in paths], [source.channel for source in sources]
+    )
     trial = align("zigzag", "fit", recordings, sources, 0.5)
     assert len(trial.logs) == len(paths)
     for name, motion in {"delta": rudder, "r": turn, "phi": roll}.items():

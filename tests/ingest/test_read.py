@@ -4,7 +4,7 @@ import pytest
 
 from trialid import ingest
 from trialid.errors import LogError
-from trialid.ingest import adapter, read, read_together
+from trialid.ingest import Aids, LogFile, adapter, read, read_together
 
 TEXT = "t,u,r\n0,1,2\n1,2,3\n"
 
@@ -57,10 +57,39 @@ def test_an_unknown_file_shows_its_first_bytes(tmp_path):
 
 
 def test_two_adapters_that_recognise_one_file(tmp_path, monkeypatch):
-    other = adapter.Adapter("other", lambda head: True, read)
+    other = adapter.Adapter("other", lambda head: True, read, general=True)
     monkeypatch.setattr(ingest, "ADAPTERS", (*ingest.ADAPTERS, other))
     message = refused(write(tmp_path / "log"))
     assert "more than one adapter recognises it (of csv, other)" in message
+
+
+def test_a_particular_format_goes_before_a_general_one(tmp_path, monkeypatch):
+    mine = adapter.Adapter("mine", lambda head: head.startswith(b"t,u"), lambda *asked: asked)
+    monkeypatch.setattr(ingest, "ADAPTERS", (*ingest.ADAPTERS, mine))
+    path = write(tmp_path / "log")
+    assert read(path, ["u"]) == (path, ["u"], Aids())
+
+
+def test_an_aid_the_format_has_no_use_for(tmp_path):
+    path = write(tmp_path / "log")
+    with pytest.raises(LogError) as caught:
+        read(path, None, Aids(zone="Europe/Oslo"))
+    assert str(caught.value).startswith(f"{path}: is csv, where zone is for ")
+
+
+def test_a_folder_of_logs_is_read_as_its_files(tmp_path):
+    write(tmp_path / "b.csv", "t,u\n2,3\n3,4\n")
+    write(tmp_path / "a.csv", "t,u\n0,1\n1,2\n")
+    (tmp_path / "notes.bin").write_bytes(bytes(9))
+    (tmp_path / ".hidden.csv").write_text("t,u\n9,9\n")
+    found = read_together([LogFile(tmp_path)], ["u"])
+    assert [one.path.name for one in found] == ["a.csv", "b.csv"]
+
+
+def test_a_folder_without_a_log(tmp_path):
+    (tmp_path / "notes.bin").write_bytes(bytes(9))
+    with pytest.raises(LogError, match=r"no file in this folder is a log; it holds: notes\.bin"):
+        read_together([LogFile(tmp_path)])
 
 
 @pytest.mark.parametrize(
@@ -89,7 +118,7 @@ def test_what_is_no_table_is_not_taken_for_one(head):
 def test_logs_read_together_are_filtered_only_when_all_is_found(tmp_path):
     first = write(tmp_path / "first", "t,u,r\n0,1,2\n1,2,3\n")
     second = write(tmp_path / "second", "t,phi,x\n0,1,2\n1,2,3\n")
-    found = read_together([first, second], ["u", "phi"])
+    found = read_together([LogFile(first), LogFile(second)], ["u", "phi"])
     assert [list(recording.channels) for recording in found] == [["u"], ["phi"]]
-    unfound = read_together([first, second], ["u", "psi"])
+    unfound = read_together([LogFile(first), LogFile(second)], ["u", "psi"])
     assert [list(recording.channels) for recording in unfound] == [["u", "r"], ["phi", "x"]]

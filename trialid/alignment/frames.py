@@ -30,7 +30,7 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
     t = channel.t - round(source.delay * 1e9)
     y = np.where(np.abs(channel.y) < MARKER, channel.y, np.nan)
-    return Series(quantity, t, y * factor, channel.clock)
+    return Series(quantity, t, (source.gain * y + source.offset) * factor, channel.clock)
 
 
 def _quantity(source: SignalSource, where: str) -> Quantity:

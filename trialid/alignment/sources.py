@@ -31,6 +31,8 @@ class SignalSource:
         Which angle of a quaternion is meant; None for a plain number.
     delay
         How much later than the motion the sensor stamps it [s].
+    gain, offset
+        The signal is gain times the logged number plus offset, in `unit`.
     """
 
     quantity: str
@@ -39,6 +41,8 @@ class SignalSource:
     positive: Literal["starboard", "port"] | None = None
     as_: Literal["roll", "pitch", "yaw"] | None = None
     delay: float = 0.0
+    gain: float = 1.0
+    offset: float = 0.0
 
 
 def find(channel: str, recordings: Sequence[Recording], where: str) -> Channel:

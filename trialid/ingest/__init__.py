@@ -2,14 +2,15 @@
 
 import difflib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
 from trialid.ingest import csv_log, mcap_log
-from trialid.ingest.adapter import Adapter, Wanted, asked
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
 from trialid.recording import Recording
 
-__all__ = ["ADAPTERS", "read", "read_together"]
+__all__ = ["ADAPTERS", "Aids", "LogFile", "adapter_of", "files_of", "read", "read_together"]
 
 ADAPTERS: tuple[Adapter, ...] = (mcap_log.ADAPTER, csv_log.ADAPTER)
 
@@ -17,25 +18,82 @@ HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""
 
 
-def read(path: Path, wanted: Wanted = None) -> Recording:
+@dataclass(frozen=True)
+class LogFile:
+    """One log of a trial: a file or a folder of files, and what the user adds to it."""
+
+    path: Path
+    aids: Aids = NO_AIDS
+
+
+def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read a log of any known format; `wanted` are channel names or their beginnings, None all.
 
-    Raises LogError when there is no such file, when not exactly one adapter recognises it, and
-    when that adapter cannot read it.
+    Raises LogError when there is no such file, when not exactly one adapter recognises it, when
+    that adapter cannot read it, and when it can make no use of an aid.
     """
-    return _adapter(path, _head(path)).read(path, wanted)
+    return adapter_of(path, aids).read(path, wanted, aids)
 
 
-def read_together(paths: Sequence[Path], wanted: Wanted = None) -> tuple[Recording, ...]:
+def read_together(logs: Sequence[LogFile], wanted: Wanted = None) -> tuple[Recording, ...]:
     """Read the logs of one trial; the wanted channels may lie in any of them.
 
     When a wanted channel is in none of the logs they are read in full, so that whoever looks for
     it can name the channels there are.
     """
-    recordings = tuple(read(path, wanted) for path in paths)
+    files = [LogFile(path, log.aids) for log in logs for path in files_of(log)]
+    recordings = tuple(read(file.path, wanted, file.aids) for file in files)
     names = [name for recording in recordings for name in recording.channels]
     missing = [want for want in wanted or () if not any(asked(name, [want]) for name in names)]
-    return tuple(read(path) for path in paths) if missing else recordings
+    return tuple(read(file.path, None, file.aids) for file in files) if missing else recordings
+
+
+def files_of(log: LogFile) -> tuple[Path, ...]:
+    """The file itself, or the logs in a folder, by name; hidden files are left out.
+
+    Raises LogError for a folder in which no file is a log.
+    """
+    if not log.path.is_dir():
+        return (log.path,)
+    files = sorted(child for child in log.path.iterdir() if _visible(child))
+    logs = tuple(child for child in files if _able(child, _head(child), log.aids))
+    if not logs:
+        names = _some([child.name for child in files])
+        raise LogError(f"{log.path}: no file in this folder is a log; it holds: {names}")
+    return logs
+
+
+def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
+    """The one adapter that recognises the file; LogError as `read`."""
+    head = _head(path)
+    if not head:
+        raise LogError(f"{path}: is empty (0 bytes); the recorder wrote nothing, copy it again")
+    able = _able(path, head, aids)
+    if len(able) == 1:
+        return able[0]
+    verdict = "more than one adapter recognises it" if able else "no adapter recognises it"
+    names = ", ".join(adapter.name for adapter in able or ADAPTERS)
+    raise LogError(
+        f"{path}: {verdict} (of {names}); it begins {head[:16]!r}; give the log as its recorder "
+        "wrote it, or export it as CSV with a header row and a time column"
+    )
+
+
+def _able(path: Path, head: bytes, aids: Aids) -> list[Adapter]:
+    """The adapters that recognise the file and can use the aids; a general one only alone."""
+    able = [adapter for adapter in ADAPTERS if adapter.recognises(head)]
+    special = [adapter for adapter in able if not adapter.general] or able
+    using = [adapter for adapter in special if adapter.aids.issuperset(aids.given)]
+    if special and not using:
+        useless = next(name for name in aids.given if name not in special[0].aids)
+        able_names = [adapter.name for adapter in ADAPTERS if useless in adapter.aids]
+        for_what = f"is for {', '.join(able_names)}" if able_names else "is for no format yet"
+        raise LogError(f"{path}: is {special[0].name}, where {useless} {for_what}; leave it out")
+    return using
+
+
+def _visible(path: Path) -> bool:
+    return path.is_file() and not path.name.startswith(".")
 
 
 def _head(path: Path) -> bytes:
@@ -46,12 +104,9 @@ def _head(path: Path) -> bytes:
         raise LogError(f"{path}: no such file; {_beside(path)}")
     try:
         with path.open("rb") as file:
-            head = file.read(HEAD)
+            return file.read(HEAD)
     except OSError as error:
         raise LogError(f"{path}: cannot be opened, {error.strerror}; check its rights") from error
-    if not head:
-        raise LogError(f"{path}: is empty (0 bytes); the recorder wrote nothing, copy it again")
-    return head
 
 
 def _beside(path: Path) -> str:
@@ -68,16 +123,3 @@ def _beside(path: Path) -> str:
 def _some(names: Sequence[str]) -> str:
     more = f" and {len(names) - 5} more" if len(names) > 5 else ""
     return (", ".join(names[:5]) or "nothing") + more
-
-
-def _adapter(path: Path, head: bytes) -> Adapter:
-    """The one adapter that recognises the file."""
-    able = [adapter for adapter in ADAPTERS if adapter.recognises(head)]
-    if len(able) == 1:
-        return able[0]
-    verdict = "more than one adapter recognises it" if able else "no adapter recognises it"
-    names = ", ".join(adapter.name for adapter in able or ADAPTERS)
-    raise LogError(
-        f"{path}: {verdict} (of {names}); it begins {head[:16]!r}; give the log as its recorder "
-        "wrote it, or export it as CSV with a header row and a time column"
-    )

@@ -1,13 +1,51 @@
-"""What an adapter is: how to recognise a log from its first bytes, and how to read it."""
+"""What an adapter is: how to recognise a log from its first bytes, and how to read it.
+
+Channels are named `message:field`, and `message/source:field` where several devices send the same
+message: `/imu:angular_velocity.z`, `rudder/11/255:position`, `ROT/HE:rate`, `ATTITUDE/1/1:roll`.
+Two sources are two channels, never one. A table's columns keep their bare names.
+"""
 
 import hashlib
-from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 from trialid.recording import Recording
 
 Wanted = Collection[str] | None
+
+
+@dataclass(frozen=True)
+class Aids:
+    """What a log cannot say about itself, and the user does.
+
+    Parameters
+    ----------
+    template
+        File that says how a table is laid out.
+    dbc
+        File that says what the frames of a CAN bus mean that is not NMEA 2000.
+    zone
+        Time zone of stamps that state none, an IANA name: `Europe/Oslo`.
+    """
+
+    template: Path | None = None
+    dbc: Path | None = None
+    zone: str | None = None
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Names of those that are given."""
+        return tuple(one.name for one in fields(self) if getattr(self, one.name) is not None)
+
+
+NO_AIDS = Aids()
+
+
+def whole(path: Path, aids: Aids) -> Iterable[Wanted]:
+    """All channels in one reading."""
+    del path, aids
+    return (None,)
 
 
 @dataclass(frozen=True)
@@ -21,14 +59,24 @@ class Adapter:
     recognises
         True when the first bytes of a file are of this format; the file's name plays no part.
     read
-        Path and wanted channels to Recording. Wanted are channel names or their beginnings, None
-        for all; what nobody wants may be skipped. It converts names and stamps, nothing else: no
-        filtering, no resampling, no repair.
+        Path, wanted channels and aids to Recording. Wanted are channel names or their beginnings,
+        None for all; what nobody wants may be skipped. It converts names and stamps, nothing else:
+        no filtering, no resampling, no repair.
+    aids
+        Names of the aids it can use; any other that is given is refused.
+    batches
+        For who wants to see every channel of a log of any size: readings that together give all
+        channels, each within a few hundred megabytes of memory.
+    general
+        True for a format so loose that any other that recognises the file is meant.
     """
 
     name: str
     recognises: Callable[[bytes], bool]
-    read: Callable[[Path, Wanted], Recording]
+    read: Callable[[Path, Wanted, Aids], Recording]
+    aids: frozenset[str] = frozenset()
+    batches: Callable[[Path, Aids], Iterable[Wanted]] = whole
+    general: bool = False
 
 
 def asked(channel: str, wanted: Wanted) -> bool:

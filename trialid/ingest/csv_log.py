@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from trialid import units
 from trialid.errors import LogError, UnitError
-from trialid.ingest.adapter import Adapter, Wanted, asked, sha256
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked, sha256
 from trialid.recording import Channel, Recording
 
 SEPARATORS = ",;\t"
@@ -61,8 +61,9 @@ def recognises(head: bytes) -> bool:
     return len(fields) > 1 and all(re.match(r"[^\W\d]", field) for field in fields)
 
 
-def read(path: Path, wanted: Wanted = None) -> Recording:
+def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted columns; LogError names the line and column of what cannot be read."""
+    del aids
     remarks: list[str] = []
     table = _table(path, remarks)
     clock = _time_column(table)
@@ -219,4 +220,4 @@ def _with_gaps(table: Table, column: int, texts: Sequence[str]) -> NDArray[np.fl
     raise LogError(f"{place}: {text!r} where a number was expected; mend it or leave it empty")
 
 
-ADAPTER = Adapter("csv", recognises, read)
+ADAPTER = Adapter("csv", recognises, read, general=True)

@@ -14,7 +14,7 @@ import numpy as np
 
 from trialid.errors import LogError
 from trialid.ingest import mcap_clock, mcap_records, payload_cdr, payload_json, payload_protobuf
-from trialid.ingest.adapter import Adapter, Wanted, asked, sha256
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked, sha256
 from trialid.ingest.payload import Columns, Decoder
 from trialid.recording import Channel, Recording
 
@@ -50,11 +50,12 @@ def recognises(head: bytes) -> bool:
     return head.startswith(mcap_records.MAGIC)
 
 
-def read(path: Path, wanted: Wanted = None) -> Recording:
+def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted channels; damage is skipped and said in the remarks.
 
     Raises LogError when not one message can be read.
     """
+    del aids
     contents = mcap_records.contents(path, lambda topic: _topic_asked(topic, wanted))
     if not contents.seen:
         why = (

@@ -71,10 +71,11 @@ def signal_key(recipe: Recipe, trial: TrialRecipe, quantity: str) -> str:
 
 
 def sources(recipe: Recipe) -> tuple[Path, ...]:
-    """Every file the pipeline reads, itself first."""
-    logs = chain.from_iterable(trial.logs for trial in recipe.trials)
+    """Every file or folder of logs the pipeline reads, itself first."""
+    logs = [log for trial in recipe.trials for log in trial.logs]
+    files = chain.from_iterable((log.path, log.template, log.dbc) for log in logs)
     ship = () if recipe.ship is None else (recipe.ship,)
-    return (recipe.path, *ship, *recipe.model.effects_from, *logs)
+    return (recipe.path, *ship, *recipe.model.effects_from, *(f for f in files if f))
 
 
 def _table(content: bytes, path: Path) -> dict[str, Any]:

@@ -51,7 +51,9 @@ def own_mistakes(error: ValidationError) -> list[ErrorDetails]:
 def problem(detail: ErrorDetails) -> Problem:
     """The place and the sentence for what the check of the form found."""
     say = _SENTENCES.get(detail["type"], _as_reported)
-    return dotted(*detail["loc"]), say(detail)
+    *parents, key = detail["loc"]
+    bare = parents[-2:-1] == ["logs"] and key == "path"  # mostly written without the key
+    return dotted(*(parents if bare else detail["loc"])), say(detail)
 
 
 def _as_reported(detail: ErrorDetails) -> str:

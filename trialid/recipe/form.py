@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, NamedTuple, cast
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
 
 from pydantic import (
     AfterValidator,
@@ -38,6 +39,11 @@ def _existing(path: Path, info: ValidationInfo) -> Path:
     if found.is_dir():
         raise ValueError(f"{str(path)!r} is a folder; name the file in it")
     raise ValueError(f"no file {str(path)!r} (looked for {found}; {neighbours(found)})")
+
+
+def _existing_log(path: Path, info: ValidationInfo) -> Path:
+    found = cast(Origin, info.context).path.parent / path
+    return found if found.is_dir() else _existing(path, info)
 
 
 def neighbours(path: Path) -> str:
@@ -76,6 +82,25 @@ def _with_value(given: Any) -> Any:
     return given if isinstance(given, dict) else {"value": given}
 
 
+def _with_path(given: Any) -> Any:
+    return {"path": given} if isinstance(given, str) else given
+
+
+def _zone(name: str) -> str:
+    try:
+        ZoneInfo(name)
+    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
+        hint = nearest(name, available_timezones())
+        raise ValueError(f"{name!r} is no time zone; write it like Europe/Oslo ({hint})") from error
+    return name
+
+
+def _not_zero(number: float) -> float:
+    if number == 0.0:
+        raise ValueError("a gain of zero leaves nothing of the signal")
+    return number
+
+
 def _candidates(given: Any) -> Literal["all", "none"] | tuple[str, ...]:
     if given in ("all", "none"):
         return given
@@ -95,6 +120,8 @@ Unit = Annotated[str, AfterValidator(_unit_text)]
 Names = tuple[str, ...]
 SomeNames = Annotated[Names, Field(min_length=1)]
 ReadFile = Annotated[Path, AfterValidator(_existing)]
+ReadLog = Annotated[Path, AfterValidator(_existing_log)]
+Zone = Annotated[str, AfterValidator(_zone)]
 PythonFile = Annotated[ReadFile, AfterValidator(_python)]
 Window = Annotated[tuple[Number, Number], AfterValidator(_rising)]
 Limit = Annotated[Number, AllowInfNan(True)]
@@ -111,17 +138,36 @@ class Section(BaseModel):
 class SignalSource(Section):
     """Which channel of the logs is a quantity.
 
-    `unit` None: the unit the log states. `positive` is the side the channel counts as positive;
-    None follows the dictionary of quantities, which a rudder may not leave open. `angle` (key `as`)
+    `unit` None: the unit the log states. The signal is `gain` times the logged number, plus
+    `offset`, in that unit: a servo's share of full deflection, a rudder indicator that reads two
+    degrees at midships. `positive` is the side the channel counts as positive; None follows the dictionary of quantities, which a rudder may not leave open. `angle` (key `as`)
     is the angle to take out of an orientation quaternion, `delay` how much later than the ship the
     channel shows it [s].
     """
 
     channel: str
     unit: Unit | None = None
+    gain: Annotated[Number, AfterValidator(_not_zero)] = 1.0
+    offset: Number = 0.0
     positive: Literal["starboard", "port"] | None = None
     angle: Literal["roll", "pitch", "yaw"] | None = Field(default=None, alias="as")
     delay: Number = 0.0
+
+
+class LogRecipe(Section):
+    """A log file, or a folder of them that is read as one; a bare path is short for `path`.
+
+    What the log does not say itself: `template` lays out a table, `dbc` the frames of a CAN bus
+    that is not NMEA 2000, `zone` is the time zone of stamps that state none.
+    """
+
+    path: ReadLog
+    template: ReadFile | None = None
+    dbc: ReadFile | None = None
+    zone: Zone | None = None
+
+
+Log = Annotated[LogRecipe, BeforeValidator(_with_path)]
 
 
 class TrialRecipe(Section):
@@ -131,7 +177,7 @@ class TrialRecipe(Section):
     """
 
     name: Annotated[str, Field(min_length=1)]
-    logs: Annotated[tuple[ReadFile, ...], Field(min_length=1)]
+    logs: Annotated[tuple[Log, ...], Field(min_length=1)]
     use: Literal["fit", "check"] = "fit"
     window: Window | None = None
     speed: NotNegative | None = None
