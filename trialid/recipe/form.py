@@ -140,9 +140,10 @@ class SignalSource(Section):
 
     `unit` None: the unit the log states. The signal is `gain` times the logged number, plus
     `offset`, in that unit: a servo's share of full deflection, a rudder indicator that reads two
-    degrees at midships. `positive` is the side the channel counts as positive; None follows the dictionary of quantities, which a rudder may not leave open. `angle` (key `as`)
-    is the angle to take out of an orientation quaternion, `delay` how much later than the ship the
-    channel shows it [s].
+    degrees at midships. `positive` is the side the channel counts as positive; None follows the
+    dictionary of quantities, which a rudder may not leave open. `angle` (key `as`) is the angle to
+    take out of an orientation quaternion, `delay` how much later than the ship the channel shows
+    it [s].
     """
 
     channel: str
