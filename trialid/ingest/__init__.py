@@ -19,6 +19,7 @@ ADAPTERS: tuple[Adapter, ...] = (
     csv_log.ADAPTER,
 )
 
+GZIP = b"\x1f\x8b"
 HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""
 
@@ -73,6 +74,8 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
     head = _head(path)
     if not head:
         raise LogError(f"{path}: is empty (0 bytes); the recorder wrote nothing, copy it again")
+    if head.startswith(GZIP):
+        raise LogError(f"{path}: is packed with gzip; unpack it (gunzip) and give what was in it")
     able = _able(path, head, aids)
     if len(able) == 1:
         return able[0]

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.ingest import local_time
+
 Ints = NDArray[np.int64]
 
 EXTENDED_ID = 0x1FFF_FFFF
@@ -87,3 +89,27 @@ def nothing() -> Frames:
     """No frames."""
     none, table = np.zeros(0, np.int64), np.zeros((0, 8), np.uint8)
     return Frames(none, none, none > 0, table, none, none)
+
+
+def chosen(frames: Frames, rows: NDArray[np.bool_] | Ints) -> Frames:
+    """These frames of them."""
+    return Frames(
+        frames.t[rows],
+        frames.can_id[rows],
+        frames.extended[rows],
+        frames.table[rows],
+        frames.length[rows],
+        frames.bus[rows],
+        frames.buses,
+    )
+
+
+def dated(t: Ints, zone: str | None, tally: Tally) -> tuple[Ints, str]:
+    """Stamps that count from a local date in UTC, and words for it; a remark without a zone."""
+    if zone is not None:
+        return local_time.utc(t, zone), f"start in {zone}"
+    tally.remarks.append(
+        "the header's date is of a local clock, of which time zone it does not say: taken as UTC; "
+        "`zone` can state it"
+    )
+    return t, "start local, zone not stated, taken as UTC"

@@ -12,7 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from trialid.errors import LogError
-from trialid.ingest import can_candump, nmea2000, nmea2000_frames
+from trialid.ingest import (
+    can_asc,
+    can_blf,
+    can_candump,
+    can_table,
+    can_trc,
+    nmea2000,
+    nmea2000_frames,
+)
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, sha256
 from trialid.ingest.can_frames import Frames, Tally
 from trialid.recording import Channel, Recording
@@ -24,6 +32,12 @@ CANDUMP = re.compile(
     rb"\S{1,15}\s+([RT]X\s+\S\s+\S\s+)?[0-9A-Fa-f]{3,8}\s+\[\d{1,2}\]|"
     rb"<0x[0-9A-Fa-f]{3,8}>\s+\[\d\])"
 )
+
+
+ASC = re.compile(
+    rb"\A\s*(//[^\n]*\n\s*)*(date\s[^\n]*\n\s*(//[^\n]*\n\s*)*)?base\s+(hex|dec)", re.IGNORECASE
+)
+TRC = re.compile(rb"\s*;(\$FILEVERSION=\d|#{20})")
 
 
 def lines_of(head: bytes) -> list[bytes]:
@@ -38,6 +52,21 @@ def is_candump(head: bytes) -> bool:
     lines = lines_of(head)
     alike = sum(CANDUMP.match(line) is not None for line in lines)
     return b"\0" not in head and alike > 0 and 2 * alike >= len(lines)
+
+
+def is_asc(head: bytes) -> bool:
+    """A date and the base of the numbers at the beginning of a text."""
+    return b"\0" not in head and ASC.search(head) is not None
+
+
+def is_trc(head: bytes) -> bool:
+    """PEAK's version line, or the head of its first version."""
+    return b"\0" not in head and TRC.match(head) is not None
+
+
+def is_blf(head: bytes) -> bool:
+    """The magic bytes of BLF."""
+    return head.startswith(b"LOGG")
 
 
 def read_with(reader: Reader, name: str) -> Callable[[Path, Wanted, Aids], Recording]:
@@ -68,11 +97,11 @@ def _nmea2000(
             "2000; name the file that says what the frames mean with `dbc`"
         )
     rows = np.flatnonzero(extended)
+    several = len(np.unique(frames.bus[rows])) > 1
     whole = nmea2000_frames.assemble(
         frames.t[rows], frames.can_id[rows], frames.table[rows], frames.length[rows],
-        frames.bus[rows],
+        frames.bus[rows] if several else 0,
     )  # fmt: skip
-    several = len(np.unique(frames.bus[rows])) > 1
     channels, remarks = nmea2000.channels(
         whole.t,
         whole.pgn,
@@ -91,11 +120,15 @@ def _nmea2000(
     return channels, remarks
 
 
+def _adapter(name: str, recognises: Callable[[bytes], bool], reader: Reader, *aids: str) -> Adapter:
+    return Adapter(name, recognises, read_with(reader, name), frozenset(aids))
+
+
 ADAPTERS = (
-    Adapter(
-        "candump",
-        is_candump,
-        read_with(can_candump.frames, "candump"),
-        frozenset({"dbc", "zone"}),
-    ),
+    _adapter("candump", is_candump, can_candump.frames, "dbc", "zone"),
+    _adapter("asc", is_asc, can_asc.frames, "dbc", "zone"),
+    _adapter("trc", is_trc, can_trc.frames, "dbc", "zone"),
+    _adapter("blf", is_blf, can_blf.frames, "dbc", "zone"),
+    _adapter("python-can csv", can_table.is_csv, can_table.of_csv, "dbc"),
+    _adapter("python-can sqlite", can_table.is_sqlite, can_table.of_sqlite, "dbc"),
 )

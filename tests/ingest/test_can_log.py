@@ -1,0 +1,474 @@
+"""Logs of CAN buses: every format comes back the same; the traps; damage; real records."""
+
+import gzip
+import random
+import struct
+import sys
+import time
+import zlib
+
+import can_damage as damage
+import cantools
+import numpy as np
+import pytest
+import write_can
+from can.io.blf import BLFWriter
+from written import Series
+
+from trialid import alignment
+from trialid.errors import LogError
+from trialid.ingest import read
+from trialid.ingest.adapter import NO_AIDS, Aids
+
+START = 1_700_000_000_123_456_000
+
+
+def series(count=400, start=START) -> dict[str, Series]:
+    """A turning ship, each signal at its own rate."""
+    rates = {"delta": 10, "r": 20, "phi": 10, "psi": 10, "u": 1}
+    made = {}
+    for k, (quantity, rate) in enumerate(rates.items()):
+        n = count * rate // 20
+        t = start + k * 1_000_000 + np.arange(n, dtype=np.int64) * (1_000_000_000 // rate)
+        s = (t - start) / 1e9
+        y = {
+            "delta": 0.5 * np.sin(s),
+            "r": -0.05 * np.cos(s),
+            "phi": -0.1 * np.sin(0.7 * s),
+            "psi": 6.0 - 0.05 * np.sin(s),
+            "u": 5 + 0.2 * np.cos(s),
+        }[quantity]
+        made[quantity] = (t, y)
+    return made
+
+
+@pytest.mark.parametrize("form", write_can.FORMATS, ids=lambda form: form.name)
+def test_what_is_written_comes_back(tmp_path, form):
+    path, sent = tmp_path / "log", series()
+    written = form.write(path, sent)
+    recording = read(path, None, written.aids)
+    shift = None
+    for source in written.sources:
+        channel, (t, y) = recording.channels[source.channel], sent[source.quantity]
+        if source.quantity == "psi":
+            y = y % (2 * np.pi)
+        np.testing.assert_allclose(channel.y, y, atol=0.5001 * written.resolution[source.quantity])
+        assert channel.quantity == source.quantity
+        late = channel.t - t  # formats that know no date count from elsewhere, all signals alike
+        shift = int(np.median(late)) if shift is None else shift
+        assert np.abs(late - shift).max() <= 2e9 * written.clock_resolution
+    if "no date" not in channel.clock:
+        assert abs(shift) <= 1e9 * written.clock_resolution
+    trial = alignment.align("t", "fit", [recording], written.sources, 0.1)
+    assert set(trial.signals) == set(sent)
+
+
+# what candump writes
+
+
+def log(tmp_path, lines, name="log"):
+    path = tmp_path / name
+    content = lines if isinstance(lines, bytes) else "\n".join(lines).encode()
+    path.write_bytes(content)
+    return path
+
+
+def sent(count=40):
+    return write_can.messages(series(count))
+
+
+LINE = "(1700000000.100000) can0 09F10D0B#00F8FF7FE803FFFF"
+RUDDER = "rudder/11/0:position"
+
+
+def test_frames_without_a_time_are_refused(tmp_path):
+    path = log(tmp_path, write_can.candump_lines(sent(), "none"))
+    with pytest.raises(LogError, match=r"its 102 frames have no time stamp.*candump -l") as info:
+        read(path)
+    assert "\n" not in str(info.value)
+
+
+def test_the_old_form_of_candump(tmp_path):
+    sample = [
+        "<0x09f8027f> [8] 00 fc 9b 05 88 00 ff ff",
+        "<0x09f10d0b> [8] 00 f8 ff 7f e8 03 ff ff",
+    ]
+    with pytest.raises(LogError, match="its 2 frames have no time stamp"):
+        read(log(tmp_path, sample))
+    channels = read(log(tmp_path, write_can.candump_lines(sent(), "<>"))).channels
+    assert len(channels[RUDDER].y) == 20
+
+
+def test_all_forms_of_candump_read_alike(tmp_path):
+    plain = read(log(tmp_path, write_can.candump_lines(sent(), "-l"))).channels
+    for form, clock in {
+        "-ta": "line stamps",
+        "-tA": "line stamps (local dates, zone not stated, taken as UTC)",
+        "-tz": "line stamps (since the start of the log; no date)",
+        "-td": "line stamps (each since the frame before, added up; no date)",
+    }.items():
+        channels = read(log(tmp_path, write_can.candump_lines(sent(), form))).channels
+        assert list(channels) == list(plain)
+        for name, channel in channels.items():
+            assert channel.clock == clock
+            np.testing.assert_array_equal(channel.y, plain[name].y)
+            start = START // 1000 * 1000 if form in ("-tz", "-td") else 0
+            np.testing.assert_array_equal(channel.t + start, plain[name].t)
+
+
+def test_local_dates_need_a_zone(tmp_path):
+    path = log(tmp_path, write_can.candump_lines(sent(), "-tA"))
+    without = read(path)
+    assert "the log does not say of which time zone: taken as UTC" in without.remarks[0]
+    oslo = read(path, None, Aids(zone="Europe/Oslo"))
+    np.testing.assert_array_equal(
+        without.channels[RUDDER].t - oslo.channels[RUDDER].t, 3600 * 1_000_000_000
+    )
+    assert oslo.channels[RUDDER].clock == "line stamps (dates in Europe/Oslo)"
+    assert oslo.remarks == without.remarks[1:]
+
+
+def test_frames_that_are_not_data_and_lines_that_are_not_frames(tmp_path):
+    lines = [
+        "# a comment, and a blank line",
+        "",
+        LINE,
+        "(1700000000.200000) can0 09F10D0B#R8",
+        "(1700000000.300000) can0 20000004#0000000000000000",
+        "(1700000000.400000) can0 09F10D0B##100F8FF7FE803FFFF",
+        " (1700000000.500000)  can0  09F10D0B   [8]  remote request",
+        " (1700000000.600000)  can0  20000088   [8]  00 00 00 00 00 00 00 00   ERRORFRAME",
+        " (1700000000.700000)  can0  09F10D0B  [08]  00 F8 FF 7F E8 03 FF FF",
+        " (1700000000.800000)  can0  RX - -  09F10D0B   [8]  00 F8 FF 7F E9 03 FF FF   '........'",
+        "(1700000000.900000) can0 09F10D0B#00F8FF7FE803FF",  # cut by the sender: 7 bytes
+        "(1700000001.000000) can0 09F10D0B#00F8FF7FE803FFF",
+        "(1700000001.100000) can0 09F10D0B#00F8FF7FE803FFFFFF",
+        "(1700000001.200000) can0 09F10D0B#00F8FF7FG803FFFF",
+        "(1700000001.3x0000) can0 09F10D0B#00F8FF7FE803FFFF",
+        "1700000001.300000 can0 09F10D0B#00F8FF7FE803FFFF",
+        "(1700000001.400000) can0 9F10D0B#00F8FF7FE803FFFF",
+        "(1700000001.500000) can0 123#00F8FF7FE803FFFF",
+        "(1700000001.600000) can0 09F10D0B#00F8FF7FEA03FFFF T",
+        "(1700000001.700000) can0 09F10D0B#",
+        "(1700000001.8000",
+    ]
+    recording = read(log(tmp_path, lines))
+    channel = recording.channels[RUDDER]
+    assert ((channel.t - 1_700_000_000_000_000_000) // 100_000_000).tolist() == [1, 8, 9, 16]
+    np.testing.assert_allclose(channel.y, [0.1, 0.1001, 0.1, 0.1002])
+    assert recording.remarks[:5] == (
+        "7 of 19 lines are not frames, left out",
+        "2 error frames left out",
+        "2 remote frames, which carry no data, left out",
+        "2 CAN FD frames left out",
+        "rudder (PGN 127245): 1 of 5 messages end early, the fields they lack are left out",
+    )
+    assert "1 of 6 frames have 11 bit identifiers, not NMEA 2000" in recording.remarks
+
+
+def test_two_interfaces_are_kept_apart(tmp_path):
+    lines = [LINE, LINE.replace("can0", "can1"), LINE.replace("can0", "vcan0")]
+    channels = read(log(tmp_path, lines)).channels
+    assert [name for name in channels] == [
+        f"rudder/{bus}.11/0:position" for bus in ("can0", "can1", "vcan0")
+    ]
+
+
+def test_a_bus_that_is_not_nmea2000_asks_for_its_description(tmp_path):
+    path = log(tmp_path, [LINE.replace("09F10D0B", "123")] * 3)
+    with pytest.raises(LogError, match="none of its 3 frames has a 29 bit identifier.*`dbc`"):
+        read(path)
+
+
+def test_a_log_larger_than_a_block(tmp_path, monkeypatch):
+    path = log(tmp_path, write_can.candump_lines(sent(), "-ta"))
+    whole = read(path)
+    monkeypatch.setattr("trialid.ingest.text_fields.BLOCK", 997)
+    parts = read(path)
+    assert parts.remarks == whole.remarks
+    for name, channel in whole.channels.items():
+        np.testing.assert_array_equal(parts.channels[name].t, channel.t)
+        np.testing.assert_array_equal(parts.channels[name].y, channel.y)
+
+
+def test_a_packed_log_is_refused_in_one_line(tmp_path):
+    packed = log(tmp_path, gzip.compress(LINE.encode()))
+    with pytest.raises(LogError, match="is packed with gzip; unpack it"):
+        read(packed)
+
+
+# Vector's and PEAK's text
+
+ASC = """date Wed Nov 15 10:15:03.250 am 2023
+base hex  timestamps absolute
+internal events logged
+// version 9.0.0
+Begin Triggerblock Wed Nov 15 10:15:03.250 am 2023
+   0.000000 Start of measurement
+   0.000200 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%
+   0.100000 1  9F10D0Bx        Rx   d 8 00 F8 FF 7F E8 03 FF FF  Length = 273910 BitCount = 141
+   0.300000 1  9F10D0Bx        Rx   r
+   0.400000 1  ErrorFrame
+   0.450000 CANFD   1 Rx 9F10D0Bx   1 0 8 8 00 F8 FF 7F E8 03 FF FF 0 0 3000 0 0 0 0 0
+   0.600000 1  9F10D0Bx        Tx   d 8 00 F8 FF 7F E9 03 FF FF
+   0.700000 1  9F10D0Bx        Tx   d 8 00 F8 FF 7F
+End TriggerBlock
+"""
+STARTED = 1_700_043_303_250_000_000
+
+
+def asc(tmp_path, changes=(), aids=NO_AIDS):
+    text = ASC
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    recording = read(log(tmp_path, text.encode("cp1252")), None, aids)
+    return recording.channels[RUDDER], recording.remarks
+
+
+def test_asc_keeps_its_date_and_counts_what_is_left_out(tmp_path):
+    channel, remarks = asc(tmp_path)
+    assert (channel.t - STARTED).tolist() == [100_000_000, 600_000_000]
+    np.testing.assert_allclose(channel.y, [0.1, 0.1001])
+    assert remarks[:5] == (
+        "the header's date is of a local clock, of which time zone it does not say: taken as UTC; "
+        "`zone` can state it",
+        "1 of 14 lines are not frames, left out",
+        "1 error frames left out",
+        "1 remote frames, which carry no data, left out",
+        "1 CAN FD frames left out",
+    )
+
+
+def test_asc_in_the_zone_of_the_ship_whatever_that_of_the_reader(tmp_path, monkeypatch):
+    monkeypatch.setenv("TZ", "Asia/Tokyo")
+    time.tzset()
+    try:
+        channel, remarks = asc(tmp_path, (), Aids(zone="America/New_York"))
+    finally:
+        monkeypatch.undo()
+        time.tzset()
+    assert channel.t[0] - STARTED == (5 * 3600 + 0.1) * 1_000_000_000
+    assert remarks[0] == "1 of 14 lines are not frames, left out"
+    assert channel.clock == "line stamps (since the start; start in America/New_York)"
+
+
+def test_asc_with_relative_stamps_adds_them_up(tmp_path):
+    channel, _ = asc(tmp_path, [("timestamps absolute", "timestamps relative")])
+    assert (channel.t - STARTED).tolist() == [100_000_000, 700_000_000]
+    assert channel.clock.startswith("line stamps (each since the line before, added up")
+
+
+@pytest.mark.parametrize(
+    ("date", "second"),
+    [
+        ("Wed Nov 15 10:15:03.250 am 2023", 0),
+        ("Wed Nov 15 10:15:03.250 PM 2023", 43200),
+        ("Wed Nov 15 10:15:03.250 2023", 0),
+        ("Mit Nov 15 10:15:03.250 2023", 0),
+        ("Mit Mär 15 10:15:03.250 2023", -245 * 86400),
+        ("Mon Okt 15 10:15:03.250 2023", -31 * 86400),
+        ("Wed Nov 15 10:15:03 2023", -0.25),
+        ("Wed Nov 15 10:15:03.1 2023", -0.249),  # what python-can writes for one millisecond
+        ("Wed Nov 15 12:15:03.250 am 2023", -10 * 3600),
+    ],
+)
+def test_dates_of_asc(tmp_path, date, second):
+    channel, _ = asc(tmp_path, [("Wed Nov 15 10:15:03.250 am 2023", date)])
+    assert channel.t[0] - STARTED == round((second + 0.1) * 1e9)
+
+
+def test_asc_without_a_date_makes_none_up(tmp_path):
+    channel, _ = asc(
+        tmp_path, [("date Wed Nov 15 10:15:03.250 am 2023\n", ""), ("Begin Tri", "// Tri")]
+    )
+    assert channel.t.tolist() == [100_000_000, 600_000_000]
+    assert channel.clock == "line stamps (since the start; no date)"
+
+
+def test_asc_in_decimals(tmp_path):
+    text = "date Wed Nov 15 10:15:03.250 am 2023\nbase dec  timestamps absolute\n"
+    data = " ".join(str(byte) for byte in bytes.fromhex("00F8FF7FE803FFFF"))
+    text += f"   0.100000 1  {0x09F10D0B}x       Rx   d 8 {data}\n"
+    channel = read(log(tmp_path, text.encode())).channels[RUDDER]
+    assert channel.y.tolist() == [0.1]
+
+
+TRC = {
+    "1.1": "     1)         2.5  Rx     09F10D0B  8  00 F8 FF 7F E8 03 FF FF ",
+    "1.3": "     1)         2.5 1  Rx     09F10D0B -  8    00 F8 FF 7F E8 03 FF FF ",
+    "2.0": "      1         2.500 DT 09F10D0B Rx 8  00 F8 FF 7F E8 03 FF FF ",
+}
+
+
+@pytest.mark.parametrize("version", TRC)
+def test_versions_of_trc(tmp_path, version):
+    head = [f";$FILEVERSION={version}", ";$STARTTIME=45245.4271209490740741", ";"]
+    channel = read(log(tmp_path, [*head, TRC[version]])).channels[RUDDER]
+    assert channel.y.tolist() == [0.1]
+    assert abs(channel.t[0] - STARTED - 2_500_000) < 1000
+
+
+# damage
+
+
+def test_a_cut_blf_says_so(tmp_path):
+    whole = tmp_path / "whole"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(BLFWriter, "max_container_size", 2048)
+        write_can.by_python_can(whole, write_can.frames(sent()), ".blf")
+    content = whole.read_bytes()
+    assert read(whole).remarks[1].startswith("`not available`")
+    size = len(read(whole).channels["rate_of_turn/11:rate"].y)
+    cut = read(log(tmp_path, content[: 2 * len(content) // 3]))
+    assert len(cut.channels["rate_of_turn/11:rate"].y) < size
+    (told,) = [remark for remark in cut.remarks if remark.startswith("recovered")]
+    assert f"of 102 objects: the file has {2 * len(content) // 3} bytes" in told
+    damaged = bytearray(content)
+    damaged[len(content) // 2] ^= 0xFF
+    recording = read(log(tmp_path, bytes(damaged)))
+    (told,) = [remark for remark in recording.remarks if remark.startswith("recovered")]
+    assert "1 of its containers are damaged" in told
+    whole_t = read(whole).channels["rate_of_turn/11:rate"].t.tolist()
+    t = recording.channels["rate_of_turn/11:rate"].t.tolist()
+    assert (t[0], t[-1]) == (whole_t[0], whole_t[-1])
+    assert len(t) < size
+
+
+def test_a_blf_that_was_never_closed_says_so(tmp_path):
+    path = tmp_path / "log.blf"
+    writer = BLFWriter(path)
+    for message in write_can.frames(sent(4000)):
+        writer.on_message_received(message)
+    unfinished = path.read_bytes()
+    writer.stop()
+    recording = read(log(tmp_path, unfinished))
+    assert any("was never closed" in remark for remark in recording.remarks)
+
+
+def test_a_container_that_unpacks_without_end_is_cut(tmp_path):
+    path = tmp_path / "whole"
+    write_can.by_python_can(path, write_can.frames(sent()), ".blf")
+    head = path.read_bytes()[:144]
+    packed = zlib.compress(bytes(1 << 26))
+    start = struct.pack("<4sHHLL", b"LOBJ", 16, 1, 32 + len(packed), 10)
+    with pytest.raises(LogError, match="holds no CAN message"):
+        read(log(tmp_path, head + start + struct.pack("<H6xL4x", 2, 1 << 26) + packed))
+
+
+def test_a_damaged_database_gives_what_it_can(tmp_path):
+    path = tmp_path / "whole"
+    write_can.by_python_can(path, write_can.frames(sent(800)), ".db")
+    content = path.read_bytes()
+    with pytest.raises(LogError, match="SQLite cannot read it"):
+        read(log(tmp_path, content[: len(content) // 2]))
+
+
+def outcome(path):
+    """How many lines an error has, none without; the channels without."""
+    try:
+        return 0, list(read(path).channels.values())
+    except LogError as error:
+        return len(str(error).splitlines()), []
+
+
+@pytest.mark.parametrize("form", write_can.FORMATS, ids=lambda form: form.name)
+def test_damage_gives_a_recording_or_one_line(tmp_path, form):
+    form.write(tmp_path / "whole", series(20))
+    content = (tmp_path / "whole").read_bytes()
+    rng = random.Random(7)
+    for _ in range(25):
+        path = log(tmp_path, damage.mutated(content, rng))
+        lines, channels = outcome(path)
+        assert lines <= 1
+        assert all(len(channel.t) == len(channel.y) for channel in channels)
+
+
+# DBC
+
+DBC = """VERSION ""
+BU_: A
+BO_ 291 Steering: 8 A
+ SG_ Switch M : 0|4@1+ (1,0) [0|15] "" A
+ SG_ Rudder m1 : 8|12@1- (0.1,-5) [0|0] "deg" A
+ SG_ Order m2 : 15|12@0- (0.1,0) [0|0] "deg" A
+ SG_ Rate : 32|32@1- (1,0) [0|0] "rad/s" A
+BO_ 2314276107 Mirror: 8 A
+ SG_ Low : 1|7@1+ (1,0) [0|0] "" A
+ SG_ Wide : 7|64@0+ (1,0) [0|0] "" A
+ SG_ Middle : 13|22@0- (0.01,3) [0|0] "m" A
+SIG_VALTYPE_ 291 Rate : 1;
+"""
+
+
+def test_dbc_as_cantools_reads_it(tmp_path):
+    rng = np.random.default_rng(3)
+    dbc = tmp_path / "bus.dbc"
+    dbc.write_text(DBC, encoding="ascii")
+    database = cantools.database.load_string(DBC, "dbc", strict=False)
+    lines, expected = [], {}
+    for k in range(400):
+        ids = "123" if k % 2 else "09F10D0B"
+        data = rng.integers(0, 256, 8, np.uint8).tobytes()
+        if k % 2:
+            data = bytes([k // 2 % 4]) + data[1:4] + struct.pack("<f", k / 7)
+        lines.append(f"({k:010d}.000000) can0 {ids}#{data.hex()}")
+        message = database.get_message_by_frame_id(int(ids, 16))
+        try:
+            values = message.decode(data, decode_choices=False)
+        except cantools.database.DecodeError:  # a multiplexer that selects nothing
+            values = {"Switch": data[0] & 15, "Rate": struct.unpack("<f", data[4:])[0]}
+        for name, value in values.items():
+            expected.setdefault(f"{message.name}:{name}", []).append((k * 10**9, value))
+    recording = read(log(tmp_path, lines), None, Aids(dbc=dbc))
+    assert set(recording.channels) == set(expected)
+    for name, samples in expected.items():
+        channel = recording.channels[name]
+        t, y = zip(*samples, strict=True)
+        assert channel.t.tolist() == list(t)
+        np.testing.assert_allclose(channel.y, y, rtol=1e-12)
+    rudder = recording.channels["Steering:Rudder"]
+    assert (rudder.unit, rudder.description) == ("deg", "frame 0x123 Steering, signal Rudder")
+    assert recording.channels["Mirror:Low"].unit is None
+
+
+def test_dbc_keeps_buses_apart_and_counts_short_frames(tmp_path):
+    dbc = tmp_path / "bus.dbc"
+    dbc.write_text(DBC, encoding="ascii")
+    lines = [f"({k}.0) can{k % 2} 123#01102000" + "00000000" * (k < 4) for k in range(6)]
+    lines.append("(9.0) can0 124#00")
+    recording = read(log(tmp_path, lines), None, Aids(dbc=dbc))
+    assert set(recording.channels) == {
+        f"Steering/can{k}:{signal}" for k in (0, 1) for signal in ("Switch", "Rudder", "Rate")
+    }
+    assert len(recording.channels["Steering/can0:Rudder"].y) == 3
+    assert len(recording.channels["Steering/can0:Rate"].y) == 2
+    assert recording.remarks == (
+        "Steering/can0: 1 of 3 frames are shorter than its 8 bytes, the signals they lack are left "
+        "out",
+        "Steering/can1: 1 of 3 frames are shorter than its 8 bytes, the signals they lack are left "
+        "out",
+        "1 of 7 frames are not described in bus.dbc",
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("no file", "is no DBC file that can be read"),
+        ("", "is no DBC file that can be read"),
+        ('VERSION ""\n', "describes none of the log's 1 frames"),
+    ],
+)
+def test_a_bad_dbc_is_one_line(tmp_path, text, words):
+    dbc = tmp_path / "bus.dbc"
+    dbc.write_text(text, encoding="ascii")
+    with pytest.raises(LogError, match=words) as info:
+        read(log(tmp_path, [LINE]), None, Aids(dbc=dbc))
+    assert "\n" not in str(info.value)
+
+
+def test_dbc_without_cantools_says_how_to_get_it(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "cantools", None)
+    with pytest.raises(LogError, match=r"pip install 'trialid\[dbc\]'"):
+        read(log(tmp_path, [LINE]), None, Aids(dbc=tmp_path / "bus.dbc"))

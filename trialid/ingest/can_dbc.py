@@ -1,0 +1,165 @@
+"""Frames to channels by a DBC file, the user's own description of a CAN bus, in columns.
+
+A channel is `Message:signal` with the unit the file states; where frames of several buses are
+described it is `Message/can1:signal`. A multiplexed signal has samples where its multiplexer says
+so. Every number the file lets a signal have is one: DBC knows no code for `not available`.
+"""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.errors import LogError
+from trialid.ingest.adapter import Wanted, asked
+from trialid.ingest.can_frames import Frames, chosen
+from trialid.recording import Channel
+
+if TYPE_CHECKING:
+    from cantools.database.can import Message, Signal
+
+Raw = NDArray[np.int64]
+
+FLOATS = {16: "<f2", 32: "<f4", 64: "<f8"}
+"""Kinds of floating point numbers by their bits."""
+
+
+def channels(
+    frames: Frames, dbc: Path, clock: str, wanted: Wanted
+) -> tuple[dict[str, Channel], list[str]]:
+    """Channels of the frames the file describes, and remarks.
+
+    Raises LogError when the file is missing or no DBC, when cantools is not installed, and when
+    the file describes none of the frames.
+    """
+    messages = _messages(dbc)
+    order = np.argsort(frames.can_id, kind="stable")
+    parts = [
+        (message, part) for message in messages if len(part := _frames_of(message, frames, order))
+    ]
+    if not parts:
+        raise LogError(
+            f"{dbc}: describes none of the log's {len(frames)} frames (identifiers "
+            f"{_some(frames)}); is it the file of another bus?"
+        )
+    several = len(np.unique(np.concatenate([part.bus for _, part in parts]))) > 1
+    found: dict[str, Channel] = {}
+    remarks: list[str] = []
+    for message, part in parts:
+        for bus in np.unique(part.bus).tolist() if several else [0]:
+            one = chosen(part, part.bus == bus) if several else part
+            place = f"{message.name}/{part.buses[bus]}" if several else message.name
+            for channel in _of_message(message, one, place, clock, wanted, remarks):
+                found[channel.name] = channel
+    described = sum(len(part) for _, part in parts)
+    if described < len(frames):
+        rest = len(frames) - described
+        remarks.append(f"{rest} of {len(frames)} frames are not described in {dbc.name}")
+    return found, remarks
+
+
+def _messages(dbc: Path) -> Sequence["Message"]:
+    try:
+        import cantools
+    except ImportError as error:
+        raise LogError(
+            f"{dbc}: reading frames by a DBC file needs cantools; pip install 'trialid[dbc]'"
+        ) from error
+    try:
+        raw = dbc.read_bytes()
+    except OSError as error:
+        raise LogError(f"{dbc}: cannot be read as a DBC file, {error.strerror}") from error
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = raw.decode("cp1252", "replace")
+    try:
+        database = cantools.database.load_string(text, "dbc", strict=False)
+    except cantools.Error as error:
+        why = " ".join(str(error).split())
+        raise LogError(f"{dbc}: is no DBC file that can be read: {why}; export it anew") from error
+    return getattr(database, "messages", ())
+
+
+def _frames_of(message: "Message", frames: Frames, order: NDArray[np.int64]) -> Frames:
+    """The frames of a message, as logged."""
+    ids = message.frame_id
+    first, last = np.searchsorted(frames.can_id, [ids, ids + 1], sorter=order)
+    rows = order[first:last]
+    return chosen(frames, rows[frames.extended[rows] == message.is_extended_frame])
+
+
+def _some(frames: Frames) -> str:
+    ids = [f"0x{one:X}" for one in np.unique(frames.can_id)[:4].tolist()]
+    return ", ".join(ids)
+
+
+def _of_message(
+    message: "Message", frames: Frames, place: str, clock: str, wanted: Wanted, remarks: list[str]
+) -> Iterator[Channel]:
+    short = int(np.sum(frames.length < message.length))
+    if short and asked(place, wanted):
+        words = f"{short} of {len(frames)} frames are shorter than its {message.length} bytes"
+        remarks.append(f"{place}: {words}, the signals they lack are left out")
+    for signal in message.signals:
+        name = f"{place}:{signal.name}"
+        if not asked(name, wanted):
+            continue
+        rows = np.flatnonzero(_holds(signal, message, frames))
+        y = _numbers(signal, chosen(frames, rows))
+        comment = f", {signal.comment}" if signal.comment else ""
+        words = f"frame 0x{message.frame_id:X} {message.name}, signal {signal.name}{comment}"
+        unit = signal.unit or None
+        if len(rows):
+            yield Channel(name, frames.t[rows], y, unit, clock, " ".join(words.split()))
+
+
+def _holds(signal: "Signal", message: "Message", frames: Frames) -> NDArray[np.bool_]:
+    """Which frames are long enough for the signal and, by the multiplexer, hold it."""
+    there = frames.length >= _last_byte(signal) + 1
+    if signal.multiplexer_signal is None or not signal.multiplexer_ids:
+        return there
+    switch = next(s for s in message.signals if s.name == signal.multiplexer_signal)
+    if switch is signal:
+        return there
+    there &= _holds(switch, message, frames)
+    return there & np.isin(_raw(switch, frames), signal.multiplexer_ids)
+
+
+def _last_byte(signal: "Signal") -> int:
+    if signal.byte_order == "little_endian":
+        return (signal.start + signal.length - 1) // 8
+    before = 8 * (signal.start // 8) + 7 - signal.start % 8
+    return (before + signal.length - 1) // 8
+
+
+def _raw(signal: "Signal", frames: Frames) -> Raw:
+    """Whole numbers as they stand in the frames; (n,)."""
+    if _last_byte(signal) > 7:
+        return np.zeros(len(frames), np.int64)
+    table = np.ascontiguousarray(frames.table)
+    if signal.byte_order == "little_endian":
+        word, low = table.view("<u8")[:, 0], signal.start
+    else:
+        word = table.view(">u8")[:, 0].astype(np.uint64)
+        low = 64 - (8 * (signal.start // 8) + 7 - signal.start % 8) - signal.length
+    high = np.uint64(64 - low - signal.length)
+    moved = word << high  # the highest bit of the signal is now that of the word
+    if signal.is_signed and not signal.is_float:
+        return moved.view(np.int64) >> np.int64(64 - signal.length)
+    return (moved >> np.uint64(64 - signal.length)).view(np.int64)
+
+
+def _numbers(signal: "Signal", frames: Frames) -> NDArray[np.float64]:
+    """Physical numbers; (n,)."""
+    raw = _raw(signal, frames)
+    if signal.is_float:
+        kind = np.dtype(FLOATS[signal.length])
+        y = raw.astype(f"<u{kind.itemsize}").view(kind).astype(np.float64)
+    elif signal.is_signed:
+        y = raw.astype(np.float64)
+    else:
+        y = raw.view(np.uint64).astype(np.float64)
+    return y * float(signal.scale) + float(signal.offset)
