@@ -6,6 +6,8 @@ import struct
 import sys
 import time
 import zlib
+from datetime import datetime
+from pathlib import Path
 
 import can_damage as damage
 import cantools
@@ -13,6 +15,8 @@ import numpy as np
 import pytest
 import write_can
 from can.io.blf import BLFWriter
+from can.io.canutils import CanutilsLogReader
+from nmea2000.decoder import NMEA2000Decoder
 from written import Series
 
 from trialid import alignment
@@ -176,7 +180,7 @@ def test_two_interfaces_are_kept_apart(tmp_path):
 
 def test_a_bus_that_is_not_nmea2000_asks_for_its_description(tmp_path):
     path = log(tmp_path, [LINE.replace("09F10D0B", "123")] * 3)
-    with pytest.raises(LogError, match="none of its 3 frames has a 29 bit identifier.*`dbc`"):
+    with pytest.raises(LogError, match=r"none of its 3 frames has a 29 bit identifier.*`dbc`"):
         read(path)
 
 
@@ -395,8 +399,9 @@ BO_ 291 Steering: 8 A
  SG_ Rate : 32|32@1- (1,0) [0|0] "rad/s" A
 BO_ 2314276107 Mirror: 8 A
  SG_ Low : 1|7@1+ (1,0) [0|0] "" A
- SG_ Wide : 7|64@0+ (1,0) [0|0] "" A
  SG_ Middle : 13|22@0- (0.01,3) [0|0] "m" A
+BO_ 292 Wide: 8 A
+ SG_ Wide : 7|64@0- (1,0) [0|0] "" A
 SIG_VALTYPE_ 291 Rate : 1;
 """
 
@@ -408,7 +413,7 @@ def test_dbc_as_cantools_reads_it(tmp_path):
     database = cantools.database.load_string(DBC, "dbc", strict=False)
     lines, expected = [], {}
     for k in range(400):
-        ids = "123" if k % 2 else "09F10D0B"
+        ids = ("09F10D0B", "123", "124", "123")[k % 4]
         data = rng.integers(0, 256, 8, np.uint8).tobytes()
         if k % 2:
             data = bytes([k // 2 % 4]) + data[1:4] + struct.pack("<f", k / 7)
@@ -436,7 +441,7 @@ def test_dbc_keeps_buses_apart_and_counts_short_frames(tmp_path):
     dbc = tmp_path / "bus.dbc"
     dbc.write_text(DBC, encoding="ascii")
     lines = [f"({k}.0) can{k % 2} 123#01102000" + "00000000" * (k < 4) for k in range(6)]
-    lines.append("(9.0) can0 124#00")
+    lines.append("(9.0) can0 125#00")
     recording = read(log(tmp_path, lines), None, Aids(dbc=dbc))
     assert set(recording.channels) == {
         f"Steering/can{k}:{signal}" for k in (0, 1) for signal in ("Switch", "Rudder", "Rate")
@@ -472,3 +477,110 @@ def test_dbc_without_cantools_says_how_to_get_it(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "cantools", None)
     with pytest.raises(LogError, match=r"pip install 'trialid\[dbc\]'"):
         read(log(tmp_path, [LINE]), None, Aids(dbc=tmp_path / "bus.dbc"))
+
+
+# real records
+
+DATA = Path(__file__).parents[3] / "shared/data"
+YACHT = DATA / "ydvr_yacht/00090013.candump.log"
+BOAT = DATA / "canboat_n2k"
+NAMES = {
+    127245: ("angleOrder order", "position position"),
+    127250: ("heading {}", "deviation deviation", "variation variation"),
+    127251: ("rate rate",),
+    127257: ("yaw yaw", "pitch pitch", "roll roll"),
+    128259: ("speedWaterReferenced water", "speedGroundReferenced ground"),
+    129025: ("latitude latitude", "longitude longitude"),
+    129026: ("cog {}_cog", "sog sog"),
+    130306: ("windSpeed {}_speed", "windAngle {}_angle"),
+}
+MESSAGES = {
+    127245: "rudder", 127250: "heading", 127251: "rate_of_turn", 127257: "attitude",
+    128259: "speed", 129025: "position", 129026: "cog_sog", 130306: "wind",
+}  # fmt: skip
+WIND = {
+    "True (ground referenced to North)": "true_north",
+    "Magnetic (ground referenced to Magnetic North)": "magnetic_north",
+    "True (boat referenced)": "true_boat",
+    "True (water referenced)": "true_water",
+}
+
+
+def by_the_oracle(lines, stamp):
+    """Samples by channel, (ns, value or None), of lines the oracle decodes one by one."""
+    decoder, found = NMEA2000Decoder(include_pgns=list(NAMES)), {}
+    for line in lines:
+        message = decoder.decode(line)
+        if message is None:
+            continue
+        values = {field.id: field.value for field in message.fields}
+        place = f"{MESSAGES[message.PGN]}/{message.source}"
+        if "instance" in values:
+            place += f"/{255 if values['instance'] is None else values['instance']}"
+        words = values.get("reference", values.get("cogReference")) or ""
+        for pair in NAMES[message.PGN]:
+            theirs, ours = pair.split()
+            name = f"{place}:{ours.format(WIND.get(words, words.lower()))}"
+            found.setdefault(name, []).append((stamp(line), values[theirs]))
+    return {
+        name: samples
+        for name, samples in found.items()
+        if any(value is not None for _, value in samples)
+    }
+
+
+def agree(recording, oracle):
+    mine = {
+        name: channel
+        for name, channel in recording.channels.items()
+        if name.partition("/")[0] in MESSAGES.values()
+    }
+    assert set(mine) == set(oracle)
+    for name, samples in oracle.items():
+        t, y = zip(*samples, strict=True)
+        np.testing.assert_array_equal(mine[name].t, t, err_msg=name)
+        y = np.array([np.nan if value is None else value for value in y])
+        np.testing.assert_allclose(mine[name].y, y, rtol=1e-12, atol=1e-12, err_msg=name)
+
+
+def of_candump(line):
+    return int(line[1:].partition(")")[0].replace(".", "")) * 1000
+
+
+def of_canboat(line):
+    stamp = datetime.fromisoformat(line.partition(",")[0])
+    return int(stamp.timestamp()) * 10**9 + stamp.microsecond * 1000
+
+
+@pytest.mark.real_data
+@pytest.mark.skipif(not YACHT.exists(), reason="no real records beside the repository")
+def test_the_yacht_value_by_value():
+    recording = read(YACHT)
+    lines = YACHT.read_text(encoding="ascii").splitlines()
+    agree(recording, by_the_oracle(lines, of_candump))
+    assert not [remark for remark in recording.remarks if "lines" in remark]
+    turn = {k: recording.channels[f"rate_of_turn/{k}:rate"] for k in (11, 128)}
+    rates = {k: len(c.t) / ((c.t[-1] - c.t[0]) / 1e9) for k, c in turn.items()}
+    assert rates == {11: pytest.approx(20, rel=0.02), 128: pytest.approx(10, rel=0.02)}
+
+
+@pytest.mark.real_data
+@pytest.mark.skipif(not BOAT.exists(), reason="no real records beside the repository")
+@pytest.mark.parametrize("name", ["furuno-130842.raw", "furuno-130842-wide-turn.raw"])
+def test_the_boat_value_by_value(name):
+    lines = (BOAT / name).read_text(encoding="ascii").splitlines()
+    lines = [line for line in lines if line and not line.startswith("#")]
+    agree(read(BOAT / name), by_the_oracle(lines, of_canboat))
+
+
+@pytest.mark.real_data
+@pytest.mark.skipif(not BOAT.exists(), reason="no real records beside the repository")
+def test_the_log_with_comments_value_by_value():
+    path = BOAT / "candumpSample3.txt"
+    recording = read(path)
+    lines = [line for line in path.read_text(encoding="ascii").splitlines() if line[:1] == "("]
+    assert len(lines) == 2368
+    agree(recording, by_the_oracle(lines, of_candump))
+    assert not [remark for remark in recording.remarks if "lines" in remark]
+    with CanutilsLogReader(path) as theirs, pytest.raises(ValueError, match="values to unpack"):
+        list(theirs)  # which is why there is a reader of our own
