@@ -1,8 +1,8 @@
 """BLF files of Vector's tools to frames.
 
 A file header, then objects `LOBJ`: containers, packed with zlib, whose contents laid end to end are
-again objects, of which the CAN messages are read. A container that is cut or does not unpack is
-left out and the reading goes on at the next. The file's start is in UTC.
+again objects, of which the CAN messages are read. A container that is cut, or whose checksum fails,
+is left out, and the reading goes on at the next.
 """
 
 import dataclasses
@@ -101,8 +101,7 @@ def _containers(data: mmap.mmap, at: int) -> Iterator[tuple[bytes, bool]]:
                 yield b"", False
                 at += len(OBJECT)
                 continue
-            cut = end > len(data)  # the file ends here: what it holds of the container is sound
-            yield content if unpack.eof or cut else b"", unpack.eof
+            yield content if unpack.eof else b"", unpack.eof  # the checksum stands at its end
             at = max(body, min(end, len(data)) - len(unpack.unused_data)) if unpack.eof else body
 
 
@@ -128,12 +127,23 @@ def _objects(content: bytes, tally: Tally) -> tuple[Frames, int]:
         count = 1
         if kind in MESSAGES and version in BODIES:
             count = _alike(content, at, size)
-            runs.append((at, size, count))
+            whole = count - (not _follows(content, at + size * count))
+            tally.lines, tally.strange = tally.lines + count - whole, tally.strange + count - whole
+            if whole:
+                runs.append((at, size, whole))
         else:
             tally.errors += kind in (ERROR, ERROR_EXT)
             tally.flexible += kind in (FLEXIBLE, FLEXIBLE_64)
         at += size * count
     return joined([_run(content, *run, tally) for run in runs]), at
+
+
+def _follows(content: bytes, end: int) -> bool:
+    """True when an object ends here: the next begins, after padding, or the contents end.
+
+    Otherwise the object began before a container that is lost, and ended behind it.
+    """
+    return end + 7 > len(content) or content.find(OBJECT, end, end + 7) >= 0
 
 
 def _alike(content: bytes, at: int, size: int) -> int:

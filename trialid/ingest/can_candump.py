@@ -199,12 +199,16 @@ def _data(lines: Fields, shape: Shape, good: Bools) -> tuple[Ints, Ints, Bools]:
     fits = np.where(compact, digits % 2 == 0, shape.bracket + stated < lines.count)
     good = good & fits & (length <= 8)
     length = np.where(good, length, 0)
-    k = np.arange(8)
-    index = np.minimum(lines.first[:, None] + shape.bracket[:, None] + 1 + k, len(lines.start) - 1)
-    spaced = lines.start[index]
-    pairs = (lines.end[index] - spaced == 2) | (k >= length[:, None]) | compact[:, None]
-    places = np.where(compact[:, None], start[:, None] + 2 * k, spaced)
-    return places, length, good & pairs.all(axis=1)
+    places = start[:, None] + 2 * np.arange(8)
+    rows = np.flatnonzero(good & ~compact)
+    if len(rows):
+        k = np.arange(8)
+        last = len(lines.start) - 1
+        index = np.minimum((lines.first + shape.bracket)[rows, None] + 1 + k, last)
+        places[rows] = lines.start[index]
+        pairs = (lines.end[index] - lines.start[index] == 2) | (k >= length[rows, None])
+        good[rows] = pairs.all(axis=1)
+    return places, length, good
 
 
 def _buses(lines: Fields, shape: Shape, rows: Ints) -> tuple[Ints, tuple[str, ...]]:

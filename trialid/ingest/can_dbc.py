@@ -107,24 +107,37 @@ def _of_message(
         name = f"{place}:{signal.name}"
         if not asked(name, wanted):
             continue
+        if not _fits(signal):
+            remarks.append(f"{name}: {signal.length} bits from bit {signal.start} are no number")
+            continue
         rows = np.flatnonzero(_holds(signal, message, frames))
+        if not len(rows):
+            continue
         y = _numbers(signal, chosen(frames, rows))
         comment = f", {signal.comment}" if signal.comment else ""
         words = f"frame 0x{message.frame_id:X} {message.name}, signal {signal.name}{comment}"
         unit = signal.unit or None
-        if len(rows):
-            yield Channel(name, frames.t[rows], y, unit, clock, " ".join(words.split()))
+        yield Channel(name, frames.t[rows], y, unit, clock, " ".join(words.split()))
 
 
-def _holds(signal: "Signal", message: "Message", frames: Frames) -> NDArray[np.bool_]:
+def _fits(signal: "Signal") -> bool:
+    """True when the signal lies within 8 bytes and, with floating point, has a length it can."""
+    sized = signal.length in FLOATS if signal.is_float else signal.length > 0
+    return sized and signal.start >= 0 and _last_byte(signal) < 8
+
+
+def _holds(
+    signal: "Signal", message: "Message", frames: Frames, depth: int = 0
+) -> NDArray[np.bool_]:
     """Which frames are long enough for the signal and, by the multiplexer, hold it."""
     there = frames.length >= _last_byte(signal) + 1
     if signal.multiplexer_signal is None or not signal.multiplexer_ids:
         return there
-    switch = next(s for s in message.signals if s.name == signal.multiplexer_signal)
-    if switch is signal:
-        return there
-    there &= _holds(switch, message, frames)
+    switches = {one.name: one for one in message.signals if _fits(one)}
+    switch = switches.get(signal.multiplexer_signal)
+    if switch is None or depth > len(switches):  # the file names one that is not, or itself
+        return np.zeros(len(frames), np.bool_)
+    there &= _holds(switch, message, frames, depth + 1)
     return there & np.isin(_raw(switch, frames), signal.multiplexer_ids)
 
 
@@ -137,8 +150,6 @@ def _last_byte(signal: "Signal") -> int:
 
 def _raw(signal: "Signal", frames: Frames) -> Raw:
     """Whole numbers as they stand in the frames; (n,)."""
-    if _last_byte(signal) > 7:
-        return np.zeros(len(frames), np.int64)
     table = np.ascontiguousarray(frames.table)
     if signal.byte_order == "little_endian":
         word, low = table.view("<u8")[:, 0], signal.start

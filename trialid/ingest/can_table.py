@@ -106,11 +106,12 @@ def of_sqlite(path: Path, zone: str | None, tally: Tally) -> tuple[Frames, str]:
                 parts.append(_of_rows(rows, tally))
         finally:
             connection.close()
-    except sqlite3.Error as error:
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # words of a damaged schema are no text
+        why = " ".join(str(error).split())
         if not parts:
-            raise LogError(f"{path}: SQLite cannot read it, {error}; copy it again") from error
+            raise LogError(f"{path}: SQLite cannot read it, {why}; copy it again") from error
         count = sum(len(part) for part in parts)
-        tally.remarks.append(f"recovered {count} frames, then the database is damaged ({error})")
+        tally.remarks.append(f"recovered {count} frames, then the database is damaged ({why})")
     whole = joined(parts) if parts else nothing()
     if not len(whole):
         raise LogError(f"{path}: its table holds no CAN frame; python-can wrote none of them yet")
@@ -121,7 +122,10 @@ def _fetched(connection: sqlite3.Connection, path: Path) -> Iterator[list[tuple[
     tables = connection.execute("SELECT name FROM sqlite_master WHERE type='table'").fetchall()
     for (name,) in tables:
         quoted = '"' + name.decode("utf-8", "replace").replace('"', '""') + '"'
-        columns = [row[1].decode() for row in connection.execute(f"PRAGMA table_info({quoted})")]
+        columns = [
+            row[1].decode("utf-8", "replace")
+            for row in connection.execute(f"PRAGMA table_info({quoted})")
+        ]
         if columns[:7] == list(COLUMNS):
             cursor = connection.execute(f"SELECT {', '.join(COLUMNS)} FROM {quoted}")
             while rows := cursor.fetchmany(ROWS):

@@ -19,6 +19,11 @@ PACKET_NS = 750_000_000
 LONGEST = 223
 """Bytes of a fast packet: 6 + 31 * 7."""
 
+GROUPS = np.arange(1 << 18)
+FAST_GROUP = np.isin(GROUPS, list(FAST))
+SINGLE_GROUP = np.isin(GROUPS, list(NEEDED - FAST))
+"""Which parameter groups are needed, and come in fast packets or in single frames."""
+
 
 @dataclass(frozen=True)
 class Assembled:
@@ -62,9 +67,8 @@ def assemble(
     """
     pgn, source = group_and_source(can_id)
     source = source + 256 * np.asarray(bus)
-    fast = np.isin(pgn, list(FAST))
-    single = np.flatnonzero(np.isin(pgn, list(NEEDED - FAST)))
-    rows = np.flatnonzero(fast & (length > 1))
+    single = np.flatnonzero(SINGLE_GROUP[pgn])
+    rows = np.flatnonzero(FAST_GROUP[pgn] & (length > 1))
     order, payloads, packets = joined(t, pgn, source, rows, table, length)
     chosen = np.concatenate([single, order])
     buffer = np.concatenate([np.ascontiguousarray(table).reshape(-1), payloads.buffer])

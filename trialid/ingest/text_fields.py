@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-BLOCK = 1 << 23
+BLOCK = 1 << 20
 """Bytes read at once."""
 LONGEST_LINE = 1 << 16
 """A line that is longer is no line of a log."""
@@ -32,6 +32,8 @@ for _value, _character in enumerate(b"0123456789abcdef"):
     DIGITS[_character] = _value
 for _value, _character in enumerate(b"ABCDEF", 10):
     DIGITS[_character] = _value
+NIBBLES = np.minimum(DIGITS, 0x80).astype(np.uint8)
+"""The same in bytes; 128 for any other."""
 
 
 @dataclass(frozen=True)
@@ -100,31 +102,62 @@ def integers(text: NDArray[np.uint8], start: Ints, end: Ints, base: int) -> tupl
     value = np.zeros(len(start), np.int64)
     width = end - start
     good = (width > 0) & (width <= (15 if base == 16 else 18))
-    for i in range(int(width[good].max(initial=0))):
-        within = i < width
-        digit = DIGITS[text[np.where(within, start + i, 0)]]
-        good &= ~within | (digit < base)
-        value = np.where(within & good, value * base + digit, value)
-    return value, good
+    if not good.any():
+        return value, good
+    for i in range(int(width[good].max())):
+        if i < width.min():
+            digit = DIGITS[text[start + i]]
+            good &= digit < base
+            value = value * base + digit
+        else:
+            within = i < width
+            digit = DIGITS[text[np.where(within, start + i, 0)]]
+            good &= ~within | (digit < base)
+            value = np.where(within & good, value * base + digit, value)
+    return np.where(good, value, 0), good
 
 
 def seconds(text: NDArray[np.uint8], start: Ints, end: Ints) -> tuple[Ints, Bools]:
-    """Seconds with decimals in these places, in whole nanoseconds, and which of them are."""
-    value, decimals = np.zeros(len(start), np.int64), np.full(len(start), -1)
-    width = end - start
-    good = (width > 0) & (width <= 20)
-    for i in range(int(width[good].max(initial=0))):
-        within = good & (i < width)
-        character = text[np.where(within, start + i, 0)]
-        digit = DIGITS[character]
-        is_point = within & (character == ord("."))
-        good &= ~within | (digit < 10) | (is_point & (decimals < 0))
-        counts = within & (digit < 10) & (decimals < 9)
-        value = np.where(counts, value * 10 + digit, value)
-        decimals = np.where(is_point, 0, decimals + (counts & (decimals >= 0)))
-    scale = 10 ** (9 - np.maximum(decimals, 0))
-    good &= (value < LATEST_S * SECOND_NS // scale) & (width > (decimals == 0))
-    return np.where(good, value, 0) * scale, good
+    """Seconds with decimals in these places, in whole nanoseconds, and which of them are.
+
+    Where the point stands differs from line to line only when numbers gain a digit, so the lines
+    are read in groups that have it at the same place.
+    """
+    t, good = np.zeros(len(start), np.int64), np.zeros(len(start), np.bool_)
+    width = np.where((end > start) & (end - start <= 21), end - start, 0)
+    point = _points(text, start, width)
+    layout = width * 32 + point
+    for value in np.unique(layout[width > 0]).tolist():
+        rows = np.flatnonzero(layout == value)
+        wide, before = divmod(value, 32)
+        decimals = min(wide - before - 1, 9) if before < wide else 0
+        if before > 10 or before + decimals == 0:
+            continue
+        at = start[rows]
+        whole, is_whole = integers(text, at, at + before, 10)
+        part, is_part = integers(text, at + before + 1, at + before + 1 + decimals, 10)
+        _, is_rest = integers(text, at + before + 10, at + wide, 10)  # beyond the nanoseconds
+        good[rows] = (
+            (is_whole | (before == 0)) & (is_part | (decimals == 0)) & (whole < LATEST_S)
+            & (is_rest | (wide <= before + 10))
+        )  # fmt: skip
+        t[rows] = whole * SECOND_NS + part * 10 ** (9 - decimals)
+    return np.where(good, t, 0), good
+
+
+def _points(text: NDArray[np.uint8], start: Ints, width: Ints) -> Ints:
+    """How many characters stand before the point; the whole width where there is none."""
+    point = width.copy()
+    if not width.any():
+        return point
+    likely = int(np.argmax(text[start[0] : start[0] + width[0]] == ord("."))) if width[0] else 0
+    sure = (likely < width) & (text[np.minimum(start + likely, len(text) - 1)] == ord("."))
+    point[sure] = likely
+    rest = np.flatnonzero(~sure & (width > 0))
+    for i in reversed(range(int(width[rest].max(initial=0)))):
+        within = rest[i < width[rest]]
+        point[within[text[start[within] + i] == ord(".")]] = i
+    return point
 
 
 def date(text: NDArray[np.uint8], start: Ints) -> tuple[Ints, Bools]:
@@ -170,6 +203,6 @@ def _groups(
 
 def octets(text: NDArray[np.uint8], start: Ints) -> tuple[NDArray[np.uint8], Bools]:
     """Bytes written as two hexadecimal digits at these places, and which are; any shape."""
-    start = np.minimum(start, len(text) - 2)
-    high, low = DIGITS[text[start]], DIGITS[text[start + 1]]
-    return (high * 16 + low).astype(np.uint8), (high < 16) & (low < 16)
+    start = np.minimum(start, max(len(text) - 2, 0))
+    high, low = NIBBLES[text[start]], NIBBLES[text[np.minimum(start + 1, len(text) - 1)]]
+    return (high << 4 | low).astype(np.uint8), (high | low) < 16
