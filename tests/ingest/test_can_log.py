@@ -9,13 +9,16 @@ import zlib
 from datetime import datetime
 from pathlib import Path
 
+import can
 import can_damage as damage
 import cantools
 import numpy as np
 import pytest
 import write_can
+from can.io.asc import ASCReader
 from can.io.blf import BLFWriter
 from can.io.canutils import CanutilsLogReader
+from can.io.csv import CSVReader
 from nmea2000.decoder import NMEA2000Decoder
 from written import Series
 
@@ -313,6 +316,35 @@ def test_versions_of_trc(tmp_path, version):
     assert abs(channel.t[0] - STARTED - 2_500_000) < 1000
 
 
+def test_rows_of_trc_that_are_not_data(tmp_path):
+    lines = [
+        ";$FILEVERSION=2.1",
+        ";$COLUMNS=N,O,T,B,I,d,R,L,D",
+        "      1         2.500 DT 1 09F10D0B Rx - 8  00 F8 FF 7F E8 03 FF FF",
+        "      2         3.500 RR 1 09F10D0B Rx - 8",
+        "      3         4.500 ER 1 -        Rx - 5  04 00 00 00 00",
+        "      4         5.500 FD 1 09F10D0B Rx - 8  00 F8 FF 7F E8 03 FF FF",
+        "      5         6.500 DT 2 09F10D0B Rx - 8  00 F8 FF 7F E9 03 FF FF",
+        "      6         7.500 DT 1 09F10D0B Rx - 8  00 F8 FF",
+    ]
+    recording = read(log(tmp_path, lines))
+    assert {name: one.t.tolist() for name, one in recording.channels.items()} == {
+        "rudder/CAN1.11/0:position": [2_500_000],
+        "rudder/CAN2.11/0:position": [6_500_000],
+    }
+    assert recording.remarks[:4] == (
+        "1 of 6 lines are not frames, left out",
+        "1 error frames left out",
+        "1 remote frames, which carry no data, left out",
+        "1 CAN FD frames left out",
+    )
+
+
+def test_a_trc_of_an_unknown_version_is_refused(tmp_path):
+    with pytest.raises(LogError, match=r"is TRC of version 3\.0; known: 1\.0"):
+        read(log(tmp_path, [";$FILEVERSION=3.0", TRC["2.0"]]))
+
+
 # damage
 
 
@@ -584,3 +616,63 @@ def test_the_log_with_comments_value_by_value():
     assert not [remark for remark in recording.remarks if "lines" in remark]
     with CanutilsLogReader(path) as theirs, pytest.raises(ValueError, match="values to unpack"):
         list(theirs)  # which is why there is a reader of our own
+
+
+# what python-can gets wrong in files of its own
+
+
+def test_asc_by_python_can_one_millisecond_after_the_second(tmp_path, monkeypatch):
+    monkeypatch.setenv("TZ", "America/New_York")
+    time.tzset()
+    try:
+        start = 1_700_000_020_001_000_000
+        write_can.FORMATS[5].write(tmp_path / "log", series(start=start))
+        with ASCReader(tmp_path / "log", relative_timestamp=False) as theirs:
+            late = next(iter(theirs)).timestamp - start / 1e9
+        recording = read(tmp_path / "log", None, Aids(zone="America/New_York"))
+    finally:
+        monkeypatch.undo()
+        time.tzset()
+    assert late == pytest.approx(0.099, abs=1e-3)
+    assert abs(recording.channels[RUDDER].t[0] - start) < 1_000_000
+
+
+def test_csv_with_numpy_stamps(tmp_path):
+    sent = write_can.frames(write_can.messages(series(40)))
+    for message in sent[::2]:
+        message.timestamp = np.float64(message.timestamp)
+    write_can.by_python_can(tmp_path / "log", sent, ".csv")
+    with (
+        CSVReader(tmp_path / "log") as theirs,
+        pytest.raises(ValueError, match="could not convert"),
+    ):
+        list(theirs)
+    recording = read(tmp_path / "log")
+    assert len(recording.channels["rate_of_turn/11:rate"].y) == 40
+    assert not [remark for remark in recording.remarks if "lines" in remark]
+
+
+def test_frames_of_python_can_that_are_not_data(tmp_path):
+    data = write_can.frames(write_can.messages(series(20)))
+    more = [
+        can.Message(timestamp=data[-1].timestamp + 0.1, arbitration_id=5, is_error_frame=True),
+        can.Message(timestamp=data[-1].timestamp + 0.2, arbitration_id=5, is_remote_frame=True),
+    ]
+    for suffix in (".log", ".asc", ".blf", ".csv", ".db"):  # its TRC leaves them out
+        path = tmp_path / suffix[1:]
+        write_can.by_python_can(path, [*data, *more], suffix)
+        recording = read(path)
+        assert len(recording.channels["rate_of_turn/11:rate"].y) == 20
+        told = " ".join(recording.remarks)
+        assert "1 remote frames" in told
+        assert "1 error frames" in told
+        assert "lines are not frames" not in told
+
+
+def test_the_database_is_opened_for_reading_only(tmp_path):
+    write_can.by_python_can(tmp_path / "log", write_can.frames(sent()), ".db")
+    before = (tmp_path / "log").read_bytes()
+    (tmp_path / "log").chmod(0o400)
+    read(tmp_path / "log")
+    assert (tmp_path / "log").read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]

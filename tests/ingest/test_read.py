@@ -93,7 +93,19 @@ def test_a_folder_without_a_log(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "head", [b"\x89MCAP0\r\n\x01", b"t,u\n0,1\n", b"t;u", b"\xef\xbb\xbft,u\n"]
+    "head",
+    [
+        b"\x89MCAP0\r\n\x01",
+        b"t,u\n0,1\n",
+        b"t;u",
+        b"\xef\xbb\xbft,u\n",
+        b"(1700000000.0) can0 09F10D00#00\n",
+        b" (1700000000.000000)  can0  09F10D00   [2]  00 01\n",
+        b"2016-02-28T19:57:02.364Z,2,127250,7,255,8,ff,00,00,00,00,00,00,00\n",
+        b"16:29:27.082 R 09F8017F 50 C3 B8 13 47 D8 2B C6\n",
+        b"A173321.107 23FF7 1F513 012F3070002F30709F\n",
+        b"LOGG\x90\x00\x00\x00",
+    ],
 )
 def test_exactly_one_adapter_recognises_each_format(head):
     assert sum(one.recognises(head) for one in ingest.ADAPTERS) == 1
