@@ -6,13 +6,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import csv_log, mcap_log, nmea0183_log
+from trialid.ingest import can_log, canboat_log, csv_log, mcap_log, nmea0183_log, signalk_log
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
 from trialid.recording import Recording
 
 __all__ = ["ADAPTERS", "Aids", "LogFile", "adapter_of", "files_of", "read", "read_together"]
 
-ADAPTERS: tuple[Adapter, ...] = (mcap_log.ADAPTER, nmea0183_log.ADAPTER, csv_log.ADAPTER)
+ADAPTERS: tuple[Adapter, ...] = (
+    mcap_log.ADAPTER,
+    *can_log.ADAPTERS,
+    *canboat_log.ADAPTERS,
+    nmea0183_log.ADAPTER,
+    signalk_log.ADAPTER,
+    csv_log.ADAPTER,
+)
 
 HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""

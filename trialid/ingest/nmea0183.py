@@ -1,13 +1,13 @@
 """NMEA 0183 sentences to channels, in columns.
 
-A channel is `sentence/talker:field`, and `sentence/talker/instance:field` where the sentence numbers
+A channel is `sentence/talker:field`, and `sentence/talker/device:field` where the sentence numbers
 or names its devices: `ROT/TI:rate`, `RPM/II/S1:speed`, `XDR/II/ROLL:angle`. What a talker sends
 over several connections is kept apart: `ROT/GP0001.TI:rate`.
 """
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -67,7 +67,7 @@ def addresses(block: Sentences) -> Iterator[tuple[Places, str, str]]:
         if not ADDRESS.fullmatch(text):
             continue
         sentence, talker = (text, "") if text in LAYOUTS else (text[2:], text[:2])
-        known = sentence in LAYOUTS or sentence == "XDR"
+        known = sentence in LAYOUTS or sentence in ("XDR", "ZDA")
         if known and block.data[block.body.a[part[0]] - 1] == ord("$"):
             yield part, sentence, talker
 
@@ -140,7 +140,9 @@ def _field(block: Sentences, rows: Places, key: Key, offset: int, found: Found) 
     if one.side is not None:
         y, lost = _sided(block, rows, one.side, y)
         bad |= lost
+    given = np.isfinite(y)
     y[invalid | bad] = np.nan
+    invalid &= given
     for unit, same in _units(block, rows, one):
         part = Span(span.a[same], span.b[same])
         _add(
@@ -164,7 +166,7 @@ def _sided(
     block: Sentences, rows: Places, side: tuple[int, str], y: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], Mask]:
     """Numbers with the sign their side gives; one without a side is none, except zero."""
-    at, (plus, minus) = side
+    at, plus, minus = side[0], side[1][0], side[1][1]
     letter = block.letter(rows, at)
     sign = np.where(letter == ord(plus), 1.0, np.where(letter == ord(minus), -1.0, np.nan))
     sign[(y == 0) & (letter == 0)] = 1.0
@@ -281,13 +283,10 @@ def _channel(
     return Channel(name, t[rows], y, key.unit, clock, words, quantity, key.field.positive, arrived)
 
 
-def _complaints(name: str, column: Column) -> Sequence[str]:
+def _complaints(name: str, column: Column) -> Iterator[str]:
     total = _size(column)
     if column.bad:
-        yield_ = f"{column.bad} of {total} values are no numbers (the first: {column.example!r})"
-        bad = [f"{name}: {yield_}; not available"]
-    else:
-        bad = []
+        first = f"(the first: {column.example!r})"
+        yield f"{name}: {column.bad} of {total} values are no numbers {first}; not available"
     if column.invalid:
-        bad.append(f"{name}: {column.invalid} of {total} values flagged invalid by their status")
-    return bad
+        yield f"{name}: {column.invalid} of {total} values flagged invalid by their status"

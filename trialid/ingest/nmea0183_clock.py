@@ -20,8 +20,11 @@ CENTURY = 80
 
 @dataclass(frozen=True)
 class Ticks:
-    """Sentences that state the time: which of the log, date and time [ns], or NONE and the time of
-    day, and whether the receiver calls it valid; (N,) each."""
+    """Sentences that state the time; (N,) each.
+
+    Which of the log, date and time [ns] or NONE, time of day [ns], and whether the receiver calls
+    it valid.
+    """
 
     rows: Places
     dated: Ints

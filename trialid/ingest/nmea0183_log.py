@@ -1,7 +1,7 @@
-"""NMEA 0183 logs: lines of sentences, with or without stamps before them.
+r"""NMEA 0183 logs: lines of sentences, with or without stamps before them.
 
 What recorders write before a sentence is understood as far as it is a time or a tag block: ISO
-dates, seconds or milliseconds since 1970, times of day, `\\s:..,c:..*hh\\`, `UdPbC` datagrams (IEC
+dates, seconds or milliseconds since 1970, times of day, `\s:..,c:..*hh\`, `UdPbC` datagrams (IEC
 61162-450), and the CSV of OpenCPN's Data Monitor (`received_at,protocol,source,msg_type,raw_data`,
 whose header names two columns the wrong way round in some releases: the rows decide).
 """
@@ -33,8 +33,9 @@ def recognises(head: bytes) -> bool:
     """Text of which most lines hold a sentence, and which is no log of Signal K."""
     if not head or sum(byte in TEXT for byte in head) < PRINTABLE * len(head):
         return False
-    lines = [line for line in head.splitlines()[: -1 if len(head) > 1024 else None] if line.strip()]
-    lines = [line for line in lines if not line.startswith((b"#", b";"))]
+    lines = head.splitlines()
+    lines = lines[:-1] if len(lines) > 1 and not head.endswith((b"\n", b"\r")) else lines
+    lines = [line for line in lines if line.strip() and not line.startswith((b"#", b";"))]
     if SIGNAL_K.match(lines[0] if lines else b""):
         return False
     ours = [line for line in lines if SENTENCE.search(line) and not NOT_OURS.search(line)]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import LogError
-from trialid.ingest import nmea0183, nmea0183_clock, nmea0183_stamps
+from trialid.ingest import local_time, nmea0183, nmea0183_clock, nmea0183_stamps
 from trialid.ingest.adapter import Wanted
 from trialid.ingest.nmea0183_sentences import Mask, Places, Sentences, has_checksums, sentences
 from trialid.ingest.nmea0183_stamps import LOCAL, NONE, SECOND, TIME_OF_DAY
@@ -209,10 +209,10 @@ def _of_lines(stream: Stream, stamped: Ints, zone: str | None) -> Timed:
     rows = np.flatnonzero((kinds == kind) & (stamped != NONE))
     times = stamped[rows]
     if kind == LOCAL and zone is not None:
-        times = nmea0183_stamps.in_zone(times, zone)
+        times = local_time.utc(times, zone)
     if kind == TIME_OF_DAY:
         times = nmea0183_clock.unwrapped(times)
-    odd = _out_of_step(times)
+    odd = out_of_step(times)
     t = np.full(len(stamped), NONE)
     t[rows[~odd]] = times[~odd]
     words = {
@@ -225,7 +225,7 @@ def _of_lines(stream: Stream, stamped: Ints, zone: str | None) -> Timed:
     return Timed(t, None, words, tuple(remarks))
 
 
-def _out_of_step(t: Ints) -> Mask:
+def out_of_step(t: Ints) -> Mask:
     """Stamps that their two neighbours, which agree, do not enclose; (N,).
 
     Nothing protects the text before a sentence. At the ends, where one neighbour is missing, a

@@ -1,7 +1,7 @@
 """NMEA 0183 sentences in a block of bytes: where each begins and ends, and its fields as columns.
 
-A sentence is `$` or `!`, an address, comma and field again and again, and `*hh`: the exclusive or of
-all bytes between `$` and `*`, in hexadecimal (NMEA 0183, IEC 61162-1).
+A sentence is `$` or `!`, an address, comma and field again and again, and `*hh`: the exclusive or
+of all bytes between `$` and `*`, in hexadecimal (NMEA 0183, IEC 61162-1).
 """
 
 from collections.abc import Iterator
@@ -207,7 +207,7 @@ def alike(cells: Bytes) -> Iterator[tuple[Places, bytes]]:
         yield rows[same], cells[0].tobytes()
         rows, cells = rows[~same], cells[~same]
     groups: dict[bytes, list[int]] = {}
-    for row, content in zip(rows, cells, strict=True):
+    for row, content in zip(rows.tolist(), cells, strict=True):
         groups.setdefault(content.tobytes(), []).append(row)
     for key, members in groups.items():
         yield np.array(members), key

@@ -1,16 +1,14 @@
-"""Time stamps that recorders write before NMEA 0183 sentences, as columns.
+r"""Time stamps that recorders write before NMEA 0183 sentences, as columns.
 
 Known are ISO dates, seconds, milliseconds, microseconds and nanoseconds since 1970, and times of
-day, in brackets or not, anywhere before the sentence; and tag blocks `\\s:GP0001,c:1480000000*hh\\`
-(NMEA 0183 4.10, IEC 61162-450), whose time `c` is in seconds or milliseconds and whose source is `s`.
+day, in brackets or not, anywhere before the sentence; and tag blocks `\s:GP0001,c:1480000000*hh\`
+(NMEA 0183 4.10, IEC 61162-450), whose time `c` counts seconds or milliseconds; `s` is the source.
 """
 
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from datetime import datetime
 from typing import Final
-from zoneinfo import ZoneInfo
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,8 +33,9 @@ DATED = re.compile(
     rb"(?P<h>00):(?P<mi>00):(?P<s>00)(?:[.,](?P<f>0{1,9}))?\s?(?P<z>Z|UTC|(?P<sign>[+-])(?P<zh>00):?(?P<zm>00))?(?![0.])"
 )
 EPOCH = re.compile(
-    rb"(?<![0-9.A-Za-z:/-])(?:(?P<s>0{10})(?:\.(?P<f>0{1,9}))?|(?P<ms>0{13})|(?P<us>0{16})|(?P<ns>0{19}))"
-    rb"(?![0.A-Za-z:/-])"
+    rb"(?<![0-9.A-Za-z:/-])(?:(?P<s>0{10})(?:\.(?P<f>0{1,9}))?|(?P<ms>0{13})|(?P<us>0{16})"
+    rb"|(?P<ns>0{19}))"
+    rb"(?![0.A-Za-z/-]|:0)"
 )
 CLOCK = re.compile(rb"(?<![0:.])(?P<h>00):(?P<mi>00):(?P<s>00)(?:[.,](?P<f>0{1,9}))?(?![0:.])")
 TAG_TIME = re.compile(rb"(?:^|,)c:(?:(?P<s>0{10})|(?P<ms>0{13}))(?=,|$)")
@@ -96,19 +95,6 @@ def of_tags(data: Bytes, before: Span) -> tuple[Tags, Span]:
         _tag(rows[part], cells, shape, t, coarse, sources)
     rest = Span(before.a, np.where(there, opening, before.b))
     return Tags(there, sound, t, coarse, tuple(sources)), rest
-
-
-def in_zone(t: Ints, zone: str) -> Ints:
-    """Stamps that count local time of a zone as if it were UTC, in true UTC [ns]."""
-    hours, place = np.unique(t // HOUR, return_inverse=True)
-    shifts = [_shift(int(hour), ZoneInfo(zone)) for hour in hours]
-    return t - np.array(shifts, np.int64)[place] if len(t) else t
-
-
-def _shift(hour: int, zone: ZoneInfo) -> int:
-    local = datetime.fromordinal(719_163 + hour // 24).replace(hour=hour % 24, tzinfo=zone)
-    offset = local.utcoffset()
-    return round(offset.total_seconds()) * SECOND if offset is not None else 0
 
 
 def _tag(
