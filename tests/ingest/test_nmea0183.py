@@ -242,26 +242,8 @@ def test_old_vtg_without_letters_is_no_speed(tmp_path):
 
 def test_transducers_behind_a_field_too_many(tmp_path):
     """From a real boat: `C` stands twice, and all that follows is moved."""
-    text = raw(
-        "II",
-        "XDR",
-        [
-            "C",
-            "C",
-            "10.7",
-            "C",
-            "AIRTEMP",
-            "A",
-            "0.5",
-            "D",
-            "HEEL",
-            "A",
-            "A",
-            "-4.-3",
-            "D",
-            "RUDDER",
-        ],
-    )
+    body = "IIXDR,C,C,10.7,C,AIRTEMP,A,0.5,D,HEEL,A,A,-4.-3,D,RUDDER"
+    text = f"${body}*{checksum(body)}"
     channels = read(log(tmp_path, [text] * 20)).channels
     assert sorted(channels) == ["XDR/II/AIRTEMP:temperature", "XDR/II/HEEL:angle"]
     assert set(channels["XDR/II/HEEL:angle"].y) == {0.5}

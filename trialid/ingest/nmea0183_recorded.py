@@ -5,7 +5,6 @@ has no stamp; the stamp the recorder wrote before it; the times of ZDA or RMC, i
 """
 
 import re
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -205,7 +204,7 @@ def _mostly(there: Mask) -> bool:
 def _of_lines(stream: Stream, stamped: Ints, zone: str | None) -> Timed:
     """The recorder's stamps: of the kind most lines have, without those that are damaged."""
     kinds = np.concatenate(stream.kind)
-    ((kind, _),) = Counter(kinds[stamped != NONE].tolist()).most_common(1)
+    kind = int(np.argmax(np.bincount(kinds[stamped != NONE])))
     rows = np.flatnonzero((kinds == kind) & (stamped != NONE))
     times = stamped[rows]
     if kind == LOCAL and zone is not None:

@@ -70,8 +70,11 @@ class Sentences:
 
     def field(self, rows: Places, number: int | Places) -> Span:
         """Field `number` of some sentences, the address is 0; empty where it is missing."""
-        last, there = self.fields[rows], number <= self.fields[rows]
+        last = self.fields[rows]
         at = self.first[rows] + number
+        if isinstance(number, int) and 0 < number < last.min(initial=0):
+            return Span(self.comma[at - 1] + 1, self.comma[at])
+        there = number <= last
         left = self.comma[np.where(there, at - 1, -1)] + 1
         a = np.where(np.equal(number, 0), self.body.a[rows], left)
         b = np.where(number < last, self.comma[np.where(there, at, -1)], self.body.b[rows])
@@ -100,7 +103,7 @@ def sentences(data: Bytes, checked: bool = True) -> Sentences:
     found = start < stars
     stars, low, start, line = stars[found], low[found], start[found], line[found]
     start, right = _right(data, start, _last(marks, stars), stars)
-    lost = int(_lines_with_none(lines, marks, stars, len(data)))
+    lost = _lines_with_none(lines, marks, stars, len(data))
     begin, star = start[right], stars[right]
     before = Span(low[right] + 1, begin)
     return _indexed(data, Span(begin + 1, star), before, (low == line)[right], (~right).sum(), lost)
@@ -161,8 +164,10 @@ def _right(data: Bytes, start: Places, last: Places, stars: Places) -> tuple[Pla
 def _lines_with_none(lines: Places, marks: Places, stars: Places, size: int) -> int:
     """How many lines have a `$` and no checksum at all."""
     edges = np.concatenate([lines, [size]])
-    marked = np.unique(np.searchsorted(edges, marks))
-    return len(np.setdiff1d(marked, np.searchsorted(edges, stars), assume_unique=False))
+    cut = np.zeros(len(edges), np.bool_)
+    cut[np.searchsorted(edges, marks)] = True
+    cut[np.searchsorted(edges, stars)] = False
+    return int(cut.sum())
 
 
 def _unchecked(data: Bytes, lines: Places, marks: Places) -> Sentences:
@@ -188,9 +193,14 @@ def _indexed(
 
 def table(data: Bytes, span: Span, width: int) -> Bytes:
     """The stretches as rows of equal width, zeros behind; (N, width)."""
-    places = span.a[:, None] + np.arange(width)
-    cells = data[np.minimum(places, len(data) - 1)]
-    cells[places >= span.b[:, None]] = 0
+    if not width or not len(span.a):
+        return np.zeros((len(span.a), width), np.uint8)
+    if int(span.a.max()) + width > len(data):
+        data = np.concatenate([data, np.zeros(width, np.uint8)])
+    cells = np.lib.stride_tricks.sliding_window_view(data, width)[span.a]
+    length = span.b - span.a
+    if length.min() < width:
+        cells[np.arange(width) >= length[:, None]] = 0
     return cells
 
 

@@ -118,8 +118,9 @@ def _tag(
 def _shapes(data: Bytes, span: Span) -> Iterator[tuple[Places, Bytes, bytes]]:
     """Stretches of one shape: which, their bytes (n, length), and the shape: digits are 0."""
     length = span.b - span.a
-    for width in np.unique(length[(length > 0) & (length <= LONGEST)]):
-        rows = np.flatnonzero(length == width)
+    short = np.where((length > 0) & (length <= LONGEST), length, 0)
+    for width in np.flatnonzero(np.bincount(short, minlength=1)[1:]) + 1:
+        rows = np.flatnonzero(short == width)
         cells = table(data, span.of(rows), int(width))
         digits = (cells >= 48) & (cells <= 57)
         for same, shape in alike(np.where(digits, np.uint8(48), cells)):

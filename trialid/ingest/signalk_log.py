@@ -21,7 +21,9 @@ from trialid.ingest import nmea0183_recorded, nmea2000
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked, sha256
 from trialid.recording import Channel, Recording
 
-LINE = re.compile(rb"^(\d{12,14});([A-Za-z]);(.*?)\r?$", re.MULTILINE)
+LINE = re.compile(rb"\d{12,14};[A-Za-z];")
+OTHERS = re.compile(rb"^(\d{12,14});([A-MO-Za-z]);([^\r\n]*)", re.MULTILINE)
+STAMP = re.compile(rb"^(\d{12,14});", re.MULTILINE)
 MESSAGE = re.compile(rb"[^,]*,\d,(\d{1,6}),(\d{1,3}),\d{1,3},(\d{1,4}),([0-9A-Fa-f,]*)\s*")
 SENTENCES = re.compile(rb"^\d{12,14};N;[^\r\n]*(?:\r?\n|$)", re.MULTILINE)
 MILLISECOND = 1_000_000
@@ -95,10 +97,10 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     Raises LogError when not one line can be read.
     """
     del aids
-    deltas, messages, kinds, odd = Deltas(), Messages(), Counter[str](), _damaged_stamps(path)
+    deltas, messages, kinds = Deltas(), Messages(), Counter[str]()
     for block in nmea0183_recorded.blocks(path):
-        _take(block, wanted, odd, deltas, messages, kinds)
-    if not kinds:
+        _take(block, wanted, deltas, messages, kinds)
+    if not kinds.total():
         raise LogError(f"{path}: no line of the form time;letter;data; copy the log again")
     found, remarks = _sentences(path, wanted) if kinds["N"] else ({}, [])
     more, remarks_of_bus = _of_bus(messages, wanted)
@@ -109,29 +111,24 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     return Recording(path, ADAPTER.name, sha256(path), found, tuple(remarks))
 
 
-def _damaged_stamps(path: Path) -> frozenset[int]:
-    """Stamps [ms] out of step with those of the lines around them: nothing else protects them."""
-    stamps = [
-        int(stamp)
-        for block in nmea0183_recorded.blocks(path)
-        for stamp, _, _ in LINE.findall(block)
-    ]
-    t = np.array(stamps, np.int64)
-    return frozenset(t[nmea0183_recorded.out_of_step(t * MILLISECOND)].tolist())
+def _damaged_stamps(block: bytes) -> frozenset[bytes]:
+    """Stamps out of step with those of the lines around them: nothing else protects them."""
+    stamps = STAMP.findall(block)
+    t = np.array(stamps, "S14").astype(np.int64)
+    odd = nmea0183_recorded.out_of_step(t * MILLISECOND)
+    return frozenset(stamps[row] for row in np.flatnonzero(odd))
 
 
 def _take(
-    block: bytes,
-    wanted: Wanted,
-    odd: frozenset[int],
-    deltas: Deltas,
-    messages: Messages,
-    kinds: Counter[str],
+    block: bytes, wanted: Wanted, deltas: Deltas, messages: Messages, kinds: Counter[str]
 ) -> None:
-    for stamp, letter, payload in LINE.findall(block):
+    others = OTHERS.findall(block)
+    odd = _damaged_stamps(block) if others else frozenset[bytes]()
+    kinds["N"] += block.count(b";N;")
+    for stamp, letter, payload in others:
         kinds[letter.decode()] += 1
-        if int(stamp) in odd:
-            kinds["of a damaged time"] += letter != b"N"
+        if stamp in odd:
+            kinds["of a damaged time"] += 1
         elif letter == b"A":
             _message(int(stamp) * MILLISECOND, payload, messages)
         elif letter == b"I":
@@ -143,7 +140,7 @@ def _sentences(path: Path, wanted: Wanted) -> tuple[dict[str, Channel], list[str
 
     def parts() -> Iterator[bytes]:
         for block in nmea0183_recorded.blocks(path):
-            yield b"".join(SENTENCES.findall(block))
+            yield b"".join(SENTENCES.findall(block)) if OTHERS.search(block) else block
 
     try:
         return nmea0183_recorded.channels(path, parts, wanted, None)
