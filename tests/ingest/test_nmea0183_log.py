@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from nmea0183_damage import damaged
 from write_nmea0183 import FORMATS, checksum, iso, sentence, with_iso
 
 from trialid.alignment import align
@@ -386,6 +387,37 @@ def test_a_signal_k_log_of_all_kinds(tmp_path):
         "1 lines that should be deltas cannot be read, left out",
         "lines left out: 1 of kind C; kinds that are read: N, A, I",
     )
+
+
+CHECKED = [form for form in FORMATS if "deltas" not in form.name and "2000" not in form.name]
+
+
+@pytest.mark.parametrize("form", CHECKED, ids=lambda form: form.name)
+def test_no_damage_makes_a_wrong_sample(tmp_path, form):
+    """Values are protected by their checksums; a stamp that is not may be off where blocks join."""
+    path = tmp_path / "log"
+    made = form.write(path, motions(12.0))
+    data, clean = path.read_bytes(), read(path).channels
+    written = {source.channel: clean[source.channel] for source in made.sources}
+    samples = 0
+    for seed in range(25):
+        path.write_bytes(damaged(data, np.random.default_rng(seed)))
+        try:
+            channels = read(path).channels
+        except LogError as error:
+            assert "\n" not in str(error)  # noqa: PT017
+            continue
+        for name in written.keys() & channels.keys():
+            y, true = channels[name].y, written[name]
+            good = np.isfinite(y)
+            assert np.isin(y[good], true.y).all()
+            off = [
+                np.abs(true.t[true.y == v] - t).min()
+                for t, v in zip(channels[name].t[good], y[good], strict=True)
+            ]
+            assert max(off, default=0) < 3 * SECOND
+            samples += len(off)
+    assert samples > 5000
 
 
 @pytest.mark.real_data

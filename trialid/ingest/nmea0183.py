@@ -22,6 +22,8 @@ from trialid.recording import Channel
 Ints = NDArray[np.int64]
 
 ADDRESS = re.compile(r"[A-Z][A-Z0-9][A-Z]{3}|P[A-Z0-9]{3,6}")
+RARE = 0.05
+"""Share of the samples below which another connection is none."""
 LISTED = 6
 """Channels without a value a remark names at most."""
 
@@ -220,7 +222,11 @@ def channels(
     kept: dict[str, Channel] = {}
     remarks: list[str] = []
     empty: list[str] = []
-    several = _several(found)
+    found, several, strange = _by_sender(found)
+    if strange:
+        remarks.append(
+            f"{strange} samples left out, their source is named nowhere else: damaged tag or column"
+        )
     for key, column in sorted(found.items(), key=lambda item: -_size(item[1])):
         name = _name(key, (key.sentence, key.talker) in several)
         if not asked(name, wanted):
@@ -246,11 +252,25 @@ def _size(column: Column) -> int:
     return sum(len(rows) for rows in column.rows)
 
 
-def _several(found: Found) -> set[tuple[str, str]]:
-    """Sentences and talkers that come over more than one connection."""
-    pairs = {(key.sentence, key.talker, key.connection) for key in found}
-    counts = Counter((sentence, talker) for sentence, talker, _ in pairs)
-    return {pair for pair, count in counts.items() if count > 1}
+def _by_sender(found: Found) -> tuple[Found, set[tuple[str, str]], int]:
+    """What comes over a real connection, what over more than one, and how much was left out.
+
+    The name of a connection is hardly protected, or lost with its tag: one that has next to
+    nothing beside another of the same sentence and talker is a damaged name.
+    """
+    counts = Counter[tuple[str, str, str]]()
+    for key, column in found.items():
+        counts[key.sentence, key.talker, key.connection] += _size(column)
+    most = Counter[tuple[str, str]]()
+    for (sentence, talker, _), count in counts.items():
+        most[sentence, talker] = max(most[sentence, talker], count)
+    real = {who for who, count in counts.items() if count > RARE * most[who[:2]]}
+    senders = Counter((sentence, talker) for sentence, talker, _ in real)
+    kept = {
+        key: c for key, c in found.items() if (key.sentence, key.talker, key.connection) in real
+    }
+    strange = sum(_size(column) for key, column in found.items() if key not in kept)
+    return kept, {pair for pair, count in senders.items() if count > 1}, strange
 
 
 def _name(key: Key, several: bool) -> str:

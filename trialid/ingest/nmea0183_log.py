@@ -69,6 +69,8 @@ def _connections(block: Sentences) -> Iterator[tuple[Places, str]]:
     rows = np.flatnonzero(count >= 4)
     for third, text in texts(block.data, _column(block, first[rows], 1)):
         part = rows[third]
+        if not len(part):
+            continue
         address = block.data[block.body.a[part[0]] : block.body.b[part[0]]].tobytes()[:5].decode()
         if text.strip('"') and text.strip('"') in (address, address[2:]):
             for fourth, source in texts(block.data, _column(block, first[part], 2)):

@@ -225,23 +225,37 @@ def _of_lines(stream: Stream, stamped: Ints, zone: str | None) -> Timed:
 
 
 def out_of_step(t: Ints) -> Mask:
-    """Stamps that their two neighbours, which agree, do not enclose; (N,).
+    """Stamps that those around them, which agree, do not enclose; (N,).
 
-    Nothing protects the text before a sentence. At the ends, where one neighbour is missing, a
-    stamp far from it is given up as well.
+    Nothing protects the text before a sentence. Asked are the two neighbours, and the medians of
+    three on either side. Given up as well is a stamp far from both sides, and at the ends, where
+    neighbours are missing, one far from the next.
     """
-    odd = np.zeros(len(t), np.bool_)
     if len(t) < 3:
-        return odd
-    before, here, after = t[:-2], t[1:-1], t[2:]
-    outside = (here < before - OUT_OF_STEP) | (here > after + OUT_OF_STEP)
-    odd[1:-1] = outside & (before <= after + OUT_OF_STEP)
-    kept = t[~odd]
+        return np.zeros(len(t), np.bool_)
+    edged = np.concatenate([t[[0, 0, 0]], t, t[[-1, -1, -1]]])
+    before, after = _median_of_3(edged[:-4]), _median_of_3(edged[4:])
+    odd = _outside(edged[2:-4], t, edged[4:-2]) | _outside(before, t, after)
+    alone = np.minimum(np.abs(t - before), np.abs(t - after))
+    odd |= alone > 10 * SECOND + 2 * np.abs(after - before)
+    kept = np.flatnonzero(~odd)
     if len(kept) > 1:
-        far = 10 * SECOND + 10 * int(np.median(np.abs(np.diff(kept))))
-        odd[0] |= not -OUT_OF_STEP <= kept[1] - kept[0] <= far
-        odd[-1] |= not -OUT_OF_STEP <= kept[-1] - kept[-2] <= far
+        far = 10 * SECOND + 10 * int(np.median(np.abs(np.diff(t[kept]))))
+        first, last = t[kept[1]] - t[kept[0]], t[kept[-1]] - t[kept[-2]]
+        odd[kept[0]] |= not -OUT_OF_STEP <= first <= far
+        odd[kept[-1]] |= not -OUT_OF_STEP <= last <= far
     return odd
+
+
+def _outside(before: Ints, here: Ints, after: Ints) -> Mask:
+    out = (here < before - OUT_OF_STEP) | (here > after + OUT_OF_STEP)
+    return out & (before <= after + OUT_OF_STEP)
+
+
+def _median_of_3(t: Ints) -> Ints:
+    """Medians of each three in a row; (N - 2,)."""
+    a, b, c = t[:-2], t[1:-1], t[2:]
+    return np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c))
 
 
 def _untimed(t: Ints) -> tuple[str, ...]:
