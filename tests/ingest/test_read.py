@@ -52,7 +52,7 @@ def test_an_unknown_file_shows_its_first_bytes(tmp_path):
     path = tmp_path / "log.mcap"
     path.write_bytes(b"\x7fELF\x02\x01" + bytes(50))
     message = refused(path)
-    assert "no adapter recognises it (of mcap, csv)" in message
+    assert "no adapter recognises it (of mcap, " in message
     assert "it begins b'\\x7fELF" in message
 
 
@@ -104,8 +104,6 @@ def test_exactly_one_adapter_recognises_each_format(head):
     [
         b"",
         b"\x00" * 64,
-        b"$IIRSA,12.5,A,,V*6A\r\n",
-        b"(1700000000.0) can0 09F10D00#00\n",
         b'{"a": 1, "b": 2}\n',
         b"0.0,1.0,2.0\n0.1,1.0,2.0\n",
         b"\xfd\x1c\x00\x00",

@@ -129,16 +129,16 @@ def _devices(block: Sentences, rows: Places, layout: Layout) -> list[tuple[str, 
 def _field(block: Sentences, rows: Places, key: Key, offset: int, found: Found) -> None:
     one = key.field
     if one.only is not None:
-        rows = rows[_is(block, rows, one.only)]
+        rows = rows[block.letter(rows, one.only[0]) == ord(one.only[1])]
     if not len(rows):
         return
     span = block.field(rows, one.at)
     y, bad = numbers(block.data, span)
     invalid = np.zeros(len(rows), np.bool_)
     if one.status is not None:
-        invalid = ~_is(block, rows, one.status) & (block.letter(rows, one.status[0]) != 0)
+        invalid = _other(block, rows, one.status)
     if one.mark is not None:
-        bad |= ~_is(block, rows, one.mark) & (block.letter(rows, one.mark[0]) != 0)
+        bad |= _other(block, rows, one.mark)
     if one.side is not None:
         y, lost = _sided(block, rows, one.side, y)
         bad |= lost
@@ -159,9 +159,13 @@ def _field(block: Sentences, rows: Places, key: Key, offset: int, found: Found) 
         )
 
 
-def _is(block: Sentences, rows: Places, letter: tuple[int, str]) -> Mask:
-    allowed = np.frombuffer(letter[1].encode(), np.uint8)
-    return np.isin(block.letter(rows, letter[0]), allowed)
+def _other(block: Sentences, rows: Places, expected: tuple[int, str]) -> Mask:
+    """True where a field says something else than one of these letters; empty says nothing."""
+    letter = block.letter(rows, expected[0])
+    other = letter != 0
+    for allowed in expected[1].encode():
+        other &= letter != allowed
+    return other
 
 
 def _sided(

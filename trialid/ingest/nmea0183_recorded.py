@@ -23,7 +23,7 @@ Ints = NDArray[np.int64]
 Connections = Callable[[Sentences], Iterable[tuple[Places, str]]]
 """Sentences by the connection they came over: rows and name."""
 
-BLOCK = 8 << 20
+BLOCK = 4 << 20
 OUT_OF_STEP = 50_000_000
 """A stamp this much [ns] outside of its two neighbours, which agree, is a damaged one."""
 UNSAFE = re.compile(r"[^\w.+#-]+")

@@ -212,15 +212,20 @@ def table(data: Bytes, span: Span, width: int) -> Bytes:
 def alike(cells: Bytes) -> Iterator[tuple[Places, bytes]]:
     """Rows of a table grouped by their content: row numbers and content; meant for few groups."""
     rows = np.arange(len(cells))
-    if not cells.shape[1]:
-        yield rows, b""
+    if not cells.size:
+        yield rows, b"\0" * cells.shape[1]
         return
+    padded = np.zeros((len(cells), -(-cells.shape[1] // 8) * 8), np.uint8)
+    padded[:, : cells.shape[1]] = cells
+    words = padded.view(np.uint64)
     for _ in range(64):
-        if not len(rows):
-            return
-        same = (cells == cells[0]).all(axis=1)
+        same = words[:, 0] == words[0, 0]
+        for column in range(1, words.shape[1]):
+            same &= words[:, column] == words[0, column]
         yield rows[same], cells[0].tobytes()
-        rows, cells = rows[~same], cells[~same]
+        if same.all():
+            return
+        rows, cells, words = rows[~same], cells[~same], words[~same]
     groups: dict[bytes, list[int]] = {}
     for row, content in zip(rows.tolist(), cells, strict=True):
         groups.setdefault(content.tobytes(), []).append(row)

@@ -178,8 +178,9 @@ def _epoch(found: re.Match[bytes], number: Columns) -> tuple[Ints, int]:
 def days_of(year: Ints, month: Ints, day: Ints) -> tuple[Ints, Mask]:
     """Days since 1970, and which dates exist; (N,) each.
 
-    >>> days_of(np.array([1970, 2023]), np.array([1, 2]), np.array([2, 29]))
-    (array([    1, 19417]), array([ True, False]))
+    >>> days, exists = days_of(np.array([1970, 2023]), np.array([1, 2]), np.array([2, 29]))
+    >>> days.tolist()[0], exists.tolist()
+    (1, [True, False])
     """
     months = ((year - 1970) * 12 + month - 1).astype("datetime64[M]")
     first = months.astype("datetime64[D]").astype(np.int64)
