@@ -33,7 +33,7 @@ LIBRARY_SHARE = 10
 
 
 def measure(scale: float = 1.0) -> list[Row]:
-    """Speed of ours in four containers and of pynmeagps on the bare sentences; CPU time, best of three."""
+    """Speed of ours in four containers, pynmeagps on the bare sentences; CPU time, best of 3."""
     sentences = said(_series(round(1200 * scale))) * 4
     bare = "".join(text + "\r\n" for _, _, text in sentences[::LIBRARY_SHARE]).encode()
     library = len(sentences[::LIBRARY_SHARE]) / min(_library(bare) for _ in range(3))

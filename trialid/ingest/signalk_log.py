@@ -102,7 +102,7 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
         _take(block, wanted, deltas, messages, kinds)
     if not kinds.total():
         raise LogError(f"{path}: no line of the form time;letter;data; copy the log again")
-    found, remarks = _sentences(path, wanted) if kinds["N"] else ({}, [])
+    found, remarks = _sentences(path, wanted, len(+kinds) > 1) if kinds["N"] else ({}, [])
     more, remarks_of_bus = _of_bus(messages, wanted)
     found |= more | _of_deltas(deltas)
     if not found and wanted is None and not remarks:
@@ -135,12 +135,12 @@ def _take(
             _delta(int(stamp) * MILLISECOND, payload, wanted, deltas)
 
 
-def _sentences(path: Path, wanted: Wanted) -> tuple[dict[str, Channel], list[str]]:
-    """Channels of the lines N, read as an NMEA 0183 log of its own."""
+def _sentences(path: Path, wanted: Wanted, mixed: bool) -> tuple[dict[str, Channel], list[str]]:
+    """Channels of the lines N, read as an NMEA 0183 log of its own; `mixed`: not all are."""
 
     def parts() -> Iterator[bytes]:
         for block in nmea0183_recorded.blocks(path):
-            yield b"".join(SENTENCES.findall(block)) if OTHERS.search(block) else block
+            yield b"".join(SENTENCES.findall(block)) if mixed else block
 
     try:
         return nmea0183_recorded.channels(path, parts, wanted, None)
