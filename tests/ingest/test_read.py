@@ -116,7 +116,6 @@ def test_exactly_one_adapter_recognises_each_format(head):
     [
         b"",
         b"\x00" * 64,
-        b"$IIRSA,12.5,A,,V*6A\r\n",
         b'{"a": 1, "b": 2}\n',
         b"0.0,1.0,2.0\n0.1,1.0,2.0\n",
         b"\xfd\x1c\x00\x00",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import can_log, canboat_log, csv_log, mcap_log
+from trialid.ingest import can_log, canboat_log, csv_log, mcap_log, nmea0183_log, signalk_log
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
 from trialid.recording import Recording
 
@@ -16,6 +16,8 @@ ADAPTERS: tuple[Adapter, ...] = (
     mcap_log.ADAPTER,
     *can_log.ADAPTERS,
     *canboat_log.ADAPTERS,
+    nmea0183_log.ADAPTER,
+    signalk_log.ADAPTER,
     csv_log.ADAPTER,
 )
 

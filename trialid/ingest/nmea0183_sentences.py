@@ -1,0 +1,297 @@
+"""NMEA 0183 sentences in a block of bytes: where each begins and ends, and its fields as columns.
+
+A sentence is `$` or `!`, an address, comma and field again and again, and `*hh`: the exclusive or
+of all bytes between `$` and `*`, in hexadecimal (NMEA 0183, IEC 61162-1).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Bytes = NDArray[np.uint8]
+Places = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+LONGEST_NUMBER = 24
+FIRST = 1 << 15
+"""Bytes in which a log that has checksums mostly shows it."""
+EXACT_DIGITS = 15
+"""Decimal digits a float holds, and any quotient of two such is rounded once only."""
+
+_HEX = np.full(256, -1, np.int16)
+_HEX[np.frombuffer(b"0123456789", np.uint8)] = np.arange(10)
+_HEX[np.frombuffer(b"ABCDEF", np.uint8)] = np.arange(10, 16)
+_HEX[np.frombuffer(b"abcdef", np.uint8)] = np.arange(10, 16)
+
+
+@dataclass(frozen=True)
+class Span:
+    """Stretches of the block, from `a` up to `b`; (N,) each."""
+
+    a: Places
+    b: Places
+
+    def of(self, rows: NDArray[np.intp] | Mask) -> "Span":
+        """Some of them."""
+        return Span(self.a[rows], self.b[rows])
+
+
+@dataclass(frozen=True)
+class Sentences:
+    """The N sound sentences of a block.
+
+    Parameters
+    ----------
+    data
+        The block.
+    body
+        From the byte after `$` up to `*`.
+    before
+        What stands before `$`: from the line's beginning, or the end of the sentence before on
+        the same line.
+    alone
+        True where no other sentence stands before on the same line.
+    comma
+        Places of all commas of the block; `first` is the index in it of each sentence's first, and
+        `fields` how many fields follow the address.
+    wrong, bare
+        How many sentences had a wrong checksum, and how many none or were cut.
+    """
+
+    data: Bytes
+    body: Span
+    before: Span
+    alone: Mask
+    comma: Places
+    first: Places
+    fields: Places
+    wrong: int
+    bare: int
+
+    def field(self, rows: Places, number: int | Places) -> Span:
+        """Field `number` of some sentences, the address is 0; empty where it is missing."""
+        last = self.fields[rows]
+        at = self.first[rows] + number
+        if isinstance(number, int) and 0 < number < last.min(initial=0):
+            return Span(self.comma[at - 1] + 1, self.comma[at])
+        there = number <= last
+        left = self.comma[np.where(there, at - 1, -1)] + 1
+        a = np.where(np.equal(number, 0), self.body.a[rows], left)
+        b = np.where(number < last, self.comma[np.where(there, at, -1)], self.body.b[rows])
+        return Span(np.where(there, a, 0), np.where(there, b, 0))
+
+    def letter(self, rows: Places, number: int | Places) -> Bytes:
+        """A field of one character; 0 where it is empty, 255 where it is longer; (n,)."""
+        span = self.field(rows, number)
+        length = span.b - span.a
+        letters = np.where(length == 1, self.data[span.a], np.uint8(255))
+        return np.where(length < 1, np.uint8(0), letters).astype(np.uint8)
+
+
+def sentences(data: Bytes, checked: bool = True) -> Sentences:
+    """The sentences of a block; with `checked` False those of a log that knows no checksums."""
+    lines = np.flatnonzero((data == 10) | (data == 13))
+    marks = np.flatnonzero((data == 36) | (data == 33))
+    if not checked:
+        return _unchecked(data, lines, marks)
+    stars = _checksums(data)
+    stars = stars[_last(marks, stars) > _last(np.flatnonzero(data == 92), stars)]
+    line = _last(lines, stars)
+    ended = np.concatenate([[-1], stars[:-1] + 2]) if len(stars) else stars
+    low = np.maximum(line, ended)
+    start = _next(marks, low, len(data))
+    found = start < stars
+    stars, low, start, line = stars[found], low[found], start[found], line[found]
+    start, right = _right(data, start, _last(marks, stars), stars)
+    lost = _lines_with_none(lines, marks, stars, len(data))
+    begin, star = start[right], stars[right]
+    before = Span(low[right] + 1, begin)
+    return _indexed(data, Span(begin + 1, star), before, (low == line)[right], (~right).sum(), lost)
+
+
+def has_checksums(data: Bytes) -> bool:
+    """True when any sentence of the block carries a checksum, right or wrong."""
+    for part in (data[:FIRST], data):
+        marks = np.flatnonzero((part == 36) | (part == 33))
+        lines = np.flatnonzero((part == 10) | (part == 13) | (part == 92))
+        stars = _checksums(part)
+        if (_last(marks, stars) > _last(lines, stars)).any():
+            return True
+    return False
+
+
+def checksum(data: Bytes, span: Span) -> Bytes:
+    """Exclusive or of the bytes of each stretch, none of them empty; (N,)."""
+    if not len(span.a):
+        return np.zeros(0, np.uint8)
+    edges = np.column_stack([span.a, span.b]).ravel()
+    return np.bitwise_xor.reduceat(data, edges)[::2]
+
+
+def agrees(data: Bytes, span: Span) -> Mask:
+    """True where a stretch has the checksum that stands behind the `*` it ends at."""
+    stated = _HEX[data[span.b + 1]] * 16 + _HEX[data[span.b + 2]]
+    return (checksum(data, span) == stated) & (span.b > span.a)
+
+
+def _checksums(data: Bytes) -> Places:
+    """Places of `*` with two hexadecimal digits behind."""
+    stars = np.flatnonzero(data[:-2] == 42) if len(data) > 2 else np.zeros(0, np.intp)
+    return stars[(_HEX[data[stars + 1]] >= 0) & (_HEX[data[stars + 2]] >= 0)]
+
+
+def _last(places: Places, before: Places) -> Places:
+    """The last of the places before each; -1 where there is none."""
+    return np.concatenate([[-1], places])[np.searchsorted(places, before)].astype(np.intp)
+
+
+def _next(places: Places, after: Places, none: int) -> Places:
+    return np.concatenate([places, [none]])[np.searchsorted(places, after, "right")].astype(np.intp)
+
+
+def _right(data: Bytes, start: Places, last: Places, stars: Places) -> tuple[Places, Mask]:
+    """Where the sentences begin, and which are sound.
+
+    A sentence that was cut and runs into the next one leaves two `$` before one checksum: then the
+    last begins the sound one.
+    """
+    right = agrees(data, Span(start + 1, stars))
+    again = np.flatnonzero(~right & (last > start))
+    second = agrees(data, Span(last[again] + 1, stars[again]))
+    start = start.copy()
+    start[again[second]] = last[again[second]]
+    right[again[second]] = True
+    return start, right
+
+
+def _lines_with_none(lines: Places, marks: Places, stars: Places, size: int) -> int:
+    """How many lines have a `$` and no checksum at all."""
+    edges = np.concatenate([lines, [size]])
+    cut = np.zeros(len(edges), np.bool_)
+    cut[np.searchsorted(edges, marks)] = True
+    cut[np.searchsorted(edges, stars)] = False
+    return int(cut.sum())
+
+
+def _unchecked(data: Bytes, lines: Places, marks: Places) -> Sentences:
+    """One sentence a line; a last line without an end is cut."""
+    begin = np.concatenate([[-1], lines[:-1]]) if len(lines) else lines
+    start = _next(marks, begin, len(data))
+    found = start < lines
+    start, end, begin = start[found], lines[found], begin[found]
+    cut = int(len(marks) > 0 and marks[-1] > (lines[-1] if len(lines) else -1))
+    alone = np.ones(len(start), np.bool_)
+    return _indexed(data, Span(start + 1, end), Span(begin + 1, start), alone, 0, cut)
+
+
+def _indexed(
+    data: Bytes, body: Span, before: Span, alone: Mask, wrong: int, bare: int
+) -> Sentences:
+    comma = np.flatnonzero(data == 44)
+    first = np.searchsorted(comma, body.a)
+    fields = np.searchsorted(comma, body.b) - first
+    comma = np.append(comma, len(data))  # what stands behind the last
+    return Sentences(data, body, before, alone, comma, first, fields, int(wrong), int(bare))
+
+
+def table(data: Bytes, span: Span, width: int) -> Bytes:
+    """The stretches as rows of equal width, zeros behind; (N, width)."""
+    if not width or not len(span.a):
+        return np.zeros((len(span.a), width), np.uint8)
+    if int(span.a.max()) + width > len(data):
+        data = np.concatenate([data, np.zeros(width, np.uint8)])
+    cells = np.lib.stride_tricks.sliding_window_view(data, width)[span.a]
+    length = span.b - span.a
+    if length.min() < width:
+        cells[np.arange(width) >= length[:, None]] = 0
+    return cells
+
+
+def alike(cells: Bytes) -> Iterator[tuple[Places, bytes]]:
+    """Rows of a table grouped by their content: row numbers and content; meant for few groups."""
+    rows = np.arange(len(cells))
+    if not cells.size:
+        yield rows, b"\0" * cells.shape[1]
+        return
+    padded = np.zeros((len(cells), -(-cells.shape[1] // 8) * 8), np.uint8)
+    padded[:, : cells.shape[1]] = cells
+    words = padded.view(np.uint64)
+    for _ in range(64):
+        same = words[:, 0] == words[0, 0]
+        for column in range(1, words.shape[1]):
+            same &= words[:, column] == words[0, column]
+        yield rows[same], cells[0].tobytes()
+        if same.all():
+            return
+        rows, cells, words = rows[~same], cells[~same], words[~same]
+    groups: dict[bytes, list[int]] = {}
+    for row, content in zip(rows.tolist(), cells, strict=True):
+        groups.setdefault(content.tobytes(), []).append(row)
+    for key, members in groups.items():
+        yield np.array(members), key
+
+
+def texts(data: Bytes, span: Span) -> Iterator[tuple[Places, str]]:
+    """Stretches of at most 64 bytes grouped by what they say: row numbers and text."""
+    width = int(min((span.b - span.a).max(initial=0), 64))
+    for rows, content in alike(table(data, span, width)):
+        yield rows, content.rstrip(b"\0").decode("ascii", "replace").strip()
+
+
+def numbers(data: Bytes, span: Span) -> tuple[NDArray[np.float64], Mask]:
+    """Decimal numbers, NaN where there is none, and where what stands there is no number; (N,).
+
+    A number is a sign or none, digits with at most one point among them, and nothing else but
+    spaces around: `-4.-3` is no number, nor is `1e5`.
+    """
+    a, b = _stripped(data, span)
+    length = b - a
+    y = np.full(len(a), np.nan)
+    bad = length > LONGEST_NUMBER
+    given = np.flatnonzero((length > 0) & ~bad)
+    if not len(given):
+        return y, bad
+    part = Span(a[given], b[given])
+    cells = table(data, part, int(length[given].max()))
+    digit = (cells >= 48) & (cells <= 57)
+    point = cells == 46
+    sign = (cells[:, 0] == 45) | (cells[:, 0] == 43)
+    digits = digit.sum(axis=1)
+    sound = (digits + point.sum(axis=1) + sign == length[given]) & (point.sum(axis=1) <= 1)
+    sound &= digits > 0
+    y[given] = np.where(sound, _values(cells, digit, point), np.nan)
+    bad[given] = ~sound
+    for row in given[sound & (digits > EXACT_DIGITS)]:
+        y[row] = float(data[a[row] : b[row]].tobytes())
+    return y, bad
+
+
+def _stripped(data: Bytes, span: Span) -> tuple[Places, Places]:
+    a, b = span.a.copy(), span.b.copy()
+    for _ in range(LONGEST_NUMBER):
+        more = (a < b) & (data[np.minimum(a, len(data) - 1)] == 32)
+        if not more.any():
+            break
+        a[more] += 1
+    for _ in range(LONGEST_NUMBER):
+        more = (a < b) & (data[b - 1] == 32)
+        if not more.any():
+            break
+        b[more] -= 1
+    return a, b
+
+
+def _values(cells: Bytes, digit: Mask, point: Mask) -> NDArray[np.float64]:
+    """Value of each row by its digits; right where there are no more than 15 of them."""
+    whole = np.zeros(len(cells), np.float64)
+    decimals = np.zeros(len(cells), np.intp)
+    behind = np.zeros(len(cells), np.bool_)
+    for column in range(cells.shape[1]):
+        here = digit[:, column]
+        whole = np.where(here, whole * 10 + (cells[:, column].astype(np.float64) - 48), whole)
+        decimals += here & behind
+        behind |= point[:, column]
+    values = whole / np.power(10.0, decimals)
+    return np.where(cells[:, 0] == 45, -values, values)
