@@ -6,13 +6,29 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import csv_log, mcap_log
+from trialid.ingest import csv_log, excel_log, mat_log, mcap_log, parquet_log
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
+from trialid.ingest.template_draft import draft as draft_template
 from trialid.recording import Recording
 
-__all__ = ["ADAPTERS", "Aids", "LogFile", "adapter_of", "files_of", "read", "read_together"]
+__all__ = [
+    "ADAPTERS",
+    "Aids",
+    "LogFile",
+    "adapter_of",
+    "draft_template",
+    "files_of",
+    "read",
+    "read_together",
+]
 
-ADAPTERS: tuple[Adapter, ...] = (mcap_log.ADAPTER, csv_log.ADAPTER)
+ADAPTERS: tuple[Adapter, ...] = (
+    mcap_log.ADAPTER,
+    excel_log.ADAPTER,
+    parquet_log.ADAPTER,
+    mat_log.ADAPTER,
+    csv_log.ADAPTER,
+)
 
 HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""
@@ -82,6 +98,8 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
 def _able(path: Path, head: bytes, aids: Aids) -> list[Adapter]:
     """The adapters that recognise the file and can use the aids; a general one only alone."""
     able = [adapter for adapter in ADAPTERS if adapter.recognises(head)]
+    if aids.template is not None:  # whoever gives one knows that the file is a table
+        able = [one for one in ADAPTERS if one.by_template and one.by_template(head)] or able
     special = [adapter for adapter in able if not adapter.general] or able
     using = [adapter for adapter in special if adapter.aids.issuperset(aids.given)]
     if special and not using:
