@@ -19,7 +19,8 @@ MOST_BYTES = 400_000_000
 MOST_CELLS = 20_000_000
 BLOCK = 1 << 18
 LOCAL = struct.Struct("<4s22xHH")
-CELL = re.compile(rb"""\br\s*=\s*["']\s*([A-Za-z]{0,9})(\d{1,9})""")
+ROW = re.compile(rb"""\br\s*=\s*["']\s*[A-Za-z]{0,9}(\d{1,9})""")
+COLUMN = re.compile(rb"""\br\s*=\s*["']\s*([A-Za-z]{1,9})\d""")
 
 
 def check(path: Path) -> None:
@@ -60,12 +61,10 @@ def _checked(path: Path, file: BinaryIO, member: zipfile.ZipInfo, left: int) -> 
 
 def _reach(text: bytes, rows: int, columns: int) -> tuple[int, int]:
     """Last row and column of the cells named in a piece of a sheet, and before."""
-    found = CELL.findall(text)
-    if not found:
-        return rows, columns
-    last = max(int(row) for _, row in found)
-    letters = max({letters.upper() for letters, _ in found}, key=lambda one: (len(one), one))
-    return max(rows, last), max(columns, _number(letters))
+    numbers = set(ROW.findall(text))
+    letters = {one.upper() for one in set(COLUMN.findall(text))}
+    last = max(map(int, numbers), default=0)
+    return max(rows, last), max(columns, max(map(_number, letters), default=0))
 
 
 def _number(letters: bytes) -> int:

@@ -8,6 +8,7 @@ import csv
 import io
 import itertools
 import re
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,6 +29,7 @@ SPACES = " "
 """The separator of fields that stand any number of blanks apart."""
 JOINT = "\x1f"
 """What takes the place of a separator of several characters."""
+BLOCK = 1 << 18
 EXACT_SINCE = (3, 1)
 """Version of pandas from which every number is read to the last bit without being asked to."""
 
@@ -77,9 +79,9 @@ def load(path: Path, layout: Layout, template: Template | None = None) -> Table:
         layout = _joint(layout)
     top = _top(path, raw, layout, template)
     raw, remarks = _ended(path, raw, top, layout)
-    if not raw[top.offset :].strip():
+    if re.compile(rb"\S").search(raw, top.offset) is None:
         raise LogError(f"{path}: a header but no rows; check that the log was exported")
-    columns = _quick(raw, top, layout)
+    columns = _quick(path, raw, top, layout)
     if columns is None:
         return _careful(path, raw, top, layout, remarks)
     number = reader_of_numbers(_decimal(raw, top, layout), layout.thousands, layout.missing)
@@ -213,24 +215,34 @@ def _agree(path: Path, heads: tuple[Head, ...], stated: list[str]) -> None:
 def _ended(path: Path, raw: bytes, top: _Top, layout: Layout) -> tuple[bytes, list[str]]:
     """The text down to where the table ends, without a last line that was cut short."""
     if layout.end is not None:
-        end = re.escape(layout.end.encode(_encoding(raw, layout), "replace"))
-        found = re.compile(rb'^[ \t"]*' + end, re.MULTILINE).search(raw, top.offset)
-        if found is None:
+        at = _end(raw, top.offset, layout.end.encode(_encoding(raw, layout), "replace"))
+        if at is None:
             raise LogError(
                 f"{path}: no line begins with {layout.end!r}, where the template has the table "
                 "end; it is another export, or cut short"
             )
-        raw = raw[: found.start()]
+        raw = raw[:at]
     last = raw[raw.rfind(b"\n") + 1 :]
     fields = len(_fields(decoded(last), layout)) if last.strip() else len(top.heads)
     if fields >= len(top.heads) or len(raw) - len(last) < top.offset:
         return raw, []
     kept = raw[: len(raw) - len(last)]
     # Careful with quotes: a field may go on over several lines.
-    if b'"' in raw[top.offset :]:
+    if raw.find(b'"', top.offset) >= 0:
         return raw, []
     line = kept.count(b"\n") + 1
     return kept, [f"line {line}, the last, is cut short and left out"]
+
+
+def _end(raw: bytes, start: int, text: bytes) -> int | None:
+    """Where the first line starts that begins with the text, after blanks and quotes."""
+    at = raw.find(text, start)
+    while at >= 0:
+        line = max(raw.rfind(b"\n", start, at) + 1, start)
+        if not raw[line:at].strip(b' \t"'):
+            return line
+        at = raw.find(text, at + 1)
+    return None
 
 
 def _fields(line: str, layout: Layout) -> list[str]:
@@ -248,24 +260,22 @@ def _decimal(raw: bytes, top: _Top, layout: Layout) -> str:
     return "," if comma else "."
 
 
-def _quick(raw: bytes, top: _Top, layout: Layout) -> tuple[NDArray[Any], ...] | None:
+def _quick(path: Path, raw: bytes, top: _Top, layout: Layout) -> tuple[NDArray[Any], ...] | None:
     """The columns by pandas; None when anything is odd."""
     comment = (layout.comment or "").encode()
     sure = len(top.heads) > 1 or layout.separator == SPACES
     odd = (b'"', b"\x00", *([comment] if comment else []))
     if not sure or any(raw.find(one, top.offset) >= 0 for one in odd):
         return None
-    if raw.count(b"\r", top.offset) not in (0, raw.count(b"\r\n", top.offset)):
-        return None
     end = len(raw)
     while end > top.offset and raw[end - 1] in b"\r\n":
         end -= 1
-    lines = raw.count(b"\n", top.offset, end) + 1
-    frame = _frame(memoryview(raw)[top.offset :], top, layout, _decimal(raw, top, layout))
+    lines = _count(raw, b"\n", top.offset, end) + 1
+    frame = _frame(path, raw, top, layout)
     if frame is None or frame.shape != (lines, len(top.heads)):
         return None
     if frame.iloc[:, -1].isna().any():  # a short row ends like an empty field
-        separators = raw.count(layout.separator.encode(), top.offset)
+        separators = _count(raw, layout.separator.encode(), top.offset, len(raw))
         if layout.separator == SPACES or separators != lines * (len(top.heads) - 1):
             return None
     columns = tuple(_values(frame.iloc[:, i]) for i in range(frame.shape[1]))
@@ -273,28 +283,41 @@ def _quick(raw: bytes, top: _Top, layout: Layout) -> tuple[NDArray[Any], ...] | 
     return columns if not commas or _clear(columns) else None
 
 
-def _frame(body: memoryview, top: _Top, layout: Layout, decimal: str) -> "pd.DataFrame | None":
+def _count(raw: bytes, byte: bytes, start: int, end: int) -> int:
+    """As `raw.count`, three times as quick; block by block, within the processor's cache."""
+    text = np.frombuffer(raw, np.uint8)[start:end]
+    blocks = (text[i : i + BLOCK] for i in range(0, len(text), BLOCK))
+    return sum(int(np.count_nonzero(block == byte[0])) for block in blocks)
+
+
+def _frame(path: Path, raw: bytes, top: _Top, layout: Layout) -> "pd.DataFrame | None":
     import pandas as pd
 
-    numeric = {i: "float64" for i in range(len(top.heads)) if i not in layout.texts}
-    texts = dict.fromkeys(layout.texts, "str")
     version = tuple(int(part) for part in pd.__version__.split(".")[:2])
     options: dict[str, Any] = {
         "header": None,
         "sep": r"\s+" if layout.separator == SPACES else layout.separator,
-        "decimal": decimal,
+        "decimal": _decimal(raw, top, layout),
         "thousands": layout.thousands,
+        "dtype": dict.fromkeys(layout.texts, "str"),
         "keep_default_na": False,
         "na_values": sorted(layout.missing | _MISSING),
         "encoding_errors": "replace",
-        "low_memory": False,
-        "skip_blank_lines": True,
         **({} if version >= EXACT_SINCE else {"float_precision": "round_trip"}),
     }
-    for dtypes in (numeric | texts, texts):
+    # By its path a file is read in pieces on several threads; not so what was changed here.
+    unchanged = len(raw) == path.stat().st_size and b'"' not in raw[: top.offset]
+    for pieces in (True, False):
+        source: Any = path if unchanged and pieces else io.BytesIO(raw)
+        skip = top.lines if source is path else 0
+        if not skip:
+            source = io.BytesIO(raw)
+            source.seek(top.offset)
         try:
-            return pd.read_csv(io.BytesIO(body), dtype=dtypes, **options)
-        except (ValueError, OverflowError):  # a parser's error is a ValueError too
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", pd.errors.DtypeWarning)  # pieces of two kinds
+                return pd.read_csv(source, skiprows=skip, low_memory=pieces, **options)
+        except (pd.errors.DtypeWarning, ValueError, OverflowError):  # a ParserError is a ValueError
             continue
     return None
 

@@ -329,9 +329,15 @@ def _read_dates(
 
 
 def _joined(table: Table, columns: Sequence[int], form: str | None) -> list[str]:
-    parts = [[_date_text(value) for value in table.columns[column]] for column in columns]
+    parts = [_date_texts(table.columns[column].tolist()) for column in columns]
     texts = [" ".join(words) for words in zip(*parts, strict=True)]
     return [text.replace(",", ".") for text in texts] if form and "," not in form else texts
+
+
+def _date_texts(values: Sequence[Any]) -> list[str]:
+    if set(map(type, values)) == {str}:
+        return [value.strip() for value in values]
+    return [_date_text(value) for value in values]
 
 
 def _date_text(value: Any) -> str:
