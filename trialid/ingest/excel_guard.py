@@ -19,8 +19,8 @@ MOST_BYTES = 400_000_000
 MOST_CELLS = 20_000_000
 BLOCK = 1 << 18
 LOCAL = struct.Struct("<4s22xHH")
-ROW = re.compile(rb"""\br\s*=\s*["']\s*[A-Za-z]{0,9}(\d{1,9})""")
-COLUMN = re.compile(rb"""\br\s*=\s*["']\s*([A-Za-z]{1,9})\d""")
+ROW = re.compile(rb"""r\s*=\s*["']\s*[A-Za-z]{0,9}(\d{1,9})""")
+COLUMN = re.compile(rb"""r\s*=\s*["']\s*([A-Za-z]{1,9})\d""")
 
 
 def check(path: Path) -> None:
@@ -38,11 +38,11 @@ def check(path: Path) -> None:
 
 def _checked(path: Path, file: BinaryIO, member: zipfile.ZipInfo, left: int) -> int:
     """Bytes a member unpacks to; its cells are counted when it is a sheet."""
-    size, rows, columns = 0, 0, 0
+    size, rows, columns, checksum = 0, 0, 0, 0
     sheet = "sheet" in member.filename.lower()
     tail = b""
     for block in _unpacked(file, member):
-        size += len(block)
+        size, checksum = size + len(block), zlib.crc32(block, checksum)
         if size > left:
             raise LogError(
                 f"{path}: unpacks to more than {MOST_BYTES // 10**6} MB; export it as CSV"
@@ -56,6 +56,8 @@ def _checked(path: Path, file: BinaryIO, member: zipfile.ZipInfo, left: int) -> 
                 f"{MOST_CELLS // 10**6} million cells can be read: delete stray cells, or export "
                 "it as CSV"
             )
+    if checksum != member.CRC:
+        raise ValueError(f"the checksum of {member.filename} does not fit")
     return size
 
 

@@ -152,7 +152,7 @@ def of_hdf5(path: Path) -> Arrays:
     h5py = needed("h5py", path, "MATLAB v7.3 and HDF5")
     try:
         with h5py.File(path, "r") as file:
-            matlab = b"MATLAB 7.3" in path.open("rb").read(HEADER)
+            matlab = file.userblock_size > 0 and b"MATLAB 7.3" in _start(path)
             walk = _Walk(h5py, path.stat().st_size, matlab)
             walk.group(file, "", 0)
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, OverflowError) as error:
@@ -167,6 +167,11 @@ def of_hdf5(path: Path) -> Arrays:
         raise LogError(f"{path}: no array in it can be read ({walk.lost[0]}); save it anew")
     said = f"recovered {read} of {read + lost} arrays; {walk.lost[0]}" if lost else ""
     return Arrays(walk.plain, tuple(walk.opaque), (said,) if said else ())
+
+
+def _start(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(HEADER)
 
 
 class _Walk:

@@ -1,6 +1,7 @@
 """Parquet logs: a time column, one column of numbers a channel; others by a template."""
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,25 +32,32 @@ def recognises(start: bytes) -> bool:
 def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted columns; LogError for a damaged file and for what cannot be read."""
     told = None if aids.template is None else template.load(aids.template)
-    arrow = needed("pyarrow", path, "Parquet")
-    parquet = needed("pyarrow.parquet", path, "Parquet")
-    try:
-        with parquet.ParquetFile(path) as file:
-            table = _table(path, file, wanted, told)
-    except (arrow.ArrowException, OSError, ValueError, OverflowError, MemoryError) as error:
-        raise LogError(
-            f"{path}: is no Parquet file that can be read ({' '.join(str(error).split())[:200]}); "
-            "copy it again, or export it anew"
-        ) from error
+    with _opened(path) as file:
+        table = _table(path, file, wanted, told)
     return recording(table, ADAPTER.name, wanted, aids, told)
 
 
 def kinds(path: Path) -> dict[str, str]:
     """Its columns by name: what they hold, in a word, where it is no plain number."""
-    with needed("pyarrow.parquet", path, "Parquet").ParquetFile(path) as file:
+    with _opened(path) as file:
         schema = file.schema_arrow
         pairs = zip(schema.names, schema.types, strict=True)
         return {name: "" if _numeric(kind) else str(kind)[:40] for name, kind in pairs}
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    arrow = needed("pyarrow", path, "Parquet")
+    parquet = needed("pyarrow.parquet", path, "Parquet")
+    try:
+        with parquet.ParquetFile(path) as file:
+            yield file
+    except (arrow.ArrowException, OSError, ValueError, OverflowError, MemoryError) as error:
+        said = " ".join(str(error).split())[:200]
+        raise LogError(
+            f"{path}: is no Parquet file that can be read ({said}); copy it again, or export it "
+            "anew"
+        ) from error
 
 
 def _table(path: Path, file: Any, wanted: Wanted, told: Template | None) -> Table:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from trialid.errors import LogError
 from trialid.ingest.table import MISSING, Head, Table, head, reader_of_numbers
-from trialid.ingest.template import WHITESPACE, Template, check_header, distinct
+from trialid.ingest.template import TAB, WHITESPACE, Template, check_header, distinct
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,7 +54,7 @@ class Layout:
 
 def of_template(template: Template) -> Layout:
     """The layout a template describes."""
-    separator = {WHITESPACE: SPACES, "tab": "\t"}.get(template.separator, template.separator)
+    separator = {WHITESPACE: SPACES, TAB: "\t"}.get(template.separator, template.separator)
     return Layout(
         separator,
         template.decimal,

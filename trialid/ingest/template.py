@@ -26,7 +26,7 @@ from pydantic import (
 from trialid import units
 from trialid.errors import LogError, nearest
 
-WHITESPACE = "whitespace"
+WHITESPACE, TAB = "whitespace", "tab"
 
 
 def _zone(name: str) -> str:
@@ -54,7 +54,7 @@ def _encoding(name: str) -> str:
 
 
 def _no_number(text: str) -> str:
-    if re.search(r"[\d.+\-eE\n\r]", text):
+    if text not in (WHITESPACE, TAB) and re.search(r"[\w.+\-\n\r\"]", text):
         raise ValueError(f"{text!r} cannot separate fields, for it stands in numbers")
     return text
 
@@ -109,7 +109,8 @@ class Column(Section):
 class Template(Section):
     """How a table is laid out. Header texts are compared with the file's, in order.
 
-    Text: `separator` (a text, or "whitespace"), `decimal`, `thousands`, `encoding` (none: UTF-8,
+    Text: `separator` (a text, "tab", "whitespace" for any number of blanks), `decimal`,
+    `thousands`, `encoding` (none: UTF-8,
     else the Windows code page), `comment` begins lines to leave out, `skip` lines stand before the
     header of `header_rows` rows (0: `header` names the columns), then a `units_row`, `skip_after`
     more lines, and the data down to a line that begins with `end`. Excel: `sheet` and the same

@@ -11,7 +11,7 @@ from trialid.ingest import excel_log, mat_log, parquet_log
 from trialid.ingest.table import head
 from trialid.ingest.table_text import SPACES
 from trialid.ingest.table_time import DATE_NAMES, DAYS, TIME_NAMES
-from trialid.ingest.template import WHITESPACE, distinct
+from trialid.ingest.template import TAB, WHITESPACE, distinct
 from trialid.ingest.template_guess import Guess, guess, is_number
 from trialid.quantities import SIGNALS
 
@@ -50,7 +50,7 @@ def draft(path: Path) -> str:
 
 def _of_text(path: Path, found: Guess) -> str:
     header = distinct([head(text).text for text in found.header])
-    separator = {SPACES: WHITESPACE, "\t": "tab"}.get(found.separator, found.separator)
+    separator = {SPACES: WHITESPACE, "\t": TAB}.get(found.separator, found.separator)
     lines = [
         f"separator = {_quoted(separator)}",
         f"decimal = {_quoted(found.decimal)}",
