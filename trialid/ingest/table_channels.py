@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 
 from trialid import units
@@ -55,8 +56,8 @@ def _as_told(one: Head, template: Template) -> Head:
 
 
 def _once(table: Table) -> None:
-    names = [one.name for one in table.heads]
-    twice = next((name for name in names if names.count(name) > 1), None)
+    counts = Counter(one.name for one in table.heads)
+    twice = next((name for name, count in counts.items() if count > 1), None)
     if twice is not None:
         raise LogError(
             f"{table.path}: column {twice!r} stands twice in the header; rename one, here or by a "
@@ -67,8 +68,8 @@ def _once(table: Table) -> None:
 def _quantities(heads: tuple[Head, ...]) -> Mapping[str, str]:
     """Which quantity of the dictionary a column is, where its name says so and no other's does."""
     found = [(one.name, quantity) for one in heads for quantity in _quantity(one)]
-    quantities = [quantity for _, quantity in found]
-    return {name: quantity for name, quantity in found if quantities.count(quantity) == 1}
+    counts = Counter(quantity for _, quantity in found)
+    return {name: quantity for name, quantity in found if counts[quantity] == 1}
 
 
 def _quantity(one: Head) -> Iterator[str]:

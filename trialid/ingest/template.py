@@ -74,7 +74,7 @@ class Time(Section):
     """What the time is written in.
 
     `columns` are header texts: one, two where date and time stand apart, none for an index of the
-    rows. `unit` is that of `seconds`, `format` that of `datetime` and `time of day` (as Python's
+    rows. `kind` is how they are written; `unit` is that of `seconds`, `format` that of `datetime` and `time of day` (as Python's
     strptime; none: ISO-8601, 14:30:05.25), `zone` that of dates that state none, `rate` the rows
     of an index in a second.
     """
@@ -115,7 +115,8 @@ class Template(Section):
     header of `header_rows` rows (0: `header` names the columns), then a `units_row`, `skip_after`
     more lines, and the data down to a line that begins with `end`. Excel: `sheet` and the same
     rows. MATLAB and HDF5: `group`, the struct or group the columns lie in. `missing` are texts
-    (or numbers) for no value. Nothing is read before `reviewed` is true.
+    (or numbers) for no value; `columns` says of a header its unit, and what to call it. Nothing is
+    read before `reviewed` is true.
     """
 
     reviewed: Annotated[bool, Strict()]
