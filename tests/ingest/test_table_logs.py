@@ -20,8 +20,7 @@ from hypothesis import strategies as st
 from trialid import ingest
 from trialid.alignment import align
 from trialid.errors import LogError
-from trialid.ingest import Aids, excel_guard, mat_arrays, packages, parquet_log, read, table_text
-from trialid.ingest.table_text import Layout
+from trialid.ingest import Aids, excel_guard, mat_arrays, packages, parquet_log, read, table_quick
 
 RECORDS = Path(__file__).parents[3] / "shared/data/kvlcc2_hsva_zigzag"
 T = np.arange(0.0, 60.0, 0.1)
@@ -91,7 +90,7 @@ def test_a_quick_table_and_a_careful_one_are_the_same(tmp_path, monkeypatch):
     text = "t;a;b;mode\n0;1,5;;AUTO\n1;-2;n/a;HAND\n2;1e3;3,25;\n"
     (tmp_path / "log").write_text(text)
     quick = read(tmp_path / "log")
-    monkeypatch.setattr(table_text, "_quick", lambda *told: None)
+    monkeypatch.setattr(table_quick, "columns", lambda *told: None)
     careful = read(tmp_path / "log")
     assert list(quick.channels) == list(careful.channels) == ["a", "b"]
     assert quick.remarks == careful.remarks == ("column 'mode' holds text, left out",)
@@ -113,7 +112,7 @@ def test_whatever_stands_in_the_fields_both_ways_agree(tmp_path_factory, rows, s
     for quick in (True, False):
         with pytest.MonkeyPatch.context() as patch:
             if not quick:
-                patch.setattr(table_text, "_quick", lambda *told: None)
+                patch.setattr(table_quick, "columns", lambda *told: None)
             found.append(outcome(path))
     assert found[0] == found[1]
 
@@ -132,6 +131,13 @@ def test_encodings_of_spreadsheets(tmp_path, encoding):
     (tmp_path / "log").write_bytes(text.encode(encoding))
     (channel,) = read(tmp_path / "log").channels.values()
     assert (channel.name, channel.unit, channel.y.tolist()) == ("Krängung", "°", [1.5, -2.5])
+
+
+def test_wide_text_that_was_cut_in_a_character(tmp_path):
+    raw = "t\tu\r\n0\t1,5\r\n1\t2,5\r\n2\t".encode("utf-16")
+    (tmp_path / "log").write_bytes(raw + b"3")
+    recording = read(tmp_path / "log")
+    assert recording.channels["u"].y.tolist()[:2] == [1.5, 2.5]
 
 
 def test_a_file_of_several_pieces_keeps_its_kinds(tmp_path):
@@ -362,4 +368,3 @@ def test_pandas_reads_the_same_numbers(tmp_path):
     channels = read(path).channels
     for name in channels:
         np.testing.assert_array_equal(channels[name].y, table[name])
-    assert Layout(",").header_rows == 1

@@ -9,7 +9,7 @@ import scipy.io
 from test_table_logs import SERIES, forms, refused
 
 from trialid.errors import LogError
-from trialid.ingest import Aids, draft_template, read, template
+from trialid.ingest import Aids, LogFile, draft_template, files_of, read, template
 from trialid.ingest.template_guess import guess
 
 START = 1_699_192_800  # 2023-11-05 14:00:00 UTC
@@ -110,6 +110,12 @@ def test_headers_that_stand_twice_are_numbered(tmp_path):
 def test_another_export_is_refused_with_the_difference(tmp_path, text, difference):
     path, aids = given(tmp_path, text, PLAIN)
     assert difference in refused(path, aids)
+
+
+def test_a_folder_of_exports_with_the_template_among_them(tmp_path):
+    for name in ("b.txt", "a.txt"):
+        _, aids = given(tmp_path, "t,roll\n0,1\n", PLAIN, name)
+    assert [one.name for one in files_of(LogFile(tmp_path, aids))] == ["a.txt", "b.txt"]
 
 
 def test_an_end_that_is_not_there(tmp_path):

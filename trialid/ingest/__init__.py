@@ -72,7 +72,11 @@ def files_of(log: LogFile) -> tuple[Path, ...]:
     if not log.path.is_dir():
         return (log.path,)
     files = sorted(child for child in log.path.iterdir() if _visible(child))
-    logs = tuple(child for child in files if _able(child, _head(child), log.aids))
+    logs = tuple(
+        child
+        for child in files
+        if not _is_aid(child, log.aids) and _able(child, _head(child), log.aids)
+    )
     if not logs:
         names = _some([child.name for child in files])
         raise LogError(f"{log.path}: no file in this folder is a log; it holds: {names}")
@@ -108,6 +112,12 @@ def _able(path: Path, head: bytes, aids: Aids) -> list[Adapter]:
         for_what = f"is for {', '.join(able_names)}" if able_names else "is for no format yet"
         raise LogError(f"{path}: is {special[0].name}, where {useless} {for_what}; leave it out")
     return using
+
+
+def _is_aid(path: Path, aids: Aids) -> bool:
+    """True for a file that says how the logs beside it are read."""
+    given = (aid for aid in (aids.template, aids.dbc) if aid is not None and aid.exists())
+    return any(aid.samefile(path) for aid in given)
 
 
 def _visible(path: Path) -> bool:

@@ -14,7 +14,7 @@ from trialid.errors import UnitError
 from trialid.ingest import table_text, template
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
 from trialid.ingest.table_channels import recording
-from trialid.ingest.table_text import Layout
+from trialid.ingest.table_layout import UTF_16, Layout, decoded, of_template
 from trialid.ingest.table_time import TIME_NAMES
 from trialid.recording import Recording
 
@@ -42,17 +42,17 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
         table = table_text.load(path, _layout(path))
         return recording(table, ADAPTER.name, wanted, aids)
     told = template.load(aids.template)
-    table = table_text.load(path, table_text.of_template(told), told)
+    table = table_text.load(path, of_template(told), told)
     return recording(table, ADAPTER.name, wanted, aids, told)
 
 
 def _text(head: bytes) -> str:
     """The beginning as text, empty when it is none."""
-    if head.startswith(table_text.UTF_16):
+    if head.startswith(UTF_16):
         return head[: len(head) // 2 * 2].decode("utf-16", "replace")
     if NO_TEXT.search(head):
         return ""
-    return table_text.decoded(head.removeprefix(b"\xef\xbb\xbf"))
+    return decoded(head.removeprefix(b"\xef\xbb\xbf"))
 
 
 def _separator(line: str) -> str:

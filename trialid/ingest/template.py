@@ -74,9 +74,9 @@ class Time(Section):
     """What the time is written in.
 
     `columns` are header texts: one, two where date and time stand apart, none for an index of the
-    rows. `kind` is how they are written; `unit` is that of `seconds`, `format` that of `datetime` and `time of day` (as Python's
-    strptime; none: ISO-8601, 14:30:05.25), `zone` that of dates that state none, `rate` the rows
-    of an index in a second.
+    rows. `kind` is how they are written; `unit` is that of `seconds`, `format` that of `datetime`
+    and `time of day` (as Python's strptime; none: ISO-8601, 14:30:05.25), `zone` that of dates
+    that state none, `rate` the rows of an index in a second.
     """
 
     columns: Texts = ()

@@ -9,7 +9,7 @@ from typing import Any
 from trialid.errors import LogError
 from trialid.ingest import excel_log, mat_log, parquet_log
 from trialid.ingest.table import head
-from trialid.ingest.table_text import SPACES
+from trialid.ingest.table_layout import SPACES
 from trialid.ingest.table_time import DATE_NAMES, DAYS, TIME_NAMES
 from trialid.ingest.template import TAB, WHITESPACE, distinct
 from trialid.ingest.template_guess import Guess, guess, is_number

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.ingest.table import MISSING
-from trialid.ingest.table_text import SPACES, UTF_16, decoded, unified
+from trialid.ingest.table_layout import SPACES, UTF_16, decoded, unified
 
 TOP, TAIL = 262_144, 16_384
 """Bytes looked at, at the beginning and at the end."""
@@ -45,7 +45,7 @@ def guess(path: Path) -> Guess | None:
     """The layout a text seems to have; None where no two lines look like rows of one table."""
     with path.open("rb") as file:
         raw = file.read(TOP)
-    text = decoded(unified(path, raw, None))
+    text = decoded(unified(raw, None)[0])
     lines = [line.rstrip("\r") for line in text.split("\n")]
     lines = lines[:-1] if len(raw) == TOP else lines
     found = max(
@@ -120,22 +120,9 @@ def _laid_out(
     rows = tuple(tuple(fields(lines[i], separator)) for i in data[:200])
     width, first = len(rows[0]), data[0]
     comment = next((c for c in COMMENTS if any(x.startswith(c) for x in lines[:first])), None)
-    above = [
-        i
-        for i in range(first)
-        if len(fields(lines[i].lstrip("".join(COMMENTS)), separator)) == width
-    ]
-    last = above[-1] if above else None
-    units_row = (
-        len(above) > 1
-        and last == first - 1
-        and above[-2] == first - 2
-        and _units(fields(lines[first - 1], separator))
-    )
-    at = first - 2 if units_row else last
-    named = None if at is None else fields(lines[at].lstrip("".join(COMMENTS) + " "), separator)
-    commented = at is not None and comment is not None and lines[at].startswith(comment)
-    bare = at is None or commented or at != first - 1 - units_row
+    at, units_row = _named(lines, separator, width, first)
+    bare = at is None or lines[at].startswith(COMMENTS) or at != first - 1 - units_row
+    named = [] if at is None else fields(_uncommented(lines[at]), separator)
     decimal, mixed = _decimal(rows, separator)
     return Guess(
         separator,
@@ -152,6 +139,18 @@ def _laid_out(
         missing=_missing(rows),
         mixed=mixed,
     )
+
+
+def _named(lines: list[str], separator: str, width: int, first: int) -> tuple[int | None, bool]:
+    """The line above the data that has a text for each column, and whether units lie between."""
+    rows = [fields(_uncommented(line), separator) for line in lines[:first]]
+    above = [i for i, row in enumerate(rows) if len(row) == width]
+    units_row = above[-2:] == [first - 2, first - 1] and _units(rows[first - 1])
+    return (first - 2 if units_row else above[-1] if above else None), units_row
+
+
+def _uncommented(line: str) -> str:
+    return line.lstrip("".join(COMMENTS)).lstrip() if line.startswith(COMMENTS) else line
 
 
 def _physical(lines: list[str], at: int, comment: str | None) -> int:
