@@ -133,6 +133,22 @@ def test_encodings_of_spreadsheets(tmp_path, encoding):
     assert (channel.name, channel.unit, channel.y.tolist()) == ("Krängung", "°", [1.5, -2.5])
 
 
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("t," + ",".join("u" * 20_000) + "\n" + "0," * 20_000 + "0\n", "20001 columns, where no"),
+        ("t,u\n" + "," * 500_000 + "\n", "a header but no rows"),
+        ("t,u\n1" + "," * 500_000 + "\n", "line 2: 500001 fields where the header has 2"),
+        ("t,u\n" + '"' * 400_001, "look for a stray quote"),
+        ("t,u\n9999-12-31T23:59:59Z,1\n", "'9999-12-31T23:59:59Z' is out of range"),
+    ],
+    ids=["wide", "separators", "long row", "quotes", "late"],
+)
+def test_texts_made_to_do_harm(tmp_path, text, message):
+    (tmp_path / "log").write_text(text)
+    assert message in refused(tmp_path / "log")
+
+
 def test_wide_text_that_was_cut_in_a_character(tmp_path):
     raw = "t\tu\r\n0\t1,5\r\n1\t2,5\r\n2\t".encode("utf-16")
     (tmp_path / "log").write_bytes(raw + b"3")

@@ -95,7 +95,8 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
     names = ", ".join(adapter.name for adapter in able or ADAPTERS)
     raise LogError(
         f"{path}: {verdict} (of {names}); it begins {head[:16]!r}; give the log as its recorder "
-        "wrote it, or export it as CSV with a header row and a time column"
+        "wrote it, or export it as CSV with a header row and a time column, or say in a template "
+        "how the table is laid out"
     )
 
 

@@ -26,8 +26,10 @@ NO_TEXT = re.compile(rb"[\x00-\x08\x0e-\x1a]")
 
 def recognises(head: bytes) -> bool:
     """A first line of two or more fields that all begin like names."""
-    line = _text(head).partition("\n")[0]
+    line, end, _ = _text(head).partition("\n")
     fields = [field.strip(' "') for field in line.strip().split(_separator(line))]
+    if not end and len(fields) > 2:
+        fields.pop()  # of a header longer than the head, cut anywhere
     return len(fields) > 1 and all(re.match(r"[^\W\d]", field) for field in fields)
 
 

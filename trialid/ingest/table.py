@@ -15,6 +15,8 @@ from trialid.errors import LogError
 MISSING = frozenset({"", "nan", "na", "n/a", "null"})
 HEADER = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\))?")
 
+MOST_COLUMNS = 10_000
+
 Values = NDArray[Any]
 """One column; (N,) float64, datetime64[ns], or objects: texts and cells as they stand."""
 
@@ -49,6 +51,15 @@ class Table:
         return f"{self.path}, {self.place(row)}, column {self.heads[column].name!r}"
 
 
+def check_width(path: Path, columns: int) -> None:
+    """LogError for more columns than any instrument has."""
+    if columns > MOST_COLUMNS:
+        raise LogError(
+            f"{path}: {columns} columns, where no more than {MOST_COLUMNS} can be read; export "
+            "fewer channels"
+        )
+
+
 def head(text: str, unit: str | None = None) -> Head:
     """Name and unit out of a header's text; `unit` is the one a row of units gives.
 
@@ -77,7 +88,7 @@ def numbers(table: Table, column: int) -> NDArray[np.float64] | None:
     if np.isnan(y).all():
         return None
     place, value = table.where(bad, column), values[bad]
-    raise LogError(f"{place}: {value!r} where a number was expected; mend it or leave it empty")
+    raise LogError(f"{place}: {value!r:.60} where a number was expected; mend it or leave it empty")
 
 
 def _read(value: Any, number: Callable[[Any], float]) -> float | None:

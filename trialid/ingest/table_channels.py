@@ -9,7 +9,7 @@ from trialid import units
 from trialid.errors import LogError, UnitError
 from trialid.ingest import table_time
 from trialid.ingest.adapter import Aids, Wanted, asked, sha256
-from trialid.ingest.table import Head, Table, numbers
+from trialid.ingest.table import Head, Table, check_width, numbers
 from trialid.ingest.template import Template
 from trialid.quantities import SIGNALS
 from trialid.recording import Channel, Recording
@@ -56,6 +56,7 @@ def _as_told(one: Head, template: Template) -> Head:
 
 
 def _once(table: Table) -> None:
+    check_width(table.path, len(table.heads))
     counts = Counter(one.name for one in table.heads)
     twice = next((name for name, count in counts.items() if count > 1), None)
     if twice is not None:

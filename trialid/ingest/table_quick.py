@@ -28,6 +28,9 @@ def columns(path: Path, raw: bytes, top: Top, layout: Layout) -> tuple[NDArray[A
     odd = (b'"', b"\x00", *([comment] if comment else []))
     if not sure or any(raw.find(one, top.offset) >= 0 for one in odd):
         return None
+    first = raw[top.offset : raw.find(b"\n", top.offset) + 1 or len(raw)]
+    if layout.separator != SPACES and first.count(layout.separator.encode()) >= len(top.heads):
+        return None  # pandas would take the width of the table from it, whatever it is
     end = len(raw)
     while end > top.offset and raw[end - 1] in b"\r\n":
         end -= 1

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from trialid.errors import LogError
 from trialid.ingest import table_quick
-from trialid.ingest.table import Head, Table, head, reader_of_numbers
+from trialid.ingest.table import Head, Table, check_width, head, reader_of_numbers
 from trialid.ingest.table_layout import SPACES, Layout, Top, decimal, decoded, encoded, unified
 from trialid.ingest.table_quick import is_number
 from trialid.ingest.template import Template, check_header, distinct
@@ -35,6 +35,7 @@ def load(path: Path, layout: Layout, template: Template | None = None) -> Table:
         raw = raw.replace(encoded(layout.separator, layout), JOINT.encode())
         layout = dataclasses.replace(layout, separator=JOINT)
     top = _top(path, raw, layout, template)
+    check_width(path, len(top.heads))
     raw, remarks = _ended(path, raw, top, layout)
     if re.compile(rb"\S").search(raw, top.offset) is None:
         raise LogError(f"{path}: a header but no rows; check that the log was exported")
