@@ -58,6 +58,8 @@ def factor(unit: str, si: str) -> float:
     except pint.DimensionalityError as error:
         able = ", ".join(sorted(c for c in COMMON if _fits(c, si)))
         raise UnitError(f"unit {unit!r} cannot become {si!r}; units that can: {able}") from error
+    except (ValueError, ArithmeticError) as error:  # arithmetic in it: s/0, "s 5", nan
+        raise UnitError(f"unit {unit!r} cannot be understood; write it like deg/s") from error
 
 
 def _fits(unit: str, si: str) -> bool:

@@ -73,8 +73,8 @@ def test_a_particular_format_goes_before_a_general_one(tmp_path, monkeypatch):
 def test_an_aid_the_format_has_no_use_for(tmp_path):
     path = write(tmp_path / "log")
     with pytest.raises(LogError) as caught:
-        read(path, None, Aids(zone="Europe/Oslo"))
-    assert str(caught.value).startswith(f"{path}: is csv, where zone is for ")
+        read(path, None, Aids(dbc=path))
+    assert str(caught.value).startswith(f"{path}: is csv, where dbc is for ")
 
 
 def test_a_folder_of_logs_is_read_as_its_files(tmp_path):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from real_record import DATA, HERE, added, stages, with_candidates, with_effects
 
-from trialid import pipeline, recipe
+from trialid import ingest, pipeline, recipe
 from trialid.effects import CATALOGUE
 
 RECORDS = DATA / "kvlcc2_hsva_zigzag"
@@ -21,6 +21,7 @@ pytestmark = [
 ]
 
 PIPELINE = "kvlcc2_zigzag.toml"
+TEMPLATE = HERE / "kvlcc2_hsva.template.toml"
 YAW = {
     "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rav", "yaw_drag_rar",
     "yaw_cubic_vvv", "yaw_cubic_cross", "yaw_cubic_rrr", "cross_flow_drag",
@@ -31,10 +32,10 @@ BOTH = {"cross_flow_drag"}
 
 
 def columns(record):
-    """A record's columns by name, as it has them."""
-    names = "t", "x0", "y0", "psi", "along", "across", "r", "phi", "delta", "n", "thrust", "torque"
-    table = np.loadtxt(record, encoding="cp1252", skiprows=4)
-    return dict(zip(names, table.T, strict=True))
+    """A record's columns by name, as it has them; t in seconds."""
+    channels = ingest.read(record, None, ingest.Aids(template=TEMPLATE)).channels
+    seconds = next(iter(channels.values())).t / 1e9
+    return {"t": seconds} | {name: channel.y for name, channel in channels.items()}
 
 
 def in_ship(c):

@@ -6,11 +6,31 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import can_log, canboat_log, csv_log, mcap_log, nmea0183_log, signalk_log
+from trialid.ingest import (
+    can_log,
+    canboat_log,
+    csv_log,
+    excel_log,
+    mat_log,
+    mcap_log,
+    nmea0183_log,
+    parquet_log,
+    signalk_log,
+)
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
+from trialid.ingest.template_draft import draft as draft_template
 from trialid.recording import Recording
 
-__all__ = ["ADAPTERS", "Aids", "LogFile", "adapter_of", "files_of", "read", "read_together"]
+__all__ = [
+    "ADAPTERS",
+    "Aids",
+    "LogFile",
+    "adapter_of",
+    "draft_template",
+    "files_of",
+    "read",
+    "read_together",
+]
 
 ADAPTERS: tuple[Adapter, ...] = (
     mcap_log.ADAPTER,
@@ -18,6 +38,9 @@ ADAPTERS: tuple[Adapter, ...] = (
     *canboat_log.ADAPTERS,
     nmea0183_log.ADAPTER,
     signalk_log.ADAPTER,
+    excel_log.ADAPTER,
+    parquet_log.ADAPTER,
+    mat_log.ADAPTER,
     csv_log.ADAPTER,
 )
 
@@ -64,7 +87,11 @@ def files_of(log: LogFile) -> tuple[Path, ...]:
     if not log.path.is_dir():
         return (log.path,)
     files = sorted(child for child in log.path.iterdir() if _visible(child))
-    logs = tuple(child for child in files if _able(child, _head(child), log.aids))
+    logs = tuple(
+        child
+        for child in files
+        if not _is_aid(child, log.aids) and _able(child, _head(child), log.aids)
+    )
     if not logs:
         names = _some([child.name for child in files])
         raise LogError(f"{log.path}: no file in this folder is a log; it holds: {names}")
@@ -85,13 +112,16 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
     names = ", ".join(adapter.name for adapter in able or ADAPTERS)
     raise LogError(
         f"{path}: {verdict} (of {names}); it begins {head[:16]!r}; give the log as its recorder "
-        "wrote it, or export it as CSV with a header row and a time column"
+        "wrote it, or export it as CSV with a header row and a time column, or say in a template "
+        "how the table is laid out"
     )
 
 
 def _able(path: Path, head: bytes, aids: Aids) -> list[Adapter]:
     """The adapters that recognise the file and can use the aids; a general one only alone."""
     able = [adapter for adapter in ADAPTERS if adapter.recognises(head)]
+    if aids.template is not None:  # whoever gives one knows that the file is a table
+        able = [one for one in ADAPTERS if one.by_template and one.by_template(head)] or able
     special = [adapter for adapter in able if not adapter.general] or able
     using = [adapter for adapter in special if adapter.aids.issuperset(aids.given)]
     if special and not using:
@@ -100,6 +130,12 @@ def _able(path: Path, head: bytes, aids: Aids) -> list[Adapter]:
         for_what = f"is for {', '.join(able_names)}" if able_names else "is for no format yet"
         raise LogError(f"{path}: is {special[0].name}, where {useless} {for_what}; leave it out")
     return using
+
+
+def _is_aid(path: Path, aids: Aids) -> bool:
+    """True for a file that says how the logs beside it are read."""
+    given = (aid for aid in (aids.template, aids.dbc) if aid is not None and aid.exists())
+    return any(aid.samefile(path) for aid in given)
 
 
 def _visible(path: Path) -> bool:

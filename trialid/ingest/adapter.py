@@ -69,6 +69,9 @@ class Adapter:
         channels, each within a few hundred megabytes of memory.
     general
         True for a format so loose that any other that recognises the file is meant.
+    by_template
+        For formats that a template can lay out: True when the first bytes are of a file that the
+        format may hold, whatever its content looks like; None when `recognises` says it all.
     """
 
     name: str
@@ -77,6 +80,7 @@ class Adapter:
     aids: frozenset[str] = frozenset()
     batches: Callable[[Path, Aids], Iterable[Wanted]] = whole
     general: bool = False
+    by_template: Callable[[bytes], bool] | None = None
 
 
 def asked(channel: str, wanted: Wanted) -> bool:
