@@ -6,6 +6,7 @@ from google.protobuf.descriptor_pool import DescriptorPool
 from google.protobuf.message_factory import GetMessageClass
 from mcap.records import Schema
 from mcap_protobuf.schema import build_file_descriptor_set
+from packed import packed
 
 from trialid.ingest import payload_protobuf
 
@@ -58,7 +59,7 @@ def decoded(*messages, keep=lambda name: True):
     descriptors = build_file_descriptor_set(type(messages[0])).SerializeToString()
     name = type(messages[0]).DESCRIPTOR.full_name
     decode = payload_protobuf.decoder(Schema(1, descriptors, "protobuf", name))
-    return decode([message.SerializeToString() for message in messages], keep)
+    return decode(packed([message.SerializeToString() for message in messages]), keep)
 
 
 def rows(columns):
@@ -96,7 +97,7 @@ def test_a_damaged_message_is_counted():
     descriptors = build_file_descriptor_set(wrappers_pb2.DoubleValue).SerializeToString()
     schema = Schema(1, descriptors, "protobuf", "google.protobuf.DoubleValue")
     good = wrappers_pb2.DoubleValue(value=2.0).SerializeToString()
-    columns = payload_protobuf.decoder(schema)([good, good[:-1], good], lambda name: True)
+    columns = payload_protobuf.decoder(schema)(packed([good, good[:-1], good]), lambda name: True)
     assert columns.undecodable == 1
     assert columns.reason
     np.testing.assert_array_equal(columns.fields["value"].row, [0, 2])

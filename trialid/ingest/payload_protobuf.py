@@ -1,6 +1,6 @@
 """Protobuf payloads, decoded by the classes the log's own schema describes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from trialid.ingest.payload import (
@@ -10,7 +10,9 @@ from trialid.ingest.payload import (
     Decoder,
     Fields,
     Keep,
+    Payloads,
     collect,
+    labels,
     nanoseconds,
 )
 
@@ -38,7 +40,7 @@ def decoder(schema: "Schema | None") -> Decoder:
         message = parse(payload)
         return _stamp(message), _leaves(message, "")
 
-    def columns(payloads: Sequence[bytes], keep: Keep) -> Columns:
+    def columns(payloads: Payloads, keep: Keep) -> Columns:
         return collect(payloads, decode, (DecodeError,), keep)
 
     return columns
@@ -71,5 +73,7 @@ def _numbers(value: Any, path: str) -> Iterator[tuple[str, float]]:
         if value.DESCRIPTOR.full_name not in NO_NUMBERS:
             yield from _leaves(value, f"{path}.")
     elif not isinstance(value, str | bytes) and not hasattr(value, "keys"):  # keys: a map
-        for i, item in enumerate(value if len(value) <= LONGEST_ARRAY else ()):
-            yield from _numbers(item, f"{path}[{i}]")
+        items = list(value) if len(value) <= LONGEST_ARRAY else []
+        called = labels([getattr(item, "name", None) for item in items])
+        for i, item in enumerate(items):
+            yield from _numbers(item, f"{path}[{called[i] if called else i}]")
