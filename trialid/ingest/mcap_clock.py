@@ -27,14 +27,21 @@ def measured(
     else the log time. The words say why the stamp was not taken, where the messages are `stamped`.
     """
     good = (stamp > 0) & (np.abs(stamp - log) <= NEAR_NS)
-    backward = (np.diff(stamp[good]) < 0).mean() if good.sum() > 1 else 0.0
-    if good.mean() >= SHARE and backward <= 1 - SHARE:
+    if good.mean() >= SHARE and _backward(stamp[good], log[good]) <= 1 - SHARE:
         return stamp, good, stamp_name
     everyone = np.ones(len(log), np.bool_)
     why = f": {stamp_name}s {_refused(stamp, log, good)}" if stamped else ""
     if publish.all():
         return publish, everyone, f"publish time{why}"
     return log, everyone, f"log time{why}"
+
+
+def _backward(stamp: Stamps, log: Stamps) -> float:
+    """Share of the steps from one message to the next received on which the stamp goes back."""
+    if len(log) < 2:
+        return 0.0
+    in_order = stamp if (np.diff(log) >= 0).all() else stamp[np.argsort(log, kind="stable")]
+    return float((np.diff(in_order) < 0).mean())
 
 
 def _refused(stamp: Stamps, log: Stamps, good: NDArray[np.bool_]) -> str:

@@ -67,6 +67,57 @@ class Columns:
     reason: str = ""
 
 
+class Lifted:
+    """Columns while they are lifted out of N messages, some messages at a time."""
+
+    def __init__(self, count: int) -> None:
+        self.stamp = np.zeros(count, np.int64)
+        self.stamped = False
+        self.pieces: dict[str, list[Column]] = {}
+        self.undecodable = 0
+        self.reason = ""
+
+    def note(self, name: str, rows: Places, y: NDArray[np.float64]) -> None:
+        """The field's values in the messages of these rows; (n,) each."""
+        self.pieces.setdefault(name, []).append(Column(rows, y))
+
+    def failed(self, reason: str) -> None:
+        """One message cannot be decoded."""
+        self.undecodable += 1
+        self.reason = self.reason or reason
+
+    def add(self, rows: Places, columns: Columns) -> None:
+        """What was decoded elsewhere of the messages of these rows."""
+        self.stamp[rows] = columns.stamp
+        self.undecodable += columns.undecodable
+        self.reason = self.reason or columns.reason
+        for name, column in columns.fields.items():
+            self.note(name, rows[column.row], column.y)
+
+    def columns(self) -> Columns:
+        """What has been lifted, in the order of the messages."""
+        fields = {name: _joined(parts) for name, parts in self.pieces.items()}
+        stamped = self.stamped or bool(self.stamp.any())
+        return Columns(self.stamp, fields, stamped, self.undecodable, self.reason)
+
+
+def _joined(parts: list[Column]) -> Column:
+    """The pieces of one field in the order of the messages."""
+    if len(parts) == 1:
+        return parts[0]
+    row = np.concatenate([part.row for part in parts])
+    order = np.argsort(row, kind="stable")
+    return Column(row[order], np.concatenate([part.y for part in parts])[order])
+
+
+def of_equal_size(size: Places) -> Iterator[Places]:
+    """Rows of the messages of one size, in order; one group after the other."""
+    if not len(size):
+        return
+    order = np.argsort(size, kind="stable")
+    yield from np.split(order, np.flatnonzero(np.diff(size[order])) + 1)
+
+
 Keep = Callable[[str], bool]
 """True for a field name somebody wants."""
 

@@ -12,7 +12,7 @@ Elements of an array that stands behind a list of names as long as it is are cal
 
 import re
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -23,12 +23,13 @@ from trialid.ingest.payload import (
     LONGEST_ARRAY,
     NAMES_FIELDS,
     STAMP_FIELDS,
-    Column,
     Columns,
     Decoder,
     Keep,
+    Lifted,
     Payloads,
     labels,
+    of_equal_size,
 )
 from trialid.ingest.unaligned import Bytes, Places, alike, numbers
 
@@ -107,12 +108,17 @@ def decoder(schema: "Schema | None") -> Decoder:
     definitions = _definitions(root, schema.data.decode("utf-8", "replace"))
     known: dict[int, list[Layout]] = {}
 
+    def walk(payload: bytes) -> Layout:
+        walk = Walk(definitions, payload)
+        walk.message(root, "")
+        return walk.layout
+
     def columns(payloads: Payloads, keep: Keep) -> Columns:
-        lift = Lift(payloads, keep)
-        for rows in _of_equal_size(payloads.size):
+        lifted = Lifted(len(payloads))
+        for rows in of_equal_size(payloads.size):
             layouts = known.setdefault(int(payloads.size[rows[0]]), [])
-            _lift_all(lift, rows, layouts, definitions, root)
-        return lift.columns()
+            _lift_all(lifted, payloads, rows, layouts, walk, keep)
+        return lifted.columns()
 
     return columns
 
@@ -248,80 +254,56 @@ class Walk:
         return offset
 
 
-class Lift:
-    """Columns while they are lifted out of a stretch of the log, layout by layout."""
-
-    def __init__(self, payloads: Payloads, keep: Keep) -> None:
-        self.payloads = payloads
-        self.keep = keep
-        self.stamp = np.zeros(len(payloads), np.int64)
-        self.stamped = False
-        self.pieces: dict[str, list[Column]] = {}
-        self.errors: list[str] = []
-
-    def lift(self, layout: Layout, rows: Places) -> None:
-        """Lift the wanted columns out of messages of one layout."""
-        data, at = self.payloads.data, self.payloads.at[rows]
-        for offset in layout.stamp[:1]:
-            seconds = numbers(data, at + offset, layout.order + "i4").astype(np.int64)
-            nanos = numbers(data, at + offset + 4, layout.order + "u4").astype(np.int64)
-            self.stamp[rows] = seconds * 1_000_000_000 + nanos
-            self.stamped = True
-        for kind, leaves in layout.leaves.items():
-            kept = [(name, offset) for name, offset in leaves if self.keep(name)]
-            if kept:
-                places = at + np.array([offset for _, offset in kept])[:, None]
-                block = numbers(data, places, layout.order + kind).astype(np.float64)
-                for (name, _), y in zip(kept, block, strict=True):
-                    self.pieces.setdefault(name, []).append(Column(rows, y))
-
-    def columns(self) -> Columns:
-        """What has been lifted, in the order of the messages."""
-        fields = {name: _joined(parts) for name, parts in self.pieces.items()}
-        why = self.errors[0] if self.errors else ""
-        return Columns(self.stamp, fields, self.stamped, len(self.errors), why)
-
-
-def _of_equal_size(size: Places) -> Iterator[Places]:
-    """Rows of the messages of one size, in order; one group after the other."""
-    if len(size) and (size == size[0]).all():
-        yield np.arange(len(size))
-        return
-    order = np.argsort(size, kind="stable")
-    yield from np.split(order, np.flatnonzero(np.diff(size[order])) + 1) if len(size) else ()
+def _lift(lifted: Lifted, payloads: Payloads, layout: Layout, rows: Places, keep: Keep) -> None:
+    """Lift the wanted columns out of messages of one layout."""
+    data, at = payloads.data, payloads.at[rows]
+    for offset in layout.stamp[:1]:
+        seconds = numbers(data, at + offset, layout.order + "i4").astype(np.int64)
+        nanos = numbers(data, at + offset + 4, layout.order + "u4").astype(np.int64)
+        lifted.stamp[rows] = seconds * 1_000_000_000 + nanos
+        lifted.stamped = True
+    for kind, leaves in layout.leaves.items():
+        kept = [(name, offset) for name, offset in leaves if keep(name)]
+        if kept:
+            places = at + np.array([offset for _, offset in kept])[:, None]
+            block = numbers(data, places, layout.order + kind)
+            for (name, _), y in zip(kept, block, strict=True):
+                lifted.note(name, rows, y.astype(np.float64))  # a copy: the block can be let go
 
 
 def _lift_all(
-    lift: Lift,
+    lifted: Lifted,
+    payloads: Payloads,
     rows: Places,
     layouts: list[Layout],
-    definitions: dict[str, list[Member]],
-    root: str,
+    walk: Callable[[bytes], Layout],
+    keep: Keep,
 ) -> None:
     """Lift messages of one size by the layouts known, and by those learned on the way."""
     for layout in layouts:
-        rows = _lifted(lift, layout, rows)
+        rows = _lift_alike(lifted, payloads, layout, rows, keep)
     while len(rows):
-        at, size = int(lift.payloads.at[rows[0]]), int(lift.payloads.size[rows[0]])
+        at, size = int(payloads.at[rows[0]]), int(payloads.size[rows[0]])
         try:
-            walk = Walk(definitions, lift.payloads.data[at : at + size].tobytes())
-            walk.message(root, "")
+            layout = walk(payloads.data[at : at + size].tobytes())
         except Malformed as error:
-            lift.errors.append(str(error))
+            lifted.failed(str(error))
             rows = rows[1:]
             continue
         if len(layouts) < KNOWN_LAYOUTS:
-            layouts.append(walk.layout)
-        rows = _lifted(lift, walk.layout, rows)
+            layouts.append(layout)
+        rows = _lift_alike(lifted, payloads, layout, rows, keep)
 
 
-def _lifted(lift: Lift, layout: Layout, rows: Places) -> Places:
-    """The rows that are left when those of this layout have been lifted."""
+def _lift_alike(
+    lifted: Lifted, payloads: Payloads, layout: Layout, rows: Places, keep: Keep
+) -> Places:
+    """Lift the messages of this layout; the rows that are of another."""
     if not len(rows):
         return rows
-    same = _share(layout, lift.payloads.data, lift.payloads.at[rows])
+    same = _share(layout, payloads.data, payloads.at[rows])
     if same.any():
-        lift.lift(layout, rows[same])
+        _lift(lifted, payloads, layout, rows[same], keep)
     return rows[~same]
 
 
@@ -335,12 +317,3 @@ def _share(layout: Layout, data: Bytes, at: Places) -> NDArray[np.bool_]:
         found = numbers(data, at[:, None] + offsets, layout.order + "u4")
         same &= (found == counts).all(axis=1)
     return same
-
-
-def _joined(parts: list[Column]) -> Column:
-    """The pieces of one field in the order of the messages."""
-    if len(parts) == 1:
-        return parts[0]
-    row = np.concatenate([part.row for part in parts])
-    order = np.argsort(row, kind="stable")
-    return Column(row[order], np.concatenate([part.y for part in parts])[order])
