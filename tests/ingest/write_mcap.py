@@ -81,7 +81,7 @@ ROS2_SOURCES = (
     SignalSource("r", "/imu:angular_velocity.z", None, "port"),
     SignalSource("phi", "/roll:orientation", as_="roll"),
     SignalSource("u", "/speed:twist.linear.x"),
-    SignalSource("psi", "/heading:orientation", None, "port", as_="heading"),
+    SignalSource("psi", "/heading:orientation", None, "port", as_="yaw"),
 )
 
 

@@ -20,7 +20,7 @@ def remarks(book: Book) -> Iterator[str]:
         yield f"{book.seen} messages found where the file's statistics count {promised}"
     if book.repeated:
         yield f"{book.repeated} chunks stand twice in the file and are read once"
-    if book.unprotected:
+    if book.unprotected or not (book.chunked or book.checked):
         yield "the messages carry no checksum: damage inside them would not be seen"
 
 

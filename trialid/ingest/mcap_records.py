@@ -7,6 +7,7 @@ What the file says about its own sizes is believed only as far as bytes are ther
 """
 
 import re
+import struct
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -42,7 +43,8 @@ PIECE = 2**20
 CHUNK_BEGINS = re.compile(
     rb"\x06(?=.{5}\0\0\0.{28}(?:\0\0\0\0|\x03\0\0\0lz4|\x04\0\0\0zstd))", re.DOTALL
 )
-CHUNK_HEAD = RECORD.size + mcap_chunk.HEAD.size + 4 + len("zstd") + 8
+CHUNK_HEAD = RECORD.size + mcap_chunk.HEAD.size + 4 + 16 + 8
+"""Bytes from a chunk's beginning to its packed records, if its compression has no longer name."""
 
 
 @dataclass(frozen=True)
@@ -72,8 +74,9 @@ class Loss:
 class Book:
     """What the way through the file has found so far.
 
-    `chunks` are those read, by what they say of themselves. `unprotected` is set when messages
-    carry no checksum, `untrusted` when the one over a file without chunks is wrong.
+    `chunks` are those read, by what they say of themselves. `unprotected` is set when a chunk
+    has no checksum; `checked` and `untrusted` when the one over a file without chunks is right or
+    wrong.
     """
 
     summary: Summary = field(default_factory=Summary)
@@ -83,6 +86,7 @@ class Book:
     chunks: set[tuple[tuple[int, int], int, int]] = field(default_factory=set)
     repeated: int = 0
     unprotected: bool = False
+    checked: bool = False
     untrusted: bool = False
 
 
@@ -223,33 +227,34 @@ def _records(file: BinaryIO, size: int, book: Book) -> Iterator[Record]:
     crc = zlib.crc32(MAGIC)
     while at is not None:
         file.seek(at)
-        head = file.read(RECORD.size)
-        opcode, length = RECORD.unpack(head) if len(head) == RECORD.size else (0, 0)
-        reason = _broken(at, head, opcode, length, size) or _misplaced(opcode, book)
+        head = file.read(CHUNK_HEAD)
+        opcode, length = RECORD.unpack_from(head) if len(head) >= RECORD.size else (0, 0)
+        reason = _broken(at, head, size) or _misplaced(opcode, book)
         if reason:
-            span = _span(mcap_chunk.HEAD.unpack(file.read(28))[:2]) if _room(at, size) else None
-            book.losses.append(Loss(at, reason, span if opcode == CHUNK else None))
+            book.losses.append(Loss(at, reason, _stated(head) if opcode == CHUNK else None))
             at = _next_chunk(file, at + 1, size)
             continue
+        file.seek(at + RECORD.size)
         behind = at + RECORD.size + length
-        if opcode in READ:
+        if opcode not in READ:
+            crc = _passed(file, 0 if book.chunked else length, zlib.crc32(head[: RECORD.size], crc))
+        else:
             content = file.read(length)
-            if opcode == DATA_END and _ended(book, at, behind, content, crc):
-                return
             if opcode == DATA_END:
-                at = _next_chunk(file, behind, size)
+                ended = _ended(book, at, behind, content, crc)
+                at = None if ended else _next_chunk(file, behind, size)
                 continue
             book.chunked |= opcode == CHUNK
-            crc = 0 if book.chunked else zlib.crc32(content, zlib.crc32(head, crc))
+            if not book.chunked:
+                crc = zlib.crc32(content, zlib.crc32(head[: RECORD.size], crc))
             yield Record(at, opcode, content)
-        elif not book.chunked:
-            crc = _passed(file, length, zlib.crc32(head, crc))
         at = behind
-    book.unprotected |= not book.chunked
 
 
-def _room(at: int, size: int) -> bool:
-    return size - at >= RECORD.size + mcap_chunk.HEAD.size
+def _stated(head: bytes) -> tuple[int, int] | None:
+    """The span a chunk of which only the beginning is there says it covers."""
+    known = len(head) >= RECORD.size + 16
+    return _span(struct.unpack_from("<QQ", head, RECORD.size)) if known else None
 
 
 def _passed(file: BinaryIO, length: int, crc: int) -> int:
@@ -260,14 +265,18 @@ def _passed(file: BinaryIO, length: int, crc: int) -> int:
     return crc
 
 
-def _broken(at: int, head: bytes, opcode: int, length: int, size: int) -> str:
+def _broken(at: int, head: bytes, size: int) -> str:
     """Why no whole record lies at `at` in a file of `size` bytes; empty when one does."""
     if at == size:
         return "the closing record is missing, the recorder may have died"
-    if len(head) < RECORD.size or (opcode and length > size - at - RECORD.size):
+    left = size - at
+    opcode, length = RECORD.unpack_from(head) if len(head) >= RECORD.size else (0, left)
+    if left < RECORD.size or (opcode and length > left - RECORD.size):
         return "cut short here"
     if opcode in (0, FOOTER) or DATA_END < opcode < PRIVATE:
         return "no record here"
+    if opcode == CHUNK and not _is_chunk(head, 0, left):
+        return "the lengths in the chunk contradict each other"
     too_large = opcode in READ and length > LARGEST + PIECE
     return "a record too large to be believed" if too_large else ""
 
@@ -282,7 +291,7 @@ def _ended(book: Book, at: int, behind: int, content: bytes, crc: int) -> bool:
     if not book.chunked:
         stated = int.from_bytes(content[:4], "little")
         book.untrusted = stated not in (0, crc)
-        book.unprotected = stated == 0
+        book.checked = stated == crc
     if book.summary.begins != behind:
         reason = "the end of the file is missing or damaged, or something stands behind it"
         book.losses.append(Loss(at, reason))
