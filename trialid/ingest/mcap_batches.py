@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 SMALL = 8 * 2**20
 """Bytes of a log that is read whole."""
-BUDGET = 200 * 2**20
+BUDGET = 160 * 2**20
 """Bytes of numbers in one reading; what is under way while it is read comes on top."""
 NUMBER = 8
 TIMES = 3

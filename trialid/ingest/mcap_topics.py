@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.ingest import mcap_clock, payload_cdr, payload_json, payload_protobuf
+from trialid.ingest.growing import Growing
 from trialid.ingest.mcap_names import Source
 from trialid.ingest.mcap_records import Stretch
-from trialid.ingest.payload import Columns, Decoder, Keep, Payloads
+from trialid.ingest.payload import Column, Columns, Decoder, Keep, Payloads
 from trialid.ingest.unaligned import Places
 
 DECODERS = {
@@ -37,13 +38,26 @@ class Timed:
 
 
 @dataclass
-class Pieces:
-    """One field while it is collected; `row` None where all messages of a stretch have it."""
+class Collected:
+    """One field while it is collected; `row` None as long as all messages have it."""
 
-    row: list[Places | None] = field(default_factory=list)
-    first: list[int] = field(default_factory=list)
-    y: list[NDArray[np.float64]] = field(default_factory=list)
-    count: int = 0
+    y: Growing = field(default_factory=lambda: Growing(np.float64))
+    row: Growing | None = None
+
+    def add(self, first: int, messages: int, column: Column) -> None:
+        """Add what came with so many messages, of which `first` is the number of the first."""
+        if self.row is None and (self.y.count != first or len(column.row) != messages):
+            self.row = Growing(np.int64)
+            self.row.add(np.arange(self.y.count))
+        if self.row is not None:
+            self.row.add(first + column.row)
+        self.y.add(column.y)
+
+    def rows(self, messages: int) -> Places | None:
+        """In which of the topic's messages the field stands; None when in all."""
+        if self.row is not None:
+            return self.row.array().astype(np.int64, copy=False)
+        return None if self.y.count == messages else np.arange(self.y.count)
 
 
 class Topic:
@@ -65,20 +79,17 @@ class Topic:
         self.decode = _decoder(source)
         self.count = 0
         self.stamped = False
-        self.log: list[Times] = []
-        self.publish: list[Times] = []
-        self.stamp: list[Times] = []
-        self.fields: dict[str, Pieces] = {}
+        self.log = Growing(np.int64)
+        self.publish: Growing | None = None
+        self.stamp: Growing | None = None
+        self.fields: dict[str, Collected] = {}
         self.undecodable = 0
         self.reason = ""
 
     def add(self, stretch: Stretch, rows: Places) -> None:
         """Decode these messages of the stretch and keep their numbers."""
         columns = self.decoded(stretch, rows)
-        log, publish = stretch.log[rows], stretch.publish[rows]
-        self.log.append(log)
-        self.publish.append(log if np.array_equal(publish, log) else publish)
-        self.stamp.append(columns.stamp)
+        self._add_times(stretch.log[rows], stretch.publish[rows], columns.stamp)
         self.stamped |= columns.stamped
         self.undecodable += columns.undecodable
         self.reason = self.reason or columns.reason
@@ -90,15 +101,24 @@ class Topic:
         payloads = Payloads(stretch.data, stretch.payload[rows], stretch.size[rows])
         return self.decode(payloads, self.keep)
 
-    def _add_fields(self, columns: Columns, count: int) -> None:
+    def _add_times(self, log: Times, publish: Times, stamp: Times) -> None:
+        """Publish times are kept from where they are others than the log times, stamps if any."""
+        if self.publish is None and not np.array_equal(publish, log):
+            self.publish = Growing(np.int64)
+            self.publish.add(self.log.so_far())
+        if self.stamp is None and stamp.any():
+            self.stamp = Growing(np.int64)
+            self.stamp.add(np.zeros(self.count, np.int64))
+        self.log.add(log)
+        if self.publish is not None:
+            self.publish.add(publish)
+        if self.stamp is not None:
+            self.stamp.add(stamp)
+
+    def _add_fields(self, columns: Columns, messages: int) -> None:
         for name, column in columns.fields.items():
-            if name not in self.fields and len(self.fields) == MOST_FIELDS:
-                continue
-            pieces = self.fields.setdefault(name, Pieces())
-            pieces.row.append(None if len(column.row) == count else column.row)
-            pieces.first.append(self.count)
-            pieces.y.append(column.y)
-            pieces.count += len(column.y)
+            if name in self.fields or len(self.fields) < MOST_FIELDS:
+                self.fields.setdefault(name, Collected()).add(self.count, messages, column)
 
     def timed(self, remarks: list[str]) -> Iterator[Timed]:
         """The fields with their times, once; what was collected is let go on the way."""
@@ -113,7 +133,9 @@ class Topic:
             remarks.append(f"{self.source.topic}: {left_out}")
         while self.fields:
             field_name = next(iter(self.fields))
-            row, y = _row(self.fields[field_name], self.count), _y(self.fields.pop(field_name))
+            collected = self.fields.pop(field_name)
+            row, y = collected.rows(self.count), collected.y.array().astype(np.float64, copy=False)
+            del collected
             if row is None and not good.all():
                 row = np.arange(self.count)
             if row is None:
@@ -126,11 +148,10 @@ class Topic:
 
     def _times(self) -> tuple[Times, Times, Times]:
         """Log and publish times and stamps; the first two are one array where they are equal."""
-        same = all(p is log for p, log in zip(self.publish, self.log, strict=True))
-        log = _joined(self.log)
-        publish = log if same else _joined(self.publish)
-        stamp = _joined(self.stamp)
-        self.log, self.publish, self.stamp = [], [], []
+        log = _times_of(self.log)
+        publish = log if self.publish is None else _times_of(self.publish)
+        stamp = np.zeros(self.count, np.int64) if self.stamp is None else _times_of(self.stamp)
+        self.publish = self.stamp = None
         return log, publish, stamp
 
     def _remark(self, remarks: list[str]) -> None:
@@ -149,17 +170,5 @@ def _decoder(source: Source) -> Decoder:
     return decoder(source.schema)
 
 
-def _joined(parts: list[NDArray[np.int64]]) -> NDArray[np.int64]:
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)
-
-
-def _row(pieces: Pieces, count: int) -> Places | None:
-    """In which of the topic's messages the field stands, None when in all."""
-    if pieces.count == count:
-        return None
-    each = zip(pieces.row, pieces.first, pieces.y, strict=True)
-    return np.concatenate([f + (np.arange(len(y)) if r is None else r) for r, f, y in each])
-
-
-def _y(pieces: Pieces) -> NDArray[np.float64]:
-    return np.concatenate(pieces.y)
+def _times_of(grown: Growing) -> Times:
+    return grown.array().astype(np.int64, copy=False)
