@@ -10,6 +10,7 @@ from sample_writers import write_logs
 
 from trialid.errors import LogError
 from trialid.ingest import read
+from trialid.ingest.mcap_damage import between
 
 START = 1_700_000_000_000_000_000
 COUNT = 600
@@ -85,10 +86,10 @@ def test_a_cut_says_how_much_was_recovered_and_which_time_is_lost(whole, tmp_pat
     path = damaged(tmp_path_factory, whole[: middle_of_chunk(whole, 5)])
     found, (remark,) = read_or_nothing(path)
     assert "cut short here" in remark
-    assert f"{len(found)} messages recovered; lost {len(found) / 100:.2f}-" in remark
+    assert remark.startswith(f"recovered {len(found)} messages, lost 2023-11-14 22:13:20-22:13:21;")
 
 
-@settings(max_examples=400, deadline=None, derandomize=True)
+@settings(max_examples=150, deadline=None, derandomize=True)
 @given(st.integers(0, 10**9), st.integers(0, 7))
 def test_a_flipped_bit_in_a_chunked_log_is_never_read_silently(whole, tmp_path_factory, at, bit):
     content = bytearray(whole)
@@ -105,9 +106,9 @@ def test_damage_in_one_chunk_costs_that_chunk(whole, tmp_path_factory):
     found, (remark,) = read_or_nothing(damaged(tmp_path_factory, bytes(content)))
     lost = sorted(TRUE.keys() - found.keys())
     assert 0 < len(lost) < 0.1 * COUNT
-    first, last = (lost[0] - START) / 1e9, (lost[-1] - START) / 1e9
-    assert f"{len(found)} of {COUNT} messages recovered" in remark
-    assert f"lost {first:.2f}-{last:.2f} s after the first message" in remark
+    span = between(lost[0], lost[-1])
+    assert remark.startswith(f"recovered {len(found)} of {COUNT} messages, lost {span}; damaged at")
+    assert "the checksum of the chunk is wrong" in remark
 
 
 def test_damage_in_the_first_chunk_takes_the_names_from_the_summary(whole, tmp_path_factory):
@@ -129,8 +130,9 @@ def test_the_checksum_of_an_unchunked_log_is_checked(tmp_path):
     content = bytearray(path.read_bytes())
     content[len(content) // 2] ^= 1
     path.write_bytes(content)
-    _, remarks = read_or_nothing(path)
-    assert "the checksum of all messages is wrong: do not trust them" in remarks[0]
+    found, remarks = read_or_nothing(path)
+    assert found == {}
+    assert "the checksum of all messages is wrong" in remarks[0]
 
 
 @pytest.mark.parametrize("compression", list(CompressionType))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from mcap.records import Schema
 from mcap_ros2._dynamic import serialize_dynamic
 from mcap_ros2.decoder import DecoderFactory
+from packed import packed
 
 from trialid.ingest import payload_cdr
 
@@ -97,7 +98,7 @@ def leaves(value, path=""):
 
 
 def decoded(payloads, keep=lambda name: True):
-    return payload_cdr.decoder(CDR)(payloads, keep)
+    return payload_cdr.decoder(CDR)(packed(payloads), keep)
 
 
 def rows_of(columns, count):
@@ -145,27 +146,31 @@ def test_both_byte_orders():
     schema = Schema(id=1, name="a/B", encoding="ros2msg", data=b"uint8 a\nfloat64 b\n")
     little = b"\x00\x01\x00\x00" + struct.pack("<B7xd", 1, 2.5)
     big = b"\x00\x00\x00\x00" + struct.pack(">B7xd", 1, 2.5)
-    columns = payload_cdr.decoder(schema)([little, big], lambda name: True)
+    columns = payload_cdr.decoder(schema)(packed([little, big]), lambda name: True)
     assert columns.fields["a"].y.tolist() == [1.0, 1.0]
     assert columns.fields["b"].y.tolist() == [2.5, 2.5]
 
 
 def test_other_encapsulations_are_refused():
     schema = Schema(id=1, name="a/B", encoding="ros2msg", data=b"float64 b\n")
-    columns = payload_cdr.decoder(schema)([b"\x00\x07\x00\x00" + bytes(8)], lambda name: True)
+    columns = payload_cdr.decoder(schema)(
+        packed([b"\x00\x07\x00\x00" + bytes(8)]), lambda name: True
+    )
     assert columns.reason == "CDR of kind 0007 is not supported"
 
 
 def test_pictures_are_no_channels():
     schema = Schema(id=1, name="a/B", encoding="ros2msg", data=b"uint8[] data\nfloat64 b\n")
     payload = b"\x00\x01\x00\x00" + struct.pack("<I100sd", 100, b"", 1.5)
-    columns = payload_cdr.decoder(schema)([payload], lambda name: True)
+    columns = payload_cdr.decoder(schema)(packed([payload]), lambda name: True)
     assert {name: c.y.tolist() for name, c in columns.fields.items()} == {"b": [1.5]}
 
 
 def test_a_type_the_schema_does_not_define_is_named():
     schema = Schema(id=1, name="a/B", encoding="ros2msg", data=b"Missing x\n")
-    columns = payload_cdr.decoder(schema)([b"\x00\x01\x00\x00" + bytes(8)], lambda name: True)
+    columns = payload_cdr.decoder(schema)(
+        packed([b"\x00\x01\x00\x00" + bytes(8)]), lambda name: True
+    )
     assert columns.reason == "the schema does not define a/Missing"
 
 
@@ -173,7 +178,7 @@ def test_a_type_the_schema_does_not_define_is_named():
 def test_an_absurd_length_is_refused(length):
     schema = Schema(id=1, name="a/B", encoding="ros2msg", data=b"float64[] b\n")
     payload = b"\x00\x01\x00\x00" + struct.pack("<I4xd", length, 1.0)
-    columns = payload_cdr.decoder(schema)([payload], lambda name: True)
+    columns = payload_cdr.decoder(schema)(packed([payload]), lambda name: True)
     assert columns.undecodable == 1
     assert not columns.fields
 

@@ -3,11 +3,15 @@ import pytest
 from google.protobuf import duration_pb2, struct_pb2, timestamp_pb2, wrappers_pb2
 from google.protobuf.descriptor_pb2 import FieldDescriptorProto, FileDescriptorProto
 from google.protobuf.descriptor_pool import DescriptorPool
+from google.protobuf.message import DecodeError
 from google.protobuf.message_factory import GetMessageClass
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from mcap.records import Schema
 from mcap_protobuf.schema import build_file_descriptor_set
+from packed import packed
 
-from trialid.ingest import payload_protobuf
+from trialid.ingest import payload_protobuf, protobuf_layout
 
 KIND = FieldDescriptorProto
 SINGLE, REPEATED = FieldDescriptorProto.LABEL_OPTIONAL, FieldDescriptorProto.LABEL_REPEATED
@@ -58,11 +62,111 @@ def decoded(*messages, keep=lambda name: True):
     descriptors = build_file_descriptor_set(type(messages[0])).SerializeToString()
     name = type(messages[0]).DESCRIPTOR.full_name
     decode = payload_protobuf.decoder(Schema(1, descriptors, "protobuf", name))
-    return decode([message.SerializeToString() for message in messages], keep)
+    return decode(packed([message.SerializeToString() for message in messages]), keep)
 
 
 def rows(columns):
     return {name: (c.row.tolist(), c.y.tolist()) for name, c in columns.fields.items()}
+
+
+SCALARS = [
+    (name, getattr(KIND, f"TYPE_{name.upper()}"))
+    for name in (
+        "double", "float", "int32", "int64", "uint32", "uint64", "sint32", "sint64",
+        "fixed32", "fixed64", "sfixed32", "sfixed64", "bool", "string", "bytes",
+    )
+]  # fmt: skip
+
+
+def plain_class():
+    """Single numbers of every kind, texts, a time, the same once more inside, and optional."""
+    file = FileDescriptorProto(name="plain.proto", package="x", syntax="proto3")
+    file.dependency.extend(["google/protobuf/timestamp.proto", "google/protobuf/duration.proto"])
+    inner, outer = (file.message_type.add(name=name) for name in ("Inside", "Plain"))
+    for message in (inner, outer):
+        for number, (name, kind) in enumerate(SCALARS, 1):
+            message.field.add(name=name, number=number, type=kind, label=SINGLE)
+    outer.oneof_decl.add(name="_maybe")
+    outer.field.add(
+        name="maybe", number=30, type=KIND.TYPE_SINT32, label=SINGLE, oneof_index=0,
+        proto3_optional=True,
+    )  # fmt: skip
+    for number, (name, of) in enumerate(
+        [("in", ".x.Inside"), ("timestamp", f".{STAMP}"), ("lasting", f".{LASTING}")], 40
+    ):
+        outer.field.add(
+            name=name, number=number, type=KIND.TYPE_MESSAGE, label=SINGLE, type_name=of
+        )
+    pool = DescriptorPool()
+    for needed in (timestamp_pb2, duration_pb2):
+        pool.AddSerializedFile(needed.DESCRIPTOR.serialized_pb)
+    pool.Add(file)
+    return GetMessageClass(pool.FindMessageTypeByName("x.Plain"))
+
+
+STAMP, LASTING = "google.protobuf.Timestamp", "google.protobuf.Duration"
+NUMBERS = {
+    "double": st.floats(allow_nan=False),
+    "float": st.floats(allow_nan=False, width=32),
+    **{f"{kind}32": st.integers(-(2**31), 2**31 - 1) for kind in ("int", "sint", "sfixed")},
+    **{f"{kind}64": st.integers(-(2**63), 2**63 - 1) for kind in ("int", "sint", "sfixed")},
+    **{f"{kind}32": st.integers(0, 2**32 - 1) for kind in ("uint", "fixed")},
+    **{f"{kind}64": st.integers(0, 2**64 - 1) for kind in ("uint", "fixed")},
+    "bool": st.booleans(),
+    "string": st.text(alphabet="aö", max_size=3),
+    "bytes": st.binary(max_size=3),
+}
+INSIDE = st.fixed_dictionaries({}, optional=NUMBERS)
+TIMES = st.fixed_dictionaries(
+    {}, optional={"seconds": st.integers(-1, 2**33), "nanos": st.integers(-5, 10**9 - 1)}
+)
+PLAIN = st.fixed_dictionaries(
+    {},
+    optional={
+        **NUMBERS,
+        "maybe": NUMBERS["sint32"],
+        "in": INSIDE,
+        "timestamp": TIMES,
+        "lasting": TIMES,
+    },
+)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(st.lists(PLAIN, min_size=1, max_size=6), st.booleans())
+def test_what_is_laid_out_is_what_the_library_parses(messages, alike):
+    plain = plain_class()
+    made = [plain(**message) for message in (messages[:1] * 3 if alike else messages)]
+    columns = decoded(*made)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(protobuf_layout, "lays_out", lambda descriptor: False)
+        parsed = decoded(*made)
+    assert rows(columns) == rows(parsed)
+    assert columns.stamp.tolist() == parsed.stamp.tolist()
+    assert columns.undecodable == parsed.undecodable == 0
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(PLAIN, st.integers(0, 10**6), st.integers(0, 255))
+def test_a_byte_changed_is_read_as_the_library_reads_it_or_refused(message, at, byte):
+    """The library alone decides what cannot be laid out; a text is not looked into."""
+    plain = plain_class()
+    payload = bytearray(plain(**message).SerializeToString() or b"\x08")
+    payload[at % len(payload)] = byte
+    descriptors = build_file_descriptor_set(plain).SerializeToString()
+    decode = payload_protobuf.decoder(Schema(1, descriptors, "protobuf", "x.Plain"))
+    columns = decode(packed([bytes(payload)]), lambda name: True)
+    try:
+        parsed = plain.FromString(bytes(payload))
+    except DecodeError:
+        assert columns.undecodable == 1 or message_has_text(message)
+        return
+    expected = dict(payload_protobuf._leaves(parsed, ""))
+    assert {n: c.y[0] for n, c in columns.fields.items()} == pytest.approx(expected, nan_ok=True)
+
+
+def message_has_text(message):
+    return any({"string", "bytes"} & part.keys() for part in (message, message.get("in", {})))
 
 
 def test_every_number_and_nothing_else():
@@ -96,7 +200,7 @@ def test_a_damaged_message_is_counted():
     descriptors = build_file_descriptor_set(wrappers_pb2.DoubleValue).SerializeToString()
     schema = Schema(1, descriptors, "protobuf", "google.protobuf.DoubleValue")
     good = wrappers_pb2.DoubleValue(value=2.0).SerializeToString()
-    columns = payload_protobuf.decoder(schema)([good, good[:-1], good], lambda name: True)
+    columns = payload_protobuf.decoder(schema)(packed([good, good[:-1], good]), lambda name: True)
     assert columns.undecodable == 1
     assert columns.reason
     np.testing.assert_array_equal(columns.fields["value"].row, [0, 2])

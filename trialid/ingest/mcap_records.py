@@ -1,300 +1,331 @@
-"""The records of an MCAP file, read so that damage costs only what it hit.
+"""The messages of an MCAP file in stretches, read so that damage costs only what it hit.
 
 The library's readers stop at the first damaged byte, and read flipped bits silently unless asked.
-Here every chunk must pass its checksum; one that does not is skipped and said so, and a file that
-was cut short gives everything before the cut.
+Here every chunk must pass its checksum; one that does not is skipped and said so, behind a broken
+record the next chunk is looked for, and a file that was cut short gives everything before the cut.
+What the file says about its own sizes is believed only as far as bytes are there.
 """
 
-import io
+import re
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from mcap.records import Channel, Schema
+from trialid.ingest import mcap_chunk, mcap_names
+from trialid.ingest.mcap_chunk import (
+    CHANNEL,
+    LARGEST,
+    MESSAGE,
+    MESSAGE_HEAD,
+    RECORD,
+    SCHEMA,
+    Damaged,
+    Located,
+)
+from trialid.ingest.mcap_names import FOOTER, MAGIC, Names, Source, Summary
+from trialid.ingest.unaligned import Bytes, Places, numbers
 
-MAGIC = b"\x89MCAP0\r\n"
-RECORD = struct.Struct("<BQ")
-"""Opcode, length of what follows."""
-MESSAGE = struct.Struct("<HIQQ")
-"""Channel id, sequence, log time [ns], publish time [ns]; the payload follows."""
-SPAN = struct.Struct("<QQ")
-"""A chunk begins with the log times of its first and last message [ns]."""
+CHUNK, MESSAGE_INDEX, DATA_END = 6, 7, 15
+READ = frozenset({SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, DATA_END})
+"""Records that are read; the others, attachments above all, are passed over."""
+PRIVATE = 128
+"""From here on opcodes are the recorder's own; those between are nobody's."""
+STRETCH = 4 * 2**20
+"""Bytes of messages that are decoded together: enough for numpy, little for the memory."""
+PIECE = 2**20
 
-FOOTER, SCHEMA, CHANNEL, MESSAGE_RECORD, CHUNK, STATISTICS, DATA_END = 2, 3, 4, 5, 6, 11, 15
-FOOTER_SIZE = 20
-"""Bytes of the footer: two places and, last, the checksum of the summary before it."""
+CHUNK_BEGINS = re.compile(
+    rb"\x06(?=.{5}\0\0\0.{28}(?:\0\0\0\0|\x03\0\0\0lz4|\x04\0\0\0zstd))", re.DOTALL
+)
+CHUNK_HEAD = RECORD.size + mcap_chunk.HEAD.size + 4 + 16 + 8
+"""Bytes from a chunk's beginning to its packed records, if its compression has no longer name."""
 
 
 @dataclass(frozen=True)
-class Messages:
-    """The messages of one channel record in the order of the file; times [ns], (N,)."""
+class Stretch:
+    """Messages that lie in one stretch of bytes, in the order of the file; times [ns], (N,)."""
 
-    topic: str
-    encoding: str
-    schema: "Schema | None"
+    data: Bytes
+    payload: Places
+    size: Places
+    channel: NDArray[np.uint16]
     log: NDArray[np.int64]
     publish: NDArray[np.int64]
-    payloads: list[bytes]
-
-
-@dataclass(frozen=True)
-class Contents:
-    """What a file gave: messages by channel, how many messages of any topic, what was lost."""
-
-    messages: list[Messages]
-    seen: int
-    remarks: tuple[str, ...]
+    sources: Mapping[int, Source]
 
 
 @dataclass(frozen=True)
 class Loss:
-    """A stretch of the file that could not be read; `span` are log times [ns] where known."""
+    """Something that could not be read; `span` are log times [ns], `count` messages, if known."""
 
     at: int
     reason: str
     span: tuple[int, int] | None = None
-
-
-@dataclass
-class Rows:
-    """Messages of one channel while the file is walked."""
-
-    log: list[int] = field(default_factory=list)
-    publish: list[int] = field(default_factory=list)
-    payload: list[bytes] = field(default_factory=list)
-
-
-@dataclass
-class Names:
-    """What the numbers of schemas and channels mean."""
-
-    schemas: dict[int, "Schema"] = field(default_factory=dict)
-    channels: dict[int, "Channel"] = field(default_factory=dict)
+    count: int = 0
 
 
 @dataclass
 class Book:
-    """What the walk through the file has found so far.
+    """What the way through the file has found so far.
 
-    Names inside a chunk passed its checksum; those outside pass with the summary they stand in.
+    `chunks` are those read, by what they say of themselves. `unprotected` is set when a chunk
+    has no checksum; `checked` and `untrusted` when the one over a file without chunks is right or
+    wrong.
     """
 
-    asked: Callable[[str], bool]
-    inside: Names = field(default_factory=Names)
-    outside: Names = field(default_factory=Names)
-    summary_intact: bool = False
-    rows: dict[int, Rows] = field(default_factory=dict)
+    summary: Summary = field(default_factory=Summary)
     losses: list[Loss] = field(default_factory=list)
     seen: int = 0
-    first: int | None = None
-    chunks: int = 0
-    unprotected: int = 0
-    promised: int | None = None
+    chunked: bool = False
+    chunks: set[tuple[tuple[int, int], int, int]] = field(default_factory=set)
+    repeated: int = 0
+    unprotected: bool = False
+    checked: bool = False
+    untrusted: bool = False
 
 
-def contents(path: Path, asked: Callable[[str], bool]) -> Contents:
-    """Messages of the topics asked for, and remarks on what was lost."""
-    book = Book(asked)
+@dataclass(frozen=True)
+class Record:
+    """One record of the file, and the index records behind it."""
+
+    at: int
+    opcode: int
+    content: bytes
+    indexes: list[bytes] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Run:
+    """Records one behind the other, and where those lie that matter."""
+
+    data: bytes | memoryview
+    located: Located
+
+
+def stretches(path: Path, book: Book) -> Iterator[Stretch]:
+    """The messages of the file, stretch by stretch; what is found goes into the book."""
+    size = path.stat().st_size
     with path.open("rb") as file:
-        for at, opcode, content in _records(file, path.stat().st_size, book):
-            try:
-                _note(book, at, opcode, content)
-            except _damage() as error:
-                book.losses.append(Loss(at, str(error), _span(opcode, content)))
-    return Contents(_messages(book), book.seen, tuple(_remarks(book)))
+        book.summary = mcap_names.summary(file, size)
+        names = Names(dict(book.summary.names.schemas), dict(book.summary.names.channels))
+        waiting: list[Run] = []
+        for run in _runs(_indexed(_records(file, size, book)), book):
+            new = _named(run, book)
+            if waiting and (names.differ(new) or sum(len(one.data) for one in waiting) > STRETCH):
+                yield _stretch(waiting, names, book)
+                waiting = []
+            names.learn(new)
+            waiting.append(run)
+        if waiting:
+            yield _stretch(waiting, names, book)
 
 
-def _damage() -> tuple[type[Exception], ...]:
-    """What the library and its decompressors raise on damaged bytes; lz4 says RuntimeError."""
-    import zstandard
-    from mcap.exceptions import McapError
-
-    errors = (struct.error, ValueError, RuntimeError, MemoryError, OverflowError)
-    return (McapError, zstandard.ZstdError, *errors)
-
-
-def _records(file: BinaryIO, size: int, book: Book) -> Iterator[tuple[int, int, bytes]]:
-    """Place, opcode and content of each record up to the footer or to where the file breaks off."""
-    at = file.seek(len(MAGIC))
-    crc, summary = zlib.crc32(MAGIC), 0
-    while at < size:
-        head = file.read(RECORD.size)
-        opcode, length = RECORD.unpack(head) if len(head) == RECORD.size else (0, 0)
-        content = file.read(min(length, size - at))
-        reason = _broken(at, head, opcode, length, size)
-        if reason:
-            book.losses.append(Loss(at, reason, _span(opcode, content)))
-            return
-        if opcode == DATA_END:
-            _check_data(book, at, content, crc)
-        yield at, opcode, content
-        if opcode == FOOTER:
-            stated = int.from_bytes(content[-4:], "little")
-            book.summary_intact = stated == zlib.crc32(head + content[:-4], summary)
-            return
-        crc = zlib.crc32(content, zlib.crc32(head, crc))
-        summary = 0 if opcode == DATA_END else zlib.crc32(content, zlib.crc32(head, summary))
-        at += RECORD.size + length
-    book.losses.append(Loss(at, "the closing record is missing, the recorder may have died"))
+def _stretch(runs: list[Run], names: Names, book: Book) -> Stretch:
+    whole = [np.frombuffer(run.data, np.uint8) for run in runs]
+    data = np.concatenate(whole) if len(whole) > 1 else whole[0]
+    begins = np.cumsum([0, *(len(one) for one in whole[:-1])])
+    at = np.concatenate([r.located.messages + b for r, b in zip(runs, begins, strict=True)])
+    book.seen += len(at)
+    return Stretch(
+        data,
+        at + MESSAGE_HEAD,
+        numbers(data, at + 1, "<i8").astype(np.int64) - (MESSAGE_HEAD - RECORD.size),
+        numbers(data, at + RECORD.size, "<u2").astype(np.uint16),
+        numbers(data, at + MESSAGE_HEAD - 16, "<i8").astype(np.int64),
+        numbers(data, at + MESSAGE_HEAD - 8, "<i8").astype(np.int64),
+        names.sources(),
+    )
 
 
-def _broken(at: int, head: bytes, opcode: int, length: int, size: int) -> str:
-    """Why no whole record lies at `at` in a file of `size` bytes; empty when one does."""
-    left = size - at - RECORD.size
-    if len(head) < RECORD.size or (opcode and length > left):
-        return "cut short here"
-    footer = opcode == FOOTER and (length != FOOTER_SIZE or left != FOOTER_SIZE + len(MAGIC))
-    return "no record here" if footer or not opcode else ""
+def _named(run: Run, book: Book) -> Names:
+    """The names that stand in the run."""
+    try:
+        return mcap_names.named(
+            (opcode, bytes(run.data[at + RECORD.size : at + RECORD.size + length]))
+            for at in run.located.names
+            for opcode, length in [RECORD.unpack_from(run.data, at)]
+        )
+    except Damaged as error:
+        book.losses.append(Loss(0, str(error)))
+        return Names()
 
 
-def _check_data(book: Book, at: int, content: bytes, crc: int) -> None:
-    """Unchunked messages have one checksum for all of them, if any."""
-    stated = int.from_bytes(content[:4], "little")
-    if book.chunks or stated == crc:
-        return
-    if stated == 0:
-        book.unprotected = book.seen
-    else:
-        book.losses.append(Loss(at, "the checksum of all messages is wrong: do not trust them"))
+def _runs(records: Iterable[Record], book: Book) -> Iterator[Run]:
+    """Chunks that passed their checksum, and, in a file without chunks, its records in runs."""
+    loose: list[bytes] = []
+    size = 0
+    for record in records:
+        if record.opcode == CHUNK:
+            chunk = _chunk(record, book)
+            if chunk is not None:
+                yield chunk
+        elif record.opcode in (SCHEMA, CHANNEL, MESSAGE) and not book.chunked:
+            loose += [RECORD.pack(record.opcode, len(record.content)), record.content]
+            size += len(record.content)
+            if size > STRETCH:
+                yield from _loose(loose, book)
+                loose, size = [], 0
+    yield from _loose(loose, book)
 
 
-def _span(opcode: int, content: bytes) -> tuple[int, int] | None:
-    """Log times a chunk says it covers."""
-    if opcode != CHUNK or len(content) < SPAN.size:
+def _chunk(record: Record, book: Book) -> Run | None:
+    """The chunk's records; None, and a loss in the book, unless they are sound."""
+    span = None
+    try:
+        chunk = mcap_chunk.parsed(record.content)
+        span = chunk.span
+        key = (chunk.span, chunk.size, chunk.crc)
+        if chunk.crc and key in book.chunks:
+            book.repeated += 1
+            return None
+        data = mcap_chunk.unpacked(chunk)
+        located = mcap_chunk.located(data, record.indexes)
+    except Damaged as error:
+        count = sum(len(index) // 16 for index in record.indexes)
+        book.losses.append(Loss(record.at, str(error), _span(span), count))
         return None
-    first, last = SPAN.unpack_from(content)
-    return (first, last) if first <= last else None
+    book.chunks.add(key)
+    book.unprotected |= chunk.crc == 0
+    return Run(data, located)
 
 
-def _note(book: Book, at: int, opcode: int, content: bytes) -> None:
-    if opcode == CHUNK:
-        _chunk(book, at, content)
-    elif opcode in (SCHEMA, CHANNEL):
-        _define(book.outside, opcode, content)
-    elif opcode == MESSAGE_RECORD and not book.chunks:
-        # In a chunked file a message outside of a chunk is what a broken record length looks like.
-        _message(book, content)
-    elif opcode == STATISTICS:
-        book.promised = int.from_bytes(content[:8], "little")
-
-
-def _chunk(book: Book, at: int, content: bytes) -> None:
-    from mcap.data_stream import ReadDataStream
-    from mcap.records import Chunk
-    from mcap.stream_reader import get_chunk_data_stream
-
-    stream = ReadDataStream(io.BytesIO(content))
-    chunk = Chunk.read(stream)
-    book.chunks += 1
-    data_stream, size = get_chunk_data_stream(chunk, validate_crc=True)
-    data = data_stream.read(size)
-    book.unprotected += chunk.uncompressed_crc == 0
-    if stream.count != len(content):
-        book.losses.append(Loss(at, "a record length is wrong"))
-    _inside(book, data)
-
-
-def _inside(book: Book, data: bytes) -> None:
-    """The records inside a chunk."""
-    at = 0
-    while at < len(data):
-        opcode, length = RECORD.unpack_from(data, at)
-        at += RECORD.size
-        content = data[at : at + length]
-        if opcode == MESSAGE_RECORD:
-            _message(book, content)
-        elif opcode in (SCHEMA, CHANNEL):
-            _define(book.inside, opcode, content)
-        at += length
-
-
-def _message(book: Book, content: bytes) -> None:
-    channel, _, log, publish = MESSAGE.unpack_from(content)
-    book.seen += 1
-    book.first = log if book.first is None else min(book.first, log)
-    known = book.inside.channels.get(channel) or book.outside.channels.get(channel)
-    if known is not None and not book.asked(known.topic):
+def _loose(pieces: list[bytes], book: Book) -> Iterator[Run]:
+    data = b"".join(pieces)
+    try:
+        located = mcap_chunk.walked(data, 0, len(data))
+    except Damaged as error:
+        book.losses.append(Loss(0, str(error)))
         return
-    rows = book.rows.get(channel)
-    if rows is None:
-        rows = book.rows[channel] = Rows()
-    rows.log.append(log)
-    rows.publish.append(publish)
-    rows.payload.append(content[MESSAGE.size :])
+    if len(located.messages) or located.names:
+        yield Run(data, located)
 
 
-def _define(names: Names, opcode: int, content: bytes) -> None:
-    from mcap.data_stream import ReadDataStream
-    from mcap.records import Channel, Schema
-
-    stream = ReadDataStream(io.BytesIO(content))
-    if opcode == SCHEMA:
-        schema = Schema.read(stream)
-        names.schemas[schema.id] = schema
-    else:
-        channel = Channel.read(stream)
-        names.channels[channel.id] = channel
-
-
-def _trusted(book: Book) -> Names:
-    """The names that passed a checksum; in a file without chunks there is none to pass."""
-    if book.chunks and not book.summary_intact:
-        return book.inside
-    return Names(
-        book.outside.schemas | book.inside.schemas, book.outside.channels | book.inside.channels
-    )
+def _indexed(records: Iterable[Record]) -> Iterator[Record]:
+    """The records but for the indexes, which go with the record they stand behind."""
+    held: Record | None = None
+    for record in records:
+        if record.opcode == MESSAGE_INDEX:
+            if held is not None:
+                held.indexes.append(record.content)
+            continue
+        if held is not None:
+            yield held
+        held = record
+    if held is not None:
+        yield held
 
 
-def _messages(book: Book) -> list[Messages]:
-    found = []
-    names = _trusted(book)
-    for number, rows in book.rows.items():
-        channel = names.channels.get(number)
-        if channel is None:
-            reason = f"nothing says what channel {number} is: {len(rows.log)} messages left out"
-            book.losses.append(Loss(0, reason))
-        elif book.asked(channel.topic):
-            schema = names.schemas.get(channel.schema_id)
-            log, publish = _times(rows.log), _times(rows.publish)
-            encoding = channel.message_encoding
-            found.append(Messages(channel.topic, encoding, schema, log, publish, rows.payload))
-    return found
+def _records(file: BinaryIO, size: int, book: Book) -> Iterator[Record]:
+    """The records that matter up to the end of the messages or to where the file breaks off."""
+    at: int | None = len(MAGIC)
+    crc = zlib.crc32(MAGIC)
+    while at is not None:
+        file.seek(at)
+        head = file.read(CHUNK_HEAD)
+        opcode, length = RECORD.unpack_from(head) if len(head) >= RECORD.size else (0, 0)
+        reason = _broken(at, head, size) or _misplaced(opcode, book)
+        if reason:
+            book.losses.append(Loss(at, reason, _stated(head) if opcode == CHUNK else None))
+            at = _next_chunk(file, at + 1, size)
+            continue
+        file.seek(at + RECORD.size)
+        behind = at + RECORD.size + length
+        if opcode not in READ:
+            crc = _passed(file, 0 if book.chunked else length, zlib.crc32(head[: RECORD.size], crc))
+        else:
+            content = file.read(length)
+            if opcode == DATA_END:
+                ended = _ended(book, at, behind, content, crc)
+                at = None if ended else _next_chunk(file, behind, size)
+                continue
+            book.chunked |= opcode == CHUNK
+            if not book.chunked:
+                crc = zlib.crc32(content, zlib.crc32(head[: RECORD.size], crc))
+            yield Record(at, opcode, content)
+        at = behind
 
 
-def _times(times: list[int]) -> NDArray[np.int64]:
-    return np.array(times, np.uint64).astype(np.int64)
+def _stated(head: bytes) -> tuple[int, int] | None:
+    """The span a chunk of which only the beginning is there says it covers."""
+    known = len(head) >= RECORD.size + 16
+    return _span(struct.unpack_from("<QQ", head, RECORD.size)) if known else None
 
 
-def _remarks(book: Book) -> Iterator[str]:
-    if book.losses:
-        yield _damage_remark(book)
-    elif book.promised is not None and book.promised != book.seen:
-        yield f"{book.seen} messages found where the file's statistics count {book.promised}"
-    if book.unprotected:
-        yield "the messages carry no checksum: damage inside them would not be seen"
+def _passed(file: BinaryIO, length: int, crc: int) -> int:
+    """The checksum with the next bytes, which nobody keeps."""
+    while length > 0:
+        piece = file.read(min(length, PIECE))
+        crc, length = zlib.crc32(piece, crc), length - PIECE
+    return crc
 
 
-def _damage_remark(book: Book) -> str:
-    """What was lost, where, and how much was read nevertheless."""
-    loss = book.losses[0]
-    more = f" and {len(book.losses) - 1} more" if len(book.losses) > 1 else ""
-    total = f" of {book.promised}" if book.promised is not None else ""
-    spans = [lost.span for lost in book.losses if lost.span]
-    lost = ", ".join(_seconds(span, book.first) for span in spans[:3])
-    known = f"lost {lost} after the first message" if lost else "the time lost is not known"
-    return (
-        f"damaged at byte {loss.at} ({loss.reason}){more}; "
-        f"{book.seen}{total} messages recovered; {known}"
-    )
+def _broken(at: int, head: bytes, size: int) -> str:
+    """Why no whole record lies at `at` in a file of `size` bytes; empty when one does."""
+    if at == size:
+        return "the closing record is missing, the recorder may have died"
+    left = size - at
+    opcode, length = RECORD.unpack_from(head) if len(head) >= RECORD.size else (0, left)
+    if left < RECORD.size or (opcode and length > left - RECORD.size):
+        return "cut short here"
+    if opcode in (0, FOOTER) or DATA_END < opcode < PRIVATE:
+        return "no record here"
+    if opcode == CHUNK and not _is_chunk(head, 0, left):
+        return "the lengths in the chunk contradict each other"
+    too_large = opcode in READ and length > LARGEST + PIECE
+    return "a record too large to be believed" if too_large else ""
 
 
-def _seconds(span: tuple[int, int], first: int | None) -> str:
-    start = span[0] if first is None else first
-    return f"{(span[0] - start) / 1e9:.2f}-{(span[1] - start) / 1e9:.2f} s"
+def _misplaced(opcode: int, book: Book) -> str:
+    """In a chunked file a message outside of a chunk is what a broken length looks like."""
+    return "no record here" if opcode == MESSAGE and book.chunked else ""
+
+
+def _ended(book: Book, at: int, behind: int, content: bytes, crc: int) -> bool:
+    """True when the messages end here; their checksum is looked at, where there are no chunks."""
+    if not book.chunked:
+        stated = int.from_bytes(content[:4], "little")
+        book.untrusted = stated not in (0, crc)
+        book.checked = stated == crc
+    if book.summary.begins != behind:
+        reason = "the end of the file is missing or damaged, or something stands behind it"
+        book.losses.append(Loss(at, reason))
+        return False
+    if not book.summary.intact:
+        book.losses.append(Loss(behind, "the summary at the end is damaged"))
+    return True
+
+
+def _next_chunk(file: BinaryIO, begin: int, size: int) -> int | None:
+    """Where the next whole chunk begins, None when there is none."""
+    while begin < size:
+        file.seek(begin)
+        block = file.read(PIECE + CHUNK_HEAD)
+        for found in CHUNK_BEGINS.finditer(block, 0, len(block)):
+            if found.start() < PIECE and _is_chunk(block, found.start(), size - begin):
+                return begin + found.start()
+        begin += PIECE
+    return None
+
+
+def _is_chunk(block: bytes, at: int, left: int) -> bool:
+    """True when the lengths in what looks like a chunk fit together and the file holds it."""
+    _, length = RECORD.unpack_from(block, at)
+    if at + RECORD.size + length > left:
+        return False
+    name = at + RECORD.size + mcap_chunk.HEAD.size
+    packed = name + 4 + int.from_bytes(block[name : name + 4], "little")
+    behind = packed + 8 + int.from_bytes(block[packed : packed + 8], "little")
+    return behind == at + RECORD.size + length
+
+
+def _span(times: tuple[int, ...] | None) -> tuple[int, int] | None:
+    """Log times a chunk says it covers, unless they contradict each other."""
+    if times is None or not 0 <= times[0] <= times[1] < 2**63:
+        return None
+    return times[0], times[1]

@@ -1,22 +1,37 @@
-"""ROS 2 payloads (CDR with `ros2msg` definitions), decoded a whole topic at a time.
+"""ROS 2 payloads (CDR with `ros2msg` definitions), decoded a stretch of the log at a time.
 
 Messages of one topic mostly have their numbers at the same places. So the first message is walked
 field by field to learn the places; all messages with the same length and the same string and array
-lengths then share that layout, and numpy lifts each column out at once. Messages of another layout
+lengths then share that layout, and numpy lifts the columns out at once. Messages of another layout
 are walked in their turn. mcap-ros2-support decodes the same messages one by one; the tests hold
 this file to it.
+
+Elements of an array that stands behind a list of names as long as it is are called by name, as in
+`sensor_msgs/JointState`: `position[rudder]`. A name lasts, an index holds for one message only.
 """
 
 import re
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.ingest.payload import LONGEST_ARRAY, STAMP_FIELDS, Column, Columns, Decoder, Keep
+from trialid.ingest.payload import (
+    LONGEST_ARRAY,
+    NAMES_FIELDS,
+    STAMP_FIELDS,
+    Columns,
+    Decoder,
+    Keep,
+    Lifted,
+    Payloads,
+    labels,
+    of_equal_size,
+)
+from trialid.ingest.unaligned import Bytes, Places, alike, numbers
 
 if TYPE_CHECKING:
     from mcap.records import Schema
@@ -40,6 +55,10 @@ HEADER = 4
 """Bytes of encapsulation before the data; alignment counts from there."""
 BYTE_ORDERS = {b"\x00\x00": ">", b"\x00\x01": "<"}
 """Plain CDR; parameter lists and CDR 2 lay their fields out differently and are refused."""
+DEEPEST = 32
+"""Messages inside messages; a definition that goes deeper holds itself."""
+KNOWN_LAYOUTS = 64
+"""Layouts of one length that are kept for the next stretch of the log."""
 
 
 @dataclass(frozen=True)
@@ -60,17 +79,20 @@ class Layout:
     order
         Byte order as numpy writes it.
     leaves
-        Field name, byte offset and numpy type of every number.
+        Field names and byte offsets of the numbers, by numpy type.
     lengths
-        Offset and bytes of every string and array length: messages that agree in them, and in
+        Offset and value of every string and array length: messages that agree in them, and in
         their total length, share the layout.
+    words
+        Offset and bytes of what must agree besides: byte order, names of array elements.
     stamp
         Offsets of the message's own time, seconds first; empty when it has none.
     """
 
     order: str
-    leaves: list[tuple[str, int, str]] = field(default_factory=list)
-    lengths: list[tuple[int, bytes]] = field(default_factory=list)
+    leaves: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
+    lengths: list[tuple[int, int]] = field(default_factory=list)
+    words: list[tuple[int, bytes]] = field(default_factory=list)
     stamp: list[int] = field(default_factory=list)
 
 
@@ -84,9 +106,19 @@ def decoder(schema: "Schema | None") -> Decoder:
         raise ValueError(f"its schema is {schema.encoding if schema else 'missing'}, not ros2msg")
     root = _full_name(schema.name, "")
     definitions = _definitions(root, schema.data.decode("utf-8", "replace"))
+    known: dict[int, list[Layout]] = {}
 
-    def columns(payloads: Sequence[bytes], keep: Keep) -> Columns:
-        return _columns(payloads, keep, definitions, root)
+    def walk(payload: bytes) -> Layout:
+        walk = Walk(definitions, payload)
+        walk.message(root, "")
+        return walk.layout
+
+    def columns(payloads: Payloads, keep: Keep) -> Columns:
+        lifted = Lifted(len(payloads))
+        for rows in of_equal_size(payloads.size):
+            layouts = known.setdefault(int(payloads.size[rows[0]]), [])
+            _lift_all(lifted, payloads, rows, layouts, walk, keep)
+        return lifted.columns()
 
     return columns
 
@@ -134,19 +166,38 @@ class Walk:
         self.definitions = definitions
         self.payload = payload
         self.at = HEADER
-        self.layout = Layout(BYTE_ORDERS[payload[:2]])
+        self.depth = 0
+        self.unheard = 0
+        self.layout = Layout(BYTE_ORDERS[payload[:2]], words=[(0, payload[:2])])
 
     def message(self, kind: str, prefix: str) -> None:
         """Walk the fields of a message of this kind."""
         if kind not in self.definitions:
             raise Malformed(f"the schema does not define {kind}")
+        if self.depth == DEEPEST:
+            raise Malformed(f"{kind} lies more than {DEEPEST} messages deep")
+        self.depth += 1
         members = self.definitions[kind]
         if not members:
             self._skip(1, 1)  # IDL knows no empty structure: ROS 2 sends one byte instead
+        names: list[str] = []
         for member in members:
-            self._member(member, prefix + member.name)
+            if member.name in NAMES_FIELDS and member.kind == "string" and member.count is not None:
+                names = self._names(member)
+            else:
+                self._member(member, prefix + member.name, names)
+        self.depth -= 1
 
-    def _member(self, member: Member, path: str) -> None:
+    def _names(self, member: Member) -> list[str]:
+        """What the elements of the arrays beside are called; none when they cannot be told."""
+        words = [self._text() for _ in range(member.count or self._length())]
+        found = labels([word.decode("utf-8", "replace") for _, word in words])
+        if found is None or len(found) > LONGEST_ARRAY:
+            return []
+        self.layout.words.extend(words)
+        return found
+
+    def _member(self, member: Member, path: str, names: Sequence[str]) -> None:
         if member.count is None:
             self._value(member.kind, path)
             return
@@ -155,21 +206,31 @@ class Walk:
             size = int(NUMBERS[member.kind][1])
             self._skip(size, size * count)
             return
+        self.unheard += count > LONGEST_ARRAY
         for i in range(count):
-            self._value(member.kind, f"{path}[{i}]")
+            self._value(member.kind, f"{path}[{names[i] if len(names) == count else i}]")
+        self.unheard -= count > LONGEST_ARRAY
 
     def _value(self, kind: str, path: str) -> None:
         if kind in NUMBERS:
             size = int(NUMBERS[kind][1])
-            self.layout.leaves.append((path, self._skip(size, size), NUMBERS[kind]))
+            offset = self._skip(size, size)
+            if not self.unheard:
+                self.layout.leaves.setdefault(NUMBERS[kind], []).append((path, offset))
         elif kind == "bool":
             self._skip(1, 1)
         elif kind == "string":
-            self._skip(1, self._length())
+            self._text()
         elif kind in TIMES:
             self._time(kind, path)
         else:
             self.message(kind, f"{path}.")
+
+    def _text(self) -> tuple[int, bytes]:
+        """Offset and bytes of a string, without the zero at its end."""
+        size = self._length()
+        offset = self._skip(1, size)
+        return offset, self.payload[offset : offset + size].rstrip(b"\0")
 
     def _time(self, kind: str, path: str) -> None:
         offset = self._skip(4, 8)
@@ -178,9 +239,8 @@ class Walk:
 
     def _length(self) -> int:
         offset = self._skip(4, 4)
-        word = self.payload[offset : offset + 4]
-        self.layout.lengths.append((offset, word))
-        count: int = struct.unpack(f"{self.layout.order}I", word)[0]
+        count: int = struct.unpack_from(f"{self.layout.order}I", self.payload, offset)[0]
+        self.layout.lengths.append((offset, count))
         if count > len(self.payload):
             raise Malformed(f"a length of {count} in a message of {len(self.payload)} bytes")
         return count
@@ -194,78 +254,66 @@ class Walk:
         return offset
 
 
-def _columns(
-    payloads: Sequence[bytes], keep: Keep, definitions: dict[str, list[Member]], root: str
-) -> Columns:
-    stamp = np.zeros(len(payloads), np.int64)
-    pieces: dict[str, list[Column]] = {}
-    errors: list[str] = []
-    todo = list(_alike(payloads))
-    while todo:
-        rows, table = todo.pop()
-        try:
-            layout = _layout(definitions, root, table[0].tobytes())
-            same = _share(layout, table)
-            _lift(layout, rows[same], table[same], keep, stamp, pieces)
-        except Malformed as error:
-            errors.append(str(error))
-            same = np.arange(len(rows)) == 0
-        if not same.all():
-            todo.append((rows[~same], table[~same]))
-    fields = {name: _joined(parts) for name, parts in pieces.items()}
-    return Columns(stamp, fields, len(errors), errors[0] if errors else "")
-
-
-def _layout(definitions: dict[str, list[Member]], root: str, payload: bytes) -> Layout:
-    walk = Walk(definitions, payload)
-    walk.message(root, "")
-    return walk.layout
-
-
-def _alike(payloads: Sequence[bytes]) -> Iterator[tuple[NDArray[np.intp], NDArray[np.uint8]]]:
-    """Row numbers and bytes (n, length) of the payloads of equal length and byte order."""
-    groups: dict[tuple[int, bytes], list[int]] = {}
-    for row, payload in enumerate(payloads):
-        groups.setdefault((len(payload), payload[:2]), []).append(row)
-    for (length, _), rows in groups.items():
-        joined = b"".join([payloads[row] for row in rows])
-        yield np.array(rows), np.frombuffer(joined, np.uint8).reshape(len(rows), length)
-
-
-def _share(layout: Layout, table: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """True for the messages whose string and array lengths are those of the layout; (n,)."""
-    same = np.ones(len(table), np.bool_)
-    for offset, word in layout.lengths:
-        same &= (table[:, offset : offset + 4] == np.frombuffer(word, np.uint8)).all(axis=1)
-    return same
-
-
-def _lift(
-    layout: Layout,
-    rows: NDArray[np.intp],
-    table: NDArray[np.uint8],
-    keep: Keep,
-    stamp: NDArray[np.int64],
-    pieces: dict[str, list[Column]],
-) -> None:
+def _lift(lifted: Lifted, payloads: Payloads, layout: Layout, rows: Places, keep: Keep) -> None:
     """Lift the wanted columns out of messages of one layout."""
+    data, at = payloads.data, payloads.at[rows]
     for offset in layout.stamp[:1]:
-        seconds = _numbers(table, offset, layout.order + "i4").astype(np.int64)
-        nanos = _numbers(table, offset + 4, layout.order + "u4").astype(np.int64)
-        stamp[rows] = seconds * 1_000_000_000 + nanos
-    for name, offset, kind in layout.leaves:
-        if keep(name):
-            y = _numbers(table, offset, layout.order + kind).astype(np.float64)
-            pieces.setdefault(name, []).append(Column(rows, y))
+        seconds = numbers(data, at + offset, layout.order + "i4").astype(np.int64)
+        nanos = numbers(data, at + offset + 4, layout.order + "u4").astype(np.int64)
+        lifted.stamp[rows] = seconds * 1_000_000_000 + nanos
+        lifted.stamped = True
+    for kind, leaves in layout.leaves.items():
+        kept = [(name, offset) for name, offset in leaves if keep(name)]
+        if kept:
+            places = at + np.array([offset for _, offset in kept])[:, None]
+            block = numbers(data, places, layout.order + kind)
+            for (name, _), y in zip(kept, block, strict=True):
+                lifted.note(name, rows, y.astype(np.float64))  # a copy: the block can be let go
 
 
-def _numbers(table: NDArray[np.uint8], offset: int, kind: str) -> NDArray[np.generic]:
-    dtype = np.dtype(kind)
-    return np.ascontiguousarray(table[:, offset : offset + dtype.itemsize]).view(dtype)[:, 0]
+def _lift_all(
+    lifted: Lifted,
+    payloads: Payloads,
+    rows: Places,
+    layouts: list[Layout],
+    walk: Callable[[bytes], Layout],
+    keep: Keep,
+) -> None:
+    """Lift messages of one size by the layouts known, and by those learned on the way."""
+    for layout in layouts:
+        rows = _lift_alike(lifted, payloads, layout, rows, keep)
+    while len(rows):
+        at, size = int(payloads.at[rows[0]]), int(payloads.size[rows[0]])
+        try:
+            layout = walk(payloads.data[at : at + size].tobytes())
+        except Malformed as error:
+            lifted.failed(str(error))
+            rows = rows[1:]
+            continue
+        if len(layouts) < KNOWN_LAYOUTS:
+            layouts.append(layout)
+        rows = _lift_alike(lifted, payloads, layout, rows, keep)
 
 
-def _joined(parts: list[Column]) -> Column:
-    """The pieces of one field in the order of the messages."""
-    row = np.concatenate([part.row for part in parts])
-    order = np.argsort(row, kind="stable")
-    return Column(row[order], np.concatenate([part.y for part in parts])[order])
+def _lift_alike(
+    lifted: Lifted, payloads: Payloads, layout: Layout, rows: Places, keep: Keep
+) -> Places:
+    """Lift the messages of this layout; the rows that are of another."""
+    if not len(rows):
+        return rows
+    same = _share(layout, payloads.data, payloads.at[rows])
+    if same.any():
+        _lift(lifted, payloads, layout, rows[same], keep)
+    return rows[~same]
+
+
+def _share(layout: Layout, data: Bytes, at: Places) -> NDArray[np.bool_]:
+    """True for the messages whose lengths and names are those of the layout; (n,)."""
+    same = np.ones(len(at), np.bool_)
+    for offset, word in layout.words:
+        same &= alike(data, at + offset, word)
+    if layout.lengths:
+        offsets, counts = np.array(layout.lengths).T
+        found = numbers(data, at[:, None] + offsets, layout.order + "u4")
+        same &= (found == counts).all(axis=1)
+    return same

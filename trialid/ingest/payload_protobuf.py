@@ -1,8 +1,16 @@
-"""Protobuf payloads, decoded by the classes the log's own schema describes."""
+"""Protobuf payloads, decoded by the types the log's own schema describes.
 
-from collections.abc import Iterator, Sequence
+Messages of single numbers, as Keelson's, are laid out and their columns lifted at once; whatever
+has no layout the library parses one by one, and the tests hold the one to the other.
+"""
+
+import dataclasses
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from trialid.ingest import protobuf_layout
 from trialid.ingest.payload import (
     LONGEST_ARRAY,
     STAMP_FIELDS,
@@ -10,15 +18,26 @@ from trialid.ingest.payload import (
     Decoder,
     Fields,
     Keep,
+    Lifted,
+    Payloads,
     collect,
+    labels,
     nanoseconds,
+    of_equal_size,
 )
+from trialid.ingest.protobuf_layout import Layout, Unusual
+from trialid.ingest.unaligned import Places
 
 if TYPE_CHECKING:
+    from google.protobuf.descriptor import Descriptor
     from mcap.records import Schema
 
 TIME = "google.protobuf.Timestamp"
 NO_NUMBERS = frozenset({TIME, "google.protobuf.Duration"})
+KNOWN_LAYOUTS = 64
+"""Layouts of one length that are kept for the next stretch of the log."""
+LATEST_S = 9_223_372_036
+"""Seconds that still fit 64 bits of nanoseconds."""
 
 
 def decoder(schema: "Schema | None") -> Decoder:
@@ -38,10 +57,124 @@ def decoder(schema: "Schema | None") -> Decoder:
         message = parse(payload)
         return _stamp(message), _leaves(message, "")
 
-    def columns(payloads: Sequence[bytes], keep: Keep) -> Columns:
+    def one_by_one(payloads: Payloads, keep: Keep) -> Columns:
         return collect(payloads, decode, (DecodeError,), keep)
 
+    descriptor = parse(b"").DESCRIPTOR
+    if not protobuf_layout.lays_out(descriptor):
+        return one_by_one
+    return _laid_out(descriptor, one_by_one)
+
+
+def _laid_out(descriptor: "Descriptor", one_by_one: Decoder) -> Decoder:
+    """A decoder that lifts what has a layout, and leaves the rest to the one that parses."""
+    known: dict[int, list[Layout]] = {}
+    time = _time_path(descriptor)
+    hidden = tuple(_hidden(descriptor, ""))
+
+    def columns(payloads: Payloads, keep: Keep) -> Columns:
+        lifted = Lifted(len(payloads))
+        left = [
+            _lift(lifted, payloads, rows, known, descriptor, time, _Kept(keep, hidden))
+            for rows in of_equal_size(payloads.size)
+        ]
+        rest = np.sort(np.concatenate(left)) if left else np.zeros(0, np.int64)
+        if len(rest):
+            some = Payloads(payloads.data, payloads.at[rest], payloads.size[rest])
+            lifted.add(rest, one_by_one(some, keep))
+        return lifted.columns()
+
     return columns
+
+
+@dataclasses.dataclass(frozen=True)
+class _Kept:
+    """Fields somebody wants that are not parts of a time."""
+
+    keep: Keep
+    hidden: tuple[str, ...]
+
+    def __call__(self, path: str) -> bool:
+        return not path.startswith(self.hidden) and self.keep(path)
+
+
+def _lift(
+    lifted: Lifted,
+    payloads: Payloads,
+    rows: Places,
+    known: dict[int, list[Layout]],
+    descriptor: "Descriptor",
+    time: str | None,
+    keep: Keep,
+) -> Places:
+    """Lift messages of one size; the rows that have no layout."""
+    layouts = known.setdefault(int(payloads.size[rows[0]]), [])
+    odd: list[int] = []
+    for layout in tuple(layouts):
+        rows = _lift_alike(lifted, payloads, rows, layout, time, keep)
+    while len(rows):
+        at, size = int(payloads.at[rows[0]]), int(payloads.size[rows[0]])
+        try:
+            layout = protobuf_layout.layout(descriptor, payloads.data[at : at + size].tobytes())
+        except Unusual:
+            odd.append(int(rows[0]))
+            rows = rows[1:]
+            continue
+        if len(layouts) == KNOWN_LAYOUTS:
+            return np.concatenate([np.array(odd, np.int64), rows])
+        layouts.append(layout)
+        rows = _lift_alike(lifted, payloads, rows, layout, time, keep)
+    return np.array(odd, np.int64)
+
+
+def _lift_alike(
+    lifted: Lifted,
+    payloads: Payloads,
+    rows: Places,
+    layout: Layout,
+    time: str | None,
+    keep: Keep,
+) -> Places:
+    """Lift messages of one layout; the rows that are of another."""
+    if not len(rows):
+        return rows
+    same = layout.share(payloads.data, payloads.at[rows])
+    alike, at = rows[same], payloads.at[rows[same]]
+    if len(alike):
+        parts = {"seconds": np.zeros(len(at), np.int64), "nanos": np.zeros(len(at), np.int64)}
+        for leaf in layout.leaves:
+            of, _, name = leaf.path.rpartition(".")
+            if time is not None and of == time:
+                parts[name] = protobuf_layout.values(leaf, payloads.data, at).astype(np.int64)
+            elif keep(leaf.path):
+                y = protobuf_layout.values(leaf, payloads.data, at).astype(np.float64)
+                lifted.note(leaf.path, alike, y)
+        fits = (parts["seconds"] >= 0) & (parts["seconds"] < LATEST_S)
+        stamp = np.where(fits, parts["seconds"], 0) * 1_000_000_000 + parts["nanos"]
+        lifted.stamp[alike] = np.where(fits, np.maximum(stamp, 0), 0)
+    return rows[~same]
+
+
+def _time_path(descriptor: "Descriptor") -> str | None:
+    """The field that holds the message's own time."""
+    for path in STAMP_FIELDS:
+        inner: Any = descriptor
+        for name in path.split("."):
+            found = inner.fields_by_name.get(name) if inner else None
+            inner = found.message_type if found else None
+        if inner is not None and inner.full_name == TIME:
+            return path
+    return None
+
+
+def _hidden(descriptor: "Descriptor", prefix: str) -> Iterator[str]:
+    """What the fields of times and durations in a message begin with."""
+    for field in descriptor.fields:
+        inner = field.message_type
+        if inner is not None and inner.full_name in NO_NUMBERS:
+            yield f"{prefix}{field.name}."
+        elif inner is not None:
+            yield from _hidden(inner, f"{prefix}{field.name}.")
 
 
 def _stamp(message: Any) -> int:
@@ -71,5 +204,7 @@ def _numbers(value: Any, path: str) -> Iterator[tuple[str, float]]:
         if value.DESCRIPTOR.full_name not in NO_NUMBERS:
             yield from _leaves(value, f"{path}.")
     elif not isinstance(value, str | bytes) and not hasattr(value, "keys"):  # keys: a map
-        for i, item in enumerate(value if len(value) <= LONGEST_ARRAY else ()):
-            yield from _numbers(item, f"{path}[{i}]")
+        items = list(value) if len(value) <= LONGEST_ARRAY else []
+        called = labels([getattr(item, "name", None) for item in items])
+        for i, item in enumerate(items):
+            yield from _numbers(item, f"{path}[{called[i] if called else i}]")
