@@ -1,0 +1,378 @@
+"""ArduPilot dataflash logs (`.BIN`).
+
+A channel is `ATT:Roll`, and `IMU/0:GyrZ` where one message comes from several devices. All stamps
+are the autopilot's own TimeUS, from its start; `servo/1:deflection` is what a rudder servo was
+ordered. Texts are no channels, nor are the parameters and the log's own descriptions.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.errors import LogError
+from trialid.ingest import (
+    dataflash_layout,
+    dataflash_walk,
+    gps_time,
+    mavlink_meanings,
+    servo_deflection,
+    vehicle_modes,
+)
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked, sha256
+from trialid.ingest.dataflash_layout import FMT_START, Layout
+from trialid.ingest.dataflash_walk import Gathered
+from trialid.recording import Channel, Recording
+
+FIRST = FMT_START + b"\x80\x59FMT\x00BBnNZ"
+"""FMT describes itself first."""
+
+TABLES = frozenset({"FMT", "FMTU", "UNIT", "MULT", "PARM", "FILE"})
+"""Messages that describe the log or the autopilot: their numbers are no measurements."""
+READ_ALWAYS = {
+    "FMTU": None, "UNIT": None, "MULT": None, "MODE": None, "ARM": None,
+    "PARM": ("TimeUS", "TimeMS", "Name", "Value"),
+    "MSG": ("TimeUS", "TimeMS", "Message"),
+    "GPS": ("TimeUS", "Status", "GMS", "GWk"),
+}  # fmt: skip
+"""What remarks and units need, whatever is wanted; None for all columns."""
+
+OUTPUTS = ("RCOU", "RCO2", "RCO3")
+INSTANCES = ("I", "Instance", "C")
+"""What the column that tells devices apart is called, in logs that do not say."""
+
+BATCH_BYTES = 150_000_000
+LONGEST_US = 10 * 365 * 86_400 * 10**6
+"""Ten years: no autopilot has been on for so long."""
+WILD_NS = 1_000 * 10**9
+"""A sample this far from both its neighbours, which agree, has a broken stamp."""
+
+
+def recognises(head: bytes) -> bool:
+    """The message with which FMT describes itself."""
+    return FIRST in head
+
+
+def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
+    """Read the wanted channels; damage is skipped and said in the remarks.
+
+    Raises LogError when no message can be read.
+    """
+    del aids
+    known, odd = dataflash_walk.layouts(path)
+    gathered = dataflash_walk.gather(path, known, _columns(known, wanted))
+    if gathered.counts.sum() == gathered.counts[dataflash_layout.FMT]:
+        raise LogError(
+            f"{path}: holds no readable message but the descriptions of messages; "
+            "take another copy of the log"
+        )
+    log = Log(_with_units(known, gathered), gathered)
+    remarks = [*odd, *_damage(gathered)]
+    channels = {one.name: one for one in _channels(log, wanted, remarks)}
+    steering, outputs = _deflections(log, wanted)
+    remarks += [*_whole(log, steering, outputs), *_of_time(log)]
+    return Recording(path, ADAPTER.name, sha256(path), channels | steering, tuple(remarks))
+
+
+@dataclass(frozen=True)
+class Log:
+    """Message types with their units, and the columns that were gathered."""
+
+    known: Mapping[int, Layout]
+    gathered: Gathered
+
+    def number(self, name: str) -> int | None:
+        """Number of the message type that was logged under this name."""
+        found = [n for n, one in self.known.items() if one.name == name]
+        return max(found, key=lambda n: int(self.gathered.counts[n]), default=None)
+
+    def table(self, name: str) -> dict[str, NDArray[Any]]:
+        """The gathered columns of a message by their names, raw; empty where it is not logged."""
+        number = self.number(name)
+        if number is None:
+            return {}
+        columns = self.gathered.columns.get(number, {})
+        one = self.known[number]
+        return {one.columns[i]: self.gathered.column(number, i) for i in columns}
+
+
+def _columns(known: Mapping[int, Layout], wanted: Wanted) -> dict[int, list[int]]:
+    """Columns to gather by message type; the clock and what may tell devices apart go with them."""
+    found = {}
+    for number, one in known.items():
+        columns = [i for i in one.numbers if _maybe(one, i, wanted)]
+        if one.name in TABLES:
+            columns = []
+        if one.name in OUTPUTS and _servo_asked(wanted):
+            columns = list(one.numbers)
+        if columns:
+            narrow = [i for i, code in enumerate(one.codes) if code in dataflash_layout.NARROW]
+            columns = sorted({*columns, *narrow, 0})
+        if one.name in READ_ALWAYS:
+            names = READ_ALWAYS[one.name] or one.columns
+            columns = sorted({*columns, *(i for i, c in enumerate(one.columns) if c in names)})
+        if columns:
+            found[number] = columns
+    return found
+
+
+def _maybe(one: Layout, column: int, wanted: Wanted) -> bool:
+    """True when a channel of this column may be wanted, of whichever device."""
+    name = one.columns[column]
+    for want in wanted if wanted is not None else ("",):
+        message, colon, field = want.partition(":")
+        of_device = message.startswith(f"{one.name}/") and (not colon or name.startswith(field))
+        if of_device or f"{one.name}:{name}".startswith(want) or f"{one.name}/".startswith(want):
+            return True
+    return False
+
+
+def _servo_asked(wanted: Wanted) -> bool:
+    return wanted is None or any(w.startswith("servo"[: len(w)]) for w in wanted)
+
+
+def _with_units(known: Mapping[int, Layout], gathered: Gathered) -> dict[int, Layout]:
+    """The message types with what UNIT, MULT and FMTU say of their columns."""
+    log = Log(known, gathered)
+    tables = dataflash_layout.unit_tables(log.table("UNIT"), log.table("MULT"))
+    stated = log.table("FMTU")
+    told = dict(known)
+    ids = [stated.get(name, np.empty(0)) for name in ("FmtType", "UnitIds", "MultIds")]
+    for number, units, factors in zip(*(one.tolist() for one in ids), strict=False):
+        if number in known:
+            told[number] = dataflash_layout.with_units(
+                known[number], units.decode("latin-1"), factors.decode("latin-1"), tables
+            )
+    usual = dataflash_layout.with_usual_instance
+    return {number: one if one.units else usual(one, INSTANCES) for number, one in told.items()}
+
+
+def _damage(gathered: Gathered) -> Iterator[str]:
+    """What was lost, where, and how much was read nevertheless."""
+    holes, seen = gathered.holes, int(gathered.counts.sum())
+    if not holes:
+        return
+    lost = sum(hole.size for hole in holes)
+    about = seen + max(1, round(lost * seen / max(gathered.size - lost, 1)))
+    spans = [_span(hole) for hole in holes[:3]]
+    more = f" and at {len(holes) - 3} places more" if len(holes) > 3 else ""
+    yield (
+        f"recovered {seen} of about {about} messages, lost {', '.join(spans)}{more} "
+        f"({lost} bytes are no message, from byte {holes[0].at}); messages carry no checksum: "
+        "damage inside one is not seen"
+    )
+
+
+def _span(hole: dataflash_walk.Hole) -> str:
+    ends = ["?" if time is None else f"{time / 1e6:.2f}" for time in (hole.before, hole.after)]
+    return f"{ends[0]}-{ends[1]} s"
+
+
+def _channels(log: Log, wanted: Wanted, remarks: list[str]) -> Iterator[Channel]:
+    for number, columns in log.gathered.columns.items():
+        one = log.known[number]
+        if one.name in TABLES or not log.gathered.counts[number]:
+            continue
+        if one.clock is None:
+            remarks.append(f"{one.name}: left out, its messages carry no time")
+            continue
+        yield from _of_message(log, number, [i for i in columns if i in one.numbers], wanted)
+
+
+def _of_message(log: Log, number: int, columns: Sequence[int], wanted: Wanted) -> Iterator[Channel]:
+    """The wanted channels of one message type, device by device."""
+    one = log.known[number]
+    t, good = _stamps(one, log.gathered.column(number, 0))
+    for source, rows in _devices(log, number):
+        fine = rows[good[rows]]
+        steady = fine[~_wild(t[fine])]
+        for i in columns:
+            name = f"{one.name}{source}:{one.columns[i]}"
+            if asked(name, wanted):
+                yield _channel(one, i, name, t[steady], log.gathered.column(number, i)[steady])
+
+
+def _devices(log: Log, number: int) -> Iterator[tuple[str, NDArray[np.int64]]]:
+    """How the name of each device's channels goes on, and the rows of its messages."""
+    one = log.known[number]
+    if one.instance is None:
+        yield "", np.arange(int(log.gathered.counts[number]))
+        return
+    which = log.gathered.column(number, one.instance)
+    for device in np.unique(which).tolist():
+        yield f"/{device}", np.flatnonzero(which == device)
+
+
+def _stamps(one: Layout, raw: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Stamps [ns] since boot, and which of them can be true; (N,) both."""
+    scale = 1_000 if one.clock == "TimeUS" else 1_000_000
+    good = raw <= LONGEST_US * 1_000 // scale
+    return np.where(good, raw, 0).astype(np.int64) * scale, good
+
+
+def _wild(t: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which stamps are far from both neighbours though these agree; (N,)."""
+    wild = np.zeros(len(t), bool)
+    if len(t) > 2:
+        before, after = np.abs(t[1:-1] - t[:-2]), np.abs(t[2:] - t[1:-1])
+        wild[1:-1] = (before > WILD_NS) & (after > WILD_NS) & (np.abs(t[2:] - t[:-2]) < WILD_NS)
+    return wild
+
+
+def _channel(
+    one: Layout, column: int, name: str, t: NDArray[np.int64], raw: NDArray[Any]
+) -> Channel:
+    key = (one.name, one.columns[column])
+    meaning = mavlink_meanings.DATAFLASH.get(key, mavlink_meanings.Meaning(""))
+    stated = one.units[column] if one.units else ""
+    unit, divisor = mavlink_meanings.unit(stated)
+    y = dataflash_layout.scaled(one, column, raw)
+    words = meaning.words or mavlink_meanings.DATAFLASH_MESSAGES.get(one.name, "")
+    return Channel(
+        name,
+        t,
+        y if divisor == 1.0 else y / divisor,
+        unit or meaning.unit,
+        _clock(one),
+        f"dataflash {name}" + (f", {words}" if words else ""),
+        meaning.quantity,
+        meaning.positive,
+    )
+
+
+def _clock(one: Layout) -> str:
+    return f"boot clock {one.clock}"
+
+
+def _parameters(log: Log) -> servo_deflection.Parameters:
+    table = log.table("PARM")
+    number = log.number("PARM")
+    if number is None or log.known[number].clock is None or not {"Name", "Value"} <= table.keys():
+        return {}
+    t, good = _stamps(log.known[number], log.gathered.column(number, 0))
+    names = [name.decode("latin-1") for name in table["Name"][good].tolist()]
+    return servo_deflection.parameters(names, t[good], table["Value"][good].astype(np.float64))
+
+
+def _deflections(log: Log, wanted: Wanted) -> tuple[dict[str, Channel], dict[int, str]]:
+    """Channels of what rudder servos were ordered, and their names by output."""
+    known, channels, names = _parameters(log), {}, {}
+    for n, function in servo_deflection.steering(known).items():
+        number = _message_of(log, n)
+        if number is None or servo_deflection.missing(known, n):
+            continue
+        names[n] = f"servo/{n}:deflection"
+        one = log.known[number]
+        if asked(names[n], wanted):
+            t, good = _stamps(one, log.gathered.column(number, 0))
+            pwm = log.gathered.column(number, one.columns.index(f"C{n}")).astype(np.float64)
+            y = servo_deflection.deflection(pwm[good], t[good], n, known)
+            words = servo_deflection.description(n, function)
+            channels[names[n]] = Channel(
+                names[n], t[good], y, None, _clock(one), words, "delta_order", "starboard"
+            )
+    return channels, names
+
+
+def _message_of(log: Log, n: int) -> int | None:
+    """The message type that logs output `n`."""
+    for name in OUTPUTS:
+        number = log.number(name)
+        if number is not None and log.gathered.counts[number]:
+            one = log.known[number]
+            if f"C{n}" in one.columns and one.clock:
+                return number
+    return None
+
+
+def _whole(log: Log, steering: Mapping[str, Channel], outputs: dict[int, str]) -> Iterator[str]:
+    """Remarks on servos, parameters, modes and arming."""
+    known = _parameters(log)
+    yield from servo_deflection.remarks(known, outputs)
+    for name, channel in steering.items():
+        none = int(np.isnan(channel.y).sum())
+        if none:
+            yield f"{name}: {none} of {len(channel.y)} samples without an output"
+    yield from servo_deflection.changes(known)
+    for message, column in (("MODE", "ModeNum"), ("ARM", "ArmState")):
+        table = log.table(message)
+        if {"TimeUS", column} <= table.keys() and len(table[column]):
+            t = table["TimeUS"].astype(np.int64) * 1000
+            states = table[column].astype(np.int64)
+            if message == "MODE":
+                yield from vehicle_modes.modes(t, states, _rover(log))
+            else:
+                yield from vehicle_modes.arming(t, states != 0)
+
+
+def _rover(log: Log) -> bool:
+    texts = log.table("MSG").get("Message", np.empty(0, "S1"))
+    return any(b"Rover" in text for text in texts[:1000].tolist())
+
+
+def _of_time(log: Log) -> Iterator[str]:
+    """A remark on the date, by the first GPS message with a fix."""
+    gps = log.table("GPS")
+    if not {"TimeUS", "Status", "GMS", "GWk"} <= gps.keys():
+        yield "no GPS time in the log: times are since boot, the date is not known"
+        return
+    fixed = np.flatnonzero((gps["Status"] >= 3) & (gps["GWk"] > 0))
+    if not len(fixed):
+        yield "no GPS fix in the log: times are since boot, the date is not known"
+        return
+    first = {name: int(column[fixed[0]]) for name, column in gps.items()}
+    if first["TimeUS"] < LONGEST_US:
+        since = timedelta(microseconds=first["TimeUS"])
+        start = gps_time.utc(first["GWk"], first["GMS"]) - since
+        yield gps_time.words(start, "the first GPS fix")
+
+
+def batches(path: Path, aids: Aids = NO_AIDS) -> Iterable[Wanted]:
+    """Wanted channels, some at a time, so that each reading stays within BATCH_BYTES."""
+    del aids
+    known, _ = dataflash_walk.layouts(path)
+    narrow = {
+        number: [i for i, code in enumerate(one.codes) if code in dataflash_layout.NARROW]
+        for number, one in known.items()
+        if one.name not in TABLES
+    }
+    always = {n: c for n, c in _columns(known, ()).items() if n not in narrow or c}
+    gathered = dataflash_walk.gather(path, known, narrow | always)
+    log = Log(_with_units(known, gathered), gathered)
+    return _portions(log)
+
+
+def _portions(log: Log) -> Iterator[list[str]]:
+    portion: list[str] = []
+    size = 0
+    for number in log.known:
+        for name, cost in _prefixes(log, number):
+            if portion and size + cost > BATCH_BYTES:
+                yield portion
+                portion, size = [], 0
+            portion.append(name)
+            size += cost
+    yield [*portion, "servo/"]
+
+
+def _prefixes(log: Log, number: int) -> Iterator[tuple[str, int]]:
+    """Beginnings of channel names that cover a message, each with its cost [bytes]."""
+    one, count = log.known[number], int(log.gathered.counts[number])
+    if one.name in TABLES or one.clock is None or not count:
+        return
+    column = 16 * count
+    devices = [source for source, _ in _devices(log, number)]
+    if column * (len(one.numbers) + 1) <= BATCH_BYTES:
+        for source in devices:
+            yield f"{one.name}{source}:", column * (len(one.numbers) + 1) // len(devices)
+        return
+    for source in devices:
+        for i in one.numbers:
+            yield f"{one.name}{source}:{one.columns[i]}", 2 * column
+
+
+ADAPTER = Adapter("dataflash", recognises, read, batches=batches)
