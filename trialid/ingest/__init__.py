@@ -6,13 +6,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import csv_log, mcap_log
+from trialid.ingest import csv_log, dataflash_log, mcap_log, tlog_log
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
 from trialid.recording import Recording
 
 __all__ = ["ADAPTERS", "Aids", "LogFile", "adapter_of", "files_of", "read", "read_together"]
 
-ADAPTERS: tuple[Adapter, ...] = (mcap_log.ADAPTER, csv_log.ADAPTER)
+ADAPTERS: tuple[Adapter, ...] = (
+    mcap_log.ADAPTER,
+    dataflash_log.ADAPTER,
+    tlog_log.ADAPTER,
+    csv_log.ADAPTER,
+)
 
 HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""

@@ -69,14 +69,15 @@ def definitions() -> Mapping[int, Definition]:
 
 def _definition(message: Any, unknown: Mapping[tuple[str, str], str]) -> Definition:
     codes = message.native_format.decode()[1:]
-    rows = list(zip(message.ordered_fieldnames, codes, message.lengths, strict=True))
+    counts = [max(1, n) for n in message.array_lengths]
+    rows = list(zip(message.ordered_fieldnames, codes, counts, strict=True))
     name = message.msgname
     kind = np.dtype([_column(*row) for row in rows])
     fields = tuple(
         Field(
             field,
             message.fieldunits_by_name.get(field, ""),
-            max(count, 1),
+            count,
             code == "c",
             _number(unknown.get((name, field), "")),
         )
@@ -91,7 +92,7 @@ def _definition(message: Any, unknown: Mapping[tuple[str, str], str]) -> Definit
 
 def _column(name: str, code: str, count: int) -> tuple[str, str] | tuple[str, str, tuple[int]]:
     if code == "c":
-        return name, f"S{max(count, 1)}"
+        return name, f"S{count}"
     return (name, CODES[code], (count,)) if count > 1 else (name, CODES[code])
 
 

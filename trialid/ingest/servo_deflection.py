@@ -23,6 +23,9 @@ NO_OUTPUT = (0, 65535)
 CHANGING = ("STAT_", "COMPASS_OFS", "BARO", "SYS_NUM_RESETS")
 """Parameters the autopilot itself keeps changing; no remark is due."""
 
+EVER, NEVER = -(2**62), 2**62
+"""Times [ns] of what held before all messages, and of what was only said after them."""
+
 Times = NDArray[np.int64]
 Values = NDArray[np.float64]
 
@@ -128,7 +131,8 @@ def changes(known: Parameters) -> Iterator[str]:
     found = []
     for name, history in known.items():
         value = history.value
-        at = np.flatnonzero(value[1:] != value[:-1]) + 1
+        during = (history.t[1:] > EVER) & (history.t[1:] < NEVER)
+        at = np.flatnonzero((value[1:] != value[:-1]) & during) + 1
         if len(at) and not name.startswith(CHANGING) and np.isfinite(value).all():
             k = int(at[0])
             step = f"{value[k - 1]:g} to {value[k]:g} at {history.t[k] / 1e9:.1f} s"

@@ -5,7 +5,7 @@ each place in the gap that may be a frame is tried.
 Source: mavlink.io, packet serialization; the stamp is microseconds since 1970, big endian.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +48,7 @@ class Found:
 
     `unchecked` counts frames by the number of a message no dialect knows, `failed` frames by
     message whose checksum is wrong though frames lie before and after; `holes` are bytes
-    `begin, end` that belong to no frame; `lost` are the indices of the good frames after each.
+    `begin, end` that belong to no frame.
     """
 
     data: NDArray[np.uint8]
@@ -64,9 +64,7 @@ def find(content: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
     size = len(content)
     data = np.concatenate([content, np.zeros(LONGEST, np.uint8)])
     candidates = _candidates(data, size)
-    chain = linked(
-        candidates.at - STAMP, candidates.end, Stretch(0, size, size - STAMP, STAMP + 1)
-    )
+    chain = linked(candidates.at - STAMP, candidates.end, Stretch(0, size, size - STAMP, STAMP + 1))
     extra = _extra(candidates.message, known)
     listed = extra >= 0
     good = np.zeros(len(candidates), bool)
@@ -79,7 +77,7 @@ def find(content: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
     frames = candidates[good]
     covered = candidates[unknown & ~_covered(candidates, frames)]
     lost = candidates[failed & ~_covered(candidates, frames)]
-    holes = _holes(frames, covered, lost, size)
+    holes = _holes((frames, covered, lost), size)
     stamp = _stamps(data, frames.at)
     return Found(data, frames, stamp, _counts(covered), _counts(lost), holes)
 
@@ -144,11 +142,10 @@ def _apart(frames: Frames, good: NDArray[np.bool_], valid: Places) -> list[int]:
     return taken
 
 
-def _holes(*parts: Frames | int) -> tuple[tuple[int, int], ...]:
+def _holes(frames: Sequence[Frames], size: int) -> tuple[tuple[int, int], ...]:
     """Bytes that belong to no frame, good, unknown or failed."""
-    *frames, size = parts
-    begin = np.concatenate([one.at - STAMP for one in frames])  # type: ignore[union-attr]
-    end = np.concatenate([one.end for one in frames])  # type: ignore[union-attr]
+    begin = np.concatenate([one.at - STAMP for one in frames])
+    end = np.concatenate([one.end for one in frames])
     order = np.argsort(begin)
     begins, ends = np.append(begin[order], size), np.append(0, end[order])
     gaps = np.flatnonzero(begins > ends)
