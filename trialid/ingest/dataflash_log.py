@@ -6,7 +6,7 @@ ordered. Texts are no channels, nor are the parameters and the log's own descrip
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import timedelta
 from pathlib import Path
 from typing import Any
@@ -46,6 +46,8 @@ INSTANCES = ("I", "Instance", "C")
 """What the column that tells devices apart is called, in logs that do not say."""
 
 BATCH_BYTES = 150_000_000
+Stamps = tuple[NDArray[np.int64], NDArray[np.bool_]]
+
 LONGEST_US = 10 * 365 * 86_400 * 10**6
 """Ten years: no autopilot has been on for so long."""
 WILD_NS = 1_000 * 10**9
@@ -84,6 +86,14 @@ class Log:
 
     known: Mapping[int, Layout]
     gathered: Gathered
+    stamps: dict[int, Stamps] = field(default_factory=dict)
+
+    def times(self, number: int) -> Stamps:
+        """Stamps [ns] of a message type since boot, and which of them can be true; (N,) both."""
+        if number not in self.stamps:
+            one = self.known[number]
+            self.stamps[number] = _stamps(one, self.gathered.column(number, 0))
+        return self.stamps[number]
 
     def number(self, name: str) -> int | None:
         """Number of the message type that was logged under this name."""
@@ -184,43 +194,50 @@ def _channels(log: Log, wanted: Wanted, remarks: list[str]) -> Iterator[Channel]
 
 
 def _of_message(log: Log, number: int, columns: Sequence[int], wanted: Wanted) -> Iterator[Channel]:
-    """The wanted channels of one message type, device by device."""
+    """The wanted channels of one message type, device by device; those of one share their stamps."""
     one = log.known[number]
-    t, good = _stamps(one, log.gathered.column(number, 0))
-    for source, rows in _devices(log, number):
-        fine = rows[good[rows]]
-        steady = fine[~_wild(t[fine])]
-        for i in columns:
-            name = f"{one.name}{source}:{one.columns[i]}"
-            if asked(name, wanted):
-                yield _channel(one, i, name, t[steady], log.gathered.column(number, i)[steady])
+    t, good = log.times(number)
+    for source, mine in _devices(log, number):
+        names = {i: f"{one.name}{source}:{one.columns[i]}" for i in columns}
+        held = {i: name for i, name in names.items() if asked(name, wanted)}
+        if not held:
+            continue
+        rows = mine & good
+        stamps = t[rows]
+        wild = _wild(stamps)
+        if len(wild):
+            rows[np.flatnonzero(rows)[wild]] = False
+            stamps = t[rows]
+        for i, name in held.items():
+            yield _channel(one, i, name, stamps, log.gathered.column(number, i)[rows])
 
 
-def _devices(log: Log, number: int) -> Iterator[tuple[str, NDArray[np.int64]]]:
-    """How the name of each device's channels goes on, and the rows of its messages."""
+def _devices(log: Log, number: int) -> Iterator[tuple[str, NDArray[np.bool_]]]:
+    """How the name of each device's channels goes on, and which messages are of it, (N,)."""
     one = log.known[number]
     if one.instance is None:
-        yield "", np.arange(int(log.gathered.counts[number]))
+        yield "", np.ones(int(log.gathered.counts[number]), bool)
         return
     which = log.gathered.column(number, one.instance)
-    for device in np.unique(which).tolist():
-        yield f"/{device}", np.flatnonzero(which == device)
+    for device in np.flatnonzero(np.bincount(which.view(np.uint8), minlength=256)).tolist():
+        value = np.uint8(device).view(which.dtype)
+        yield f"/{value}", which == value
 
 
-def _stamps(one: Layout, raw: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """Stamps [ns] since boot, and which of them can be true; (N,) both."""
+def _stamps(one: Layout, raw: NDArray[Any]) -> Stamps:
     scale = 1_000 if one.clock == "TimeUS" else 1_000_000
     good = raw <= LONGEST_US * 1_000 // scale
-    return np.where(good, raw, 0).astype(np.int64) * scale, good
+    t = raw.astype(np.int64)
+    t[~good] = 0
+    t *= scale
+    return t, good
 
 
-def _wild(t: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which stamps are far from both neighbours though these agree; (N,)."""
-    wild = np.zeros(len(t), bool)
-    if len(t) > 2:
-        before, after = np.abs(t[1:-1] - t[:-2]), np.abs(t[2:] - t[1:-1])
-        wild[1:-1] = (before > WILD_NS) & (after > WILD_NS) & (np.abs(t[2:] - t[:-2]) < WILD_NS)
-    return wild
+def _wild(t: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Rows whose stamps are far from both neighbours though these agree."""
+    far = np.flatnonzero(np.abs(np.diff(t)) > WILD_NS)
+    both = far[1:][np.diff(far) == 1]
+    return both[np.abs(t[both + 1] - t[both - 1]) < WILD_NS]
 
 
 def _channel(
@@ -253,7 +270,7 @@ def _parameters(log: Log) -> servo_deflection.Parameters:
     number = log.number("PARM")
     if number is None or log.known[number].clock is None or not {"Name", "Value"} <= table.keys():
         return {}
-    t, good = _stamps(log.known[number], log.gathered.column(number, 0))
+    t, good = log.times(number)
     names = [name.decode("latin-1") for name in table["Name"][good].tolist()]
     return servo_deflection.parameters(names, t[good], table["Value"][good].astype(np.float64))
 
@@ -268,7 +285,7 @@ def _deflections(log: Log, wanted: Wanted) -> tuple[dict[str, Channel], dict[int
         names[n] = f"servo/{n}:deflection"
         one = log.known[number]
         if asked(names[n], wanted):
-            t, good = _stamps(one, log.gathered.column(number, 0))
+            t, good = log.times(number)
             pwm = log.gathered.column(number, one.columns.index(f"C{n}")).astype(np.float64)
             y = servo_deflection.deflection(pwm[good], t[good], n, known)
             words = servo_deflection.description(n, function)

@@ -25,7 +25,7 @@ from trialid.ingest.dataflash_layout import (
 )
 from trialid.ingest.linked_records import Places, Stretch, linked
 
-BLOCK = 1 << 24
+BLOCK = 1 << 22
 """Bytes read at once."""
 
 Lengths = NDArray[np.int64]
@@ -48,12 +48,14 @@ class Gathered:
     columns: dict[int, dict[int, list[NDArray[Any]]]]
     counts: NDArray[np.int64] = field(default_factory=lambda: np.zeros(256, np.int64))
     holes: list[Hole] = field(default_factory=list)
-    instances: dict[int, set[int]] = field(default_factory=dict)
     size: int = 0
 
     def column(self, number: int, index: int) -> NDArray[Any]:
         """One column in the order of the log; (N,)."""
-        return np.concatenate(self.columns[number][index])
+        parts = self.columns[number][index]
+        if len(parts) > 1:
+            parts[:] = [np.concatenate(parts)]
+        return parts[0]
 
 
 @dataclass(frozen=True)

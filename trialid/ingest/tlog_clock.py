@@ -20,6 +20,8 @@ MS, US = 1_000_000, 1_000
 """Nanoseconds."""
 RESTART_NS = 5 * 10**9
 """A clock that falls back by more was started anew; messages that overtake each other do less."""
+LASTING = 3
+"""Messages that must show a restart: blocks of a log that were mixed up show one alike."""
 CALENDAR_US = 10**14
 """Microseconds above this count from 1970: no autopilot runs for three years."""
 
@@ -78,7 +80,7 @@ def boot(source: str, index: Places, received: Times, raw: NDArray[np.uint32]) -
     if len(raw) < 2 or (raw == raw[0]).all():
         return None
     sent = turned(raw.astype(np.int64), received, MS)
-    restarts = _restarts(sent)
+    restarts = _restarts(sent, received)
     edges = np.concatenate([[0], restarts, [len(sent)]]).astype(np.int64)
     order = np.arange(len(sent))
     for begin, end in itertools.pairwise(edges.tolist()):
@@ -86,16 +88,21 @@ def boot(source: str, index: Places, received: Times, raw: NDArray[np.uint32]) -
     return Boot(source, received[order], sent[order], index[restarts], edges)
 
 
-def _restarts(sent: Times) -> Places:
-    """Where the clock falls back and stays there."""
+def _restarts(sent: Times, received: Times) -> Places:
+    """Where the clock falls back, and stays there, though time went on for the receiver."""
+    late = received - sent
     found: list[int] = []
     at = 0
     while True:
         back = sent[at + 1 :] < np.maximum.accumulate(sent[at:])[:-1] - RESTART_NS
-        stays = back & np.append(back[1:], back[-1:])
-        if not stays.any():
+        stays = np.flatnonzero(back)
+        for k in range(LASTING):
+            then = np.minimum(at + 1 + stays + k, len(sent) - 1)
+            lasting = back[then - at - 1] & (late[then] - late[at + stays] > RESTART_NS)
+            stays = stays[lasting]
+        if not len(stays):
             return np.array(found, np.int64)
-        at += 1 + int(np.argmax(stays))
+        at += 1 + int(stays[0])
         found.append(at)
 
 
@@ -103,7 +110,7 @@ def turned(raw: Times, received: Times, unit: int) -> Times:
     """A counter of 32 bits without its turns, by the receive times in between [ns]; (N,)."""
     step = np.diff(raw)
     missing = np.rint((np.diff(received) / unit - step) / TURN).astype(np.int64)
-    turns = np.concatenate([[0], np.cumsum(np.maximum(missing, 0))])[: len(raw)]
+    turns = np.concatenate([[0], np.cumsum(missing)])[: len(raw)]
     return (raw + turns * TURN) * unit
 
 

@@ -19,6 +19,11 @@ STAMP = 8
 MAGIC_1, MAGIC_2 = 0xFE, 0xFD
 SIGNED = 0x01
 SIGNATURE = 13
+LATEST_US = 4_200_000_000_000_000
+"""Stamps beyond the year 2103 are none."""
+OUT_OF_ORDER_NS = 500_000_000
+PAUSE_NS = 3600 * 10**9
+"""No recorder falls silent for an hour after its first frame, or before its last."""
 LONGEST = 280
 """Bytes of a signed MAVLink 2 frame with the longest payload."""
 
@@ -158,9 +163,23 @@ def _counts(frames: Frames) -> dict[int, int]:
 
 
 def _stamps(data: NDArray[np.uint8], at: Places) -> NDArray[np.int64]:
-    """Receive times [ns] since 1970; (N,)."""
-    microseconds = np.ndarray((len(data) - STAMP + 1,), ">u8", data.data, 0, (1,))[at - STAMP]
-    return (np.minimum(microseconds, 2**62 // 1000).astype(np.int64)) * 1000
+    """Receive times [ns] since 1970; (N,).
+
+    No checksum covers them. One that is out of order among its neighbours by more than recorders
+    mix up is replaced by the median of five.
+    """
+    raw = np.ndarray((len(data) - STAMP + 1,), ">u8", data.data, 0, (1,))[at - STAMP]
+    stamps = np.minimum(raw, LATEST_US).astype(np.int64) * 1000
+    if len(stamps) < 3:
+        return stamps
+    for end, beside in ((0, 1), (-1, -2)):
+        step = (stamps[beside] - stamps[end]) * (1 if end == 0 else -1)
+        if not -OUT_OF_ORDER_NS <= step <= PAUSE_NS:
+            stamps[end] = stamps[beside]
+    padded = np.pad(stamps, 2, mode="edge")
+    middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=1)
+    off = np.abs(stamps - middle) > OUT_OF_ORDER_NS
+    return np.where(off, middle.astype(np.int64), stamps)
 
 
 def payloads(found: Found, rows: Places, definition: Definition) -> NDArray[np.void]:

@@ -31,8 +31,6 @@ from trialid.ingest.linked_records import Places
 from trialid.ingest.mavlink_dialect import Definition, Field
 from trialid.recording import Channel, Recording
 
-LATEST_US = 4_200_000_000_000_000
-"""Stamps beyond the year 2103 are none."""
 CHAIN = 3
 """Frames that must follow one another for a log to be recognised, if there are so many."""
 HEAD_SEARCHED = 600
@@ -57,7 +55,11 @@ def _chain(head: bytes, at: int) -> bool:
     while len(stamps) < CHAIN:
         size = _frame_size(head[at : at + 11])
         stamp = int.from_bytes(head[at : at + 8], "big")
-        if not size or stamp > LATEST_US or (stamps and abs(stamp - stamps[-1]) > 10**12):
+        if (
+            not size
+            or stamp > tlog_frames.LATEST_US
+            or (stamps and abs(stamp - stamps[-1]) > 10**12)
+        ):
             return False
         stamps.append(stamp)
         at += tlog_frames.STAMP + size
@@ -337,7 +339,9 @@ def _span(found: tlog_frames.Found, begin: int, end: int) -> str:
 
 
 def _date(ns: int) -> str:
-    date = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(microseconds=min(ns // 1000, LATEST_US))
+    date = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(
+        microseconds=min(ns // 1000, tlog_frames.LATEST_US)
+    )
     return date.strftime("%Y-%m-%d %H:%M:%S")
 
 
@@ -376,7 +380,7 @@ def _start_date(log: Log, sender: Sender) -> Iterator[str]:
     rows = log.rows(sender, number)
     table = tlog_frames.payloads(log.found, rows, log.known[number])
     dated = np.flatnonzero(table["time_unix_usec"] > tlog_clock.CALENDAR_US)
-    if len(dated) and table["time_unix_usec"][dated[0]] < LATEST_US:
+    if len(dated) and table["time_unix_usec"][dated[0]] < tlog_frames.LATEST_US:
         unix = int(table["time_unix_usec"][dated[0]])
         since = int(table["time_boot_ms"][dated[0]]) * 1000
         start = gps_time.UNIX + timedelta(microseconds=unix - since)
