@@ -118,8 +118,9 @@ path, what = Path(sys.argv[1]), sys.argv[2]
 start, channels = time.perf_counter(), 0
 for wanted in dataflash_log.batches(path) if what == "all" else [what.split(",")]:
     channels += len(dataflash_log.read(path, wanted).channels)
+seconds = time.perf_counter() - start
 words = Path("/proc/self/status").read_text().partition("VmHWM:")[2].split()
-print(f"{channels} channels, {time.perf_counter() - start:.1f} s, peak {int(words[0]) / 1e6:.2f} GB")
+print(f"{channels} channels, {seconds:.1f} s, peak {int(words[0]) / 1e6:.2f} GB")
 """
 
 

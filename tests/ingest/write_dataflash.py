@@ -144,7 +144,7 @@ class Log:
 
 
 def write(path: Path, series: Mapping[str, Series]) -> Written:
-    """delta as pulse widths, r of a gyro beside another one, phi and psi of two estimates."""
+    """Rudder as pulse widths, r of a gyro beside another one, phi and psi of two estimates."""
     start = min(int(t[0]) for t, _ in series.values()) - 60 * 10**9
     log = Log()
     for name, (t, y) in series.items():

@@ -91,9 +91,16 @@ class Log:
     def times(self, number: int) -> Stamps:
         """Stamps [ns] of a message type since boot, and which of them can be true; (N,) both."""
         if number not in self.stamps:
-            one = self.known[number]
-            self.stamps[number] = _stamps(one, self.gathered.column(number, 0))
+            raw = self.gathered.column(number, 0)
+            del self.gathered.columns[number][0]
+            self.stamps[number] = _stamps(self.known[number], raw)
         return self.stamps[number]
+
+    def forget(self, number: int) -> None:
+        """Give the memory of a message type free that nobody asks for again."""
+        if self.known[number].name not in {*READ_ALWAYS, *OUTPUTS}:
+            self.gathered.columns[number] = {}
+            del self.stamps[number]
 
     def number(self, name: str) -> int | None:
         """Number of the message type that was logged under this name."""
@@ -101,13 +108,14 @@ class Log:
         return max(found, key=lambda n: int(self.gathered.counts[n]), default=None)
 
     def table(self, name: str) -> dict[str, NDArray[Any]]:
-        """The gathered columns of a message by their names, raw; empty where it is not logged."""
+        """The gathered columns of a message but its clock, by their names, raw; (N,) each."""
         number = self.number(name)
         if number is None:
             return {}
         columns = self.gathered.columns.get(number, {})
         one = self.known[number]
-        return {one.columns[i]: self.gathered.column(number, i) for i in columns}
+        held = [i for i in columns if i or not one.clock]
+        return {one.columns[i]: self.gathered.column(number, i) for i in held}
 
 
 def _columns(known: Mapping[int, Layout], wanted: Wanted) -> dict[int, list[int]]:
@@ -190,11 +198,13 @@ def _channels(log: Log, wanted: Wanted, remarks: list[str]) -> Iterator[Channel]
         if one.clock is None:
             remarks.append(f"{one.name}: left out, its messages carry no time")
             continue
-        yield from _of_message(log, number, [i for i in columns if i in one.numbers], wanted)
+        numbers = [i for i in columns if i in one.numbers]
+        yield from _of_message(log, number, numbers, wanted)
+        log.forget(number)
 
 
 def _of_message(log: Log, number: int, columns: Sequence[int], wanted: Wanted) -> Iterator[Channel]:
-    """The wanted channels of one message type, device by device; those of one share their stamps."""
+    """The wanted channels of one message type, by device; those of one share stamps."""
     one = log.known[number]
     t, good = log.times(number)
     for source, mine in _devices(log, number):
@@ -227,7 +237,7 @@ def _devices(log: Log, number: int) -> Iterator[tuple[str, NDArray[np.bool_]]]:
 def _stamps(one: Layout, raw: NDArray[Any]) -> Stamps:
     scale = 1_000 if one.clock == "TimeUS" else 1_000_000
     good = raw <= LONGEST_US * 1_000 // scale
-    t = raw.astype(np.int64)
+    t = raw.view(np.int64) if raw.dtype.itemsize == 8 else raw.astype(np.int64)
     t[~good] = 0
     t *= scale
     return t, good
@@ -235,7 +245,8 @@ def _stamps(one: Layout, raw: NDArray[Any]) -> Stamps:
 
 def _wild(t: NDArray[np.int64]) -> NDArray[np.int64]:
     """Rows whose stamps are far from both neighbours though these agree."""
-    far = np.flatnonzero(np.abs(np.diff(t)) > WILD_NS)
+    step = np.diff(t)
+    far = np.flatnonzero((step > WILD_NS) | (step < -WILD_NS))
     both = far[1:][np.diff(far) == 1]
     return both[np.abs(t[both + 1] - t[both - 1]) < WILD_NS]
 
@@ -268,7 +279,7 @@ def _clock(one: Layout) -> str:
 def _parameters(log: Log) -> servo_deflection.Parameters:
     table = log.table("PARM")
     number = log.number("PARM")
-    if number is None or log.known[number].clock is None or not {"Name", "Value"} <= table.keys():
+    if number is None or not log.known[number].clock or not {"Name", "Value"} <= table.keys():
         return {}
     t, good = log.times(number)
     names = [name.decode("latin-1") for name in table["Name"][good].tolist()]
@@ -315,15 +326,21 @@ def _whole(log: Log, steering: Mapping[str, Channel], outputs: dict[int, str]) -
         if none:
             yield f"{name}: {none} of {len(channel.y)} samples without an output"
     yield from servo_deflection.changes(known)
-    for message, column in (("MODE", "ModeNum"), ("ARM", "ArmState")):
-        table = log.table(message)
-        if {"TimeUS", column} <= table.keys() and len(table[column]):
-            t = table["TimeUS"].astype(np.int64) * 1000
-            states = table[column].astype(np.int64)
-            if message == "MODE":
-                yield from vehicle_modes.modes(t, states, _rover(log))
-            else:
-                yield from vehicle_modes.arming(t, states != 0)
+    for t, states in _states(log, "MODE", "ModeNum"):
+        yield from vehicle_modes.modes(t, states, _rover(log))
+    for t, states in _states(log, "ARM", "ArmState"):
+        yield from vehicle_modes.arming(t, states != 0)
+
+
+def _states(
+    log: Log, message: str, column: str
+) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    """Times [ns] and values of one column, where it is logged; (N,) both."""
+    number = log.number(message)
+    values = log.table(message).get(column)
+    if number is not None and log.known[number].clock and values is not None:
+        t, good = log.times(number)
+        yield t[good], values[good].astype(np.int64)
 
 
 def _rover(log: Log) -> bool:
@@ -333,19 +350,19 @@ def _rover(log: Log) -> bool:
 
 def _of_time(log: Log) -> Iterator[str]:
     """A remark on the date, by the first GPS message with a fix."""
-    gps = log.table("GPS")
-    if not {"TimeUS", "Status", "GMS", "GWk"} <= gps.keys():
+    gps, number = log.table("GPS"), log.number("GPS")
+    if number is None or not log.known[number].clock or not {"Status", "GMS", "GWk"} <= gps.keys():
         yield "no GPS time in the log: times are since boot, the date is not known"
         return
-    fixed = np.flatnonzero((gps["Status"] >= 3) & (gps["GWk"] > 0))
+    t, good = log.times(number)
+    fixed = np.flatnonzero((gps["Status"] >= 3) & (gps["GWk"] > 0) & good)
     if not len(fixed):
         yield "no GPS fix in the log: times are since boot, the date is not known"
         return
-    first = {name: int(column[fixed[0]]) for name, column in gps.items()}
-    if first["TimeUS"] < LONGEST_US:
-        since = timedelta(microseconds=first["TimeUS"])
-        start = gps_time.utc(first["GWk"], first["GMS"]) - since
-        yield gps_time.words(start, "the first GPS fix")
+    first = fixed[0]
+    since = timedelta(microseconds=int(t[first]) // 1000)
+    start = gps_time.utc(int(gps["GWk"][first]), int(gps["GMS"][first])) - since
+    yield gps_time.words(start, "the first GPS fix")
 
 
 def batches(path: Path, aids: Aids = NO_AIDS) -> Iterable[Wanted]:
