@@ -45,7 +45,10 @@ OUTPUTS = ("RCOU", "RCO2", "RCO3")
 INSTANCES = ("I", "Instance", "C")
 """What the column that tells devices apart is called, in logs that do not say."""
 
-BATCH_BYTES = 150_000_000
+BATCH_BYTES = 400_000_000
+"""Memory one of several readings may take; a single column of a huge log may take more."""
+CLOCK_COST, COLUMN_COST = 16, 14
+"""Bytes a message costs for its stamp and for each number, raw and as a channel."""
 Stamps = tuple[NDArray[np.int64], NDArray[np.bool_]]
 
 LONGEST_US = 10 * 365 * 86_400 * 10**6
@@ -383,30 +386,33 @@ def batches(path: Path, aids: Aids = NO_AIDS) -> Iterable[Wanted]:
 def _portions(log: Log) -> Iterator[list[str]]:
     portion: list[str] = []
     size = 0
-    for number in log.known:
-        for name, cost in _prefixes(log, number):
-            if portion and size + cost > BATCH_BYTES:
-                yield portion
-                portion, size = [], 0
-            portion.append(name)
-            size += cost
+    for name, cost, clock in (one for number in log.known for one in _prefixes(log, number)):
+        if portion and size + cost + clock > BATCH_BYTES:
+            yield portion
+            portion, size = [], 0
+        size += cost if portion and _message(portion[-1]) == _message(name) else cost + clock
+        portion.append(name)
     yield [*portion, "servo/"]
 
 
-def _prefixes(log: Log, number: int) -> Iterator[tuple[str, int]]:
-    """Beginnings of channel names that cover a message, each with its cost [bytes]."""
+def _message(channel: str) -> str:
+    return channel.partition(":")[0].partition("/")[0]
+
+
+def _prefixes(log: Log, number: int) -> Iterator[tuple[str, int, int]]:
+    """Beginnings of channel names that cover a message, what each costs and its clock [bytes]."""
     one, count = log.known[number], int(log.gathered.counts[number])
     if one.name in TABLES or one.clock is None or not count:
         return
-    column = 16 * count
+    clock, column = CLOCK_COST * count, COLUMN_COST * count
     devices = [source for source, _ in _devices(log, number)]
-    if column * (len(one.numbers) + 1) <= BATCH_BYTES:
-        for source in devices:
-            yield f"{one.name}{source}:", column * (len(one.numbers) + 1) // len(devices)
-        return
+    whole = clock + column * len(one.numbers) <= BATCH_BYTES
     for source in devices:
+        if whole:
+            yield f"{one.name}{source}:", column * len(one.numbers) // len(devices), clock
+            continue
         for i in one.numbers:
-            yield f"{one.name}{source}:{one.columns[i]}", 2 * column
+            yield f"{one.name}{source}:{one.columns[i]}", column, clock
 
 
 ADAPTER = Adapter("dataflash", recognises, read, batches=batches)

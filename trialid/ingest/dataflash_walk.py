@@ -41,21 +41,38 @@ class Hole:
     after: int | None
 
 
+class Growing:
+    """One column as it is filled: in one piece, so that it is never in memory twice."""
+
+    def __init__(self, code: str) -> None:
+        self.space: NDArray[Any] = np.empty(0, code)
+        self.count = 0
+
+    def add(self, part: NDArray[Any]) -> None:
+        """Put more values behind those there are."""
+        count = self.count + len(part)
+        if count > len(self.space):
+            self.space.resize(count + count // 4, refcheck=False)
+        self.space[self.count : count] = part
+        self.count = count
+
+    def all(self) -> NDArray[Any]:
+        """All values; (N,)."""
+        return self.space[: self.count]
+
+
 @dataclass
 class Gathered:
     """What a walk found: raw columns by message type, counts of all types, and holes."""
 
-    columns: dict[int, dict[int, list[NDArray[Any]]]]
+    columns: dict[int, dict[int, Growing]]
     counts: NDArray[np.int64] = field(default_factory=lambda: np.zeros(256, np.int64))
     holes: list[Hole] = field(default_factory=list)
     size: int = 0
 
     def column(self, number: int, index: int) -> NDArray[Any]:
         """One column in the order of the log; (N,)."""
-        parts = self.columns[number][index]
-        if len(parts) > 1:
-            parts[:] = [np.concatenate(parts)]
-        return parts[0]
+        return self.columns[number][index].all()
 
 
 @dataclass(frozen=True)
@@ -95,8 +112,8 @@ def _fmt_messages(path: Path) -> Iterator[bytes]:
 
 def gather(path: Path, known: Mapping[int, Layout], asked: Mapping[int, Sequence[int]]) -> Gathered:
     """The columns asked for by message type, in one pass through the file."""
-    empty: dict[int, dict[int, list[NDArray[Any]]]] = {
-        number: {i: [np.empty(0, CODES[known[number].codes[i]])] for i in indices}
+    empty = {
+        number: {i: Growing(CODES[known[number].codes[i]]) for i in indices}
         for number, indices in asked.items()
     }
     gathered = Gathered(empty, size=path.stat().st_size)
@@ -163,8 +180,8 @@ def _take(
         if not len(starts):
             continue
         one = known[number]
-        for i, parts in columns.items():
-            parts.append(_column(block.data, starts, one.offsets[i], CODES[one.codes[i]]))
+        for i, column in columns.items():
+            column.add(_column(block.data, starts, one.offsets[i], CODES[one.codes[i]]))
 
 
 def _column(data: NDArray[np.uint8], starts: Places, offset: int, code: str) -> NDArray[Any]:
