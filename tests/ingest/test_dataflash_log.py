@@ -206,12 +206,22 @@ def test_a_type_nobody_describes_is_said(tmp_path):
     assert remark(found, "recovered")
 
 
+def with_gps(path):
+    """A log with a message that is read whether wanted or not."""
+    w.write(path, SERIES)
+    rows = [w.packed(w.GPS, 10**6 * k, k % 2, 3, 1000 * k, 2200, 9, 1, 0, 0, 0, k, 0, 0, 0)
+            for k in range(1, 9)]  # fmt: skip
+    path.write_bytes(path.read_bytes() + b"".join(rows))
+
+
 def test_wanted_channels_only(tmp_path):
-    w.write(tmp_path / "log", SERIES)
+    with_gps(tmp_path / "log")
     whole = read(tmp_path / "log")
     wanted = ["IMU/0:GyrZ", "servo/1", "ATT"]
     some = read(tmp_path / "log", wanted)
     assert set(some.channels) == {n for n in whole.channels if n.startswith(tuple(wanted))}
+    assert whole.channels["GPS/1:Spd"].y.tolist() == [1, 3, 5, 7]
+    assert some.remarks == whole.remarks
     for name, channel in some.channels.items():
         assert np.array_equal(channel.y, whole.channels[name].y, equal_nan=True)
 
@@ -219,7 +229,7 @@ def test_wanted_channels_only(tmp_path):
 @pytest.mark.parametrize("size", [10_000, 200_000, 10**9])
 def test_batches_give_every_channel(tmp_path, monkeypatch, size):
     monkeypatch.setattr(dataflash_log, "BATCH_BYTES", size)
-    w.write(tmp_path / "log", SERIES)
+    with_gps(tmp_path / "log")
     batches = list(dataflash_log.batches(tmp_path / "log"))
     together = {name for batch in batches for name in read(tmp_path / "log", batch).channels}
     assert together == set(read(tmp_path / "log").channels)

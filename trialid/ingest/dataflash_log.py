@@ -130,15 +130,17 @@ def _columns(known: Mapping[int, Layout], wanted: Wanted) -> dict[int, list[int]
             columns = []
         if one.name in OUTPUTS and _servo_asked(wanted):
             columns = list(one.numbers)
-        if columns:
-            narrow = [i for i, code in enumerate(one.codes) if code in dataflash_layout.NARROW]
-            columns = sorted({*columns, *narrow, 0})
         if one.name in READ_ALWAYS:
             names = READ_ALWAYS[one.name] or one.columns
-            columns = sorted({*columns, *(i for i, c in enumerate(one.columns) if c in names)})
+            columns = [*columns, *(i for i, c in enumerate(one.columns) if c in names)]
         if columns:
-            found[number] = columns
+            found[number] = sorted({*columns, *_narrow(one), 0})
     return found
+
+
+def _narrow(one: Layout) -> list[int]:
+    """Columns that may tell devices apart."""
+    return [i for i, code in enumerate(one.codes) if code in dataflash_layout.NARROW]
 
 
 def _maybe(one: Layout, column: int, wanted: Wanted) -> bool:
@@ -372,13 +374,8 @@ def batches(path: Path, aids: Aids = NO_AIDS) -> Iterable[Wanted]:
     """Wanted channels, some at a time, so that each reading stays within BATCH_BYTES."""
     del aids
     known, _ = dataflash_walk.layouts(path)
-    narrow = {
-        number: [i for i, code in enumerate(one.codes) if code in dataflash_layout.NARROW]
-        for number, one in known.items()
-        if one.name not in TABLES
-    }
-    always = {n: c for n, c in _columns(known, ()).items() if n not in narrow or c}
-    gathered = dataflash_walk.gather(path, known, narrow | always)
+    narrow = {n: _narrow(one) for n, one in known.items() if one.name not in TABLES}
+    gathered = dataflash_walk.gather(path, known, narrow | _columns(known, ()))
     log = Log(_with_units(known, gathered), gathered)
     return _portions(log)
 
