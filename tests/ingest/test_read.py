@@ -4,7 +4,7 @@ import pytest
 
 from trialid import ingest
 from trialid.errors import LogError
-from trialid.ingest import Aids, LogFile, adapter, read, read_together
+from trialid.ingest import ADAPTERS, Aids, LogFile, adapter, read, read_together
 
 TEXT = "t,u,r\n0,1,2\n1,2,3\n"
 
@@ -52,7 +52,8 @@ def test_an_unknown_file_shows_its_first_bytes(tmp_path):
     path = tmp_path / "log.mcap"
     path.write_bytes(b"\x7fELF\x02\x01" + bytes(50))
     message = refused(path)
-    assert "no adapter recognises it (of mcap, csv)" in message
+    names = ", ".join(adapter.name for adapter in ADAPTERS)
+    assert f"no adapter recognises it (of {names})" in message
     assert "it begins b'\\x7fELF" in message
 
 

@@ -7,6 +7,7 @@ Source: mavlink.io, packet serialization; the stamp is microseconds since 1970, 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,10 +65,18 @@ class Found:
     holes: tuple[tuple[int, int], ...]
 
 
-def find(content: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
-    """The good frames of a log; (N,) bytes."""
-    size = len(content)
-    data = np.concatenate([content, np.zeros(LONGEST, np.uint8)])
+def content(path: Path) -> NDArray[np.uint8]:
+    """The bytes of a log, and behind them LONGEST zeros; (N + LONGEST,)."""
+    size = path.stat().st_size
+    data = np.zeros(size + LONGEST, np.uint8)
+    with path.open("rb") as file:
+        file.readinto(data[:size].data)
+    return data
+
+
+def find(data: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
+    """The good frames of a log, from its `content`."""
+    size = len(data) - LONGEST
     candidates = _candidates(data, size)
     chain = linked(candidates.at - STAMP, candidates.end, Stretch(0, size, size - STAMP, STAMP + 1))
     extra = _extra(candidates.message, known)

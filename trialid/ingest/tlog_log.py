@@ -124,7 +124,7 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """
     del aids
     known = mavlink_dialect.definitions()
-    found = tlog_frames.find(np.fromfile(path, np.uint8), known)
+    found = tlog_frames.find(tlog_frames.content(path), known)
     if not len(found.frames):
         raise LogError(f"{path}: holds no frame with a valid checksum; take another copy of it")
     log = Log(found, known, _senders(found, known))
