@@ -196,6 +196,14 @@ def test_a_broken_stamp_is_left_out(tmp_path):
     assert (np.diff(found.t) > 0).all()
 
 
+def test_a_broken_number_is_no_reason_to_warn(tmp_path):
+    row = w.packed(w.IMU, 5, 0, 0, 0, 1.0, 0, 0, 0).replace(
+        struct.pack("<f", 1.0), b"\x01\x00\xa0\x7f"
+    )
+    found = log(tmp_path, OPENING + row + ROWS[0])
+    assert np.isnan(found.channels["IMU/0:GyrZ"].y).all()
+
+
 def test_a_type_nobody_describes_is_said(tmp_path):
     content = bytearray(OPENING + b"".join(ROWS))
     at = content.index(b"\xa3\x95\x80" + bytes([w.RALY.number]))

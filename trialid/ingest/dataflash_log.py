@@ -62,6 +62,7 @@ def recognises(head: bytes) -> bool:
     return FIRST in head
 
 
+@np.errstate(invalid="ignore", over="ignore")  # a broken number is no reason to warn
 def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted channels; damage is skipped and said in the remarks.
 

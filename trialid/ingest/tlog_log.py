@@ -117,6 +117,7 @@ def _rows(found: tlog_frames.Found, source: tuple[int, int], message: int) -> Pl
     return np.flatnonzero(same & (frames.message == message))
 
 
+@np.errstate(invalid="ignore", over="ignore")  # a broken number is no reason to warn
 def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted channels; frames with a wrong checksum are left out and counted.
 
