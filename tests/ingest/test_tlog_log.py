@@ -139,6 +139,15 @@ def test_a_restart_is_told_and_kept_apart(tmp_path):
     assert found.channels["servo/1/1/1/boot2:deflection"].y == -1.0
 
 
+def test_one_frame_out_of_place_is_no_restart(tmp_path):
+    log, by = steady(w.Log(), w.sender()), w.sender()
+    log.add(START + 5_000_000, attitude(BOOT + 60_000), by)
+    log.add(START + 7_000_000, attitude(BOOT - 30_000), by)
+    found = saved(tmp_path, log)
+    assert len(found.channels["ATTITUDE/1/1:roll"].t) == COUNT + 2
+    assert not any("restarted" in one for one in found.remarks)
+
+
 def test_senders_are_channels_of_their_own(tmp_path):
     log = steady(w.Log(), w.sender())
     steady(log, w.sender(1, 2), first=5 * BOOT)

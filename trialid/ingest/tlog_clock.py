@@ -98,12 +98,19 @@ def _restarts(sent: Times, received: Times) -> Places:
         stays = np.flatnonzero(back)
         for k in range(LASTING):
             then = np.minimum(at + 1 + stays + k, len(sent) - 1)
-            lasting = back[then - at - 1] & (late[then] - late[at + stays] > RESTART_NS)
-            stays = stays[lasting]
+            stays = stays[
+                back[then - at - 1] & (late[then] - _latest(late, at, stays) > RESTART_NS)
+            ]
         if not len(stays):
             return np.array(found, np.int64)
         at += 1 + int(stays[0])
         found.append(at)
+
+
+def _latest(late: Times, at: int, stays: Places) -> Times:
+    """How late the last messages before a fall were at most: one alone may be out of place."""
+    before = [late[np.maximum(at + stays - k, at)] for k in range(LASTING)]
+    return np.max(before, axis=0)
 
 
 def turned(raw: Times, received: Times, unit: int) -> Times:
