@@ -20,6 +20,8 @@ MS, US = 1_000_000, 1_000
 """Nanoseconds."""
 RESTART_NS = 5 * 10**9
 """A clock that falls back by more was started anew; messages that overtake each other do less."""
+AROUND_NS = 600 * 10**9
+"""Nothing is sent longer before or after the messages that show the clock; stamps can be broken."""
 LASTING = 3
 """Messages that must show a restart: blocks of a log that were mixed up show one alike."""
 CALENDAR_US = 10**14
@@ -68,7 +70,9 @@ class Boot:
             part = slice(self.edges[start], self.edges[start + 1])
             late, known = self.received[part] - self.sent[part], self.received[part]
             since = np.interp(received[rows] - known[0], known - known[0], late - late[0])
-            sent[rows] = received[rows] - late[0] - np.rint(since).astype(np.int64)
+            about = received[rows] - late[0] - np.rint(since).astype(np.int64)
+            ends = self.sent[part].min() - AROUND_NS, self.sent[part].max() + AROUND_NS
+            sent[rows] = np.clip(about, *ends)
         return sent
 
 
@@ -116,7 +120,9 @@ def _latest(late: Times, at: int, stays: Places) -> Times:
 def turned(raw: Times, received: Times, unit: int) -> Times:
     """A counter of 32 bits without its turns, by the receive times in between [ns]; (N,)."""
     step = np.diff(raw)
-    missing = np.rint((np.diff(received) / unit - step) / TURN).astype(np.int64)
+    # Stamps can be broken: where a turn takes weeks the counter itself says that it began anew.
+    elapsed = np.diff(received) / unit if unit == US else 0.0
+    missing = np.rint((elapsed - step) / TURN).astype(np.int64)
     turns = np.concatenate([[0], np.cumsum(missing)])[: len(raw)]
     return (raw + turns * TURN) * unit
 
