@@ -10,12 +10,14 @@ from trialid.ingest import (
     can_log,
     canboat_log,
     csv_log,
+    dataflash_log,
     excel_log,
     mat_log,
     mcap_log,
     nmea0183_log,
     parquet_log,
     signalk_log,
+    tlog_log,
 )
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
 from trialid.ingest.template_draft import draft as draft_template
@@ -34,6 +36,8 @@ __all__ = [
 
 ADAPTERS: tuple[Adapter, ...] = (
     mcap_log.ADAPTER,
+    dataflash_log.ADAPTER,
+    tlog_log.ADAPTER,
     *can_log.ADAPTERS,
     *canboat_log.ADAPTERS,
     nmea0183_log.ADAPTER,

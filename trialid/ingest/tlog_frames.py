@@ -1,0 +1,203 @@
+"""The frames of a telemetry log: a time stamp of the recorder, then a MAVLink frame, and so on.
+
+Every frame that is passed on has a valid checksum. Where frames do not follow one another exactly,
+each place in the gap that may be a frame is tried.
+Source: mavlink.io, packet serialization; the stamp is microseconds since 1970, big endian.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.ingest import mavlink_crc
+from trialid.ingest.linked_records import Places, Stretch, linked
+from trialid.ingest.mavlink_dialect import Definition
+
+STAMP = 8
+MAGIC_1, MAGIC_2 = 0xFE, 0xFD
+SIGNED = 0x01
+SIGNATURE = 13
+LATEST_US = 4_200_000_000_000_000
+"""Stamps beyond the year 2103 are none."""
+OUT_OF_ORDER_NS = 500_000_000
+PAUSE_NS = 3600 * 10**9
+"""No recorder falls silent for an hour after its first frame, or before its last."""
+LONGEST = 280
+"""Bytes of a signed MAVLink 2 frame with the longest payload."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Frames by place, (N,) each: of the first byte, the payload, and its length [bytes]."""
+
+    at: Places
+    payload: Places
+    length: Places
+    end: Places
+    message: Places
+    system: NDArray[np.uint8]
+    component: NDArray[np.uint8]
+
+    def __getitem__(self, rows: NDArray[np.bool_] | Places) -> "Frames":
+        return Frames(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+
+    def __len__(self) -> int:
+        return len(self.at)
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a log gave.
+
+    `unchecked` counts frames by the number of a message no dialect knows, `failed` frames by
+    message whose checksum is wrong though frames lie before and after; `holes` are bytes
+    `begin, end` that belong to no frame.
+    """
+
+    data: NDArray[np.uint8]
+    frames: Frames
+    stamp: NDArray[np.int64]
+    unchecked: Mapping[int, int]
+    failed: Mapping[int, int]
+    holes: tuple[tuple[int, int], ...]
+
+
+def content(path: Path) -> NDArray[np.uint8]:
+    """The bytes of a log, and behind them LONGEST zeros; (N + LONGEST,)."""
+    size = path.stat().st_size
+    data = np.zeros(size + LONGEST, np.uint8)
+    with path.open("rb") as file:
+        file.readinto(data[:size].data)
+    return data
+
+
+def find(data: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
+    """The good frames of a log, from its `content`."""
+    size = len(data) - LONGEST
+    candidates = _candidates(data, size)
+    chain = linked(candidates.at - STAMP, candidates.end, Stretch(0, size, size - STAMP, STAMP + 1))
+    extra = _extra(candidates.message, known)
+    listed = extra >= 0
+    good = np.zeros(len(candidates), bool)
+    good[chain.kept] = _valid(data, candidates[chain.kept], extra[chain.kept])
+    unknown = chain.kept & ~listed
+    failed = chain.kept & listed & ~good
+    tried = np.flatnonzero(~chain.kept & listed & _in_gap(candidates, good))
+    valid = tried[_valid(data, candidates[tried], extra[tried])]
+    good[_apart(candidates, good, valid)] = True
+    frames = candidates[good]
+    covered = candidates[unknown & ~_covered(candidates, frames)]
+    lost = candidates[failed & ~_covered(candidates, frames)]
+    holes = _holes((frames, covered, lost), size)
+    stamp = _stamps(data, frames.at)
+    return Found(data, frames, stamp, _counts(covered), _counts(lost), holes)
+
+
+def _candidates(data: NDArray[np.uint8], size: int) -> Frames:
+    """Every place behind a stamp at which a frame may begin that ends within the file."""
+    at = np.flatnonzero((data[STAMP:size] == MAGIC_1) | (data[STAMP:size] == MAGIC_2)) + STAMP
+    second = data[at] == MAGIC_2
+    flags = np.where(second, data[at + 2], 0)
+    length = data[at + 1].astype(np.int64)
+    payload = at + np.where(second, 10, 6)
+    end = payload + length + 2 + np.where(flags & SIGNED, SIGNATURE, 0)
+    shift = np.where(second, 2, 0)
+    low = data[at + np.where(second, 7, 5)].astype(np.int64)
+    rest = data[at + 8].astype(np.int64) << 8 | data[at + 9].astype(np.int64) << 16
+    message = np.where(second, low | rest, low)
+    system, component = data[at + 3 + shift], data[at + 4 + shift]
+    every = Frames(at, payload, length, end, message, system, component)
+    return every[(end <= size) & ((flags | SIGNED) == SIGNED)]
+
+
+def _extra(messages: Places, known: Mapping[int, Definition]) -> Places:
+    """The byte that stands for each message's definition, -1 for messages not known; (N,)."""
+    numbers, which = np.unique(messages, return_inverse=True)
+    bytes_ = [known[n].check if n in known else -1 for n in numbers.tolist()]
+    return np.array(bytes_, np.int64)[which] if len(numbers) else np.empty(0, np.int64)
+
+
+def _valid(data: NDArray[np.uint8], frames: Frames, extra: Places) -> NDArray[np.bool_]:
+    """Which frames have the checksum they state; (N,)."""
+    end = frames.payload + frames.length
+    stated = data[end].astype(np.uint16) | data[end + 1].astype(np.uint16) << 8
+    found = mavlink_crc.checksums(data, frames.at + 1, end, (extra & 0xFF).astype(np.uint8))
+    return (stated == found) & (extra >= 0)
+
+
+def _covered(frames: Frames, good: Frames) -> NDArray[np.bool_]:
+    """Which frames overlap one of the good ones, which do not overlap each other; (N,)."""
+    if not len(good):
+        return np.zeros(len(frames), bool)
+    before = np.searchsorted(good.at, frames.at, "right") - 1
+    inside = (before >= 0) & (good.end[np.maximum(before, 0)] > frames.at)
+    after = np.minimum(before + 1, len(good) - 1)
+    reaches = (before + 1 < len(good)) & (good.at[after] - STAMP < frames.end)
+    return inside | reaches
+
+
+def _in_gap(frames: Frames, good: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which candidates lie where no good frame does; (N,)."""
+    return ~_covered(frames, frames[good])
+
+
+def _apart(frames: Frames, good: NDArray[np.bool_], valid: Places) -> list[int]:
+    """Of the frames found in gaps those that do not overlap an earlier one."""
+    taken, reached = [], 0
+    for i, begin, end in zip(
+        valid.tolist(), frames.at[valid].tolist(), frames.end[valid].tolist(), strict=True
+    ):
+        if begin - STAMP >= reached:
+            taken.append(i)
+            reached = end
+    return taken
+
+
+def _holes(frames: Sequence[Frames], size: int) -> tuple[tuple[int, int], ...]:
+    """Bytes that belong to no frame, good, unknown or failed."""
+    begin = np.concatenate([one.at - STAMP for one in frames])
+    end = np.concatenate([one.end for one in frames])
+    order = np.argsort(begin)
+    begins, ends = np.append(begin[order], size), np.append(0, end[order])
+    gaps = np.flatnonzero(begins > ends)
+    return tuple(zip(ends[gaps].tolist(), begins[gaps].tolist(), strict=True))
+
+
+def _counts(frames: Frames) -> dict[int, int]:
+    numbers, counts = np.unique(frames.message, return_counts=True)
+    return dict(zip(numbers.tolist(), counts.tolist(), strict=True))
+
+
+def _stamps(data: NDArray[np.uint8], at: Places) -> NDArray[np.int64]:
+    """Receive times [ns] since 1970; (N,).
+
+    No checksum covers them. One that is out of order among its neighbours by more than recorders
+    mix up is replaced by the median of five.
+    """
+    raw = np.ndarray((len(data) - STAMP + 1,), ">u8", data.data, 0, (1,))[at - STAMP]
+    stamps = np.minimum(raw, LATEST_US).astype(np.int64) * 1000
+    if len(stamps) < 3:
+        return stamps
+    for end, beside in ((0, 1), (-1, -2)):
+        step = (stamps[beside] - stamps[end]) * (1 if end == 0 else -1)
+        if not -OUT_OF_ORDER_NS <= step <= PAUSE_NS:
+            stamps[end] = stamps[beside]
+    padded = np.pad(stamps, 2, mode="edge")
+    middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=1)
+    off = np.abs(stamps - middle) > OUT_OF_ORDER_NS
+    return np.where(off, middle.astype(np.int64), stamps)
+
+
+def payloads(found: Found, rows: Places, definition: Definition) -> NDArray[np.void]:
+    """Payloads of frames of one message as a table, zeros that were cut off put back; (N,)."""
+    size = definition.kind.itemsize
+    frames = found.frames[rows]
+    count = len(found.data) - size + 1
+    everywhere: NDArray[np.uint8] = np.ndarray((count, size), np.uint8, found.data.data, 0, (1, 1))
+    raw = everywhere[np.minimum(frames.payload, count - 1)]
+    short = np.flatnonzero(frames.length < size)
+    raw[short] *= np.arange(size) < frames.length[short, None]
+    return raw.view(definition.kind)[:, 0]

@@ -1,0 +1,396 @@
+"""MAVLink telemetry logs of ground stations (`.tlog`).
+
+A channel is `ATTITUDE/1/1:roll`, with the system and component that sent it, then the instance of
+the device where it is not 0: `BATTERY_STATUS/1/1/1:current_battery`. What a sender says after it
+restarted is in channels of their own, `ATTITUDE/1/1/boot2:roll`. `servo/1/1/3:deflection` is what
+rudder servo 3 of the autopilot 1/1 was ordered. Texts are no channels, nor are parameters.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.errors import LogError
+from trialid.ingest import (
+    gps_time,
+    mavlink_dialect,
+    mavlink_meanings,
+    servo_deflection,
+    tlog_clock,
+    tlog_frames,
+    vehicle_modes,
+)
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked, sha256
+from trialid.ingest.linked_records import Places
+from trialid.ingest.mavlink_dialect import Definition, Field
+from trialid.recording import Channel, Recording
+
+CHAIN = 3
+"""Frames that must follow one another for a log to be recognised, if there are so many."""
+HEAD_SEARCHED = 600
+"""A log cut at its front shows its first frame within so many bytes."""
+
+PARAMETERS = frozenset({"PARAM_VALUE", "PARAM_SET", "PARAM_EXT_VALUE", "PARAM_EXT_SET"})
+SERVO_MESSAGE, SERVOS_A_PORT = "SERVO_OUTPUT_RAW", 16
+ROVERS = (10, 11)
+"""MAV_TYPE of a ground rover and of a surface boat."""
+NO_AUTOPILOT = 8
+ARMED = 128
+
+
+def recognises(head: bytes) -> bool:
+    """Frames behind stamps, one exactly after the other."""
+    return any(_chain(head, at) for at in range(min(HEAD_SEARCHED, len(head))))
+
+
+def _chain(head: bytes, at: int) -> bool:
+    """True when frames follow one another from `at`, up to the end of a short file."""
+    stamps: list[int] = []
+    while len(stamps) < CHAIN:
+        size = _frame_size(head[at : at + 11])
+        stamp = int.from_bytes(head[at : at + 8], "big")
+        if (
+            not size
+            or stamp > tlog_frames.LATEST_US
+            or (stamps and abs(stamp - stamps[-1]) > 10**12)
+        ):
+            return False
+        stamps.append(stamp)
+        at += tlog_frames.STAMP + size
+        if at >= len(head):
+            return len(stamps) > 1 or at == len(head)
+    return True
+
+
+def _frame_size(head: bytes) -> int:
+    """Bytes of a frame by what follows its stamp; 0 when it is none."""
+    if len(head) < 11:
+        return 0
+    magic, length, flags = head[8:11]
+    if magic == tlog_frames.MAGIC_1:
+        return length + 8
+    signed = flags & tlog_frames.SIGNED
+    good = magic == tlog_frames.MAGIC_2 and flags in {0, tlog_frames.SIGNED}
+    return length + 12 + tlog_frames.SIGNATURE * signed if good else 0
+
+
+@dataclass(frozen=True)
+class Sender:
+    """One component of a system: its clock and its parameters."""
+
+    system: int
+    component: int
+    boot: tlog_clock.Boot | None
+
+    @property
+    def name(self) -> str:
+        """How channels and remarks call it."""
+        return f"{self.system}/{self.component}"
+
+
+@dataclass(frozen=True)
+class Log:
+    """The frames of a file, the definitions of their messages, and who sent them."""
+
+    found: tlog_frames.Found
+    known: Mapping[int, Definition]
+    senders: tuple[Sender, ...]
+
+    def rows(self, sender: Sender, message: int) -> Places:
+        """Indices of one sender's frames of one message; (N,)."""
+        return _rows(self.found, (sender.system, sender.component), message)
+
+    def number(self, name: str) -> int:
+        """Number of a message by its name."""
+        return next(number for number, one in self.known.items() if one.name == name)
+
+
+def _rows(found: tlog_frames.Found, source: tuple[int, int], message: int) -> Places:
+    frames = found.frames
+    same = (frames.system == source[0]) & (frames.component == source[1])
+    return np.flatnonzero(same & (frames.message == message))
+
+
+@np.errstate(invalid="ignore", over="ignore")  # a broken number is no reason to warn
+def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
+    """Read the wanted channels; frames with a wrong checksum are left out and counted.
+
+    Raises LogError when not one frame is good.
+    """
+    del aids
+    known = mavlink_dialect.definitions()
+    found = tlog_frames.find(tlog_frames.content(path), known)
+    if not len(found.frames):
+        raise LogError(f"{path}: holds no frame with a valid checksum; take another copy of it")
+    log = Log(found, known, _senders(found, known))
+    channels = {one.name: one for one in _channels(log, wanted)}
+    remarks = list(_damage(log))
+    for sender in log.senders:
+        steering, names = _deflections(log, sender, wanted)
+        channels |= steering
+        remarks += _of_sender(log, sender, names)
+    remarks.append(_recorded(found))
+    return Recording(path, ADAPTER.name, sha256(path), channels, tuple(remarks))
+
+
+def _senders(found: tlog_frames.Found, known: Mapping[int, Definition]) -> tuple[Sender, ...]:
+    frames = found.frames
+    pairs = frames.system.astype(np.int64) << 8 | frames.component
+    sources = [divmod(pair, 256) for pair in np.unique(pairs).tolist()]
+    return tuple(Sender(one[0], one[1], _boot(found, known, one)) for one in sources)
+
+
+def _boot(
+    found: tlog_frames.Found, known: Mapping[int, Definition], source: tuple[int, int]
+) -> tlog_clock.Boot | None:
+    """The clock of a sender by its most frequent message that carries time_boot_ms."""
+    frames = found.frames
+    mine = (frames.system == source[0]) & (frames.component == source[1])
+    numbers, counts = np.unique(frames.message[mine], return_counts=True)
+    for number in numbers[np.argsort(-counts, kind="stable")].tolist():
+        one = known[number]
+        if one.clock == "time_boot_ms":
+            rows = np.flatnonzero(mine & (frames.message == number))
+            raw = tlog_frames.payloads(found, rows, one)["time_boot_ms"]
+            boot = tlog_clock.boot(f"{one.name} time_boot_ms", rows, found.stamp[rows], raw)
+            if boot is not None:
+                return boot
+    return None
+
+
+def _channels(log: Log, wanted: Wanted) -> Iterator[Channel]:
+    for number in np.unique(log.found.frames.message).tolist():
+        one = log.known[number]
+        if one.name in PARAMETERS or not _maybe(one.name, wanted):
+            continue
+        for sender in log.senders:
+            rows = log.rows(sender, number)
+            if len(rows):
+                yield from _of_message(log, sender, one, rows, wanted)
+
+
+def _maybe(message: str, wanted: Wanted) -> bool:
+    """True when a channel of this message may be wanted, of whichever sender."""
+    begin = f"{message}/"
+    return wanted is None or any(w.startswith(begin) or begin.startswith(w) for w in wanted)
+
+
+def _of_message(
+    log: Log, sender: Sender, one: Definition, rows: Places, wanted: Wanted
+) -> Iterator[Channel]:
+    """The wanted channels of one message from one sender, device by device, start by start."""
+    table = tlog_frames.payloads(log.found, rows, one)
+    sent = _sent(log, sender, one, rows, table)
+    for source, part in _devices(sender, one, rows, table):
+        for name, field, raw in _columns(one, source, table[part]):
+            if asked(name, wanted):
+                received = log.found.stamp[rows[part]] if sent.own else None
+                yield _channel(one, field, name, (sent.t[part], raw, received), sent.clock)
+
+
+def _sent(
+    log: Log, sender: Sender, one: Definition, rows: Places, table: NDArray[np.void]
+) -> tlog_clock.Sent:
+    raw = table[one.clock] if one.clock else None
+    return tlog_clock.sent(one.clock, raw, rows, log.found.stamp[rows], sender.boot)
+
+
+def _devices(
+    sender: Sender, one: Definition, rows: Places, table: NDArray[np.void]
+) -> Iterator[tuple[str, Places]]:
+    """What stands between message and field in channel names, and the rows it is for."""
+    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    device = table[one.instance] if one.instance else np.zeros(len(rows), np.uint8)
+    devices, which = np.unique(device, return_inverse=True)
+    for i, start in sorted(set(zip(which.tolist(), starts.tolist(), strict=True))):
+        part = np.flatnonzero((which == i) & (starts == start))
+        boot = f"/boot{start + 1}" if start else ""
+        yield f"/{sender.name}{_device(devices[i].item())}{boot}", part
+
+
+def _device(instance: int | bytes) -> str:
+    """How an instance stands in a channel's name; 0 does not."""
+    if isinstance(instance, bytes):
+        return "/" + re.sub(r"[^\w.+-]", "_", instance.decode("latin-1"))
+    return f"/{instance}" if instance else ""
+
+
+def _columns(
+    one: Definition, source: str, table: NDArray[np.void]
+) -> Iterator[tuple[str, Field, NDArray[Any]]]:
+    for field in one.numbers:
+        name = f"{one.name}{source}:{field.name}"
+        if field.count == 1:
+            yield name, field, table[field.name]
+        else:
+            for k in range(field.count):
+                yield f"{name}[{k}]", field, table[field.name][:, k]
+
+
+def _channel(
+    one: Definition,
+    field: Field,
+    name: str,
+    columns: tuple[NDArray[np.int64], NDArray[Any], NDArray[np.int64] | None],
+    clock: str,
+) -> Channel:
+    t, raw, received = columns
+    key = (one.name, field.name)
+    meaning = mavlink_meanings.MAVLINK.get(key, mavlink_meanings.Meaning(""))
+    unit, divisor = mavlink_meanings.unit(field.unit)
+    words = meaning.words or mavlink_meanings.MAVLINK_MESSAGES.get(one.name, "")
+    y = mavlink_dialect.known(field, raw)
+    return Channel(
+        name,
+        t,
+        y if divisor == 1.0 else y / divisor,
+        unit or meaning.unit,
+        clock,
+        f"MAVLink {name}" + (f", {words}" if words else ""),
+        meaning.quantity,
+        meaning.positive,
+        received,
+    )
+
+
+def _parameters(log: Log, sender: Sender, start: int) -> servo_deflection.Parameters:
+    """Parameters as they were during one start of the sender.
+
+    What was said in an earlier start held from its beginning on; what is only said later is the
+    best that is known.
+    """
+    number = log.number("PARAM_VALUE")
+    rows = log.rows(sender, number)
+    table = tlog_frames.payloads(log.found, rows, log.known[number])
+    sent = _sent(log, sender, log.known[number], rows, table).t
+    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    t = np.where(
+        starts < start,
+        servo_deflection.EVER,
+        np.where(starts > start, servo_deflection.NEVER, sent),
+    )
+    names = [name.decode("latin-1") for name in table["param_id"].tolist()]
+    return servo_deflection.parameters(names, t, table["param_value"].astype(np.float64))
+
+
+def _deflections(
+    log: Log, sender: Sender, wanted: Wanted
+) -> tuple[dict[str, Channel], dict[int, str]]:
+    """Channels of what rudder servos were ordered, and their names by output."""
+    one = log.known[log.number(SERVO_MESSAGE)]
+    rows = log.rows(sender, one.number)
+    table = tlog_frames.payloads(log.found, rows, one)
+    sent = _sent(log, sender, one, rows, table)
+    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    channels: dict[str, Channel] = {}
+    names: dict[int, str] = {}
+    for start in np.unique(starts).tolist():
+        known = _parameters(log, sender, start)
+        for n, function in servo_deflection.steering(known).items():
+            port, output = divmod(n - 1, SERVOS_A_PORT)
+            part = np.flatnonzero((starts == start) & (table["port"] == port))
+            boot = f"/boot{start + 1}" if start else ""
+            if servo_deflection.missing(known, n) or not len(part):
+                continue
+            name = f"servo/{sender.name}/{n}{boot}:deflection"
+            names.setdefault(n, name)
+            if asked(name, wanted):
+                t = sent.t[part]
+                pwm = table[f"servo{output + 1}_raw"][part].astype(np.float64)
+                y = servo_deflection.deflection(pwm, t, n, known)
+                words = servo_deflection.description(n, function)
+                channels[name] = Channel(
+                    name, t, y, None, sent.clock, words, "delta_order", "starboard",
+                    log.found.stamp[rows[part]],
+                )  # fmt: skip
+    return channels, names
+
+
+def _damage(log: Log) -> Iterator[str]:
+    """What was lost and what was left out."""
+    found = log.found
+    seen = len(found.frames)
+    if found.holes:
+        lost = sum(end - begin for begin, end in found.holes)
+        about = seen + max(1, round(lost * seen / max(len(found.data) - lost, 1)))
+        spans = ", ".join(_span(found, *hole) for hole in found.holes[:3])
+        more = f" and at {len(found.holes) - 3} places more" if len(found.holes) > 3 else ""
+        yield f"recovered {seen} of about {about} messages, lost {spans}{more} (receive times)"
+    if found.failed:
+        names = ", ".join(sorted(log.known[number].name for number in found.failed))
+        yield f"{sum(found.failed.values())} messages fail their checksum, left out: {names}"
+    if found.unchecked:
+        numbers = ", ".join(str(number) for number in list(found.unchecked)[:8])
+        count = sum(found.unchecked.values())
+        yield f"{count} messages of numbers no MAVLink dialect here knows, left out: {numbers}"
+
+
+def _span(found: tlog_frames.Found, begin: int, end: int) -> str:
+    """Receive times around a hole."""
+    i = int(np.searchsorted(found.frames.at, begin))
+    before = _date(int(found.stamp[i - 1])) if i else "the start"
+    after = _date(int(found.stamp[i])) if i < len(found.stamp) else "the end"
+    return f"{before}-{after.rpartition(' ')[2] if i else after}"
+
+
+def _date(ns: int) -> str:
+    date = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(
+        microseconds=min(ns // 1000, tlog_frames.LATEST_US)
+    )
+    return date.strftime("%Y-%m-%d %H:%M:%S")
+
+
+def _of_sender(log: Log, sender: Sender, names: dict[int, str]) -> Iterator[str]:
+    """Remarks on one sender: its clock, its servos and parameters, its modes."""
+    for words in _words_of_sender(log, sender, names):
+        yield f"{sender.name}: {words}"
+
+
+def _words_of_sender(log: Log, sender: Sender, names: dict[int, str]) -> Iterator[str]:
+    if sender.boot is not None and len(sender.boot.first):
+        dates = ", ".join(_date(int(log.found.stamp[i])) for i in sender.boot.first[:3])
+        yield (
+            f"restarted {len(sender.boot.first)} times (received {dates}); the channels after a "
+            "restart are called boot2 and so on"
+        )
+    beats = log.rows(sender, log.number("HEARTBEAT"))
+    one = log.known[log.number("HEARTBEAT")]
+    table = tlog_frames.payloads(log.found, beats, one)
+    steers = table["autopilot"] != NO_AUTOPILOT
+    if not steers.any():
+        return
+    known = _parameters(log, sender, 0)
+    yield from servo_deflection.remarks(known, names)
+    yield from servo_deflection.changes(known)
+    t = _sent(log, sender, one, beats, table).t
+    rover = bool(np.isin(table["type"], ROVERS).any())
+    yield from vehicle_modes.modes(t, table["custom_mode"].astype(np.int64), rover)
+    yield from vehicle_modes.arming(t, (table["base_mode"] & ARMED) != 0)
+    yield from _start_date(log, sender)
+
+
+def _start_date(log: Log, sender: Sender) -> Iterator[str]:
+    """A remark on the date, by the sender's own SYSTEM_TIME."""
+    number = log.number("SYSTEM_TIME")
+    rows = log.rows(sender, number)
+    table = tlog_frames.payloads(log.found, rows, log.known[number])
+    dated = np.flatnonzero(table["time_unix_usec"] > tlog_clock.CALENDAR_US)
+    if len(dated) and table["time_unix_usec"][dated[0]] < tlog_frames.LATEST_US:
+        unix = int(table["time_unix_usec"][dated[0]])
+        since = int(table["time_boot_ms"][dated[0]]) * 1000
+        start = gps_time.UNIX + timedelta(microseconds=unix - since)
+        yield gps_time.words(start, "SYSTEM_TIME")
+
+
+def _recorded(found: tlog_frames.Found) -> str:
+    first, last = _date(int(found.stamp.min())), _date(int(found.stamp.max()))
+    return f"received {first} to {last} by the clock of the ground station"
+
+
+ADAPTER = Adapter("tlog", recognises, read)
