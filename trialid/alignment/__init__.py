@@ -1,15 +1,16 @@
 """Recording to Trial: channels on their own clocks to signals in SI on one clock.
 
 `align` is the whole of it: find each channel and bring it to SI and to our positive direction
-(`sources`, `frames`), put its stamps in order and choose the common clock (`clocks`), resample with
-one and the same filter (`resample`), and say what was noticed on the way (`quality`, `signs`).
+(`sources`, `frames`), repair its stamps (`clock_health`, `dejitter`), put them in order and choose
+the common clock (`clocks`), resample with one and the same filter (`resample`), and say what was
+noticed on the way (`quality`, `signs`).
 """
 
 import dataclasses
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from trialid.alignment import clocks, frames, quality, resample, signs
+from trialid.alignment import clock_health, clocks, dejitter, frames, quality, resample, signs
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.sources import SignalSource
 from trialid.errors import AlignmentError
@@ -26,6 +27,8 @@ def align(
     sources: Sequence[SignalSource],
     period: float,
     window: tuple[float, float] | None = None,
+    *,
+    repair: bool = True,
 ) -> Trial:
     """The trial in `recordings`, its signals in SI on one clock.
 
@@ -41,6 +44,9 @@ def align(
         Time between samples of the trial [s].
     window
         Part of the trial to use [s], from the first instant all channels cover; None for all.
+    repair
+        Put the stamps of evenly paced sensors on a line through their count of samples (`dejitter`)
+        and undo steps of a sensor's clock; else every stamp counts as logged.
 
     Raises LogError for a channel that is in no log, UnitError for a unit, and AlignmentError for
     everything that would have to be guessed: a missing sign or unit, signals that do not overlap
@@ -50,6 +56,8 @@ def align(
     _check_sources(sources, where)
     at = [f"{where}, signal {source.quantity!r}" for source in sources]
     logged = [frames.series(s, recordings, w) for s, w in zip(sources, at, strict=True)]
+    repairs = [_repaired(one) if repair else (one, ()) for one in logged]
+    logged = [one for one, _ in repairs]
     series = [clocks.ordered(one) for one in logged]
     for one, place in zip(series, at, strict=True):
         clocks.check(one, place)
@@ -57,11 +65,18 @@ def align(
     trial = _trial(name, use, recordings, series, grid, where)
     remarks = (
         *_of_logs(recordings),
+        *(word for _, words in repairs for word in words),
         *_of_signals(logged, series, grid),
         *quality.of_trial(series, grid, window),
         *signs.check(trial, {source.quantity: source for source in sources}, where),
     )
     return dataclasses.replace(trial, remarks=remarks)
+
+
+def _repaired(logged: Series) -> tuple[Series, tuple[str, ...]]:
+    stepless, of_clock = clock_health.set_right(logged)
+    even, of_stamps = dejitter.repaired(stepless)
+    return even, (*of_clock, *of_stamps)
 
 
 def _check_sources(sources: Sequence[SignalSource], where: str) -> None:

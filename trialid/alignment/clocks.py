@@ -38,12 +38,15 @@ class Series:
         Values, NaN or infinite where not available; (N,).
     clock
         Which clock the stamps are of, in words.
+    received
+        When the recorder got the samples [ns], where that is another time; (N,).
     """
 
     quantity: Quantity
     t: NDArray[np.int64]
     y: NDArray[np.float64]
     clock: str
+    received: NDArray[np.int64] | None = None
 
     @property
     def period(self) -> float:
