@@ -1,5 +1,6 @@
 """A sensor's clock against the recorder's, where a log holds both."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,8 @@ CLEAR = 8.0
 """... and in standard deviations of the time from stamp to recorder."""
 MOST = 100
 """Times a clock is set; more is no clock."""
+ABOUT = 500
+"""Samples on each side that measure a step."""
 SURE = 3.0
 """Standard errors from which on a drift is said."""
 
@@ -37,7 +40,7 @@ def set_right(series: Series) -> tuple[Series, tuple[str, ...]]:
     ahead = (series.t - series.received) / 1e9
     level, sizes = _steps(ahead)
     words = [
-        f"its clock was set {size:+.4g} s while the recorder's ran on; undone" for size in sizes
+        f"its clock was set {size:+.3g} s while the recorder's ran on; undone" for size in sizes
     ]
     words += _health(-(ahead - level), series.received / 1e9)
     t = series.t - np.rint(level * 1e9).astype(np.int64) if sizes else series.t
@@ -54,13 +57,13 @@ def _steps(ahead: Vector) -> tuple[Vector, list[float]]:
     at = np.array([i for i in at if lasting(ahead, int(i) + 1, float(steps[i]))], np.int64)
     edges = np.concatenate([[0], at + 1, [len(ahead)]])
     counts = np.diff(edges)
-    heights = np.concatenate([[0.0], np.cumsum([_size(ahead, int(i) + 1) for i in at])])
-    return np.repeat(heights - heights[np.argmax(counts)], counts), list(np.diff(heights))
-
-
-def _size(ahead: Vector, at: int) -> float:
-    about = 15
-    return float(np.median(ahead[at : at + about]) - np.median(ahead[max(0, at - about) : at]))
+    levels = [ahead[a:b] for a, b in itertools.pairwise(edges)]
+    sizes = [
+        float(np.median(after[:ABOUT]) - np.median(before[-ABOUT:]))
+        for before, after in itertools.pairwise(levels)
+    ]
+    heights = np.concatenate([[0.0], np.cumsum(sizes)])
+    return np.repeat(heights - heights[np.argmax(counts)], counts), sizes
 
 
 def _health(late: Vector, at: Vector) -> list[str]:

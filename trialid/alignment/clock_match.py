@@ -33,9 +33,9 @@ MOST = 2**17
 """Steps of the common grid at most."""
 SMOOTH = (4, 16, 64)
 """Steps of the running mean, taken twice, and of the difference that gives a rate."""
-CLEAN = 0.97
-"""Correlation from which on no more smoothing is needed; which one is taken must not depend on the
-interval it gives, or that would be the shortest by chance."""
+CLEAN = 0.9
+"""Correlation of the slopes from which on no more smoothing is needed. The choice must not depend on
+the interval that comes of it: that would be the shortest by chance."""
 WORSE = 1.3
 """Times what the best relation leaves unexplained that any other must leave, at another lag."""
 MOVES = 0.05
@@ -71,8 +71,8 @@ class Match:
         How much it runs fast, 0 where that cannot be told from none, and half of its interval.
     middle
         Instant of the trial at which the offset holds [ns].
-    strength
-        Correlation.
+    clean
+        Correlation of the slopes of what was compared, which is low where noise makes them.
     how
         What was compared, in words.
     """
@@ -82,7 +82,7 @@ class Match:
     drift: float
     drift_reach: float
     middle: float
-    strength: float
+    clean: float
     how: str
 
 
@@ -129,7 +129,7 @@ def matched(here: Signal, there: Signal, about: int, within: float, where: str) 
     tries = [_best(here, there, origin + about, origin, width, within) for width in widths]
     good = [one for one in tries if isinstance(one, Match) and one.reach < NARROW * within]
     if good:
-        return next((one for one in good if one.strength > CLEAN), good[-1])
+        return next((one for one in good if one.clean > CLEAN), good[-1])
     reasons = [one for one in tries if isinstance(one, str)]
     reason = reasons[0] if reasons else "no lag is better than its neighbours"
     raise AlignmentError(
@@ -317,7 +317,7 @@ def _refined(peak: _Peak, a: _Grid, b: _Grid, how: str, origin: int) -> Match:
         float(drift) if sure else 0.0,
         QUANTILE * float(errors[1]),
         origin + middle * 1e9,
-        peak.strength,
+        abs(float(np.corrcoef(np.interp(at, a.t, slope), np.gradient(b.y, b.dt)[use])[0, 1])),
         words + (", of opposite sign" if gain < 0 else ""),
     )
 

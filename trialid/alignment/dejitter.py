@@ -21,6 +21,9 @@ from trialid.alignment.clocks import Series, moment
 from trialid.alignment.sample_index import Count, Index, Vector, counted, pace, quantum
 from trialid.alignment.time_steps import breaks, unwrapped, wrap_words
 
+TABLE = 0.5
+"""Share of values below which a channel is the slow one of a table, and its own pace is not that of
+the rows."""
 FEWEST_COUNTED = 30
 """Samples in a row below which a pace cannot be told from chance."""
 EVEN = 0.01
@@ -32,6 +35,8 @@ MOST_JUMPS = 0.25
 """Share of messages that may follow a loss, ..."""
 IN_WINDOW = 0.3
 """... and losses that may fall into one running median."""
+WORTH = 1.1
+"""Times the residual of a count without a loss that a count with losses must better."""
 WANDER = 0.6
 """Correlation of neighbouring residuals above which it is the pace that varies, not the stamping"""
 ROUGHER = 3.0
@@ -88,7 +93,9 @@ class Line:
 def repaired(series: Series) -> tuple[Series, tuple[str, ...]]:
     """The series, in the order of the log, on repaired stamps, and remarks on what was done."""
     finite = np.isfinite(series.y)
-    logged, y = series.t[finite], series.y[finite]
+    slow = finite.sum() < TABLE * len(finite)
+    use = finite if slow else np.ones(len(finite), np.bool_)
+    logged, y = series.t[use], series.y[use]
     if len(logged) < FEWEST_COUNTED or _even(logged):
         return series, ()
     origin = int(logged[0])
@@ -102,7 +109,7 @@ def repaired(series: Series) -> tuple[Series, tuple[str, ...]]:
         return series, remarks
     everyone = new if len(new) == len(t) else new[np.cumsum(kept)[first] - 1]
     made = origin + np.rint(everyone * 1e9).astype(np.int64)
-    return replace(series, t=_for_all(series.t, finite, made)), remarks
+    return replace(series, t=_for_all(series.t, use, made)), remarks
 
 
 def _repaired(t: Vector, y: Vector, origin: int) -> tuple[Vector, list[str]]:
@@ -127,13 +134,16 @@ def _first_delivery(t: Vector, y: Vector) -> NDArray[np.int64]:
     So a log that is delivered again from some point on is no clock that went back.
     """
     own = np.arange(len(t))
-    again = t < np.maximum.accumulate(t)
-    if not again.any():
+    behind = t < np.maximum.accumulate(t)
+    if not behind.any():
         return own
     _, first, inverse = np.unique(
         np.column_stack([t, y]), axis=0, return_index=True, return_inverse=True
     )
-    return np.where(again, first[inverse.reshape(-1)], own)
+    earlier = first[inverse.reshape(-1)]
+    # the last message of the stretch is level with the latest, not behind it
+    since = np.maximum.accumulate(np.where(behind, own, -1))
+    return np.where(since > earlier, earlier, own)
 
 
 def _even(t: NDArray[np.int64]) -> bool:
@@ -154,21 +164,31 @@ def _line(t: Vector, y: Vector) -> Line:
         return Line(t, float(np.median(np.diff(t))))
     if pace(t) <= 0.0:
         return Line(t, 0.0, why_not="the clock stood still")
-    count = counted(t)
+    count, plain = counted(t), _unbroken(t)
     if count.misfit > CHANCE or count.jumps > min(MOST_JUMPS, IN_WINDOW / count.width):
-        return Line(t, 0.0, why_not=UNEVEN)
+        line = Line(t, 0.0) if count.bundled else _regressed(t, y, plain)
+        return line if line.before else Line(t, 0.0, why_not=UNEVEN)
+    if count.jumps and not count.bundled:
+        bridged, whole = (_straightened(t, one)[1] for one in (count, plain))
+        count = plain if whole <= WORTH * bridged else count
     return _regressed(t, y, count)
+
+
+def _unbroken(t: Vector) -> Count:
+    """Every message as one sample: what is left to believe where jitter hides a whole period."""
+    n = np.arange(len(t))
+    return Count(max(pace(t), TINY), n, n, "", 0.0, 0.0, 1)
 
 
 def _regressed(t: Vector, y: Vector, count: Count) -> Line:
     """The stretch on a regression, unless it is even enough or something speaks against it."""
     fit, before, after = _straightened(t, count)
+    period = float(fit[-1] - fit[0]) / max(1, int(count.n[-1] - count.n[0]))
     if before <= EVEN * count.period and not count.bundled:
-        return Line(t, count.period)
+        return Line(t, period)
     if why_not := _doubt(t, fit, count, y):
         return Line(t, 0.0, why_not=why_not)
     late, words = _constant(t, count)
-    period = float(fit[-1] - fit[0]) / max(1, int(count.n[-1] - count.n[0]))
     return Line(fit + late, period, before, after, _lost(count), words)
 
 
@@ -251,7 +271,7 @@ def _rougher(t: Vector, fit: Vector, n: Index, y: Vector) -> bool:
     in_row = (np.diff(n) == 1) & (np.diff(t) > 0)
     inside = in_row[:-3] & in_row[1:-2] & in_row[2:-1] & in_row[3:]
     worse = _surprise(fit, y)[inside] - _surprise(t, y)[inside]
-    worse = worse[worse != 0]
+    worse = worse[np.isfinite(worse) & (worse != 0)]
     if len(worse) < FEWEST_COUNTED:
         return False
     # a sample is in five comparisons

@@ -211,7 +211,7 @@ def _without_odd(k: Index) -> Index:
     if len(k) < 3:
         return k
     middle = np.median([k[:-2], k[1:-1], k[2:]], axis=0).astype(np.int64)
-    return np.concatenate([middle[:1], middle, middle[-1:]])
+    return np.concatenate([k[:1], middle, k[-1:]])
 
 
 def _sharpened(k: Index, x: Vector, width: int) -> Index:

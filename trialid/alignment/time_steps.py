@@ -23,6 +23,8 @@ WRAPS: Final = {
 """Time [s] after which a counter begins again."""
 SOON = 10.0
 """Periods after the last stamp within which the first of a new turn comes."""
+TURN = 20.0
+"""Periods a turn of a counter has at least; a shorter step back is jitter."""
 ABOUT = 15
 """Samples on each side that tell a step of the clock from a single odd stamp."""
 GAP = 50.0
@@ -45,7 +47,8 @@ def unwrapped(t: Vector) -> tuple[Vector, list[float]]:
     steps = np.diff(t, prepend=t[0])
     for at in back + 1:
         ahead = {turn: steps[at] + turn for turn in WRAPS}
-        turn = next((w for w, rest in ahead.items() if 0 <= rest <= SOON * period), None)
+        within = min(SOON * period, -steps[at])
+        turn = next((w for w, x in ahead.items() if 0 <= x <= within and w > TURN * period), None)
         if turn is not None:
             steps[at] = ahead[turn]
             turns.append(turn)
