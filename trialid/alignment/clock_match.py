@@ -34,8 +34,8 @@ MOST = 2**17
 SMOOTH = (4, 16, 64)
 """Steps of the running mean, taken twice, and of the difference that gives a rate."""
 CLEAN = 0.9
-"""Correlation of the slopes from which on no more smoothing is needed. The choice must not depend on
-the interval that comes of it: that would be the shortest by chance."""
+"""Correlation of the slopes from which on no smoothing more is needed. The choice must not depend
+on the interval that comes of it: that would be the shortest by chance."""
 WORSE = 1.3
 """Times what the best relation leaves unexplained that any other must leave, at another lag."""
 MOVES = 0.05
@@ -213,11 +213,11 @@ def _peak(a: _Grid, b: _Grid, within: float) -> _Peak:
     near = np.where(far, 0.0, np.abs(rho))
     best, beyond = int(np.argmax(near)), int(np.argmax(np.where(far, np.abs(rho), 0.0)))
     strength, lag = float(near[best]), int(lags[best])
+    if abs(rho[beyond]) > WEAK and 1.0 - rho[beyond] ** 2 < (1.0 - strength**2) / BEYOND:
+        words = f"they agree better {abs(ahead[beyond]):.4g} s apart, and within = {within:g} s"
+        return _Peak(float(abs(rho[beyond])), lag, words)
     if strength < WEAK:
         return _Peak(strength, lag, f"the best correlation within {within:g} s is {strength:.2f}")
-    if 1.0 - rho[beyond] ** 2 < (1.0 - strength**2) / BEYOND:
-        words = f"they agree better {abs(ahead[beyond]):.4g} s apart, and within = {within:g} s"
-        return _Peak(strength, lag, words)
     lobe = np.sign(rho[best]) * rho > 0.5 * strength
     ends = np.flatnonzero(~lobe)
     near[ends[ends < best].max(initial=-1) + 1 : ends[ends > best].min(initial=len(rho))] = 0.0
