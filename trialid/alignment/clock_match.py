@@ -283,43 +283,49 @@ def _better(a: _Grid, b: _Grid, best: int, rival: int, rho: Vector) -> bool:
 
 
 def _refined(peak: _Peak, a: _Grid, b: _Grid, how: str, origin: int) -> Match:
-    """Lag and drift where the squares are least; their spread by parts of the record.
+    """Lag and drift where the squares are least; their spread by parts of the record."""
+    middle = float(np.mean(b.t[b.good]))
+    ahead, drift = a.start - b.start + a.dt * peak.lag, 0.0
+    for _ in range(ROUNDS):
+        pulls, curve, gain, clean = _pull(a, b, ahead, drift, middle)
+        step = -np.linalg.solve(curve, pulls.sum(axis=0))
+        limit = np.array([1.0, 2.0 / max(1.0, len(pulls) * a.dt)])
+        ahead, drift = np.array([ahead, drift]) + np.clip(step, -limit, limit)
+    inverse = np.linalg.inv(curve)
+    errors = np.sqrt(np.diag(inverse @ _spread(pulls) @ inverse.T))
+    words = f"{how}, correlation {peak.strength:.2f} over {len(pulls) * a.dt:.0f} s"
+    return Match(
+        float(ahead),
+        QUANTILE * float(errors[0]),
+        float(drift) if abs(drift) > SURE * errors[1] else 0.0,
+        QUANTILE * float(errors[1]),
+        origin + middle * 1e9,
+        clean,
+        words + (", of opposite sign" if gain < 0 else ""),
+    )
+
+
+def _pull(
+    a: _Grid, b: _Grid, ahead: float, drift: float, middle: float
+) -> tuple[Vector, Vector, float, float]:
+    """Pull of each sample at lag and drift (n, 2), curvature (2, 2), gain, likeness of slopes.
 
     The curvature is that of the correlation, to which the noise of neither channel adds; the sum of
     squared slopes would take their noise for motion, and the interval would be too small.
     """
-    middle = float(np.mean(b.t[b.good]))
     slope = np.gradient(a.y, a.dt)
     bend = np.gradient(slope, a.dt)
-    ahead, drift = a.start - b.start + a.dt * peak.lag, 0.0
-    for _ in range(ROUNDS):
-        at = b.t + ahead + drift * (b.t - middle)
-        use = b.good & (np.interp(at, a.t, a.good, 0.0, 0.0) > 0.999)
-        t, at, y = b.t[use] - middle, at[use], b.y[use]
-        level = np.interp(at, a.t, a.y)
-        (offset, gain), *_ = np.linalg.lstsq(
-            np.column_stack([np.ones(len(t)), level]), y, rcond=None
-        )
-        by = np.column_stack([np.ones(len(t)), t])
-        pulls = ((y - offset - gain * level) * np.interp(at, a.t, slope))[:, None] * by
-        curve = by.T @ (((y - offset) * np.interp(at, a.t, bend))[:, None] * by)
-        step = -np.linalg.solve(curve, pulls.sum(axis=0))
-        limit = np.array([1.0, 2.0 / max(1.0, float(np.ptp(t)))])
-        ahead, drift = np.array([ahead, drift]) + np.clip(step, -limit, limit)
-    inverse = np.linalg.inv(curve)
-    spread = inverse @ _spread(pulls) @ inverse.T
-    errors = np.sqrt(np.diag(spread))
-    sure = abs(drift) > SURE * errors[1]
-    words = f"{how}, correlation {peak.strength:.2f} over {np.ptp(t):.0f} s"
-    return Match(
-        float(ahead),
-        QUANTILE * float(errors[0]),
-        float(drift) if sure else 0.0,
-        QUANTILE * float(errors[1]),
-        origin + middle * 1e9,
-        abs(float(np.corrcoef(np.interp(at, a.t, slope), np.gradient(b.y, b.dt)[use])[0, 1])),
-        words + (", of opposite sign" if gain < 0 else ""),
-    )
+    at = b.t + ahead + drift * (b.t - middle)
+    use = b.good & (np.interp(at, a.t, a.good, 0.0, 0.0) > 0.999)
+    t, at, y = b.t[use] - middle, at[use], b.y[use]
+    level, rise = np.interp(at, a.t, a.y), np.interp(at, a.t, slope)
+    design = np.column_stack([np.ones(len(t)), level])
+    offset, gain = np.linalg.lstsq(design, y, rcond=None)[0]
+    by = np.column_stack([np.ones(len(t)), t])
+    pulls = ((y - offset - gain * level) * rise)[:, None] * by
+    curve = by.T @ (((y - offset) * np.interp(at, a.t, bend))[:, None] * by)
+    clean = abs(float(np.corrcoef(rise, np.gradient(b.y, b.dt)[use])[0, 1]))
+    return pulls, curve, float(gain), clean
 
 
 def _spread(pulls: Vector) -> Vector:
