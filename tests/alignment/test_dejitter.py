@@ -183,6 +183,20 @@ def test_a_stretch_delivered_again_is_no_clock_that_went_back():
     assert np.abs((made.t - START) / 1e9 - TRUE[order]).max() < 0.002
 
 
+def test_a_minute_delivered_again_is_no_counter_of_seconds():
+    t = TRUE + 0.01 * rng(24).standard_normal(len(N))
+    order = np.concatenate([N[:3000], N[2401:]])
+    made, words = repaired(series(t[order], true=TRUE[order]))
+    assert not any("began again" in word for word in words)
+    assert np.abs((made.t - START) / 1e9 - TRUE[order]).max() < 0.002
+
+
+def test_a_counter_of_seconds_with_one_value_and_the_same_stamps_each_minute():
+    made, words = repaired(series(TRUE % 60.0, 0 * TRUE))
+    np.testing.assert_allclose((made.t - START) / 1e9, TRUE, atol=1e-6)
+    assert "began again 9 times after 60 s" in words[0]
+
+
 def test_single_wild_stamps_are_put_back():
     t = TRUE + 0.01 * rng(16).standard_normal(len(N))
     t[500] += 40.0

@@ -26,6 +26,8 @@ TABLE = 0.5
 the rows."""
 FEWEST_COUNTED = 30
 """Samples in a row below which a pace cannot be told from chance."""
+DISTINCT = 10
+"""Different values that a stretch delivered again has at least."""
 EVEN = 0.01
 """Jitter [periods] up to which stamps are left as logged."""
 CHANCE = 0.18
@@ -99,9 +101,7 @@ def repaired(series: Series) -> tuple[Series, tuple[str, ...]]:
     if len(logged) < FEWEST_COUNTED or _even(logged):
         return series, ()
     origin = int(logged[0])
-    seconds = (logged - origin) / 1e9
-    t, turns = unwrapped(seconds)
-    first = _first_delivery(t, y)
+    t, turns, first = _run_on((logged - origin) / 1e9, y)
     kept = first == np.arange(len(t))
     new, words = (t, []) if _even(logged[kept]) else _repaired(t[kept], y[kept], origin)
     remarks = tuple(f"{series.quantity.name}: {word}" for word in (*wrap_words(turns), *words))
@@ -126,6 +126,20 @@ def _repaired(t: Vector, y: Vector, origin: int) -> tuple[Vector, list[str]]:
         for i, size in set_back
     ]
     return new, [*_line_words(lines), *words]
+
+
+def _run_on(t: Vector, y: Vector) -> tuple[Vector, list[float], NDArray[np.int64]]:
+    """Stamps [s] that run on where a counter began again, its turns, and first deliveries.
+
+    A stretch that comes again with all its values is no turn of a counter, whatever its length.
+    """
+    first = _first_delivery(t, y)
+    again = first != np.arange(len(t))
+    behind = int(np.sum(t < np.maximum.accumulate(t)))
+    if again.sum() > behind / 2 and len(np.unique(y[again])) >= DISTINCT:
+        return t, [], first
+    whole, turns = unwrapped(t)
+    return whole, turns, _first_delivery(whole, y) if turns else first
 
 
 def _first_delivery(t: Vector, y: Vector) -> NDArray[np.int64]:
