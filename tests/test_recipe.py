@@ -338,7 +338,7 @@ def test_an_unknown_key_leads_and_names_the_nearest(
         ("[[trial]]", "[trial]", "trial: must be a list of tables; write [[trial]]"),
         ('["r", "phi"]\n', '"r"', "identify.outputs: must be a list in square brackets, got 'r'"),
         ("[model]", "align = 3\n[model]", "trial[0].signals.align: must be a table (keys: channel"),
-        ("ship =", "align = 3\nship =", "align: must be a table (keys: period), got 3"),
+        ("ship =", "align = 3\nship =", "align: must be a table (keys: period, clocks), got 3"),
         ("ship =", "align = { period = '1' }\nship =", "align.period: must be a valid number, got"),
         ("ship =", "align = { period = true }\nship =", "align.period: must be a valid number, go"),
         ("ship =", "align = { period = nan }\nship =", "align.period: must be a finite number"),

@@ -15,7 +15,7 @@ import numpy as np
 
 from trialid import history, ingest
 from trialid.accuracy import Accuracy, Subject, assess
-from trialid.alignment import SignalSource, align
+from trialid.alignment import LogClock, SignalSource, align
 from trialid.assembly import (
     available,
     build_model,
@@ -40,6 +40,7 @@ from trialid.identification.output_error import stretches
 from trialid.identification.pose import Settings
 from trialid.ingest import Aids, LogFile
 from trialid.recipe import Recipe, TrialRecipe
+from trialid.recipe.form import ClockRecipe
 from trialid.report.force import force_series, write_force_csv
 from trialid.report.overlay import write_mcap
 from trialid.report.page import write_page
@@ -196,9 +197,15 @@ def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
         for q, s in trial.signals.items()
     ]
     logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
-    recordings = ingest.read_together(logs, [s.channel for s in sources])
+    clocks = [_log_clock(g.clock) for g in trial.logs]
+    matched = [name for clock in clocks if clock and clock.match for name in clock.match]
+    recordings = ingest.read_together(logs, [s.channel for s in sources] + matched)
     recordings = tuple(replace(r, path=_as_written(recipe, r.path)) for r in recordings)
-    made = align(trial.name, trial.use, recordings, sources, recipe.align.period, trial.window)
+    made = align(
+        trial.name, trial.use, recordings, sources, recipe.align.period, trial.window,
+        repair=recipe.align.clocks == "repair",
+        log_clocks=[c for g, c in zip(logs, clocks, strict=True) for _ in ingest.files_of(g)],
+    )  # fmt: skip
     if trial.speed is None:
         return made
     if "u" in made.signals:
@@ -208,6 +215,13 @@ def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
     valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
     remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
     return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+
+
+def _log_clock(clock: ClockRecipe | None) -> LogClock | None:
+    if clock is None:
+        return None
+    within = {} if clock.within is None else {"within": clock.within}
+    return LogClock(clock.offset, clock.drift or 0.0, clock.events or (), clock.match, **within)
 
 
 def _as_written(recipe: Recipe, path: Path) -> Path:

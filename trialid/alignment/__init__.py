@@ -1,22 +1,33 @@
 """Recording to Trial: channels on their own clocks to signals in SI on one clock.
 
-`align` is the whole of it: find each channel and bring it to SI and to our positive direction
-(`sources`, `frames`), put its stamps in order and choose the common clock (`clocks`), resample with
-one and the same filter (`resample`), and say what was noticed on the way (`quality`, `signs`).
+`align` is the whole of it: bring the logs onto one clock (`log_clock`, `clock_match`), find each
+channel and bring it to SI and to our positive direction (`sources`, `frames`), repair its stamps
+(`clock_health`, `dejitter`), put them in order and choose the common clock (`clocks`), resample
+with one and the same filter (`resample`), and say what was noticed on the way (`quality`, `signs`).
 """
 
 import dataclasses
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from trialid.alignment import clocks, frames, quality, resample, signs
+from trialid.alignment import (
+    clock_health,
+    clocks,
+    dejitter,
+    frames,
+    log_clock,
+    quality,
+    resample,
+    signs,
+)
 from trialid.alignment.clocks import Grid, Series
-from trialid.alignment.sources import SignalSource
+from trialid.alignment.log_clock import LogClock
+from trialid.alignment.sources import SignalSource, holding, seams
 from trialid.errors import AlignmentError
 from trialid.recording import Recording
 from trialid.trial import LogSource, Trial
 
-__all__ = ["SignalSource", "align"]
+__all__ = ["LogClock", "SignalSource", "align"]
 
 
 def align(
@@ -26,6 +37,9 @@ def align(
     sources: Sequence[SignalSource],
     period: float,
     window: tuple[float, float] | None = None,
+    *,
+    repair: bool = True,
+    log_clocks: Sequence[LogClock | None] = (),
 ) -> Trial:
     """The trial in `recordings`, its signals in SI on one clock.
 
@@ -41,6 +55,12 @@ def align(
         Time between samples of the trial [s].
     window
         Part of the trial to use [s], from the first instant all channels cover; None for all.
+    repair
+        Put the stamps of evenly paced sensors on a line through their count of samples (`dejitter`)
+        and undo steps of a sensor's clock; else every stamp counts as logged.
+    log_clocks
+        For each recording how its clock lies to the trial's, None where it is the trial's; empty
+        where all are.
 
     Raises LogError for a channel that is in no log, UnitError for a unit, and AlignmentError for
     everything that would have to be guessed: a missing sign or unit, signals that do not overlap
@@ -48,20 +68,33 @@ def align(
     """
     where = f"trial {name!r}"
     _check_sources(sources, where)
+    recordings, of_clocks = log_clock.on_one_clock(recordings, log_clocks, where, repair=repair)
     at = [f"{where}, signal {source.quantity!r}" for source in sources]
     logged = [frames.series(s, recordings, w) for s, w in zip(sources, at, strict=True)]
+    repairs = [_repaired(one) if repair else (one, ()) for one in logged]
+    logged = [one for one, _ in repairs]
     series = [clocks.ordered(one) for one in logged]
     for one, place in zip(series, at, strict=True):
         clocks.check(one, place)
+    _check_epochs(series, sources, recordings, where)
     grid = clocks.common(series, period, window, where)
     trial = _trial(name, use, recordings, series, grid, where)
     remarks = (
         *_of_logs(recordings),
+        *of_clocks,
+        *(word for source in sources for word in seams(source.channel, recordings)),
+        *(word for _, words in repairs for word in words),
         *_of_signals(logged, series, grid),
         *quality.of_trial(series, grid, window),
         *signs.check(trial, {source.quantity: source for source in sources}, where),
     )
     return dataclasses.replace(trial, remarks=remarks)
+
+
+def _repaired(logged: Series) -> tuple[Series, tuple[str, ...]]:
+    stepless, of_clock = clock_health.set_right(logged)
+    even, of_stamps = dejitter.repaired(stepless)
+    return even, (*of_clock, *of_stamps)
 
 
 def _check_sources(sources: Sequence[SignalSource], where: str) -> None:
@@ -71,6 +104,28 @@ def _check_sources(sources: Sequence[SignalSource], where: str) -> None:
         raise AlignmentError(f"{where}: signal {twice!r} is given twice; keep one channel for it")
     if not names:
         raise AlignmentError(f"{where}: no signals; name at least a rudder and a motion")
+
+
+def _check_epochs(
+    series: Sequence[Series],
+    sources: Sequence[SignalSource],
+    recordings: Sequence[Recording],
+    where: str,
+) -> None:
+    """AlignmentError when one log counts from 1970 and another from its own start."""
+    own = [i for i, one in enumerate(series) if one.t[0] < clocks.CALENDAR_NS]
+    if not own or len(own) == len(series):
+        return
+    dated = next(i for i in range(len(series)) if i not in own)
+    of, other = (holding(sources[i], recordings) for i in (own[0], dated))
+    if of == other:
+        return  # one log of two clocks; that they do not overlap is said below
+    raise AlignmentError(
+        f"{where}: {of} counts {sources[own[0]].quantity} from its own start, {other} "
+        f"{sources[dated].quantity} from 1970; say how the clocks lie to each other: logs = [{{ "
+        f'path = "{of}", clock = {{ match = ["channel here", "channel there"] }} }}], or by events '
+        "or offset"
+    )
 
 
 def _of_logs(recordings: Sequence[Recording]) -> Iterator[str]:

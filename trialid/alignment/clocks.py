@@ -38,12 +38,15 @@ class Series:
         Values, NaN or infinite where not available; (N,).
     clock
         Which clock the stamps are of, in words.
+    received
+        When the recorder got the samples [ns], where that is another time; (N,).
     """
 
     quantity: Quantity
     t: NDArray[np.int64]
     y: NDArray[np.float64]
     clock: str
+    received: NDArray[np.int64] | None = None
 
     @property
     def period(self) -> float:
@@ -104,7 +107,8 @@ def common(
     if start >= end:
         raise AlignmentError(
             f"{where}: {first.quantity.name} ({_interval(first)}) and {last.quantity.name} "
-            f"({_interval(last)}) do not overlap in time; use logs of one trial and one clock"
+            f"({_interval(last)}) do not overlap in time; use logs of one trial, or say how far a "
+            "log's clock is ahead [s]: clock = { offset = ... } beside its path"
         )
     opening, duration = _cut((end - start) / 1e9, window, where)
     samples = math.floor(duration / period + 1e-6) + 1

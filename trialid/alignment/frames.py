@@ -30,7 +30,8 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
     t = channel.t - round(source.delay * 1e9)
     y = np.where(np.abs(channel.y) < MARKER, channel.y, np.nan)
-    return Series(quantity, t, (source.gain * y + source.offset) * factor, channel.clock)
+    value = (source.gain * y + source.offset) * factor
+    return Series(quantity, t, value, channel.clock, channel.received)
 
 
 def _quantity(source: SignalSource, where: str) -> Quantity:
@@ -105,7 +106,8 @@ def _angle(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     x, y, z, w = (part.y for part in parts)
     square = x**2 + y**2 + z**2 + w**2
     angle = np.where(square > 0, _euler(source.as_, x, y, z, w), np.nan)
-    return Channel(source.channel, parts[0].t, angle, "rad", parts[0].clock)
+    first = parts[0]
+    return Channel(source.channel, first.t, angle, "rad", first.clock, received=first.received)
 
 
 def _euler(name: str | None, x: Vector, y: Vector, z: Vector, w: Vector) -> Vector:

@@ -8,7 +8,7 @@ from trialid import units
 from trialid.errors import UnitError, nearest
 from trialid.quantities import SIGNALS, Quantity
 from trialid.recipe.complaints import Problem, dotted
-from trialid.recipe.form import Recipe, SignalSource
+from trialid.recipe.form import ClockRecipe, Recipe, SignalSource, TrialRecipe
 
 RUDDERS: Final = frozenset({"delta", "delta_order"})
 """Signals whose sign no convention settles: indicators and SNAME have it opposite."""
@@ -21,6 +21,7 @@ def contradictions(recipe: Recipe) -> Iterator[Problem]:
     yield from _signal_problems(recipe.signals, "signals")
     for place, trial in enumerate(recipe.trials):
         yield from _signal_problems(trial.signals, "trial", place, "signals")
+        yield from _clock_problems(trial, place)
     yield from _output_problems(recipe)
     yield from _repetitions(recipe)
     yield from _quiet_problems(recipe)
@@ -46,6 +47,30 @@ def _trial_problems(recipe: Recipe) -> Iterator[Problem]:
             yield dotted("trial", place, "name"), f"{trial.name!r} is already the name of {at}"
     if all(trial.use == "check" for trial in recipe.trials):
         yield "trial", 'no trial to fit; at least one must have use = "fit"'
+
+
+def _clock_problems(trial: TrialRecipe, place: int) -> Iterator[Problem]:
+    for number, log in enumerate(trial.logs):
+        if log.clock is not None and (trouble := _clock_trouble(log.clock)):
+            yield dotted("trial", place, "logs", number, "clock"), trouble
+    if all(log.clock is not None for log in trial.logs):
+        yield (
+            dotted("trial", place, "logs"),
+            "every log has a clock of its own; leave the one that keeps the trial's clock without",
+        )
+
+
+def _clock_trouble(clock: ClockRecipe) -> str:
+    ways = [key for key in ("offset", "events", "match") if getattr(clock, key) is not None]
+    if len(ways) != 1:
+        found = " and ".join(ways) or "none"
+        return f"write one of offset, events, match; found {found}"
+    for key, of in (("drift", "offset"), ("within", "match")):
+        if getattr(clock, key) is not None and of not in ways:
+            return f"{key} goes with {of}, and {ways[0]} is given; leave {key} out"
+    if clock.events == ():
+        return "events is empty; write at least one, [[seconds here, seconds there]]"
+    return ""
 
 
 def _signal_problems(signals: Mapping[str, SignalSource], *steps: str | int) -> Iterator[Problem]:

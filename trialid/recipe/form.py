@@ -1,6 +1,7 @@
 """What a pipeline file may hold: frozen sections, every key and value checked where it stands."""
 
 from collections.abc import Mapping
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, NamedTuple, cast
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
@@ -123,6 +124,7 @@ ReadFile = Annotated[Path, AfterValidator(_existing)]
 ReadLog = Annotated[Path, AfterValidator(_existing_log)]
 Zone = Annotated[str, AfterValidator(_zone)]
 PythonFile = Annotated[ReadFile, AfterValidator(_python)]
+Instant = Number | datetime
 Window = Annotated[tuple[Number, Number], AfterValidator(_rising)]
 Limit = Annotated[Number, AllowInfNan(True)]
 Bounds = Annotated[tuple[Limit, Limit], AfterValidator(_rising)]
@@ -155,17 +157,36 @@ class SignalSource(Section):
     delay: Number = 0.0
 
 
+class ClockRecipe(Section):
+    """How a log's clock lies to the trial's; the logs without this table keep the trial's clock.
+
+    One of: `offset`, how far it is ahead [s] at its first stamp, with the `drift` it runs too fast
+    [ppm]; `events`, pairs of instants of the same event on this clock and on the trial's, seconds
+    from the log's first stamp or dates (UTC unless they say), of which two or more give the drift;
+    `match`, a channel of this log and one of another that hold the same motion, or one of them its
+    rate, at most `within` [s] apart (60 unless given), measured with its interval or refused.
+    """
+
+    offset: Number | None = None
+    drift: Number | None = None
+    events: tuple[tuple[Instant, Instant], ...] | None = None
+    match: tuple[str, str] | None = None
+    within: Positive | None = None
+
+
 class LogRecipe(Section):
     """A log file, or a folder of them that is read as one; a bare path is short for `path`.
 
     What the log does not say itself: `template` lays out a table, `dbc` the frames of a CAN bus
-    that is not NMEA 2000, `zone` is the time zone of stamps that state none.
+    that is not NMEA 2000, `zone` is the time zone of stamps that state none, `clock` how its clock
+    lies to the other logs'.
     """
 
     path: ReadLog
     template: ReadFile | None = None
     dbc: ReadFile | None = None
     zone: Zone | None = None
+    clock: ClockRecipe | None = None
 
 
 Log = Annotated[LogRecipe, BeforeValidator(_with_path)]
@@ -186,9 +207,15 @@ class TrialRecipe(Section):
 
 
 class AlignRecipe(Section):
-    """The common clock; `period` between samples [s]."""
+    """The common clock; `period` between samples [s].
+
+    `clocks = "repair"` puts the stamps of evenly paced sensors on a line through their count of
+    samples, so that latency, bundles and whole seconds do not shake them; `"as logged"` takes every
+    stamp as it is.
+    """
 
     period: Positive = 0.5
+    clocks: Literal["repair", "as logged"] = "repair"
 
 
 class GivenValue(Section):
