@@ -4,7 +4,7 @@ import pytest
 
 from trialid import ingest
 from trialid.errors import LogError
-from trialid.ingest import ADAPTERS, Aids, LogFile, adapter, read, read_together
+from trialid.ingest import Aids, LogFile, adapter, read, read_together
 
 TEXT = "t,u,r\n0,1,2\n1,2,3\n"
 
