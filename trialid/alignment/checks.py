@@ -15,7 +15,7 @@ import numpy as np
 
 from trialid import units
 from trialid.alignment import relation, signs
-from trialid.alignment.clocks import FEWEST, Grid, Series
+from trialid.alignment.clocks import FEWEST, Grid, Series, ordered
 from trialid.alignment.frames import RUDDERS
 from trialid.alignment.relation import Relation
 from trialid.alignment.resample import onto
@@ -28,7 +28,7 @@ SLOPES = (("r", "psi"), ("p", "phi"))
 CLEAR = 0.9
 """Correlation above which a gain is told; real rates of turn reach 0.95 to 1.00."""
 LOOSE = 0.7
-"""Correlation above which the lag and the side of a relation are told."""
+"""Correlation that each part of the record must reach for a lag or a small gain to be told."""
 FAR = 3.0
 """Factor no sensor is wrong by: real ones smooth by up to 0.62 over a whole manoeuvre."""
 CLOSE = 1.15
@@ -47,7 +47,7 @@ TURNS = np.deg2rad(20.0)
 """[rad] The angle must change by so much before its slope is called unrelated."""
 STILL = 0.1
 """[m/s] Speed at which no rudder steers: a moored boat's GPS shows 0.02 to 0.06 m/s."""
-UNITS = ("rad/s", "deg/s", "deg/min", "rad/min", "rpm", "rad", "deg", "mrad", "mrad/s")
+UNITS = ("rad/s", "deg/s", "deg/min", "rad", "deg")
 
 Severity = Literal["error", "remark"]
 
@@ -88,7 +88,7 @@ def refuse(findings: Sequence[Finding], where: str) -> None:
 
 
 def of_trial(trial: Trial, stated: Mapping[str, str] | None = None) -> tuple[Finding, ...]:
-    """Findings on the signals of a trial; `stated` is the unit each was read in."""
+    """Findings on the signals of a trial; `stated` holds the units that the pipeline states."""
     return (*_slopes(trial, stated or {}), *_heel(trial), *_still(trial))
 
 
@@ -99,15 +99,20 @@ def of_series(
 
     Where a rudder and a rate of turn are among them, the rudder's side is told too.
     """
+    found: list[Finding] = []
+    for pair in SLOPES:
+        both = together({name: series[name] for name in pair if name in series})
+        found += _slopes(both, stated or {}) if both is not None else ()
     whole = together(series)
-    if whole is None:
-        return ()
-    return (*of_trial(whole, stated), *_sides(whole))
+    if whole is not None:
+        found += (*_heel(whole), *_still(whole), *_sides(whole))
+    return tuple(found)
 
 
 def together(series: Mapping[str, Series]) -> Trial | None:
     """Series on one clock, that of the slowest, unfiltered; None where they do not overlap."""
-    able = {k: s for k, s in series.items() if np.isfinite(s.y).sum() >= FEWEST}
+    straight = {name: ordered(one) for name, one in series.items()}
+    able = {k: s for k, s in straight.items() if np.isfinite(s.y).sum() >= FEWEST}
     if not able:
         return None
     period = max(one.period for one in able.values())
@@ -118,7 +123,8 @@ def together(series: Mapping[str, Series]) -> Trial | None:
         return None
     grid = Grid(start, period, samples)
     laid = {name: onto(one, grid, smooth=False) for name, one in able.items()}
-    signals, valid = ({name: two[i] for name, two in laid.items()} for i in (0, 1))
+    signals = {name: values for name, (values, _) in laid.items()}
+    valid = {name: known for name, (_, known) in laid.items()}
     return Trial("", "check", period, signals, valid)
 
 
@@ -140,9 +146,7 @@ def _slope(
         "correlation": found.correlation, "gain_low": found.gain[0], "gain_high": found.gain[1],
         "lag": found.lag, "lag_low": found.lags[0], "lag_high": found.lags[1],
     }  # fmt: skip
-    pair, moved = (rate, angle), min(found.moves) > MOVING
-    if not moved:
-        return
+    pair = rate, angle
     if abs(found.correlation) > CLEAR and _wrong(found):
         words, mend = _scale_words(rate, angle, found, stated)
         yield Finding("unit" if mend else "scale", "error", pair, words, evidence, mend)
@@ -154,7 +158,7 @@ def _slope(
         )
         yield Finding("sign", "error", pair, words, evidence, 'positive = "port"')
         return
-    if abs(found.correlation) < UNRELATED and travel > TURNS:
+    if abs(found.correlation) < UNRELATED and travel > TURNS and min(found.moves) > MOVING:
         words = (
             f"{rate} does not follow the slope of {angle} (correlation {found.correlation:.2f} at "
             "best, at any lag up to 20 s); is it another quantity?"
@@ -168,16 +172,23 @@ def _small_faults(
     rate: str, angle: str, found: Relation, evidence: Mapping[str, float]
 ) -> Iterator[Finding]:
     low, high = found.gain
-    if abs(found.correlation) > LOOSE and found.later and abs(found.lag) > LATE:
+    if told(found) and found.later and abs(found.lag) > LATE:
         words = (
             f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
             f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
         )
         mend = f"delay = {found.lag:.2g}" if found.lag > 0 else None
         yield Finding("lag", "remark", (rate, angle), words, evidence, mend)
-    if abs(found.correlation) > CLEAR and (low > FAIR or high < 1 / FAIR):
+    if told(found) and (low > FAIR or high < 1 / FAIR):
         words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}"
         yield Finding("scale", "remark", (rate, angle), words, evidence)
+
+
+def told(found: Relation) -> bool:
+    """True when the record is clear about lag and gain: all of its parts say so."""
+    parts = np.array(found.parts)
+    alike = bool(np.all(parts * np.sign(found.correlation) > LOOSE))
+    return abs(found.correlation) > CLEAR and len(parts) > 1 and alike
 
 
 def _wrong(found: Relation) -> bool:
@@ -185,16 +196,19 @@ def _wrong(found: Relation) -> bool:
     low, high = found.gain
     if low > FAR:
         return True
-    prompt = abs(found.lag) < PROMPT * found.swing
     contrary = found.correlation < 0 and not found.ambiguous
-    return high < 1 / FAR and (prompt or contrary)
+    return high < 1 / FAR and (_prompt(found) or contrary)
 
 
 def _contrary(found: Relation) -> bool:
     """True when the sign is wrong and nothing else: no lag that could have turned it."""
-    prompt = abs(found.lag) < PROMPT * found.swing
     parts = max(found.parts, default=0.0)
-    return found.correlation < -CLEAR and prompt and not found.ambiguous and parts < 0
+    return found.correlation < -CLEAR and _prompt(found) and not found.ambiguous and parts < 0
+
+
+def _prompt(found: Relation) -> bool:
+    """True when there is no delay that comes with smoothing."""
+    return abs(found.lag) < PROMPT * found.swing
 
 
 def _scale_words(
@@ -209,25 +223,32 @@ def _scale_words(
         f"correlation {found.correlation:.2f})"
     )
     mends = [
-        (name, unit)
+        (name, line)
         for name, factor in ((rate, 1 / middle), (angle, middle))
-        for unit in _unit_of(name, stated.get(name), factor)
+        for line in _mends(name, stated.get(name), factor)
+        if _prompt(found)
     ]
     if not mends:
-        return f"{fact}: it is another quantity; take another channel for one of them", None
-    lines = " or ".join(f'unit = "{unit}" for {name}' for name, unit in mends)
-    return f"{fact}: a unit is wrong; write {lines}", f'unit = "{mends[0][1]}"'
+        return f"{fact}, which no unit explains; take another channel for one of them", None
+    lines = " or ".join(f"{line} for {name}" for name, line in mends)
+    return f"{fact}: a unit is wrong; write {lines}", mends[0][1]
 
 
-def _unit_of(name: str, stated: str | None, factor: float) -> Iterator[str]:
-    """The unit whose numbers were taken for those of `stated`, by a factor too small."""
-    si = SIGNALS[name].unit
-    here = _factor(stated or si, si)
-    for unit in UNITS:
-        told = _factor(unit, si)
-        if here and told and 1 / CLOSE < told / (here * factor) < CLOSE:
-            yield unit
+def _mends(name: str, stated: str | None, factor: float) -> Iterator[str]:
+    """The unit the numbers are in, if those of `stated` are wrong by the factor; else the gain.
+
+    A unit that the log states cannot be overruled by another one, but by a gain.
+    """
+    known = [(unit, one) for unit in UNITS if (one := _factor(unit, SIGNALS[name].unit))]
+    here = _factor(stated, SIGNALS[name].unit) if stated else None
+    for unit, one in known:
+        if here and 1 / CLOSE < one / (here * factor) < CLOSE:
+            yield f'unit = "{unit}"'
             return
+    ratios = {one / other for _, one in known for _, other in known} - {1.0}
+    near = [ratio for ratio in ratios if 1 / CLOSE < ratio / factor < CLOSE]
+    if near and not here:
+        yield f"gain = {min(near, key=lambda ratio: abs(np.log(ratio / factor))):.6g}"
 
 
 def _factor(unit: str, si: str) -> float | None:
@@ -245,7 +266,10 @@ def _heel(trial: Trial) -> Iterator[Finding]:
     u, known = _speed(trial)
     valid = turning[1] & trial.valid["phi"] & known
     found = relation.of_values(turning[0] * u, trial.signals["phi"], valid, trial.period)
-    if found is None or abs(found.correlation) < LOOSE or min(found.moves) < MOVING:
+    turned = float(np.ptp(np.cumsum(np.where(valid, turning[0], 0.0)))) * trial.period
+    if found is None or turned < TURNS or min(found.moves) < MOVING:
+        return
+    if abs(found.correlation) < LOOSE:
         return
     side = "inward" if found.correlation > 0 else "outward"
     words = f"heels {side} in turns: correlation of phi with r u {found.correlation:.2f}"
@@ -280,7 +304,9 @@ def _sides(trial: Trial) -> Iterator[Finding]:
         if not (signs.contradicts((whole, parts)) or _agrees(whole, parts)):
             continue
         side = "port" if whole < 0 else "starboard"
-        words = f"{rudder} turns the ship to {side} when positive: correlation with dr/dt {whole:.2f}"
+        words = (
+            f"{rudder} turns the ship to {side} when positive: correlation with dr/dt {whole:.2f}"
+        )
         mend = f'positive = "{side}"'
         yield Finding("side", "remark", (rudder, "r"), words, {"correlation": whole}, mend)
 

@@ -7,15 +7,16 @@ Short runs of exact zeros are judged in the same way. A flat top is an extreme v
 again and again, entered and left at speed. What may be real is remarked and left as it is.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trialid import units
-from trialid.alignment.clocks import Grid, Series
+from trialid.alignment.clocks import Grid, Series, check
 from trialid.alignment.frames import RUDDERS
 from trialid.alignment.limits import LIMITS
+from trialid.alignment.sources import SignalSource
 from trialid.errors import AlignmentError
 from trialid.trial import Mask, Vector
 
@@ -36,6 +37,8 @@ SHARP = 8.0
 """And by so many times the usual bend."""
 MOST_SPIKES = 0.02
 """Share of spikes above which they are the signal's own way."""
+MOST_ZEROS = 0.1
+"""And of zeros, which are no motion however many."""
 PULSE_S = 1.0
 """[s] No shaft stops and turns again in less, and no rudder goes there and back through zero."""
 STEERED = np.deg2rad(60.0)
@@ -46,10 +49,14 @@ ABRUPT = 0.5
 """A flat top is entered with steps of this share of the usual ones at least."""
 FROZEN_S = 5.0
 FROZEN = 20.0
-"""A sensor is frozen when it holds a value so long, and so many times longer than it usually
-does, while others show that the ship moves."""
+"""A sensor is frozen when it holds a value so long, and so many times longer than 99 in 100 of
+its values are held, while others show that the ship moves. A coarse one often holds a value."""
 ALIVE = 0.25
 """The ship moves when another motion spreads by this share of its spread over the trial."""
+GO_TOGETHER = {
+    "psi": ("r",), "r": ("psi", "phi"), "phi": ("p", "r"), "p": ("phi", "r"), "v": ("r", "psi"),
+}  # fmt: skip
+"""Motions that cannot rest while the other moves, the surest one first."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +67,33 @@ class Fault:
     words: str
     samples: Mask
     sure: bool
+
+
+def without(
+    series: Sequence[Series],
+    sources: Sequence[SignalSource],
+    grid: Grid,
+    keep: Mapping[str, Collection[str]],
+    places: Sequence[str],
+) -> tuple[list[Series], list[str]]:
+    """All series of a trial without what is surely no measurement, and remarks on it.
+
+    Raises AlignmentError for a unit that cannot be right, and where nothing is left.
+    """
+    left, remarks = [], []
+    for one, source, place in zip(series, sources, places, strict=True):
+        zero = 0.0 if source.offset == 0.0 else np.nan
+        kept, found = masked(one, grid, keep.get(source.quantity, ()), zero, place)
+        left.append(kept)
+        remarks += found
+    for i, (one, place) in enumerate(zip(tuple(left), places, strict=True)):
+        fault = frozen(left, i, grid)
+        if fault is not None:
+            hide = "stuck" not in keep.get(one.quantity.name, ())
+            remarks.append(_words(one, fault, grid, hide))
+            left[i] = _without(one, fault.samples) if hide else one
+        check(left[i], place)
+    return left, remarks
 
 
 def masked(
@@ -76,7 +110,7 @@ def masked(
     keep
         Kinds of KINDS that are remarked but never masked.
     zero
-        Value [SI] of a logged zero.
+        Value [SI] of a logged zero; NaN where that is not known.
     where
         For the error.
 
@@ -137,9 +171,7 @@ def _range(series: Series, zero: float) -> Iterator[Fault]:
 
 
 def _beyond_a_turn(y: Vector) -> Mask:
-    """Headings of more than a turn that stand alone; a logger may count turns, but not for three
-    samples only.
-    """
+    """Headings of more than a turn that stand alone: a logger that counts turns goes on counting."""
     out = np.zeros(len(y), np.bool_)
     at = np.flatnonzero(np.isfinite(y))
     for first, last in _runs(np.abs(np.diff(y[at])) < np.pi):
@@ -167,14 +199,6 @@ class _Samples:
     y: Vector
     near: Mask
 
-    @property
-    def bends(self) -> Vector:
-        """Distance of each sample from the mean of its neighbours; zero beside a gap."""
-        bends = np.zeros(len(self.y))
-        inner = np.abs(self.y[1:-1] - (self.y[:-2] + self.y[2:]) / 2)
-        bends[1:-1] = np.where(self.near[1:-1] & self.near[2:], inner, 0.0)
-        return bends
-
 
 def _samples(series: Series) -> _Samples:
     at = np.flatnonzero(np.isfinite(series.y))
@@ -184,49 +208,64 @@ def _samples(series: Series) -> _Samples:
     return _Samples(at, t, y, near)
 
 
-def _excursions(s: _Samples, width: int) -> Vector:
+def _bends(s: _Samples, width: int) -> Vector:
     """How far each run of `width` samples lies off the line between the samples beside it.
 
-    Zero where it lies on both sides of it, where those two differ by half as much, and at a gap;
-    (n - width - 1,), the run beginning at the second sample first.
+    Zero where it lies on both sides of it, and at a gap; (n - width - 1,), the run that begins at
+    the second sample first.
     """
     n = len(s.y) - width - 1
     left, right = s.y[:n], s.y[width + 1 :]
-    off = np.stack([
-        s.y[k : n + k] - left - (right - left) * k / (width + 1) for k in range(1, width + 1)
-    ])  # fmt: skip
-    size = np.where(np.all(off > 0, axis=0) | np.all(off < 0, axis=0), np.abs(off).min(axis=0), 0)
-    whole = np.all(np.stack([s.near[k : n + k] for k in range(1, width + 2)]), axis=0)
-    return np.where(whole & (np.abs(right - left) < size / 2), size, 0.0)
+    low, high = np.full(n, np.inf), np.full(n, -np.inf)
+    whole = s.near[width + 1 :].copy()
+    for k in range(1, width + 1):
+        off = s.y[k : n + k] - left - (right - left) * (k / (width + 1))
+        low, high = np.minimum(low, off), np.maximum(high, off)
+        whole &= s.near[k : n + k]
+    return np.where(whole, np.maximum(np.maximum(low, -high), 0.0), 0.0)
 
 
 def _found(s: _Samples, widest: int, only: Mask | None = None) -> tuple[Mask, Mask]:
-    """Samples of runs up to `widest` that stand out of the motion; and which of them surely.
+    """Samples of runs up to `widest` that stand out of the motion and come back to it.
 
-    `only` restricts the runs to samples of this kind. An input's pulses are sure only if they are
-    higher than all the rest of it moves; that is for the caller.
+    Second result: those that lie beyond all the rest by more than the rest spans. `only` restricts
+    the runs to samples of this kind.
     """
-    n = len(s.y)
-    out = np.zeros(n, np.bool_)
-    if n < 2 * WIDEST_SPIKE + 4:
+    out = np.zeros(len(s.y), np.bool_)
+    if len(s.y) < 2 * widest + 4:
         return out, out
-    size = np.zeros(n)
-    bends = s.bends
-    usual = max(1.4826 * float(np.median(bends)), float(np.quantile(bends, 0.95)) / 2)
-    for width in range(1, widest + 1):
-        e = _excursions(s, width)
-        for i in np.flatnonzero(e > SHARP * usual):
+    bends = [_bends(s, width) for width in range(1, widest + 1)]
+    size = np.zeros(len(s.y))
+    for width, bend in enumerate(bends, 1):
+        for i in np.flatnonzero(_returns(s, width, bend) & (bend > SHARP * _usual(bend))):
             run = slice(i + 1, i + 1 + width)
             if only is None or bool(np.all(only[run])):
-                size[run] = np.maximum(size[run], e[i])
+                size[run] = np.maximum(size[run], bend[i])
     candidates = size > 0
-    if not candidates.any() or candidates.mean() > MOST_SPIKES * (1 if only is None else 5):
+    if not candidates.any() or candidates.mean() > (MOST_SPIKES if only is None else MOST_ZEROS):
         return out, out
     beside = candidates | np.roll(candidates, 1) | np.roll(candidates, -1)
-    rest = float(bends[~beside].max(initial=0.0))
+    rest = max(_outside(bend, beside, width) for width, bend in enumerate(bends, 1))
     found = size > max(SHARPER * rest, 4 * _resolution(s.y[~candidates]))
-    high = float(np.ptp(s.y[~beside])) if not beside.all() else 0.0
+    high = float(np.ptp(s.y[~beside])) if not beside.all() else np.inf
     return found, found & (size > high) & (high > 0)
+
+
+def _returns(s: _Samples, width: int, bend: Vector) -> Mask:
+    """True where the samples on both sides of the run agree better than the run with them."""
+    n = len(bend)
+    return np.abs(s.y[width + 1 :] - s.y[:n]) < bend / 2
+
+
+def _usual(bend: Vector) -> float:
+    return max(1.4826 * float(np.median(bend)), float(np.quantile(bend, 0.95)) / 2)
+
+
+def _outside(bend: Vector, beside: Mask, width: int) -> float:
+    """The largest bend of runs that touch no candidate."""
+    n = len(bend)
+    touches = np.any(np.stack([beside[k : n + k] for k in range(width + 2)]), axis=0)
+    return float(bend[~touches].max(initial=0.0))
 
 
 def _resolution(y: Vector) -> float:
@@ -283,16 +322,19 @@ def _saturation(series: Series, zero: float) -> Iterator[Fault]:
         return
     steps = np.abs(np.diff(s.y))
     usual = float(np.mean(steps[steps > 0])) if np.any(steps) else 0.0
+    levels = _resolution(s.y)
     for extreme in (s.y.max(), s.y.min()):
         if np.isclose(extreme, zero, rtol=0.0, atol=1e-12) or np.ptp(s.y) == 0:
             continue
-        runs = [r for r in _held(s, extreme) if _abrupt(s, r, usual)]
+        runs = [r for r in _held(s, extreme) if _abrupt(s, r, usual, levels)]
         if len(runs) >= 2:
             samples = np.zeros(len(series.y), np.bool_)
             for first, last in runs:
                 samples[s.at[first : last + 1]] = True
             shown = extreme * units.shown(series.quantity)
-            words = f"held at the limit {shown:.4g} {series.quantity.shown} in {len(runs)} flat tops"
+            words = (
+                f"held at the limit {shown:.4g} {series.quantity.shown} in {len(runs)} flat tops"
+            )
             yield Fault("saturation", words, samples, True)
 
 
@@ -303,14 +345,13 @@ def _held(s: _Samples, value: float) -> list[tuple[int, int]]:
     return [(i, j) for i, j in runs if same[i] and j - i + 1 >= FLAT]
 
 
-def _abrupt(s: _Samples, run: tuple[int, int], usual: float) -> bool:
+def _abrupt(s: _Samples, run: tuple[int, int], usual: float, levels: float) -> bool:
     """True when the signal came to the value at speed, from several steps of resolution away."""
     first, last = run
     if first < 2 or last > len(s.y) - 3:
         return False
     outer = (s.y[first - 1] - s.y[first - 2], s.y[last + 2] - s.y[last + 1])
-    levels = 3 * _resolution(s.y)
-    return min(abs(step) for step in outer) > max(ABRUPT * usual, levels)
+    return min(abs(step) for step in outer) > max(ABRUPT * usual, 3 * levels)
 
 
 def frozen(series: Sequence[Series], i: int, grid: Grid) -> Fault | None:
@@ -318,29 +359,34 @@ def frozen(series: Sequence[Series], i: int, grid: Grid) -> Fault | None:
     one, s = series[i], _samples(series[i])
     if one.quantity.mirror > 0 or one.quantity.name in INPUTS or len(s.y) < 2:
         return None
-    runs = _runs((np.diff(s.y) == 0) & s.near[1:])
-    spans = np.array([s.t[j] - s.t[i] for i, j in runs])
-    usual = max(float(np.quantile(spans, 0.9)), one.period)
+    edges = np.flatnonzero(~((np.diff(s.y) == 0) & s.near[1:])) + 1
+    first, last = np.append(0, edges), np.append(edges, len(s.y)) - 1
+    spans = s.t[last] - s.t[first]
+    usual = max(float(np.quantile(spans, 0.99)), one.period)
     samples = np.zeros(len(one.y), np.bool_)
-    for (first, last), span in zip(runs, spans, strict=True):
-        ends = int(one.t[s.at[first]]), int(one.t[s.at[last]])
-        if span > max(FROZEN_S, FROZEN * usual) and _moves(series, i, ends):
-            samples[s.at[first + 1 : last + 1]] = True
-    return Fault("stuck", "did not change while the ship moved", samples, True) if samples.any() else None
+    for k in np.flatnonzero(spans > max(FROZEN_S, FROZEN * usual)):
+        held = s.at[first[k] : last[k] + 1]
+        if _moves(series, i, (int(one.t[held[0]]), int(one.t[held[-1]]))):
+            samples[held[1:]] = True
+    if samples.any():
+        return Fault("stuck", "did not change while the ship moved", samples, True)
+    return None
 
 
 def _moves(series: Sequence[Series], i: int, ends: tuple[int, int]) -> bool:
-    """True when two other motions, or the only other one, spread as they do in the whole."""
-    others = [
-        s for k, s in enumerate(series)
-        if k != i and s.quantity.mirror < 0 and s.quantity.name not in INPUTS
-    ]  # fmt: skip
-    told = [_lively(s, ends) for s in others]
-    return sum(told) >= min(2, max(1, len(told)))
+    """True when a motion that goes with this one is as lively as in the whole."""
+    by_name = {one.quantity.name: one for one in series}
+    names = GO_TOGETHER.get(series[i].quantity.name, ())
+    told = [_lively(by_name[name], ends) for name in names if name in by_name]
+    return bool(told) and told[0]
 
 
 def _lively(series: Series, ends: tuple[int, int]) -> bool:
+    """Rates against zero, which is rest; angles against their mean."""
     s = _samples(series)
     stamps = series.t[s.at]
-    during = s.y[(stamps >= ends[0]) & (stamps <= ends[1])]
-    return len(during) > FLAT and float(np.std(during)) > ALIVE * float(np.std(s.y)) > 0
+    level = 0.0 if series.quantity.name in {"r", "p"} else float(np.mean(s.y))
+    inside = (stamps >= ends[0]) & (stamps <= ends[1])
+    during = s.y[inside] - (float(np.mean(s.y[inside])) if level and inside.any() else 0.0)
+    usual = float(np.sqrt(np.mean((s.y - level) ** 2)))
+    return len(during) > FLAT and float(np.sqrt(np.mean(during**2))) > ALIVE * usual > 0

@@ -94,7 +94,8 @@ class Relation:
 
 def of_slope(rate: Vector, angle: Vector, valid: Mask, period: float) -> Relation | None:
     """`rate` against the slope of `angle`; None where the record is too short to tell."""
-    return _best(_thinned(Pair(_slope(angle, period), rate, _both(valid), period)))
+    slope, mean = np.diff(angle) / period, (rate[1:] + rate[:-1]) / 2
+    return _best(_thinned(Pair(slope, mean, valid[1:] & valid[:-1], period)))
 
 
 def of_values(first: Vector, second: Vector, valid: Mask, period: float) -> Relation | None:
@@ -102,25 +103,12 @@ def of_values(first: Vector, second: Vector, valid: Mask, period: float) -> Rela
     return _best(_thinned(Pair(first, second, valid, period)))
 
 
-def _slope(angle: Vector, period: float) -> Vector:
-    """Mean slope over the period around each sample; its mean over a stretch is exact."""
-    return np.gradient(angle, period)
-
-
-def _both(valid: Mask) -> Mask:
-    """Where the sample and its two neighbours are valid."""
-    inner = valid.copy()
-    inner[1:] &= valid[:-1]
-    inner[:-1] &= valid[1:]
-    return inner
-
-
 def _thinned(pair: Pair) -> Pair:
     """Means over so many samples that no more than MOST_SAMPLES are left."""
     step = math.ceil(len(pair.first) / MOST_SAMPLES)
     whole = len(pair.first) // step * step
     first, second = (y[:whole].reshape(-1, step).mean(axis=1) for y in (pair.first, pair.second))
-    valid = pair.valid[:whole].reshape(-1, step).all(axis=1)
+    valid = np.asarray(pair.valid[:whole].reshape(-1, step).all(axis=1))
     return Pair(first, second, valid, pair.period * step)
 
 
@@ -153,7 +141,7 @@ def _relation(pair: Pair, length: int) -> Relation | None:
     against = np.max(-found[len(lags) // 2 :] * np.sign(found[best]), initial=0.0)
     moves = _moves(pair.first, pair.valid, x, length), _moves(pair.second, pair.valid, y, length)
     return Relation(
-        float(found[best]), _gain(x, y), *_lag(lags * pair.period, found, best),
+        float(found[best]), _gain(x, y), *_lag(np.float64(pair.period) * lags, found, best),
         float(found[len(lags) // 2]), float(against), length * pair.period, _swing(x, pair.period),
         moves, tuple(_correlation(a, b) for a, b in _parts(x, y)),
     )  # fmt: skip
@@ -238,7 +226,7 @@ def _correlation(x: Vector, y: Vector) -> float:
 
 
 def _lag(lags: Vector, found: Vector, best: int) -> tuple[float, tuple[float, float]]:
-    """The lag of a peak, between the tried ones by a parabola, and those that fit nearly as well."""
+    """Where a peak is, by a parabola between the tried lags, and those that fit nearly as well."""
     strength = np.abs(found)
     lag = float(lags[best])
     if 0 < best < len(lags) - 1:
@@ -246,7 +234,8 @@ def _lag(lags: Vector, found: Vector, best: int) -> tuple[float, tuple[float, fl
         bend = a - 2 * b + c
         lag += float(lags[1] - lags[0]) * (0.5 * (a - c) / bend if bend < 0 else 0.0)
     near = lags[_near(strength, float(strength[best]))]
-    return lag, (float(near.min()), float(near.max()))
+    half = float(lags[1] - lags[0]) / 2 if len(lags) > 1 else 0.0
+    return lag, (float(near.min()) - half, float(near.max()) + half)
 
 
 def _gain(x: Vector, y: Vector) -> tuple[float, float]:

@@ -6,20 +6,25 @@ would be of the sensor.
 """
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from trialid import units
 from trialid.alignment import relation
-from trialid.alignment.checks import CLEAR, FAIR, LATE, LOOSE, MOVING, Finding, together
+from trialid.alignment.checks import FAIR, LATE, LOOSE, MOVING, Finding, together, told
 from trialid.alignment.clocks import Series
 from trialid.alignment.relation import Relation
-from trialid.quantities import Quantity
+from trialid.alignment.sources import SignalSource
+from trialid.errors import UnitError
+from trialid.quantities import SIGNALS, Quantity
+from trialid.recording import Channel, Recording
 from trialid.trial import Vector
 
 OFFSET = 0.25
 """Share of the motion: two sensors whose levels differ by more are mounted or set differently."""
+APART = 2.0
+"""A shift explains much when it leaves less than half of what no shift leaves."""
 STEADY = 0.5
 """A level that stands apart does so by this share at least in every part of the record."""
 
@@ -64,17 +69,25 @@ def _motion(found: Relation | None) -> Iterator[str]:
     strength = found.correlation
     if strength < LOOSE:
         yield f"they do not agree (correlation {strength:.2f} at best)"
-        return
+    elif told(found):
+        yield from _lag_and_gain(found)
+    elif found.later and 1 - found.at_once**2 > APART * (1 - strength**2):
+        yield f"correlation {found.at_once:.2f}, {strength:.2f} shifted by {found.lag:.2g} s"
+    if strength > LOOSE and min(found.parts, default=1.0) < STEADY:
+        yield f"they agree in part only (correlation {min(found.parts):.2f} to {strength:.2f})"
+
+
+def _lag_and_gain(found: Relation) -> Iterator[str]:
     low, high = found.gain
     late = found.later and abs(found.lag) > LATE
-    unlike = strength > CLEAR and (low > FAIR or high < 1 / FAIR)
+    unlike = low > FAIR or high < 1 / FAIR
     if late:
         order = "later" if found.lag > 0 else "earlier"
         yield f"{abs(found.lag):.2g} s {order} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
     if unlike:
         yield f"moves {low:.2g} to {high:.2g} times as much"
     if late or unlike:
-        yield f"correlation {strength:.3f}"
+        yield f"correlation {found.correlation:.3f}"
 
 
 def _level(offset: float, quantity: Quantity) -> Iterator[str]:
@@ -101,3 +114,37 @@ def _evidence(found: Relation | None, offset: float) -> dict[str, float]:
         "lag": found.lag, "lag_low": found.lags[0], "lag_high": found.lags[1],
         "gain_low": found.gain[0], "gain_high": found.gain[1],
     }  # fmt: skip
+
+
+def unchosen(
+    sources: Sequence[SignalSource], recordings: Sequence[Recording]
+) -> tuple[Finding, ...]:
+    """Where a chosen channel disagrees with another of its quantity that was read with it.
+
+    Only channels that the format itself says to be of that quantity, in a unit it states.
+    """
+    found: list[Finding] = []
+    for source in sources:
+        channels = {c.name: c for r in recordings for c in r.channels.values()}
+        mine = channels.get(source.channel)
+        others = [c for c in channels.values() if c.quantity == source.quantity]
+        if mine is None or mine.quantity != source.quantity or len(others) < 2:
+            continue
+        for other in others:
+            pair = {one.name: series_of(one) for one in (mine, other)}
+            known = {name: one for name, one in pair.items() if one is not None}
+            found += disagreements(known)
+    return tuple(found)
+
+
+def series_of(channel: Channel) -> Series | None:
+    """The channel in SI by the format's own quantity, unit and side; None where one is missing."""
+    if channel.quantity not in SIGNALS or channel.unit is None:
+        return None
+    quantity = SIGNALS[channel.quantity]
+    try:
+        factor = units.factor(channel.unit, quantity.unit)
+    except UnitError:
+        return None
+    side = -1.0 if channel.positive == "port" and quantity.mirror < 0 else 1.0
+    return Series(quantity, channel.t, side * factor * channel.y, channel.clock)
