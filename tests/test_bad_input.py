@@ -403,6 +403,46 @@ def test_a_rudder_of_the_wrong_side() -> None:
 # --- what a record can carry --------------------------------------------------------------------
 
 
+def test_a_ship_that_lies_still() -> None:
+    """Unless nothing is fitted that a rudder must move: a roll decay needs no speed."""
+    relog(lambda table: table.assign(**{"stw[m/s]": 0.04 + 1e-3 * np.cos(table["t[s]"])}))
+    refused("trial 'zigzag'", "lies still", "0.041 m/s", "U0 is 7.33 m/s", "steers r")
+    change("short.toml", 'outputs = ["r"]', 'outputs = ["phi"]')
+    change("short.toml", '["Nr", "Ndelta"]', '["Kp0"]')
+    assert "lies still" not in trialid_("run", "short.toml", "--out", "out").stderr
+
+
+def test_a_rate_of_turn_in_another_unit_than_stated() -> None:
+    """The line that the error gives mends it."""
+    heading = 'psi = { channel = "heading", unit = "deg" }\nphi ='
+
+    def spoil(table: Table) -> Table:
+        table = table.rename(columns={"rot[deg/s]": "rot"})
+        turned = np.cumsum(table["rot"]) * 0.5
+        return table.assign(heading=np.mod(turned, 360.0), rot=60.0 * table["rot"])
+
+    relog(spoil)
+    change("short.toml", "phi =", heading)
+    line = refused("trial 'zigzag'", "r is 60", "the slope of psi", 'unit = "deg/min" for r')
+    assert "correlation 1.00" in line
+    change("short.toml", 'unit = "deg/s"', 'unit = "deg/min"')
+    finished()
+
+
+def test_values_that_are_kept_although_they_look_wrong() -> None:
+    def spoil(table: Table) -> None:
+        table.loc[600, "rot[deg/s]"] = 30.0
+
+    relog(spoil)
+    remarks = " ".join(finished()["trials"][0]["remarks"])
+    assert "r: 1 value out of line, at 300.0 s; masked" in remarks
+    change("short.toml", 'unit = "deg/s" }', 'unit = "deg/s", keep = ["spikes"] }')
+    remarks = " ".join(finished("again")["trials"][0]["remarks"])
+    assert "at 300.0 s; left as it is" in remarks
+    change("short.toml", 'keep = ["spikes"]', 'keep = ["spike"]')
+    refused("keep", "'spikes'")
+
+
 def test_a_rudder_that_never_moves() -> None:
     relog(lambda table: table.assign(**{"rudder[deg]": 5.0}))
     refused("rudder (delta)", "'zigzag'", "nothing excites", "use a trial with a manoeuvre")

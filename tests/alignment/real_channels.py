@@ -50,8 +50,8 @@ def hsva_series(path):
     return {q: series(q, c["t"], y) for q, y in motions.items()}
 
 
-def decay_series():
-    table = np.loadtxt(DECAY, delimiter=",", skiprows=1).T
+def decay_series(path=DECAY):
+    table = np.loadtxt(path, delimiter=",", skiprows=1).T
     return {"phi": series("phi", table[0], table[4]), "psi": series("psi", table[0], table[6])}
 
 

@@ -8,7 +8,7 @@ boat may do. Nothing is ever changed here.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -41,6 +41,9 @@ LATE = 0.2
 """[s] Lags not worth a remark: half of them moves a time constant of 20 s by 0.7 %."""
 MOVING = 10.0
 """Motion in units of noise below which nothing is said of it."""
+SAME = 0.97
+"""Correlation with the slope above which a signal of another name is taken for the rate."""
+ASKS = frozenset({"scale", "unrelated"})
 UNRELATED = 0.5
 """Correlation at every lag and length below which one is not the slope of the other."""
 TURNS = np.deg2rad(20.0)
@@ -89,7 +92,7 @@ def refuse(findings: Sequence[Finding], where: str) -> None:
 
 def of_trial(trial: Trial, stated: Mapping[str, str] | None = None) -> tuple[Finding, ...]:
     """Findings on the signals of a trial; `stated` holds the units that the pipeline states."""
-    return (*_slopes(trial, stated or {}), *_heel(trial), *_still(trial))
+    return (*_slopes(trial, stated or {}, trial), *_heel(trial), *_still(trial))
 
 
 def of_series(
@@ -100,10 +103,10 @@ def of_series(
     Where a rudder and a rate of turn are among them, the rudder's side is told too.
     """
     found: list[Finding] = []
+    whole = together(series)
     for pair in SLOPES:
         both = together({name: series[name] for name in pair if name in series})
-        found += _slopes(both, stated or {}) if both is not None else ()
-    whole = together(series)
+        found += _slopes(both, stated or {}, whole or both) if both is not None else ()
     if whole is not None:
         found += (*_heel(whole), *_still(whole), *_sides(whole))
     return tuple(found)
@@ -128,14 +131,31 @@ def together(series: Mapping[str, Series]) -> Trial | None:
     return Trial("", "check", period, signals, valid)
 
 
-def _slopes(trial: Trial, stated: Mapping[str, str]) -> Iterator[Finding]:
+def _slopes(trial: Trial, stated: Mapping[str, str], beside: Trial) -> Iterator[Finding]:
+    """Each rate against its angle; `beside` holds all signals, to find one under a wrong name."""
     for rate, angle in SLOPES:
         if rate in trial.signals and angle in trial.signals:
             valid = trial.valid[rate] & trial.valid[angle]
             y, x = trial.signals[rate], trial.signals[angle]
             found = relation.of_slope(y, x, valid, trial.period)
             if found is not None:
-                yield from _slope(rate, angle, found, float(np.ptp(x[valid])), stated)
+                for one in _slope(rate, angle, found, float(np.ptp(x[valid])), stated):
+                    hint = _better(beside, rate, angle) if one.kind in ASKS else ""
+                    yield replace(one, sentence=one.sentence + hint)
+
+
+def _better(trial: Trial, rate: str, angle: str) -> str:
+    """Words on another signal that is the slope of the angle, whatever its name."""
+    if angle not in trial.signals:
+        return ""
+    for name, y in trial.signals.items():
+        if name in {rate, angle} or name in RUDDERS or SIGNALS[name].mirror > 0:
+            continue
+        valid = trial.valid[name] & trial.valid[angle]
+        found = relation.of_slope(y, trial.signals[angle], valid, trial.period)
+        if found is not None and abs(found.correlation) > SAME and _prompt(found):
+            return f"; {name} goes with that slope ({found.correlation:.3f}): are they exchanged?"
+    return ""
 
 
 def _slope(

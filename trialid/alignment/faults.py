@@ -137,7 +137,7 @@ def _words(series: Series, fault: Fault, grid: Grid, hide: bool) -> str:
     done = "masked" if hide else "left as they are"
     more = ", ..." if len(t) > 3 else ""
     name, count = series.quantity.name, len(t)
-    noun = "value" if count == 1 else "values"
+    noun, done = ("value", done.replace("they are", "it is")) if count == 1 else ("values", done)
     return f"{name}: {count} {noun} {fault.words}, at {first}{more} s; {done}"
 
 
@@ -171,7 +171,7 @@ def _range(series: Series, zero: float) -> Iterator[Fault]:
 
 
 def _beyond_a_turn(y: Vector) -> Mask:
-    """Headings of more than a turn that stand alone: a logger that counts turns goes on counting."""
+    """Headings of more than a turn that stand alone; a logger that counts turns goes on so."""
     out = np.zeros(len(y), np.bool_)
     at = np.flatnonzero(np.isfinite(y))
     for first, last in _runs(np.abs(np.diff(y[at])) < np.pi):
@@ -277,7 +277,7 @@ def _resolution(y: Vector) -> float:
 def _spikes(series: Series, zero: float) -> Iterator[Fault]:
     s = _samples(series)
     found, outside = _found(s, WIDEST_SPIKE)
-    yield from _judged(series, s, found, outside, "spikes", "out of line with their neighbours")
+    yield from _judged(series, s, found, outside, "spikes", "out of line")
 
 
 def _dropouts(series: Series, zero: float) -> Iterator[Fault]:
