@@ -709,14 +709,22 @@ def test_a_ship_of_another_encoding() -> None:
 
 
 def too_much_rudder(table: Table) -> None:
-    table["rudder[deg]"] *= 60.0  # somebody took radians for degrees
+    table["rudder[deg]"] *= 4.4  # 88 degrees: somebody took a share of the travel for degrees
+
+
+def test_a_rudder_that_no_gear_can_reach() -> None:
+    def radians_for_degrees(table: Table) -> None:
+        table["rudder[deg]"] *= 60.0
+
+    relog(radians_for_degrees)
+    refused("'delta'", "values are beyond 90 deg", "the unit is wrong", "correct unit")
 
 
 def test_a_check_run_that_leaves_the_domain_is_said() -> None:
     with_check(too_much_rudder)
     result = finished()
     said = remarks(result, trial=1)
-    assert "left the model's domain at t = 10.5 s" in said
+    assert "left the model's domain at t = 162.5 s" in said
     assert "so the trial has no score" in said
     page = Path("out/report.html").read_text(encoding="utf-8")
     assert "domain at t = 10.5 s" in page

@@ -33,8 +33,9 @@ def noisy(seed, size=1e-3):
 
 
 def faulty(trial):
-    return [r for r in trial.remarks if r.endswith(("; masked", "left as they are", "left as it is")) and " at " in r
-            and "gap" not in r]  # fmt: skip
+    """The remarks on faulty values."""
+    ends = "; masked", "; left as they are", "; left as it is"
+    return [r for r in trial.remarks if r.endswith(ends) and " value" in r]
 
 
 def test_spikes_are_masked_counted_and_placed():

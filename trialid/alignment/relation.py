@@ -27,12 +27,17 @@ PARTS = 4
 
 @dataclass(frozen=True)
 class Pair:
-    """Two signals on one clock: what is compared, where both are valid; (N,) each."""
+    """Two signals on one clock: what is compared, where both are valid; (N,) each.
+
+    In a mean over n samples the noise of the first falls as n to the power `fades`: a half where
+    it is white, one where it is the slope of a noisy angle, of which only the ends count.
+    """
 
     first: Vector
     second: Vector
     valid: Mask
     period: float
+    fades: float = 0.5
 
     @property
     def duration(self) -> float:
@@ -95,7 +100,7 @@ class Relation:
 def of_slope(rate: Vector, angle: Vector, valid: Mask, period: float) -> Relation | None:
     """`rate` against the slope of `angle`; None where the record is too short to tell."""
     slope, mean = np.diff(angle) / period, (rate[1:] + rate[:-1]) / 2
-    return _best(_thinned(Pair(slope, mean, valid[1:] & valid[:-1], period)))
+    return _best(_thinned(Pair(slope, mean, valid[1:] & valid[:-1], period, fades=1.0)))
 
 
 def of_values(first: Vector, second: Vector, valid: Mask, period: float) -> Relation | None:
@@ -109,7 +114,7 @@ def _thinned(pair: Pair) -> Pair:
     whole = len(pair.first) // step * step
     first, second = (y[:whole].reshape(-1, step).mean(axis=1) for y in (pair.first, pair.second))
     valid = np.asarray(pair.valid[:whole].reshape(-1, step).all(axis=1))
-    return Pair(first, second, valid, pair.period * step)
+    return Pair(first, second, valid, pair.period * step, pair.fades)
 
 
 def _best(pair: Pair) -> Relation | None:
@@ -139,7 +144,9 @@ def _relation(pair: Pair, length: int) -> Relation | None:
     best = _nearest_peak(found)
     x, y = _shifted(first, second, valid, int(lags[best]))
     against = np.max(-found[len(lags) // 2 :] * np.sign(found[best]), initial=0.0)
-    moves = _moves(pair.first, pair.valid, x, length), _moves(pair.second, pair.valid, y, length)
+    noise = noise_of(pair.first[pair.valid]) / length**pair.fades
+    other = noise_of(pair.second[pair.valid]) / length**0.5
+    moves = _moves(x, noise), _moves(y, other)
     return Relation(
         float(found[best]), _gain(x, y), *_lag(np.float64(pair.period) * lags, found, best),
         float(found[len(lags) // 2]), float(against), length * pair.period, _swing(x, pair.period),
@@ -258,9 +265,8 @@ def _parts(x: Vector, y: Vector) -> list[tuple[Vector, Vector]]:
     return [(a, b) for a, b in pieces if len(a) >= FEWEST_STRETCHES and np.std(a) > moves]
 
 
-def _moves(y: Vector, valid: Mask, means: Vector, length: int) -> float:
-    """Spread of the means over stretches, in units of the white noise left in them."""
-    noise = noise_of(y[valid]) / math.sqrt(length)
+def _moves(means: Vector, noise: float) -> float:
+    """Spread of the means over stretches, in units of the noise left in them."""
     return float(np.std(means)) / noise if noise > 0 else math.inf
 
 
