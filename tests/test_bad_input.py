@@ -727,7 +727,7 @@ def test_a_check_run_that_leaves_the_domain_is_said() -> None:
     assert "left the model's domain at t = 162.5 s" in said
     assert "so the trial has no score" in said
     page = Path("out/report.html").read_text(encoding="utf-8")
-    assert "domain at t = 10.5 s" in page
+    assert "domain at t = 162.5 s" in page
     series = pd.read_csv("out/series.csv")
     held_out = series[series["trial"] == "held-out"]
     assert 0 < held_out["r_residual_radps"].count() < 30
