@@ -423,8 +423,9 @@ def test_a_rate_of_turn_in_another_unit_than_stated() -> None:
 
     relog(spoil)
     change("short.toml", "phi =", heading)
-    line = refused("trial 'zigzag'", "r is 60", "the slope of psi", 'unit = "deg/min" for r')
+    line = refused("trial 'zigzag'", "r is 59.9", "the slope of psi", 'unit = "deg/min" for r')
     assert "correlation 1.00" in line
+    assert "for psi" not in line  # 57.3 is near 60, but not as near
     change("short.toml", 'unit = "deg/s"', 'unit = "deg/min"')
     finished()
 
@@ -730,7 +731,7 @@ def test_a_check_run_that_leaves_the_domain_is_said() -> None:
     assert "domain at t = 162.5 s" in page
     series = pd.read_csv("out/series.csv")
     held_out = series[series["trial"] == "held-out"]
-    assert 0 < held_out["r_residual_radps"].count() < 30
+    assert 0 < held_out["r_residual_radps"].count() < 330
     assert result["fit"]["converged"]
 
 

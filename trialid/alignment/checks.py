@@ -33,6 +33,9 @@ FAR = 3.0
 """Factor no sensor is wrong by: real ones smooth by up to 0.62 over a whole manoeuvre."""
 CLOSE = 1.15
 """A unit explains a factor this near to its own."""
+ALIKE = 0.02
+"""Units whose factors fit as well as this tell nothing apart: both are named.
+57.3 and 60 differ by 0.046."""
 FAIR = 1.1
 """Gains within this factor of one are not worth a remark."""
 PROMPT = 0.1
@@ -242,33 +245,35 @@ def _scale_words(
         f"{rate} is {sign}{middle:.3g} times the slope of {angle} ({low:.3g} to {high:.3g}, "
         f"correlation {found.correlation:.2f})"
     )
-    mends = [
-        (name, line)
+    able = [
+        (off, name, line)
         for name, factor in ((rate, 1 / middle), (angle, middle))
-        for line in _mends(name, stated.get(name), factor)
+        for line, off in _mends(name, stated.get(name), factor)
         if _prompt(found)
     ]
+    mends = [(name, line) for off, name, line in able if off < min(able)[0] + ALIKE]
     if not mends:
         return f"{fact}, which no unit explains; take another channel for one of them", None
     lines = " or ".join(f"{line} for {name}" for name, line in mends)
     return f"{fact}: a unit is wrong; write {lines}", mends[0][1]
 
 
-def _mends(name: str, stated: str | None, factor: float) -> Iterator[str]:
+def _mends(name: str, stated: str | None, factor: float) -> Iterator[tuple[str, float]]:
     """The unit the numbers are in, if those of `stated` are wrong by the factor; else the gain.
 
-    A unit that the log states cannot be overruled by another one, but by a gain.
+    With the logarithm of what then remains. A unit that the log states cannot be overruled by
+    another one, but by a gain.
     """
     known = [(unit, one) for unit in UNITS if (one := _factor(unit, SIGNALS[name].unit))]
     here = _factor(stated, SIGNALS[name].unit) if stated else None
-    for unit, one in known:
-        if here and 1 / CLOSE < one / (here * factor) < CLOSE:
-            yield f'unit = "{unit}"'
-            return
-    ratios = {one / other for _, one in known for _, other in known} - {1.0}
-    near = [ratio for ratio in ratios if 1 / CLOSE < ratio / factor < CLOSE]
-    if near and not here:
-        yield f"gain = {min(near, key=lambda ratio: abs(np.log(ratio / factor))):.6g}"
+    if here:
+        lines = [(f'unit = "{unit}"', one / here) for unit, one in known]
+    else:
+        ratios = {one / other for _, one in known for _, other in known} - {1.0}
+        lines = [(f"gain = {ratio:.6g}", ratio) for ratio in sorted(ratios)]
+    off, line = min((abs(float(np.log(ratio / factor))), line) for line, ratio in lines)
+    if off < np.log(CLOSE):
+        yield line, off
 
 
 def _factor(unit: str, si: str) -> float | None:
