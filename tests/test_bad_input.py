@@ -403,6 +403,47 @@ def test_a_rudder_of_the_wrong_side() -> None:
 # --- what a record can carry --------------------------------------------------------------------
 
 
+def test_a_ship_that_lies_still() -> None:
+    """Unless nothing is fitted that a rudder must move: a roll decay needs no speed."""
+    relog(lambda table: table.assign(**{"stw[m/s]": 0.04 + 1e-3 * np.cos(table["t[s]"])}))
+    refused("trial 'zigzag'", "lies still", "0.041 m/s", "U0 is 7.33 m/s", "steers r")
+    change("short.toml", 'outputs = ["r"]', 'outputs = ["phi"]')
+    change("short.toml", '["Nr", "Ndelta"]', '["Kp0"]')
+    assert "lies still" not in trialid_("run", "short.toml", "--out", "out").stderr
+
+
+def test_a_rate_of_turn_in_another_unit_than_stated() -> None:
+    """The line that the error gives mends it."""
+    heading = 'psi = { channel = "heading", unit = "deg" }\nphi ='
+
+    def spoil(table: Table) -> Table:
+        table = table.rename(columns={"rot[deg/s]": "rot"})
+        turned = np.cumsum(table["rot"]) * 0.5
+        return table.assign(heading=np.mod(turned, 360.0), rot=60.0 * table["rot"])
+
+    relog(spoil)
+    change("short.toml", "phi =", heading)
+    line = refused("trial 'zigzag'", "r is 59.9", "the slope of psi", 'unit = "deg/min" for r')
+    assert "correlation 1.00" in line
+    assert "for psi" not in line  # 57.3 is near 60, but not as near
+    change("short.toml", 'unit = "deg/s"', 'unit = "deg/min"')
+    finished()
+
+
+def test_values_that_are_kept_although_they_look_wrong() -> None:
+    def spoil(table: Table) -> None:
+        table.loc[600, "rot[deg/s]"] = 30.0
+
+    relog(spoil)
+    remarks = " ".join(finished()["trials"][0]["remarks"])
+    assert "r: 1 value out of line, at 300.0 s; masked" in remarks
+    change("short.toml", 'unit = "deg/s" }', 'unit = "deg/s", keep = ["spikes"] }')
+    remarks = " ".join(finished("again")["trials"][0]["remarks"])
+    assert "at 300.0 s; left as it is" in remarks
+    change("short.toml", 'keep = ["spikes"]', 'keep = ["spike"]')
+    refused("keep", "'spikes'")
+
+
 def test_a_rudder_that_never_moves() -> None:
     relog(lambda table: table.assign(**{"rudder[deg]": 5.0}))
     refused("rudder (delta)", "'zigzag'", "nothing excites", "use a trial with a manoeuvre")
@@ -669,20 +710,28 @@ def test_a_ship_of_another_encoding() -> None:
 
 
 def too_much_rudder(table: Table) -> None:
-    table["rudder[deg]"] *= 60.0  # somebody took radians for degrees
+    table["rudder[deg]"] *= 4.4  # 88 degrees: somebody took a share of the travel for degrees
+
+
+def test_a_rudder_that_no_gear_can_reach() -> None:
+    def radians_for_degrees(table: Table) -> None:
+        table["rudder[deg]"] *= 60.0
+
+    relog(radians_for_degrees)
+    refused("'delta'", "values are beyond 90 deg", "the unit is wrong", "correct unit")
 
 
 def test_a_check_run_that_leaves_the_domain_is_said() -> None:
     with_check(too_much_rudder)
     result = finished()
     said = remarks(result, trial=1)
-    assert "left the model's domain at t = 10.5 s" in said
+    assert "left the model's domain at t = 162.5 s" in said
     assert "so the trial has no score" in said
     page = Path("out/report.html").read_text(encoding="utf-8")
-    assert "domain at t = 10.5 s" in page
+    assert "domain at t = 162.5 s" in page
     series = pd.read_csv("out/series.csv")
     held_out = series[series["trial"] == "held-out"]
-    assert 0 < held_out["r_residual_radps"].count() < 30
+    assert 0 < held_out["r_residual_radps"].count() < 330
     assert result["fit"]["converged"]
 
 

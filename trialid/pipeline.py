@@ -21,6 +21,7 @@ from trialid.assembly import (
     build_model,
     candidates,
     check_bounds,
+    check_moving,
     check_quiet,
     declared_quiet,
     settings_of,
@@ -151,6 +152,7 @@ def fit_of(
     model = build_model(recipe, catalogue)
     settings = settings_of(recipe)
     check_bounds(recipe, model, settings)
+    check_moving(recipe, model, trials)
     progress("fitting", 0.3)
     return fitted(trials, model, settings, progress)
 
@@ -205,6 +207,7 @@ def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
         trial.name, trial.use, recordings, sources, recipe.align.period, trial.window,
         repair=recipe.align.clocks == "repair",
         log_clocks=[c for g, c in zip(logs, clocks, strict=True) for _ in ingest.files_of(g)],
+        keep={q: s.keep for q, s in trial.signals.items() if s.keep},
     )  # fmt: skip
     if trial.speed is None:
         return made

@@ -2,23 +2,27 @@
 
 `align` is the whole of it: bring the logs onto one clock (`log_clock`, `clock_match`), find each
 channel and bring it to SI and to our positive direction (`sources`, `frames`), repair its stamps
-(`clock_health`, `dejitter`), put them in order and choose the common clock (`clocks`), resample
-with one and the same filter (`resample`), and say what was noticed on the way (`quality`, `signs`).
+(`clock_health`, `dejitter`), put them in order and choose the common clock (`clocks`), mask what is
+surely no measurement (`faults`), resample with one and the same filter (`resample`), and say what
+was noticed on the way (`quality`) and whether the signals agree (`checks`, `signs`, `twins`).
 """
 
 import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Literal
 
 from trialid.alignment import (
+    checks,
     clock_health,
     clocks,
     dejitter,
+    faults,
     frames,
     log_clock,
     quality,
     resample,
     signs,
+    twins,
 )
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.log_clock import LogClock
@@ -40,6 +44,7 @@ def align(
     *,
     repair: bool = True,
     log_clocks: Sequence[LogClock | None] = (),
+    keep: Mapping[str, Collection[str]] | None = None,
 ) -> Trial:
     """The trial in `recordings`, its signals in SI on one clock.
 
@@ -61,6 +66,8 @@ def align(
     log_clocks
         For each recording how its clock lies to the trial's, None where it is the trial's; empty
         where all are.
+    keep
+        Quantity to the kinds of `faults.KINDS` that are remarked but not masked.
 
     Raises LogError for a channel that is in no log, UnitError for a unit, and AlignmentError for
     everything that would have to be guessed: a missing sign or unit, signals that do not overlap
@@ -78,15 +85,21 @@ def align(
         clocks.check(one, place)
     _check_epochs(series, sources, recordings, where)
     grid = clocks.common(series, period, window, where)
+    series, found = faults.without(series, sources, grid, keep or {}, at)
     trial = _trial(name, use, recordings, series, grid, where)
+    findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
+    checks.refuse(findings, where)
     remarks = (
         *_of_logs(recordings),
         *of_clocks,
         *(word for source in sources for word in seams(source.channel, recordings)),
         *(word for _, words in repairs for word in words),
         *_of_signals(logged, series, grid),
+        *found,
         *quality.of_trial(series, grid, window),
         *signs.check(trial, {source.quantity: source for source in sources}, where),
+        *(finding.sentence for finding in findings),
+        *(finding.sentence for finding in twins.unchosen(sources, recordings)),
     )
     return dataclasses.replace(trial, remarks=remarks)
 
