@@ -37,6 +37,15 @@ def meaning(name: str) -> str:
     return quantity(name).meaning.split(",")[0]
 
 
+def spoken(name: str) -> str:
+    """A signal's name for people who never saw our letters.
+
+    >>> spoken("r"), spoken("V_aw")
+    ('yaw rate', 'V_aw')
+    """
+    return _FIELDS.get(name, name).replace("_", " ")
+
+
 def symbol(name: str) -> str:
     """A signal's letter as printed, Greek letters as such.
 

@@ -1,0 +1,296 @@
+"""A survey of a log as a person reads it in a terminal, and as plain data.
+
+Names of channels come from files that anybody may have written: they are shown as plain text, and
+what could steer a terminal is shown escaped.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from trialid.alignment.clocks import CALENDAR_NS, moment
+from trialid.quantities import SIGNALS
+from trialid.report import labels
+from trialid.report.terminal import Words, add_row, new_table
+from trialid.survey.findings import ChannelSurvey, Survey
+from trialid.survey.relations import differences, side
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+SCHEMA: Final = "trialid-survey/1"
+MOST_MESSAGES: Final = 12
+"""Messages without a recognised field that are listed before they are only counted."""
+MOST_REMARKS: Final = 8
+
+
+def shown(text: str) -> str:
+    r"""Text of a log with its control characters escaped.
+
+    >>> shown("roll\x1b[31m")
+    'roll\\x1b[31m'
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def inspection(survey: Survey, *, everything: bool = False) -> Sequence[Any]:
+    """The survey as lines and tables to print in order; `everything` folds nothing."""
+    known = _by_quantity(survey)
+    parts: list[Any] = [_title(survey), ""]
+    if known:
+        parts += [_signals(known), ""]
+    parts += [*_choices(known), *_others(survey, everything), *_clocks(survey), *_remarks(survey)]
+    return parts[:-1] if parts[-1] == "" else parts
+
+
+def _by_quantity(survey: Survey) -> dict[str, tuple[ChannelSurvey, ...]]:
+    """Sources of each recognised quantity, in the order of the dictionary."""
+    found = {name: survey.sources(name) for name in SIGNALS}
+    return {name: sources for name, sources in found.items() if sources}
+
+
+def _title(survey: Survey) -> Any:
+    from rich.text import Text
+
+    count = len(survey.channels)
+    files = f", {len(survey.files)} files" if len(survey.files) > 1 else ""
+    facts = f"{survey.format}{files}, {count} channel{'s' if count > 1 else ''}, {_span(survey)}"
+    return Text(f"{shown(str(survey.path))}\n", style="bold").append(facts, style="not bold")
+
+
+def _span(survey: Survey) -> str:
+    first, last = survey.start, survey.end
+    if first > CALENDAR_NS:
+        return f"{survey.duration:.1f} s, {_date(first)} to {_date(last)} UTC"
+    return f"{survey.duration:.1f} s, {moment(first)} to {moment(last)}"
+
+
+def _date(stamp: int) -> str:
+    return moment(stamp).replace("T", " ").partition(".")[0]
+
+
+def _signals(known: dict[str, tuple[ChannelSurvey, ...]]) -> "Table":
+    table = new_table("", "", "channel", "known", "Hz", "gaps", "from", "to", "unit", words=4)
+    table.columns[2].overflow, table.columns[2].no_wrap = "fold", False
+    table.columns[2].ratio, table.expand = 1, True
+    table.columns[8].justify = "left"
+    for name, sources in known.items():
+        for place, one in enumerate(sources):
+            title = ("", "") if place else (labels.symbol(name), labels.spoken(name))
+            style = "dim" if one.constant else None
+            add_row(table, *title, shown(one.key), _how(one), *_numbers(one), style=style)
+    return table
+
+
+def _how(one: ChannelSurvey) -> str:
+    """How a quantity is known, in a word."""
+    assert one.guess is not None
+    return f"by {one.guess.how}"
+
+
+def _numbers(one: ChannelSurvey) -> tuple[str, str, str, str, str]:
+    holes = f"{one.gaps.count} ({one.gaps.total:.3g} s)" if one.gaps.count else "-"
+    return f"{one.rate:.3g}", holes, *_range(one), _unit(one)
+
+
+def _range(one: ChannelSurvey) -> tuple[str, str]:
+    if math.isnan(one.low):
+        return "not", "available"
+    if one.constant:
+        return "always", f"{one.low:.4g}"
+    return f"{one.low:.4g}", f"{one.high:.4g}"
+
+
+def _unit(one: ChannelSurvey) -> str:
+    if one.unit:
+        return shown(one.unit)
+    return f"{one.unit_in_name} (name)" if one.unit_in_name else "not stated"
+
+
+def _choices(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[Any]:
+    """What a person has to decide: several sources, no source, a rudder's sign."""
+    lines = [*_several(known), *_lacking(known), *_rudder(known)]
+    if lines:
+        yield _heading("to decide")
+        yield from (_bullet(line) for line in lines)
+        yield ""
+
+
+def _several(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
+    for name, sources in known.items():
+        live = [one for one in sources if not one.constant]
+        if len(live) > 1:
+            rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:4])
+            more = f" and {len(live) - 4} more" if len(live) > 4 else ""
+            yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
+            yield from differences(live[:4])
+
+
+def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
+    alive = {name for name, sources in known.items() if any(not one.constant for one in sources)}
+    if not alive & {"delta", "delta_order"}:
+        yield "no rudder and no rudder order is recognised: a fit needs one"
+    if not alive & {"r", "psi", "phi"}:
+        yield "no yaw rate, heading or roll angle is recognised: a fit needs a motion"
+    if "u" not in alive:
+        yield "no speed through the water is recognised: state `speed` in the pipeline"
+
+
+def _rudder(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
+    """What the motion says about the sign of each rudder; the best yaw rate is the witness."""
+    witness = next((one for one in known.get("r", ()) if not one.constant), None)
+    for name in ("delta", "delta_order"):
+        for one in known.get(name, ())[:3] if witness else ():
+            found = side(one, witness)
+            if found is not None:
+                yield (
+                    f'{one.key}: positive = "{found.side}", by its correlation with the change of '
+                    f"{witness.key} ({found.strength:+.2f}), if that is positive to {found.if_to}"
+                )
+
+
+def _others(survey: Survey, everything: bool) -> Iterator[Any]:
+    rest = [one for one in survey.channels.values() if one.guess is None]
+    if not rest:
+        return
+    yield _heading(f"other channels: {len(rest)}")
+    yield _all_others(rest) if everything else _folded(rest)
+    yield ""
+
+
+def _all_others(rest: Sequence[ChannelSurvey]) -> "Table":
+    table = new_table("channel", "Hz", "gaps", "from", "to", "unit", words=1)
+    table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
+    table.columns[0].ratio, table.expand = 1, True
+    table.columns[5].justify = "left"
+    for one in rest:
+        add_row(table, shown(one.key), *_numbers(one))
+    return table
+
+
+def _folded(rest: Sequence[ChannelSurvey]) -> "Table":
+    """One line a message; columns of a table have none and stand in one line together."""
+    from rich.text import Text
+
+    groups: dict[str, list[ChannelSurvey]] = {}
+    for one in rest:
+        groups.setdefault(one.message, []).append(one)
+    table = new_table("message", "Hz", "fields", words=1)
+    table.columns[2].justify, table.columns[2].ratio, table.expand = "left", 1, True
+    table.columns[0].max_width = 44
+    for message, fields in list(groups.items())[:MOST_MESSAGES]:
+        names = ", ".join(one.key.removeprefix(f"{message}:") for one in fields)
+        add_row(table, shown(message) or "(columns)", f"{fields[0].rate:.3g}", shown(names))
+    left = len(groups) - MOST_MESSAGES
+    if left > 0:
+        table.add_row(Text(f"and {left} more messages; --all shows every channel", style="dim"))
+    return table
+
+
+def _clocks(survey: Survey) -> Iterator[Any]:
+    yield _heading("clocks")
+    table = new_table("of", "clock", "jitter", "steps back", "recorder later by", words=2)
+    seen: dict[tuple[str, str], ChannelSurvey] = {}
+    recognised = [one for one in survey.channels.values() if one.guess is not None]
+    for one in recognised or survey.channels.values():
+        seen.setdefault((one.message, one.clock.words), one)
+    for (message, words), one in list(seen.items())[:MOST_MESSAGES]:
+        c = one.clock
+        late = "-" if c.received is None else f"{c.received.offset:.4g} s"
+        back = f"{c.steps_back} (to {c.furthest_back:.3g} s)" if c.steps_back else "-"
+        add_row(table, shown(message) or "table", shown(words), _jitter(one), back, late)
+    table.columns[0].ratio = table.columns[1].ratio = 1
+    table.expand = True
+    yield table
+    if len(seen) > MOST_MESSAGES:
+        yield Words(f"and {len(seen) - MOST_MESSAGES} more", 1, "dim")
+    yield ""
+
+
+def _jitter(one: ChannelSurvey) -> str:
+    """Spread of the time between samples as a share of it."""
+    share = 100 * one.clock.jitter * one.rate
+    return f"{share:.2g} %" if share >= 0.01 else "0 %"
+
+
+def _remarks(survey: Survey) -> Iterator[Any]:
+    several = len(survey.files) > 1
+    said = [
+        f"{file.path.name}: {remark}" if several else remark
+        for file in survey.files
+        for remark in file.remarks
+    ]
+    for title, lines in (("noticed", said), ("careful", list(survey.warnings))):
+        if lines:
+            yield _heading(title)
+            yield from (_bullet(line) for line in lines[:MOST_REMARKS])
+            if len(lines) > MOST_REMARKS:
+                yield Words(f"and {len(lines) - MOST_REMARKS} more; --json has them all", 1, "dim")
+            yield ""
+
+
+def _bullet(line: str) -> Any:
+    """A sentence behind a dash, its further lines indented."""
+    from rich.padding import Padding
+    from rich.table import Table
+    from rich.text import Text
+
+    grid = Table.grid(padding=(0, 1))
+    grid.add_row(Text("-"), Padding(Text(shown(line)), 0))
+    return grid
+
+
+def _heading(text: str) -> Any:
+    from rich.text import Text
+
+    return Text(text, style="bold")
+
+
+def plain(survey: Survey) -> dict[str, Any]:
+    """The survey as plain data, schema `trialid-survey/1`; what is not known is null."""
+    dated = survey.start > CALENDAR_NS
+    return {
+        "schema": SCHEMA,
+        "path": str(survey.path),
+        "format": survey.format,
+        "duration": survey.duration,
+        "start": f"{moment(survey.start)}Z" if dated else None,
+        "files": [
+            {"path": str(f.path), "format": f.format, "sha256": f.sha256, "remarks": [*f.remarks]}
+            for f in survey.files
+        ],
+        "channels": [_plain_channel(one) for one in survey.channels.values()],
+        "warnings": list(survey.warnings),
+    }
+
+
+def _plain_channel(one: ChannelSurvey) -> dict[str, Any]:
+    late = one.clock.received
+    return {
+        "channel": one.name,
+        "as": one.angle,
+        "description": one.description or None,
+        "quantity": one.guess and one.guess.quantity,
+        "known": one.guess and one.guess.words,
+        "positive": one.guess and one.guess.positive,
+        "unit": one.unit,
+        "unit_in_name": one.unit_in_name,
+        "samples": one.samples,
+        "missing": one.missing,
+        "rate": one.rate or None,
+        "start_ns": one.start,
+        "end_ns": one.end,
+        "range": None if math.isnan(one.low) else [one.low, one.high],
+        "gaps": {
+            "count": one.gaps.count, "total": one.gaps.total, "longest": one.gaps.longest,
+        },
+        "clock": {
+            "words": one.clock.words,
+            "jitter": one.clock.jitter,
+            "steps_back": one.clock.steps_back,
+            "furthest_back": one.clock.furthest_back,
+            "same_stamp": one.clock.same,
+            "received": late
+            and {"offset": late.offset, "drift": late.drift, "jitter": late.jitter},
+        },
+    }  # fmt: skip

@@ -1,0 +1,146 @@
+"""Which quantity an unnamed channel is by how it moves, and what the channels say of one another.
+
+A rate of turn is the slope of the heading, a roll rate the slope of the roll angle: a relation with
+a number in it, which the unit must give. Nothing else here is as sharp, so nothing else is used.
+"""
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+
+from trialid.alignment import signs
+from trialid.survey.findings import ChannelSurvey, Guess
+from trialid.survey.sketch import Vector, together
+
+SLOPES: Final = {"r": "psi", "p": "phi"}
+"""A rate and the angle it is the slope of."""
+
+SURE: Final = 0.95
+"""Correlation from which a channel without a telling name is taken to be the rate of an angle."""
+
+MOST_UNNAMED: Final = 200
+"""More unnamed channels than this are a log of something else; they are not tried one by one."""
+
+PER_UNIT: Final = {"rad/s": 1.0, "deg/s": np.pi / 180, "deg/min": np.pi / 10800}
+ANGLES: Final = {"rad": 1.0, "deg": np.pi / 180}
+
+
+def recognised(channels: Mapping[str, ChannelSurvey]) -> dict[str, ChannelSurvey]:
+    """The channels, with a guess for those that only their motion tells."""
+    found = dict(channels)
+    unnamed = [c for c in channels.values() if _unnamed(c)]
+    if len(unnamed) > MOST_UNNAMED:
+        return found
+    for rate, angle in SLOPES.items():
+        for reference in _named(channels, angle)[:1]:
+            for channel in unnamed:
+                strength = abs(slope_agreement(channel, reference))
+                if strength > SURE and unit_of_rate(channel, reference):
+                    words = f"by its relation to {angle} (correlation {strength:.2f})"
+                    guess = Guess(rate, "relation", words)
+                    found[channel.key] = dataclasses.replace(channel, guess=guess)
+    return found
+
+
+def _unnamed(channel: ChannelSurvey) -> bool:
+    return channel.guess is None and not channel.constant and len(channel.sketch.t) > 40
+
+
+def _named(channels: Mapping[str, ChannelSurvey], quantity: str) -> list[ChannelSurvey]:
+    return [c for c in channels.values() if c.guess and c.guess.quantity == quantity]
+
+
+def slope_agreement(rate: ChannelSurvey, angle: ChannelSurvey) -> float:
+    """Correlation of a rate with the change of an angle; 0 where they have too little in common."""
+    common = together(rate.sketch, angle.sketch)
+    if common is None:
+        return 0.0
+    _, (y, x), whole = common
+    return signs.agreement(y, x, whole)[0]
+
+
+@dataclass(frozen=True)
+class Side:
+    """Which side a rudder counts as positive, measured: by the change of a rate of turn.
+
+    `strength` is their correlation as logged; `if_to` the side the rate is taken to be positive to.
+    """
+
+    side: Literal["starboard", "port"]
+    strength: float
+    if_to: Literal["starboard", "port"]
+
+
+def side(rudder: ChannelSurvey, rate: ChannelSurvey, if_to: str | None = None) -> Side | None:
+    """The side of a rudder against a rate of turn, or a heading; None where it is not clear.
+
+    The rate is positive to `if_to`; None: by its format's convention, starboard where it has none.
+    """
+    strength, clear = _turning(rudder, rate)
+    if not clear or abs(strength) < -signs.CONTRADICTION:
+        return None
+    towards = if_to or (rate.guess.positive if rate.guess else None) or "starboard"
+    to: Literal["starboard", "port"] = "port" if towards == "port" else "starboard"
+    other: Literal["starboard", "port"] = "starboard" if to == "port" else "port"
+    return Side(to if strength > 0 else other, strength, to)
+
+
+def _turning(rudder: ChannelSurvey, turning: ChannelSurvey) -> tuple[float, bool]:
+    """Correlation of a rudder with the change of a rate of turn, and whether its parts agree."""
+    common = together(rudder.sketch, turning.sketch)
+    if common is None:
+        return 0.0, False
+    _, (delta, r), whole = common
+    if turning.guess is not None and turning.guess.quantity == "psi":
+        r = np.gradient(r)
+    strength, parts = signs.agreement(delta, r, whole, damping=r)
+    return strength, bool(parts) and all(part * strength > 0 for part in parts)
+
+
+def unit_of_rate(rate: ChannelSurvey, angle: ChannelSurvey) -> str | None:
+    """The unit of a rate that its angle, whose unit is known, leaves open; None where none fits."""
+    common = together(rate.sketch, angle.sketch)
+    size = ANGLES.get(angle.unit or angle.unit_in_name or "")
+    if common is None or size is None:
+        return None
+    period, (y, x), whole = common
+    factor = abs(_factor(y, x * size, period, whole))
+    fitting = [unit for unit, per in PER_UNIT.items() if 0.8 < factor / per < 1.25]
+    stated = rate.unit or rate.unit_in_name
+    return next((unit for unit in fitting if stated in (None, unit)), None)
+
+
+def _factor(rate: Vector, angle: Vector, period: float, whole: Vector) -> float:
+    """What to multiply a rate by to have the slope of the angle [rad/s], by least squares."""
+    change = np.diff(angle) / period
+    mean = (rate[1:] + rate[:-1]) / 2
+    both = np.asarray(whole[1:] & whole[:-1], dtype=bool)
+    power = float(mean[both] @ mean[both])
+    return float(mean[both] @ change[both]) / power if power else 0.0
+
+
+def differences(sources: Sequence[ChannelSurvey]) -> Iterator[str]:
+    """How several sources of one quantity differ, against the first of them, in words."""
+    first, *others = sources
+    unit = first.unit or first.unit_in_name
+    for other in others:
+        if (other.unit or other.unit_in_name) != unit or other.constant:
+            continue
+        common = together(first.sketch, other.sketch)
+        if common is None:
+            continue
+        _, (a, b), whole = common
+        if whole.sum() < 40:
+            continue
+        apart = (b - a)[whole]
+        offset, spread = float(np.median(apart)), float(np.std(apart))
+        size = float(np.std(a[whole]))
+        same = float(np.corrcoef(a[whole], b[whole])[0, 1]) if size and np.std(b[whole]) else 0.0
+        shown = f" {unit}" if unit else ""
+        yield (
+            f"{other.key} less {first.key}: {offset:+.3g}{shown} in the median, {spread:.3g} rms "
+            f"about it (it moves by {size:.3g} rms); correlation {same:.2f}"
+        )
