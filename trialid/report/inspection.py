@@ -139,8 +139,10 @@ def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
 def _rudder(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
     """What the motion says about the sign of each rudder; the best yaw rate is the witness."""
     witness = next((one for one in known.get("r", ()) if not one.constant), None)
+    if witness is None:
+        return
     for name in ("delta", "delta_order"):
-        for one in known.get(name, ())[:3] if witness else ():
+        for one in known.get(name, ())[:3]:
             found = side(one, witness)
             if found is not None:
                 yield (

@@ -51,7 +51,7 @@ def placeholder(length: float, speed: float, speed_words: str) -> str:
         HEAD
         + f'name = "placeholder of {length:g} m"\n'
         + 'source = "PLACEHOLDER: masses and coefficients of the container ship S-175 (Son & '
-        + 'Nomoto 1982), primed; only the length is the ship\'s own"\n'
+        + "Nomoto 1982), primed; only the length is the ship's own\"\n"
         + 'system = "prime"\nrudder_positive = "starboard"\n\n[particulars]\n'
         + f"L = {length:g}  # m, as stated\n"
         + f"U0 = {speed:.4g}  # m/s, {speed_words}\n"

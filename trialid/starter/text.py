@@ -10,7 +10,7 @@ from trialid.starter.choice import Chosen, Signal
 from trialid.survey.findings import ChannelSurvey
 
 HEAD: Final = """\
-# Begun by `trialid inspect --init` from what the log{s} hold{not_s}; read every comment, then run it:
+# Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
 #     trialid run {name}
 # It begins with the simplest model. What is missing in it the run says; `trialid add` puts it in.
 """
@@ -100,7 +100,7 @@ def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[st
     yield "[align]"
     yield (
         f"period = {chosen:g}  # s; the slowest signal, {comment(slowest.key)}, has "
-        f"{slowest.rate:.3g} Hz, and the ship takes {length / max(speed, 1e-3):.3g} s for her length"
+        f"{slowest.rate:.3g} Hz; her own length takes the ship {length / max(speed, 1e-3):.3g} s"
     )
 
 

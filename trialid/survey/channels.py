@@ -1,6 +1,7 @@
 """One channel as read from a file to what is known of it; parts of many files to one channel."""
 
 import dataclasses
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final, Literal
 
@@ -145,7 +146,7 @@ def merged(parts: Sequence[ChannelSurvey]) -> ChannelSurvey:
 
 
 def _gaps(ordered: Sequence[ChannelSurvey], rate: float) -> Gaps:
-    holes = [(b.start - a.end) / 1e9 for a, b in zip(ordered, ordered[1:], strict=False)]
+    holes = [(b.start - a.end) / 1e9 for a, b in itertools.pairwise(ordered)]
     between = [hole for hole in holes if rate and hole > 3.0 / rate]
     inside = [part.gaps for part in ordered]
     return Gaps(

@@ -1,4 +1,4 @@
-"""What a survey of a log gives: plain facts about each channel, nothing of its samples but a sketch."""
+"""What a survey of a log gives: facts about each channel, of its samples no more than a sketch."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

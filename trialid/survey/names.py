@@ -14,7 +14,8 @@ from trialid.errors import UnitError
 from trialid.quantities import SIGNALS
 
 PHRASES: Final = {
-    "delta": "rudder, rudder angle, rudder position, rudder feedback, ruder, ruderlage, ruderwinkel",
+    "delta": "rudder, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
+    "ruderwinkel",
     "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
     "drehrate, wendegeschwindigkeit, angular velocity z",
@@ -40,15 +41,21 @@ ALONE: Final = {
 OVER_GROUND: Final = frozenset({("sog",), ("speed", "over", "ground"), ("speed", "ground")})
 
 ORDERED: Final = frozenset(
-    "order ordered command commanded cmd demand demanded desired setpoint target set".split()
-)
+    (
+        "order", "ordered", "command", "commanded", "cmd", "demand", "demanded", "desired",
+        "setpoint", "target", "set",
+    )
+)  # fmt: skip
 """Words that make a rudder its order, and any other quantity a wish instead of a motion."""
 
 NO_MEASUREMENT: Final = frozenset(
-    "covariance cov variance var std sigma stddev error err status state mode quality valid min "
-    "max limit limits rms residual predicted acceleration accel bias temperature voltage "
-    "deviation variation instance id seq sequence engine count sid wave".split()
-)
+    (
+        "covariance", "cov", "variance", "var", "std", "sigma", "stddev", "error", "err", "status",
+        "state", "mode", "quality", "valid", "min", "max", "limit", "limits", "rms", "residual",
+        "predicted", "acceleration", "accel", "bias", "temperature", "voltage", "deviation",
+        "variation", "instance", "id", "seq", "sequence", "engine", "count", "sid", "wave",
+    )
+)  # fmt: skip
 """Words that make it something else."""
 
 UNITS_IN_NAMES: Final = {

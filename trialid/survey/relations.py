@@ -14,6 +14,7 @@ import numpy as np
 from trialid.alignment import signs
 from trialid.survey.findings import ChannelSurvey, Guess
 from trialid.survey.sketch import Vector, together
+from trialid.trial import Mask
 
 SLOPES: Final = {"r": "psi", "p": "phi"}
 """A rate and the angle it is the slope of."""
@@ -113,11 +114,11 @@ def unit_of_rate(rate: ChannelSurvey, angle: ChannelSurvey) -> str | None:
     return next((unit for unit in fitting if stated in (None, unit)), None)
 
 
-def _factor(rate: Vector, angle: Vector, period: float, whole: Vector) -> float:
+def _factor(rate: Vector, angle: Vector, period: float, whole: Mask) -> float:
     """What to multiply a rate by to have the slope of the angle [rad/s], by least squares."""
     change = np.diff(angle) / period
     mean = (rate[1:] + rate[:-1]) / 2
-    both = np.asarray(whole[1:] & whole[:-1], dtype=bool)
+    both = whole[1:] & whole[:-1]
     power = float(mean[both] @ mean[both])
     return float(mean[both] @ change[both]) / power if power else 0.0
 

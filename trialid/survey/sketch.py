@@ -1,4 +1,4 @@
-"""A channel's course in few points: enough to relate it to others, of whatever length the log is."""
+"""A channel's course in few points: enough to relate it to others, however long the log is."""
 
 from dataclasses import dataclass
 from typing import Final
