@@ -20,8 +20,9 @@ def write_mcap(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any
     a plot; else each trial begins at zero.
     """
     dated = all(trial.start > CALENDAR_NS for trial in trials)
+    starts = [trial.start if dated else 0 for trial in trials]
     topics = stems(trial.name for trial in trials)
-    tracks = [_track(trial, stem, trial.start if dated else 0) for trial, stem in zip(trials, topics, strict=True)]
+    tracks = [_track(*each) for each in zip(trials, topics, starts, strict=True)]
     manifest = {key: str(provenance[key]) for key in ("schema", "version", "pipeline")}
     for trial in trials:
         manifest |= {f"sha256 {log.path}": log.sha256 for log in trial.logs}

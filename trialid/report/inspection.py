@@ -78,8 +78,13 @@ def _signals(known: dict[str, tuple[ChannelSurvey, ...]]) -> "Table":
         for place, one in enumerate(sources):
             title = ("", "") if place else (labels.symbol(name), labels.spoken(name))
             style = "dim" if one.constant else None
-            add_row(table, *title, shown(one.key), _how(one), *_numbers(one), style=style)
+            add_row(table, *title, _name(one), _how(one), *_numbers(one), style=style)
     return table
+
+
+def _name(one: ChannelSurvey) -> str:
+    """What a pipeline writes, and in a second line what the format says of it."""
+    return "\n".join(shown(words) for words in (one.key, one.description) if words)
 
 
 def _how(one: ChannelSurvey) -> str:
@@ -129,9 +134,9 @@ def _several(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
 def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
     alive = {name for name, sources in known.items() if any(not one.constant for one in sources)}
     if not alive & {"delta", "delta_order"}:
-        yield "no rudder and no rudder order is recognised: a fit needs one"
+        yield "no rudder or rudder order that moves is recognised: a fit needs one"
     if not alive & {"r", "psi", "phi"}:
-        yield "no yaw rate, heading or roll angle is recognised: a fit needs a motion"
+        yield "no yaw rate, heading or roll angle that moves is recognised: a fit needs a motion"
     if "u" not in alive:
         yield "no speed through the water is recognised: state `speed` in the pipeline"
 
@@ -156,7 +161,10 @@ def _others(survey: Survey, everything: bool) -> Iterator[Any]:
     if not rest:
         return
     yield _heading(f"other channels: {len(rest)}")
-    yield _all_others(rest) if everything else _folded(rest)
+    if everything:
+        yield _all_others(rest)
+    else:
+        yield from _folded(rest)
     yield ""
 
 
@@ -170,10 +178,8 @@ def _all_others(rest: Sequence[ChannelSurvey]) -> "Table":
     return table
 
 
-def _folded(rest: Sequence[ChannelSurvey]) -> "Table":
+def _folded(rest: Sequence[ChannelSurvey]) -> Iterator[Any]:
     """One line a message; columns of a table have none and stand in one line together."""
-    from rich.text import Text
-
     groups: dict[str, list[ChannelSurvey]] = {}
     for one in rest:
         groups.setdefault(one.message, []).append(one)
@@ -183,10 +189,10 @@ def _folded(rest: Sequence[ChannelSurvey]) -> "Table":
     for message, fields in list(groups.items())[:MOST_MESSAGES]:
         names = ", ".join(one.key.removeprefix(f"{message}:") for one in fields)
         add_row(table, shown(message) or "(columns)", f"{fields[0].rate:.3g}", shown(names))
+    yield table
     left = len(groups) - MOST_MESSAGES
     if left > 0:
-        table.add_row(Text(f"and {left} more messages; --all shows every channel", style="dim"))
-    return table
+        yield Words(f"and {left} more messages; --all shows every channel", 1, "dim")
 
 
 def _clocks(survey: Survey) -> Iterator[Any]:
@@ -201,8 +207,8 @@ def _clocks(survey: Survey) -> Iterator[Any]:
         late = "-" if c.received is None else f"{c.received.offset:.4g} s"
         back = f"{c.steps_back} (to {c.furthest_back:.3g} s)" if c.steps_back else "-"
         add_row(table, shown(message) or "table", shown(words), _jitter(one), back, late)
-    table.columns[0].ratio = table.columns[1].ratio = 1
-    table.expand = True
+    table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
+    table.columns[0].ratio, table.expand = 1, True
     yield table
     if len(seen) > MOST_MESSAGES:
         yield Words(f"and {len(seen) - MOST_MESSAGES} more", 1, "dim")

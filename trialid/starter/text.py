@@ -128,6 +128,8 @@ def _model(trials: Sequence[Chosen]) -> Iterator[str]:
         yield "# only the order is logged: the rudder follows it with a lag, T_delta"
         effects.insert(0, "rudder_servo")
     yield f"effects = {_list(effects)}  # `trialid effects` lists what there is"
+    if order_only:
+        yield "values = { T_delta = 1.0 }  # s, typical; put it into free once the rest fits"
     free = ["Nv", "Nr", "Ndelta", *(["Kv", "Kr", "Kp", "GM"] if rolls else [])]
     yield ""
     yield "[identify]"

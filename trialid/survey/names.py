@@ -65,6 +65,12 @@ UNITS_IN_NAMES: Final = {
     "deg s": "deg/s", "rad s": "rad/s", "m s": "m/s", "deg min": "deg/min",
 }  # fmt: skip
 
+USUAL: Final = {
+    "rad": "rad", "deg": "rad", "rad/s": "rad/s", "deg/s": "rad/s", "deg/min": "rad/s",
+    "rpm": "rad/s", "m/s": "m/s", "kn": "m/s", "km/h": "m/s", "m": "m",
+}  # fmt: skip
+"""Units and what they become: half a second less than to ask the library of all units."""
+
 _WORD: Final = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
 SIDES: Final = {"port": "n_p", "starboard": "n_s", "stbd": "n_s", "stb": "n_s"}
 
@@ -142,7 +148,8 @@ def _several(told: Sequence[str]) -> bool:
 def _best(told: Sequence[str]) -> set[str]:
     found = [(len(phrase), q) for q, phrase in _phrases() if _holds(told, phrase)]
     size = max((length for length, _ in found), default=0)
-    return {q for length, q in found if length == size}
+    best = {q for length, q in found if length == size}
+    return best - {"n"} if best & {"n_p", "n_s"} else best  # one of two shafts is a shaft
 
 
 @functools.cache
@@ -161,6 +168,8 @@ def _holds(told: Sequence[str], phrase: Sequence[str]) -> bool:
 def _fits(name: str, unit: str | None) -> bool:
     if unit is None:
         return True
+    if unit in USUAL:
+        return USUAL[unit] == SIGNALS[name].unit
     try:
         units.factor(unit, SIGNALS[name].unit)
     except UnitError:

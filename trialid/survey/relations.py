@@ -11,7 +11,9 @@ from typing import Final, Literal
 
 import numpy as np
 
+from trialid import units
 from trialid.alignment import signs
+from trialid.quantities import SIGNALS
 from trialid.survey.findings import ChannelSurvey, Guess
 from trialid.survey.sketch import Vector, together
 from trialid.trial import Mask
@@ -123,12 +125,20 @@ def _factor(rate: Vector, angle: Vector, period: float, whole: Mask) -> float:
     return float(mean[both] @ change[both]) / power if power else 0.0
 
 
+def _si(unit: str | None, channel: ChannelSurvey) -> float:
+    """What makes a value SI; 1 where no unit is known."""
+    if unit is None or channel.guess is None:
+        return 1.0
+    return units.factor(unit, SIGNALS[channel.guess.quantity].unit)
+
+
 def differences(sources: Sequence[ChannelSurvey]) -> Iterator[str]:
     """How several sources of one quantity differ, against the first of them, in words."""
     first, *others = sources
     unit = first.unit or first.unit_in_name
     for other in others:
-        if (other.unit or other.unit_in_name) != unit or other.constant:
+        own = other.unit or other.unit_in_name
+        if other.constant or (unit is None) != (own is None):
             continue
         common = together(first.sketch, other.sketch)
         if common is None:
@@ -136,6 +146,7 @@ def differences(sources: Sequence[ChannelSurvey]) -> Iterator[str]:
         _, (a, b), whole = common
         if whole.sum() < 40:
             continue
+        b = b * (_si(own, other) / _si(unit, first))
         apart = (b - a)[whole]
         offset, spread = float(np.median(apart)), float(np.std(apart))
         size = float(np.std(a[whole]))
