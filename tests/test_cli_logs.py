@@ -36,7 +36,7 @@ def test_inspect_shows_what_is_in_a_log() -> None:
     done = trialid_("inspect", CSV)
     assert done.exit_code == 0
     assert done.stderr == ""
-    assert "δ  rudder" in done.stdout
+    assert "rudder angle δ" in done.stdout
 
 
 def test_several_logs_are_shown_one_after_another() -> None:

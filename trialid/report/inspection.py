@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.quantities import SIGNALS
 from trialid.report import labels
-from trialid.report.terminal import Words, add_row, new_table
+from trialid.report.terminal import Words, add_row, cut, new_table
 from trialid.survey.findings import ChannelSurvey, Survey
 from trialid.survey.relations import differences, side
 
@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 SCHEMA: Final = "trialid-survey/1"
 MOST_MESSAGES: Final = 12
 """Messages without a recognised field that are listed before they are only counted."""
+LONGEST: Final = 72
+"""Letters of a description that are shown."""
+COMPARED: Final = ("delta", "delta_order", "r", "p", "phi", "psi", "u")
+"""Quantities of which two sources are compared; of a depth or a wind two are no question."""
 MOST_REMARKS: Final = 8
 
 
@@ -70,21 +74,31 @@ def _date(stamp: int) -> str:
 
 
 def _signals(known: dict[str, tuple[ChannelSurvey, ...]]) -> "Table":
-    table = new_table("", "", "channel", "known", "Hz", "gaps", "from", "to", "unit", words=4)
-    table.columns[2].overflow, table.columns[2].no_wrap = "fold", False
-    table.columns[2].ratio, table.expand = 1, True
-    table.columns[8].justify = "left"
+    """A heading a quantity, its sources below it side by side."""
+    from rich.text import Text
+
+    table = new_table("channel", "known", "Hz", "gaps", "from", "to", "unit", words=2)
+    table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
+    table.columns[0].ratio, table.expand = 1, True
+    table.columns[6].justify = "left"
     for name, sources in known.items():
-        for place, one in enumerate(sources):
-            title = ("", "") if place else (labels.symbol(name), labels.spoken(name))
-            style = "dim" if one.constant else None
-            add_row(table, *title, _name(one), _how(one), *_numbers(one), style=style)
+        table.add_row(Text(labels.labelled(name), style="bold"))
+        for one in sources:
+            cells = (_how(one), *_numbers(one))
+            style = "dim" if one.constant else ""
+            table.add_row(_name(one), *(Text(cell) for cell in cells), style=style)
     return table
 
 
-def _name(one: ChannelSurvey) -> str:
-    """What a pipeline writes, and in a second line what the format says of it."""
-    return "\n".join(shown(words) for words in (one.key, one.description) if words)
+def _name(one: ChannelSurvey) -> Any:
+    """What a pipeline writes, and below it what the format says of it."""
+    from rich.padding import Padding
+    from rich.text import Text
+
+    name = Text(shown(one.key))
+    if one.description:
+        name.append(f"\n{cut(shown(one.description), 1, LONGEST)}", style="dim")
+    return Padding(name, (0, 0, 0, 2))
 
 
 def _how(one: ChannelSurvey) -> str:
@@ -128,7 +142,7 @@ def _several(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
             rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:4])
             more = f" and {len(live) - 4} more" if len(live) > 4 else ""
             yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
-            yield from differences(live[:4])
+            yield from differences(live[:4]) if name in COMPARED else ()
 
 
 def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:

@@ -6,7 +6,9 @@ from trialid import units
 from trialid.quantities import SIGNALS, Quantity
 from trialid.report import wording
 
-_GREEK = {"phi": "\u03c6", "psi": "\u03c8", "delta": "\u03b4"}
+_GREEK = {
+    "phi": "\u03c6", "psi": "\u03c8", "delta": "\u03b4", "gamma": "\u03b3", "alpha": "\u03b1",
+}  # fmt: skip
 
 _FIELDS = {
     "u": "surge_speed",
@@ -35,15 +37,6 @@ def meaning(name: str) -> str:
     'yaw rate'
     """
     return quantity(name).meaning.split(",")[0]
-
-
-def spoken(name: str) -> str:
-    """A signal's name for people who never saw our letters.
-
-    >>> spoken("r"), spoken("V_aw")
-    ('yaw rate', 'V_aw')
-    """
-    return _FIELDS.get(name, name).replace("_", " ")
 
 
 def symbol(name: str) -> str:

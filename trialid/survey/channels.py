@@ -16,10 +16,10 @@ from trialid.quantities import SIGNALS
 from trialid.recording import Channel, Recording
 from trialid.survey import names
 from trialid.survey.findings import ChannelSurvey, Gaps, Guess
+from trialid.survey.relations import TURNS
 from trialid.survey.sketch import joined, sketch
 from trialid.survey.stamps import Health, health
 
-TURNS = {"deg": 360.0, "rad": 2 * np.pi}
 ANGLES_OF_A_QUATERNION: Final[tuple[tuple[Literal["roll", "yaw"], str], ...]] = (
     ("roll", "phi"),
     ("yaw", "psi"),

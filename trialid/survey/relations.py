@@ -24,6 +24,11 @@ SLOPES: Final = {"r": "psi", "p": "phi"}
 SURE: Final = 0.95
 """Correlation from which a channel without a telling name is taken to be the rate of an angle."""
 
+ALIKE: Final = 0.02
+"""Two sources that differ by less than this share of their motion agree."""
+
+TURNS: Final = {"deg": 360.0, "rad": 2 * np.pi}
+
 MOST_UNNAMED: Final = 200
 """More unnamed channels than this are a log of something else; they are not tried one by one."""
 
@@ -147,12 +152,26 @@ def differences(sources: Sequence[ChannelSurvey]) -> Iterator[str]:
         if whole.sum() < 40:
             continue
         b = b * (_si(own, other) / _si(unit, first))
-        apart = (b - a)[whole]
-        offset, spread = float(np.median(apart)), float(np.std(apart))
-        size = float(np.std(a[whole]))
-        same = float(np.corrcoef(a[whole], b[whole])[0, 1]) if size and np.std(b[whole]) else 0.0
-        shown = f" {unit}" if unit else ""
-        yield (
-            f"{other.key} less {first.key}: {offset:+.3g}{shown} in the median, {spread:.3g} rms "
-            f"about it (it moves by {size:.3g} rms); correlation {same:.2f}"
-        )
+        yield _difference(other.key, first.key, b[whole], _near(a, b, first, unit)[whole], unit)
+
+
+def _near(a: Vector, b: Vector, channel: ChannelSurvey, unit: str | None) -> Vector:
+    """The first of two courses, of an angle the turn of it that is nearest to the second."""
+    turn = TURNS.get(unit or "")
+    if turn is None or channel.guess is None or not SIGNALS[channel.guess.quantity].angle:
+        return a
+    return a + turn * np.round(np.median(b - a) / turn)
+
+
+def _difference(name: str, of: str, b: Vector, a: Vector, unit: str | None) -> str:
+    """How b differs from a, in words."""
+    offset, spread = float(np.median(b - a)), float(np.std(b - a))
+    size = float(np.std(a))
+    same = float(np.corrcoef(a, b)[0, 1]) if size and np.std(b) else 0.0
+    if same > 0.99 and max(abs(offset), spread) < ALIKE * size:
+        return f"{name} agrees with {of}"
+    shown = f" {unit}" if unit else ""
+    return (
+        f"{name} less {of}: {offset:+.3g}{shown} in the median, {spread:.3g} rms about it (it "
+        f"moves by {size:.3g} rms); correlation {same:.2f}"
+    )
