@@ -137,12 +137,12 @@ def _choices(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[Any]:
 
 def _several(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
     for name, sources in known.items():
-        live = [one for one in sources if not one.constant]
+        live = [one for one in sources if not one.constant] if name in COMPARED else []
         if len(live) > 1:
             rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:4])
             more = f" and {len(live) - 4} more" if len(live) > 4 else ""
             yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
-            yield from differences(live[:4]) if name in COMPARED else ()
+            yield from differences(live[:4])
 
 
 def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
@@ -210,29 +210,34 @@ def _folded(rest: Sequence[ChannelSurvey]) -> Iterator[Any]:
 
 
 def _clocks(survey: Survey) -> Iterator[Any]:
-    yield _heading("clocks")
-    table = new_table("of", "clock", "jitter", "steps back", "recorder later by", words=2)
-    seen: dict[tuple[str, str], ChannelSurvey] = {}
+    """One line a clock, with the worst of the messages it stamps."""
     recognised = [one for one in survey.channels.values() if one.guess is not None]
+    groups: dict[str, list[ChannelSurvey]] = {}
     for one in recognised or survey.channels.values():
-        seen.setdefault((one.message, one.clock.words), one)
-    for (message, words), one in list(seen.items())[:MOST_MESSAGES]:
-        c = one.clock
-        late = "-" if c.received is None else f"{c.received.offset:.4g} s"
-        back = f"{c.steps_back} (to {c.furthest_back:.3g} s)" if c.steps_back else "-"
-        add_row(table, shown(message) or "table", shown(words), _jitter(one), back, late)
-    table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
-    table.columns[0].ratio, table.expand = 1, True
+        groups.setdefault(one.clock.words, []).append(one)
+    table = new_table("clock", "of", "jitter", "steps back", "recorder later by", words=2)
+    table.columns[1].overflow, table.columns[1].no_wrap = "fold", False
+    table.columns[1].ratio, table.expand = 1, True
+    for words, group in groups.items():
+        messages = list(dict.fromkeys(one.message or "table" for one in group))
+        more = f" and {len(messages) - 3} more" if len(messages) > 3 else ""
+        names = shown(", ".join(messages[:3])) + more
+        add_row(table, shown(words) or "not stated", names, *_worst(group))
+    yield _heading("clocks")
     yield table
-    if len(seen) > MOST_MESSAGES:
-        yield Words(f"and {len(seen) - MOST_MESSAGES} more", 1, "dim")
     yield ""
 
 
-def _jitter(one: ChannelSurvey) -> str:
-    """Spread of the time between samples as a share of it."""
-    share = 100 * one.clock.jitter * one.rate
-    return f"{share:.2g} %" if share >= 0.01 else "0 %"
+def _worst(group: Sequence[ChannelSurvey]) -> tuple[str, str, str]:
+    """Jitter as a share of the period, steps back, and how much later the recorder is."""
+    jitter = max(100 * one.clock.jitter * one.rate for one in group)
+    back = max(group, key=lambda one: one.clock.steps_back).clock
+    late = [one.clock.received.offset for one in group if one.clock.received is not None]
+    return (
+        f"{jitter:.2g} %" if jitter >= 0.01 else "0 %",
+        f"{back.steps_back} (to {back.furthest_back:.3g} s)" if back.steps_back else "-",
+        f"{min(late):.4g} to {max(late):.4g} s" if late else "-",
+    )
 
 
 def _remarks(survey: Survey) -> Iterator[Any]:
