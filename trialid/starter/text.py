@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from trialid.starter.choice import Chosen, Signal
+from trialid.starter.choice import RUDDERS, Chosen, Signal
 from trialid.survey.findings import ChannelSurvey
 
 HEAD: Final = """\
@@ -44,13 +44,13 @@ def pipeline_text(
 def _trial(path: Path, name: str, trial: Chosen, *, held_out: bool) -> Iterator[str]:
     yield "[[trial]]"
     yield f"name = {_text(name)}"
-    yield f"logs = [{_text(_relative(trial.path, path))}]"
+    yield f"logs = [{_log(trial, path)}]"
     if held_out:
         yield 'use = "check"  # the last log is held out: simulated and scored, never fitted'
     if trial.states_speed and trial.speed is not None:
         yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
     yield f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
-    for remark in (*_remarks(trial),):
+    for remark in _remarks(trial):
         yield f"# {comment(remark)}"
     yield "[trial.signals]"
     width = max(len(one.quantity) for one in trial.signals)
@@ -62,6 +62,22 @@ def _trial(path: Path, name: str, trial: Chosen, *, held_out: bool) -> Iterator[
             yield f"{words}  # {_facts(other)}"
         if len(signal.others) > MOST_OTHERS:
             yield f"# and {len(signal.others) - MOST_OTHERS} more sources: `trialid inspect`"
+
+
+def _log(trial: Chosen, path: Path) -> str:
+    """The log as the pipeline names it, with what the user adds to it."""
+    aids = trial.survey.aids
+    keys = {"path": _relative(trial.path, path)}
+    keys |= {
+        name: _relative(file, path)
+        for name, file in (("template", aids.template), ("dbc", aids.dbc))
+        if file is not None
+    }
+    if aids.zone is not None:
+        keys["zone"] = aids.zone
+    if len(keys) == 1:
+        return _text(keys["path"])
+    return f"{{ {', '.join(f'{key} = {_text(value)}' for key, value in keys.items())} }}"
 
 
 def _remarks(trial: Chosen) -> Iterator[str]:
@@ -79,17 +95,15 @@ def _source(signal: Signal, one: ChannelSurvey) -> str:
     own = one is signal.source
     unit = signal.unit if own else one.unit or one.unit_in_name or signal.unit
     positive = signal.positive if own else (one.guess and one.guess.positive) or signal.positive
+    if signal.quantity not in RUDDERS and positive == "starboard":
+        positive = None  # as the dictionary has it
     keys: Mapping[str, str | None] = {
         "channel": one.name,
         "as": one.angle,
         "unit": None if one.angle else unit,
-        "positive": positive if own or signal.quantity != "r" else _port_only(positive),
+        "positive": positive,
     }
     return ", ".join(f"{key} = {_text(value)}" for key, value in keys.items() if value)
-
-
-def _port_only(positive: str | None) -> str | None:
-    return positive if positive == "port" else None
 
 
 def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:

@@ -38,7 +38,7 @@ def survey(path: Path, aids: Aids = NO_AIDS) -> Survey:
         raise LogError(f"{path}: holds no channel of numbers; {remarks or 'take another log'}")
     together = {key: channels.merged(pieces) for key, pieces in parts.items()}
     known = relations.recognised(together)
-    return Survey(path, tuple(files), known, tuple(_warnings(list(known.values()))))
+    return Survey(path, tuple(files), known, tuple(_warnings(list(known.values()))), aids)
 
 
 def _file(path: Path, aids: Aids) -> tuple[list[ChannelSurvey], LogFileSurvey]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from trialid.ingest.adapter import NO_AIDS, Aids
 from trialid.survey.sketch import EMPTY, Sketch
 
 How = Literal["format", "name", "relation"]
@@ -147,13 +148,14 @@ class Survey:
     """What a log, or a folder of logs that are one, holds.
 
     `start` and `end` are the first and last stamp of any channel [ns]; `warnings` what a person
-    should know before using it.
+    should know before using it, `aids` what the user added to it.
     """
 
     path: Path
     files: tuple[LogFileSurvey, ...]
     channels: Mapping[str, ChannelSurvey]
     warnings: tuple[str, ...] = ()
+    aids: Aids = NO_AIDS
 
     @property
     def format(self) -> str:

@@ -53,7 +53,8 @@ NO_MEASUREMENT: Final = frozenset(
         "covariance", "cov", "variance", "var", "std", "sigma", "stddev", "error", "err", "status",
         "state", "mode", "quality", "valid", "min", "max", "limit", "limits", "rms", "residual",
         "predicted", "acceleration", "accel", "bias", "temperature", "voltage", "deviation",
-        "variation", "instance", "id", "seq", "sequence", "engine", "offset", "count", "sid", "wave",
+        "variation", "instance", "id", "seq", "sequence", "engine", "offset", "count", "sid",
+        "wave",
     )
 )  # fmt: skip
 """Words that make it something else."""
