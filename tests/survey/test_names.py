@@ -24,12 +24,15 @@ RECORDERS = {
     "HDT": "psi",
     "u": "u",
     "AWA": "gamma_aw",
+    "/vessel/state:heading": "psi",
+    "/pitch_roll:roll": "phi",
 }
 
 OTHERS = (
     "heading_error", "desired_yaw_rate", "roll_std", "/imu:orientation_covariance[3]", "x", "U10",
     "engine_rpm", "rudder_temperature", "heading_status", "yaw_rate_setpoint", "/imu:linear.z",
-    "heading_deviation", "max_roll", "t", "",
+    "heading_deviation", "max_roll", "t", "", "ATT:DesYaw", "GPS_RAW_INT/1/1:hdg_acc",
+    "NAV_CONTROLLER_OUTPUT/1/1:nav_roll", "MANUAL_CONTROL/255/190:r", "/joy:u",
 )  # fmt: skip
 
 

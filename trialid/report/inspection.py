@@ -12,7 +12,7 @@ from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.quantities import SIGNALS
 from trialid.report import labels
 from trialid.report.terminal import Words, add_row, cut, new_table
-from trialid.survey.findings import ChannelSurvey, Survey
+from trialid.survey.findings import ChannelSurvey, Received, Survey
 from trialid.survey.relations import differences, side
 
 if TYPE_CHECKING:
@@ -215,9 +215,10 @@ def _clocks(survey: Survey) -> Iterator[Any]:
     groups: dict[str, list[ChannelSurvey]] = {}
     for one in recognised or survey.channels.values():
         groups.setdefault(one.clock.words, []).append(one)
-    table = new_table("clock", "of", "jitter", "steps back", "recorder later by", words=2)
-    table.columns[1].overflow, table.columns[1].no_wrap = "fold", False
-    table.columns[1].ratio, table.expand = 1, True
+    table = new_table("clock", "of", "jitter", "steps back", "recorder later", words=2)
+    for column in table.columns[:2]:
+        column.overflow, column.no_wrap, column.ratio = "fold", False, 1
+    table.expand = True
     for words, group in groups.items():
         messages = list(dict.fromkeys(one.message or "table" for one in group))
         more = f" and {len(messages) - 3} more" if len(messages) > 3 else ""
@@ -232,12 +233,20 @@ def _worst(group: Sequence[ChannelSurvey]) -> tuple[str, str, str]:
     """Jitter as a share of the period, steps back, and how much later the recorder is."""
     jitter = max(100 * one.clock.jitter * one.rate for one in group)
     back = max(group, key=lambda one: one.clock.steps_back).clock
-    late = [one.clock.received.offset for one in group if one.clock.received is not None]
+    late = [one.clock.received for one in group if one.clock.received is not None]
     return (
         f"{jitter:.2g} %" if jitter >= 0.01 else "0 %",
         f"{back.steps_back} (to {back.furthest_back:.3g} s)" if back.steps_back else "-",
-        f"{min(late):.4g} to {max(late):.4g} s" if late else "-",
+        _against(late)
+        if all(one.same_epoch for one in group if one.clock.received)
+        else "another date",
     )
+
+
+def _against(late: Sequence[Received]) -> str:
+    """How much later than the stamps the recorder is."""
+    offsets = [one.offset for one in late]
+    return f"{min(offsets):.3g} to {max(offsets):.3g} s" if offsets else "-"
 
 
 def _remarks(survey: Survey) -> Iterator[Any]:

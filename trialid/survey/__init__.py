@@ -59,24 +59,26 @@ def _warnings(all_of_them: Sequence[ChannelSurvey]) -> Iterator[str]:
     """What a person should know before using any channel."""
     yield from _wild_stamps(all_of_them)
     useful = [one for one in all_of_them if one.guess is not None]
-    for one in useful:
-        if one.clock.steps_back:
-            yield (
-                f"{one.key}: time steps back {one.clock.steps_back} times, by up to "
-                f"{one.clock.furthest_back:.3g} s"
-            )
-        late = one.clock.received
-        if late is not None and abs(late.drift) * (one.end - one.start) / 1e9 > 0.1:
-            yield (
-                f"{one.key}: its clock drifts by {late.drift * 1e6:.3g} ppm against the recorder's"
-            )
-        if one.rate and one.clock.jitter * one.rate > 0.5:
-            yield (
-                f"{one.key}: stamps are uneven, {one.clock.jitter:.3g} s rms in a period of "
-                f"{1 / one.rate:.3g} s; times of receipt rather than of measurement?"
-            )
+    yield from dict.fromkeys(words for one in useful for words in _of_clock(one))
     if not useful:
         yield "no channel looks like a ship's motion; map channels by hand in a pipeline"
+
+
+def _of_clock(one: ChannelSurvey) -> Iterator[str]:
+    """Warnings about a channel's stamps, which are those of its whole message."""
+    name, clock, late = one.message or "the table", one.clock, one.clock.received
+    if clock.steps_back:
+        yield (
+            f"{name}: time steps back {clock.steps_back} times, by up to "
+            f"{clock.furthest_back:.3g} s"
+        )
+    if late is not None and abs(late.drift) * (one.end - one.start) / 1e9 > 0.1:
+        yield f"{name}: its clock drifts by {late.drift * 1e6:.3g} ppm against the recorder's"
+    if one.rate and clock.jitter * one.rate > 0.5:
+        yield (
+            f"{name}: stamps are uneven, {clock.jitter:.3g} s rms in a period of "
+            f"{1 / one.rate:.3g} s; times of receipt rather than of measurement?"
+        )
 
 
 def _wild_stamps(all_of_them: Sequence[ChannelSurvey]) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """What a survey of a log gives: facts about each channel, of its samples no more than a sketch."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -128,6 +129,12 @@ class ChannelSurvey:
         return self.name.rpartition(":")[0]
 
     @property
+    def same_epoch(self) -> bool:
+        """Whether the recorder's clock and the channel's own count from about the same time."""
+        late = self.clock.received
+        return late is not None and abs(late.offset) < 1e7
+
+    @property
     def constant(self) -> bool:
         """Whether it never moves."""
         return self.low == self.high
@@ -180,17 +187,20 @@ class Survey:
     def sources(self, quantity: str) -> tuple[ChannelSurvey, ...]:
         """Channels that look like a quantity, the likeliest to serve first.
 
-        Those the format defines come before those found by name or relation; then the ones that
-        move, that have more values over more time, and of these the fastest.
+        Those that move come first; of these those the format defines before those found by name or
+        relation; then those with more values over more time, the fastest, and those whose message
+        gives the most other quantities, which then share a clock.
         """
-        found = [c for c in self.channels.values() if c.guess and c.guess.quantity == quantity]
-        return tuple(sorted(found, key=_worth))
+        known = [c for c in self.channels.values() if c.guess]
+        beside = Counter(c.message for c in known)
+        found = [c for c in known if c.guess and c.guess.quantity == quantity]
+        return tuple(sorted(found, key=lambda one: (*_worth(one), -beside[one.message])))
 
 
 _TRUST = {"format": 0, "name": 1, "relation": 2}
 
 
-def _worth(one: ChannelSurvey) -> tuple[bool, int, float, float, str]:
+def _worth(one: ChannelSurvey) -> tuple[bool, int, float, float]:
     """Sorts the better source of a quantity first."""
     assert one.guess is not None
     covered = max(one.end - one.start, 1) / 1e9 - one.gaps.total
@@ -198,6 +208,5 @@ def _worth(one: ChannelSurvey) -> tuple[bool, int, float, float, str]:
         one.constant or one.missing > 0.9,
         _TRUST[one.guess.how],
         -round(covered * (1 - one.missing), -1),
-        -one.rate,
-        one.key,
+        -float(f"{one.rate:.2g}"),
     )

@@ -36,7 +36,7 @@ ALONE: Final = {
     "u": "u", "v": "v", "p": "p", "r": "r", "phi": "phi", "psi": "psi", "delta": "delta",
     "n": "n", "h": "h", "delta_c": "delta_order", "delta_order": "delta_order",
 }  # fmt: skip
-"""Letters that mean a quantity only where they are the whole name of a field."""
+"""Letters that mean a quantity only where they are the whole name of a column."""
 
 OVER_GROUND: Final = frozenset({("sog",), ("speed", "over", "ground"), ("speed", "ground")})
 
@@ -54,10 +54,10 @@ NO_MEASUREMENT: Final = frozenset(
         "state", "mode", "quality", "valid", "min", "max", "limit", "limits", "rms", "residual",
         "predicted", "acceleration", "accel", "bias", "temperature", "voltage", "deviation",
         "variation", "instance", "id", "seq", "sequence", "engine", "offset", "count", "sid",
-        "wave",
+        "wave", "des", "acc", "nav", "manual", "accuracy", "raw", "trim",
     )
 )  # fmt: skip
-"""Words that make it something else."""
+"""Words that make a field something else; in a topic they say nothing: `/state:heading`."""
 
 UNITS_IN_NAMES: Final = {
     "deg": "deg", "degree": "deg", "degrees": "deg", "rad": "rad", "degps": "deg/s",
@@ -93,11 +93,10 @@ def quantity(name: str, unit: str | None) -> str | None:
     >>> quantity("rudder", "m/s"), quantity("heading_error", "deg"), quantity("x", None)
     (None, None, None)
     """
-    field = name.rpartition(":")[2]
-    if (letter := ALONE.get(field)) is not None:
+    if (letter := ALONE.get(name)) is not None:
         return letter if _fits(letter, unit) else None
     told = words(name)
-    if NO_MEASUREMENT.intersection(told):
+    if NO_MEASUREMENT.intersection(words(name.rpartition(":")[2])):
         return None
     found = _called(name)
     if ORDERED.intersection(told):
@@ -109,10 +108,9 @@ def quantity(name: str, unit: str | None) -> str | None:
 
 def over_ground(name: str, unit: str | None) -> bool:
     """Whether a channel is the speed over ground, which no model knows but which is a start."""
-    told = words(name)
-    if NO_MEASUREMENT.intersection(told) or not _fits("u", unit):
+    if NO_MEASUREMENT.intersection(words(name.rpartition(":")[2])) or not _fits("u", unit):
         return False
-    return any(_holds(told, phrase) for phrase in OVER_GROUND)
+    return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
 
 
 def unit_in_name(name: str) -> str | None:
