@@ -1,9 +1,12 @@
 """What a pipeline file asks for, as objects: its effects, model, settings and candidates."""
 
 from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
 
 from trialid import effects, units
-from trialid.errors import RecipeError, UnitError, nearest
+from trialid.errors import NotIdentifiable, RecipeError, UnitError, nearest
 from trialid.identification.pose import Settings
 from trialid.quantities import PARTICULARS, SIGNALS
 from trialid.recipe import Recipe, where
@@ -12,6 +15,13 @@ from trialid.ship.model import STATES, ShipModel, needs_ship
 from trialid.ship.particulars import NO_SHIP, read_ship
 from trialid.simulation.at_rest import check_at_rest
 from trialid.trial import Trial
+
+STEERED: Final = frozenset({"r", "psi", "v"})
+"""Outputs that move because the ship is steered."""
+TURN_ON_THE_SPOT: Final = frozenset({"n_p", "n_s", "Y_ext", "N_ext"})
+"""Inputs that need no speed to turn a ship."""
+LYING_STILL: Final = 0.1
+"""Share of the approach speed; the rudder's force there is a hundredth of what it was."""
 
 
 def available(recipe: Recipe) -> dict[str, Effect]:
@@ -158,6 +168,33 @@ def check_quiet(recipe: Recipe, trials: tuple[Trial, ...]) -> None:
             raise RecipeError(
                 f"{where(recipe, f'diagnose.quiet[{i}].window')}: [{start:g}, {stop:g}] s is "
                 f"outside trial {stretch.trial!r}, which lasts {ends[stretch.trial]:g} s"
+            )
+
+
+def check_moving(recipe: Recipe, model: ShipModel, trials: tuple[Trial, ...]) -> None:
+    """Refuse to fit steering to a ship that lies still.
+
+    Only where the speed is on record, and where nothing but a rudder could have turned her: two
+    propellers or a tug turn a ship on the spot, and a roll decay needs no speed.
+
+    Raises
+    ------
+    NotIdentifiable
+        The message names the trial and both speeds.
+    """
+    approach = model.ship.particulars.get("U0", 0.0)
+    steered = sorted(STEERED & {*recipe.identify.outputs})
+    recorded = {t.name for t in recipe.trials if t.signals.get("u")}
+    for trial in trials if model.states and steered else ():
+        if trial.name not in recorded:
+            continue
+        u = np.abs(trial.signals["u"][trial.valid["u"]])
+        fast = float(np.quantile(u, 0.9)) if len(u) else approach
+        if fast < LYING_STILL * approach and not TURN_ON_THE_SPOT & trial.signals.keys():
+            raise NotIdentifiable(
+                f"trial {trial.name!r}: the ship lies still, u is below {fast:.2g} m/s for nine "
+                f"tenths of it and U0 is {approach:.3g} m/s, so no rudder steers {steered[0]}; "
+                "take a trial under way, correct U0, or leave that trial out"
             )
 
 

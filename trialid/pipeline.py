@@ -21,6 +21,7 @@ from trialid.assembly import (
     build_model,
     candidates,
     check_bounds,
+    check_moving,
     check_quiet,
     declared_quiet,
     settings_of,
@@ -150,6 +151,7 @@ def fit_of(
     model = build_model(recipe, catalogue)
     settings = settings_of(recipe)
     check_bounds(recipe, model, settings)
+    check_moving(recipe, model, trials)
     progress("fitting", 0.3)
     return fitted(trials, model, settings, progress)
 
@@ -198,7 +200,10 @@ def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
     logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
     recordings = ingest.read_together(logs, [s.channel for s in sources])
     recordings = tuple(replace(r, path=_as_written(recipe, r.path)) for r in recordings)
-    made = align(trial.name, trial.use, recordings, sources, recipe.align.period, trial.window)
+    keep = {q: s.keep for q, s in trial.signals.items() if s.keep}
+    made = align(
+        trial.name, trial.use, recordings, sources, recipe.align.period, trial.window, keep
+    )
     if trial.speed is None:
         return made
     if "u" in made.signals:

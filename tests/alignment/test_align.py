@@ -84,8 +84,8 @@ def test_the_common_clock_and_the_window():
 @given(st.floats(0.0, 3.0), st.floats(0.3, 4.0), st.floats(-1e9, 1e9))
 def test_a_declared_delay_moves_a_channel_back(delay, rate, epoch):
     t = np.arange(0, 100, 1 / rate)
-    late = channel("r", t + delay, 0.01 * t, epoch=round(epoch))
-    log = recording(channel("phi", t, 0.02 * t, epoch=round(epoch)), late)
+    late = channel("r", t + delay, 0.001 * t, epoch=round(epoch))
+    log = recording(channel("phi", t, 0.002 * t, epoch=round(epoch)), late)
     sources = [SignalSource("phi", "phi", "rad"), SignalSource("r", "r", "rad/s", delay=delay)]
     trial = align("zigzag", "fit", [log], sources, 0.5)
     both = trial.valid["phi"] & trial.valid["r"]

@@ -1,15 +1,16 @@
 """Recording to Trial: channels on their own clocks to signals in SI on one clock.
 
 `align` is the whole of it: find each channel and bring it to SI and to our positive direction
-(`sources`, `frames`), put its stamps in order and choose the common clock (`clocks`), resample with
-one and the same filter (`resample`), and say what was noticed on the way (`quality`, `signs`).
+(`sources`, `frames`), put its stamps in order and choose the common clock (`clocks`), mask what
+is surely no measurement (`faults`), resample with one and the same filter (`resample`), and say
+what was noticed on the way (`quality`) and whether the signals agree (`checks`, `signs`, `twins`).
 """
 
 import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Literal
 
-from trialid.alignment import clocks, frames, quality, resample, signs
+from trialid.alignment import checks, clocks, faults, frames, quality, resample, signs, twins
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.sources import SignalSource
 from trialid.errors import AlignmentError
@@ -26,6 +27,7 @@ def align(
     sources: Sequence[SignalSource],
     period: float,
     window: tuple[float, float] | None = None,
+    keep: Mapping[str, Collection[str]] | None = None,
 ) -> Trial:
     """The trial in `recordings`, its signals in SI on one clock.
 
@@ -41,6 +43,8 @@ def align(
         Time between samples of the trial [s].
     window
         Part of the trial to use [s], from the first instant all channels cover; None for all.
+    keep
+        Quantity to the kinds of `faults.KINDS` that are remarked but not masked.
 
     Raises LogError for a channel that is in no log, UnitError for a unit, and AlignmentError for
     everything that would have to be guessed: a missing sign or unit, signals that do not overlap
@@ -54,12 +58,18 @@ def align(
     for one, place in zip(series, at, strict=True):
         clocks.check(one, place)
     grid = clocks.common(series, period, window, where)
+    series, found = faults.without(series, sources, grid, keep or {}, at)
     trial = _trial(name, use, recordings, series, grid, where)
+    findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
+    checks.refuse(findings, where)
     remarks = (
         *_of_logs(recordings),
         *_of_signals(logged, series, grid),
+        *found,
         *quality.of_trial(series, grid, window),
         *signs.check(trial, {source.quantity: source for source in sources}, where),
+        *(finding.sentence for finding in findings),
+        *(finding.sentence for finding in twins.unchosen(sources, recordings)),
     )
     return dataclasses.replace(trial, remarks=remarks)
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from trialid import units
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.frames import RUDDERS
 from trialid.alignment.resample import (
@@ -20,6 +21,8 @@ from trialid.trial import Mask, Vector
 
 JITTER = 0.2
 """Spread of the time between samples, as a share of it, that is worth a remark."""
+COARSE = 0.02
+"""Share of its motion that the rounding of a signal may be without a remark."""
 STUCK_S = 10.0
 STUCK_SHARE = 0.1
 """A motion that does not change for so long, and for this share of the trial, is worth a remark."""
@@ -63,8 +66,24 @@ def of_values(series: Series, grid: Grid) -> Iterator[str]:
     if len(y) and np.ptp(y) == 0:
         shown = f"{y[0]:.4g} {series.quantity.unit}"
         yield f"{name}: constant at {shown} throughout; is the sensor alive?"
-    elif name not in RUDDERS and series.quantity.mirror < 0:
+    elif len(y):
+        yield from _coarse(series, y)
+    if len(y) and np.ptp(y) > 0 and name not in RUDDERS and series.quantity.mirror < 0:
         yield from _stuck(name, t, y)
+
+
+def _coarse(series: Series, y: Vector) -> Iterator[str]:
+    """A resolution that is felt: its error is uniform, step / sqrt(12) rms, whatever the motion."""
+    levels = np.unique(y)
+    step = float(np.diff(levels).min())
+    error = step / np.sqrt(12.0)
+    if len(levels) < len(y) / 3 and error > COARSE * float(np.std(y)):
+        quantity = series.quantity
+        size, share = step * units.shown(quantity), error / float(np.std(y))
+        yield (
+            f"{quantity.name}: in steps of {size:.3g} {quantity.shown}, an error of {share:.1%} of "
+            "its motion"
+        )
 
 
 def _stuck(name: str, t: Vector, y: Vector) -> Iterator[str]:

@@ -33,9 +33,9 @@ def check(trial: Trial, sources: Mapping[str, SignalSource], where: str) -> Iter
     """Remarks on signs that agree; AlignmentError on a clear contradiction."""
     if "r" in trial.signals and "psi" in trial.signals:
         yield from _heading(trial, where)
-    turning = _rate_of_turn(trial)
+    turning = rate_of_turn(trial)
     for rudder in sorted(RUDDERS & trial.signals.keys()):
-        if turning is not None and _ahead(trial):
+        if turning is not None and ahead(trial):
             yield from _rudder(trial, rudder, turning, sources[rudder], where)
 
 
@@ -65,7 +65,7 @@ def _rudder(
     yield f"{rudder} and dr/dt: correlation {found[0]:.2f}"
 
 
-def _rate_of_turn(trial: Trial) -> tuple[Vector, Mask] | None:
+def rate_of_turn(trial: Trial) -> tuple[Vector, Mask] | None:
     """Rate of turn [rad/s], from the heading where it was not logged, and where it is valid."""
     if "r" in trial.signals:
         return trial.signals["r"], trial.valid["r"]
@@ -74,7 +74,7 @@ def _rate_of_turn(trial: Trial) -> tuple[Vector, Mask] | None:
     return None
 
 
-def _ahead(trial: Trial) -> bool:
+def ahead(trial: Trial) -> bool:
     """A rudder works the other way when the ship goes astern; then it cannot be judged."""
     return "u" not in trial.signals or float(np.median(trial.signals["u"])) > 0
 

@@ -126,6 +126,7 @@ PythonFile = Annotated[ReadFile, AfterValidator(_python)]
 Window = Annotated[tuple[Number, Number], AfterValidator(_rising)]
 Limit = Annotated[Number, AllowInfNan(True)]
 Bounds = Annotated[tuple[Limit, Limit], AfterValidator(_rising)]
+Fault = Literal["range", "dropouts", "spikes", "saturation", "stuck"]
 Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
 
 
@@ -143,7 +144,8 @@ class SignalSource(Section):
     degrees at midships. `positive` is the side the channel counts as positive; None follows the
     dictionary of quantities, which a rudder may not leave open. `angle` (key `as`) is the angle to
     take out of an orientation quaternion, `delay` how much later than the ship the channel shows
-    it [s].
+    it [s]. `keep` names the kinds of values that are not masked though they look like no
+    measurement.
     """
 
     channel: str
@@ -153,6 +155,7 @@ class SignalSource(Section):
     positive: Literal["starboard", "port"] | None = None
     angle: Literal["roll", "pitch", "yaw"] | None = Field(default=None, alias="as")
     delay: Number = 0.0
+    keep: tuple[Fault, ...] = ()
 
 
 class LogRecipe(Section):

@@ -1,0 +1,315 @@
+"""Do the channels of a trial agree with one another? Findings as data, for errors and for reports.
+
+What must hold whatever the ship: the rate of turn is the slope of the heading, the roll rate that
+of the roll angle. A number wrong by a known factor is a wrong unit, one that is small and contrary
+is another quantity under that name; both are errors. A sensor that smooths is smaller than the
+truth too, but then it comes later as well: that is only remarked, and so is everything a healthy
+boat may do. Nothing is ever changed here.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from trialid import units
+from trialid.alignment import relation, signs
+from trialid.alignment.clocks import FEWEST, Grid, Series, ordered
+from trialid.alignment.frames import RUDDERS
+from trialid.alignment.relation import Relation
+from trialid.alignment.resample import onto
+from trialid.errors import AlignmentError, UnitError
+from trialid.quantities import SIGNALS
+from trialid.trial import Mask, Trial, Vector
+
+SLOPES = (("r", "psi"), ("p", "phi"))
+"""Each is the slope of the other by definition."""
+CLEAR = 0.9
+"""Correlation above which a gain is told; real rates of turn reach 0.95 to 1.00."""
+LOOSE = 0.7
+"""Correlation that each part of the record must reach for a lag or a small gain to be told."""
+FAR = 3.0
+"""Factor no sensor is wrong by: real ones smooth by up to 0.62 over a whole manoeuvre."""
+CLOSE = 1.15
+"""A unit explains a factor this near to its own."""
+FAIR = 1.1
+"""Gains within this factor of one are not worth a remark."""
+PROMPT = 0.1
+"""Share of a swing: smoothing to a third delays by a fifth of a swing and more."""
+LATE = 0.2
+"""[s] Lags not worth a remark: half of them moves a time constant of 20 s by 0.7 %."""
+MOVING = 10.0
+"""Motion in units of noise below which nothing is said of it."""
+UNRELATED = 0.5
+"""Correlation at every lag and length below which one is not the slope of the other."""
+TURNS = np.deg2rad(20.0)
+"""[rad] The angle must change by so much before its slope is called unrelated."""
+STILL = 0.1
+"""[m/s] Speed at which no rudder steers: a moored boat's GPS shows 0.02 to 0.06 m/s."""
+UNITS = ("rad/s", "deg/s", "deg/min", "rad", "deg")
+
+Severity = Literal["error", "remark"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something about the channels that a user should know.
+
+    Parameters
+    ----------
+    kind
+        `unit`, `scale`, `unrelated`, `sign`, `side`, `lag`, `differ`, `heel` or `still`.
+    severity
+        `error` where no fit could be right, else `remark`.
+    about
+        Quantities or channels it is about.
+    sentence
+        In words, one line.
+    evidence
+        Its figures, in SI.
+    mend
+        The line of a pipeline's signal that would mend it, where it is known.
+    """
+
+    kind: str
+    severity: Severity
+    about: tuple[str, ...]
+    sentence: str
+    evidence: Mapping[str, float] = field(default_factory=dict)
+    mend: str | None = None
+
+
+def refuse(findings: Sequence[Finding], where: str) -> None:
+    """AlignmentError for the first finding that is an error."""
+    for one in findings:
+        if one.severity == "error":
+            raise AlignmentError(f"{where}: {one.sentence}")
+
+
+def of_trial(trial: Trial, stated: Mapping[str, str] | None = None) -> tuple[Finding, ...]:
+    """Findings on the signals of a trial; `stated` holds the units that the pipeline states."""
+    return (*_slopes(trial, stated or {}), *_heel(trial), *_still(trial))
+
+
+def of_series(
+    series: Mapping[str, Series], stated: Mapping[str, str] | None = None
+) -> tuple[Finding, ...]:
+    """The same on one series for each quantity, as `inspect` has them before any trial.
+
+    Where a rudder and a rate of turn are among them, the rudder's side is told too.
+    """
+    found: list[Finding] = []
+    for pair in SLOPES:
+        both = together({name: series[name] for name in pair if name in series})
+        found += _slopes(both, stated or {}) if both is not None else ()
+    whole = together(series)
+    if whole is not None:
+        found += (*_heel(whole), *_still(whole), *_sides(whole))
+    return tuple(found)
+
+
+def together(series: Mapping[str, Series]) -> Trial | None:
+    """Series on one clock, that of the slowest, unfiltered; None where they do not overlap."""
+    straight = {name: ordered(one) for name, one in series.items()}
+    able = {k: s for k, s in straight.items() if np.isfinite(s.y).sum() >= FEWEST}
+    if not able:
+        return None
+    period = max(one.period for one in able.values())
+    start = max(int(one.t[0]) for one in able.values())
+    end = min(int(one.t[-1]) for one in able.values())
+    samples = int((end - start) / 1e9 / period) + 1 if period > 0 else 0
+    if samples < FEWEST:
+        return None
+    grid = Grid(start, period, samples)
+    laid = {name: onto(one, grid, smooth=False) for name, one in able.items()}
+    signals = {name: values for name, (values, _) in laid.items()}
+    valid = {name: known for name, (_, known) in laid.items()}
+    return Trial("", "check", period, signals, valid)
+
+
+def _slopes(trial: Trial, stated: Mapping[str, str]) -> Iterator[Finding]:
+    for rate, angle in SLOPES:
+        if rate in trial.signals and angle in trial.signals:
+            valid = trial.valid[rate] & trial.valid[angle]
+            y, x = trial.signals[rate], trial.signals[angle]
+            found = relation.of_slope(y, x, valid, trial.period)
+            if found is not None:
+                yield from _slope(rate, angle, found, float(np.ptp(x[valid])), stated)
+
+
+def _slope(
+    rate: str, angle: str, found: Relation, travel: float, stated: Mapping[str, str]
+) -> Iterator[Finding]:
+    """What one relation of a rate and an angle says."""
+    evidence = {
+        "correlation": found.correlation, "gain_low": found.gain[0], "gain_high": found.gain[1],
+        "lag": found.lag, "lag_low": found.lags[0], "lag_high": found.lags[1],
+    }  # fmt: skip
+    pair = rate, angle
+    if abs(found.correlation) > CLEAR and _wrong(found):
+        words, mend = _scale_words(rate, angle, found, stated)
+        yield Finding("unit" if mend else "scale", "error", pair, words, evidence, mend)
+        return
+    if _contrary(found):
+        words = (
+            f"{rate} and the slope of {angle} have opposite signs (correlation "
+            f'{found.correlation:.2f}); add positive = "port" to the one that is positive to port'
+        )
+        yield Finding("sign", "error", pair, words, evidence, 'positive = "port"')
+        return
+    if abs(found.correlation) < UNRELATED and travel > TURNS and min(found.moves) > MOVING:
+        words = (
+            f"{rate} does not follow the slope of {angle} (correlation {found.correlation:.2f} at "
+            "best, at any lag up to 20 s); is it another quantity?"
+        )
+        yield Finding("unrelated", "remark", pair, words, evidence)
+        return
+    yield from _small_faults(rate, angle, found, evidence)
+
+
+def _small_faults(
+    rate: str, angle: str, found: Relation, evidence: Mapping[str, float]
+) -> Iterator[Finding]:
+    low, high = found.gain
+    if told(found) and found.later and abs(found.lag) > LATE:
+        words = (
+            f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
+            f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
+        )
+        mend = f"delay = {found.lag:.2g}" if found.lag > 0 else None
+        yield Finding("lag", "remark", (rate, angle), words, evidence, mend)
+    if told(found) and (low > FAIR or high < 1 / FAIR):
+        words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}"
+        yield Finding("scale", "remark", (rate, angle), words, evidence)
+
+
+def told(found: Relation) -> bool:
+    """True when the record is clear about lag and gain: all of its parts say so."""
+    parts = np.array(found.parts)
+    alike = bool(np.all(parts * np.sign(found.correlation) > LOOSE))
+    return abs(found.correlation) > CLEAR and len(parts) > 1 and alike
+
+
+def _wrong(found: Relation) -> bool:
+    """True when no sensor, however slow, explains the gain."""
+    low, high = found.gain
+    if low > FAR:
+        return True
+    contrary = found.correlation < 0 and not found.ambiguous
+    return high < 1 / FAR and (_prompt(found) or contrary)
+
+
+def _contrary(found: Relation) -> bool:
+    """True when the sign is wrong and nothing else: no lag that could have turned it."""
+    parts = max(found.parts, default=0.0)
+    return found.correlation < -CLEAR and _prompt(found) and not found.ambiguous and parts < 0
+
+
+def _prompt(found: Relation) -> bool:
+    """True when there is no delay that comes with smoothing."""
+    return abs(found.lag) < PROMPT * found.swing
+
+
+def _scale_words(
+    rate: str, angle: str, found: Relation, stated: Mapping[str, str]
+) -> tuple[str, str | None]:
+    """The sentence and the line that would mend it, where a unit explains the factor."""
+    low, high = found.gain
+    middle = float(np.sqrt(low * high))
+    sign = "-" if found.correlation < 0 else ""
+    fact = (
+        f"{rate} is {sign}{middle:.3g} times the slope of {angle} ({low:.3g} to {high:.3g}, "
+        f"correlation {found.correlation:.2f})"
+    )
+    mends = [
+        (name, line)
+        for name, factor in ((rate, 1 / middle), (angle, middle))
+        for line in _mends(name, stated.get(name), factor)
+        if _prompt(found)
+    ]
+    if not mends:
+        return f"{fact}, which no unit explains; take another channel for one of them", None
+    lines = " or ".join(f"{line} for {name}" for name, line in mends)
+    return f"{fact}: a unit is wrong; write {lines}", mends[0][1]
+
+
+def _mends(name: str, stated: str | None, factor: float) -> Iterator[str]:
+    """The unit the numbers are in, if those of `stated` are wrong by the factor; else the gain.
+
+    A unit that the log states cannot be overruled by another one, but by a gain.
+    """
+    known = [(unit, one) for unit in UNITS if (one := _factor(unit, SIGNALS[name].unit))]
+    here = _factor(stated, SIGNALS[name].unit) if stated else None
+    for unit, one in known:
+        if here and 1 / CLOSE < one / (here * factor) < CLOSE:
+            yield f'unit = "{unit}"'
+            return
+    ratios = {one / other for _, one in known for _, other in known} - {1.0}
+    near = [ratio for ratio in ratios if 1 / CLOSE < ratio / factor < CLOSE]
+    if near and not here:
+        yield f"gain = {min(near, key=lambda ratio: abs(np.log(ratio / factor))):.6g}"
+
+
+def _factor(unit: str, si: str) -> float | None:
+    try:
+        return units.factor(unit, si)
+    except UnitError:
+        return None
+
+
+def _heel(trial: Trial) -> Iterator[Finding]:
+    """Which way the ship leans in a turn: displacement ships outward, planing boats inward."""
+    turning = signs.rate_of_turn(trial)
+    if turning is None or "phi" not in trial.signals:
+        return
+    u, known = _speed(trial)
+    valid = turning[1] & trial.valid["phi"] & known
+    found = relation.of_values(turning[0] * u, trial.signals["phi"], valid, trial.period)
+    turned = float(np.ptp(np.cumsum(np.where(valid, turning[0], 0.0)))) * trial.period
+    if found is None or turned < TURNS or min(found.moves) < MOVING:
+        return
+    if abs(found.correlation) < LOOSE:
+        return
+    side = "inward" if found.correlation > 0 else "outward"
+    words = f"heels {side} in turns: correlation of phi with r u {found.correlation:.2f}"
+    evidence = {"correlation": found.correlation, "lag": found.lag}
+    yield Finding("heel", "remark", ("phi", "r"), words, evidence)
+
+
+def _speed(trial: Trial) -> tuple[Vector, Mask]:
+    """Speed [m/s] where it was logged, else one: a turn is then judged as at steady speed."""
+    if "u" in trial.signals:
+        return trial.signals["u"], trial.valid["u"]
+    return np.ones(trial.samples), np.ones(trial.samples, dtype=np.bool_)
+
+
+def _still(trial: Trial) -> Iterator[Finding]:
+    u, known = _speed(trial)
+    if "u" in trial.signals and known.any() and np.quantile(np.abs(u[known]), 0.9) < STILL:
+        middle = float(np.median(u[known]))
+        words = f"the ship does not move: u is {middle:.2g} m/s, at dock or adrift no rudder steers"
+        yield Finding("still", "remark", ("u",), words, {"u": middle})
+
+
+def _sides(trial: Trial) -> Iterator[Finding]:
+    """To which side each rudder counts as positive, judged by how the ship turns."""
+    turning = signs.rate_of_turn(trial)
+    for rudder in sorted(RUDDERS & trial.signals.keys()):
+        if turning is None or not signs.ahead(trial):
+            continue
+        rate, valid = turning
+        both = valid & trial.valid[rudder]
+        whole, parts = signs.agreement(trial.signals[rudder], rate, both, damping=rate)
+        if not (signs.contradicts((whole, parts)) or _agrees(whole, parts)):
+            continue
+        side = "port" if whole < 0 else "starboard"
+        words = (
+            f"{rudder} turns the ship to {side} when positive: correlation with dr/dt {whole:.2f}"
+        )
+        mend = f'positive = "{side}"'
+        yield Finding("side", "remark", (rudder, "r"), words, {"correlation": whole}, mend)
+
+
+def _agrees(whole: float, parts: list[float]) -> bool:
+    return signs.contradicts((-whole, [-part for part in parts]))
