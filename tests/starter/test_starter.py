@@ -1,5 +1,6 @@
 """A starter pipeline runs, says why it takes what it takes, and leaves open what it cannot know."""
 
+import dataclasses
 import re
 import tomllib
 from pathlib import Path
@@ -251,11 +252,16 @@ def test_a_channel_s_name_can_neither_break_the_file_nor_the_terminal(tmp_path):
     t, delta, r, _, u = trial()
     log = tmp_path / "a.csv"
     written(log, t=t, rudder_in_deg=delta, rot_in_deg_per_s=r, stw_in_m_per_s=u)
-    evil = "yaw rate' = 1 # \\ \x1b31m \x7f"
-    text = log.read_bytes().decode()
-    log.write_bytes(text.replace("rot[deg/s]", evil + " [deg/s]", 1).encode())
-    begun(tmp_path, [log])
-    made = recipe.load(tmp_path / "p.toml")
-    assert "\x1b" in made.trials[0].signals["r"].channel
-    assert "\x1b" not in made.text
-    assert "\x7f" not in made.text
+    evil = "yaw rate\"]' = 1 # \\ \x1b[31m \x7f\nx = 1"
+    found = survey(log)
+    channels = {
+        key: dataclasses.replace(one, name=evil if one.name == "rot" else one.name)
+        for key, one in found.channels.items()
+    }
+    made = starter(
+        [dataclasses.replace(found, channels=channels)], tmp_path / "p.toml", None, L, None
+    )
+    text = made.files[tmp_path / "p.toml"]
+    assert tomllib.loads(text)["trial"][0]["signals"]["r"]["channel"] == evil
+    assert "\x1b" not in text
+    assert "\x7f" not in text

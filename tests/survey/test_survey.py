@@ -10,6 +10,7 @@ from trialid.errors import LogError
 from trialid.ingest.adapter import Adapter
 from trialid.recording import Channel, Recording
 from trialid.survey import relations
+from trialid.survey.contradictions import findings
 
 START = 1_700_000_000_000_000_000
 DATA = Path(__file__).parents[3] / "shared" / "data"
@@ -152,19 +153,29 @@ def test_two_sources_stay_two_and_the_format_goes_before_the_name(recorded):
     assert first.guess.how == "format"
     assert second.name == "rate_of_turn"
     assert last.constant
-    (words,) = relations.differences((first, second))
-    assert words.startswith("rate_of_turn less rudder/11:rate: -0.5 deg/s in the median")
 
 
 def test_sources_in_two_units_are_compared_in_one(recorded):
     t = np.arange(0, 300, 0.1)
     found = recorded(
         channel("rot", t, np.sin(t), unit="deg/s"),
-        channel("turn_rate", t, 60 * np.sin(t) + 6, unit="deg/min"),
+        channel("turn_rate", t, 60 * np.sin(t) + 60, unit="deg/min"),
     )
-    (words,) = relations.differences((found.channels["rot"], found.channels["turn_rate"]))
-    assert "+0.1 deg/s in the median" in words
-    assert "correlation 1.00" in words
+    (finding,) = findings(found)
+    assert "+1 deg/s apart" in finding.sentence
+    assert set(finding.about) == {"rot", "turn_rate"}
+
+
+def test_a_wrong_unit_is_told_with_the_line_that_mends_it(recorded):
+    t = np.arange(0, 900, 0.2)
+    heading, rate = turning(t)
+    found = recorded(
+        channel("heading", t, np.degrees(heading) % 360, unit="deg"),
+        channel("rot", t, 60 * np.degrees(rate), unit="deg/s"),
+    )
+    (finding,) = findings(found)
+    assert (finding.kind, finding.severity) == ("unit", "error")
+    assert finding.mend == 'unit = "deg/min"'
 
 
 def test_a_quaternion_gives_its_angles(recorded):

@@ -8,12 +8,14 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
+from trialid.alignment.checks import Finding
 from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.quantities import SIGNALS
 from trialid.report import labels
 from trialid.report.terminal import Words, add_row, cut, new_table
+from trialid.survey.contradictions import COMPARED, MOST_SOURCES, findings
 from trialid.survey.findings import ChannelSurvey, Received, Survey
-from trialid.survey.relations import differences, side
+from trialid.survey.relations import side
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -23,8 +25,6 @@ MOST_MESSAGES: Final = 12
 """Messages without a recognised field that are listed before they are only counted."""
 LONGEST: Final = 72
 """Letters of a description that are shown."""
-COMPARED: Final = ("delta", "delta_order", "r", "p", "phi", "psi", "u")
-"""Quantities of which two sources are compared; of a depth or a wind two are no question."""
 MOST_REMARKS: Final = 8
 
 
@@ -39,11 +39,12 @@ def shown(text: str) -> str:
 
 def inspection(survey: Survey, *, everything: bool = False) -> Sequence[Any]:
     """The survey as lines and tables to print in order; `everything` folds nothing."""
-    known = _by_quantity(survey)
+    known, found = _by_quantity(survey), findings(survey)
     parts: list[Any] = [_title(survey), ""]
     if known:
         parts += [_signals(known), ""]
-    parts += [*_choices(known), *_others(survey, everything), *_clocks(survey), *_remarks(survey)]
+    parts += [*_choices(known, found), *_others(survey, everything), *_clocks(survey)]
+    parts += _remarks(survey, found)
     return parts[:-1] if parts[-1] == "" else parts
 
 
@@ -126,23 +127,39 @@ def _unit(one: ChannelSurvey) -> str:
     return f"{one.unit_in_name} (name)" if one.unit_in_name else "not stated"
 
 
-def _choices(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[Any]:
+def _choices(
+    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
+) -> Iterator[Any]:
     """What a person has to decide: several sources, no source, a rudder's sign."""
-    lines = [*_several(known), *_lacking(known), *_rudder(known)]
+    lines = [*_several(known, found), *_mends(found), *_lacking(known), *_rudder(known)]
     if lines:
         yield _heading("to decide")
         yield from (_bullet(line) for line in lines)
         yield ""
 
 
-def _several(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
-    for name, sources in known.items():
-        live = [one for one in sources if not one.constant] if name in COMPARED else []
-        if len(live) > 1:
-            rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:4])
-            more = f" and {len(live) - 4} more" if len(live) > 4 else ""
-            yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
-            yield from differences(live[:4])
+def _several(
+    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
+) -> Iterator[str]:
+    """Several sources of a quantity, and what sets them apart."""
+    for name in COMPARED:
+        live = [one for one in known.get(name, ()) if not one.constant]
+        if len(live) < 2:
+            continue
+        rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:MOST_SOURCES])
+        more = f" and {len(live) - MOST_SOURCES} more" if len(live) > MOST_SOURCES else ""
+        keys = {one.key for one in live}
+        apart = [one.sentence for one in found if one.kind == "differ" and keys >= {*one.about}]
+        yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
+        yield from apart
+
+
+def _mends(found: Sequence[Finding]) -> Iterator[str]:
+    """What a line of the pipeline would mend; of a rudder's side `_rudder` tells more."""
+    for one in found:
+        if one.mend is not None and one.kind != "side":
+            named = one.mend in one.sentence
+            yield one.sentence if named else f"{one.sentence}; {one.mend} would mend it"
 
 
 def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
@@ -249,13 +266,14 @@ def _against(late: Sequence[Received]) -> str:
     return f"{min(offsets):.3g} to {max(offsets):.3g} s" if offsets else "-"
 
 
-def _remarks(survey: Survey) -> Iterator[Any]:
+def _remarks(survey: Survey, found: Sequence[Finding]) -> Iterator[Any]:
     several = len(survey.files) > 1
     said = [
         f"{file.path.name}: {remark}" if several else remark
         for file in survey.files
         for remark in file.remarks
     ]
+    said += [one.sentence for one in found if one.mend is None and one.kind != "differ"]
     for title, lines in (("noticed", said), ("careful", list(survey.warnings))):
         if lines:
             yield _heading(title)
@@ -296,7 +314,19 @@ def plain(survey: Survey) -> dict[str, Any]:
             for f in survey.files
         ],
         "channels": [_plain_channel(one) for one in survey.channels.values()],
+        "findings": [_plain_finding(one) for one in findings(survey)],
         "warnings": list(survey.warnings),
+    }
+
+
+def _plain_finding(one: Finding) -> dict[str, Any]:
+    return {
+        "kind": one.kind,
+        "severity": one.severity,
+        "about": list(one.about),
+        "sentence": one.sentence,
+        "evidence": {k: v if math.isfinite(v) else None for k, v in one.evidence.items()},
+        "mend": one.mend,
     }
 
 

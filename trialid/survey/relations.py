@@ -5,15 +5,13 @@ a number in it, which the unit must give. Nothing else here is as sharp, so noth
 """
 
 import dataclasses
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 
-from trialid import units
 from trialid.alignment import signs
-from trialid.quantities import SIGNALS
 from trialid.survey.findings import ChannelSurvey, Guess
 from trialid.survey.sketch import Vector, together
 from trialid.trial import Mask
@@ -23,9 +21,6 @@ SLOPES: Final = {"r": "psi", "p": "phi"}
 
 SURE: Final = 0.95
 """Correlation from which a channel without a telling name is taken to be the rate of an angle."""
-
-ALIKE: Final = 0.02
-"""Two sources that differ by less than this share of their motion agree."""
 
 TURNS: Final = {"deg": 360.0, "rad": 2 * np.pi}
 
@@ -128,50 +123,3 @@ def _factor(rate: Vector, angle: Vector, period: float, whole: Mask) -> float:
     both = whole[1:] & whole[:-1]
     power = float(mean[both] @ mean[both])
     return float(mean[both] @ change[both]) / power if power else 0.0
-
-
-def _si(unit: str | None, channel: ChannelSurvey) -> float:
-    """What makes a value SI; 1 where no unit is known."""
-    if unit is None or channel.guess is None:
-        return 1.0
-    return units.factor(unit, SIGNALS[channel.guess.quantity].unit)
-
-
-def differences(sources: Sequence[ChannelSurvey]) -> Iterator[str]:
-    """How several sources of one quantity differ, against the first of them, in words."""
-    first, *others = sources
-    unit = first.unit or first.unit_in_name
-    for other in others:
-        own = other.unit or other.unit_in_name
-        if other.constant or (unit is None) != (own is None):
-            continue
-        common = together(first.sketch, other.sketch)
-        if common is None:
-            continue
-        _, (a, b), whole = common
-        if whole.sum() < 40:
-            continue
-        b = b * (_si(own, other) / _si(unit, first))
-        yield _difference(other.key, first.key, b[whole], _near(a, b, first, unit)[whole], unit)
-
-
-def _near(a: Vector, b: Vector, channel: ChannelSurvey, unit: str | None) -> Vector:
-    """The first of two courses, of an angle the turn of it that is nearest to the second."""
-    turn = TURNS.get(unit or "")
-    if turn is None or channel.guess is None or not SIGNALS[channel.guess.quantity].angle:
-        return a
-    return a + turn * np.round(np.median(b - a) / turn)
-
-
-def _difference(name: str, of: str, b: Vector, a: Vector, unit: str | None) -> str:
-    """How b differs from a, in words."""
-    offset, spread = float(np.median(b - a)), float(np.std(b - a))
-    size = float(np.std(a))
-    same = float(np.corrcoef(a, b)[0, 1]) if size and np.std(b) else 0.0
-    if same > 0.99 and max(abs(offset), spread) < ALIKE * size:
-        return f"{name} agrees with {of}"
-    shown = f" {unit}" if unit else ""
-    return (
-        f"{name} less {of}: {offset:+.3g}{shown} in the median, {spread:.3g} rms about it (it "
-        f"moves by {size:.3g} rms); correlation {same:.2f}"
-    )
