@@ -2,9 +2,6 @@
 
 import pytest
 
-from trialid import units
-from trialid.errors import UnitError
-from trialid.quantities import SIGNALS
 from trialid.survey import names
 
 RECORDERS = {
@@ -60,17 +57,6 @@ def test_a_unit_of_something_else_refutes_the_name():
     assert names.quantity("rudder", "percent") is None
     assert names.quantity("rudder", "degree") == "delta"
     assert names.quantity("rudder", "no such unit") is None
-
-
-@pytest.mark.parametrize("unit", names.USUAL)
-def test_the_usual_units_are_what_the_library_of_units_says(unit):
-    for name in ("psi", "r", "u", "h"):
-        si = SIGNALS[name].unit
-        if names.USUAL[unit] == si:
-            assert units.factor(unit, si) > 0
-        else:
-            with pytest.raises(UnitError):
-                units.factor(unit, si)
 
 
 def test_speed_over_ground_is_no_speed_through_the_water():

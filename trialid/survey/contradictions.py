@@ -4,13 +4,12 @@ Judged on the sketches, so that a log of any length is judged at once; alignment
 every sample.
 """
 
-from trialid import units
 from trialid.alignment import checks, twins
 from trialid.alignment.checks import Finding
 from trialid.alignment.clocks import Series
-from trialid.errors import UnitError
 from trialid.quantities import SIGNALS
 from trialid.survey.findings import ChannelSurvey, Survey
+from trialid.survey.usual_units import to_si
 
 COMPARED = ("delta", "delta_order", "r", "p", "phi", "psi", "u")
 """Quantities a fit is made of; of two depths or winds neither is a question."""
@@ -42,9 +41,8 @@ def _series(channel: ChannelSurvey) -> Series | None:
     if unit is None or channel.guess is None:
         return None
     quantity = SIGNALS[channel.guess.quantity]
-    try:
-        factor = units.factor(unit, quantity.unit)
-    except UnitError:
+    factor = to_si(unit, quantity.unit)
+    if factor is None:
         return None
     side = -1.0 if channel.guess.positive == "port" and quantity.mirror < 0 else 1.0
     y = side * factor * channel.sketch.y

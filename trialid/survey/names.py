@@ -9,9 +9,8 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from trialid import units
-from trialid.errors import UnitError
 from trialid.quantities import SIGNALS
+from trialid.survey.usual_units import to_si
 
 PHRASES: Final = {
     "delta": "rudder, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
@@ -65,12 +64,6 @@ UNITS_IN_NAMES: Final = {
     "kts": "kn", "knots": "kn", "mps": "m/s", "rpm": "rpm", "rps": "rps",
     "deg s": "deg/s", "rad s": "rad/s", "m s": "m/s", "deg min": "deg/min",
 }  # fmt: skip
-
-USUAL: Final = {
-    "rad": "rad", "deg": "rad", "rad/s": "rad/s", "deg/s": "rad/s", "deg/min": "rad/s",
-    "rpm": "rad/s", "m/s": "m/s", "kn": "m/s", "km/h": "m/s", "m": "m",
-}  # fmt: skip
-"""Units and what they become: half a second less than to ask the library of all units."""
 
 _WORD: Final = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
 SIDES: Final = {"port": "n_p", "starboard": "n_s", "stbd": "n_s", "stb": "n_s"}
@@ -165,12 +158,4 @@ def _holds(told: Sequence[str], phrase: Sequence[str]) -> bool:
 
 
 def _fits(name: str, unit: str | None) -> bool:
-    if unit is None:
-        return True
-    if unit in USUAL:
-        return USUAL[unit] == SIGNALS[name].unit
-    try:
-        units.factor(unit, SIGNALS[name].unit)
-    except UnitError:
-        return False
-    return True
+    return unit is None or to_si(unit, SIGNALS[name].unit) is not None

@@ -1,7 +1,7 @@
-"""Which quantity an unnamed channel is by how it moves, and what the channels say of one another.
+"""Which quantity an unnamed channel is by how it moves, and to which side a rudder is positive.
 
 A rate of turn is the slope of the heading, a roll rate the slope of the roll angle: a relation with
-a number in it, which the unit must give. Nothing else here is as sharp, so nothing else is used.
+a number in it, which the unit must give. Nothing else is as sharp, so nothing else is used.
 """
 
 import dataclasses
@@ -14,6 +14,7 @@ import numpy as np
 from trialid.alignment import signs
 from trialid.survey.findings import ChannelSurvey, Guess
 from trialid.survey.sketch import Vector, together
+from trialid.survey.usual_units import USUAL, to_si
 from trialid.trial import Mask
 
 SLOPES: Final = {"r": "psi", "p": "phi"}
@@ -24,11 +25,10 @@ SURE: Final = 0.95
 
 TURNS: Final = {"deg": 360.0, "rad": 2 * np.pi}
 
-MOST_UNNAMED: Final = 200
+MOST_UNNAMED: Final = 60
 """More unnamed channels than this are a log of something else; they are not tried one by one."""
 
-PER_UNIT: Final = {"rad/s": 1.0, "deg/s": np.pi / 180, "deg/min": np.pi / 10800}
-ANGLES: Final = {"rad": 1.0, "deg": np.pi / 180}
+RATES: Final = ("rad/s", "deg/s", "deg/min")
 
 
 def recognised(channels: Mapping[str, ChannelSurvey]) -> dict[str, ChannelSurvey]:
@@ -49,7 +49,8 @@ def recognised(channels: Mapping[str, ChannelSurvey]) -> dict[str, ChannelSurvey
 
 
 def _unnamed(channel: ChannelSurvey) -> bool:
-    return channel.guess is None and not channel.constant and len(channel.sketch.t) > 40
+    able = (channel.unit or channel.unit_in_name or RATES[0]) in RATES
+    return able and channel.guess is None and not channel.constant and len(channel.sketch.t) > 40
 
 
 def _named(channels: Mapping[str, ChannelSurvey], quantity: str) -> list[ChannelSurvey]:
@@ -106,12 +107,12 @@ def _turning(rudder: ChannelSurvey, turning: ChannelSurvey) -> tuple[float, bool
 def unit_of_rate(rate: ChannelSurvey, angle: ChannelSurvey) -> str | None:
     """The unit of a rate that its angle, whose unit is known, leaves open; None where none fits."""
     common = together(rate.sketch, angle.sketch)
-    size = ANGLES.get(angle.unit or angle.unit_in_name or "")
+    size = to_si(angle.unit or angle.unit_in_name or "", "rad")
     if common is None or size is None:
         return None
     period, (y, x), whole = common
     factor = abs(_factor(y, x * size, period, whole))
-    fitting = [unit for unit, per in PER_UNIT.items() if 0.8 < factor / per < 1.25]
+    fitting = [unit for unit in RATES if 0.8 < factor / USUAL[unit][1] < 1.25]
     stated = rate.unit or rate.unit_in_name
     return next((unit for unit in fitting if stated in (None, unit)), None)
 
