@@ -17,7 +17,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 import trialid
-from trialid import cli
+from trialid import cli, console
 from trialid.errors import LogError
 from trialid.recipe import Recipe
 
@@ -156,7 +156,7 @@ def test_progress_is_shown_on_a_terminals_stderr(
 ) -> None:
     monkeypatch.setenv("FORCE_COLOR", "1")  # rich takes the captured stream for a terminal
     monkeypatch.setenv("COLUMNS", "120")
-    with cli._progress(shown=True) as progress:
+    with console.progress_bar(shown=True) as progress:
         progress("reading [odd] name", None)
         progress("fitting: iteration 4", 0.5)
     out, err = capsys.readouterr()

@@ -5,7 +5,6 @@ Everything heavy is imported inside the commands, so that `trialid --help` answe
 
 import io
 import json
-import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -16,6 +15,8 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 import trialid
+from trialid.cli_logs import align, inspect
+from trialid.console import Progress, complain, file_width, progress_bar, rendered, say
 from trialid.errors import TrialidError
 
 if TYPE_CHECKING:
@@ -27,9 +28,6 @@ WRONG_INPUT: Final = 2
 STOPPED: Final = 130
 """128 + SIGINT, as shells report a command stopped by the keyboard."""
 
-Progress = Callable[[str, float | None], None]
-"""Takes a short sentence and the fraction done, None where nobody knows it."""
-
 
 class OneLineErrors(click.Group):
     """A group whose commands answer the user's mistakes with one line and an exit status."""
@@ -39,10 +37,10 @@ class OneLineErrors(click.Group):
         try:
             return super().invoke(ctx)
         except TrialidError as error:
-            _complain(str(error))
+            complain(str(error))
             ctx.exit(WRONG_INPUT)
         except KeyboardInterrupt:
-            _complain("stopped; no half-written results are left")
+            complain("stopped; no half-written results are left")
             ctx.exit(STOPPED)
 
 
@@ -104,7 +102,7 @@ def run(
     from trialid.pipeline import run as identify_from
     from trialid.pipeline import write
 
-    with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
+    with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         done = identify_from(recipe, progress, force=draft is not None)
         with _writing(folder):
             write(done, folder)
@@ -158,10 +156,14 @@ def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> Non
     everything = {**CATALOGUE, **own}
     if as_json:
         data = plain(find(name, own)) if name else plain_listing(everything)
-        _print(json.dumps(data, indent=2, allow_nan=False))
+        say(json.dumps(data, indent=2, allow_nan=False))
     else:
         shown = sheet(find(name, own)) if name else listing(everything)
-        _print(_rendered(*shown, width=None if name else _file_width()))
+        say(rendered(*shown, width=None if name else file_width()))
+
+
+commands.add_command(inspect)
+commands.add_command(align)
 
 
 def main() -> None:
@@ -195,12 +197,12 @@ def _change(
     from trialid.change import adding, carry_out, commit, dropping, written
 
     edit = (adding if step == "added" else dropping)(recipe, effect)
-    with _progress(shown=not quiet and sys.stderr.isatty()) as progress:
+    with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         done = carry_out(edit, folder, progress)
         with _writing(folder):
             commit(recipe, done.edit.after, done.run, done.steps, folder)
     for words in edit.taken_out:
-        _complain(f"{pipeline}: taken out with {effect}: {words}")
+        complain(f"{pipeline}: taken out with {effect}: {words}")
     back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
     foot = f"{pipeline}: {written(done.edit)}\nUndo: {back}"
     _answer(done.run.result, folder, as_json, quiet, lambda result: f"{_beside(result)}\n{foot}")
@@ -221,7 +223,7 @@ def _grow(recipe: "Recipe", folder: Path, keep: bool, as_json: bool, quiet: bool
         else:
             write(last, folder)
     if told:
-        _print(_loop_ended(done, recipe.path, keep))
+        say(_loop_ended(done, recipe.path, keep))
     _answer(last.result, folder, as_json, quiet, _summary)
 
 
@@ -238,16 +240,16 @@ def _stages(recipe: "Recipe", told: bool, shown: bool) -> "Iterator[Stage]":
 
     loop = stages(recipe, show)
     if told:
-        _print(steps.heading())
+        say(steps.heading())
     while True:
-        with _progress(shown=shown) as progress:
+        with progress_bar(shown=shown) as progress:
             bars.append(progress)
             stage = next(loop, None)
         if stage is None:
             return
         if told and stage.kept:
             came = {"step": "added" if stage.added else "as written", "added": stage.added}
-            _print(steps.line(present(stage.run.result) | came))
+            say(steps.line(present(stage.run.result) | came))
         yield stage
 
 
@@ -271,18 +273,18 @@ def _answer(
 ) -> None:
     """Print a result the way that was asked for."""
     if result.get("history_remark"):
-        _complain(result["history_remark"])
+        complain(result["history_remark"])
     if as_json:
-        _print(json.dumps(result, indent=2, allow_nan=False))
+        say(json.dumps(result, indent=2, allow_nan=False))
     elif not quiet:
-        _print(f"{show(result)}\nReport: {folder / 'report.html'}")
+        say(f"{show(result)}\nReport: {folder / 'report.html'}")
 
 
 def _beside(result: Mapping[str, Any]) -> str:
     """The model before and after."""
     from trialid.report.beside import beside
 
-    return _rendered(beside(result))
+    return rendered(beside(result))
 
 
 @contextmanager
@@ -346,67 +348,11 @@ def _short(folder: Path) -> str:
     return text if len(text) <= 80 else f"{text[:40]}...{text[-37:]}"
 
 
-@contextmanager
-def _progress(*, shown: bool) -> Iterator[Progress]:
-    """Give the function that shows progress on stderr, or one that keeps silent."""
-    if not shown:
-        yield _silent
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
-    from rich.progress import Progress as Bars
-
-    sentence = TextColumn("{task.description}", markup=False)
-    columns = (SpinnerColumn(), TimeElapsedColumn(), BarColumn(bar_width=20), sentence)
-    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
-        task = bars.add_task("reading", total=None)
-
-        def show(sentence: str, fraction: float | None) -> None:
-            total = None if fraction is None else 1.0
-            bars.update(task, description=sentence, total=total, completed=fraction or 0.0)
-
-        yield show
-
-
-def _silent(sentence: str, fraction: float | None) -> None:
-    """Show nothing."""
-
-
 def _summary(result: Mapping[str, Any]) -> str:
     """Give the one-screen summary."""
     from trialid.report.summary import summary
 
-    return _rendered(summary(result))
-
-
-def _file_width() -> int | None:
-    """Room for whole lines where no terminal cuts them: in a file or a pipe."""
-    return None if sys.stdout.isatty() or "COLUMNS" in os.environ else 160
-
-
-def _rendered(*parts: Any, width: int | None = None) -> str:
-    """Give what rich makes of them as text for this stdout, in colour where it is a terminal."""
-    from rich.console import Console
-
-    console = Console(width=width)
-    with console.capture() as capture:
-        for part in parts:
-            console.print(part, markup=False, highlight=False)
-    return capture.get().rstrip("\n")
-
-
-def _print(text: str) -> None:
-    """Write to stdout; a reader that left early (`| head`) has what it wanted."""
-    try:
-        click.echo(text)
-    except BrokenPipeError:
-        # Python flushes stdout once more on leaving and would complain into the closed pipe.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _complain(message: str) -> None:
-    folded = " ".join(line.strip() for line in message.splitlines())
-    click.echo(f"trialid: {folded}", err=True)
+    return rendered(summary(result))
 
 
 def _report_bug(
@@ -414,4 +360,4 @@ def _report_bug(
 ) -> None:
     """Show the traceback and say whose fault it is; Python then leaves with status 1."""
     sys.__excepthook__(kind, error, trace)
-    _complain(f"this is a bug in trialid, not a mistake of yours: {kind.__name__}: {error}")
+    complain(f"this is a bug in trialid, not a mistake of yours: {kind.__name__}: {error}")

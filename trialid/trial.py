@@ -39,6 +39,8 @@ class Trial:
         What was noticed on the way, in words, for the report.
     logs
         The files behind it.
+    start
+        Stamp of the first sample on the clock of the logs [ns].
     """
 
     name: str
@@ -48,6 +50,7 @@ class Trial:
     valid: Mapping[str, Mask]
     remarks: tuple[str, ...] = field(default=())
     logs: tuple[LogSource, ...] = field(default=())
+    start: int = 0
 
     def __post_init__(self) -> None:
         for array in (*self.signals.values(), *self.valid.values()):

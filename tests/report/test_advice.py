@@ -42,7 +42,7 @@ def assert_known(command):
     name, verb, *words = shlex.split(command)
     assert name == "trialid"
     known = known_commands.commands[verb]
-    known.parse_args(click.Context(known), words)
+    known.parse_args(click.Context(known, help_option_names=["-h", "--help"]), words)
 
 
 def test_a_force_outside_the_catalogue_is_drafted(result):

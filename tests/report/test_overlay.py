@@ -10,7 +10,8 @@ from mcap_protobuf.decoder import DecoderFactory
 
 from trialid.quantities import SIGNALS
 from trialid.report import labels
-from trialid.report.overlay import CHUNK, write_mcap
+from trialid.report.overlay import write_mcap
+from trialid.report.tracks import CHUNK
 
 
 @pytest.fixture(scope="module")

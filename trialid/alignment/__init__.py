@@ -168,4 +168,4 @@ def _trial(
         signals[quantity], valid[quantity] = resample.onto(one, grid, smooth=smooth)
         quality.check_valid(one, valid[quantity], grid, where)
     logs = tuple(LogSource(str(r.path), r.sha256, r.adapter) for r in recordings)
-    return Trial(name, use, grid.period, signals, valid, logs=logs)
+    return Trial(name, use, grid.period, signals, valid, logs=logs, start=grid.start)

@@ -6,7 +6,9 @@ from trialid import units
 from trialid.quantities import SIGNALS, Quantity
 from trialid.report import wording
 
-_GREEK = {"phi": "\u03c6", "psi": "\u03c8", "delta": "\u03b4"}
+_GREEK = {
+    "phi": "\u03c6", "psi": "\u03c8", "delta": "\u03b4", "gamma": "\u03b3", "alpha": "\u03b1",
+}  # fmt: skip
 
 _FIELDS = {
     "u": "surge_speed",

@@ -1,0 +1,114 @@
+"""The survey on a terminal: what a person meets first, and what no log can do to it."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from trialid.report.inspection import inspection, plain, shown
+from trialid.survey import survey
+from trialid.survey.findings import Survey
+
+SAMPLES = Path(__file__).parents[2] / "sample_data" / "hidden_effect"
+
+
+def text(found: Survey, width=100, everything=False):
+    console = Console(width=width)
+    with console.capture() as capture:
+        for part in inspection(found, everything=everything):
+            console.print(part, markup=False, highlight=False)
+    return capture.get()
+
+
+@pytest.fixture(scope="module")
+def ros():
+    return survey(SAMPLES / "zigzag-20.mcap")
+
+
+def test_recognised_channels_come_first_with_their_letters(ros):
+    lines = text(ros).splitlines()
+    delta, *_ = [line for line in lines if "/steering/rudder:data  " in line]
+    assert "/steering/rudder:data" in delta
+    assert "not stated" in delta
+    assert lines.index(delta) < next(i for i, line in enumerate(lines) if line.startswith("other"))
+    assert "1199.9 s, 2026-05-28 20:26:40 to 2026-05-28 20:46:39 UTC" in lines[1]
+
+
+def test_the_side_of_the_rudder_is_offered_with_its_evidence(ros):
+    words = " ".join(text(ros).split())
+    assert 'positive = "starboard", by its correlation' in words
+    assert "(-0.98), if that is positive to port" in words
+
+
+def test_unlikely_channels_are_folded_unless_all_are_asked_for(ros):
+    assert "covariance[8]" not in text(ros)
+    assert "other channels: 35" in text(ros)
+    assert "/imu:linear_acceleration_covariance[8]" in text(ros, 140, everything=True)
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 160])
+def test_no_line_is_longer_than_the_terminal(ros, width):
+    assert max(len(line) for line in text(ros, width).splitlines()) <= width
+
+
+def test_hundreds_of_messages_are_counted(tmp_path):
+    log = tmp_path / "a.csv"
+    log.write_text("t," + ",".join(f"m{i}:a" for i in range(40)) + "\n" + "1" + ",2" * 40 + "\n")
+    found = text(survey(log))
+    assert "and 28 more messages; --all shows every channel" in found
+    assert "m39" not in found
+
+
+def test_names_steer_neither_terminal_nor_markup(ros):
+    rudder = ros.channels["/steering/rudder:data"]
+    evil = dataclasses.replace(rudder, name="rudder\x1b]0;x\x07 [/bold][red]", unit="[deg]\x1b[0m")
+    other = dataclasses.replace(rudder, name="\x1b[2J:[b]", guess=None)
+    said = text(dataclasses.replace(ros, channels={"a": evil, "b": other}, warnings=("\x1b[1m",)))
+    assert "\x1b" not in said
+    assert "\x07" not in said
+    assert "rudder\\x1b]0;x\\x07 [/bold][red]" in said
+    assert "\\x1b[2J" in said
+    assert "[b]" in said
+    assert shown("a\nb\u202e") == "a\\nb\\u202e"
+
+
+def test_two_sources_are_set_side_by_side(tmp_path):
+    t = np.arange(0, 400, 0.5)
+    rows = np.column_stack([t, np.sin(0.2 * t), np.sin(0.2 * t) + 0.5])
+    log = tmp_path / "a.csv"
+    np.savetxt(log, rows, delimiter=",", header="t,rot[deg/s],yaw_rate[deg/s]", comments="")
+    words = " ".join(text(survey(log)).split())
+    assert "2 sources of yaw rate r: rot 2 Hz, yaw_rate 2 Hz" in words
+    assert "yaw_rate against rot: +0.5 deg/s apart" in words
+
+
+def test_plain_data_is_json_with_null_for_what_is_not_known(ros):
+    data = json.loads(json.dumps(plain(ros), allow_nan=False))
+    assert data["schema"] == "trialid-survey/1"
+    channels = {(c["channel"], c["as"]): c for c in data["channels"]}
+    rudder = channels["/steering/rudder:data", None]
+    assert (rudder["quantity"], rudder["unit"], rudder["positive"]) == ("delta", None, None)
+    assert rudder["rate"] == pytest.approx(5)
+    assert channels["/imu:orientation", "roll"]["known"] == "defined by the format"
+    assert data["start"].startswith("2026-05-28")
+    assert len(data["files"][0]["sha256"]) == 64
+
+
+def test_values_that_are_nowhere_are_null(tmp_path):
+    log = tmp_path / "a.csv"
+    log.write_text("t,rudder\n0,\n1,\n")
+    (channel,) = json.loads(json.dumps(plain(survey(log)), allow_nan=False))["channels"]
+    assert channel["range"] is None
+    assert channel["missing"] == 1.0
+    assert "not  available" in text(survey(log))
+
+
+def test_remarks_and_warnings_are_shown_up_to_a_number(ros):
+    file = dataclasses.replace(ros.files[0], remarks=tuple(f"lost {i}" for i in range(20)))
+    said = text(dataclasses.replace(ros, files=(file,), warnings=("the clock is wild",)))
+    assert "- lost 0" in said
+    assert "more; --json has them all" in said
+    assert "- the clock is wild" in said

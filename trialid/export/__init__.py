@@ -1,0 +1,73 @@
+"""Aligned trials as a file other programs read: CSV, Parquet, MATLAB, MCAP.
+
+Everything is in SI and says so; a sample that was not measured is empty or NaN, whatever the
+simulation would put there; and each file carries where it comes from.
+"""
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from trialid.errors import TrialidError
+from trialid.export import mat_file, mcap_file, parquet_file, table
+from trialid.trial import Trial
+
+__all__ = ["FORMATS", "check_place", "provenance_beside", "write"]
+
+Writer = Callable[[Path, Sequence[Trial], Mapping[str, Any]], None]
+
+FORMATS: Final[Mapping[str, Writer]] = {
+    ".csv": table.write_csv,
+    ".parquet": parquet_file.write_parquet,
+    ".mat": mat_file.write_mat,
+    ".mcap": mcap_file.write_mcap,
+}
+"""What a file's suffix asks for."""
+
+
+def provenance_beside(path: Path) -> Path | None:
+    """Where the provenance of a file goes that cannot hold it; None where it is inside."""
+    return path.with_name(f"{path.name}.json") if path.suffix.lower() == ".csv" else None
+
+
+def check_place(path: Path, *, replace: bool) -> None:
+    """Refuse, before the work, a file that cannot or should not be written.
+
+    Raises
+    ------
+    TrialidError
+        Its suffix is none of `FORMATS`, its folder is missing, or it exists.
+    """
+    if path.suffix.lower() not in FORMATS:
+        known = ", ".join(FORMATS)
+        given = f"{path.suffix!r} is none of them" if path.suffix else "it has none"
+        raise TrialidError(f"--out {path}: the suffix says the format, {known}; {given}")
+    if not path.parent.is_dir():
+        raise TrialidError(f"--out {path}: there is no folder {path.parent}; make it first")
+    for file in (path, provenance_beside(path)):
+        if file is not None and file.is_dir():
+            raise TrialidError(f"--out {path}: {file} is a folder; name a file")
+        if file is not None and file.exists() and not replace:
+            raise TrialidError(f"--out {path}: {file} exists; name another, or add --force")
+
+
+def write(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) -> None:
+    """Write the trials at one stroke, in the format of the file's suffix.
+
+    Raises
+    ------
+    TrialidError
+        The file cannot be written, or a package its format needs is not there.
+    """
+    beside = provenance_beside(path)
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as folder:
+            ready = Path(folder, path.name)
+            FORMATS[path.suffix.lower()](ready, trials, provenance)
+            if beside is not None:
+                table.write_provenance(Path(folder, beside.name), provenance)
+                Path(folder, beside.name).replace(beside)
+            ready.replace(path)
+    except OSError as error:
+        raise TrialidError(f"--out {path}: {(error.strerror or str(error)).lower()}") from error

@@ -1,0 +1,37 @@
+"""Aligned trials as an MCAP file: one topic a trial."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trialid.alignment.clocks import CALENDAR_NS
+from trialid.export.table import observed
+from trialid.report import labels
+from trialid.report.tracks import About, Track, stems, write_tracks
+from trialid.trial import Trial
+
+
+def write_mcap(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) -> None:
+    """Protobuf messages with their descriptor, NaN where nothing was measured.
+
+    Stamps are those of the logs where all of them are dated, so that the file lies over the logs in
+    a plot; else each trial begins at zero.
+    """
+    dated = all(trial.start > CALENDAR_NS for trial in trials)
+    starts = [trial.start if dated else 0 for trial in trials]
+    topics = stems(trial.name for trial in trials)
+    tracks = [_track(*each) for each in zip(trials, topics, starts, strict=True)]
+    manifest = {key: str(provenance[key]) for key in ("schema", "version", "pipeline")}
+    for trial in trials:
+        manifest |= {f"sha256 {log.path}": log.sha256 for log in trial.logs}
+    about = About(f"trialid {provenance['version']}", manifest, "provenance.json", provenance)
+    with path.open("wb") as stream:
+        write_tracks(stream, tracks, about)
+
+
+def _track(trial: Trial, stem: str, start: int) -> Track:
+    t = start + np.rint(trial.t * 1e9).astype(np.int64)
+    fields = {labels.message_field(name): values for name, values in observed(trial).items()}
+    return Track(f"/trialid/{stem}/aligned", "trialid.Aligned", t, fields)

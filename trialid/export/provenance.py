@@ -1,0 +1,50 @@
+"""Where aligned trials come from, as plain data: enough to make them again."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import trialid
+from trialid.alignment.clocks import CALENDAR_NS, moment
+from trialid.recipe import Recipe, TrialRecipe
+from trialid.report import labels
+from trialid.trial import Trial
+
+SCHEMA: Final = "trialid-aligned/1"
+
+
+def provenance(recipe: Recipe, trials: Sequence[Trial]) -> dict[str, Any]:
+    """Logs with their hashes, channels, remarks and masked samples of every trial."""
+    written = {one.name: one for one in recipe.trials}
+    return {
+        "schema": SCHEMA,
+        "version": trialid.__version__,
+        "pipeline": recipe.path.name,
+        "pipeline_sha256": hashlib.sha256(recipe.content).hexdigest(),
+        "trials": [_trial(trial, written[trial.name]) for trial in trials],
+    }
+
+
+def _trial(trial: Trial, written: TrialRecipe) -> dict[str, Any]:
+    return {
+        "name": trial.name,
+        "use": trial.use,
+        "period": trial.period,
+        "samples": trial.samples,
+        "start_ns": trial.start,
+        "start": f"{moment(trial.start)}Z" if trial.start > CALENDAR_NS else None,
+        "signals": {name: _signal(trial, name, written) for name in trial.signals},
+        "logs": [{"path": o.path, "sha256": o.sha256, "adapter": o.adapter} for o in trial.logs],
+        "remarks": [*trial.remarks],
+    }
+
+
+def _signal(trial: Trial, name: str, written: TrialRecipe) -> Mapping[str, Any]:
+    """Its unit here, the samples that were not measured, and the pipeline's own words for it."""
+    source = written.signals.get(name)
+    stated = source.model_dump(by_alias=True, exclude_defaults=True) if source else None
+    return {
+        "unit": labels.quantity(name).unit,
+        "masked": int((~trial.valid[name]).sum()),
+        "source": stated,
+    }

@@ -1,0 +1,362 @@
+"""A survey of a log as a person reads it in a terminal, and as plain data.
+
+Names of channels come from files that anybody may have written: they are shown as plain text, and
+what could steer a terminal is shown escaped.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from trialid.alignment.checks import Finding
+from trialid.alignment.clocks import CALENDAR_NS, moment
+from trialid.quantities import SIGNALS
+from trialid.report import labels
+from trialid.report.terminal import Words, add_row, cut, new_table
+from trialid.survey.contradictions import COMPARED, MOST_SOURCES, findings
+from trialid.survey.findings import ChannelSurvey, Received, Survey
+from trialid.survey.relations import side
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+SCHEMA: Final = "trialid-survey/1"
+MOST_MESSAGES: Final = 12
+"""Messages without a recognised field that are listed before they are only counted."""
+LONGEST: Final = 72
+"""Letters of a description that are shown."""
+MOST_REMARKS: Final = 8
+
+
+def shown(text: str) -> str:
+    r"""Text of a log with its control characters escaped.
+
+    >>> shown("roll\x1b[31m")
+    'roll\\x1b[31m'
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def inspection(survey: Survey, *, everything: bool = False) -> Sequence[Any]:
+    """The survey as lines and tables to print in order; `everything` folds nothing."""
+    known, found = _by_quantity(survey), findings(survey)
+    parts: list[Any] = [_title(survey), ""]
+    if known:
+        parts += [_signals(known), ""]
+    parts += [*_choices(known, found), *_others(survey, everything), *_clocks(survey)]
+    parts += _remarks(survey, found)
+    return parts[:-1] if parts[-1] == "" else parts
+
+
+def _by_quantity(survey: Survey) -> dict[str, tuple[ChannelSurvey, ...]]:
+    """Sources of each recognised quantity, in the order of the dictionary."""
+    found = {name: survey.sources(name) for name in SIGNALS}
+    return {name: sources for name, sources in found.items() if sources}
+
+
+def _title(survey: Survey) -> Any:
+    from rich.text import Text
+
+    count = len(survey.channels)
+    files = f", {len(survey.files)} files" if len(survey.files) > 1 else ""
+    facts = f"{survey.format}{files}, {count} channel{'s' if count > 1 else ''}, {_span(survey)}"
+    return Text(f"{shown(str(survey.path))}\n", style="bold").append(facts, style="not bold")
+
+
+def _span(survey: Survey) -> str:
+    first, last = survey.start, survey.end
+    if first > CALENDAR_NS:
+        return f"{survey.duration:.1f} s, {_date(first)} to {_date(last)} UTC"
+    return f"{survey.duration:.1f} s, {moment(first)} to {moment(last)}"
+
+
+def _date(stamp: int) -> str:
+    return moment(stamp).replace("T", " ").partition(".")[0]
+
+
+def _signals(known: dict[str, tuple[ChannelSurvey, ...]]) -> "Table":
+    """A heading a quantity, its sources below it side by side."""
+    from rich.text import Text
+
+    table = new_table("channel", "known", "Hz", "gaps", "from", "to", "unit", words=2)
+    table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
+    table.columns[0].ratio, table.expand = 1, True
+    table.columns[6].justify = "left"
+    for name, sources in known.items():
+        table.add_row(Text(labels.labelled(name), style="bold"))
+        for one in sources:
+            cells = (_how(one), *_numbers(one))
+            style = "dim" if one.constant else ""
+            table.add_row(_name(one), *(Text(cell) for cell in cells), style=style)
+    return table
+
+
+def _name(one: ChannelSurvey) -> Any:
+    """What a pipeline writes, and below it what the format says of it."""
+    from rich.padding import Padding
+    from rich.text import Text
+
+    name = Text(shown(one.key))
+    if one.description:
+        name.append(f"\n{cut(shown(one.description), 1, LONGEST)}", style="dim")
+    return Padding(name, (0, 0, 0, 2))
+
+
+def _how(one: ChannelSurvey) -> str:
+    """How a quantity is known, in a word."""
+    assert one.guess is not None
+    return f"by {one.guess.how}"
+
+
+def _numbers(one: ChannelSurvey) -> tuple[str, str, str, str, str]:
+    holes = f"{one.gaps.count} ({one.gaps.total:.3g} s)" if one.gaps.count else "-"
+    return f"{one.rate:.3g}", holes, *_range(one), _unit(one)
+
+
+def _range(one: ChannelSurvey) -> tuple[str, str]:
+    if math.isnan(one.low):
+        return "not", "available"
+    if one.constant:
+        return "always", f"{one.low:.4g}"
+    return f"{one.low:.4g}", f"{one.high:.4g}"
+
+
+def _unit(one: ChannelSurvey) -> str:
+    if one.unit:
+        return shown(one.unit)
+    return f"{one.unit_in_name} (name)" if one.unit_in_name else "not stated"
+
+
+def _choices(
+    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
+) -> Iterator[Any]:
+    """What a person has to decide: several sources, no source, a rudder's sign."""
+    lines = [*_several(known, found), *_mends(found), *_lacking(known), *_rudder(known)]
+    if lines:
+        yield _heading("to decide")
+        yield from (_bullet(line) for line in lines)
+        yield ""
+
+
+def _several(
+    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
+) -> Iterator[str]:
+    """Several sources of a quantity, and what sets them apart."""
+    for name in COMPARED:
+        live = [one for one in known.get(name, ()) if not one.constant]
+        if len(live) < 2:
+            continue
+        rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:MOST_SOURCES])
+        more = f" and {len(live) - MOST_SOURCES} more" if len(live) > MOST_SOURCES else ""
+        keys = {one.key for one in live}
+        apart = [one.sentence for one in found if one.kind == "differ" and keys >= {*one.about}]
+        yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
+        yield from apart
+
+
+def _mends(found: Sequence[Finding]) -> Iterator[str]:
+    """What a line of the pipeline would mend; of a rudder's side `_rudder` tells more."""
+    for one in found:
+        if one.mend is not None and one.kind != "side":
+            named = one.mend in one.sentence
+            yield one.sentence if named else f"{one.sentence}; {one.mend} would mend it"
+
+
+def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
+    alive = {name for name, sources in known.items() if any(not one.constant for one in sources)}
+    if not alive & {"delta", "delta_order"}:
+        yield "no rudder or rudder order that moves is recognised: a fit needs one"
+    if not alive & {"r", "psi", "phi"}:
+        yield "no yaw rate, heading or roll angle that moves is recognised: a fit needs a motion"
+    if "u" not in alive:
+        yield "no speed through the water is recognised: state `speed` in the pipeline"
+
+
+def _rudder(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
+    """What the motion says about the sign of each rudder; the best yaw rate is the witness."""
+    witness = next((one for one in known.get("r", ()) if not one.constant), None)
+    if witness is None:
+        return
+    for name in ("delta", "delta_order"):
+        for one in known.get(name, ())[:3]:
+            found = side(one, witness)
+            if found is not None:
+                yield (
+                    f'{one.key}: positive = "{found.side}", by its correlation with the change of '
+                    f"{witness.key} ({found.strength:+.2f}), if that is positive to {found.if_to}"
+                )
+
+
+def _others(survey: Survey, everything: bool) -> Iterator[Any]:
+    rest = [one for one in survey.channels.values() if one.guess is None]
+    if not rest:
+        return
+    yield _heading(f"other channels: {len(rest)}")
+    if everything:
+        yield _all_others(rest)
+    else:
+        yield from _folded(rest)
+    yield ""
+
+
+def _all_others(rest: Sequence[ChannelSurvey]) -> "Table":
+    table = new_table("channel", "Hz", "gaps", "from", "to", "unit", words=1)
+    table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
+    table.columns[0].ratio, table.expand = 1, True
+    table.columns[5].justify = "left"
+    for one in rest:
+        add_row(table, shown(one.key), *_numbers(one))
+    return table
+
+
+def _folded(rest: Sequence[ChannelSurvey]) -> Iterator[Any]:
+    """One line a message; columns of a table have none and stand in one line together."""
+    groups: dict[str, list[ChannelSurvey]] = {}
+    for one in rest:
+        groups.setdefault(one.message, []).append(one)
+    table = new_table("message", "Hz", "fields", words=1)
+    table.columns[2].justify, table.columns[2].ratio, table.expand = "left", 1, True
+    table.columns[0].max_width = 44
+    for message, fields in list(groups.items())[:MOST_MESSAGES]:
+        names = ", ".join(one.key.removeprefix(f"{message}:") for one in fields)
+        add_row(table, shown(message) or "(columns)", f"{fields[0].rate:.3g}", shown(names))
+    yield table
+    left = len(groups) - MOST_MESSAGES
+    if left > 0:
+        yield Words(f"and {left} more messages; --all shows every channel", 1, "dim")
+
+
+def _clocks(survey: Survey) -> Iterator[Any]:
+    """One line a clock, with the worst of the messages it stamps."""
+    recognised = [one for one in survey.channels.values() if one.guess is not None]
+    groups: dict[str, list[ChannelSurvey]] = {}
+    for one in recognised or survey.channels.values():
+        groups.setdefault(one.clock.words, []).append(one)
+    table = new_table("clock", "of", "jitter", "steps back", "recorder later", words=2)
+    for column in table.columns[:2]:
+        column.overflow, column.no_wrap, column.ratio = "fold", False, 1
+    table.expand = True
+    for words, group in groups.items():
+        messages = list(dict.fromkeys(one.message or "table" for one in group))
+        more = f" and {len(messages) - 3} more" if len(messages) > 3 else ""
+        names = shown(", ".join(messages[:3])) + more
+        add_row(table, shown(words) or "not stated", names, *_worst(group))
+    yield _heading("clocks")
+    yield table
+    yield ""
+
+
+def _worst(group: Sequence[ChannelSurvey]) -> tuple[str, str, str]:
+    """Jitter as a share of the period, steps back, and how much later the recorder is."""
+    jitter = max(100 * one.clock.jitter * one.rate for one in group)
+    back = max(group, key=lambda one: one.clock.steps_back).clock
+    late = [one.clock.received for one in group if one.clock.received is not None]
+    return (
+        f"{jitter:.2g} %" if jitter >= 0.01 else "0 %",
+        f"{back.steps_back} (to {back.furthest_back:.3g} s)" if back.steps_back else "-",
+        _against(late)
+        if all(one.same_epoch for one in group if one.clock.received)
+        else "another date",
+    )
+
+
+def _against(late: Sequence[Received]) -> str:
+    """How much later than the stamps the recorder is."""
+    offsets = [one.offset for one in late]
+    return f"{min(offsets):.3g} to {max(offsets):.3g} s" if offsets else "-"
+
+
+def _remarks(survey: Survey, found: Sequence[Finding]) -> Iterator[Any]:
+    several = len(survey.files) > 1
+    said = [
+        f"{file.path.name}: {remark}" if several else remark
+        for file in survey.files
+        for remark in file.remarks
+    ]
+    said += [one.sentence for one in found if one.mend is None and one.kind != "differ"]
+    for title, lines in (("noticed", said), ("careful", list(survey.warnings))):
+        if lines:
+            yield _heading(title)
+            yield from (_bullet(line) for line in lines[:MOST_REMARKS])
+            if len(lines) > MOST_REMARKS:
+                yield Words(f"and {len(lines) - MOST_REMARKS} more; --json has them all", 1, "dim")
+            yield ""
+
+
+def _bullet(line: str) -> Any:
+    """A sentence behind a dash, its further lines indented."""
+    from rich.padding import Padding
+    from rich.table import Table
+    from rich.text import Text
+
+    grid = Table.grid(padding=(0, 1))
+    grid.add_row(Text("-"), Padding(Text(shown(line)), 0))
+    return grid
+
+
+def _heading(text: str) -> Any:
+    from rich.text import Text
+
+    return Text(text, style="bold")
+
+
+def plain(survey: Survey) -> dict[str, Any]:
+    """The survey as plain data, schema `trialid-survey/1`; what is not known is null."""
+    dated = survey.start > CALENDAR_NS
+    return {
+        "schema": SCHEMA,
+        "path": str(survey.path),
+        "format": survey.format,
+        "duration": survey.duration,
+        "start": f"{moment(survey.start)}Z" if dated else None,
+        "files": [
+            {"path": str(f.path), "format": f.format, "sha256": f.sha256, "remarks": [*f.remarks]}
+            for f in survey.files
+        ],
+        "channels": [_plain_channel(one) for one in survey.channels.values()],
+        "findings": [_plain_finding(one) for one in findings(survey)],
+        "warnings": list(survey.warnings),
+    }
+
+
+def _plain_finding(one: Finding) -> dict[str, Any]:
+    return {
+        "kind": one.kind,
+        "severity": one.severity,
+        "about": list(one.about),
+        "sentence": one.sentence,
+        "evidence": {k: v if math.isfinite(v) else None for k, v in one.evidence.items()},
+        "mend": one.mend,
+    }
+
+
+def _plain_channel(one: ChannelSurvey) -> dict[str, Any]:
+    late = one.clock.received
+    return {
+        "channel": one.name,
+        "as": one.angle,
+        "description": one.description or None,
+        "quantity": one.guess and one.guess.quantity,
+        "known": one.guess and one.guess.words,
+        "positive": one.guess and one.guess.positive,
+        "unit": one.unit,
+        "unit_in_name": one.unit_in_name,
+        "samples": one.samples,
+        "missing": one.missing,
+        "rate": one.rate or None,
+        "start_ns": one.start,
+        "end_ns": one.end,
+        "range": None if math.isnan(one.low) else [one.low, one.high],
+        "gaps": {
+            "count": one.gaps.count, "total": one.gaps.total, "longest": one.gaps.longest,
+        },
+        "clock": {
+            "words": one.clock.words,
+            "jitter": one.clock.jitter,
+            "steps_back": one.clock.steps_back,
+            "furthest_back": one.clock.furthest_back,
+            "same_stamp": one.clock.same,
+            "received": late
+            and {"offset": late.offset, "drift": late.drift, "jitter": late.jitter},
+        },
+    }  # fmt: skip

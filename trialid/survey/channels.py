@@ -1,0 +1,156 @@
+"""One channel as read from a file to what is known of it; parts of many files to one channel."""
+
+import dataclasses
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.alignment import frames
+from trialid.alignment.frames import MARKER
+from trialid.alignment.sources import SignalSource
+from trialid.errors import TrialidError
+from trialid.quantities import SIGNALS
+from trialid.recording import Channel, Recording
+from trialid.survey import names
+from trialid.survey.findings import ChannelSurvey, Gaps, Guess
+from trialid.survey.relations import TURNS
+from trialid.survey.sketch import joined, sketch
+from trialid.survey.stamps import Health, health
+
+ANGLES_OF_A_QUATERNION: Final[tuple[tuple[Literal["roll", "yaw"], str], ...]] = (
+    ("roll", "phi"),
+    ("yaw", "psi"),
+)
+AXES = ("x", "y", "z", "w")
+REP_103: Final[Mapping[str, Literal["port"]]] = {"r": "port", "psi": "port"}
+"""ROS counts about an axis that points up: a turn to port is positive."""
+
+
+def of_recording(recording: Recording) -> Iterator[ChannelSurvey]:
+    """Every channel that holds a sample, and the roll and yaw of every quaternion."""
+    seen: tuple[NDArray[np.int64], Health] | None = None
+    for channel in recording.channels.values():
+        if not len(channel.t):
+            continue
+        if seen is None or not _same_stamps(seen[0], channel):
+            seen = channel.t, health(channel.t, channel.clock, channel.received)
+        yield _channel(channel, seen[1])
+    yield from _orientations(recording)
+
+
+def _same_stamps(t: NDArray[np.int64], channel: Channel) -> bool:
+    """Fields of a message share their stamps, which need not be looked at again."""
+    return channel.received is None and (t is channel.t or np.array_equal(t, channel.t))
+
+
+def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
+    t, y, own = channel.t, channel.y, stamps
+    there = np.isfinite(y) & (np.abs(y) < MARKER)
+    if not there.all():
+        t, y = t[there], y[there]
+        own = health(t, channel.clock, None) if len(t) else stamps
+        own = dataclasses.replace(own, clock=stamps.clock)
+    if own.order is not None:
+        t, y = t[own.order], y[own.order]
+    unit = channel.unit or names.unit_in_name(channel.name)
+    guess = _guess(channel, unit)
+    angle = guess is not None and SIGNALS[guess.quantity].angle
+    return ChannelSurvey(
+        name=channel.name,
+        start=int(channel.t.min()),
+        end=int(channel.t.max()),
+        samples=len(channel.t),
+        missing=1.0 - len(y) / len(channel.y),
+        rate=1.0 / own.period if own.period else 0.0,
+        gaps=own.gaps,
+        low=float(y.min()) if len(y) else np.nan,
+        high=float(y.max()) if len(y) else np.nan,
+        clock=own.clock,
+        unit=channel.unit,
+        unit_in_name=None if channel.unit else names.unit_in_name(channel.name),
+        description=channel.description,
+        guess=guess,
+        sketch=sketch(t, y, TURNS.get(unit or "") if angle else None),
+    )
+
+
+def _guess(channel: Channel, unit: str | None) -> Guess | None:
+    if channel.quantity is not None:
+        return Guess(channel.quantity, "format", "defined by the format", channel.positive)
+    found = names.quantity(channel.name, unit)
+    if found is None:
+        return None
+    if channel.name.endswith("angular_velocity.z"):
+        return Guess(found, "name", "by its name (ROS: to port)", REP_103[found])
+    return Guess(found, "name", "by its name", channel.positive)
+
+
+def _orientations(recording: Recording) -> Iterator[ChannelSurvey]:
+    for name in _quaternions(recording.channels):
+        for angle, quantity in ANGLES_OF_A_QUATERNION:
+            source = SignalSource(quantity, name, as_=angle)
+            try:
+                found = frames.series(source, [recording], "")
+            except TrialidError:
+                return  # its four fields do not share their stamps: not one quaternion
+            one = Channel(name, found.t, np.asarray(found.y), "rad", found.clock)
+            seen = _channel(one, health(one.t, one.clock, None))
+            words = "defined by the format"
+            guess = Guess(quantity, "format", words, REP_103.get(quantity))
+            yield dataclasses.replace(seen, angle=angle, guess=guess)
+
+
+def _quaternions(channels: Mapping[str, Channel]) -> Iterator[str]:
+    """Names whose fields x, y, z and w are of length one."""
+    for name in channels:
+        stem = name.removesuffix(".w")
+        fields = [channels.get(f"{stem}.{axis}") for axis in AXES]
+        if stem == name or any(field is None for field in fields):
+            continue
+        values = [field.y for field in fields if field is not None]
+        if len({len(y) for y in values}) != 1 or not len(values[0]):
+            continue
+        if abs(float(np.nanmedian(sum(y**2 for y in values))) - 1.0) < 0.01:
+            yield stem
+
+
+def merged(parts: Sequence[ChannelSurvey]) -> ChannelSurvey:
+    """A channel of several files as one; what lies between two files is a gap if it is long."""
+    if len(parts) == 1:
+        return parts[0]
+    first, *_ = ordered = sorted(parts, key=lambda part: part.start)
+    samples = sum(part.samples for part in ordered)
+    weights = [part.samples / samples for part in ordered]
+    rate = float(np.average([part.rate for part in ordered], weights=weights))
+    return dataclasses.replace(
+        first,
+        end=max(part.end for part in ordered),
+        samples=samples,
+        missing=sum(w * part.missing for w, part in zip(weights, ordered, strict=True)),
+        rate=rate,
+        gaps=_gaps(ordered, rate),
+        low=float(np.nanmin([part.low for part in ordered])),
+        high=float(np.nanmax([part.high for part in ordered])),
+        clock=dataclasses.replace(
+            first.clock,
+            jitter=max(part.clock.jitter for part in ordered),
+            steps_back=sum(part.clock.steps_back for part in ordered),
+            furthest_back=max(part.clock.furthest_back for part in ordered),
+            same=sum(part.clock.same for part in ordered),
+        ),
+        sketch=joined([part.sketch for part in ordered]),
+    )
+
+
+def _gaps(ordered: Sequence[ChannelSurvey], rate: float) -> Gaps:
+    holes = [(b.start - a.end) / 1e9 for a, b in itertools.pairwise(ordered)]
+    between = [hole for hole in holes if rate and hole > 3.0 / rate]
+    inside = [part.gaps for part in ordered]
+    return Gaps(
+        sum(one.count for one in inside) + len(between),
+        sum(one.total for one in inside) + sum(between),
+        max([*(one.longest for one in inside), *between]),
+    )
