@@ -9,6 +9,7 @@ import errno
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -282,7 +283,7 @@ def test_a_log_that_is_not_there() -> None:
 @pytest.mark.parametrize(("content", "words"), [
     pytest.param(b"", ("empty", "0 bytes", "copy it again"), id="empty"),
     pytest.param(b"t[s],rudder[deg]\n", ("header but no rows", "exported"), id="no rows"),
-    pytest.param(b"\x89PNG\r\n\x1a\n" + bytes(50), ("no adapter", "mcap, csv", "PNG", "as CSV"),
+    pytest.param(b"\x89PNG\r\n\x1a\n" + bytes(50), ("none of the formats", "MCAP, MAV", "PNG", "as CSV"),
                  id="a picture"),
     pytest.param(b"a,b\n1,2\n", ("no time column", "a, b", "'time'"), id="no time"),
     pytest.param(b"t,rudder\n0,1\n1,x\n2,1\n", ("line 3", "'rudder'", "'x'", "number"),
@@ -315,9 +316,9 @@ def test_a_torn_mcap_runs_on_what_is_left_of_it(monkeypatch: pytest.MonkeyPatch)
     as_mcap(monkeypatch, 0.6)
     result = finished()
     said = remarks(result)
-    assert "log.mcap: damaged at byte" in said
+    assert re.search(r"log\.mcap: recovered \d+ messages", said)
+    assert "damaged at byte" in said
     assert "cut short" in said
-    assert "messages recovered" in said
     assert 300 < compared() < 1000
     assert "cut short" in Path("out/report.html").read_text(encoding="utf-8")
 

@@ -25,7 +25,7 @@ def aligned(signals, keep=None, period=0.5, t=T):
         SignalSource(q, q, UNITS.get(q, "rad"), "starboard" if q.startswith("delta") else None)
         for q in signals
     ]
-    return align("t", "fit", [log], sources, period, None, keep)
+    return align("t", "fit", [log], sources, period, keep=keep)
 
 
 def noisy(seed, size=1e-3):

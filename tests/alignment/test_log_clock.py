@@ -11,7 +11,7 @@ from trialid.alignment import LogClock, SignalSource, align
 from trialid.errors import AlignmentError
 
 T = np.arange(0.0, 900.0, 0.1)
-SOURCES = [SignalSource("r", "gyro", "rad/s"), SignalSource("p", "rate", "rad/s")]
+SOURCES = [SignalSource("r", "gyro", "rad/s"), SignalSource("X_ext", "rate", "N")]
 
 
 def motion(t, seed=5):
@@ -43,8 +43,8 @@ def aligned(logs, clock, **more):
 
 def apart(trial, gain=1.0):
     """Root mean square difference of the two signals, as a share of the motion."""
-    both = trial.valid["r"] & trial.valid["p"]
-    return np.std((trial.signals["p"] / gain - trial.signals["r"])[both]) / np.std(
+    both = trial.valid["r"] & trial.valid["X_ext"]
+    return np.std((trial.signals["X_ext"] / gain - trial.signals["r"])[both]) / np.std(
         trial.signals["r"]
     )
 
@@ -75,7 +75,7 @@ def test_without_clocks_nothing_moves():
     logs = two_logs()
     plain = align("t", "fit", logs, SOURCES, 0.5)
     same = aligned(logs, None)
-    np.testing.assert_array_equal(plain.signals["p"], same.signals["p"])
+    np.testing.assert_array_equal(plain.signals["X_ext"], same.signals["X_ext"])
     assert plain.remarks == same.remarks
 
 
@@ -90,7 +90,7 @@ def test_events_in_seconds_and_as_dates_are_the_same():
         for t in instants
     )
     trials = [aligned(logs, LogClock(events=events)) for events in (seconds, dates)]
-    np.testing.assert_allclose(trials[0].signals["p"], trials[1].signals["p"], atol=1e-4)
+    np.testing.assert_allclose(trials[0].signals["X_ext"], trials[1].signals["X_ext"], atol=1e-4)
     assert apart(trials[0]) < 0.03
     assert "runs 200 ppm fast by 3 events" in remark(trials[0])
 
@@ -161,7 +161,7 @@ def test_a_box_that_counts_from_its_own_start():
     """Its first stamp is 20 s after the other's; within says how far starts may be apart."""
     logs = two_logs(epoch=0)
     message = refused(logs, None)
-    assert "box.csv counts p from its own start, bridge.csv r from 1970; say how" in message
+    assert "box.csv counts X_ext from its own start, bridge.csv r from 1970; say how" in message
     line = 'logs = [{ path = "box.csv", clock = { match = ["channel here", "channel there"] } }]'
     assert line in message
     trial = aligned(logs, LogClock(match=("rate", "gyro"), within=40.0))
@@ -225,7 +225,7 @@ def test_files_of_one_log_share_its_clock():
     clock = LogClock(match=("rate", "gyro"))
     trial = align("t", "fit", [whole, *halves], SOURCES, 0.5, log_clocks=[None, clock, clock])
     single = aligned([whole, box], clock)
-    np.testing.assert_array_equal(trial.signals["p"], single.signals["p"])
+    np.testing.assert_array_equal(trial.signals["X_ext"], single.signals["X_ext"])
 
 
 # --- files of one recorder ----------------------------------------------------------------------

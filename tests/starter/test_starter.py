@@ -87,7 +87,8 @@ def test_the_side_of_the_rudder_is_measured_with_its_figure(tmp_path, gain, side
     )
     begun(tmp_path, [log])
     assert signals(tmp_path)["delta"]["positive"] == side
-    figure = re.search(r"change of rot ([+-][01]\.\d\d)", (tmp_path / "p.toml").read_text())
+    text = (tmp_path / "p.toml").read_text()
+    figure = re.search(r"correlation with .*rot, ([+-][01]\.\d\d)", text)
     assert float(figure[1]) * np.sign(gain) > 0.9
     done = pipeline.run(recipe.load(tmp_path / "p.toml"))
     assert done.result["fit"]["eps_rmsn"] < 0.05

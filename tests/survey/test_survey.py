@@ -192,7 +192,7 @@ def test_ros_messages_are_known_by_their_names(sample_logs):
     roll = found.channels["/imu:orientation (roll)"]
     assert (roll.guess.quantity, roll.angle, roll.unit) == ("phi", "roll", "rad")
     turn = found.channels["/imu:angular_velocity.z"]
-    assert (turn.guess.positive, turn.unit, turn.unit_in_name) == ("port", None, "rad/s")
+    assert (turn.guess.positive, turn.unit, turn.unit_in_name) == ("port", "rad/s", None)
 
 
 @pytest.fixture

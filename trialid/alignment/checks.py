@@ -323,18 +323,13 @@ def _sides(trial: Trial) -> Iterator[Finding]:
     for rudder in sorted(RUDDERS & trial.signals.keys()):
         if turning is None or not signs.ahead(trial):
             continue
-        rate, valid = turning
-        both = valid & trial.valid[rudder]
-        whole, parts = signs.agreement(trial.signals[rudder], rate, both, damping=rate)
-        if not (signs.contradicts((whole, parts)) or _agrees(whole, parts)):
+        found = signs.answer(trial, rudder, turning)
+        if not found.sign:
             continue
-        side = "port" if whole < 0 else "starboard"
+        side = "port" if found.sign < 0 else "starboard"
         words = (
-            f"{rudder} turns the ship to {side} when positive: correlation with dr/dt {whole:.2f}"
+            f"{rudder} turns the ship to {side} when positive: correlation with {found.words} "
+            f"{found.correlation:.2f}"
         )
-        mend = f'positive = "{side}"'
-        yield Finding("side", "remark", (rudder, "r"), words, {"correlation": whole}, mend)
-
-
-def _agrees(whole: float, parts: list[float]) -> bool:
-    return signs.contradicts((-whole, [-part for part in parts]))
+        evidence = {"correlation": found.correlation}
+        yield Finding("side", "remark", (rudder, "r"), words, evidence, f'positive = "{side}"')

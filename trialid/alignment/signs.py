@@ -5,13 +5,19 @@ mean rudder, less what the ship's own damping, the mean rate of turn, takes away
 is a partial one, with the mean rate of turn taken out of both. And the heading grows with the mean
 rate of turn. The length of the stretches is the one that shows the relation best: short ones drown
 in noise, long ones are few.
+
+A light boat follows her rudder so fast that the rate of turn itself goes with it, and nothing is
+left of its change; then the rate of turn is held against the rudder directly. A helmsman who meets
+every swing would show the opposite sign there, but after the ship and not before her.
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from itertools import takewhile
 
 import numpy as np
 
+from trialid.alignment import relation
 from trialid.alignment.frames import RUDDERS
 from trialid.alignment.sources import SignalSource
 from trialid.errors import AlignmentError
@@ -25,6 +31,9 @@ PARTS = 4
 """The record is looked at in so many parts: two must agree with the whole, none contradict it."""
 MOVES = 0.25
 """A part in which the cause moves by less than this share of its whole range says nothing."""
+FOLLOWS, FOLLOWS_PART = 0.8, 0.6
+"""Correlation of rudder and rate of turn, in all and in each part, when the one follows the other
+at once."""
 DEPENDENT = 0.03
 """Share of a signal that must be left without the damping; less tells delays, not signs."""
 
@@ -50,19 +59,64 @@ def _heading(trial: Trial, where: str) -> Iterator[str]:
     yield f"r and the slope of psi: correlation {found[0]:.2f}"
 
 
+@dataclass(frozen=True)
+class Turning:
+    """How the ship answers a rudder: to which side, and what tells it.
+
+    `sign` is 1.0 where a positive rudder turns her to starboard, -1.0 to port, 0.0 where the
+    record does not tell.
+    """
+
+    sign: float
+    correlation: float
+    words: str
+
+
 def _rudder(
     trial: Trial, rudder: str, turning: tuple[Vector, Mask], source: SignalSource, where: str
 ) -> Iterator[str]:
-    rate, valid = turning
-    found = agreement(trial.signals[rudder], rate, valid & trial.valid[rudder], damping=rate)
-    if contradicts(found):
+    found = answer(trial, rudder, turning)
+    if found.sign < 0:
         other = "port" if source.positive == "starboard" else "starboard"
         raise AlignmentError(
             f"{where}: {rudder} looks inverted, the ship turns the other way (correlation of "
-            f"{rudder} with dr/dt {found[0]:.2f} over {trial.duration:.0f} s); write "
-            f'positive = "{other}" for {rudder}, or correct the sign of the rate of turn'
+            f"{rudder} with {found.words} {found.correlation:.2f} over {trial.duration:.0f} s); "
+            f'write positive = "{other}" for {rudder}, or correct the sign of the rate of turn'
         )
-    yield f"{rudder} and dr/dt: correlation {found[0]:.2f}"
+    yield f"{rudder} and {found.words}: correlation {found.correlation:.2f}"
+
+
+def answer(trial: Trial, rudder: str, turning: tuple[Vector, Mask]) -> Turning:
+    """How the ship answers this rudder; `turning` is from `rate_of_turn`."""
+    rate, valid = turning
+    return answer_of(trial.signals[rudder], rate, valid & trial.valid[rudder], trial.period)
+
+
+def answer_of(rudder: Vector, rate: Vector, both: Mask, period: float) -> Turning:
+    """The same of a rudder and a rate of turn on one clock, `period` [s], where both are valid."""
+    whole, parts = agreement(rudder, rate, both, damping=rate)
+    for side in (1.0, -1.0):
+        if contradicts((-side * whole, [-side * part for part in parts])):
+            return Turning(side, whole, "dr/dt")
+    at_once = relation.of_values(rudder, rate, both, period)
+    if at_once is not None and _follows(at_once):
+        sign = float(np.sign(at_once.correlation))
+        return Turning(sign, at_once.correlation, "r, which follows at once")
+    return Turning(0.0, whole, "dr/dt")
+
+
+def _follows(found: relation.Relation) -> bool:
+    """True when the rate of turn goes with the rudder itself, at once and not before it."""
+    sign = np.sign(found.correlation)
+    same = [sign * part for part in found.parts]
+    return bool(
+        abs(found.correlation) >= FOLLOWS
+        and len(same) >= 2
+        and min(same) >= FOLLOWS_PART
+        and found.lag >= 0.0
+        and abs(found.at_once) >= 0.95 * abs(found.correlation)
+        and found.against <= 0.3
+    )
 
 
 def rate_of_turn(trial: Trial) -> tuple[Vector, Mask] | None:

@@ -48,6 +48,8 @@ ADAPTERS: tuple[Adapter, ...] = (
     csv_log.ADAPTER,
 )
 
+FORMATS = "MCAP, MAVLink, CAN and NMEA 2000, NMEA 0183, Signal K, CSV, Excel, Parquet, MATLAB"
+"""What messages call all of them."""
 GZIP = b"\x1f\x8b"
 HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""
@@ -112,12 +114,15 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
     able = _able(path, head, aids)
     if len(able) == 1:
         return able[0]
-    verdict = "more than one adapter recognises it" if able else "no adapter recognises it"
-    names = ", ".join(adapter.name for adapter in able or ADAPTERS)
+    if able:
+        names = ", ".join(adapter.name for adapter in able)
+        verdict = f"more than one adapter recognises it (of {names})"
+    else:
+        verdict = f"is none of the formats that are read ({FORMATS})"
     raise LogError(
-        f"{path}: {verdict} (of {names}); it begins {head[:16]!r}; give the log as its recorder "
-        "wrote it, or export it as CSV with a header row and a time column, or say in a template "
-        "how the table is laid out"
+        f"{path}: {verdict}; it begins {head[:16]!r}; give the log as its recorder wrote it, or "
+        "export it as CSV with a header row and a time column; a table of another layout needs a "
+        "template"
     )
 
 

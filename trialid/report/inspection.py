@@ -182,7 +182,7 @@ def _rudder(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
             found = side(one, witness)
             if found is not None:
                 yield (
-                    f'{one.key}: positive = "{found.side}", by its correlation with the change of '
+                    f'{one.key}: positive = "{found.side}", by its correlation with {found.by}, of '
                     f"{witness.key} ({found.strength:+.2f}), if that is positive to {found.if_to}"
                 )
 

@@ -136,7 +136,9 @@ def _rudder(name: str, live: Live, rate: Signal | None) -> Signal:
     found = side(plain.source, witness, towards)
     convention = plain.source.guess.positive if plain.source.guess else None
     if found is not None:
-        words = f"side measured: correlation with the change of {witness.key} {found.strength:+.2f}"
+        words = (
+            f"side measured: correlation with {found.by}, of {witness.key}, {found.strength:+.2f}"
+        )
         if convention is not None and convention != found.side:
             words += f", though the format says {convention}"
         return _with_side(plain, found.side, words)

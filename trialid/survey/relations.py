@@ -68,14 +68,16 @@ def slope_agreement(rate: ChannelSurvey, angle: ChannelSurvey) -> float:
 
 @dataclass(frozen=True)
 class Side:
-    """Which side a rudder counts as positive, measured: by the change of a rate of turn.
+    """Which side a rudder counts as positive, measured by a rate of turn.
 
-    `strength` is their correlation as logged; `if_to` the side the rate is taken to be positive to.
+    `strength` is their correlation as logged, `by` what of the rate it is with; `if_to` the side
+    the rate is taken to be positive to.
     """
 
     side: Literal["starboard", "port"]
     strength: float
     if_to: Literal["starboard", "port"]
+    by: str
 
 
 def side(rudder: ChannelSurvey, rate: ChannelSurvey, if_to: str | None = None) -> Side | None:
@@ -83,25 +85,24 @@ def side(rudder: ChannelSurvey, rate: ChannelSurvey, if_to: str | None = None) -
 
     The rate is positive to `if_to`; None: by its format's convention, starboard where it has none.
     """
-    strength, clear = _turning(rudder, rate)
-    if not clear or abs(strength) < -signs.CONTRADICTION:
+    found = _turning(rudder, rate)
+    if found is None or not found.sign:
         return None
     towards = if_to or (rate.guess.positive if rate.guess else None) or "starboard"
     to: Literal["starboard", "port"] = "port" if towards == "port" else "starboard"
     other: Literal["starboard", "port"] = "starboard" if to == "port" else "port"
-    return Side(to if strength > 0 else other, strength, to)
+    return Side(to if found.sign > 0 else other, found.correlation, to, found.words)
 
 
-def _turning(rudder: ChannelSurvey, turning: ChannelSurvey) -> tuple[float, bool]:
-    """Correlation of a rudder with the change of a rate of turn, and whether its parts agree."""
+def _turning(rudder: ChannelSurvey, turning: ChannelSurvey) -> signs.Turning | None:
+    """How the ship answers a rudder; None where the two have too little in common."""
     common = together(rudder.sketch, turning.sketch)
     if common is None:
-        return 0.0, False
-    _, (delta, r), whole = common
+        return None
+    period, (delta, r), whole = common
     if turning.guess is not None and turning.guess.quantity == "psi":
         r = np.gradient(r)
-    strength, parts = signs.agreement(delta, r, whole, damping=r)
-    return strength, bool(parts) and all(part * strength > 0 for part in parts)
+    return signs.answer_of(delta, r, whole, period)
 
 
 def unit_of_rate(rate: ChannelSurvey, angle: ChannelSurvey) -> str | None:
