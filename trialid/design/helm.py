@@ -125,7 +125,7 @@ def carry_out(
     told = next(instructions, None)
     while told is not None and at < samples:
         at = _obeyed(vessel, orders, at, told)
-        look = functools.partial(sailed, vessel, orders[:at].copy())
+        look = functools.partial(sailed, vessel, orders[: at + 1].copy())
         try:
             told = instructions.send(look)
         except StopIteration:

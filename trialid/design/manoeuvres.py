@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from trialid.design import signals
 from trialid.design.helm import Follow, Hold, Instructions, Motion
@@ -109,7 +110,7 @@ def written(orders: Vector) -> Instructions:
 
 
 def multi_frequency_binary(
-    angle: float, numbers: Sequence[int], sizes: Sequence[float], phases: Sequence[float],
+    angle: float, numbers: Sequence[int], sizes: ArrayLike, phases: ArrayLike,
     duration: float, period: float, hold: int = 1,
 ) -> Instructions:  # fmt: skip
     """The paper's multi-frequency binary test (Eq. 17 to 19) with these lines; `signals.lines`.
@@ -117,7 +118,7 @@ def multi_frequency_binary(
     Switching instants lie on every `hold`-th sample of the clock, so that what was ordered is known
     exactly.
     """
-    t = np.arange(round(duration / period) + 1) * period
+    t = np.asarray(np.arange(round(duration / period) + 1) * period)
     omega = 2.0 * np.pi * np.asarray(numbers) / duration
     yield from written(signals.binary(signals.multisine(t, 1.0, sizes, omega, phases), angle, hold))
 

@@ -113,7 +113,7 @@ class Rating:
 
     `S_min`, `S_max` and `R` are of the wanted parameters in their scale, everything projected out
     that the others can mimic; `noise` and `undermodelling` are eps^x_RMSn and eps^m_RMSn, and
-    `log_volume` the logarithm of the volume of the wanted parameters' error ellipsoid (D criterion).
+    `log_volume` the logarithm of the volume of their error ellipsoid (D criterion).
     """
 
     parameters: tuple[ParameterRating, ...]
@@ -154,6 +154,23 @@ def goal(
     return Goal(model, settings, noise, names, dict(scale or {}), simulator, shared, per_trial)
 
 
+def whitened(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
+    """Sensitivities in standard deviations of the noise, a column for each unknown's size; names.
+
+    (M, n_theta), (n_theta,). Raises DesignError as `rate`.
+    """
+    problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
+    found = linearise(problem, problem.start)
+    if isinstance(found, Departure):
+        raise DesignError(f"the model to be fitted cannot follow this test: {found}")
+    A = relative_sensitivities(found[1], np.array([x.size for x in problem.unknowns]))
+    scale = row_scale(problem)
+    for part in stretches(problem):
+        sigma = goal.noise[problem.outputs[part.output]].sigma
+        A[part.rows] /= sigma * scale[part.output]
+    return A, [x.name for x in problem.unknowns]
+
+
 def rate(goal: Goal, trials: Sequence[Trial]) -> Rating:
     """Rate trials that are to be fitted together, as recorded by the full model without noise.
 
@@ -168,7 +185,7 @@ def rate(goal: Goal, trials: Sequence[Trial]) -> Rating:
         raise DesignError(f"the model to be fitted cannot follow this test: {found}")
     remainder, psi = found
     A = relative_sensitivities(psi, np.array([x.size for x in problem.unknowns]))
-    inverse = np.linalg.pinv(triangle(A))
+    inverse = np.asarray(np.linalg.pinv(triangle(A)))
     covariance = _covariance(goal, problem, A, inverse)
     shift = inverse @ (inverse.T @ (A.T @ remainder))
     rows = _rows(goal, problem, A, covariance, shift, float(np.linalg.norm(remainder)))

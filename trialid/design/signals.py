@@ -6,7 +6,7 @@ from itertools import combinations_with_replacement
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Vector = NDArray[np.float64]
 
@@ -37,9 +37,8 @@ class Lines:
 
 
 def multisine(
-    t: Vector, size: float, amplitudes: Sequence[float], omega: Sequence[float],
-    phases: Sequence[float],
-) -> Vector:  # fmt: skip
+    t: Vector, size: float, amplitudes: ArrayLike, omega: ArrayLike, phases: ArrayLike
+) -> Vector:
     """Eq. 17: delta_s(t) = delta_0 sum_i delta_i sin(omega_i t + phi_i); (N,).
 
     Parameters
@@ -55,8 +54,8 @@ def multisine(
     >>> multisine(t, 0.1, [1.0, 0.5], [np.pi / 2, np.pi], [0.0, 0.0]).round(12).tolist()
     [0.0, 0.1]
     """
-    waves = np.sin(np.outer(t, omega) + np.asarray(phases))
-    return size * (waves @ np.asarray(amplitudes))
+    waves = np.sin(np.outer(t, np.asarray(omega)) + np.asarray(phases))
+    return np.asarray(size * (waves @ np.asarray(amplitudes)))
 
 
 def binary(order: Vector, size: float, hold: int) -> Vector:
