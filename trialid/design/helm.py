@@ -6,6 +6,7 @@ reverses on the heading, Bech's reversed spiral steers to a rate of turn.
 """
 
 import functools
+import itertools
 import math
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass
@@ -26,6 +27,10 @@ Motion = Mapping[str, Vector]
 
 GEAR_STATE: Final = "delta"
 """The state a steering gear among the effects adds; without one the gear here is used."""
+
+
+LOOK_AHEAD: Final = 100.0
+"""s that are simulated at first to see whether a condition comes to hold."""
 
 
 @dataclass(frozen=True)
@@ -144,12 +149,25 @@ def _obeyed(vessel: Vessel, orders: Vector, at: int, told: Hold | Follow) -> int
     orders[at:end] = told.order
     if told.until is None:
         return end
-    motion = sailed(vessel, orders[:end])
-    since = {name: values[at:] for name, values in motion.items()}
-    happened = np.flatnonzero(told.until(since)[1:])  # the order acts from the next sample
-    stop = at + 1 + int(happened[0]) if len(happened) else end
+    stop = _until(vessel, orders[:end], at, told.until)
     orders[stop:end] = 0.0
     return stop
+
+
+def _until(vessel: Vessel, orders: Vector, at: int, until: Callable[[Motion], Mask]) -> int:
+    """The sample after `at` at which a condition first holds, or the end of the orders.
+
+    Looks ahead by little and then further: what is awaited mostly comes soon.
+    """
+    reach = round(LOOK_AHEAD / vessel.period)
+    while True:
+        end = min(at + reach, len(orders))
+        motion = sailed(vessel, orders[:end])
+        since = {name: values[at:] for name, values in motion.items()}
+        happened = np.flatnonzero(until(since)[1:])  # the order acts from the next sample
+        if len(happened) or end == len(orders):
+            return at + 1 + int(happened[0]) if len(happened) else end
+        reach *= 2
 
 
 def sailed(vessel: Vessel, orders: Vector) -> dict[str, Vector]:
@@ -175,11 +193,17 @@ def ramped(orders: Vector, step: float) -> Vector:
     >>> ramped(np.array([0.0, 3.0, 3.0, 3.0, -1.0]), 2.0).tolist()
     [0.0, 0.0, 2.0, 3.0, 3.0]
     """
-    at, angle = [], 0.0
-    for order in orders.tolist():
-        at.append(angle)
-        angle += min(max(order - angle, -step), step)
-    return np.array(at)
+    followed = np.empty(len(orders))
+    edges = np.flatnonzero(np.diff(orders)) + 1
+    angle = 0.0
+    for begin, end in itertools.pairwise([0, *edges.tolist(), len(orders)]):
+        order = float(orders[begin])
+        moved = step * np.arange(end - begin + 1)  # an order acts from the next sample on
+        on_the_way = angle + math.copysign(1.0, order - angle) * moved
+        path = np.where(moved < abs(order - angle), on_the_way, order)
+        followed[begin:end] = path[:-1]
+        angle = float(path[-1])
+    return followed
 
 
 def _passage(vessel: Vessel, orders: Vector, name: str) -> Passage:

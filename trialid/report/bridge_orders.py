@@ -62,8 +62,8 @@ def sentences(kind: str, numbers: Mapping[str, Any]) -> Iterator[str]:
 def _zigzag(v: Mapping[str, Any]) -> Iterator[str]:
     angle, heading = _said(v["angle"]), _said(v["heading"])
     yield f"Order starboard {angle} and hold it until the heading has changed {heading} deg."
-    yield f"Order port {angle} and hold it until the heading is {heading} deg to port of the course."
-    yield f"Order starboard {angle} at {heading} deg to starboard, and so on to the end."
+    yield f"Order port {angle} and hold it until the heading is {heading} deg to port."
+    yield f"Then starboard {angle} again, and so on to the end."
 
 
 def _circle(v: Mapping[str, Any]) -> Iterator[str]:
