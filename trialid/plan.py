@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
-from trialid import units
+from trialid import __version__, units
 from trialid.assembly import available, build_model, settings_of
 from trialid.design import signals
 from trialid.design.helm import vessel
@@ -15,12 +15,14 @@ from trialid.design.limits import Limits
 from trialid.design.rating import Goal, Noise, goal
 from trialid.design.search import Found, Outcome, Search, Ship, natural_roll, optimise, outcome
 from trialid.design.separation import Separation, rivals, separate
+from trialid.design.standard import Measure, predict
 from trialid.errors import DesignError, RecipeError, UnitError, nearest
 from trialid.identification.pose import Settings
 from trialid.quantities import SIGNALS
 from trialid.recipe import where
 from trialid.recipe.design import DesignRecipe, Numbers, TestRecipe, fitted_values
 from trialid.recipe.form import GivenValue
+from trialid.report import design_data
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 
@@ -53,6 +55,7 @@ class Plan:
     limits: Limits
     rated: tuple[Rated, ...]
     separation: Separation | None
+    measures: tuple[Measure, ...]
 
     @property
     def best(self) -> Rated | None:
@@ -88,7 +91,8 @@ def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -
         share = i / len(programmes)
         rated.append(_rated(recipe, name, tests, ships, limits, _told(progress, name, share)))
     separation = _separation(recipe, catalogue, ships[0], limits, progress)
-    return Plan(recipe, ships[0], limits, tuple(rated), separation)
+    measures = predict([ship.vessel for ship in ships]) if recipe.imo else ()
+    return Plan(recipe, ships[0], limits, tuple(rated), separation, measures)
 
 
 def _told(progress: Progress, name: str, share: float) -> Callable[[int, float], None]:
@@ -273,3 +277,32 @@ def _without_bias(settings: Settings) -> Settings:
     """Nuisances that are among the effects to be told apart would hide them."""
     kept = tuple(n for n in settings.nuisance if n == "initial_state")
     return replace(settings, nuisance=kept)
+
+
+def plain(plan: Plan) -> dict[str, Any]:
+    """A plan as plain data, schema `trialid-design/1`."""
+    best = plan.best
+    tests = [
+        {
+            "name": rated.name,
+            "programme": [design_data.of_test(t) for t in rated.programme],
+            "searched": None if rated.found is None else rated.found.tried,
+            "remarks": list(rated.remarks),
+            **design_data.of_outcome(rated.outcome),
+        }
+        for rated in plan.rated
+    ]
+    return {
+        "schema": design_data.SCHEMA,
+        "version": __version__,
+        "name": plan.recipe.name,
+        "design": plan.recipe.path.name,
+        "ship": plan.ship.vessel.model.ship.name,
+        "wanted": list(plan.ship.goal.wanted),
+        "outputs": list(plan.recipe.identify.outputs),
+        "roll_period": 2.0 * np.pi / plan.ship.roll_frequency,
+        "tests": tests,
+        "best": None if best is None else best.name,
+        "separation": design_data.of_separation(plan.separation),
+        "imo": design_data.of_measures(plan.measures),
+    }
