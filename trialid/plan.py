@@ -279,6 +279,12 @@ def _without_bias(settings: Settings) -> Settings:
     return replace(settings, nuisance=kept)
 
 
+def _recorded(recipe: DesignRecipe) -> list[str]:
+    """What the crew must record, in words."""
+    names = ["delta_order", "delta", *recipe.identify.outputs, *recipe.at_sea.constant, "psi", "u"]
+    return [SIGNALS[n].meaning.partition(",")[0] for n in dict.fromkeys(names)]
+
+
 def plain(plan: Plan) -> dict[str, Any]:
     """A plan as plain data, schema `trialid-design/1`."""
     best = plan.best
@@ -300,6 +306,7 @@ def plain(plan: Plan) -> dict[str, Any]:
         "ship": plan.ship.vessel.model.ship.name,
         "wanted": list(plan.ship.goal.wanted),
         "outputs": list(plan.recipe.identify.outputs),
+        "recorded": _recorded(plan.recipe),
         "roll_period": 2.0 * np.pi / plan.ship.roll_frequency,
         "tests": tests,
         "best": None if best is None else best.name,

@@ -12,6 +12,7 @@ from trialid.design.rating import ParameterRating, Rating
 from trialid.design.search import Outcome
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
+from trialid.quantities import SIGNALS
 from trialid.report import bridge_orders
 
 SCHEMA: Final = "trialid-design/1"
@@ -147,6 +148,11 @@ def of_measures(measures: Sequence[Measure]) -> list[dict[str, Any]]:
         }
         for m in measures
     ]
+
+
+def shown_unit(quantity: str) -> str:
+    """The unit reports show a quantity in."""
+    return SIGNALS[quantity].shown
 
 
 def finite(number: float) -> float | None:
