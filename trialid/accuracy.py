@@ -197,7 +197,7 @@ def coloured_covariance(
     for stretch in stretches:
         e = _on_clock(residual[stretch.rows], stretch.compared)
         a = _on_clock(inverse[:, stretch.rows].T, stretch.compared)
-        meat += a.T @ _correlated(a, autocovariance(e, stretch.compared))
+        meat += a.T @ correlated(a, autocovariance(e, stretch.compared))
     meat *= rows / max(rows - columns, 1)
     if held is None:
         return meat
@@ -249,7 +249,7 @@ def window(c: Vector, n: int) -> int:
     return min(3 * last + 1, longest)
 
 
-def _correlated(a: Vector, c: Vector) -> Vector:
+def correlated(a: Vector, c: Vector) -> Vector:
     """The symmetric Toeplitz matrix of autocovariance c times a; (N, n_theta)."""
     n = len(a)
     size = 1 << (n + 2 * len(c)).bit_length()

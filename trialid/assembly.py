@@ -10,6 +10,7 @@ from trialid.errors import NotIdentifiable, RecipeError, UnitError, nearest
 from trialid.identification.pose import Settings
 from trialid.quantities import PARTICULARS, SIGNALS
 from trialid.recipe import Recipe, where
+from trialid.recipe.form import Described
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES, ShipModel, needs_ship
 from trialid.ship.particulars import NO_SHIP, read_ship
@@ -24,13 +25,13 @@ LYING_STILL: Final = 0.1
 """Share of the approach speed; the rudder's force there is a hundredth of what it was."""
 
 
-def available(recipe: Recipe) -> dict[str, Effect]:
+def available(recipe: Described) -> dict[str, Effect]:
     """The catalogue and the user's own effects, by name."""
     own = [effects.from_file(path) for path in recipe.model.effects_from]
     return {**effects.CATALOGUE, **{n: e for found in own for n, e in found.items()}}
 
 
-def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
+def build_model(recipe: Described, catalogue: Mapping[str, Effect]) -> ShipModel:
     """The ship with the pipeline's states, effects and values.
 
     Raises
@@ -61,7 +62,7 @@ def build_model(recipe: Recipe, catalogue: Mapping[str, Effect]) -> ShipModel:
     return model.with_values({n: _value(recipe, model, n) for n in recipe.model.values})
 
 
-def _check_states(recipe: Recipe) -> None:
+def _check_states(recipe: Described) -> None:
     for i, state in enumerate(recipe.model.states):
         if state not in STATES:
             raise RecipeError(
@@ -70,7 +71,7 @@ def _check_states(recipe: Recipe) -> None:
             )
 
 
-def _value(recipe: Recipe, model: ShipModel, name: str) -> float:
+def _value(recipe: Described, model: ShipModel, name: str) -> float:
     given = recipe.model.values[name]
     if name not in model.parameters:
         raise RecipeError(
@@ -102,7 +103,7 @@ def check_bounds(recipe: Recipe, model: ShipModel, settings: Settings) -> None:
             )
 
 
-def settings_of(recipe: Recipe) -> Settings:
+def settings_of(recipe: Described) -> Settings:
     """The pipeline's `[identify]` as the identifier takes it.
 
     Raises
@@ -206,7 +207,7 @@ def declared_quiet(recipe: Recipe) -> dict[str, list[tuple[float, float]]]:
     return declared
 
 
-def _senseless(recipe: Recipe, effect: Effect) -> str:
+def _senseless(recipe: Described, effect: Effect) -> str:
     """Why an effect has no place among sensors alone, empty where it has one."""
     if recipe.ship is None and needs_ship(effect):
         return "is about a ship, and the pipeline names none; write ship = ..., or leave it out"

@@ -40,6 +40,10 @@ class NotIdentifiable(TrialidError):
     """The record cannot carry the question: no excitation, too few samples, nothing to compare."""
 
 
+class DesignError(TrialidError):
+    """A test cannot be run as wished, or cannot show what is asked of it."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Words for an error about an unknown name: the nearest known ones, else all of them.
 

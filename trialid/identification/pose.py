@@ -76,26 +76,50 @@ def pose(
     """
     fitted = tuple(t for t in trials if t.use == "fit")
     _check_outputs(trials, settings)
-    full, per_trial = with_nuisance(model, settings)
-    shared = tuple(n for n in settings.free if n not in per_trial)
-    simulator = prepare(
-        _with_starts(full, (*shared, *per_trial), settings),
-        (*shared, *per_trial),
-        settings.outputs,
-        settings.engine,
-        settings.substeps,
-    )
+    simulator, shared, per_trial = ready(model, settings)
     _check_ready(simulator, trials)
-    unknowns = (*(_shared(simulator, n, settings) for n in shared),
-                *_nuisances(simulator, fitted, per_trial, settings))  # fmt: skip
-    unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
-    compared = tuple(where_compared(t, simulator) for t in fitted)
-    y_rms = norms(fitted, compared, settings.outputs, settings.norm)
-    weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
-    weights = weights / np.sqrt(np.mean(weights**2))
-    problem = Problem(simulator, fitted, unknowns, compared, y_rms, weights)
+    problem = question(simulator, fitted, settings, shared, per_trial, near)
     _check_excitation(problem)
     return problem
+
+
+def ready(
+    model: ShipModel, settings: Settings
+) -> tuple[Simulator, tuple[str, ...], tuple[str, ...]]:
+    """A simulator of what is free; the free names trials share, and those each has for itself."""
+    full, per_trial = with_nuisance(model, settings)
+    shared = tuple(n for n in settings.free if n not in per_trial)
+    free = (*shared, *per_trial)
+    started = _with_starts(full, free, settings)
+    simulator = prepare(started, free, settings.outputs, settings.engine, settings.substeps)
+    return simulator, shared, per_trial
+
+
+def question(
+    simulator: Simulator,
+    trials: Sequence[Trial],
+    settings: Settings,
+    shared: Sequence[str],
+    per_trial: Sequence[str],
+    near: Mapping[str, float] = MappingProxyType({}),
+) -> Problem:
+    """The problem of these trials for a simulator that is ready, unchecked.
+
+    Parameters
+    ----------
+    shared, per_trial
+        Free parameters that all trials share, and those that each trial has for itself.
+    near
+        Starts by the name of the unknown.
+    """
+    unknowns = (*(_shared(simulator, n, settings) for n in shared),
+                *_nuisances(simulator, trials, per_trial, settings))  # fmt: skip
+    unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
+    compared = tuple(where_compared(t, simulator) for t in trials)
+    y_rms = norms(trials, compared, settings.outputs, settings.norm)
+    weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
+    weights = weights / np.sqrt(np.mean(weights**2))
+    return Problem(simulator, tuple(trials), unknowns, compared, y_rms, weights)
 
 
 def _check_ready(simulator: Simulator, trials: Sequence[Trial]) -> None:

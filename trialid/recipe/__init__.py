@@ -7,14 +7,21 @@ checked by the model, which knows them; it says where with `where(recipe, key)`.
 import tomllib
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from trialid.errors import RecipeError
 from trialid.recipe.complaints import dotted, own_mistakes, problem, refusal
 from trialid.recipe.contradictions import contradictions
-from trialid.recipe.form import Origin, Recipe, SignalSource, TrialRecipe, neighbours
+from trialid.recipe.form import (
+    Origin,
+    Recipe,
+    SignalSource,
+    TrialRecipe,
+    Written,
+    neighbours,
+)
 
 __all__ = [
     "Recipe",
@@ -28,6 +35,9 @@ __all__ = [
 ]
 
 
+Form = TypeVar("Form", bound=Written)
+
+
 def load(path: Path) -> Recipe:
     """Give the pipeline in a TOML file.
 
@@ -36,7 +46,7 @@ def load(path: Path) -> Recipe:
     RecipeError
         In one line: the file, the key's full path, what is wrong, the nearest valid names.
     """
-    return read(_content(path), path)
+    return read(content_of(path), path)
 
 
 def read(content: bytes, path: Path) -> Recipe:
@@ -47,17 +57,28 @@ def read(content: bytes, path: Path) -> Recipe:
     RecipeError
         As `load`.
     """
-    table = _table(content, path)
-    try:
-        recipe = Recipe.model_validate({"name": path.stem, **table}, context=Origin(path, content))
-    except ValidationError as error:
-        raise refusal(path, [problem(one) for one in own_mistakes(error)]) from error
+    recipe = formed(Recipe, table_of(content, path), Origin(path, content))
     if problems := list(contradictions(recipe)):
         raise refusal(path, problems)
     return _with_shared_signals(recipe)
 
 
-def where(recipe: Recipe, key: str) -> str:
+def formed(form: type[Form], table: dict[str, Any], origin: Origin) -> Form:
+    """What a file holds, held against the form it must have.
+
+    Raises
+    ------
+    RecipeError
+        As `load`.
+    """
+    try:
+        return form.model_validate({"name": origin.path.stem, **table}, context=origin)
+    except ValidationError as error:
+        found = [problem(one, form) for one in own_mistakes(error)]
+        raise refusal(origin.path, found) from error
+
+
+def where(recipe: Written, key: str) -> str:
     """Words that begin an error about a key: `pipelines/zigzag.toml: model.effects`."""
     return f"{recipe.path}: {key}"
 
@@ -78,7 +99,8 @@ def sources(recipe: Recipe) -> tuple[Path, ...]:
     return (recipe.path, *ship, *recipe.model.effects_from, *(f for f in files if f))
 
 
-def _table(content: bytes, path: Path) -> dict[str, Any]:
+def table_of(content: bytes, path: Path) -> dict[str, Any]:
+    """The TOML in a file; RecipeError when it is none."""
     try:
         text = content.decode("utf-8-sig")  # some editors write a byte-order mark
     except UnicodeDecodeError as error:
@@ -91,7 +113,8 @@ def _table(content: bytes, path: Path) -> dict[str, Any]:
         raise RecipeError(f"{path}: not TOML: {said}") from error
 
 
-def _content(path: Path) -> bytes:
+def content_of(path: Path) -> bytes:
+    """What a file of the user's holds; RecipeError when it cannot be read."""
     try:
         return path.read_bytes()
     except FileNotFoundError as error:

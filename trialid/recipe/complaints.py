@@ -48,52 +48,52 @@ def own_mistakes(error: ValidationError) -> list[ErrorDetails]:
     return sorted(own, key=lambda one: one["type"] != "extra_forbidden")
 
 
-def problem(detail: ErrorDetails) -> Problem:
-    """The place and the sentence for what the check of the form found."""
+def problem(detail: ErrorDetails, form: type[Section] = Recipe) -> Problem:
+    """The place and the sentence for what the check of a form found."""
     say = _SENTENCES.get(detail["type"], _as_reported)
     *parents, key = detail["loc"]
     bare = parents[-2:-1] == ["logs"] and key == "path"  # mostly written without the key
-    return dotted(*(parents if bare else detail["loc"])), say(detail)
+    return dotted(*(parents if bare else detail["loc"])), say(detail, form)
 
 
-def _as_reported(detail: ErrorDetails) -> str:
+def _as_reported(detail: ErrorDetails, form: type[Section]) -> str:
     wanted = detail["msg"].replace("Input should be", "must be")
     return f"{wanted}, got {reprlib.repr(detail['input'])}"
 
 
-def _unknown_key(detail: ErrorDetails) -> str:
+def _unknown_key(detail: ErrorDetails, form: type[Section]) -> str:
     *parents, key = detail["loc"]
-    keys = _keys(_section(parents))
+    keys = _keys(_section(parents, form))
     return f"unknown key; {nearest(str(key), keys)}"
 
 
-def _not_listed(detail: ErrorDetails) -> str:
+def _not_listed(detail: ErrorDetails, form: type[Section]) -> str:
     allowed = re.findall(r"'([^']*)'", detail["ctx"]["expected"])
     given = detail["input"]
     return f"{given!r} is not allowed; {nearest(str(given), allowed)}"
 
 
-def _not_a_list(detail: ErrorDetails) -> str:
+def _not_a_list(detail: ErrorDetails, form: type[Section]) -> str:
     if isinstance(detail["input"], dict):
         key = detail["loc"][-1]
         return f"must be a list of tables; write [[{key}]] with two brackets"
     return f"must be a list in square brackets, got {reprlib.repr(detail['input'])}"
 
 
-def _not_a_table(detail: ErrorDetails) -> str:
-    keys = ", ".join(_keys(_section(detail["loc"])))
+def _not_a_table(detail: ErrorDetails, form: type[Section]) -> str:
+    keys = ", ".join(_keys(_section(detail["loc"], form)))
     return f"must be a table (keys: {keys}), got {reprlib.repr(detail['input'])}"
 
 
-_SENTENCES: Final[Mapping[str, Callable[[ErrorDetails], str]]] = {
+_SENTENCES: Final[Mapping[str, Callable[[ErrorDetails, type[Section]], str]]] = {
     "extra_forbidden": _unknown_key,
     "literal_error": _not_listed,
-    "missing": lambda detail: "missing; the pipeline needs it",
+    "missing": lambda detail, form: "missing; the pipeline needs it",
     "model_type": _not_a_table,
-    "too_long": lambda detail: f"too long, got {reprlib.repr(detail['input'])}",
-    "too_short": lambda detail: "must not be empty",
+    "too_long": lambda detail, form: f"too long, got {reprlib.repr(detail['input'])}",
+    "too_short": lambda detail, form: "must not be empty",
     "tuple_type": _not_a_list,
-    "value_error": lambda detail: str(detail["ctx"]["error"]),
+    "value_error": lambda detail, form: str(detail["ctx"]["error"]),
 }
 
 
@@ -101,13 +101,13 @@ def _keys(section: type[Section]) -> list[str]:
     return [field.alias or name for name, field in section.model_fields.items()]
 
 
-def _section(steps: Iterable[str | int]) -> type[Section]:
-    """Give the section that stands at a place in the file.
+def _section(steps: Iterable[str | int], form: type[Section]) -> type[Section]:
+    """Give the section that stands at a place in a file of this form.
 
-    >>> _section(("trial", 0, "signals", "delta")).__name__
+    >>> _section(("trial", 0, "signals", "delta"), Recipe).__name__
     'SignalSource'
     """
-    section: type[Section] = Recipe
+    section = form
     for step in steps:
         for name, field in section.model_fields.items():
             if (field.alias or name) == step:

@@ -79,7 +79,8 @@ def _unit_text(unit: str) -> str:
     return unit
 
 
-def _with_value(given: Any) -> Any:
+def with_value(given: Any) -> Any:
+    """A bare number as a value without a unit."""
     return given if isinstance(given, dict) else {"value": given}
 
 
@@ -125,6 +126,7 @@ ReadLog = Annotated[Path, AfterValidator(_existing_log)]
 Zone = Annotated[str, AfterValidator(_zone)]
 PythonFile = Annotated[ReadFile, AfterValidator(_python)]
 Instant = Number | datetime
+NotEmpty = Annotated[str, Field(min_length=1)]
 Window = Annotated[tuple[Number, Number], AfterValidator(_rising)]
 Limit = Annotated[Number, AllowInfNan(True)]
 Bounds = Annotated[tuple[Limit, Limit], AfterValidator(_rising)]
@@ -201,7 +203,7 @@ class TrialRecipe(Section):
     `window` is cut out of the logs [s]; `speed` is the approach speed [m/s] where no log has `u`.
     """
 
-    name: Annotated[str, Field(min_length=1)]
+    name: NotEmpty
     logs: Annotated[tuple[Log, ...], Field(min_length=1)]
     use: Literal["fit", "check"] = "fit"
     window: Window | None = None
@@ -234,7 +236,7 @@ class ModelRecipe(Section):
     states: Names
     effects: Names
     effects_from: tuple[PythonFile, ...] = ()
-    values: Mapping[str, Annotated[GivenValue, BeforeValidator(_with_value)]] = {}
+    values: Mapping[str, Annotated[GivenValue, BeforeValidator(with_value)]] = {}
 
 
 class Prior(Section):
@@ -291,20 +293,9 @@ class DiagnoseRecipe(Section):
     quiet: tuple[QuietStretch, ...] = ()
 
 
-class Recipe(Section):
-    """A pipeline file, complete: defaults filled in, paths resolved from the file's folder.
+class Written(Section):
+    """What a file of the user's describes, and the file itself."""
 
-    `ship` None: sensors only, with no motion simulated between them.
-    """
-
-    name: str
-    ship: ReadFile | None = None
-    trials: Annotated[tuple[TrialRecipe, ...], Field(alias="trial", min_length=1)]
-    model: ModelRecipe
-    identify: IdentifyRecipe
-    signals: Mapping[str, SignalSource] = {}
-    align: AlignRecipe = AlignRecipe()
-    diagnose: DiagnoseRecipe = DiagnoseRecipe()
     _origin: Origin = PrivateAttr()
 
     def model_post_init(self, context: Origin) -> None:
@@ -313,7 +304,7 @@ class Recipe(Section):
 
     @property
     def path(self) -> Path:
-        """The pipeline file, as the caller named it."""
+        """The file, as the caller named it."""
         return self._origin.path
 
     @property
@@ -325,3 +316,24 @@ class Recipe(Section):
     def text(self) -> str:
         """What was read, as text with its own line ends."""
         return self.content.decode("utf-8")
+
+
+class Described(Written):
+    """A ship, her model and what is to be estimated: what every file asks for.
+
+    `ship` None: sensors only, with no motion simulated between them.
+    """
+
+    name: str
+    ship: ReadFile | None = None
+    model: ModelRecipe
+    identify: IdentifyRecipe
+
+
+class Recipe(Described):
+    """A pipeline file, complete: defaults filled in, paths resolved from the file's folder."""
+
+    trials: Annotated[tuple[TrialRecipe, ...], Field(alias="trial", min_length=1)]
+    signals: Mapping[str, SignalSource] = {}
+    align: AlignRecipe = AlignRecipe()
+    diagnose: DiagnoseRecipe = DiagnoseRecipe()

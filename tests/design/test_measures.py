@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+from waters import VESSEL, D
+
+from trialid.design import manoeuvres, measures
+from trialid.design.helm import Passage, carry_out
+from trialid.errors import DesignError
+from trialid.trial import Trial
+
+
+def circle(radius, speed, side=1.0, course=0.0):
+    """A ship that turns on a circle at once, after 20 s straight ahead."""
+    period = 0.5
+    t = np.arange(0.0, 400.0, period)
+    turned = np.maximum(t - 20.0, 0.0) * speed / radius
+    psi = course + side * turned
+    x = np.concatenate([[0.0], np.cumsum(period * speed * np.cos(psi[:-1]))])
+    y = np.concatenate([[0.0], np.cumsum(period * speed * np.sin(psi[:-1]))])
+    order = np.where(t >= 20.0, side * 0.6, 0.0)
+    signals = {"psi": psi, "delta_order": order}
+    return Passage(Trial("circle", "fit", period, signals, {}), x, y, None)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("course", [0.0, 2.0])
+def test_a_circle_by_hand(side, course):
+    found = measures.turning(circle(250.0, 5.0, side, course))
+    assert found["advance"] == pytest.approx(250.0, rel=0.01)
+    assert found["transfer"] == pytest.approx(250.0, rel=0.01)
+    assert found["tactical diameter"] == pytest.approx(500.0, rel=0.01)
+
+
+def test_initial_turning_is_the_track_run():
+    passage = circle(600.0, 5.0)
+    assert measures.initial_turning(passage, 10 * D) == pytest.approx(600.0 * 10 * D, rel=0.01)
+
+
+def test_a_turn_that_is_too_short():
+    with pytest.raises(DesignError, match="tactical diameter needs 180 deg"):
+        measures.turning(circle(5000.0, 5.0))
+    with pytest.raises(DesignError, match="no rudder is ordered"):
+        measures.turning(carry_out(VESSEL, iter(()), 0.0, 60.0))
+
+
+def test_overshoots_of_a_zigzag():
+    passage = carry_out(VESSEL, manoeuvres.zigzag(10 * D, 10 * D), 20.0, 600.0)
+    found = measures.overshoots(passage)
+    psi, order = (passage.trial.signals[n] for n in ("psi", "delta_order"))
+    first = int(np.flatnonzero(order < 0)[0])
+    then = first + int(np.flatnonzero(order[first:] > 0)[0])
+    assert found[0] == pytest.approx(psi[first:then].max() - psi[first], abs=1e-4)
+    assert 4 <= len(found) <= 6
+    assert all(0.0 < x < 10 * D for x in found)
+
+
+def test_the_criteria_grow_with_the_ships_time():
+    """MSC.137(76), 5.3.3: 10 deg below 10 s, 20 deg above 30 s, a straight line between."""
+    for length, speed, first, second in (
+        (50.0, 10.0, 10.0, 25.0), (200.0, 10.0, 15.0, 32.5), (350.0, 10.0, 20.0, 40.0),
+    ):  # fmt: skip
+        table = {c.name: c for c in measures.criteria(length, speed)}
+        assert table["first overshoot 10/10"].largest == pytest.approx(first)
+        assert table["second overshoot 10/10"].largest == pytest.approx(second)
+        assert table["advance"].largest == 4.5 * length
+        assert table["tactical diameter"].largest == 5.0 * length
+        assert table["initial turning"].largest == 2.5 * length

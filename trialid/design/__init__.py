@@ -1,0 +1,1 @@
+"""Which trial to run next: manoeuvres sailed by simulation, rated by sensitivity, optimised."""

@@ -1,0 +1,236 @@
+"""What a helmsman can be told, and how his orders are carried out on a simulated ship.
+
+A manoeuvre is a generator of instructions: hold an angle until something has happened, or follow a
+list of orders. It is sent what the ship has done so far, so that it may answer it: a zig-zag
+reverses on the heading, Bech's reversed spiral steers to a rate of turn.
+"""
+
+import functools
+import itertools
+import math
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.errors import DesignError
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import Departure, Simulator, prepare, respond
+from trialid.trial import Mask, Trial
+
+Vector = NDArray[np.float64]
+
+Motion = Mapping[str, Vector]
+"""Signals of a stretch of the trial by name, all of one length: `t`, `psi`, `r`, `phi`, `delta`."""
+
+GEAR_STATE: Final = "delta"
+"""The state a steering gear among the effects adds; without one the gear here is used."""
+
+
+LOOK_AHEAD: Final = 100.0
+"""s that are simulated at first to see whether a condition comes to hold."""
+
+
+@dataclass(frozen=True)
+class Hold:
+    """Hold the order [rad] until a condition holds, and at most so long [s].
+
+    `until` takes the motion while it is held and gives True where the condition holds; (n,).
+    Held for no time, it only asks for a look at the ship.
+    """
+
+    order: float
+    at_most: float
+    until: Callable[[Motion], Mask] | None = None
+
+
+@dataclass(frozen=True)
+class Follow:
+    """Follow orders [rad], one a sample of the trial's clock; (n,)."""
+
+    orders: Vector
+
+
+Look = Callable[[], Motion]
+"""What the ship has done from the start of the trial up to now."""
+
+Instructions = Generator[Hold | Follow, Look, None]
+"""Yields what to do; is sent a look at the ship when it is done."""
+
+
+@dataclass(frozen=True)
+class Vessel:
+    """A ship ready to be sailed: her model, what stays constant, and her clock.
+
+    Attributes
+    ----------
+    model
+        States with the heading among them.
+    period
+        Time between samples [s].
+    constants
+        Signals that do not change: shaft speed, wind; SI by quantity.
+    rudder_rate
+        What the steering gear can do [rad/s], where the model has no gear of its own.
+    """
+
+    model: ShipModel
+    simulator: Simulator
+    period: float
+    constants: Mapping[str, float]
+    rudder_rate: float
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A manoeuvre carried out.
+
+    Attributes
+    ----------
+    trial
+        Orders, rudder, and every simulated state as signals, valid everywhere.
+    x, y
+        Track from where the trial began, ahead and to starboard of the approach course [m]; (N,).
+    departure
+        Where the ship left the domain of her model; the trial ends before it. None: nowhere.
+    """
+
+    trial: Trial
+    x: Vector
+    y: Vector
+    departure: Departure | None
+
+
+def vessel(
+    model: ShipModel, period: float, constants: Mapping[str, float], rudder_rate: float
+) -> Vessel:
+    """Make a ship ready; the heading is added to what is simulated."""
+    if "r" not in model.states:
+        raise DesignError(
+            "a manoeuvre needs a ship that turns: put r among the states of the model"
+        )
+    states = model.states if "psi" in model.states else (*model.states, "psi")
+    sailed = ShipModel(model.ship, states, model.effects, model.values)
+    return Vessel(sailed, prepare(sailed, (), ("r",)), period, dict(constants), rudder_rate)
+
+
+def carry_out(
+    vessel: Vessel, instructions: Instructions, approach: float, duration: float, name: str = "test"
+) -> Passage:
+    """Sail the manoeuvre: rudder amidships for `approach` [s], then as told, `duration` [s] in all.
+
+    What is ordered after the last instruction is amidships. The loop is closed by simulating from
+    the start what is ordered so far: a simulation is quicker than keeping its place.
+    """
+    samples = round(duration / vessel.period) + 1
+    orders = np.zeros(samples)
+    at = min(round(approach / vessel.period), samples)
+    told = next(instructions, None)
+    while told is not None and at < samples:
+        at = _obeyed(vessel, orders, at, told)
+        look = functools.partial(sailed, vessel, orders[: at + 1].copy())
+        try:
+            told = instructions.send(look)
+        except StopIteration:
+            break
+    return _passage(vessel, orders, name)
+
+
+def _obeyed(vessel: Vessel, orders: Vector, at: int, told: Hold | Follow) -> int:
+    """Write one instruction into the orders from sample `at`; the sample it ends at."""
+    if isinstance(told, Follow):
+        part = told.orders[: len(orders) - at]
+        orders[at : at + len(part)] = part
+        return at + len(part)
+    wait = math.ceil(told.at_most / vessel.period - 1e-9)
+    end = min(at + wait, len(orders))
+    orders[at:end] = told.order
+    if told.until is None:
+        return end
+    stop = _until(vessel, orders[:end], at, told.until)
+    orders[stop:end] = 0.0
+    return stop
+
+
+def _until(vessel: Vessel, orders: Vector, at: int, until: Callable[[Motion], Mask]) -> int:
+    """The sample after `at` at which a condition first holds, or the end of the orders.
+
+    Looks ahead by little and then further: what is awaited mostly comes soon.
+    """
+    reach = round(LOOK_AHEAD / vessel.period)
+    while True:
+        end = min(at + reach, len(orders))
+        motion = sailed(vessel, orders[:end])
+        since = {name: values[at:] for name, values in motion.items()}
+        happened = np.flatnonzero(until(since)[1:])  # the order acts from the next sample
+        if len(happened) or end == len(orders):
+            return at + 1 + int(happened[0]) if len(happened) else end
+        reach *= 2
+
+
+def sailed(vessel: Vessel, orders: Vector) -> dict[str, Vector]:
+    """Every signal under these orders; (n,) each, NaN after a departure."""
+    return _sail(vessel, orders)[0]
+
+
+def _sail(vessel: Vessel, orders: Vector) -> tuple[dict[str, Vector], Departure | None]:
+    given = {"delta_order": orders}
+    model = vessel.model
+    if GEAR_STATE not in model.all_states:
+        given["delta"] = ramped(orders, vessel.rudder_rate * vessel.period)
+    given |= {c: np.full(len(orders), value) for c, value in vessel.constants.items()}
+    blank = Trial("sailed", "fit", vessel.period, given, {})
+    response = respond(vessel.simulator, blank, {}, {}, sensitivities=False)
+    states = dict(zip(model.all_states, response.states.T, strict=True))
+    return {"t": blank.t, **given, **states}, response.departure
+
+
+def ramped(orders: Vector, step: float) -> Vector:
+    """A rudder that follows its orders by at most `step` a sample, from amidships; (n,).
+
+    >>> ramped(np.array([0.0, 3.0, 3.0, 3.0, -1.0]), 2.0).tolist()
+    [0.0, 0.0, 2.0, 3.0, 3.0]
+    """
+    followed = np.empty(len(orders))
+    edges = np.flatnonzero(np.diff(orders)) + 1
+    angle = 0.0
+    for begin, end in itertools.pairwise([0, *edges.tolist(), len(orders)]):
+        order = float(orders[begin])
+        moved = step * np.arange(end - begin + 1)  # an order acts from the next sample on
+        on_the_way = angle + math.copysign(1.0, order - angle) * moved
+        path = np.where(moved < abs(order - angle), on_the_way, order)
+        followed[begin:end] = path[:-1]
+        angle = float(path[-1])
+    return followed
+
+
+def _passage(vessel: Vessel, orders: Vector, name: str) -> Passage:
+    signals, departure = _sail(vessel, orders)
+    if departure is not None:
+        kept = max(round(departure.t / vessel.period), 2)
+        signals = {c: values[:kept] for c, values in signals.items()}
+    t = signals.pop("t")
+    x, y = track(t, signals, vessel.model.ship.particulars["U0"])
+    arrays = {c: np.array(values) for c, values in signals.items()}
+    valid = {c: np.ones(len(t), dtype=bool) for c in arrays}
+    return Passage(Trial(name, "fit", vessel.period, arrays, valid), x, y, departure)
+
+
+def track(t: Vector, motion: Motion, speed: float) -> tuple[Vector, Vector]:
+    """Where the ship is, ahead and to starboard of where she began [m]; (N,) each.
+
+    `speed` [m/s] is used where surge is not simulated.
+    """
+    u = motion["u"] if "u" in motion else np.full(len(t), speed)
+    v = motion["v"] if "v" in motion else np.zeros(len(t))
+    psi = motion["psi"]
+    ahead = u * np.cos(psi) - v * np.sin(psi)
+    abeam = u * np.sin(psi) + v * np.cos(psi)
+    return _integral(t, ahead), _integral(t, abeam)
+
+
+def _integral(t: Vector, rate: Vector) -> Vector:
+    steps = np.diff(t) * (rate[1:] + rate[:-1]) / 2
+    return np.concatenate([[0.0], np.cumsum(steps)])

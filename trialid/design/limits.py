@@ -1,0 +1,101 @@
+"""What crew, ship and water allow, and which of it a test would break."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from trialid.design.helm import Passage
+from trialid.trial import Vector
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a test may ask for; None where nothing limits it. SI.
+
+    Attributes
+    ----------
+    rudder, rudder_rate
+        Largest order [rad], and what the steering gear can do [rad/s].
+    heel
+        Largest roll angle [rad].
+    speed_loss
+        Largest share of the approach speed that may be lost.
+    room
+        Sea room ahead of where the test begins, to each side and astern [m].
+    duration
+        [s], approach included.
+    """
+
+    rudder: float | None = None
+    rudder_rate: float | None = None
+    heel: float | None = None
+    speed_loss: float | None = None
+    room: tuple[float, float, float] | None = None
+    duration: float | None = None
+
+
+@dataclass(frozen=True)
+class Excess:
+    """A limit that a test breaks: what is found, what is allowed, and when [s] it is reached."""
+
+    limit: str
+    found: float
+    allowed: float
+    t: float
+    sentence: str
+
+    @property
+    def share(self) -> float:
+        """How far beyond: 0.1 is ten per cent too much."""
+        return self.found / self.allowed - 1.0 if self.allowed > 0.0 else float("inf")
+
+
+def excesses(passage: Passage, limits: Limits, speed: float) -> tuple[Excess, ...]:
+    """Every limit the passage breaks, the worst first.
+
+    Parameters
+    ----------
+    speed
+        Approach speed [m/s].
+    """
+    return tuple(sorted(_found(passage, limits, speed), key=lambda e: -e.share))
+
+
+def _found(passage: Passage, limits: Limits, speed: float) -> Iterator[Excess]:
+    signals, t = passage.trial.signals, passage.trial.t
+    degrees = np.rad2deg(1.0)
+    if passage.departure is not None:
+        yield Excess("model", np.inf, 1.0, passage.departure.t, str(passage.departure))
+    order = np.abs(signals["delta_order"])
+    yield from _over("rudder", order, t, limits.rudder, degrees, "deg of rudder are ordered")
+    if "phi" in signals:
+        roll = np.abs(signals["phi"])
+        yield from _over("heel", roll, t, limits.heel, degrees, "deg of heel are reached")
+    if "u" in signals:
+        lost = 1.0 - signals["u"] / speed
+        yield from _over("speed loss", lost, t, limits.speed_loss, 100.0, "% of speed are lost")
+    if limits.room is not None:
+        ahead, side, astern = limits.room
+        x, y = passage.x, passage.y
+        yield from _over("room ahead", x, t, ahead, 1.0, "m are run ahead")
+        yield from _over("room to the side", np.abs(y), t, side, 1.0, "m are run to the side")
+        yield from _over("room astern", -x, t, astern, 1.0, "m are run back")
+    if limits.duration is not None and t[-1] > limits.duration + passage.trial.period:
+        words = f"it takes {t[-1]:.0f} s, {limits.duration:.0f} s are allowed"
+        yield Excess("duration", float(t[-1]), limits.duration, limits.duration, words)
+
+
+def _over(
+    name: str, values: Vector, t: Vector, allowed: float | None, shown: float, words: str
+) -> Iterator[Excess]:
+    if allowed is None:
+        return
+    beyond = np.flatnonzero(values > allowed * (1.0 + 1e-9))
+    if len(beyond):
+        found, at = float(values.max()), float(t[beyond[0]])
+        sentence = (
+            f"{found * shown:.3g} {words}, {allowed * shown:.3g} are allowed; "
+            f"passed {at:.0f} s after the start"
+        )
+        yield Excess(name, found, allowed, at, sentence)

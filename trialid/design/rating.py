@@ -1,0 +1,258 @@
+"""How well a trial that was only simulated would find the parameters: Eq. 8 to 14, beforehand.
+
+The trial is what the full model would record without noise. Its sensitivities by the parameters of
+the model that is to be fitted, the noise of the sensors and the difference of the two models give
+the errors that a fit of the real record may be expected to have.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.accuracy import (
+    correlated,
+    correlation_ratio,
+    minimum_sensitivity,
+    relative_sensitivities,
+    sensitivity,
+    sensitivity_range,
+    triangle,
+    without_nuisance,
+)
+from trialid.errors import DesignError
+from trialid.identification.output_error import (
+    Problem,
+    linearise,
+    row_scale,
+    stretches,
+)
+from trialid.identification.pose import Settings, question, ready
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import Departure, Simulator
+from trialid.trial import Trial
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What a sensor adds: standard deviation [SI] and how long it remembers [s], 0 for white."""
+
+    sigma: float
+    memory: float = 0.0
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What a test is for.
+
+    Attributes
+    ----------
+    model
+        The model that is to be fitted, at what is known of its parameters beforehand.
+    settings
+        Free parameters, outputs and nuisance of the fit to come.
+    noise
+        By output.
+    wanted
+        The parameters that matter, of the free ones.
+    scale
+        What a parameter is multiplied with before R and S_min, by name; 1 for the others.
+    """
+
+    model: ShipModel
+    settings: Settings
+    noise: Mapping[str, Noise]
+    wanted: tuple[str, ...]
+    scale: Mapping[str, float]
+    simulator: Simulator
+    shared: tuple[str, ...]
+    per_trial: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class ParameterRating:
+    """One parameter in a test; errors are shares of `reference`, the parameter's size.
+
+    Attributes
+    ----------
+    noise_error
+        One standard deviation from the noise of the sensors.
+    bias
+        What the full model's remainder would move it by; 0 where full and fitted model are alike.
+    bound
+        Eq. 14's second part: the most any remainder of that size could move it by.
+    partner, likeness
+        The parameter whose error goes most with this one's, and their correlation.
+    """
+
+    name: str
+    unit: str
+    value: float
+    reference: float
+    S_i: float
+    S_imin: float
+    R_i: float
+    noise_error: float
+    bias: float
+    bound: float
+    partner: str | None
+    likeness: float
+
+    @property
+    def error(self) -> float:
+        """What to expect: noise and the full model's remainder, as independent errors."""
+        return float(np.hypot(self.noise_error, self.bias))
+
+
+@dataclass(frozen=True)
+class Rating:
+    """What a test is worth for a goal.
+
+    `S_min`, `S_max` and `R` are of the wanted parameters in their scale, everything projected out
+    that the others can mimic; `noise` and `undermodelling` are eps^x_RMSn and eps^m_RMSn, and
+    `log_volume` the logarithm of the volume of their error ellipsoid (D criterion).
+    """
+
+    parameters: tuple[ParameterRating, ...]
+    S_min: float
+    S_max: float
+    R: float
+    noise: float
+    undermodelling: float
+    log_volume: float
+
+    def of(self, name: str) -> ParameterRating:
+        """One parameter's row."""
+        return next(p for p in self.parameters if p.name == name)
+
+
+def goal(
+    model: ShipModel,
+    settings: Settings,
+    noise: Mapping[str, Noise],
+    wanted: Sequence[str] = (),
+    scale: Mapping[str, float] | None = None,
+) -> Goal:
+    """Make a goal ready; all free parameters are wanted unless told.
+
+    Raises
+    ------
+    DesignError
+        An output without noise, or a wanted parameter that is not free.
+    """
+    for c in settings.outputs:
+        if c not in noise:
+            raise DesignError(f"no noise is stated for output {c!r}; without it no error follows")
+    for name in wanted:
+        if name not in settings.free:
+            raise DesignError(f"{name!r} is wanted and not free; add it to the free parameters")
+    simulator, shared, per_trial = ready(model, settings)
+    names = tuple(wanted) or settings.free
+    return Goal(model, settings, noise, names, dict(scale or {}), simulator, shared, per_trial)
+
+
+def whitened(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
+    """Sensitivities in standard deviations of the noise, a column for each unknown's size; names.
+
+    (M, n_theta), (n_theta,). Raises DesignError as `rate`.
+    """
+    problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
+    found = linearise(problem, problem.start)
+    if isinstance(found, Departure):
+        raise DesignError(f"the model to be fitted cannot follow this test: {found}")
+    A = relative_sensitivities(found[1], np.array([x.size for x in problem.unknowns]))
+    scale = row_scale(problem)
+    for part in stretches(problem):
+        sigma = goal.noise[problem.outputs[part.output]].sigma
+        A[part.rows] /= sigma * scale[part.output]
+    return A, [x.name for x in problem.unknowns]
+
+
+def rate(goal: Goal, trials: Sequence[Trial]) -> Rating:
+    """Rate trials that are to be fitted together, as recorded by the full model without noise.
+
+    Raises
+    ------
+    DesignError
+        The model to be fitted leaves its domain in one of them.
+    """
+    problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
+    found = linearise(problem, problem.start)
+    if isinstance(found, Departure):
+        raise DesignError(f"the model to be fitted cannot follow this test: {found}")
+    remainder, psi = found
+    A = relative_sensitivities(psi, np.array([x.size for x in problem.unknowns]))
+    inverse = np.asarray(np.linalg.pinv(triangle(A)))
+    covariance = _covariance(goal, problem, A, inverse)
+    shift = inverse @ (inverse.T @ (A.T @ remainder))
+    rows = _rows(goal, problem, A, covariance, shift, float(np.linalg.norm(remainder)))
+    return _rating(goal, problem, A, covariance, rows, float(np.linalg.norm(remainder)))
+
+
+def _covariance(goal: Goal, problem: Problem, A: Vector, inverse: Vector) -> Vector:
+    """Covariance of the relative parameters from the sensors' noise; (n_theta, n_theta).
+
+    A sandwich, because a fit weighs outputs by y_RMS and not by their noise.
+    """
+    scale = row_scale(problem)
+    meat = np.zeros((A.shape[1], A.shape[1]))
+    for part in stretches(problem):
+        trial, c = problem.trials[part.trial], problem.outputs[part.output]
+        rows = A[part.rows] * (goal.noise[c].sigma * scale[part.output])
+        meat += rows.T @ _remembered(rows, goal.noise[c].memory / trial.period)
+    return np.asarray(inverse @ inverse.T @ meat @ inverse @ inverse.T)
+
+
+def _remembered(rows: Vector, memory: float) -> Vector:
+    """Rows times the correlation matrix of noise that forgets in `memory` samples."""
+    if memory <= 0.0:
+        return rows
+    lags = np.arange(min(len(rows), int(20 * memory) + 2))
+    return correlated(rows, np.exp(-lags / memory))
+
+
+def _rows(
+    goal: Goal, problem: Problem, A: Vector, covariance: Vector, shift: Vector, remainder: float
+) -> tuple[ParameterRating, ...]:
+    R = triangle(A)
+    S_i, S_imin, R_i = sensitivity(R), minimum_sensitivity(R), correlation_ratio(R)
+    error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    error = np.where(S_imin > 0.0, error, np.inf)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        alike = np.nan_to_num(covariance / np.outer(error, error))
+        bound = remainder / S_imin
+    physical = [i for i, x in enumerate(problem.unknowns) if x.name in goal.settings.free]
+    made = []
+    for i in physical:
+        x = problem.unknowns[i]
+        others = [j for j in physical if j != i]
+        k = max(others, key=lambda j: abs(alike[i, j]), default=None)
+        made.append(
+            ParameterRating(
+                x.name, x.unit, x.start, x.size, float(S_i[i]), float(S_imin[i]), float(R_i[i]),
+                float(error[i]), float(shift[i]), float(bound[i]),
+                None if k is None else problem.unknowns[k].name,
+                0.0 if k is None else float(alike[i, k]),
+            )
+        )  # fmt: skip
+    return tuple(made)
+
+
+def _rating(
+    goal: Goal, problem: Problem, A: Vector, covariance: Vector,
+    rows: tuple[ParameterRating, ...], remainder: float,
+) -> Rating:  # fmt: skip
+    names = [x.name for x in problem.unknowns]
+    wanted = np.isin(names, goal.wanted)
+    scale = np.array([goal.scale.get(n, 1.0) for n in names])
+    S_min, S_max, R = sensitivity_range((without_nuisance(A, wanted)) * scale[wanted])
+    noise = np.array([goal.noise[c].sigma for c in problem.outputs]) / problem.y_rms
+    block = covariance[np.ix_(wanted, wanted)]
+    sign, log_det = np.linalg.slogdet(block)
+    return Rating(
+        rows, S_min, S_max, R, float(np.sqrt(np.mean(noise**2))), remainder,
+        float(log_det) / 2.0 if sign > 0 else float("inf"),
+    )  # fmt: skip

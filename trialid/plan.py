@@ -1,0 +1,315 @@
+"""A design file carried out: tests sailed, rated and optimised, and rivals told apart."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+
+from trialid import __version__, units
+from trialid.assembly import available, build_model, settings_of
+from trialid.design import signals
+from trialid.design.helm import vessel
+from trialid.design.kinds import KINDS, Test, Value
+from trialid.design.limits import Limits
+from trialid.design.rating import Goal, Noise, goal
+from trialid.design.search import Found, Outcome, Search, Ship, natural_roll, optimise, outcome
+from trialid.design.separation import Separation, rivals, separate
+from trialid.design.standard import Measure, predict
+from trialid.errors import DesignError, RecipeError, UnitError, nearest
+from trialid.identification.pose import Settings
+from trialid.quantities import SIGNALS
+from trialid.recipe import where
+from trialid.recipe.design import DesignRecipe, Numbers, TestRecipe, fitted_values
+from trialid.recipe.form import GivenValue
+from trialid.report import design_data
+from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
+
+Progress = Callable[[str, float | None], None]
+
+NO_ROLL: Final = 2.0 * np.pi / 15.0
+"""rad/s, where the model does not roll and nothing depends on it."""
+
+
+@dataclass(frozen=True)
+class Rated:
+    """One programme of tests on the ship as she is known: what came of it.
+
+    `found` says how it was searched for, None where nothing was open.
+    """
+
+    name: str
+    programme: tuple[Test, ...]
+    outcome: Outcome
+    found: Found | None
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a design file asked for."""
+
+    recipe: DesignRecipe
+    ship: Ship
+    limits: Limits
+    rated: tuple[Rated, ...]
+    separation: Separation | None
+    measures: tuple[Measure, ...]
+
+    @property
+    def best(self) -> Rated | None:
+        """Of the programmes that may run, the one with the smallest largest error."""
+        able = [r for r in self.rated if r.outcome.rating is not None]
+        return min(able, key=lambda r: largest_error(r, self.ship.goal), default=None)
+
+
+def largest_error(rated: Rated, goal: Goal) -> float:
+    """Largest expected error of the wanted parameters, a share of each one's size."""
+    assert rated.outcome.rating is not None
+    return max(rated.outcome.rating.of(name).error for name in goal.wanted)
+
+
+def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -> Plan:
+    """Carry out a design file.
+
+    Raises
+    ------
+    RecipeError, DesignError, NotIdentifiable
+        In one line: what cannot be done, and the limit that binds.
+    """
+    progress("making the ship ready", 0.0)
+    catalogue = available(recipe)
+    ships = _ships(recipe, catalogue)
+    limits = _limits(recipe)
+    programmes: list[tuple[str, tuple[Test, ...]]]
+    programmes = [(t.name, (_test(recipe, t),)) for t in recipe.tests]
+    if recipe.together:
+        programmes = [("programme", tuple(_test(recipe, t) for t in recipe.tests))]
+    rated = []
+    for i, (name, tests) in enumerate(programmes):
+        share = i / len(programmes)
+        rated.append(_rated(recipe, name, tests, ships, limits, _told(progress, name, share)))
+    separation = _separation(recipe, catalogue, ships[0], limits, progress)
+    measures = predict([ship.vessel for ship in ships]) if recipe.imo else ()
+    return Plan(recipe, ships[0], limits, tuple(rated), separation, measures)
+
+
+def _told(progress: Progress, name: str, share: float) -> Callable[[int, float], None]:
+    def tell(tried: int, best: float) -> None:
+        shown = f", largest error {np.exp(best):.3g}" if best < 100.0 else ""
+        progress(f"{name}: {tried} candidates{shown}", share)
+
+    return tell
+
+
+def _rated(
+    recipe: DesignRecipe, name: str, tests: tuple[Test, ...], ships: list[Ship], limits: Limits,
+    tell: Callable[[int, float], None],
+) -> Rated:  # fmt: skip
+    found = None
+    if any(test.open for test in tests):
+        r = recipe.search
+        search = Search(r.criterion, recipe.ships.over, r.candidates, r.seed)
+        try:
+            found = optimise(tests, ships, limits, search, tell)
+        except DesignError as error:
+            raise DesignError(f"{recipe.path}: test {name!r}: {error}") from error
+        tests = found.programme
+    came = outcome(tests, ships[0], limits)
+    _check_visible(recipe, name, came, ships[0].goal)
+    remarks = tuple(r for test in tests for r in _of_lines(test, ships[0]))
+    return Rated(name, tests, came, found, remarks)
+
+
+def _check_visible(recipe: DesignRecipe, name: str, came: Outcome, goal: Goal) -> None:
+    """Refuse a wish that no test can grant: a parameter these outputs cannot see."""
+    if came.rating is None:
+        return
+    for parameter in goal.wanted:
+        if came.rating.of(parameter).S_imin <= 0.0:
+            raise DesignError(
+                f"{recipe.path}: test {name!r}: outputs {', '.join(goal.settings.outputs)} cannot "
+                f"see {parameter} beside the other free parameters; record more outputs, or fix it"
+            )
+
+
+def _of_lines(test: Test, ship: Ship) -> list[str]:
+    """What became of the lines of a multi-frequency test."""
+    if test.kind != "multi_frequency_binary":
+        return []
+    made = signals.lines(test.duration - test.approach, ship.roll_frequency)
+    said = []
+    if made.merged:
+        said.append(f"lines {', '.join(map(str, made.merged))} fell together in rounding")
+    if made.collisions:
+        listed = ", ".join(f"{i} and {j} on {k}" for i, j, k in made.collisions[:3])
+        more = f" and {len(made.collisions) - 3} more" if len(made.collisions) > 3 else ""
+        said.append(
+            f"second-order products fall on lines ({listed}{more}): even nonlinearities will not "
+            "show there; another duration avoids it"
+        )
+    return said
+
+
+def _ships(recipe: DesignRecipe, catalogue: Mapping[str, Effect]) -> list[Ship]:
+    """The ship as she is known, first, and others she might be."""
+    model = build_model(recipe, catalogue)
+    known = {n: x for n, x in fitted_values(recipe).items() if n in model.parameters}
+    model = model.with_values(known)
+    full = _full(recipe, model, catalogue)
+    made = [_ship(recipe, model, full)]
+    draw = np.random.default_rng(recipe.ships.seed)
+    for _ in range(recipe.ships.count - 1):
+        factors = {
+            n: 1.0 + recipe.ships.spread * draw.standard_normal()
+            for n in recipe.identify.free
+            if n in model.parameters
+        }
+        values = {n: model.value(n) * f for n, f in factors.items()}
+        made.append(_ship(recipe, model.with_values(values), full.with_values(values)))
+    return made
+
+
+def _full(recipe: DesignRecipe, model: ShipModel, catalogue: Mapping[str, Effect]) -> ShipModel:
+    """What is sailed: the model to be fitted and what the ship has beyond it."""
+    full = model
+    for i, name in enumerate(recipe.full.effects):
+        if name not in catalogue:
+            at = where(recipe, f"full.effects[{i}]")
+            raise RecipeError(f"{at}: there is no effect {name!r}; {nearest(name, catalogue)}")
+        full = full + catalogue[name]
+    values = {}
+    for name, given in recipe.full.values.items():
+        if name not in full.parameters:
+            at = where(recipe, f"full.values.{name}")
+            raise RecipeError(f"{at}: no such parameter; {nearest(name, full.parameters)}")
+        values[name] = _si(recipe, f"full.values.{name}", given, full.parameters[name].unit, None)
+    typical = {
+        n: p.start
+        for e in full.effects
+        if e.name in recipe.full.effects
+        for n, p in e.parameters.items()
+        if full.stated(n) is None
+    }
+    return full.with_values({**typical, **values})
+
+
+def _ship(recipe: DesignRecipe, model: ShipModel, full: ShipModel) -> Ship:
+    at_sea = recipe.at_sea
+    constants = {
+        name: _si(recipe, f"at_sea.constant.{name}", given, SIGNALS[name].unit, SIGNALS[name].shown)
+        for name, given in at_sea.constant.items()
+    }
+    settings = settings_of(recipe)
+    ready = vessel(full, at_sea.period, constants, np.deg2rad(at_sea.rudder_rate))
+    noise = {c: Noise(n.sigma / units.shown(SIGNALS[c]), n.memory) for c, n in recipe.noise.items()}
+    asked = goal(model, settings, noise, recipe.wanted, recipe.scale)
+    rolls = {"p", "phi"} <= {*model.states}
+    speed = model.ship.particulars["U0"]
+    return Ship(ready, asked, natural_roll(ready) if rolls else NO_ROLL, speed)
+
+
+def _si(recipe: DesignRecipe, key: str, given: GivenValue, unit: str, bare: str | None) -> float:
+    """A given number in SI; without a unit it is in `bare`, or as it is."""
+    stated = given.unit or bare
+    try:
+        return given.value if stated is None else given.value * units.factor(stated, unit)
+    except UnitError as error:
+        raise UnitError(f"{where(recipe, key)}: {error}") from error
+
+
+def _limits(recipe: DesignRecipe) -> Limits:
+    r = recipe.limits
+    degrees = np.deg2rad(1.0)
+    return Limits(
+        rudder=None if r.rudder is None else r.rudder * degrees,
+        rudder_rate=recipe.at_sea.rudder_rate * degrees,
+        heel=None if r.heel is None else r.heel * degrees,
+        speed_loss=r.speed_loss, room=r.room, duration=r.duration,
+    )  # fmt: skip
+
+
+def _test(recipe: DesignRecipe, test: TestRecipe) -> Test:
+    """A test of the file with its numbers in SI."""
+    variables = KINDS[test.kind].variables
+    factors = {n: _factor(v.unit) for n, v in variables.items()} | {"duration": 1.0}
+    values = {n: _scaled(v, factors[n]) for n, v in test.set.items()}
+    ranges = {n: (a * factors[n], b * factors[n]) for n, (a, b) in test.open.items()}
+    for name, (low, high) in ranges.items():
+        if name != "duration" and variables[name].many:
+            values[name] = ((low + high) / 2.0,) * test.steps
+    duration = test.duration or ranges["duration"][1]
+    return Test(test.kind, values, duration, recipe.at_sea.approach, ranges, test.name)
+
+
+def _factor(unit: str) -> float:
+    return np.deg2rad(1.0) if unit.startswith("deg") else 1.0
+
+
+def _scaled(value: Numbers, factor: float) -> Value:
+    return tuple(x * factor for x in value) if isinstance(value, tuple) else value * factor
+
+
+def _separation(
+    recipe: DesignRecipe, catalogue: Mapping[str, Effect], ship: Ship, limits: Limits,
+    progress: Progress,
+) -> Separation | None:  # fmt: skip
+    """The test that tells two effects apart, where the file asks for one."""
+    if recipe.separate is None:
+        return None
+    for i, name in enumerate(recipe.separate.effects):
+        if name not in catalogue:
+            at = where(recipe, f"separate.effects[{i}]")
+            raise RecipeError(f"{at}: there is no effect {name!r}; {nearest(name, catalogue)}")
+    one, other = (catalogue[name] for name in recipe.separate.effects)
+    settings = settings_of(recipe)
+    pair = rivals(
+        ship.vessel.model, _without_bias(settings), dict(ship.goal.noise), (one, other),
+        ship.vessel, ship.roll_frequency, ship.speed,
+    )  # fmt: skip
+    tests = tuple(_test(recipe, t) for t in recipe.tests)
+    search = Search(candidates=recipe.search.candidates, seed=recipe.search.seed)
+    return separate(tests, pair, limits, search, progress=_told(progress, "telling apart", 0.8))
+
+
+def _without_bias(settings: Settings) -> Settings:
+    """Nuisances that are among the effects to be told apart would hide them."""
+    kept = tuple(n for n in settings.nuisance if n == "initial_state")
+    return replace(settings, nuisance=kept)
+
+
+def _recorded(recipe: DesignRecipe) -> list[str]:
+    """What the crew must record, in words."""
+    names = ["delta_order", "delta", *recipe.identify.outputs, *recipe.at_sea.constant, "psi", "u"]
+    return [SIGNALS[n].meaning.partition(",")[0] for n in dict.fromkeys(names)]
+
+
+def plain(plan: Plan) -> dict[str, Any]:
+    """A plan as plain data, schema `trialid-design/1`."""
+    best = plan.best
+    tests = [
+        {
+            "name": rated.name,
+            "programme": [design_data.of_test(t) for t in rated.programme],
+            "searched": None if rated.found is None else rated.found.tried,
+            "remarks": list(rated.remarks),
+            **design_data.of_outcome(rated.outcome),
+        }
+        for rated in plan.rated
+    ]
+    return {
+        "schema": design_data.SCHEMA,
+        "version": __version__,
+        "name": plan.recipe.name,
+        "design": plan.recipe.path.name,
+        "ship": plan.ship.vessel.model.ship.name,
+        "wanted": list(plan.ship.goal.wanted),
+        "outputs": list(plan.recipe.identify.outputs),
+        "recorded": _recorded(plan.recipe),
+        "roll_period": 2.0 * np.pi / plan.ship.roll_frequency,
+        "tests": tests,
+        "best": None if best is None else best.name,
+        "separation": design_data.of_separation(plan.separation),
+        "imo": design_data.of_measures(plan.measures),
+    }
