@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 import trialid
+from trialid.cli_design import design
 from trialid.cli_logs import align, inspect
 from trialid.console import Progress, complain, file_width, progress_bar, rendered, say
 from trialid.errors import TrialidError
@@ -164,6 +165,7 @@ def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> Non
 
 commands.add_command(inspect)
 commands.add_command(align)
+commands.add_command(design)
 
 
 def main() -> None:

@@ -49,7 +49,7 @@ def _tests(tests: Sequence[Mapping[str, Any]], wanted: Sequence[str]) -> "Table"
             key=lambda p: p["relative_error"] or float("inf"),
         )
         add_row(
-            table, test["name"], _numbers(test), number(rating["R"], 3), number(rating["S_min"], 3),
+            table, test["name"], _numbers(test), number(rating["R"], 4), number(rating["S_min"], 2),
             percent(worst["relative_error"]), spoken(worst["name"]),
         )  # fmt: skip
     return table
