@@ -27,9 +27,13 @@ from trialid.assembly import (
     settings_of,
     stated_noise,
 )
+from trialid.design import following, observed
+from trialid.design.observed import Overshoot
+from trialid.design.separation import Separation
+from trialid.design.standard import Measure
 from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.completeness import Completeness, completeness
-from trialid.diagnosis.missing_effect import decide, refit
+from trialid.diagnosis.missing_effect import Verdict, decide, refit
 from trialid.diagnosis.missing_force import missing_force
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
@@ -133,10 +137,30 @@ def _findings(
     if moves and (force or verdict.kind == "not in catalogue"):
         progress("looking for the missing force", 0.9)
         sought = missing_force(named.fit if named else fit, level)
+    measures, overshoots = _imo(recipe, before)
     return Findings(
         recipe.name, recipe.path.name, before, ranking, augmented.left_out, refits,
         verdict, stretches_that_fail(fit), after, sought,
+        _proposal(fit, verdict, catalogue), measures, overshoots,
     )  # fmt: skip
+
+
+def _proposal(fit: Fit, verdict: Verdict, catalogue: Mapping[str, Effect]) -> Separation | None:
+    """The trial that would tell apart what this record cannot."""
+    pair = following.by_name(catalogue, verdict.family)
+    if pair is None:
+        return None
+    sizes = dict(zip(fit.problem.outputs, fit.problem.y_rms, strict=True))
+    noise = {c: eps * float(sizes[c]) for c, eps in fit.eps_by_output.items()}
+    return following.next_trial(fit, pair, noise)
+
+
+def _imo(recipe: Recipe, done: Diagnosed) -> tuple[tuple[Measure, ...], tuple[Overshoot, ...]]:
+    """IMO's measures of the fitted ship, where the pipeline asks for them."""
+    if not recipe.imo:
+        return (), ()
+    measures = following.standard_measures(done.fit, done.accuracy, done.split.undermodelling)
+    return measures, observed.overshoots(done.fit)
 
 
 def fit_of(

@@ -12,6 +12,9 @@ import numpy as np
 
 import trialid
 from trialid.accuracy import Accuracy, ParameterAccuracy
+from trialid.design.observed import Overshoot
+from trialid.design.separation import Separation
+from trialid.design.standard import Measure
 from trialid.diagnosis.leftover.finding import Bars, Finding, Spectrum
 from trialid.diagnosis.missing_effect import Refit, Verdict
 from trialid.diagnosis.missing_force import MissingForce
@@ -20,6 +23,7 @@ from trialid.diagnosis.score import VISIBLE, Candidate
 from trialid.diagnosis.where import Where
 from trialid.errors import EffectError
 from trialid.identification.fit import Fit, step_halving
+from trialid.report.design_data import of_measures
 from trialid.report.force import missing_force_data
 from trialid.ship.model import ShipModel
 from trialid.ship.stability import PARTS, Stability, stability
@@ -43,7 +47,8 @@ class Findings:
     """All that a run found.
 
     `after` is the confirmed refit, diagnosed in its turn; None where no effect was named. `force`
-    is None where nobody asked and the verdict is another.
+    is None where nobody asked and the verdict is another; `proposal` where nothing is to be told
+    apart. `measures` and `overshoots` are there where the pipeline asks for IMO's measures.
     """
 
     name: str
@@ -56,6 +61,9 @@ class Findings:
     where: Where
     after: Diagnosed | None
     force: MissingForce | None = None
+    proposal: Separation | None = None
+    measures: tuple[Measure, ...] = ()
+    overshoots: tuple[Overshoot, ...] = ()
 
 
 def plain(found: Findings) -> Plain:
@@ -78,7 +86,8 @@ def plain(found: Findings) -> Plain:
             "missing": _missing(found),
             "not_tried": dict(found.left_out),
             "missing_force": None if found.force is None else missing_force_data(found.force),
-            "verdict": _verdict(found.verdict),
+            "verdict": _verdict(found.verdict, found.proposal),
+            "imo": _imo(found),
             "history": _history(found),
             "before_after": _before_after(found),
         }
@@ -381,13 +390,37 @@ def _sentence(c: Candidate, refit: Fit | None, found: Findings) -> str:
     return f"{c.effect.name} {said}"
 
 
-def _verdict(v: Verdict) -> Plain:
+def _verdict(v: Verdict, proposal: Separation | None) -> Plain:
     return {
         "kind": v.kind,
         "effect": v.effect,
         "family": list(v.family),
         "sentence": v.sentence,
-        "next_trial": None,
+        "next_trial": None if proposal is None else _next_trial(proposal),
+    }
+
+
+def _next_trial(proposal: Separation) -> Plain:
+    """The trial that would tell rivals apart, or that none of those any crew can run does."""
+    name = proposal.programme[0].name
+    told = f"{name}: {proposal.sentence}" if proposal.after.separate else proposal.sentence
+    return {
+        "sentence": told,
+        "test": name if proposal.after.separate else None,
+        "effects": list(proposal.names),
+        "cosine": proposal.after.cosine,
+        "cosine_before": None if proposal.before is None else proposal.before.cosine,
+    }
+
+
+def _imo(found: Findings) -> Plain | None:
+    """Standard measures, predicted; overshoots the trials hold, measured beside predicted."""
+    if not found.measures:
+        return None
+    return {
+        "measures": of_measures(found.measures),
+        "speed_simulated": "u" in found.before.fit.model.states,
+        "overshoots": [asdict(one) for one in found.overshoots],
     }
 
 

@@ -52,8 +52,11 @@ class Measure:
         return False if low > self.criterion.largest else None
 
 
-def predict(vessels: Sequence[Vessel]) -> tuple[Measure, ...]:
-    """The standard measures of the first vessel; the others are what she might be as well."""
+def predict(vessels: Sequence[Vessel], model_error: float = 0.0) -> tuple[Measure, ...]:
+    """The standard measures of the first vessel; the others are what she might be as well.
+
+    `model_error` is what the model's own error adds, as a share of each measure.
+    """
     first = vessels[0]
     found = [_values(vessel) for vessel in vessels]
     particulars = first.model.ship.particulars
@@ -64,7 +67,8 @@ def predict(vessels: Sequence[Vessel]) -> tuple[Measure, ...]:
         spread = float(np.std(others, ddof=1)) if len(others) > 2 else None
         interval = None
         if value is not None and spread is not None:
-            interval = (value - 1.96 * spread, value + 1.96 * spread)
+            wide = 1.96 * float(np.hypot(spread, model_error * value))
+            interval = (value - wide, value + wide)
         made.append(Measure(criterion, value, interval))
     return tuple(made)
 

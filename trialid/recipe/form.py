@@ -331,9 +331,13 @@ class Described(Written):
 
 
 class Recipe(Described):
-    """A pipeline file, complete: defaults filled in, paths resolved from the file's folder."""
+    """A pipeline file, complete: defaults filled in, paths resolved from the file's folder.
+
+    `imo` asks for the standard measures of MSC.137(76).
+    """
 
     trials: Annotated[tuple[TrialRecipe, ...], Field(alias="trial", min_length=1)]
     signals: Mapping[str, SignalSource] = {}
     align: AlignRecipe = AlignRecipe()
     diagnose: DiagnoseRecipe = DiagnoseRecipe()
+    imo: bool = False

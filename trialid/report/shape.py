@@ -119,6 +119,13 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline file") | {
     "missing": [_MISSING],
     "not_tried": Each(),
     "verdict": _keys("kind effect sentence") | {"family": [None], "next_trial": Maybe({})},
+    "imo": Maybe(
+        {
+            "speed_simulated": None,
+            "measures": [_keys("name unit value interval allowed kept manoeuvre")],
+            "overshoots": [_keys("trial t rudder measured predicted")],
+        }
+    ),
     "history": [_STEP],
     "history_remark": None,
     "sources": [_keys("path sha256")],

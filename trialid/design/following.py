@@ -1,0 +1,156 @@
+"""After a fit: the trial that tells rivals apart, and what the fitted ship does in standard ones.
+
+A fitted model becomes a vessel by what its trials held: inputs that stayed about constant are kept
+at their medians, and the rudder is steered as fast as it was seen to move.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from trialid.accuracy import Accuracy
+from trialid.design.helm import Vessel, vessel
+from trialid.design.kinds import Test
+from trialid.design.limits import Limits, excesses
+from trialid.design.rating import Noise
+from trialid.design.search import natural_roll, sail_all
+from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
+from trialid.design.standard import Measure, predict
+from trialid.errors import DesignError, TrialidError
+from trialid.identification.fit import Fit
+from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import inputs
+from trialid.trial import Vector
+
+STEERED: Final = frozenset({"delta", "delta_order"})
+GEAR: Final = np.deg2rad(2.5)
+"""rad/s of rudder, where the record shows none faster: what a ship's gear does at least."""
+DRAWS: Final = 24
+"""Ships drawn for an interval: its width is then known to 15 %."""
+SEED: Final = 1
+
+_D: Final = float(np.deg2rad(1.0))
+FEASIBLE: Final[Mapping[str, tuple[str, Mapping[str, float]]]] = {
+    "zig-zag 5/5": ("zigzag", {"angle": 5 * _D, "heading": 5 * _D}),
+    "zig-zag 10/10": ("zigzag", {"angle": 10 * _D, "heading": 10 * _D}),
+    "zig-zag 20/20": ("zigzag", {"angle": 20 * _D, "heading": 20 * _D}),
+    "zig-zag 20/40": ("zigzag", {"angle": 20 * _D, "heading": 40 * _D}),
+    "zig-zag 35/20": ("zigzag", {"angle": 35 * _D, "heading": 20 * _D}),
+    "turning circle 15": ("turning_circle", {"angle": 15 * _D, "turn": 720 * _D}),
+    "turning circle 35": ("turning_circle", {"angle": 35 * _D, "turn": 720 * _D}),
+    "pull-out from 20": ("pull_out", {"angle": 20 * _D, "turn": 120 * _D}),
+    "rolling by the rudder at 10": ("roll", {"angle": 10 * _D}),
+}
+"""Tests any crew can run, tried for a proposal."""
+
+
+def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
+    """The fitted ship, ready to be sailed as she was in the first of her trials.
+
+    Raises
+    ------
+    DesignError
+        The model does not turn, or is not steered by a rudder.
+    """
+    trial = fit.problem.trials[0]
+    sailed = model or fit.model
+    if not STEERED & {*sailed.recorded}:
+        raise DesignError("the model is not steered by a rudder")
+    eq = fit.problem.simulator.equations
+    u = inputs(fit.problem.simulator, trial, fit.problem.simulator.fixed | fit.estimates)
+    steady = {n: float(np.median(c)) for n, c in zip(eq.inputs, u.T, strict=True)}
+    constants = {n: x for n, x in steady.items() if n not in STEERED and n != "t"}
+    constants["u"] = fit.model.ship.particulars["U0"]  # the approach, not what a turn leaves of it
+    return vessel(sailed, trial.period, constants, _rate(fit))
+
+
+def _rate(fit: Fit) -> float:
+    """How fast the rudder was seen to move [rad/s]."""
+    rates = [
+        float(np.quantile(np.abs(np.diff(t.signals["delta"])), 0.99)) / t.period
+        for t in fit.problem.trials
+        if "delta" in t.signals
+    ]
+    return max([GEAR, *rates])
+
+
+def next_trial(
+    fit: Fit, effects: tuple[Effect, Effect], noise: Mapping[str, float]
+) -> Separation | None:
+    """The feasible standard test that best tells two effects apart beside the trials there are.
+
+    None where the model cannot be sailed. `noise` is the standard deviation of each output [SI].
+    """
+    try:
+        return _proposed(fit, effects, noise)
+    except TrialidError:
+        return None
+
+
+def _proposed(
+    fit: Fit, effects: tuple[Effect, Effect], noise: Mapping[str, float]
+) -> Separation | None:
+    ready = vessel_of(fit)
+    sensors = {c: Noise(s) for c, s in noise.items()}
+    speed = fit.model.ship.particulars["U0"]
+    roll = natural_roll(ready) if {"p", "phi"} <= {*fit.model.states} else 2.0 * np.pi / 15.0
+    pair = rivals(fit.model, fit.settings, sensors, effects, ready, roll, speed)
+    so_far = fit.problem.trials
+    duration = max(t.duration for t in so_far)
+    rated: list[tuple[float, Test, Likeness]] = []
+    for name, (kind, values) in FEASIBLE.items():
+        test = Test(kind, values, duration, 0.1 * duration, name=name)
+        [passage] = sail_all([test], ready, roll)
+        if excesses(passage, Limits(heel=0.6), speed):
+            continue
+        found = likeness(pair, [*so_far, passage.trial])
+        rated.append((found.cosine + max(0.0, ENOUGH - min(found.odds)) / ENOUGH, test, found))
+    if not rated:
+        return None
+    _, test, after = min(rated, key=lambda r: r[0])
+    return Separation(pair.names, (test,), likeness(pair, so_far), after, len(rated))
+
+
+def standard_measures(
+    fit: Fit, accuracy: Accuracy, undermodelling: float | None
+) -> tuple[Measure, ...]:
+    """IMO's measures of the fitted ship, with intervals from the errors of her parameters.
+
+    Parameters of the fit are drawn together from their covariance; the model error is added as a
+    share of each measure, since it is one of the response.
+
+    Raises
+    ------
+    DesignError
+        The model does not turn, or is not steered by a rudder.
+    """
+    ships = [vessel_of(fit), *(vessel_of(fit, model) for model in _drawn(fit, accuracy))]
+    return predict(ships, undermodelling or 0.0)
+
+
+def _drawn(fit: Fit, accuracy: Accuracy) -> list[ShipModel]:
+    """Models as likely as the fitted one, by the covariance of the shared parameters."""
+    unknowns = fit.problem.unknowns
+    shared = [i for i, x in enumerate(unknowns) if x.trial is None]
+    block = np.nan_to_num(accuracy.covariance[np.ix_(shared, shared)])
+    values, vectors = np.linalg.eigh(block)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    draw = np.random.default_rng(SEED)
+    made = []
+    for _ in range(DRAWS):
+        moved: Vector = fit.theta[shared] + root @ draw.standard_normal(len(shared))
+        inside = [
+            float(np.clip(x, unknowns[i].low, unknowns[i].high))
+            for i, x in zip(shared, moved, strict=True)
+        ]
+        names = [unknowns[i].column for i in shared]
+        made.append(fit.model.with_values(dict(zip(names, inside, strict=True))))
+    return made
+
+
+def by_name(catalogue: Mapping[str, Effect], names: Sequence[str]) -> tuple[Effect, Effect] | None:
+    """The first two of these effects that are known; None where there are not two."""
+    known = [catalogue[n] for n in names if n in catalogue]
+    return (known[0], known[1]) if len(known) >= 2 else None
