@@ -67,6 +67,12 @@ class Columns:
     reason: str = ""
 
 
+def as_float(values: NDArray[np.generic]) -> NDArray[np.float64]:
+    """A copy as float64; a broken number, a signalling NaN among them, is no reason to warn."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        return values.astype(np.float64)
+
+
 class Lifted:
     """Columns while they are lifted out of N messages, some messages at a time."""
 

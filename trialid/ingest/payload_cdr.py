@@ -28,6 +28,7 @@ from trialid.ingest.payload import (
     Keep,
     Lifted,
     Payloads,
+    as_float,
     labels,
     of_equal_size,
 )
@@ -268,7 +269,7 @@ def _lift(lifted: Lifted, payloads: Payloads, layout: Layout, rows: Places, keep
             places = at + np.array([offset for _, offset in kept])[:, None]
             block = numbers(data, places, layout.order + kind)
             for (name, _), y in zip(kept, block, strict=True):
-                lifted.note(name, rows, y.astype(np.float64))  # a copy: the block can be let go
+                lifted.note(name, rows, as_float(y))  # a copy: the block can be let go
 
 
 def _lift_all(

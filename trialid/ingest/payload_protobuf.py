@@ -20,6 +20,7 @@ from trialid.ingest.payload import (
     Keep,
     Lifted,
     Payloads,
+    as_float,
     collect,
     labels,
     nanoseconds,
@@ -147,7 +148,7 @@ def _lift_alike(
             if time is not None and of == time:
                 parts[name] = protobuf_layout.values(leaf, payloads.data, at).astype(np.int64)
             elif keep(leaf.path):
-                y = protobuf_layout.values(leaf, payloads.data, at).astype(np.float64)
+                y = as_float(protobuf_layout.values(leaf, payloads.data, at))
                 lifted.note(leaf.path, alike, y)
         fits = (parts["seconds"] >= 0) & (parts["seconds"] < LATEST_S)
         stamp = np.where(fits, parts["seconds"], 0) * 1_000_000_000 + parts["nanos"]
