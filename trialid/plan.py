@@ -9,7 +9,7 @@ import numpy as np
 from trialid import __version__, units
 from trialid.assembly import available, build_model, settings_of
 from trialid.design import signals
-from trialid.design.helm import vessel
+from trialid.design.helm import Passage, vessel
 from trialid.design.kinds import KINDS, Test, Value
 from trialid.design.limits import Limits
 from trialid.design.rating import Goal, Noise, goal
@@ -118,8 +118,9 @@ def _rated(
         tests = found.programme
     came = outcome(tests, ships[0], limits)
     _check_visible(recipe, name, came, ships[0].goal)
-    remarks = tuple(r for test in tests for r in _of_lines(test, ships[0]))
-    return Rated(name, tests, came, found, remarks)
+    lines = [r for test in tests for r in _of_lines(test, ships[0])]
+    late = [r for passage in came.passages for r in _of_late(passage)]
+    return Rated(name, tests, came, found, (*lines, *late))
 
 
 def _check_visible(recipe: DesignRecipe, name: str, came: Outcome, goal: Goal) -> None:
@@ -150,6 +151,20 @@ def _of_lines(test: Test, ship: Ship) -> list[str]:
             "show there; another duration avoids it"
         )
     return said
+
+
+def _of_late(passage: Passage) -> list[str]:
+    """Orders that the rudder does not reach before the next: it is tested, and not as written."""
+    orders, delta = (passage.trial.signals[n] for n in ("delta_order", "delta"))
+    last = np.flatnonzero(np.diff(orders))  # the last samples of all orders but the last
+    moved = np.abs(np.diff(delta, prepend=delta[0]))
+    late = np.abs(orders[last] - delta[last]) > moved.max() + 1e-9  # a step of the gear is no delay
+    if not late.any():
+        return []
+    return [
+        f"the rudder does not reach {late.sum()} of {len(last)} orders before the next; what is "
+        "rated is what it does"
+    ]
 
 
 def _ships(recipe: DesignRecipe, catalogue: Mapping[str, Effect]) -> list[Ship]:
@@ -224,7 +239,7 @@ def _limits(recipe: DesignRecipe) -> Limits:
     degrees = np.deg2rad(1.0)
     return Limits(
         rudder=None if r.rudder is None else r.rudder * degrees,
-        rudder_rate=recipe.at_sea.rudder_rate * degrees,
+        rudder_rate=None if r.rudder_rate is None else r.rudder_rate * degrees,
         heel=None if r.heel is None else r.heel * degrees,
         speed_loss=r.speed_loss, room=r.room, duration=r.duration,
     )  # fmt: skip

@@ -48,8 +48,9 @@ class NoiseRecipe(Section):
 class AtSea(Section):
     """How the tests are sailed: clock, straight run before each, gear, and what stays constant.
 
-    `period`, `approach` [s], `rudder_rate` [deg/s]; `constant` holds recorded signals that do not
-    change, as the shaft speed: a number in the unit of reports, or with a unit of its own.
+    `period`, `approach` [s], `rudder_rate` [deg/s] of the steering gear, where no effect of the
+    model is one; `constant` holds recorded signals that do not change, as the shaft speed: a number
+    in the unit of reports, or with a unit of its own.
     """
 
     period: Positive = 0.5
@@ -59,9 +60,14 @@ class AtSea(Section):
 
 
 class LimitsRecipe(Section):
-    """What may not be passed: deg, share of the speed, m ahead, aside and astern, s."""
+    """What may not be passed: deg, deg/s, share of the speed, m ahead, aside and astern, s.
+
+    `rudder_rate` holds for the rudder and for the orders: those that come so quickly that it would
+    have to run faster to reach each of them break it. Without it the rudder merely comes late.
+    """
 
     rudder: Positive | None = None
+    rudder_rate: Positive | None = None
     heel: Positive | None = None
     speed_loss: Annotated[Number, Field(gt=0, le=1)] | None = None
     room: tuple[Positive, Positive, Positive] | None = None
@@ -148,7 +154,7 @@ def load_design(path: Path) -> DesignRecipe:
     content = content_of(path)
     table = table_of(content, path)
     recipe = formed(DesignRecipe, {**_lent(table, path), **table}, Origin(path, content))
-    if problems := [*_of_tests(recipe), *_of_signals(recipe)]:
+    if problems := [*_of_tests(recipe), *_of_signals(recipe), *_of_gear(recipe)]:
         raise refusal(path, problems)
     return recipe
 
@@ -211,6 +217,15 @@ def _missing(test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
     if test.duration is None and "duration" not in test.open:
         found.append((dotted(*at, "duration"), "missing; give it in s, or leave it open"))
     return found
+
+
+def _of_gear(recipe: DesignRecipe) -> list[Problem]:
+    """A gear that is to run faster than it can."""
+    able, asked = recipe.limits.rudder_rate, recipe.at_sea.rudder_rate
+    if able is None or asked <= able:
+        return []
+    words = f"{asked:g} deg/s are more than limits.rudder_rate allows, {able:g}; give the gear's own"
+    return [(dotted("at_sea", "rudder_rate"), words)]
 
 
 def _of_signals(recipe: DesignRecipe) -> list[Problem]:
