@@ -13,8 +13,17 @@ from trialid.design.helm import Passage, vessel
 from trialid.design.kinds import KINDS, Test, Value
 from trialid.design.limits import Limits
 from trialid.design.rating import Goal, Noise, goal
-from trialid.design.search import Found, Outcome, Search, Ship, natural_roll, optimise, outcome
-from trialid.design.separation import Separation, rivals, separate
+from trialid.design.search import (
+    Found,
+    Outcome,
+    Search,
+    Ship,
+    natural_roll,
+    optimise,
+    outcome,
+    sail_all,
+)
+from trialid.design.separation import Separation, likeness, rivals, separate
 from trialid.design.standard import Measure, predict
 from trialid.errors import DesignError, RecipeError, UnitError, nearest
 from trialid.identification.pose import Settings
@@ -82,15 +91,14 @@ def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -
     catalogue = available(recipe)
     ships = _ships(recipe, catalogue)
     limits = _limits(recipe)
-    programmes: list[tuple[str, tuple[Test, ...]]]
-    programmes = [(t.name, (_test(recipe, t),)) for t in recipe.tests]
-    if recipe.together:
-        programmes = [("programme", tuple(_test(recipe, t) for t in recipe.tests))]
-    rated = []
-    for i, (name, tests) in enumerate(programmes):
-        share = i / len(programmes)
-        rated.append(_rated(recipe, name, tests, ships, limits, _told(progress, name, share)))
     separation = _separation(recipe, catalogue, ships[0], limits, progress)
+    chosen = {} if separation is None else {t.name: t for t in separation.programme}
+    tests = tuple(chosen.get(t.name) or _test(recipe, t) for t in recipe.tests)
+    programmes = [("programme", tests)] if recipe.together else [(t.name, (t,)) for t in tests]
+    rated = []
+    for i, (name, programme) in enumerate(programmes):
+        tell = _told(progress, name, i / len(programmes))
+        rated.append(_rated(recipe, name, programme, ships, limits, tell))
     measures = predict([ship.vessel for ship in ships]) if recipe.imo else ()
     return Plan(recipe, ships[0], limits, tuple(rated), separation, measures)
 
@@ -270,7 +278,10 @@ def _separation(
     recipe: DesignRecipe, catalogue: Mapping[str, Effect], ship: Ship, limits: Limits,
     progress: Progress,
 ) -> Separation | None:  # fmt: skip
-    """The test that tells two effects apart, where the file asks for one."""
+    """The test that tells two effects apart, where the file asks for one.
+
+    Tests with nothing open are what it is compared with: how alike the two look without it.
+    """
     if recipe.separate is None:
         return None
     for i, name in enumerate(recipe.separate.effects):
@@ -283,9 +294,19 @@ def _separation(
         ship.vessel.model, _without_bias(settings), dict(ship.goal.noise), (one, other),
         ship.vessel, ship.roll_frequency, ship.speed,
     )  # fmt: skip
-    tests = tuple(_test(recipe, t) for t in recipe.tests)
+    tests = [_test(recipe, t) for t in recipe.tests]
+    run, new = ([t for t in tests if bool(t.open) is wanted] for wanted in (False, True))
+    so_far = [p.trial for p in sail_all(run, ship.vessel, ship.roll_frequency)]
+    before = likeness(pair, so_far) if so_far else None
+    if not new:
+        return Separation(pair.names, (), None, likeness(pair, so_far), 0)
     search = Search(candidates=recipe.search.candidates, seed=recipe.search.seed)
-    return separate(tests, pair, limits, search, progress=_told(progress, "telling apart", 0.8))
+    try:
+        found = separate(new, pair, limits, search, (), _told(progress, "telling apart", 0.0))
+    except DesignError as error:
+        raise DesignError(f"{recipe.path}: separate: {error}") from error
+    chosen = tuple(replace(t, open={}) for t in found.programme)
+    return replace(found, programme=chosen, before=before)
 
 
 def _without_bias(settings: Settings) -> Settings:

@@ -115,7 +115,10 @@ class FullRecipe(Section):
 
 
 class SeparateRecipe(Section):
-    """Two effects that are to be told apart."""
+    """Two effects that are to be told apart, by the tests that have something open.
+
+    The other tests are what these are compared with: those that were run already.
+    """
 
     effects: tuple[str, str]
 
@@ -224,7 +227,9 @@ def _of_gear(recipe: DesignRecipe) -> list[Problem]:
     able, asked = recipe.limits.rudder_rate, recipe.at_sea.rudder_rate
     if able is None or asked <= able:
         return []
-    words = f"{asked:g} deg/s are more than limits.rudder_rate allows, {able:g}; give the gear's own"
+    words = (
+        f"{asked:g} deg/s are more than limits.rudder_rate allows, {able:g}; give the gear's own"
+    )
     return [(dotted("at_sea", "rudder_rate"), words)]
 
 
