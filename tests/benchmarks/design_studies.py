@@ -311,7 +311,7 @@ def _missed(
 
 
 CONFIRMED: Final = """Largest expected error of the ten parameters: {others}; the programme of the
-same duration {best:.0%}, better by a factor of **{factor:.2f}** over the best of them. Chosen from
+same duration {best:.0%}, better by a factor of **{factor:.2f}** than the best of them. Chosen from
 {tried} candidates: {chosen}.
 
 {fits} simulated trials of each were fitted, every fit starting up to 15 % off. Root mean square of
@@ -320,9 +320,9 @@ the actual errors over the expected ones:
 {table}
 """
 
-RIVALS: Final = r"""Each effect hidden in {records} records of the zig-zag and of the proposed test, the other
-in as many. `odds` is the log-likelihood by which the right one is expected to win. Right: named,
-and the rival is not in its family; cannot tell: both are, or the diagnosis says so.
+RIVALS: Final = """Each of the two hidden in {records} records of a zig-zag and of the proposed test.
+Odds: the log-likelihood by which the right one is expected to win. Right: it is named, and its rival is not
+in the family; cannot tell: both are, or the diagnosis says so.
 
 {table}
 

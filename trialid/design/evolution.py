@@ -1,4 +1,4 @@
-"""The smallest value of a function over the unit cube, by evolution: for scores with kinks and steps.
+"""The least of a function over the unit cube, by evolution: for scores with kinks and steps.
 
 Covariance matrix adaptation: Hansen, N. (2016), The CMA evolution strategy: a tutorial,
 arXiv:1604.00772, with its own settings. Only the order of the scores counts, so that a penalty may

@@ -211,6 +211,11 @@ def _impossible(programme: Sequence[Test], ships: Sequence[Ship], limits: Limits
     broken = [e for ship in ships for e in outcome(programme, ship, limits).excesses]
     if not broken:
         return "no candidate could be rated; the model to be fitted leaves its domain in all"
+    return not_kept(broken)
+
+
+def not_kept(broken: Sequence[Excess]) -> str:
+    """Why the best test that was found may not be run: the limit that binds, in words."""
     worst = max(broken, key=lambda e: e.share)
     return f"no test of this kind keeps the limits; {worst.limit} binds: {worst.sentence}"
 
