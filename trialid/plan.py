@@ -26,7 +26,7 @@ from trialid.design.search import (
 from trialid.design.separation import Separation, likeness, rivals, separate
 from trialid.design.standard import Measure, predict
 from trialid.errors import DesignError, RecipeError, UnitError, nearest
-from trialid.identification.pose import Settings
+from trialid.identification.pose import Settings, with_starts
 from trialid.quantities import SIGNALS
 from trialid.recipe import where
 from trialid.recipe.design import DesignRecipe, Numbers, TestRecipe, fitted_values
@@ -179,7 +179,7 @@ def _ships(recipe: DesignRecipe, catalogue: Mapping[str, Effect]) -> list[Ship]:
     """The ship as she is known, first, and others she might be."""
     model = build_model(recipe, catalogue)
     known = {n: x for n, x in fitted_values(recipe).items() if n in model.parameters}
-    model = model.with_values(known)
+    model = with_starts(model.with_values(known), recipe.identify.free, settings_of(recipe))
     full = _full(recipe, model, catalogue)
     made = [_ship(recipe, model, full)]
     draw = np.random.default_rng(recipe.ships.seed)
