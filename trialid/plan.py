@@ -90,7 +90,7 @@ def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -
     progress("making the ship ready", 0.0)
     catalogue = available(recipe)
     ships = _ships(recipe, catalogue)
-    limits = _limits(recipe)
+    limits = _limits(recipe, ships[0].vessel.model)
     separation = _separation(recipe, catalogue, ships[0], limits, progress)
     chosen = {} if separation is None else {t.name: t for t in separation.programme}
     tests = tuple(chosen.get(t.name) or _test(recipe, t) for t in recipe.tests)
@@ -242,8 +242,15 @@ def _si(recipe: DesignRecipe, key: str, given: GivenValue, unit: str, bare: str 
         raise UnitError(f"{where(recipe, key)}: {error}") from error
 
 
-def _limits(recipe: DesignRecipe) -> Limits:
+def _limits(recipe: DesignRecipe, model: ShipModel) -> Limits:
+    """The file's limits in SI; one of a motion that is not simulated would never bind."""
     r = recipe.limits
+    for name, state, given in (("heel", "phi", r.heel), ("speed_loss", "u", r.speed_loss)):
+        if given is not None and state not in model.states:
+            raise RecipeError(
+                f"{where(recipe, f'limits.{name}')}: {state} is not simulated, so nothing can be "
+                f"held against it; put {state} among model.states, or leave the limit out"
+            )
     degrees = np.deg2rad(1.0)
     return Limits(
         rudder=None if r.rudder is None else r.rudder * degrees,

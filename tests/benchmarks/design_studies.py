@@ -320,9 +320,10 @@ the actual errors over the expected ones:
 {table}
 """
 
-RIVALS: Final = """Each of the two hidden in {records} records of a zig-zag and of the proposed test.
-Odds: the log-likelihood by which the right one is expected to win. Right: it is named, and its rival is not
-in the family; cannot tell: both are, or the diagnosis says so.
+RIVALS: Final = """Each of the two hidden in {records} records of a zig-zag and of the proposed
+test, white noise of the sensors in all. Odds: the log-likelihood by which the right one is expected
+to win. Right: it is named, and its rival is not in the family; cannot tell: both are, or the
+diagnosis says so.
 
 {table}
 

@@ -89,7 +89,7 @@ def test_a_wish_that_no_candidate_grants_names_the_limit_that_binds(limits, test
 
 def test_running_back_needs_room_astern():
     turned = Test("turning_circle", {"turn": 9.0}, 900.0, 0.0, {"angle": (25 * D, 35 * D)})
-    with pytest.raises(DesignError, match="room astern binds: .* m are run back, 1 are allowed"):
+    with pytest.raises(DesignError, match=r"room astern binds: .* m are run back, 1 are allowed"):
         optimise([turned], [SMALL], Limits(room=(1e4, 1e4, 1.0)), Search(candidates=6))
 
 

@@ -54,7 +54,7 @@ def test_the_rate_of_turn_alone_cannot_tell_its_bias_from_wind():
 
 
 def test_a_steady_turn_never_tells_the_two_cross_terms_apart():
-    """v |r| = -r |v| where v and r have opposite signs: refused, with the figures."""
+    """V |r| = -r |v| where v and r have opposite signs: refused, with the figures."""
     found = separate([CIRCLE], CROSS, Limits(), Search(candidates=12))
     assert found.after.cosine > 0.99
     assert not found.after.separate

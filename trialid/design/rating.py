@@ -155,9 +155,10 @@ def goal(
 
 
 def whitened(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
-    """Sensitivities in standard deviations of the noise, a column for each unknown's size; names.
+    """Sensitivities in standard deviations of white noise, a column for each unknown's size; names.
 
-    (M, n_theta), (n_theta,). Raises DesignError as `rate`.
+    (M, n_theta), (n_theta,). Noise with a memory is made white by the filter that forgets as it
+    does. Raises DesignError as `rate`.
     """
     problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
     found = linearise(problem, problem.start)
@@ -166,9 +167,19 @@ def whitened(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
     A = relative_sensitivities(found[1], np.array([x.size for x in problem.unknowns]))
     scale = row_scale(problem)
     for part in stretches(problem):
-        sigma = goal.noise[problem.outputs[part.output]].sigma
-        A[part.rows] /= sigma * scale[part.output]
+        noise = goal.noise[problem.outputs[part.output]]
+        period = problem.trials[part.trial].period
+        A[part.rows] = _forgotten(A[part.rows], noise.memory / period)
+        A[part.rows] /= noise.sigma * scale[part.output]
     return A, [x.name for x in problem.unknowns]
+
+
+def _forgotten(rows: Vector, memory: float) -> Vector:
+    """Rows less what noise that forgets in `memory` samples would still hold of those before."""
+    if memory <= 0.0:
+        return rows
+    kept = float(np.exp(-1.0 / memory))
+    return np.concatenate([rows[:1], (rows[1:] - kept * rows[:-1]) / np.sqrt(1.0 - kept**2)])
 
 
 def rate(goal: Goal, trials: Sequence[Trial]) -> Rating:
