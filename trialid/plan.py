@@ -1,5 +1,6 @@
 """A design file carried out: tests sailed, rated and optimised, and rivals told apart."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Final
@@ -22,6 +23,7 @@ from trialid.design.search import (
     optimise,
     outcome,
     sail_all,
+    score,
 )
 from trialid.design.separation import Separation, likeness, rivals, separate
 from trialid.design.standard import Measure, predict
@@ -68,9 +70,13 @@ class Plan:
 
     @property
     def best(self) -> Rated | None:
-        """Of the programmes that may run, the one with the smallest largest error."""
+        """Of the programmes that may run, the best by the criterion of the search."""
         able = [r for r in self.rated if r.outcome.rating is not None]
-        return min(able, key=lambda r: largest_error(r, self.ship.goal), default=None)
+        return min(able, key=self._score, default=None)
+
+    def _score(self, rated: Rated) -> float:
+        assert rated.outcome.rating is not None
+        return score(rated.outcome.rating, self.recipe.search.criterion, self.ship.goal.wanted)
 
 
 def largest_error(rated: Rated, goal: Goal) -> float:
@@ -97,15 +103,30 @@ def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -
     programmes = [("programme", tests)] if recipe.together else [(t.name, (t,)) for t in tests]
     rated = []
     for i, (name, programme) in enumerate(programmes):
-        tell = _told(progress, name, i / len(programmes))
+        tell = _told(progress, name, i / len(programmes), recipe.search.criterion)
         rated.append(_rated(recipe, name, programme, ships, limits, tell))
     measures = predict([ship.vessel for ship in ships]) if recipe.imo else ()
     return Plan(recipe, ships[0], limits, tuple(rated), separation, measures)
 
 
-def _told(progress: Progress, name: str, share: float) -> Callable[[int, float], None]:
+BEST: Final[Mapping[str, tuple[str, Callable[[float], float]]]] = {
+    "error": ("largest error", math.exp),
+    "A": ("mean error", math.exp),
+    "R": ("R", math.exp),
+    "S_imin": ("least S_imin", lambda score: math.exp(-score)),
+    "D": ("log volume", float),
+    "separate": ("score", float),
+}
+"""What a search makes better, in words, and its value from the score."""
+
+
+def _told(
+    progress: Progress, name: str, share: float, criterion: str
+) -> Callable[[int, float], None]:
+    words, value = BEST[criterion]
+
     def tell(tried: int, best: float) -> None:
-        shown = f", largest error {np.exp(best):.3g}" if best < 100.0 else ""
+        shown = f", {words} {value(best):.3g}" if best < 100.0 else ""
         progress(f"{name}: {tried} candidates{shown}", share)
 
     return tell
@@ -116,15 +137,15 @@ def _rated(
     tell: Callable[[int, float], None],
 ) -> Rated:  # fmt: skip
     found = None
-    if any(test.open for test in tests):
-        r = recipe.search
-        search = Search(r.criterion, recipe.ships.over, r.candidates, r.seed)
-        try:
+    r = recipe.search
+    search = Search(r.criterion, recipe.ships.over, r.candidates, r.seed)
+    try:
+        if any(test.open for test in tests):
             found = optimise(tests, ships, limits, search, tell)
-        except DesignError as error:
-            raise DesignError(f"{recipe.path}: test {name!r}: {error}") from error
-        tests = found.programme
-    came = outcome(tests, ships[0], limits)
+            tests = found.programme
+        came = outcome(tests, ships[0], limits)
+    except DesignError as error:
+        raise DesignError(f"{recipe.path}: test {name!r}: {error}") from error
     _check_visible(recipe, name, came, ships[0].goal)
     lines = [r for test in tests for r in _of_lines(test, ships[0])]
     late = [r for passage in came.passages for r in _of_late(passage)]
@@ -308,8 +329,9 @@ def _separation(
     if not new:
         return Separation(pair.names, (), None, likeness(pair, so_far), 0)
     search = Search(candidates=recipe.search.candidates, seed=recipe.search.seed)
+    tell = _told(progress, "telling apart", 0.0, "separate")
     try:
-        found = separate(new, pair, limits, search, (), _told(progress, "telling apart", 0.0))
+        found = separate(new, pair, limits, search, (), tell)
     except DesignError as error:
         raise DesignError(f"{recipe.path}: separate: {error}") from error
     chosen = tuple(replace(t, open={}) for t in found.programme)

@@ -34,7 +34,7 @@ from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import identify
 from trialid.identification.pose import Settings
 from trialid.plan import Plan, plan
-from trialid.recipe.design import DesignRecipe, SeparateRecipe, load_design
+from trialid.recipe.design import DesignRecipe, SeparateRecipe, TestRecipe, load_design
 from trialid.report.design_data import of_test
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
@@ -56,6 +56,10 @@ PAIRS: Final = (
 )
 """Effects, outputs, and free parameters where they are not those of the pipeline: with a heel on
 record the wind is no rival of a gyro's bias, so that pair has the gyro alone."""
+CIRCLE: Final = (
+    TestRecipe(name="circle", kind="turning_circle", duration=1200.0, open={"angle": (5.0, 35.0)}),
+)
+"""v |r| = -r |v| in it, so that nothing of it tells the third pair apart: to be refused."""
 SAID: Final = ("right", "cannot tell", "wrong", "not seen")
 
 
@@ -204,13 +208,17 @@ def programme(fits: int) -> tuple[str, list[str]]:
 # --- rivals
 
 
-def designed(one: str, other: str, outputs: tuple[str, ...], free: tuple[str, ...] | None) -> Plan:
-    """The test for two rivals, by the shipped pipeline with these effects."""
+def designed(
+    one: str, other: str, outputs: tuple[str, ...], free: tuple[str, ...] | None,
+    tests: tuple[TestRecipe, ...] = (),
+) -> Plan:  # fmt: skip
+    """The test for two rivals, by the shipped pipeline with these effects (and other tests)."""
     recipe = load("design_rivals")
     asked = {"outputs": outputs} | ({} if free is None else {"free": free})
     identify = recipe.identify.model_copy(update=asked)
     pair = SeparateRecipe(effects=(one, other))
-    return plan(recipe.model_copy(update={"identify": identify, "separate": pair, "wanted": ()}))
+    changed = {"identify": identify, "separate": pair, "wanted": (), "tests": tests or recipe.tests}
+    return plan(recipe.model_copy(update=changed))
 
 
 def logged(test: Test, ship: Ship, hidden: str, model: ShipModel, seed: Sequence[int]) -> Trial:
@@ -291,6 +299,10 @@ def rivals(records: int) -> tuple[str, list[str]]:
         ]  # fmt: skip
         told.append(f"* {found.sentence}. Proposed: {numbers([proposed])}.")
         missed += _missed(found, before, after, records)
+    refused = designed(*PAIRS[2], tests=CIRCLE).separation
+    told.append(f"* With turning circles alone: {refused.sentence}.")
+    if refused.after.separate:
+        missed.append("turning circles are said to tell the cross terms apart")
     head = ["rivals", "outputs", "record", r"\|cos\|", "odds", *SAID]
     return RIVALS.format(records=records, table=table(head, rows), told="\n".join(told)), missed
 

@@ -36,6 +36,10 @@ duration = 300.0
 set = { angle = 10.0 }
 open = { heading = [5.0, 20.0] }
 """
+ZIGZAG = """kind = "zigzag"
+duration = 300.0
+set = { angle = 10.0 }
+open = { heading = [5.0, 20.0] }"""
 
 
 @pytest.fixture
@@ -84,6 +88,16 @@ def test_a_good_file(file):
         ("[limits]", "[search]\ncandidates = 0\n[limits]", "search.candidates", "equal to 1"),
         ("[limits]", '[separate]\neffects = ["bias_r"]\n[limits]', "separate.effects[1]",
          "missing"),
+        ("duration = 300.0", "duration = 30.0", "test[0].duration", "30 s are over with the strai"),
+        ("duration = 300.0", "duration = 1e9", "test[0].duration", "more than 200000 samples"),
+        (ZIGZAG, 'duration = 90.0\nkind = "square_wave"\nset = { angle = 9.0, period = 0.0 }',
+         "test[0].set.period", "must be more than 0, got 0"),
+        (ZIGZAG, 'duration = 90.0\nkind = "steps"\nset = { angles = [9.0], lengths = [1.0, -2.0] }',
+         "test[0].set.lengths", "must be more than 0, got -2"),
+        (ZIGZAG, 'duration = 90.0\nkind = "steps"\nset = { angles = [] }', "test[0].set.angles",
+         "is empty"),
+        (ZIGZAG, 'duration = 9e1\nkind = "square_wave"\nset.angle = 9.0\nopen.period = [-5.0, 9.0]',
+         "test[0].open.period", "must be more than 0, got -5"),
         ("[[test]]", "[[tests]]", "tests", "did you mean 'test'"),
         ('kind = "zigzag"\n', "", "test[0].kind", "missing"),
     ],

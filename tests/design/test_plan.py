@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from trialid.design.search import score
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError, RecipeError
 from trialid.plan import largest_error, plain, plan
@@ -52,10 +53,10 @@ steps = 3
 def planned(tmp_path):
     shutil.copy(ROOT / "sample_data" / "ships" / "s175q.toml", tmp_path)
 
-    def run(*parts):
+    def run(*parts, progress=lambda words, share: None):
         path = tmp_path / "design.toml"
         path.write_text("\n".join(parts), encoding="utf-8")
-        return plan(load_design(path))
+        return plan(load_design(path), progress)
 
     return run
 
@@ -68,6 +69,24 @@ def test_tests_are_rated_and_open_ones_chosen(planned):
     assert len(found.programme[0].values["angles"]) == 3
     assert done.best.name == min(done.rated, key=lambda r: largest_error(r, done.ship.goal)).name
     assert planned(HEAD, ZIGZAG, STAIRS).rated[1].programme == found.programme
+
+
+@pytest.mark.parametrize("criterion", ["error", "S_imin", "R", "D", "A"])
+def test_the_best_is_so_by_the_criterion_asked_for_and_progress_says_it(planned, criterion):
+    head = HEAD.replace("[search]", f'[search]\ncriterion = "{criterion}"')
+    told = []
+    done = planned(head, ZIGZAG, STAIRS, progress=lambda words, share: told.append(words))
+    by = {r.name: score(r.outcome.rating, criterion, done.ship.goal.wanted) for r in done.rated}
+    assert done.best.name == min(by, key=by.get)
+    shown = {"error": "largest error", "S_imin": "least S_imin", "R": "R", "D": "log volume",
+             "A": "mean error"}[criterion]  # fmt: skip
+    words = told[-1]
+    assert words.startswith(f"stairs: {done.rated[1].found.tried} candidates, {shown} ")
+    rating = done.rated[1].outcome.rating
+    if criterion == "R":
+        assert words.endswith(f"R {rating.R:.3g}")
+    if criterion == "S_imin":
+        assert words.endswith(f"{min(rating.of(n).S_imin for n in done.ship.goal.wanted):.3g}")
 
 
 def test_together_is_one_programme_better_than_each_of_its_tests(planned):
@@ -102,6 +121,12 @@ def test_a_fixed_test_beyond_a_limit_is_not_rated_and_never_the_best(planned):
     told = plain(done)["tests"][0]
     assert told["feasible"] is False
     assert "10 deg of rudder are ordered, 5 are allowed" in told["limits"][0]["sentence"]
+
+
+def test_a_test_that_moves_nothing_is_told_by_its_name(planned):
+    still = ZIGZAG.replace("angle = 10.0", "angle = 0.0")
+    with pytest.raises(DesignError, match="test 'zig-zag': the test moves too little to find"):
+        planned(HEAD, still)
 
 
 def test_a_limit_of_a_motion_that_is_not_simulated_is_refused(planned):

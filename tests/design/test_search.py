@@ -167,6 +167,16 @@ def test_a_limit_must_be_kept_on_every_ship_she_might_be():
         optimise(narrow, ships, limits, Search(candidates=5))
 
 
+def test_a_candidate_that_moves_nothing_is_never_chosen():
+    """The rudder may stay amidships: that is the least that is worth rating, and no error."""
+    still = Test("square_wave", {"period": 50.0}, 200.0, 20.0, {"angle": (-30 * D, 0.0)})
+    [test] = optimise([still], [SMALL], Limits(rudder=20 * D), Search(candidates=40)).programme
+    assert -20 * D <= test.values["angle"] < -5 * D
+    never = Test("square_wave", {"angle": 0.0}, 200.0, 20.0, {"period": (20.0, 50.0)})
+    with pytest.raises(DesignError, match="the test moves too little to find anything: output 'r'"):
+        optimise([never], [SMALL], ANY, Search(candidates=5))
+
+
 def test_a_candidate_that_leaves_the_model_is_never_chosen(monkeypatch):
     def lost(programme, vessel, roll_frequency):
         raise DesignError("the model to be fitted cannot follow this test")

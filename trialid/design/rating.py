@@ -21,7 +21,7 @@ from trialid.accuracy import (
     triangle,
     without_nuisance,
 )
-from trialid.errors import DesignError
+from trialid.errors import DesignError, NotIdentifiable
 from trialid.identification.output_error import (
     Problem,
     linearise,
@@ -160,11 +160,8 @@ def whitened(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
     (M, n_theta), (n_theta,). Noise with a memory is made white by the filter that forgets as it
     does. Raises DesignError as `rate`.
     """
-    problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
-    found = linearise(problem, problem.start)
-    if isinstance(found, Departure):
-        raise DesignError(f"the model to be fitted cannot follow this test: {found}")
-    A = relative_sensitivities(found[1], np.array([x.size for x in problem.unknowns]))
+    problem, _, psi = _linearised(goal, trials)
+    A = relative_sensitivities(psi, np.array([x.size for x in problem.unknowns]))
     scale = row_scale(problem)
     for part in stretches(problem):
         noise = goal.noise[problem.outputs[part.output]]
@@ -172,6 +169,19 @@ def whitened(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
         A[part.rows] = _forgotten(A[part.rows], noise.memory / period)
         A[part.rows] /= noise.sigma * scale[part.output]
     return A, [x.name for x in problem.unknowns]
+
+
+def _linearised(goal: Goal, trials: Sequence[Trial]) -> tuple[Problem, Vector, Vector]:
+    """The fit to come, its residual at what is known beforehand (M,), and gradient (M, n_theta)."""
+    try:
+        problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
+    except NotIdentifiable as error:
+        why = str(error).partition(";")[0]  # its advice is about logs
+        raise DesignError(f"the test moves too little to find anything: {why}") from error
+    found = linearise(problem, problem.start)
+    if isinstance(found, Departure):
+        raise DesignError(f"the model to be fitted cannot follow this test: {found}")
+    return problem, *found
 
 
 def _forgotten(rows: Vector, memory: float) -> Vector:
@@ -188,13 +198,9 @@ def rate(goal: Goal, trials: Sequence[Trial]) -> Rating:
     Raises
     ------
     DesignError
-        The model to be fitted leaves its domain in one of them.
+        The model to be fitted leaves its domain in one of them, or nothing moves in all of them.
     """
-    problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
-    found = linearise(problem, problem.start)
-    if isinstance(found, Departure):
-        raise DesignError(f"the model to be fitted cannot follow this test: {found}")
-    remainder, psi = found
+    problem, remainder, psi = _linearised(goal, trials)
     A = relative_sensitivities(psi, np.array([x.size for x in problem.unknowns]))
     inverse = np.asarray(np.linalg.pinv(triangle(A)))
     covariance = _covariance(goal, problem, A, inverse)

@@ -182,13 +182,17 @@ def separate(
         broken = [e for p in passages for e in excesses(p, limits, rivals.speed)]
         if broken:
             return BROKEN * (1.0 + sum(min(e.share, 5.0) for e in broken))
-        alike = likeness(rivals, [*so_far, *(p.trial for p in passages)])
+        try:
+            alike = likeness(rivals, [*so_far, *(p.trial for p in passages)])
+        except DesignError:  # nothing moves in it, or the model cannot follow
+            return 10.0 * BROKEN
         # odds beyond enough are still worth something: the noise at sea is never as stated
         return alike.cosine + ENOUGH / (ENOUGH + min(alike.odds))
 
     found: Found = search_open(programme, score, search, progress)
     if found.score >= BROKEN:
         passages = sail_all(found.programme, rivals.vessel, rivals.roll_frequency)
+        likeness(rivals, [*so_far, *(p.trial for p in passages)])  # says so where nothing moves
         broken = [e for p in passages for e in excesses(p, limits, rivals.speed)]
         raise DesignError(not_kept(broken))
     passages = sail_all(found.programme, rivals.vessel, rivals.roll_frequency)

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -29,6 +29,9 @@ from trialid.recipe.form import (
     Window,
     with_value,
 )
+
+MOST: Final = 200_000
+"""Samples of a test: a day and more at the usual period."""
 
 Given = Annotated[GivenValue, BeforeValidator(with_value)]
 Numbers = Number | tuple[Number, ...]
@@ -187,8 +190,23 @@ def _of_tests(recipe: DesignRecipe) -> list[Problem]:
             words = f"there is no manoeuvre {test.kind!r}; {nearest(test.kind, KINDS)}"
             found.append((dotted(*at, "kind"), words))
             continue
-        found += _of_numbers(test, at)
+        found += [*_of_numbers(test, at), *_of_duration(recipe, test, at)]
     return found
+
+
+def _of_duration(recipe: DesignRecipe, test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
+    """A test must outlast its approach, and fit into the memory of a computer."""
+    low, high = test.open.get("duration", (test.duration, test.duration))
+    if low is None or high is None:
+        return []  # missing, and said so
+    key = dotted(*at, "open" if "duration" in test.open else "duration")
+    approach, period = recipe.at_sea.approach, recipe.at_sea.period
+    if low <= approach:
+        return [(key, f"{low:g} s are over with the straight run before (at_sea.approach = "
+                 f"{approach:g}); give the test more time")]  # fmt: skip
+    if high / period > MOST:
+        return [(key, f"{high:g} s are more than {MOST} samples of {period:g} s; make it shorter")]
+    return []
 
 
 def _of_numbers(test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
@@ -207,6 +225,14 @@ def _of_numbers(test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
     for name, value in test.set.items():
         if isinstance(value, tuple) and name in variables and not variables[name].many:
             found.append((dotted(*at, "set", name), "is one number, not a list"))
+    found += [
+        (dotted(*at, key, n), variables[n].wrong(x))
+        for key, numbers in (("set", test.set), ("open", test.open))
+        for n, value in numbers.items()
+        for x in (value if isinstance(value, tuple) else (value,))[: None if key == "set" else 1]
+        if n in variables and variables[n].wrong(x)
+    ]
+    found += [(dotted(*at, "set", n), "is empty") for n, x in test.set.items() if x == ()]
     twice = [n for n in test.open if n in test.set]
     found += [(dotted(*at, "open", n), "is set as well; keep one of the two") for n in twice]
     return found + _missing(test, at)
