@@ -36,6 +36,7 @@ from trialid.recipe.form import GivenValue
 from trialid.report import design_data
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
+from trialid.threads import one_thread
 
 Progress = Callable[[str, float | None], None]
 
@@ -85,6 +86,7 @@ def largest_error(rated: Rated, goal: Goal) -> float:
     return max(rated.outcome.rating.of(name).error for name in goal.wanted)
 
 
+@one_thread
 def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -> Plan:
     """Carry out a design file.
 
