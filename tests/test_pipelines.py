@@ -23,11 +23,9 @@ from trialid.pipeline import run, write
 from trialid.recipe import load
 
 ROOT = Path(__file__).parent.parent
-PIPELINES = [
-    path
-    for path in sorted((ROOT / "pipelines").glob("*.toml"))
-    if not path.name.startswith("design_")
-]
+PIPELINES = sorted(
+    path for path in (ROOT / "pipelines").glob("*.toml") if not path.name.startswith("design_")
+)
 HIDDEN_EFFECT = ROOT / "pipelines" / "hidden_effect.toml"
 STEADY = 0.15
 """Share by which the noise part may move when an effect is added: noise is not the model's."""

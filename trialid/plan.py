@@ -1,5 +1,6 @@
 """A design file carried out: tests sailed, rated and optimised, and rivals told apart."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Final
@@ -9,15 +10,25 @@ import numpy as np
 from trialid import __version__, units
 from trialid.assembly import available, build_model, settings_of
 from trialid.design import signals
-from trialid.design.helm import vessel
+from trialid.design.helm import Passage, vessel
 from trialid.design.kinds import KINDS, Test, Value
 from trialid.design.limits import Limits
 from trialid.design.rating import Goal, Noise, goal
-from trialid.design.search import Found, Outcome, Search, Ship, natural_roll, optimise, outcome
-from trialid.design.separation import Separation, rivals, separate
+from trialid.design.search import (
+    Found,
+    Outcome,
+    Search,
+    Ship,
+    natural_roll,
+    optimise,
+    outcome,
+    sail_all,
+    score,
+)
+from trialid.design.separation import Separation, likeness, rivals, separate
 from trialid.design.standard import Measure, predict
 from trialid.errors import DesignError, RecipeError, UnitError, nearest
-from trialid.identification.pose import Settings
+from trialid.identification.pose import Settings, with_starts
 from trialid.quantities import SIGNALS
 from trialid.recipe import where
 from trialid.recipe.design import DesignRecipe, Numbers, TestRecipe, fitted_values
@@ -25,6 +36,7 @@ from trialid.recipe.form import GivenValue
 from trialid.report import design_data
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
+from trialid.threads import one_thread
 
 Progress = Callable[[str, float | None], None]
 
@@ -59,9 +71,13 @@ class Plan:
 
     @property
     def best(self) -> Rated | None:
-        """Of the programmes that may run, the one with the smallest largest error."""
+        """Of the programmes that may run, the best by the criterion of the search."""
         able = [r for r in self.rated if r.outcome.rating is not None]
-        return min(able, key=lambda r: largest_error(r, self.ship.goal), default=None)
+        return min(able, key=self._score, default=None)
+
+    def _score(self, rated: Rated) -> float:
+        assert rated.outcome.rating is not None
+        return score(rated.outcome.rating, self.recipe.search.criterion, self.ship.goal.wanted)
 
 
 def largest_error(rated: Rated, goal: Goal) -> float:
@@ -70,6 +86,7 @@ def largest_error(rated: Rated, goal: Goal) -> float:
     return max(rated.outcome.rating.of(name).error for name in goal.wanted)
 
 
+@one_thread
 def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -> Plan:
     """Carry out a design file.
 
@@ -81,23 +98,37 @@ def plan(recipe: DesignRecipe, progress: Progress = lambda words, share: None) -
     progress("making the ship ready", 0.0)
     catalogue = available(recipe)
     ships = _ships(recipe, catalogue)
-    limits = _limits(recipe)
-    programmes: list[tuple[str, tuple[Test, ...]]]
-    programmes = [(t.name, (_test(recipe, t),)) for t in recipe.tests]
-    if recipe.together:
-        programmes = [("programme", tuple(_test(recipe, t) for t in recipe.tests))]
-    rated = []
-    for i, (name, tests) in enumerate(programmes):
-        share = i / len(programmes)
-        rated.append(_rated(recipe, name, tests, ships, limits, _told(progress, name, share)))
+    limits = _limits(recipe, ships[0].vessel.model)
     separation = _separation(recipe, catalogue, ships[0], limits, progress)
+    chosen = {} if separation is None else {t.name: t for t in separation.programme}
+    tests = tuple(chosen.get(t.name) or _test(recipe, t) for t in recipe.tests)
+    programmes = [("programme", tests)] if recipe.together else [(t.name, (t,)) for t in tests]
+    rated = []
+    for i, (name, programme) in enumerate(programmes):
+        tell = _told(progress, name, i / len(programmes), recipe.search.criterion)
+        rated.append(_rated(recipe, name, programme, ships, limits, tell))
     measures = predict([ship.vessel for ship in ships]) if recipe.imo else ()
     return Plan(recipe, ships[0], limits, tuple(rated), separation, measures)
 
 
-def _told(progress: Progress, name: str, share: float) -> Callable[[int, float], None]:
+BEST: Final[Mapping[str, tuple[str, Callable[[float], float]]]] = {
+    "error": ("largest error", math.exp),
+    "A": ("mean error", math.exp),
+    "R": ("R", math.exp),
+    "S_imin": ("least S_imin", lambda score: math.exp(-score)),
+    "D": ("log volume", float),
+    "separate": ("score", float),
+}
+"""What a search makes better, in words, and its value from the score."""
+
+
+def _told(
+    progress: Progress, name: str, share: float, criterion: str
+) -> Callable[[int, float], None]:
+    words, value = BEST[criterion]
+
     def tell(tried: int, best: float) -> None:
-        shown = f", largest error {np.exp(best):.3g}" if best < 100.0 else ""
+        shown = f", {words} {value(best):.3g}" if best < 100.0 else ""
         progress(f"{name}: {tried} candidates{shown}", share)
 
     return tell
@@ -108,18 +139,19 @@ def _rated(
     tell: Callable[[int, float], None],
 ) -> Rated:  # fmt: skip
     found = None
-    if any(test.open for test in tests):
-        r = recipe.search
-        search = Search(r.criterion, recipe.ships.over, r.candidates, r.seed)
-        try:
+    r = recipe.search
+    search = Search(r.criterion, recipe.ships.over, r.candidates, r.seed)
+    try:
+        if any(test.open for test in tests):
             found = optimise(tests, ships, limits, search, tell)
-        except DesignError as error:
-            raise DesignError(f"{recipe.path}: test {name!r}: {error}") from error
-        tests = found.programme
-    came = outcome(tests, ships[0], limits)
+            tests = found.programme
+        came = outcome(tests, ships[0], limits)
+    except DesignError as error:
+        raise DesignError(f"{recipe.path}: test {name!r}: {error}") from error
     _check_visible(recipe, name, came, ships[0].goal)
-    remarks = tuple(r for test in tests for r in _of_lines(test, ships[0]))
-    return Rated(name, tests, came, found, remarks)
+    lines = [r for test in tests for r in _of_lines(test, ships[0])]
+    late = [r for passage in came.passages for r in _of_late(passage)]
+    return Rated(name, tests, came, found, (*lines, *late))
 
 
 def _check_visible(recipe: DesignRecipe, name: str, came: Outcome, goal: Goal) -> None:
@@ -152,11 +184,25 @@ def _of_lines(test: Test, ship: Ship) -> list[str]:
     return said
 
 
+def _of_late(passage: Passage) -> list[str]:
+    """Orders that the rudder does not reach before the next: it is tested, and not as written."""
+    orders, delta = (passage.trial.signals[n] for n in ("delta_order", "delta"))
+    last = np.flatnonzero(np.diff(orders))  # the last samples of all orders but the last
+    moved = np.abs(np.diff(delta, prepend=delta[0]))
+    late = np.abs(orders[last] - delta[last]) > moved.max() + 1e-9  # a step of the gear is no delay
+    if not late.any():
+        return []
+    return [
+        f"the rudder does not reach {late.sum()} of {len(last)} orders before the next; what is "
+        "rated is what it does"
+    ]
+
+
 def _ships(recipe: DesignRecipe, catalogue: Mapping[str, Effect]) -> list[Ship]:
     """The ship as she is known, first, and others she might be."""
     model = build_model(recipe, catalogue)
     known = {n: x for n, x in fitted_values(recipe).items() if n in model.parameters}
-    model = model.with_values(known)
+    model = with_starts(model.with_values(known), recipe.identify.free, settings_of(recipe))
     full = _full(recipe, model, catalogue)
     made = [_ship(recipe, model, full)]
     draw = np.random.default_rng(recipe.ships.seed)
@@ -219,12 +265,19 @@ def _si(recipe: DesignRecipe, key: str, given: GivenValue, unit: str, bare: str 
         raise UnitError(f"{where(recipe, key)}: {error}") from error
 
 
-def _limits(recipe: DesignRecipe) -> Limits:
+def _limits(recipe: DesignRecipe, model: ShipModel) -> Limits:
+    """The file's limits in SI; one of a motion that is not simulated would never bind."""
     r = recipe.limits
+    for name, state, given in (("heel", "phi", r.heel), ("speed_loss", "u", r.speed_loss)):
+        if given is not None and state not in model.states:
+            raise RecipeError(
+                f"{where(recipe, f'limits.{name}')}: {state} is not simulated, so nothing can be "
+                f"held against it; put {state} among model.states, or leave the limit out"
+            )
     degrees = np.deg2rad(1.0)
     return Limits(
         rudder=None if r.rudder is None else r.rudder * degrees,
-        rudder_rate=recipe.at_sea.rudder_rate * degrees,
+        rudder_rate=None if r.rudder_rate is None else r.rudder_rate * degrees,
         heel=None if r.heel is None else r.heel * degrees,
         speed_loss=r.speed_loss, room=r.room, duration=r.duration,
     )  # fmt: skip
@@ -255,7 +308,10 @@ def _separation(
     recipe: DesignRecipe, catalogue: Mapping[str, Effect], ship: Ship, limits: Limits,
     progress: Progress,
 ) -> Separation | None:  # fmt: skip
-    """The test that tells two effects apart, where the file asks for one."""
+    """The test that tells two effects apart, where the file asks for one.
+
+    Tests with nothing open are what it is compared with: how alike the two look without it.
+    """
     if recipe.separate is None:
         return None
     for i, name in enumerate(recipe.separate.effects):
@@ -268,9 +324,20 @@ def _separation(
         ship.vessel.model, _without_bias(settings), dict(ship.goal.noise), (one, other),
         ship.vessel, ship.roll_frequency, ship.speed,
     )  # fmt: skip
-    tests = tuple(_test(recipe, t) for t in recipe.tests)
+    tests = [_test(recipe, t) for t in recipe.tests]
+    run, new = ([t for t in tests if bool(t.open) is wanted] for wanted in (False, True))
+    so_far = [p.trial for p in sail_all(run, ship.vessel, ship.roll_frequency)]
+    before = likeness(pair, so_far) if so_far else None
+    if not new:
+        return Separation(pair.names, (), None, likeness(pair, so_far), 0)
     search = Search(candidates=recipe.search.candidates, seed=recipe.search.seed)
-    return separate(tests, pair, limits, search, progress=_told(progress, "telling apart", 0.8))
+    tell = _told(progress, "telling apart", 0.0, "separate")
+    try:
+        found = separate(new, pair, limits, search, (), tell)
+    except DesignError as error:
+        raise DesignError(f"{recipe.path}: separate: {error}") from error
+    chosen = tuple(replace(t, open={}) for t in found.programme)
+    return replace(found, programme=chosen, before=before)
 
 
 def _without_bias(settings: Settings) -> Settings:

@@ -128,6 +128,20 @@ def test_in_standard_deviations_of_the_noise():
     assert np.all(errors <= [p.noise_error * (1 + 1e-9) for p in rating.parameters])
 
 
+def test_noise_with_a_memory_is_made_white_first():
+    """The inverse of A^T A is then the best any fit could do: never worse than the sandwich."""
+    slow = {c: Noise(n.sigma, 20.0) for c, n in NOISE.items()}
+    asked = goal(MODEL, Settings(("Nr", "Kp"), OUTPUTS), slow)
+    white = goal(MODEL, Settings(("Nr", "Kp"), OUTPUTS), NOISE)
+    errors, before = (
+        np.sqrt(np.diag(np.linalg.inv(A.T @ A)))
+        for A, _ in (whitened(g, [zigzag(10)]) for g in (asked, white))
+    )
+    rating = rate(asked, [zigzag(10)])
+    assert np.all(errors <= [p.noise_error * (1 + 1e-9) for p in rating.parameters])
+    assert np.all(errors[0] > 2 * before[0])
+
+
 def test_an_output_without_noise_and_a_wish_that_is_not_free():
     with pytest.raises(DesignError, match="no noise is stated for output 'phi'"):
         goal(MODEL, GOAL.settings, {"r": NOISE["r"]})

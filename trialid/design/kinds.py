@@ -19,11 +19,21 @@ Value = float | tuple[float, ...]
 
 @dataclass(frozen=True)
 class Variable:
-    """A number of a kind: its unit in files, whether it is a list, and its default."""
+    """A number of a kind: its unit in files, whether it is a list, its default, its least value.
+
+    With `positive` it must be more than 0; a time is never less.
+    """
 
     unit: str
     many: bool = False
     default: Value | None = None
+    positive: bool = False
+
+    def wrong(self, value: float) -> str:
+        """What is wrong with a value, empty where nothing is."""
+        if self.positive and value <= 0.0:
+            return f"must be more than 0, got {value:g}"
+        return f"must not be less than 0, got {value:g}" if self.unit == "s" and value < 0.0 else ""
 
 
 @dataclass(frozen=True)
@@ -165,6 +175,7 @@ def _binary(v: Mapping[str, Value], w: Waters) -> Instructions:
 
 
 ANGLE: Final = Variable("deg")
+PERIOD: Final = Variable("s", positive=True)
 TURN: Final = Variable("deg", default=3.0 * np.pi)
 
 KINDS: Final[Mapping[str, Kind]] = {
@@ -175,8 +186,8 @@ KINDS: Final[Mapping[str, Kind]] = {
         "Dieudonne's spiral",
         {
             "angles": Variable("deg", many=True),
-            "settle": Variable("s", default=30.0),
-            "hold": Variable("s", default=300.0),
+            "settle": Variable("s", default=30.0, positive=True),
+            "hold": Variable("s", default=300.0, positive=True),
         },
         _spiral,
     ),
@@ -185,25 +196,25 @@ KINDS: Final[Mapping[str, Kind]] = {
         {
             "rates": Variable("deg/s", many=True),
             "gain": Variable("s", default=20.0),
-            "reset": Variable("s", default=60.0),
+            "reset": Variable("s", default=60.0, positive=True),
             "largest": Variable("deg", default=0.35),
-            "hold": Variable("s", default=150.0),
-            "watch": Variable("s", default=2.0),
+            "hold": Variable("s", default=150.0, positive=True),
+            "watch": Variable("s", default=2.0, positive=True),
         },
         _reversed_spiral,
     ),
     "modified_spiral": Kind(
         "modified spiral",
-        {"angles": Variable("deg", many=True), "period": Variable("s")},
+        {"angles": Variable("deg", many=True), "period": PERIOD},
         _modified_spiral,
     ),
-    "square_wave": Kind("square wave", {"angle": ANGLE, "period": Variable("s")}, _square_wave),
+    "square_wave": Kind("square wave", {"angle": ANGLE, "period": PERIOD}, _square_wave),
     "roll": Kind(
         "roll excitation",
         {
             "angle": ANGLE,
-            "detuning": Variable("1", default=1.0),
-            "swings": Variable("1", default=4.0),
+            "detuning": Variable("1", default=1.0, positive=True),
+            "swings": Variable("1", default=4.0, positive=True),
             "decay": Variable("s", default=100.0),
         },
         _roll,
@@ -212,7 +223,7 @@ KINDS: Final[Mapping[str, Kind]] = {
         "step sequence",
         {
             "angles": Variable("deg", many=True),
-            "lengths": Variable("1", many=True, default=(1.0,)),
+            "lengths": Variable("1", many=True, default=(1.0,), positive=True),
         },
         _steps,
     ),
@@ -220,7 +231,7 @@ KINDS: Final[Mapping[str, Kind]] = {
         "multisine",
         {
             "angle": ANGLE,
-            "periods": Variable("s", many=True),
+            "periods": Variable("s", many=True, positive=True),
             "sizes": Variable("1", many=True, default=(1.0,)),
             "phases": Variable("deg", many=True, default=(0.0,)),
         },

@@ -1,5 +1,6 @@
 """What crew, ship and water allow, and which of it a test would break."""
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -16,7 +17,8 @@ class Limits:
     Attributes
     ----------
     rudder, rudder_rate
-        Largest order [rad], and what the steering gear can do [rad/s].
+        Largest order [rad], and the fastest the gear may be asked to run [rad/s]: how fast the
+        rudder runs, or would have to, to reach every order before the next one.
     heel
         Largest roll angle [rad].
     speed_loss
@@ -69,6 +71,10 @@ def _found(passage: Passage, limits: Limits, speed: float) -> Iterator[Excess]:
         yield Excess("model", np.inf, 1.0, passage.departure.t, str(passage.departure))
     order = np.abs(signals["delta_order"])
     yield from _over("rudder", order, t, limits.rudder, degrees, "deg of rudder are ordered")
+    rate = np.maximum(rates_asked(signals["delta_order"], passage.trial.period), _runs(passage))
+    yield from _over(
+        "rudder rate", rate, t, limits.rudder_rate, degrees, "deg/s of rudder are asked for"
+    )
     if "phi" in signals:
         roll = np.abs(signals["phi"])
         yield from _over("heel", roll, t, limits.heel, degrees, "deg of heel are reached")
@@ -84,6 +90,27 @@ def _found(passage: Passage, limits: Limits, speed: float) -> Iterator[Excess]:
     if limits.duration is not None and t[-1] > limits.duration + passage.trial.period:
         words = f"it takes {t[-1]:.0f} s, {limits.duration:.0f} s are allowed"
         yield Excess("duration", float(t[-1]), limits.duration, limits.duration, words)
+
+
+def rates_asked(orders: Vector, period: float) -> Vector:
+    """How fast a rudder must run to reach each order before the next one [rad/s]; (N,).
+
+    The last order has all the time there is. At every sample the rate of the order it belongs to.
+
+    >>> rates_asked(np.array([0.0, 4.0, 4.0, -4.0, -4.0]), 0.5).tolist()
+    [0.0, 4.0, 4.0, 0.0, 0.0]
+    """
+    rates = np.zeros(len(orders))
+    edges = np.flatnonzero(np.diff(orders)) + 1
+    for begin, end in itertools.pairwise(edges.tolist()):
+        rates[begin:end] = abs(orders[begin] - orders[begin - 1]) / ((end - begin) * period)
+    return rates
+
+
+def _runs(passage: Passage) -> Vector:
+    """How fast the rudder runs [rad/s]; (N,)."""
+    delta = passage.trial.signals["delta"]
+    return np.abs(np.diff(delta, prepend=delta[0])) / passage.trial.period
 
 
 def _over(

@@ -1,7 +1,7 @@
 """Better tests: the numbers left open, chosen so that the wanted parameters come out accurate.
 
-Differential evolution over all open numbers of a programme at once, then a local search from the
-best. Every candidate is sailed on every plausible ship, held against the limits and rated. The
+Candidates scattered over all open numbers of a programme at once, then an evolution from the best
+of them. Every candidate is sailed on every plausible ship, held against the limits and rated. The
 seed is explicit; the same seed gives the same programme.
 """
 
@@ -11,8 +11,8 @@ from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import Bounds, differential_evolution, minimize
 
+from trialid.design.evolution import evolve
 from trialid.design.helm import Passage, Vessel
 from trialid.design.kinds import KINDS, Test, Value, sail
 from trialid.design.limits import Excess, Limits, excesses
@@ -131,7 +131,7 @@ def search_open(
     search: Search,
     progress: Progress,
 ) -> Found:
-    """The open numbers with the smallest score: differential evolution, then a local search.
+    """The open numbers with the smallest score.
 
     Raises
     ------
@@ -151,17 +151,8 @@ def search_open(
         progress(count, best)
         return found
 
-    cube = Bounds(np.zeros(len(places)), np.ones(len(places)))
-    size = max(5, min(8 * len(places), search.candidates // 20))
-    rounds = max(1, search.candidates * 3 // 4 // size - 1)
-    first = np.random.default_rng(search.seed).random((size, len(places)))
-    wide = differential_evolution(
-        tried, cube, init=first, maxiter=rounds, polish=False, tol=0.0, rng=search.seed
-    )
-    left = max(search.candidates - count, 1)
-    near = minimize(tried, wide.x, method="Powell", bounds=cube, options={"maxfev": left})
-    chosen = min((wide, near), key=lambda one: float(one.fun))
-    return Found(decoded(programme, places, chosen.x), float(chosen.fun), count)
+    best_one = evolve(tried, len(places), search.candidates, search.seed)
+    return Found(decoded(programme, places, best_one.x), best_one.score, count)
 
 
 def _scored(candidate: Sequence[Test], ship: Ship, limits: Limits, search: Search) -> float:
@@ -220,6 +211,11 @@ def _impossible(programme: Sequence[Test], ships: Sequence[Ship], limits: Limits
     broken = [e for ship in ships for e in outcome(programme, ship, limits).excesses]
     if not broken:
         return "no candidate could be rated; the model to be fitted leaves its domain in all"
+    return not_kept(broken)
+
+
+def not_kept(broken: Sequence[Excess]) -> str:
+    """Why the best test that was found may not be run: the limit that binds, in words."""
     worst = max(broken, key=lambda e: e.share)
     return f"no test of this kind keeps the limits; {worst.limit} binds: {worst.sentence}"
 

@@ -15,7 +15,7 @@ from trialid.design.helm import Vessel
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
 from trialid.design.rating import Goal, Noise, goal, whitened
-from trialid.design.search import BROKEN, Found, Search, sail_all, search_open
+from trialid.design.search import BROKEN, Found, Search, not_kept, sail_all, search_open
 from trialid.errors import DesignError
 from trialid.identification.pose import Settings
 from trialid.ship.effect import Effect
@@ -170,6 +170,11 @@ def separate(
     ----------
     so_far
         Trials that were run already: they are fitted together with the new ones.
+
+    Raises
+    ------
+    DesignError
+        No candidate keeps the limits: the message names the one that binds.
     """
 
     def score(candidate: Sequence[Test]) -> float:
@@ -177,13 +182,19 @@ def separate(
         broken = [e for p in passages for e in excesses(p, limits, rivals.speed)]
         if broken:
             return BROKEN * (1.0 + sum(min(e.share, 5.0) for e in broken))
-        alike = likeness(rivals, [*so_far, *(p.trial for p in passages)])
-        weak = max(0.0, ENOUGH - min(alike.odds)) / ENOUGH
-        return alike.cosine + weak
+        try:
+            alike = likeness(rivals, [*so_far, *(p.trial for p in passages)])
+        except DesignError:  # nothing moves in it, or the model cannot follow
+            return 10.0 * BROKEN
+        # odds beyond enough are still worth something: the noise at sea is never as stated
+        return alike.cosine + ENOUGH / (ENOUGH + min(alike.odds))
 
     found: Found = search_open(programme, score, search, progress)
     if found.score >= BROKEN:
-        raise DesignError("no test of this kind keeps the limits")
+        passages = sail_all(found.programme, rivals.vessel, rivals.roll_frequency)
+        likeness(rivals, [*so_far, *(p.trial for p in passages)])  # says so where nothing moves
+        broken = [e for p in passages for e in excesses(p, limits, rivals.speed)]
+        raise DesignError(not_kept(broken))
     passages = sail_all(found.programme, rivals.vessel, rivals.roll_frequency)
     after = likeness(rivals, [*so_far, *(p.trial for p in passages)])
     before = likeness(rivals, so_far) if so_far else None

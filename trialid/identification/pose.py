@@ -90,7 +90,7 @@ def ready(
     full, per_trial = with_nuisance(model, settings)
     shared = tuple(n for n in settings.free if n not in per_trial)
     free = (*shared, *per_trial)
-    started = _with_starts(full, free, settings)
+    started = with_starts(full, free, settings)
     simulator = prepare(started, free, settings.outputs, settings.engine, settings.substeps)
     return simulator, shared, per_trial
 
@@ -169,7 +169,7 @@ def with_nuisance(model: ShipModel, settings: Settings) -> tuple[ShipModel, tupl
     return model, tuple(p for e in added for p in e.parameters)
 
 
-def _with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> ShipModel:
+def with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> ShipModel:
     """Typical values for free parameters nobody states, so that the search has a start."""
     missing = {}
     for name in free:

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -30,6 +30,9 @@ from trialid.recipe.form import (
     with_value,
 )
 
+MOST: Final = 200_000
+"""Samples of a test: a day and more at the usual period."""
+
 Given = Annotated[GivenValue, BeforeValidator(with_value)]
 Numbers = Number | tuple[Number, ...]
 
@@ -48,8 +51,9 @@ class NoiseRecipe(Section):
 class AtSea(Section):
     """How the tests are sailed: clock, straight run before each, gear, and what stays constant.
 
-    `period`, `approach` [s], `rudder_rate` [deg/s]; `constant` holds recorded signals that do not
-    change, as the shaft speed: a number in the unit of reports, or with a unit of its own.
+    `period`, `approach` [s], `rudder_rate` [deg/s] of the steering gear, where no effect of the
+    model is one; `constant` holds recorded signals that do not change, as the shaft speed: a number
+    in the unit of reports, or with a unit of its own.
     """
 
     period: Positive = 0.5
@@ -59,9 +63,14 @@ class AtSea(Section):
 
 
 class LimitsRecipe(Section):
-    """What may not be passed: deg, share of the speed, m ahead, aside and astern, s."""
+    """What may not be passed: deg, deg/s, share of the speed, m ahead, aside and astern, s.
+
+    `rudder_rate` holds for the rudder and for the orders: those that come so quickly that it would
+    have to run faster to reach each of them break it. Without it the rudder merely comes late.
+    """
 
     rudder: Positive | None = None
+    rudder_rate: Positive | None = None
     heel: Positive | None = None
     speed_loss: Annotated[Number, Field(gt=0, le=1)] | None = None
     room: tuple[Positive, Positive, Positive] | None = None
@@ -109,7 +118,10 @@ class FullRecipe(Section):
 
 
 class SeparateRecipe(Section):
-    """Two effects that are to be told apart."""
+    """Two effects that are to be told apart, by the tests that have something open.
+
+    The other tests are what these are compared with: those that were run already.
+    """
 
     effects: tuple[str, str]
 
@@ -148,7 +160,7 @@ def load_design(path: Path) -> DesignRecipe:
     content = content_of(path)
     table = table_of(content, path)
     recipe = formed(DesignRecipe, {**_lent(table, path), **table}, Origin(path, content))
-    if problems := [*_of_tests(recipe), *_of_signals(recipe)]:
+    if problems := [*_of_tests(recipe), *_of_signals(recipe), *_of_gear(recipe)]:
         raise refusal(path, problems)
     return recipe
 
@@ -178,8 +190,23 @@ def _of_tests(recipe: DesignRecipe) -> list[Problem]:
             words = f"there is no manoeuvre {test.kind!r}; {nearest(test.kind, KINDS)}"
             found.append((dotted(*at, "kind"), words))
             continue
-        found += _of_numbers(test, at)
+        found += [*_of_numbers(test, at), *_of_duration(recipe, test, at)]
     return found
+
+
+def _of_duration(recipe: DesignRecipe, test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
+    """A test must outlast its approach, and fit into the memory of a computer."""
+    low, high = test.open.get("duration", (test.duration, test.duration))
+    if low is None or high is None:
+        return []  # missing, and said so
+    key = dotted(*at, "open" if "duration" in test.open else "duration")
+    approach, period = recipe.at_sea.approach, recipe.at_sea.period
+    if low <= approach:
+        return [(key, f"{low:g} s are over with the straight run before (at_sea.approach = "
+                 f"{approach:g}); give the test more time")]  # fmt: skip
+    if high / period > MOST:
+        return [(key, f"{high:g} s are more than {MOST} samples of {period:g} s; make it shorter")]
+    return []
 
 
 def _of_numbers(test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
@@ -198,6 +225,14 @@ def _of_numbers(test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
     for name, value in test.set.items():
         if isinstance(value, tuple) and name in variables and not variables[name].many:
             found.append((dotted(*at, "set", name), "is one number, not a list"))
+    found += [
+        (dotted(*at, key, n), variables[n].wrong(x))
+        for key, numbers in (("set", test.set), ("open", test.open))
+        for n, value in numbers.items()
+        for x in (value if isinstance(value, tuple) else (value,))[: None if key == "set" else 1]
+        if n in variables and variables[n].wrong(x)
+    ]
+    found += [(dotted(*at, "set", n), "is empty") for n, x in test.set.items() if x == ()]
     twice = [n for n in test.open if n in test.set]
     found += [(dotted(*at, "open", n), "is set as well; keep one of the two") for n in twice]
     return found + _missing(test, at)
@@ -211,6 +246,17 @@ def _missing(test: TestRecipe, at: Sequence[str | int]) -> list[Problem]:
     if test.duration is None and "duration" not in test.open:
         found.append((dotted(*at, "duration"), "missing; give it in s, or leave it open"))
     return found
+
+
+def _of_gear(recipe: DesignRecipe) -> list[Problem]:
+    """A gear that is to run faster than it can."""
+    able, asked = recipe.limits.rudder_rate, recipe.at_sea.rudder_rate
+    if able is None or asked <= able:
+        return []
+    words = (
+        f"{asked:g} deg/s are more than limits.rudder_rate allows, {able:g}; give the gear's own"
+    )
+    return [(dotted("at_sea", "rudder_rate"), words)]
 
 
 def _of_signals(recipe: DesignRecipe) -> list[Problem]:

@@ -1,0 +1,111 @@
+import numpy as np
+import pytest
+from s175q import MODEL, OUTPUTS
+from waters import NOISE, ROLL, SPEED, VESSEL, D
+
+from trialid.design.kinds import Test, sail
+from trialid.design.limits import Limits
+from trialid.design.search import Search
+from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals, separate
+from trialid.effects import CATALOGUE
+from trialid.errors import DesignError
+from trialid.identification.pose import Settings
+
+FIVE = ("Yv", "Ydelta", "Nv", "Nr", "Ndelta")
+STAIRS = Test(
+    "modified_spiral", {"angles": (0.0,) * 4}, 600.0, 30.0,
+    {"angles": (-35 * D, 35 * D), "period": (100.0, 600.0)}, "stairs",
+)  # fmt: skip
+CIRCLE = Test("turning_circle", {}, 600.0, 30.0, {"angle": (5 * D, 35 * D)}, "circle")
+
+
+def pair(one, other, outputs=OUTPUTS, free=FIVE):
+    settings = Settings(free, outputs, nuisance=("initial_state",))
+    both = (CATALOGUE[one], CATALOGUE[other])
+    return rivals(MODEL, settings, dict(NOISE), both, VESSEL, ROLL, SPEED)
+
+
+def zigzag(angle, duration=600.0):
+    test = Test("zigzag", {"angle": angle * D, "heading": angle * D}, duration, 30.0)
+    return sail(test, VESSEL, ROLL).trial
+
+
+GEAR = pair("rudder_offset", "propeller_side_force")
+CROSS = pair("yaw_drag_var", "yaw_drag_rav")
+TEN_TEN = zigzag(10)
+
+
+def test_what_loses_speed_tells_a_rudder_offset_from_a_side_force():
+    """The one acts with the speed, the other with the screw: a zig-zag keeps both as they are."""
+    before = likeness(GEAR, [TEN_TEN])
+    assert before.cosine > 0.95
+    found = separate([STAIRS], GEAR, Limits(heel=15 * D), Search(candidates=60, seed=1))
+    assert found.after.cosine < 0.6
+    assert found.after.separate
+    assert found.after == likeness(GEAR, [sail(t, VESSEL, ROLL).trial for t in found.programme])
+    again = separate([STAIRS], GEAR, Limits(heel=15 * D), Search(candidates=60, seed=1))
+    assert again == found
+
+
+def test_the_rate_of_turn_alone_cannot_tell_its_bias_from_wind():
+    alone = pair("bias_r", "steady_wind", ("r",), ("Yv", "Nv", "Nr", "Ndelta"))
+    assert likeness(alone, [TEN_TEN]).cosine > 0.95
+    assert likeness(pair("bias_r", "steady_wind"), [TEN_TEN]).cosine < 0.3
+
+
+def test_a_steady_turn_never_tells_the_two_cross_terms_apart():
+    """V |r| = -r |v| where v and r have opposite signs: refused, with the figures."""
+    found = separate([CIRCLE], CROSS, Limits(), Search(candidates=12))
+    assert found.after.cosine > 0.99
+    assert not found.after.separate
+    assert found.sentence.startswith(
+        "no feasible test separates yaw_drag_var from yaw_drag_rav: the best found leaves |cos| "
+    )
+    assert f"where {ENOUGH:g} are needed" in found.sentence
+
+
+def test_trials_so_far_are_fitted_together_with_the_new():
+    limits, search = Limits(), Search(candidates=12)
+    alone = separate([CIRCLE], GEAR, limits, search)
+    added = separate([CIRCLE], GEAR, limits, search, so_far=[TEN_TEN])
+    assert alone.before is None
+    assert added.before == likeness(GEAR, [TEN_TEN])
+    assert min(added.after.odds) > min(added.before.odds)
+    assert f"(so far {added.before.cosine:.3f})" in added.sentence
+
+
+def test_the_odds_are_what_the_record_loses_by_the_wrong_name():
+    """Twice the record, twice the odds; and no rival explains more than there is."""
+    once, twice = (likeness(GEAR, [TEN_TEN] * n) for n in (1, 2))
+    np.testing.assert_allclose(twice.odds, 2 * np.array(once.odds), rtol=1e-6)
+    assert twice.cosine == pytest.approx(once.cosine, abs=1e-9)
+    assert min(once.odds) >= 0.0
+
+
+def test_either_must_be_recognised():
+    assert Likeness(0.9, (7.0, 8.0)).separate
+    assert not Likeness(0.0, (7.0, 5.0)).separate
+
+
+def test_effects_of_the_model_are_taken_out_of_it_first():
+    assert "Nvar" in MODEL.parameters
+    assert CROSS.first == ("Nvar",)
+    assert CROSS.goal.model.value("Nvar") == 0.0
+
+
+def test_effects_that_share_a_number_cannot_be_compared():
+    with pytest.raises(DesignError, match="share 'Nvar'"):
+        pair("yaw_drag_var", "yaw_drag_var")
+
+
+def test_no_feasible_test_is_said():
+    with pytest.raises(DesignError, match="no test of this kind keeps the limits; heel binds: "):
+        separate([CIRCLE], GEAR, Limits(heel=0.1 * D), Search(candidates=8))
+
+
+def test_the_sentence_of_two_that_come_apart():
+    found = Separation(("a", "b"), (), Likeness(0.9876, (1.0, 2.0)), Likeness(0.1, (20.0, 9.0)), 5)
+    assert found.sentence == (
+        "a and b come apart: |cos| 0.100 (so far 0.988), and the right one wins by 9 in the "
+        "logarithm of the odds"
+    )
