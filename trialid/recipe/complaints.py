@@ -71,7 +71,7 @@ def _not_listed(detail: ErrorDetails) -> str:
     allowed = re.findall(r"'([^']*)'", detail["ctx"]["expected"])
     given = detail["input"]
     if given == "?":
-        return f"is still open; write one of {', '.join(map(repr, allowed))}"
+        return f"is still open; write one of {', '.join(map(repr, sorted(allowed)))}"
     return f"{given!r} is not allowed; {nearest(str(given), allowed)}"
 
 
