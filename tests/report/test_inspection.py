@@ -148,3 +148,15 @@ def test_channels_of_two_clocks_have_a_span_each(ros):
     assert "two clocks: 1199.8 s, 2026-05-28 20:26:40 to" in title
     assert title.endswith("; 3.0 s, 2.000 s to 5.000 s")
     assert plain(both)["duration"] == pytest.approx(1200, abs=1)
+
+
+def test_two_recorders_whose_clocks_differ_are_told_what_to_write(tmp_path):
+    t = np.arange(0, 400, 0.2)
+    for name, late in (("rot", 0.0), ("gyro_z", 3.0)):
+        motion = np.cumsum(np.random.default_rng(2).normal(size=len(t)))
+        rows = np.column_stack([t + late, motion - motion.mean()])
+        head = f"t,{name}[deg/s]"
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header=head, comments="")
+    words = " ".join(text(survey(tmp_path)).split())
+    assert "rot against gyro_z: 3 s earlier" in words
+    assert 'the one that holds gyro_z: clock = { match = ["gyro_z", "rot"] }' in words

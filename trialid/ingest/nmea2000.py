@@ -254,6 +254,6 @@ def _system_time(messages: Messages) -> Iterator[str]:
             ahead = (utc - messages.t[some[stated]]) / 1e9
             middle, spread = np.median(ahead), np.ptp(ahead)
             yield (
-                f"system time (PGN 126992) of source {messages.senders.labels[sender]} is stamp "
-                f"{middle:+.3f} s (median of {len(ahead)}, spread {spread:.3f} s)"
+                f"system time (PGN 126992) of source {messages.senders.labels[sender]} is "
+                f"{abs(middle):.3f} s {'ahead of' if middle >= 0 else 'behind'} the stamps (median of {len(ahead)}, spread {spread:.3f} s)"
             )

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from trialid.alignment.checks import Finding
+from trialid.alignment.checks import LATE, Finding
 from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.quantities import SIGNALS
 from trialid.report import labels
@@ -32,6 +32,8 @@ NARROW, DESCRIBED = 24, 46
 DEGREES: Final = {"rad": "deg", "rad/s": "deg/s"}
 """People think in degrees."""
 MOST_REMARKS: Final = 8
+ALIKE: Final = 0.95
+"""Correlation of two channels that hold one motion, so that their clocks can be matched by it."""
 
 
 def shown(text: str) -> str:
@@ -49,7 +51,11 @@ def inspection(survey: Survey, *, everything: bool = False) -> Sequence[Any]:
     parts: list[Any] = [_title(survey), ""]
     if known:
         parts += [_signals(known), ""]
-    parts += [*_choices(known, found), *_others(survey, everything), *_clocks(survey)]
+    parts += [
+        *_choices(known, found, len(survey.files)),
+        *_others(survey, everything),
+        *_clocks(survey),
+    ]
     parts += _remarks(survey, found)
     return parts[:-1] if parts[-1] == "" else parts
 
@@ -181,10 +187,16 @@ def _unit(one: ChannelSurvey) -> str:
 
 
 def _choices(
-    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
+    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding], files: int
 ) -> Iterator[Any]:
     """What a person has to decide: several sources, no source, a rudder's sign."""
-    lines = [*_several(known, found), *_mends(found), *_lacking(known), *_rudder(known)]
+    lines = [
+        *_several(known, found),
+        *_clocks_apart(found, files),
+        *_mends(found),
+        *_lacking(known),
+        *_rudder(known),
+    ]
     if lines:
         yield _heading("to decide")
         yield from (_bullet(line) for line in lines)
@@ -205,6 +217,23 @@ def _several(
         apart = [one.sentence for one in found if one.kind == "differ" and keys >= {*one.about}]
         yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
         yield from apart
+
+
+def _clocks_apart(found: Sequence[Finding], files: int) -> Iterator[str]:
+    """What to do where a shift may be that of two recorders' clocks."""
+    late = [
+        one
+        for one in found
+        if one.kind == "differ"
+        and abs(one.evidence.get("lag", 0.0)) > LATE
+        and one.evidence["correlation"] > ALIKE
+    ]
+    if files > 1 and late:
+        here, there = late[0].about
+        yield (
+            "if those are logs of two recorders: name the files apart in `logs`, and write beside "
+            f'the path of the one that holds {here}: clock = {{ match = ["{here}", "{there}"] }}'
+        )
 
 
 def _mends(found: Sequence[Finding]) -> Iterator[str]:
