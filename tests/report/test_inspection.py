@@ -160,3 +160,11 @@ def test_two_recorders_whose_clocks_differ_are_told_what_to_write(tmp_path):
     words = " ".join(text(survey(tmp_path)).split())
     assert "rot against gyro_z: 3 s earlier" in words
     assert 'the one that holds gyro_z: clock = { match = ["gyro_z", "rot"] }' in words
+
+
+def test_units_that_the_log_does_not_state_are_asked_for(ros, tmp_path):
+    words = " ".join(text(ros).split())
+    assert "no unit is stated for /speed/stw:data, /steering/rudder:data: `unit` in the" in words
+    log = tmp_path / "a.csv"
+    log.write_text("t,rudder[deg],heading_deg\n0,1,2\n1,2,3\n")
+    assert "no unit is stated" not in text(survey(log))

@@ -10,14 +10,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from trialid.alignment.checks import LATE, Finding
+from trialid.alignment.checks import Finding
 from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.quantities import SIGNALS
 from trialid.report import labels
+from trialid.report.decisions import decisions
 from trialid.report.terminal import Words, add_row, cut, new_table
-from trialid.survey.contradictions import COMPARED, MOST_SOURCES, findings
+from trialid.survey.contradictions import findings
 from trialid.survey.findings import ChannelSurvey, Received, Survey
-from trialid.survey.relations import side
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderResult
@@ -32,8 +32,6 @@ NARROW, DESCRIBED = 24, 46
 DEGREES: Final = {"rad": "deg", "rad/s": "deg/s"}
 """People think in degrees."""
 MOST_REMARKS: Final = 8
-ALIKE: Final = 0.95
-"""Correlation of two channels that hold one motion, so that their clocks can be matched by it."""
 
 
 def shown(text: str) -> str:
@@ -52,7 +50,7 @@ def inspection(survey: Survey, *, everything: bool = False) -> Sequence[Any]:
     if known:
         parts += [_signals(known), ""]
     parts += [
-        *_choices(known, found, len(survey.files)),
+        *_choices(decisions(known, found, len(survey.files))),
         *_others(survey, everything),
         *_clocks(survey),
     ]
@@ -186,87 +184,12 @@ def _unit(one: ChannelSurvey) -> str:
     return f"{one.unit_in_name} (name)" if one.unit_in_name else "not stated"
 
 
-def _choices(
-    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding], files: int
-) -> Iterator[Any]:
-    """What a person has to decide: several sources, no source, a rudder's sign."""
-    lines = [
-        *_several(known, found),
-        *_clocks_apart(found, files),
-        *_mends(found),
-        *_lacking(known),
-        *_rudder(known),
-    ]
+def _choices(lines: Sequence[str]) -> Iterator[Any]:
+    """What a person has to decide."""
     if lines:
         yield _heading("to decide")
         yield from (_bullet(line) for line in lines)
         yield ""
-
-
-def _several(
-    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
-) -> Iterator[str]:
-    """Several sources of a quantity, and what sets them apart."""
-    for name in COMPARED:
-        live = [one for one in known.get(name, ()) if not one.constant]
-        if len(live) < 2:
-            continue
-        rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:MOST_SOURCES])
-        more = f" and {len(live) - MOST_SOURCES} more" if len(live) > MOST_SOURCES else ""
-        keys = {one.key for one in live}
-        apart = [one.sentence for one in found if one.kind == "differ" and keys >= {*one.about}]
-        yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
-        yield from apart
-
-
-def _clocks_apart(found: Sequence[Finding], files: int) -> Iterator[str]:
-    """What to do where a shift may be that of two recorders' clocks."""
-    late = [
-        one
-        for one in found
-        if one.kind == "differ"
-        and abs(one.evidence.get("lag", 0.0)) > LATE
-        and one.evidence["correlation"] > ALIKE
-    ]
-    if files > 1 and late:
-        here, there = late[0].about
-        yield (
-            "if those are logs of two recorders: name the files apart in `logs`, and write beside "
-            f'the path of the one that holds {here}: clock = {{ match = ["{here}", "{there}"] }}'
-        )
-
-
-def _mends(found: Sequence[Finding]) -> Iterator[str]:
-    """What a line of the pipeline would mend; of a rudder's side `_rudder` tells more."""
-    for one in found:
-        if one.mend is not None and one.kind != "side":
-            named = one.mend in one.sentence
-            yield one.sentence if named else f"{one.sentence}; {one.mend} would mend it"
-
-
-def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
-    alive = {name for name, sources in known.items() if any(not one.constant for one in sources)}
-    if not alive & {"delta", "delta_order"}:
-        yield "no rudder or rudder order that moves is recognised: a fit needs one"
-    if not alive & {"r", "psi", "phi"}:
-        yield "no yaw rate, heading or roll angle that moves is recognised: a fit needs a motion"
-    if "u" not in alive:
-        yield "no speed through the water is recognised: state `speed` in the pipeline"
-
-
-def _rudder(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
-    """What the motion says about the sign of each rudder; the best yaw rate is the witness."""
-    witness = next((one for one in known.get("r", ()) if not one.constant), None)
-    if witness is None:
-        return
-    for name in ("delta", "delta_order"):
-        for one in known.get(name, ())[:3]:
-            found = side(one, witness)
-            if found is not None:
-                yield (
-                    f'{one.key}: positive = "{found.side}", by its correlation with {found.by}, of '
-                    f"{witness.key} ({found.strength:+.2f}), if that is positive to {found.if_to}"
-                )
 
 
 def _others(survey: Survey, everything: bool) -> Iterator[Any]:
