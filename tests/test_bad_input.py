@@ -283,8 +283,8 @@ def test_a_log_that_is_not_there() -> None:
 @pytest.mark.parametrize(("content", "words"), [
     pytest.param(b"", ("empty", "0 bytes", "copy it again"), id="empty"),
     pytest.param(b"t[s],rudder[deg]\n", ("header but no rows", "exported"), id="no rows"),
-    pytest.param(b"\x89PNG\r\n\x1a\n" + bytes(50),
-                 ("none of the formats", "MCAP, MAV", "PNG", "as CSV"), id="a picture"),
+    pytest.param(b"\x89PNG\r\n\x1a\n" + bytes(50), ("none of the formats", "MCAP, MAV", "PNG",
+                 "as CSV", "--template FILE"), id="a picture"),
     pytest.param(b"a,b\n1,2\n", ("no time column", "a, b", "'time'"), id="no time"),
     pytest.param(b"t,rudder\n0,1\n1,x\n2,1\n", ("line 3", "'rudder'", "'x'", "number"),
                  id="a word for a number"),

@@ -107,6 +107,12 @@ def test_init_without_a_ship_is_one_line_and_writes_nothing(tmp_path: Path) -> N
         ([str(CSV), "--init", "no/a.toml", "--length", "9"], "there is no folder no"),
         ([str(CSV), "--dbc", "no.dbc"], "no.dbc: no such file"),
         ([str(LOGS / "zigzag-10.mcap"), "--zone", "Europe/Oslo"], "zone"),
+        (
+            [str(CSV), "--zone", "Oslo"],
+            "--zone: 'Oslo' is no time zone; write it like Europe/Oslo "
+            "(did you mean 'Europe/Oslo'?)",
+        ),
+        ([str(CSV), "--zone", "Xyz"], "'Xyz' is no time zone; write it like Europe/Oslo\n"),
     ],
 )
 def test_mistakes_are_one_line(

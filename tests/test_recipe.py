@@ -332,6 +332,7 @@ def test_an_unknown_key_leads_and_names_the_nearest(
     ("old", "new", "message"),
     [
         ('"port"', '"prot"', "trial[0].signals.delta.positive: 'prot' is not allowed; did you "),
+        ('"port"', '"?"', "trial[0].signals.delta.positive: is still open; write one of 'port', "),
         ('"roll"', '"rol"', "trial[0].signals.phi.as: 'rol' is not allowed; did you mean 'roll'"),
         ('name = "zigzag-20"\n', "", "trial[0].name: missing; the pipeline needs it"),
         ('logs = ["logs/zigzag20.csv"]', "logs = []", "trial[0].logs: must not be empty"),

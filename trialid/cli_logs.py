@@ -124,11 +124,17 @@ def _surveys(
     logs: Sequence[Path], template: Path | None, dbc: Path | None, zone: str | None
 ) -> list["Survey"]:
     from trialid.ingest import Aids
+    from trialid.ingest.local_time import known_zone
     from trialid.survey import survey
 
     for file in (template, dbc):
         if file is not None and not file.is_file():
             raise TrialidError(f"{file}: no such file")
+    if zone is not None:
+        try:
+            known_zone(zone)
+        except ValueError as error:
+            raise TrialidError(f"--zone: {error}") from error
     aids = Aids(template, dbc, zone)
     with progress_bar(shown=sys.stderr.isatty()) as progress:
         found = []
@@ -222,4 +228,5 @@ def _draft_template(logs: Sequence[Path], template: Path) -> None:
     if template.exists():
         raise TrialidError(f"--template {template}: exists; name another file")
     _write_new({template: draft(logs[0])})
-    click.echo(f"Written: {template}; review it, then use it as `template` of the log", err=True)
+    click.echo(f"Written: {template}", err=True)
+    click.echo(f"Review it, then: trialid inspect {logs[0]} --with-template {template}", err=True)

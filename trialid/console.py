@@ -51,7 +51,7 @@ def rendered(*parts: Any, width: int | None = None) -> str:
     with console.capture() as capture:
         for part in parts:
             console.print(part, markup=False, highlight=False)
-    return capture.get().rstrip("\n")
+    return "\n".join(line.rstrip() for line in capture.get().rstrip("\n").split("\n"))
 
 
 def say(text: str) -> None:

@@ -1,7 +1,11 @@
 """The error tree: everything the user can cause is a `TrialidError` with one clear line."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+LISTED: Final = 30
+"""Names that an error lists before it only counts them."""
 
 
 class TrialidError(Exception):
@@ -56,4 +60,16 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, names, n=3, cutoff=0.6)
     if close:
         return "did you mean " + " or ".join(repr(c) for c in close) + "?"
-    return "known: " + ", ".join(names)
+    return "known: " + listed(names)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as words of an error, no more than a line or two of them.
+
+    >>> listed(["delta", "phi"])
+    'delta, phi'
+    >>> listed([f"column {i}" for i in range(85)]).partition(", column 29")[2]
+    ' and 55 more'
+    """
+    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return ", ".join(names[:LISTED]) + more

@@ -310,3 +310,9 @@ def _bus(name):
 
 def _named(channels):
     return {f"{quantity}/{source}": one for (quantity, source), one in channels.items()}
+
+
+def test_a_log_cut_short_leaves_one_channel_with_hardly_a_sample():
+    t = np.arange(0, 40, 0.1)
+    long = series("r", t, 0.01 * np.sin(0.3 * t))
+    assert twins.disagreements({"a": long, "b": series("r", t[:1], np.zeros(1))}) == ()

@@ -117,10 +117,14 @@ def test_a_last_line_cut_short_is_left_out_and_said(tmp_path):
     ("text", "message"),
     [
         ("t,u\n0,1\n1,2,3\n", "line 3: 3 fields where the header has 2 (t, u); mend or delete"),
-        ("t,u\n0,1\n1\n2,3\n", "line 3: 1 fields where the header has 2"),
+        ("t,u\n0,1\n1\n2,3\n", "otherwise, draft a template (trialid inspect LOG --template FILE)"),
         ("t,u\n0,1\n1,abc\n", "line 3, column 'u': 'abc' where a number was expected"),
         ("t,u\n0,1.5\n1,1.234,5\n", "line 3: 3 fields"),
         ("x,u\n0,1\n", "no time column among x, u; name exactly one of them 't' or 'time'"),
+        (
+            ",".join(f"c{i}" for i in range(80)) + "\n" + ",".join("1" * 80) + "\n",
+            "c29 and 50 more; name exactly one",
+        ),
         ("t,time,u\n0,1,2\n", "several time columns among t, time, u"),
         ("t,u,u\n0,1,2\n", "column 'u' stands twice in the header; rename one"),
         ("t,u\n", "a header but no rows"),

@@ -236,7 +236,7 @@ def test_the_time_of_the_bus_is_a_remark():
     messages = [(t, 126992, 3, time(t + 7200)) for t in range(1_600_000_000, 1_600_000_005)]
     messages.append((1_600_000_006, 126992, 3, b"\xff" * 8))
     channels, remarks = decode(messages)
-    told = "is stamp +7200.000 s (median of 5, spread 0.000 s)"
+    told = "is 7200.000 s ahead of the stamps (median of 5, spread 0.000 s)"
     assert (channels, remarks) == ({}, [f"system time (PGN 126992) of source 3 {told}"])
 
 

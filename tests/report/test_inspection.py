@@ -112,3 +112,59 @@ def test_remarks_and_warnings_are_shown_up_to_a_number(ros):
     assert "- lost 0" in said
     assert "more; --json has them all" in said
     assert "- the clock is wild" in said
+
+
+def test_angles_are_in_degrees_with_the_unit_of_the_log(tmp_path):
+    log = tmp_path / "a.csv"
+    log.write_text("t,roll[rad],rot[rad/s],stw[kn]\n0,-0.1,0,9\n1,0.1,0.01745,10\n")
+    lines = text(survey(log)).splitlines()
+    (place,) = (i for i, line in enumerate(lines) if line.startswith("  roll"))
+    assert lines[place].split()[-3:] == ["-5.73", "5.73", "deg"]
+    assert lines[place + 1].split() == ["log", "rad"]
+    assert any(line.split()[-3:] == ["0", "0.9998", "deg/s"] for line in lines)
+    assert any(line.split()[-3:] == ["9", "10", "kn"] for line in lines)
+    ranges = {one["channel"]: one["range"] for one in plain(survey(log))["channels"]}
+    assert ranges["roll"] == [-0.1, 0.1]  # in the log's own unit
+
+
+def test_a_short_name_does_not_pad_the_table_to_the_terminal(ros):
+    (tight,) = (line for line in text(ros, 160).splitlines() if line.startswith("channel"))
+    assert len(tight.rstrip()) < 100
+
+
+def test_a_long_name_is_broken_after_a_separator(ros):
+    rudder = ros.channels["/steering/rudder:data"]
+    named = dataclasses.replace(rudder, name="ship/sensors/steering_gear/rudder_angle/main:value")
+    said = text(dataclasses.replace(ros, channels={"a": named}), 80)
+    assert "  ship/sensors/steering_gear/ " in said
+    assert "  rudder_angle/main:value " in said
+
+
+def test_channels_of_two_clocks_have_a_span_each(ros):
+    first, second, *_ = ros.channels.values()
+    undated = dataclasses.replace(second, start=2 * 10**9, end=5 * 10**9)
+    both = dataclasses.replace(ros, channels={"a": first, "b": undated})
+    title = " ".join(text(both, 200).splitlines()[1].split())
+    assert "two clocks: 1199.8 s, 2026-05-28 20:26:40 to" in title
+    assert title.endswith("; 3.0 s, 2.000 s to 5.000 s")
+    assert plain(both)["duration"] == pytest.approx(1200, abs=1)
+
+
+def test_two_recorders_whose_clocks_differ_are_told_what_to_write(tmp_path):
+    t = np.arange(0, 400, 0.2)
+    for name, late in (("rot", 0.0), ("gyro_z", 3.0)):
+        motion = np.cumsum(np.random.default_rng(2).normal(size=len(t)))
+        rows = np.column_stack([t + late, motion - motion.mean()])
+        head = f"t,{name}[deg/s]"
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header=head, comments="")
+    words = " ".join(text(survey(tmp_path)).split())
+    assert "rot against gyro_z: 3 s earlier" in words
+    assert 'the one that holds gyro_z: clock = { match = ["gyro_z", "rot"] }' in words
+
+
+def test_units_that_the_log_does_not_state_are_asked_for(ros, tmp_path):
+    words = " ".join(text(ros).split())
+    assert "no unit is stated for /speed/stw:data, /steering/rudder:data: `unit` in the" in words
+    log = tmp_path / "a.csv"
+    log.write_text("t,rudder[deg],heading_deg\n0,1,2\n1,2,3\n")
+    assert "no unit is stated" not in text(survey(log))

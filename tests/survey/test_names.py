@@ -7,6 +7,10 @@ from trialid.survey import names
 RECORDERS = {
     "harbour/@v0/s175q/pubsub/rudder_angle_deg/steering_gear:value": "delta",
     "harbour/@v0/s175q/pubsub/yaw_rate_degps/gyro:value": "r",
+    "gyro_z": "r",
+    "Fahrt durchs Wasser": "u",
+    "FdW": "u",
+    "Krängungswinkel": "phi",
     "/imu:angular_velocity.z": "r",
     "/imu:angular_velocity.x": "p",
     "ATTITUDE/1/1:yawspeed": "r",

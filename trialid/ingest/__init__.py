@@ -122,7 +122,7 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
     raise LogError(
         f"{path}: {verdict}; it begins {head[:16]!r}; give the log as its recorder wrote it, or "
         "export it as CSV with a header row and a time column; a table of another layout needs a "
-        "template"
+        "template (trialid inspect LOG --template FILE)"
     )
 
 

@@ -120,7 +120,7 @@ def _timed(
     names = _some([one.head.name for one in times or inside]) or "no vectors"
     raise LogError(
         f"{path}: {what} among {names}; name exactly one of them t or time, or say in a template "
-        "which group and which vector"
+        "which group and which vector (trialid inspect LOG --template FILE)"
     )
 
 

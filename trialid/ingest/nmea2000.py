@@ -253,7 +253,9 @@ def _system_time(messages: Messages) -> Iterator[str]:
             utc = days[stated] * DAY_NS + tick[stated] * 100_000
             ahead = (utc - messages.t[some[stated]]) / 1e9
             middle, spread = np.median(ahead), np.ptp(ahead)
+            side = "ahead of" if middle >= 0 else "behind"
             yield (
-                f"system time (PGN 126992) of source {messages.senders.labels[sender]} is stamp "
-                f"{middle:+.3f} s (median of {len(ahead)}, spread {spread:.3f} s)"
+                f"system time (PGN 126992) of source {messages.senders.labels[sender]} is "
+                f"{abs(middle):.3f} s {side} the stamps (median of {len(ahead)}, "
+                f"spread {spread:.3f} s)"
             )

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.errors import LogError
+from trialid.errors import LogError, listed
 from trialid.ingest import table_quick
 from trialid.ingest.table import Head, Table, check_width, head, reader_of_numbers
 from trialid.ingest.table_layout import SPACES, Layout, Top, decimal, decoded, encoded, unified
@@ -178,7 +178,8 @@ def _careful(path: Path, raw: bytes, top: Top, layout: Layout, remarks: list[str
         if len(row) != len(names):
             raise LogError(
                 f"{path}, line {line}: {len(row)} fields where the header has {len(names)}"
-                f" ({', '.join(names)}); mend or delete the line"
+                f" ({listed(names)}); mend or delete the line, or, where the table is laid out "
+                "otherwise, draft a template (trialid inspect LOG --template FILE)"
             )
     mark = decimal(raw, top, layout)
     columns = tuple(np.array(column, dtype=object) for column in zip(*rows, strict=True))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid import units
-from trialid.errors import LogError, UnitError
+from trialid.errors import LogError, UnitError, listed
 from trialid.ingest.table import Head, Table, numbers
 from trialid.ingest.template import Time
 
@@ -75,7 +75,7 @@ def time_column(table: Table) -> int:
             f"{table.heads[found[0]].name!r}; write one column of ISO-8601 dates, {TOLD}"
         )
     what = "several time columns" if found else "no time column"
-    names = ", ".join(head.name for head in table.heads)
+    names = listed([head.name for head in table.heads])
     raise LogError(
         f"{table.path}: {what} among {names}; name exactly one of them "
         + " or ".join(f"{name!r}" for name in TIME_NAMES)

@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, Any, Literal
-from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
 
 from pydantic import (
     AfterValidator,
@@ -25,17 +24,9 @@ from pydantic import (
 
 from trialid import units
 from trialid.errors import LogError, nearest
+from trialid.ingest.local_time import known_zone
 
 WHITESPACE, TAB = "whitespace", "tab"
-
-
-def _zone(name: str) -> str:
-    try:
-        ZoneInfo(name)
-    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
-        hint = nearest(name, available_timezones())
-        raise ValueError(f"{name!r} is no time zone; write it like Europe/Oslo ({hint})") from error
-    return name
 
 
 def _unit(unit: str) -> str:
@@ -85,7 +76,7 @@ class Time(Section):
     )
     unit: Annotated[str, AfterValidator(_unit)] | None = None
     format: Text | None = None
-    zone: Annotated[str, AfterValidator(_zone)] | None = None
+    zone: Annotated[str, AfterValidator(known_zone)] | None = None
     rate: Annotated[float, Strict(), Field(gt=0)] | None = None
 
     @model_validator(mode="after")

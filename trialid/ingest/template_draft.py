@@ -196,7 +196,8 @@ def _text(
     columns = [_column(*one) for one in zip(header, stated, first, strict=False)]
     notes = [
         '# QUESTION: what units have the columns that state none? As in { unit = "deg" }.',
-        "# Columns may be renamed, best to the quantity they are.",
+        "# A column may be renamed, best to the quantity it is (delta, r, p, phi, psi, u, v, n):",
+        '# { rename = "delta", unit = "deg" }.',
         "[columns]",
     ]
     parts = [*top, *layout, f"header = [{names}]", "", *time, "", *notes, *columns, ""]

@@ -70,6 +70,8 @@ def _unknown_key(detail: ErrorDetails, form: type[Section]) -> str:
 def _not_listed(detail: ErrorDetails, form: type[Section]) -> str:
     allowed = re.findall(r"'([^']*)'", detail["ctx"]["expected"])
     given = detail["input"]
+    if given == "?":
+        return f"is still open; write one of {', '.join(map(repr, sorted(allowed)))}"
     return f"{given!r} is not allowed; {nearest(str(given), allowed)}"
 
 

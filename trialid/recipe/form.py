@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, NamedTuple, cast
-from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
 
 from pydantic import (
     AfterValidator,
@@ -21,6 +20,7 @@ from pydantic import (
 
 from trialid import units
 from trialid.errors import nearest
+from trialid.ingest.local_time import known_zone
 
 LISTED_AT_MOST: Final = 8
 """How many file names an error lists before it only counts them."""
@@ -74,6 +74,8 @@ def _rising(interval: tuple[float, float]) -> tuple[float, float]:
 
 
 def _unit_text(unit: str) -> str:
+    if unit == "?":
+        raise ValueError("is still open; write the unit, like deg/s, m/s or kn")
     if units.TEXT.fullmatch(unit) is None:
         raise ValueError(f"{unit!r} is not a unit; write it like deg/s, m/s or kg*m^2")
     return unit
@@ -86,15 +88,6 @@ def with_value(given: Any) -> Any:
 
 def _with_path(given: Any) -> Any:
     return {"path": given} if isinstance(given, str) else given
-
-
-def _zone(name: str) -> str:
-    try:
-        ZoneInfo(name)
-    except (ZoneInfoNotFoundError, ValueError, OSError) as error:
-        hint = nearest(name, available_timezones())
-        raise ValueError(f"{name!r} is no time zone; write it like Europe/Oslo ({hint})") from error
-    return name
 
 
 def _not_zero(number: float) -> float:
@@ -123,7 +116,7 @@ Names = tuple[str, ...]
 SomeNames = Annotated[Names, Field(min_length=1)]
 ReadFile = Annotated[Path, AfterValidator(_existing)]
 ReadLog = Annotated[Path, AfterValidator(_existing_log)]
-Zone = Annotated[str, AfterValidator(_zone)]
+Zone = Annotated[str, AfterValidator(known_zone)]
 PythonFile = Annotated[ReadFile, AfterValidator(_python)]
 Instant = Number | datetime
 NotEmpty = Annotated[str, Field(min_length=1)]

@@ -5,26 +5,32 @@ what could steer a terminal is shown escaped.
 """
 
 import math
+import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from trialid.alignment.checks import Finding
 from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.quantities import SIGNALS
 from trialid.report import labels
+from trialid.report.decisions import decisions
 from trialid.report.terminal import Words, add_row, cut, new_table
-from trialid.survey.contradictions import COMPARED, MOST_SOURCES, findings
+from trialid.survey.contradictions import findings
 from trialid.survey.findings import ChannelSurvey, Received, Survey
-from trialid.survey.relations import side
 
 if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions, RenderResult
+    from rich.measure import Measurement
     from rich.table import Table
 
 SCHEMA: Final = "trialid-survey/1"
 MOST_MESSAGES: Final = 12
 """Messages without a recognised field that are listed before they are only counted."""
-LONGEST: Final = 72
-"""Letters of a description that are shown."""
+NARROW, DESCRIBED = 24, 46
+"""Columns of a channel's name on the narrowest terminal, and of what is said below a short one."""
+DEGREES: Final = {"rad": "deg", "rad/s": "deg/s"}
+"""People think in degrees."""
 MOST_REMARKS: Final = 8
 
 
@@ -43,7 +49,11 @@ def inspection(survey: Survey, *, everything: bool = False) -> Sequence[Any]:
     parts: list[Any] = [_title(survey), ""]
     if known:
         parts += [_signals(known), ""]
-    parts += [*_choices(known, found), *_others(survey, everything), *_clocks(survey)]
+    parts += [
+        *_choices(decisions(known, found, len(survey.files))),
+        *_others(survey, everything),
+        *_clocks(survey),
+    ]
     parts += _remarks(survey, found)
     return parts[:-1] if parts[-1] == "" else parts
 
@@ -64,10 +74,17 @@ def _title(survey: Survey) -> Any:
 
 
 def _span(survey: Survey) -> str:
-    first, last = survey.start, survey.end
+    """How long it is and from when to when, of channels on two clocks for each clock."""
+    spans = survey.spans
+    words = [_between(*span) for span in spans]
+    return words[0] if len(words) == 1 else f"two clocks: {'; '.join(words)}"
+
+
+def _between(first: int, last: int) -> str:
+    duration = f"{(last - first) / 1e9:.1f} s"
     if first > CALENDAR_NS:
-        return f"{survey.duration:.1f} s, {_date(first)} to {_date(last)} UTC"
-    return f"{survey.duration:.1f} s, {moment(first)} to {moment(last)}"
+        return f"{duration}, {_date(first)} to {_date(last)} UTC"
+    return f"{duration}, {moment(first)} to {moment(last)}"
 
 
 def _date(stamp: int) -> str:
@@ -79,27 +96,59 @@ def _signals(known: dict[str, tuple[ChannelSurvey, ...]]) -> "Table":
     from rich.text import Text
 
     table = new_table("channel", "known", "Hz", "gaps", "from", "to", "unit", words=2)
-    table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
-    table.columns[0].ratio, table.expand = 1, True
+    table.columns[0].no_wrap, table.columns[0].overflow = False, "fold"
     table.columns[6].justify = "left"
     for name, sources in known.items():
         table.add_row(Text(labels.labelled(name), style="bold"))
         for one in sources:
             cells = (_how(one), *_numbers(one))
             style = "dim" if one.constant else ""
-            table.add_row(_name(one), *(Text(cell) for cell in cells), style=style)
+            table.add_row(
+                _Source(shown(one.key), shown(one.description.replace(f" {one.name}", ""))),
+                *(Text(cell) for cell in cells),
+                style=style,
+            )
     return table
 
 
-def _name(one: ChannelSurvey) -> Any:
+@dataclass(frozen=True)
+class _Source:
     """What a pipeline writes, and below it what the format says of it."""
-    from rich.padding import Padding
-    from rich.text import Text
 
-    name = Text(shown(one.key))
-    if one.description:
-        name.append(f"\n{cut(shown(one.description), 1, LONGEST)}", style="dim")
-    return Padding(name, (0, 0, 0, 2))
+    name: str
+    description: str
+
+    def __rich_measure__(self, console: "Console", options: "ConsoleOptions") -> "Measurement":
+        """As wide as the name; the description has the room that is there."""
+        from rich.measure import Measurement
+
+        longest = 2 + max(len(self.name), min(len(self.description), DESCRIBED))
+        return Measurement(min(NARROW, longest), longest)
+
+    def __rich_console__(self, console: "Console", options: "ConsoleOptions") -> "RenderResult":
+        """A name too long is broken after a separator, where that is possible."""
+        from rich.padding import Padding
+        from rich.text import Text
+
+        room = max(options.max_width - 2, 1)
+        text = Text(_broken(self.name, room))
+        if self.description:
+            text.append(f"\n{cut(self.description, 2, max(room, len(' ...') + 1))}", style="dim")
+        yield Padding(text, (0, 0, 0, 2))
+
+
+def _broken(name: str, width: int) -> str:
+    r"""A name on lines of that width, broken after `/`, `:`, `.` or `_`.
+
+    >>> _broken("pubsub/yaw_rate/gyro:value", 18)
+    'pubsub/yaw_rate/\ngyro:value'
+    """
+    lines = [""]
+    for part in re.findall(r"[^/:._]*[/:._]|[^/:._]+$", name):
+        if len(lines[-1]) + len(part) > width and lines[-1]:
+            lines.append("")
+        lines[-1] += part
+    return "\n".join(lines)
 
 
 def _how(one: ChannelSurvey) -> str:
@@ -109,82 +158,38 @@ def _how(one: ChannelSurvey) -> str:
 
 
 def _numbers(one: ChannelSurvey) -> tuple[str, str, str, str, str]:
-    holes = f"{one.gaps.count} ({one.gaps.total:.3g} s)" if one.gaps.count else "-"
+    holes = f"{one.gaps.count}\n{one.gaps.total:.3g} s" if one.gaps.count else "-"
     return f"{one.rate:.3g}", holes, *_range(one), _unit(one)
 
 
 def _range(one: ChannelSurvey) -> tuple[str, str]:
     if math.isnan(one.low):
         return "not", "available"
+    times = math.degrees(1.0) if _in_degrees(one) else 1.0
     if one.constant:
-        return "always", f"{one.low:.4g}"
-    return f"{one.low:.4g}", f"{one.high:.4g}"
+        return "always", f"{times * one.low:.4g}"
+    return f"{times * one.low:.4g}", f"{times * one.high:.4g}"
+
+
+def _in_degrees(one: ChannelSurvey) -> str | None:
+    """The unit that an angle or a turning of the ship is shown in, instead of radians."""
+    return DEGREES.get(one.unit or one.unit_in_name or "") if one.guess is not None else None
 
 
 def _unit(one: ChannelSurvey) -> str:
+    if degrees := _in_degrees(one):
+        return f"{degrees}\nlog {one.unit or one.unit_in_name}"
     if one.unit:
         return shown(one.unit)
     return f"{one.unit_in_name} (name)" if one.unit_in_name else "not stated"
 
 
-def _choices(
-    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
-) -> Iterator[Any]:
-    """What a person has to decide: several sources, no source, a rudder's sign."""
-    lines = [*_several(known, found), *_mends(found), *_lacking(known), *_rudder(known)]
+def _choices(lines: Sequence[str]) -> Iterator[Any]:
+    """What a person has to decide."""
     if lines:
         yield _heading("to decide")
         yield from (_bullet(line) for line in lines)
         yield ""
-
-
-def _several(
-    known: dict[str, tuple[ChannelSurvey, ...]], found: Sequence[Finding]
-) -> Iterator[str]:
-    """Several sources of a quantity, and what sets them apart."""
-    for name in COMPARED:
-        live = [one for one in known.get(name, ()) if not one.constant]
-        if len(live) < 2:
-            continue
-        rates = ", ".join(f"{one.key} {one.rate:.3g} Hz" for one in live[:MOST_SOURCES])
-        more = f" and {len(live) - MOST_SOURCES} more" if len(live) > MOST_SOURCES else ""
-        keys = {one.key for one in live}
-        apart = [one.sentence for one in found if one.kind == "differ" and keys >= {*one.about}]
-        yield f"{len(live)} sources of {labels.labelled(name)}: {rates}{more}"
-        yield from apart
-
-
-def _mends(found: Sequence[Finding]) -> Iterator[str]:
-    """What a line of the pipeline would mend; of a rudder's side `_rudder` tells more."""
-    for one in found:
-        if one.mend is not None and one.kind != "side":
-            named = one.mend in one.sentence
-            yield one.sentence if named else f"{one.sentence}; {one.mend} would mend it"
-
-
-def _lacking(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
-    alive = {name for name, sources in known.items() if any(not one.constant for one in sources)}
-    if not alive & {"delta", "delta_order"}:
-        yield "no rudder or rudder order that moves is recognised: a fit needs one"
-    if not alive & {"r", "psi", "phi"}:
-        yield "no yaw rate, heading or roll angle that moves is recognised: a fit needs a motion"
-    if "u" not in alive:
-        yield "no speed through the water is recognised: state `speed` in the pipeline"
-
-
-def _rudder(known: dict[str, tuple[ChannelSurvey, ...]]) -> Iterator[str]:
-    """What the motion says about the sign of each rudder; the best yaw rate is the witness."""
-    witness = next((one for one in known.get("r", ()) if not one.constant), None)
-    if witness is None:
-        return
-    for name in ("delta", "delta_order"):
-        for one in known.get(name, ())[:3]:
-            found = side(one, witness)
-            if found is not None:
-                yield (
-                    f'{one.key}: positive = "{found.side}", by its correlation with {found.by}, of '
-                    f"{witness.key} ({found.strength:+.2f}), if that is positive to {found.if_to}"
-                )
 
 
 def _others(survey: Survey, everything: bool) -> Iterator[Any]:
@@ -202,10 +207,10 @@ def _others(survey: Survey, everything: bool) -> Iterator[Any]:
 def _all_others(rest: Sequence[ChannelSurvey]) -> "Table":
     table = new_table("channel", "Hz", "gaps", "from", "to", "unit", words=1)
     table.columns[0].overflow, table.columns[0].no_wrap = "fold", False
-    table.columns[0].ratio, table.expand = 1, True
     table.columns[5].justify = "left"
     for one in rest:
-        add_row(table, shown(one.key), *_numbers(one))
+        cells = (cell.replace("\n", ", ") for cell in _numbers(one))
+        add_row(table, shown(one.key), *cells)
     return table
 
 
@@ -232,10 +237,9 @@ def _clocks(survey: Survey) -> Iterator[Any]:
     groups: dict[str, list[ChannelSurvey]] = {}
     for one in recognised or survey.channels.values():
         groups.setdefault(one.clock.words, []).append(one)
-    table = new_table("clock", "of", "jitter", "steps back", "recorder later", words=2)
+    table = new_table("clock", "of", "jitter, of period", "steps back", "recorder later", words=2)
     for column in table.columns[:2]:
-        column.overflow, column.no_wrap, column.ratio = "fold", False, 1
-    table.expand = True
+        column.overflow, column.no_wrap = "fold", False
     for words, group in groups.items():
         messages = list(dict.fromkeys(one.message or "table" for one in group))
         more = f" and {len(messages) - 3} more" if len(messages) > 3 else ""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from trialid.alignment.clocks import CALENDAR_NS
 from trialid.ingest.adapter import NO_AIDS, Aids
 from trialid.survey.sketch import EMPTY, Sketch
 
@@ -181,8 +182,19 @@ class Survey:
 
     @property
     def duration(self) -> float:
-        """From the first stamp of any channel to the last [s]."""
-        return (self.end - self.start) / 1e9
+        """From the first stamp of any channel to the last, of two clocks on the longer one [s]."""
+        return max(last - first for first, last in self.spans) / 1e9
+
+    @property
+    def spans(self) -> tuple[tuple[int, int], ...]:
+        """First and last stamp of the channels that are dated, and of those that are not [ns]."""
+        both = (
+            [c for c in self.channels.values() if c.start > CALENDAR_NS],
+            [c for c in self.channels.values() if c.start <= CALENDAR_NS],
+        )
+        return tuple(
+            (min(c.start for c in some), max(c.end for c in some)) for some in both if some
+        )
 
     def sources(self, quantity: str) -> tuple[ChannelSurvey, ...]:
         """Channels that look like a quantity, the likeliest to serve first.

@@ -17,11 +17,13 @@ PHRASES: Final = {
     "ruderwinkel",
     "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
-    "drehrate, wendegeschwindigkeit, angular velocity z",
-    "p": "roll rate, rollrate, roll speed, rollspeed, roll velocity, angular velocity x",
-    "phi": "roll, roll angle, heel, heel angle, rollwinkel, kraengung, krängung",
+    "drehrate, wendegeschwindigkeit, angular velocity z, gyro z",
+    "p": "roll rate, rollrate, roll speed, rollspeed, roll velocity, angular velocity x, gyro x",
+    "phi": "roll, roll angle, heel, heel angle, rollwinkel, kraengung, krängung, "
+    "kraengungswinkel, krängungswinkel",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt",
-    "u": "stw, speed through water, speed water, water speed, surge speed, surge velocity",
+    "u": "stw, speed through water, speed water, water speed, surge speed, surge velocity, "
+    "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w",
     "v": "sway speed, sway velocity",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
     "drehzahl",
