@@ -55,10 +55,19 @@ def by_error(value: float | None, error: float | None) -> str:
     >>> by_error(0.0123456789, 1.2e-6), by_error(0.0123456789, 4e-4)
     ('0.0123457', '0.01235')
     """
+    return number(value, digits_by_error(value, error))
+
+
+def digits_by_error(value: float | None, error: float | None) -> int:
+    """Significant digits that a standard error leaves a value; four where it is not known.
+
+    >>> digits_by_error(0.0123456789, 4e-4), digits_by_error(0.0123456789, None)
+    (4, 4)
+    """
     if value is None or error is None or not (value and error > 0 and math.isfinite(error)):
-        return number(value)
+        return 4
     digits = _power(value, 4) - _power(error, 2) + 2
-    return number(value, min(max(digits, 2), 7))
+    return min(max(digits, 2), 7)
 
 
 def signed(value: float | None) -> str:
