@@ -116,7 +116,8 @@ def _split(run: Run) -> Table:
     ]
     return Table(
         "error", f"The error and what it is made of: {split['method'] or 'not told apart'}",
-        ("output", "error [%]", "noise [%]", "from", "to", "model [%]", "from", "to"),
+        ("output", "error [%]", "noise [%]", "noise from", "noise to", "model [%]", "model from",
+         "model to"),
         tuple(
             (
                 name, percent(eps), percent(parts.get("noise")),

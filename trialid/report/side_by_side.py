@@ -1,4 +1,4 @@
-"""Several runs beside one another: parameters, errors, models, verdicts; one page and its tables."""
+"""Several runs beside one another: parameters, errors, models, verdicts; a page and its tables."""
 
 import itertools
 import math
@@ -9,7 +9,7 @@ from typing import Any, Final
 from trialid.report import labels, run_tables, wording
 from trialid.report.page import VERDICTS, environment, style
 from trialid.report.shape import Run, whole
-from trialid.report.table import Cell, Figure, Table, percent
+from trialid.report.table import Cell, Figure, Table, numeric, percent
 
 APART: Final = 1.96
 """Joint standard errors from which on two values differ, at 95 % for one pair."""
@@ -118,12 +118,12 @@ _PARTS: Final = {"noise": "noise", "undermodelling": "model"}
 
 def _effects(runs: Sequence[Shown]) -> Table:
     """Effects and free parameters that not every run has."""
-    held = [
+    held: list[set[str]] = [
         {f"effect {e}" for e in each.run["model"]["effects"]}
         | {f"free {p}" for p in each.run["model"]["free"]}
         for each in runs
     ]
-    names = sorted(set[str]().union(*held) - set.intersection(*held))
+    names = sorted(held[0].union(*held) - held[0].intersection(*held))
     rows = tuple((name, *("yes" if name in own else "no" for own in held)) for name in names)
     return Table("models", "What the models differ in", ("of the model", *_of(runs)), rows)
 
@@ -178,6 +178,7 @@ def page(runs: Sequence[Shown]) -> str:
             shared=shared_logs(runs),
             threshold=APART,
             cell=_cell,
+            numeric=numeric,
             style=style(),
         )
     )

@@ -78,16 +78,16 @@ def _machine(cell: Cell) -> str:
 
 
 def as_markdown(table: Table) -> str:
-    """A table in pipes; names are text, whatever they hold.
+    r"""A table in pipes; names are text, whatever they hold.
 
-    >>> print(as_markdown(Table("t", "T", ("name", "x"), (("<b>", Figure(-0.5, 3)),))), end="")
+    >>> print(as_markdown(Table("t", "T", ("name", "x"), (("<b>", Figure(0.5, 3)),))), end="")
     **T**
     <BLANKLINE>
     | name | x |
     | :--- | ---: |
-    | \\<b\\> | −0.500 |
+    | \<b\> | 0.500 |
     """
-    align = ["---:" if numeric else ":---" for numeric in _numeric(table)]
+    align = ["---:" if right else ":---" for right in numeric(table)]
     lines = [f"**{_marked(table.title)}**", "", _piped(map(_marked, table.headings)), _piped(align)]
     lines += [_piped(_shown(cell, _marked) for cell in row) for row in table.rows]
     return "\n".join(lines) + "\n"
@@ -115,8 +115,8 @@ def as_latex(table: Table) -> str:
     \hline
     \end{tabular}
     """
-    columns = "".join("r" if numeric else _column(table, i) for i, numeric in
-                      enumerate(_numeric(table)))  # fmt: skip
+    columns = "".join("r" if right else _column(table, i) for i, right in
+                      enumerate(numeric(table)))  # fmt: skip
     lines = [f"% {_one_line(table.title)}", f"\\begin{{tabular}}{{{columns}}}", "\\hline"]
     lines += [_ampersands(map(latex_text, table.headings)), "\\hline"]
     lines += [_ampersands(_shown(cell, latex_text) for cell in row) for row in table.rows]
@@ -158,7 +158,7 @@ def document(tables: Sequence[Table]) -> str:
     return "\n".join([*lines, "\\end{document}"]) + "\n"
 
 
-def _numeric(table: Table) -> list[bool]:
+def numeric(table: Table) -> list[bool]:
     """Which columns hold numbers only."""
     columns = zip(*table.rows, strict=True) if table.rows else [()] * len(table.headings)
     return [bool(c) and all(isinstance(cell, Figure) for cell in c) for c in columns]
@@ -181,17 +181,19 @@ _SPECIAL: Final = {
     r"$\pm$", "\N{PRIME}": "$'$", "\N{RIGHTWARDS ARROW}": r"$\rightarrow$", "\N{DEGREE SIGN}":
     r"$^{\circ}$", "\N{MIDDLE DOT}": r"$\cdot$", "\N{LESS-THAN OR EQUAL TO}": r"$\le$",
     "\N{SQUARE ROOT}": r"$\surd$",
-    "φ": r"$\phi$", "ψ": r"$\psi$", "δ": r"$\delta$", "γ": r"$\gamma$", "α": r"$\alpha$",
-    "ε": r"$\varepsilon$",
-    **{raised: f"$^{{{plain}}}$" for raised, plain in zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True)},
+    "\N{GREEK SMALL LETTER PHI}": r"$\phi$", "\N{GREEK SMALL LETTER PSI}": r"$\psi$",
+    "\N{GREEK SMALL LETTER DELTA}": r"$\delta$", "\N{GREEK SMALL LETTER GAMMA}": r"$\gamma$",
+    "\N{GREEK SMALL LETTER ALPHA}": r"$\alpha$", "\N{GREEK SMALL LETTER EPSILON}":
+    r"$\varepsilon$",
+    **{raised: f"$^{{{plain}}}$" for plain, raised in wording.RAISED.items()},
 }  # fmt: skip
 
 
 def latex_text(text: str) -> str:
-    """Text as LaTeX prints it; a sign that no plain LaTeX font has is told by its number.
+    r"""Text as LaTeX prints it; a sign that no plain LaTeX font has is told by its number.
 
-    >>> latex_text("50% of $x_1$"), latex_text("船")
-    ('50\\\\% of \\\\$x\\\\_1\\\\$', '[U+8239]')
+    >>> print(latex_text("50% of $x_1$"), latex_text("船"))
+    50\% of \$x\_1\$ [U+8239]
     """
     return "".join(_latex_letter(letter) for letter in _one_line(text))
 
