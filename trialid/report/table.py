@@ -128,8 +128,8 @@ LONG: Final = 40
 
 
 def _column(table: Table, place: int) -> str:
-    longest = max((len(str(row[place])) for row in table.rows), default=0)
-    return "l" if longest < LONG else "p{7cm}"
+    words = [cell for row in table.rows if isinstance(cell := row[place], str) and " " in cell]
+    return "l" if max(map(len, words), default=0) < LONG else "p{7cm}"
 
 
 def _ampersands(cells: Iterable[str]) -> str:
@@ -144,7 +144,6 @@ def document(tables: Sequence[Table]) -> str:
     r"""A document that takes in every table: `pdflatex tables.tex`."""
     lines = [
         "\\documentclass[a4paper,10pt]{article}",
-        "\\usepackage[T1]{fontenc}",
         "\\usepackage[utf8]{inputenc}",
         "\\pdfpagewidth=420mm \\pdfpageheight=297mm",
         "\\setlength{\\textwidth}{370mm} \\setlength{\\textheight}{250mm}",
@@ -175,7 +174,7 @@ Escape = Callable[[str], str]
 _SPECIAL: Final = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#",
     "%": r"\%", "_": r"\_", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
-    "<": r"$<$", ">": r"$>$", "|": r"$|$", '"': r"\textquotedbl{}", "'": r"{'}", "`": r"{`}",
+    "<": r"$<$", ">": r"$>$", "|": r"$|$", '"': "{''}", "'": r"{'}", "`": r"{`}",
     "-": r"{-}", wording.DASH: "--", wording.MINUS: "$-$", wording.THIN: r"\,",
     "\N{NO-BREAK SPACE}": "~", "\N{MULTIPLICATION SIGN}": r"$\times$", "\N{PLUS-MINUS SIGN}":
     r"$\pm$", "\N{PRIME}": "$'$", "\N{RIGHTWARDS ARROW}": r"$\rightarrow$", "\N{DEGREE SIGN}":
@@ -203,7 +202,7 @@ def _latex_letter(letter: str) -> str:
         return _SPECIAL[letter]
     if letter.isascii():
         return letter
-    if letter.isalpha() and 0xC0 <= ord(letter) <= 0xFF:
+    if 0xC0 <= ord(letter) <= 0xFF and letter not in "ÐðÞþ÷":  # the default fonts lack these
         return letter
     return f"[U+{ord(letter):04X}]"
 

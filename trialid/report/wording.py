@@ -67,7 +67,9 @@ def digits_by_error(value: float | None, error: float | None) -> int:
     >>> digits_by_error(0.0123456789, 4e-4), digits_by_error(0.0123456789, None)
     (4, 4)
     """
-    if value is None or error is None or not (value and error > 0 and math.isfinite(error)):
+    if value is None or error is None or not (math.isfinite(value) and math.isfinite(error)):
+        return 4
+    if value == 0.0 or error <= 0.0:
         return 4
     digits = _power(value, 4) - _power(error, 2) + 2
     return min(max(digits, 2), 7)
