@@ -60,7 +60,9 @@ use = "check"
 logs = ["check.csv"]
 {SIGNALS}
 """
-WRITTEN = {"pipeline.toml", "predicted.mcap", "report.html", "result.json", "series.csv"}
+WRITTEN = {
+    "pipeline.toml", "predicted.mcap", "report.html", "result.json", "run.json", "series.csv",
+}  # fmt: skip
 LONGEST = 400
 """Characters a person reads as one line."""
 

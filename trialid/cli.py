@@ -17,6 +17,7 @@ import click
 import trialid
 from trialid.cli_design import design
 from trialid.cli_logs import align, inspect
+from trialid.cli_report import DIFFERENT, repeated, report
 from trialid.console import Progress, complain, file_width, progress_bar, rendered, say
 from trialid.errors import TrialidError
 
@@ -52,7 +53,12 @@ def commands() -> None:
 
 
 def _of_a_run(command: Callable[..., None]) -> Callable[..., None]:
-    """What every command that fits takes: a pipeline, and where and how to answer."""
+    """What every command that changes a pipeline takes: it, and where and how to answer."""
+    return _answering(click.argument("pipeline", type=click.Path(path_type=Path))(command))
+
+
+def _answering(command: Callable[..., None]) -> Callable[..., None]:
+    """What every command that fits takes: where and how to answer."""
     for option in (
         click.option("--quiet", is_flag=True, help="No progress and no summary."),
         click.option("--json", "as_json", is_flag=True, help="Print result.json, nothing else."),
@@ -62,14 +68,14 @@ def _of_a_run(command: Callable[..., None]) -> Callable[..., None]:
             help="Folder for the results; by default runs/ and the pipeline's name. "
             "An earlier run in it is replaced.",
         ),
-        click.argument("pipeline", type=click.Path(path_type=Path)),
     ):
         command = option(command)
     return command
 
 
 @commands.command()
-@_of_a_run
+@_answering
+@click.argument("pipeline", type=click.Path(path_type=Path), required=False)
 @click.option("--auto", is_flag=True, help="Add what is missing until nothing more is named.")
 @click.option("--write", "keep", is_flag=True, help="With --auto: write the effects into PIPELINE.")
 @click.option(
@@ -78,9 +84,15 @@ def _of_a_run(command: Callable[..., None]) -> Callable[..., None]:
     metavar="FILE",
     help="Where something is missing that no known effect makes: write it as a .py file to edit.",
 )
+@click.option(
+    "--repeat",
+    type=click.Path(path_type=Path),
+    metavar="RUN_DIR",
+    help="Instead of PIPELINE: do the run of this folder again, and compare; nothing is written.",
+)
 def run(
-    pipeline: Path, out: Path | None, as_json: bool, quiet: bool, auto: bool, keep: bool,
-    draft: Path | None,
+    pipeline: Path | None, out: Path | None, as_json: bool, quiet: bool, auto: bool, keep: bool,
+    draft: Path | None, repeat: Path | None,
 ) -> None:  # fmt: skip
     """Fit a ship model to the logs of PIPELINE, a TOML file, and report what it is worth.
 
@@ -89,11 +101,16 @@ def run(
 
     With --auto the effect that is named is added, in memory, and all is done again, until no effect
     is named or what is added makes it no better; the results are of the last model.
+
+    With --repeat the logs are held against their hashes; exit status 1 if the numbers are others.
     """
-    if keep and not auto:
-        raise click.UsageError("--write goes with --auto: a plain run changes no file")
-    if draft is not None and auto:
-        raise click.UsageError("--draft goes with a plain run: add what is known first")
+    if repeat is not None:
+        if any((pipeline, out, auto, keep, draft)):
+            raise click.UsageError("--repeat takes its pipeline from RUN_DIR and writes nothing")
+        sys.exit(0 if repeated(repeat, as_json, quiet) else DIFFERENT)
+    _check_options(auto, keep, draft)
+    if pipeline is None:
+        raise click.UsageError("Missing argument 'PIPELINE'.")
     recipe, folder = _opened(pipeline, out)
     _check_draft(draft)
     if auto:
@@ -166,6 +183,7 @@ def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> Non
 commands.add_command(inspect)
 commands.add_command(align)
 commands.add_command(design)
+commands.add_command(report)
 
 
 def main() -> None:
@@ -175,6 +193,14 @@ def main() -> None:
             stream.reconfigure(errors="replace")  # a terminal without Greek is no reason to fail
     sys.excepthook = _report_bug
     commands(prog_name="trialid")
+
+
+def _check_options(auto: bool, keep: bool, draft: Path | None) -> None:
+    """Refuse what makes no sense together."""
+    if keep and not auto:
+        raise click.UsageError("--write goes with --auto: a plain run changes no file")
+    if draft is not None and auto:
+        raise click.UsageError("--draft goes with a plain run: add what is known first")
 
 
 def _opened(pipeline: Path, out: Path | None) -> tuple["Recipe", Path]:

@@ -352,6 +352,7 @@ def _write_beside(done: Run, folder: Path) -> None:
     try:
         new.mkdir()
         _write_files(done, new)
+        _write_origin(done, new, folder)
         if folder.exists():
             folder.replace(old)
         new.replace(folder)
@@ -371,3 +372,18 @@ def _write_files(done: Run, folder: Path) -> None:
         write_force_csv(folder / "missing_force.csv", forces)
     write_page(folder / "report.html", done.result, done.series, forces)
     (folder / "pipeline.toml").write_bytes(done.recipe.content)
+
+
+def _write_origin(done: Run, work: Path, folder: Path) -> None:
+    """`run.json`: what `trialid run --repeat` needs to find the logs again from the folder."""
+    recipe = done.recipe
+    origin = {
+        "schema": "trialid-run/1",
+        "version": done.result["version"],
+        "pipeline": Path(os.path.relpath(recipe.path.resolve(), folder.resolve())).as_posix(),
+        "sha256": hashlib.sha256(recipe.content).hexdigest(),
+        "seed": recipe.identify.seed,
+        "force": done.findings.force is not None,
+    }
+    text = json.dumps(origin, indent=1) + "\n"
+    (work / "run.json").write_text(text, encoding="utf-8")

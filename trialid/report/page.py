@@ -52,7 +52,7 @@ def page(
     physical, nuisance = _by_kind(run)
     axis, parameter_bars = bars.parameter_bars(physical)
     return (
-        _environment()
+        environment()
         .get_template("page.html.j2")
         .render(
             run=run,
@@ -103,7 +103,8 @@ def _proposed(run: Run) -> Compared | None:
 
 
 @cache
-def _environment() -> "jinja2.Environment":
+def environment() -> "jinja2.Environment":
+    """The templates and what they write numbers with; every word is escaped."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -161,6 +162,11 @@ def _assets() -> dict[str, str]:
         asset: "\n".join(files.joinpath(name).read_text(encoding="utf-8") for name in each)
         for asset, each in names.items()
     }
+
+
+def style() -> str:
+    """The page's own style, for pages without plots."""
+    return resources.files("trialid.report").joinpath("page.css").read_text(encoding="utf-8")
 
 
 def _by_kind(run: Run) -> tuple[list[Run], list[Run]]:

@@ -9,7 +9,10 @@ DASH = "\N{EN DASH}"
 MINUS = "\N{MINUS SIGN}"
 THIN = "\N{NARROW NO-BREAK SPACE}"
 _TIMES = f"{THIN}\N{MULTIPLICATION SIGN}{THIN}10"
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+RAISED = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=True))
+"""Signs of an exponent, plain to raised."""
+
+_RAISED = str.maketrans(RAISED)
 _SHOWN = {"rad": ("deg", 180 / math.pi), "rad/s": ("deg/s", 180 / math.pi)}
 
 
@@ -55,10 +58,21 @@ def by_error(value: float | None, error: float | None) -> str:
     >>> by_error(0.0123456789, 1.2e-6), by_error(0.0123456789, 4e-4)
     ('0.0123457', '0.01235')
     """
-    if value is None or error is None or not (value and error > 0 and math.isfinite(error)):
-        return number(value)
+    return number(value, digits_by_error(value, error))
+
+
+def digits_by_error(value: float | None, error: float | None) -> int:
+    """Significant digits that a standard error leaves a value; four where it is not known.
+
+    >>> digits_by_error(0.0123456789, 4e-4), digits_by_error(0.0123456789, None)
+    (4, 4)
+    """
+    if value is None or error is None or not (math.isfinite(value) and math.isfinite(error)):
+        return 4
+    if value == 0.0 or error <= 0.0:
+        return 4
     digits = _power(value, 4) - _power(error, 2) + 2
-    return number(value, min(max(digits, 2), 7))
+    return min(max(digits, 2), 7)
 
 
 def signed(value: float | None) -> str:

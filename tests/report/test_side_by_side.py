@@ -1,0 +1,87 @@
+"""Several runs on one page: what differs, whether beyond the joint errors, and names as text."""
+
+import copy
+import math
+
+import pytest
+from test_page import HOSTILE, Reader
+
+from trialid.report import run_tables, side_by_side
+from trialid.report.table import Figure
+
+
+@pytest.fixture
+def other(result):
+    """The same ship once more: one parameter elsewhere, one effect more, another verdict."""
+    run = copy.deepcopy(result)
+    first, second = run["accuracy"]["parameters"][:2]
+    first["value"] += 5.0 * math.hypot(first["standard_error"], first["standard_error"])
+    second["standard_error"] = None
+    run["model"]["effects"] = [*run["model"]["effects"], "yaw_drag_rar"]
+    run["verdict"] = {"kind": "nothing missing", "effect": None, "family": [], "sentence": "None."}
+    return run
+
+
+def made(result, other):
+    runs = side_by_side.named({"a": result, "b": other})
+    return {table.name: table for table in side_by_side.tables(runs)}
+
+
+def test_a_parameter_beyond_the_joint_errors_is_told(result, other):
+    rows = made(result, other)["parameters"].rows
+    first, second, third = rows[:3]
+    assert isinstance(first[-2], Figure)
+    assert first[-2].value == pytest.approx(5.0)
+    assert (first[-1], second[-1], third[-1]) == ("yes", "cannot tell", "no")
+    assert third[-2] == Figure(0.0, 2)
+
+
+def test_a_parameter_of_one_run_only_has_no_difference(result, other):
+    gone = other["accuracy"]["parameters"].pop(2)["name"]
+    row = next(row for row in made(result, other)["parameters"].rows if row[0] == gone)
+    assert row[-1] == "cannot tell"
+
+
+def test_errors_verdicts_and_models_stand_side_by_side(result, other):
+    tables = made(result, other)
+    assert tables["errors"].headings[1:] == ("a", "b")
+    assert [row[3] for row in tables["verdicts"].rows][1].startswith("Nothing is missing")
+    assert tables["models"].rows == (("effect yaw_drag_rar", "no", "yes"),)
+    fitted = tables["errors"].rows[0]
+    assert fitted[1].value == pytest.approx(100.0 * result["fit"]["eps_rmsn"])
+
+
+def test_stacked_tables_hold_every_row_of_both(result, other):
+    tables = made(result, other)
+    for each in run_tables.tables(result):
+        if each.name in side_by_side.STACKED:
+            own = [row for row in tables[each.name].rows if row[0] == "a"]
+            assert [row[1 : 1 + len(row)] for row in own] == list(each.rows)
+
+
+def test_the_page_is_well_formed_and_asks_the_network_for_nothing(result, other):
+    html = side_by_side.page(side_by_side.named({"a": result, "b": other}))
+    read = Reader(html)
+    ids = [value for _, name, value in read.attributes if name == "id"]
+    assert len(set(ids)) == len(ids)
+    links = [value for tag, name, value in read.attributes if (tag, name) == ("a", "href")]
+    assert {link.removeprefix("#") for link in links} <= set(ids)
+    assert "script" not in read.tags
+    assert "://" not in html
+    assert "share" in read.text  # the two rest on the same logs
+    assert len([c for c in read.tags if c == "section"]) == len(made(result, other))
+
+
+def test_hostile_names_are_text(result, other):
+    other["accuracy"]["parameters"][0]["name"] = HOSTILE
+    other["model"]["effects"] = [HOSTILE]
+    other["pipeline"] = HOSTILE
+    read = Reader(side_by_side.page(side_by_side.named({HOSTILE: result, "b": other})))
+    assert "script" not in read.tags
+    assert "img" not in read.tags
+    assert read.text.count(HOSTILE) > 3
+
+
+def test_nothing_known_still_makes_tables(result):
+    assert made({}, result)["verdicts"].rows[0][0] == "a"
+    assert made({}, {})["verdicts"].rows[1][3] == "No verdict"
