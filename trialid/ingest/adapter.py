@@ -5,6 +5,7 @@ message: `/imu:angular_velocity.z`, `rudder/11/255:position`, `ROT/HE:rate`, `AT
 Two sources are two channels, never one. A table's columns keep their bare names.
 """
 
+import functools
 import hashlib
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, fields
@@ -95,6 +96,13 @@ def asked(channel: str, wanted: Wanted) -> bool:
 
 
 def sha256(path: Path) -> str:
-    """SHA-256 of the file's bytes, in hexadecimal."""
+    """SHA-256 of the file's bytes, in hexadecimal; once for a log that is read in batches."""
+    state = path.stat()
+    return _sha256(path.resolve(), state.st_ino, state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=16)
+def _sha256(path: Path, node: int, size: int, changed: int) -> str:
+    del node, size, changed  # they tell one state of a file from another
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

@@ -25,6 +25,8 @@ LATEST_US = 4_200_000_000_000_000
 OUT_OF_ORDER_NS = 500_000_000
 PAUSE_NS = 3600 * 10**9
 """No recorder falls silent for an hour after its first frame, or before its last."""
+BLOCK = 2**21
+"""Bytes looked at in one go: what is found in them stays in the processor's cache."""
 LONGEST = 280
 """Bytes of a signed MAVLink 2 frame with the longest payload."""
 
@@ -98,7 +100,16 @@ def find(data: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
 
 def _candidates(data: NDArray[np.uint8], size: int) -> Frames:
     """Every place behind a stamp at which a frame may begin that ends within the file."""
-    at = np.flatnonzero((data[STAMP:size] == MAGIC_1) | (data[STAMP:size] == MAGIC_2)) + STAMP
+    begins = range(STAMP, max(size, STAMP + 1), BLOCK)
+    parts = [_starting(data, begin, min(begin + BLOCK, size), size) for begin in begins]
+    names = Frames.__dataclass_fields__
+    return Frames(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+def _starting(data: NDArray[np.uint8], begin: int, end_of_block: int, size: int) -> Frames:
+    """Of these those that begin in one block."""
+    block = data[begin:end_of_block]
+    at = np.flatnonzero((block == MAGIC_1) | (block == MAGIC_2)) + begin
     second = data[at] == MAGIC_2
     flags = np.where(second, data[at + 2], 0)
     length = data[at + 1].astype(np.int64)
@@ -198,6 +209,7 @@ def payloads(found: Found, rows: Places, definition: Definition) -> NDArray[np.v
     count = len(found.data) - size + 1
     everywhere: NDArray[np.uint8] = np.ndarray((count, size), np.uint8, found.data.data, 0, (1, 1))
     raw = everywhere[np.minimum(frames.payload, count - 1)]
-    short = np.flatnonzero(frames.length < size)
-    raw[short] *= np.arange(size) < frames.length[short, None]
+    for length in np.unique(frames.length).tolist():
+        if length < size:
+            raw[frames.length == length, length:] = 0
     return raw.view(definition.kind)[:, 0]
