@@ -95,14 +95,22 @@ def asked(channel: str, wanted: Wanted) -> bool:
     return wanted is None or channel.startswith(tuple(wanted))
 
 
+State = tuple[Path, int, int, int]
+"""A file as it is now: place, node, size and last change [ns]."""
+
+
+def state(path: Path) -> State:
+    """What tells one state of a file from another; what was found in one is found in it again."""
+    now = path.stat()
+    return path.resolve(), now.st_ino, now.st_size, now.st_mtime_ns
+
+
 def sha256(path: Path) -> str:
     """SHA-256 of the file's bytes, in hexadecimal; once for a log that is read in batches."""
-    state = path.stat()
-    return _sha256(path.resolve(), state.st_ino, state.st_size, state.st_mtime_ns)
+    return _sha256(state(path))
 
 
 @functools.lru_cache(maxsize=16)
-def _sha256(path: Path, node: int, size: int, changed: int) -> str:
-    del node, size, changed  # they tell one state of a file from another
-    with path.open("rb") as file:
+def _sha256(of: State) -> str:
+    with of[0].open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
