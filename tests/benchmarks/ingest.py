@@ -4,8 +4,8 @@
 
 Exit status 1 where something is slower than asked: MCAP five times the official ROS 2 decoder,
 dataflash ten times pymavlink's recv_match and telemetry logs three times, CAN three times nmea2000;
-a log of 100 MB inspected in two seconds; with `--large` 1 GB inspected, and read in the channels of
-a fit, in less than 1 GB of memory.
+a log of 100 MB inspected in five seconds of CPU time; with `--large` 1 GB inspected, and read in
+the channels of a fit, in less than 1 GB of memory.
 """
 
 import argparse
@@ -26,7 +26,8 @@ sys.path[:0] = [str(HERE.parent / "ingest"), str(HERE)]
 SHORT = 0.15
 """Share of the usual size, for CI."""
 HUNDRED, LARGE = 100e6, 1e9
-SECONDS, MEMORY_MB = 2.0, 1000.0
+SECONDS, MEMORY_MB = 5.0, 1000.0
+"""The first of CPU time, which other work on the machine does not lengthen; imports included."""
 HUGE = ("MCAP", "dataflash")
 """Formats whose logs get that long."""
 
@@ -59,9 +60,9 @@ def inspected(benchmarks: list[ModuleType], size: float, say: Callable[[str], No
             write(path, size)
             cost = alone(path, None)
             rows.append(_cells(name, path, cost))
-            if cost.seconds > SECONDS:
-                late.append(f"{name}: inspected in {cost.seconds:.1f} s, asked {SECONDS:g} s")
-    head = ("inspect", "MB", "channels", "seconds", "peak MB")
+            if cost.cpu > SECONDS:
+                late.append(f"{name}: inspected in {cost.cpu:.1f} s of CPU, asked {SECONDS:g} s")
+    head = ("inspect", "MB", "channels", "seconds", "CPU s", "peak MB")
     say(f"`trialid inspect`, in a process of its own.\n\n{table(head, rows)}")
     return late
 
@@ -82,14 +83,15 @@ def huge(benchmarks: list[ModuleType], size: float, say: Callable[[str], None]) 
                 rows.append(_cells(f"{name}, {what}", path, cost))
                 if cost.peak_mb > MEMORY_MB:
                     over.append(f"{name}, {what}: {cost.peak_mb:.0f} MB, asked {MEMORY_MB:g} MB")
-    head = ("large logs", "MB", "channels", "seconds", "peak MB")
+    head = ("large logs", "MB", "channels", "seconds", "CPU s", "peak MB")
     say(f"In a process of its own.\n\n{table(head, rows)}")
     return over
 
 
 def _cells(what: str, path: Path, cost: "Cost") -> tuple[str, ...]:
     size = f"{path.stat().st_size / 1e6:.0f}"
-    return what, size, f"{cost.channels}", f"{cost.seconds:.1f}", f"{cost.peak_mb:.0f}"
+    times = f"{cost.seconds:.1f}", f"{cost.cpu:.1f}"
+    return what, size, f"{cost.channels}", *times, f"{cost.peak_mb:.0f}"
 
 
 def _sized(benchmarks: list[ModuleType]) -> Iterator[tuple[str, Callable[..., tuple[str, ...]]]]:
@@ -110,6 +112,9 @@ def main() -> int:
     def say(words: str) -> None:
         parts.append(words)
         print(f"{words}\n", flush=True)
+        if given.out is not None:
+            text = "# Reading logs\n\n" + "\n\n".join(parts) + "\n"
+            given.out.write_text(text, encoding="utf-8")
 
     benchmarks = list(modules(given.only))
     short = compared(benchmarks, SHORT if given.short else 1.0, say)
@@ -117,8 +122,6 @@ def main() -> int:
         short += inspected(benchmarks, HUNDRED, say)
     if given.large:
         short += huge(benchmarks, LARGE, say)
-    if given.out is not None:
-        given.out.write_text("# Reading logs\n\n" + "\n\n".join(parts) + "\n", encoding="utf-8")
     print("\n".join(short) or "All as asked.")
     return int(bool(short))
 

@@ -22,8 +22,8 @@ COUNT = 28_000
 """Messages of each of the three topics: 560 s at 50 Hz."""
 CHUNK = 2**20
 """What the library's writer puts into a chunk unless told."""
-BYTES = 580
-"""Of a message of each topic, in chunks of noise."""
+BYTES = 360
+"""Of a message of each topic, in chunks of noise packed by zstd."""
 
 
 def ros2_log(path: Path, count: int, compression: CompressionType, noise: bool = False) -> int:
