@@ -87,12 +87,12 @@ def find(data: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
     good[chain.kept] = _valid(data, candidates[chain.kept], extra[chain.kept])
     unknown = chain.kept & ~listed
     failed = chain.kept & listed & ~good
-    tried = np.flatnonzero(~chain.kept & listed & _in_gap(candidates, good))
+    tried = _uncovered(candidates, ~chain.kept & listed, candidates[good])
     valid = tried[_valid(data, candidates[tried], extra[tried])]
     good[_apart(candidates, good, valid)] = True
     frames = candidates[good]
-    covered = candidates[unknown & ~_covered(candidates, frames)]
-    lost = candidates[failed & ~_covered(candidates, frames)]
+    covered = candidates[_uncovered(candidates, unknown, frames)]
+    lost = candidates[_uncovered(candidates, failed, frames)]
     holes = _holes((frames, covered, lost), size)
     stamp = _stamps(data, frames.at)
     return Found(data, frames, stamp, _counts(covered), _counts(lost), holes)
@@ -126,9 +126,9 @@ def _starting(data: NDArray[np.uint8], begin: int, end_of_block: int, size: int)
 
 def _extra(messages: Places, known: Mapping[int, Definition]) -> Places:
     """The byte that stands for each message's definition, -1 for messages not known; (N,)."""
-    numbers, which = np.unique(messages, return_inverse=True)
+    numbers = np.unique(messages)
     bytes_ = [known[n].check if n in known else -1 for n in numbers.tolist()]
-    return np.array(bytes_, np.int64)[which] if len(numbers) else np.empty(0, np.int64)
+    return np.array(bytes_, np.int64)[np.searchsorted(numbers, messages)]
 
 
 def _valid(data: NDArray[np.uint8], frames: Frames, extra: Places) -> NDArray[np.bool_]:
@@ -150,9 +150,10 @@ def _covered(frames: Frames, good: Frames) -> NDArray[np.bool_]:
     return inside | reaches
 
 
-def _in_gap(frames: Frames, good: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which candidates lie where no good frame does; (N,)."""
-    return ~_covered(frames, frames[good])
+def _uncovered(frames: Frames, which: NDArray[np.bool_], good: Frames) -> Places:
+    """Of these frames those that lie where no good one does; indices."""
+    rows = np.flatnonzero(which)
+    return rows[~_covered(frames[rows], good)]
 
 
 def _apart(frames: Frames, good: NDArray[np.bool_], valid: Places) -> list[int]:
