@@ -1,38 +1,34 @@
 """How fast logs of CAN buses are read, beside python-can with nmea2000 or cantools.
 
-    python tests/benchmarks/ingest_can.py
+    python tests/benchmarks/ingest.py --only can
 
 Both read the same files in the same process: ours into channels, theirs into decoded messages, of
 the groups ours reads. Files are made on the spot, of frames as a ship's bus carries them.
 """
 
-import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import can
 import cantools
 import numpy as np
+import write_can
 from can.io.asc import ASCReader
 from can.io.blf import BLFReader
 from can.io.csv import CSVReader
 from can.io.sqlite import SqliteReader
 from can.io.trc import TRCReader
+from ingest_timing import Row, SizedLogs, fastest, repeated
 from nmea2000.decoder import NMEA2000Decoder
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "ingest"))
-import write_can
 
 from trialid.ingest import read
 from trialid.ingest.adapter import Aids
 from trialid.ingest.nmea2000_groups import LAYOUTS
 
-Row = tuple[str, float, float, float]
-"""What was read, messages a second by ours and by the library, and the ratio asked for."""
-
 MESSAGES = 20_000
+FEWEST = 0.5
+"""Share of them below which it is the opening of a file that is timed."""
 ASKED = 3.0
 DBC = """VERSION ""
 BU_: A
@@ -44,7 +40,7 @@ BO_ 2314276107 Rudder: 8 A
 
 def measure(scale: float = 1.0) -> list[Row]:
     """One row for each format."""
-    count = int(MESSAGES * scale)
+    count = int(MESSAGES * max(scale, FEWEST))
     sent = _sent(count)
     frames = write_can.frames(sent)
     with tempfile.TemporaryDirectory() as folder:
@@ -122,24 +118,14 @@ def _by_dbc(path: Path, count: int) -> Row:
 def _row(what: str, count: int, path: Path, theirs: Callable[[], int], aids: Aids = Aids()) -> Row:  # noqa: B008
     assert theirs() == count
     assert read(path, None, aids).channels
-    return what, count / _fastest(lambda: read(path, None, aids)), count / _fastest(theirs), ASKED
+    return what, count / fastest(lambda: read(path, None, aids)), count / fastest(theirs), ASKED
 
 
-def _fastest(run: Callable[[], object]) -> float:
-    """Seconds of the fastest of three runs."""
-    seconds = []
-    for _ in range(3):
-        start = time.perf_counter()
-        run()
-        seconds.append(time.perf_counter() - start)
-    return min(seconds)
+def sized(path: Path, size: float) -> tuple[str, ...]:
+    """A candump of that size."""
+    lines = [line.partition(" ")[2] for line in write_can.candump_lines(_sent(50_000), "-l")]
+    repeated(path, lines, lambda i: f"({1_700_000_000 + i / 100:.6f}) ", size)
+    return tuple(write_can.CHANNELS.values())
 
 
-def main() -> None:
-    print(f"{'format':24} {'ours [1/s]':>12} {'library [1/s]':>14} {'ratio':>7} {'asked':>7}")
-    for what, ours, theirs, asked in measure(float(sys.argv[1]) if len(sys.argv) > 1 else 1.0):
-        print(f"{what:24} {ours:12.0f} {theirs:14.0f} {ours / theirs:7.1f} {asked:7.1f}")
-
-
-if __name__ == "__main__":
-    main()
+SIZED: SizedLogs = {"candump": sized}

@@ -1,27 +1,18 @@
 """Dataflash logs read in columns, beside pymavlink's `recv_match` in the same process.
 
-`python tests/benchmarks/ingest_dataflash.py` prints a table; with `--large` a log of 1 GB is made,
-looked through by `batches` and read in the channels of a fit, and the peak memory of each printed.
+python tests/benchmarks/ingest.py --only dataflash
 """
 
-import argparse
 import contextlib
 import io
-import subprocess
-import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "ingest"))
 import write_dataflash as w
+from ingest_timing import Row, SizedLogs, fastest
 
 from trialid.ingest import dataflash_log
-
-Row = tuple[str, float, float, float]
-"""What, messages a second of ours and of the library, ratio that is asked."""
 
 RATES = {"IMU": (w.IMU, 200), "ATT": (w.ATT, 50), "AHR2": (w.AHR2, 25), "STER": (w.STER, 50),
          "RCOU": (w.RCOU, 20)}  # fmt: skip
@@ -74,18 +65,10 @@ def make(path: Path, size: int) -> int:
     return minutes * count
 
 
-def ours(path: Path, wanted=WANTED) -> float:
-    """Seconds for a reading."""
-    start = time.perf_counter()
-    dataflash_log.read(path, wanted)
-    return time.perf_counter() - start
-
-
-def library(path: Path, wanted=WANTED) -> float:
-    """Seconds for the same columns by pymavlink."""
+def library(path: Path, wanted=WANTED) -> None:
+    """The same columns by pymavlink."""
     from pymavlink import DFReader
 
-    start = time.perf_counter()
     log = DFReader.DFReader_binary(str(path))
     names = {"RCOU" if one.startswith("servo") else one.split(":")[0].split("/")[0]: one
              for one in wanted} if wanted else None  # fmt: skip
@@ -94,7 +77,6 @@ def library(path: Path, wanted=WANTED) -> float:
         kind = message.get_type()
         for name in message.get_fieldnames():
             columns.setdefault(f"{kind}.{name}", []).append(getattr(message, name))
-    return time.perf_counter() - start
 
 
 def measure(scale: float = 1.0) -> list[Row]:
@@ -102,50 +84,18 @@ def measure(scale: float = 1.0) -> list[Row]:
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
         path = Path(folder) / "log"
         count = make(path, round(20_000_000 * scale))
-        ours(path)
         rows = []
         for what, wanted in (("channels of a fit", WANTED), ("all channels", None)):
-            fast = min(ours(path, wanted) for _ in range(3))
-            rows.append((f"dataflash, {what}", count / fast, count / library(path, wanted), 10.0))
+            ours = fastest(lambda wanted=wanted: dataflash_log.read(path, wanted))
+            theirs = fastest(lambda wanted=wanted: library(path, wanted), 1)
+            rows.append((f"dataflash, {what}", count / ours, count / theirs, 10.0))
     return rows
 
 
-LARGE = """
-import sys, time
-from pathlib import Path
-from trialid.ingest import dataflash_log
-path, what = Path(sys.argv[1]), sys.argv[2]
-start, channels = time.perf_counter(), 0
-for wanted in dataflash_log.batches(path) if what == "all" else [what.split(",")]:
-    channels += len(dataflash_log.read(path, wanted).channels)
-seconds = time.perf_counter() - start
-words = Path("/proc/self/status").read_text().partition("VmHWM:")[2].split()
-print(f"{channels} channels, {seconds:.1f} s, peak {int(words[0]) / 1e6:.2f} GB")
-"""
+def sized(path: Path, size: float) -> tuple[str, ...]:
+    """A log of that size."""
+    make(path, round(size))
+    return WANTED
 
 
-def large(size: int = 1_000_000_000) -> None:
-    """Print time and peak memory of a reading of a large log, each in a process of its own."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "log"
-        count = make(path, size)
-        print(f"{path.stat().st_size / 1e9:.2f} GB, {count / 1e6:.1f} million messages")
-        for what in (",".join(WANTED), "all"):
-            command = [sys.executable, "-c", LARGE, str(path), what]
-            done = subprocess.run(command, check=True, capture_output=True, text=True)
-            print(f"{what}: {done.stdout.strip()}")
-
-
-def main() -> None:
-    """Print the table."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--large", action="store_true")
-    if parser.parse_args().large:
-        large()
-        return
-    for what, fast, slow, ratio in measure():
-        print(f"{what:32} {fast:12,.0f} {slow:12,.0f} messages/s  {fast / slow:6.1f} (>= {ratio})")
-
-
-if __name__ == "__main__":
-    main()
+SIZED: SizedLogs = {"dataflash": sized}

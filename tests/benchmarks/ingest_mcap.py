@@ -1,32 +1,19 @@
-"""How fast MCAP logs are read, beside the libraries: `python tests/benchmarks/ingest_mcap.py`.
+"""How fast MCAP logs are read, beside the libraries.
 
-`--large` writes a log of 1 GB, reads it in a process of its own and prints the peak memory.
+python tests/benchmarks/ingest.py --only mcap
 """
 
-import argparse
 import struct
-import subprocess
-import sys
 import tempfile
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from ingest_timing import Row, SizedLogs, fastest
+from mcap.writer import CompressionType, Writer
+from sample_writers import write_logs
+from write_mcap import KINDS, encoder, header
 
-HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent / "ingest"))
-
-import sample_writers  # noqa: E402
-import write_mcap  # noqa: E402
-from mcap.writer import CompressionType, Writer  # noqa: E402
-
-from trialid.ingest import adapter_of, read  # noqa: E402
-from trialid.ingest.adapter import NO_AIDS  # noqa: E402
-
-write_logs = sample_writers.write_logs
-Row = tuple[str, float, float, float]
-"""What, ours [messages/s], the library's, the ratio that is asked for."""
+from trialid.ingest import read
 
 START = 1_700_000_000_000_000_000
 STEP = 20_000_000
@@ -35,16 +22,18 @@ COUNT = 28_000
 """Messages of each of the three topics: 560 s at 50 Hz."""
 CHUNK = 2**20
 """What the library's writer puts into a chunk unless told."""
+BYTES = 360
+"""Of a message of each topic, in chunks of noise packed by zstd."""
 
 
 def ros2_log(path: Path, count: int, compression: CompressionType, noise: bool = False) -> int:
     """Imu, Float64 and JointState, `count` of each; how many messages that is."""
     rng = np.random.default_rng(1)
-    kinds = {**write_mcap.KINDS, "rudder": ("std_msgs/msg/Float64", write_logs.FLOAT64)}
-    zero = {"header": write_mcap.header(START)}
-    imu = bytearray(write_mcap.encoder("imu")(zero))
+    kinds = {**KINDS, "rudder": ("std_msgs/msg/Float64", write_logs.FLOAT64)}
+    zero = {"header": header(START)}
+    imu = bytearray(encoder("imu")(zero))
     joints = {**zero, "name": ["rudder", "sail"], "position": [0.0, 0.0], "velocity": [0.0, 0.0]}
-    joint = bytearray(write_mcap.encoder("joints")(joints))
+    joint = bytearray(encoder("joints")(joints))
     with path.open("wb") as file:
         writer = Writer(file, chunk_size=CHUNK, compression=compression)
         writer.start("ros2")
@@ -112,15 +101,6 @@ def _json_library(path: Path) -> None:
             json.loads(message.data)
 
 
-def _rate(count: int, work: Callable[[], object], repeats: int = 1) -> float:
-    best = np.inf
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        best = min(best, time.perf_counter() - start)
-    return count / best
-
-
 def measure(scale: float = 1.0) -> list[Row]:
     """Ours against the plain library, both on the same log in the same process."""
     count = max(300, round(COUNT * scale))
@@ -129,69 +109,26 @@ def measure(scale: float = 1.0) -> list[Row]:
         path = Path(folder) / "log"
         for compression in (CompressionType.ZSTD, CompressionType.LZ4, CompressionType.NONE):
             number = ros2_log(path, count, compression)
-            ours = _rate(number, lambda: read(path, WANTED), 3)
-            library = _rate(number, lambda: _ros2_library(path))
-            rows.append((f"ros2 {compression.name.lower()}, needed channels", ours, library, 5.0))
-        ours = _rate(number, lambda: read(path), 3)
-        rows.append(("ros2 none, all channels", ours, library, 5.0))
-        number = keelson_log(path, count)
-        library = _rate(number, lambda: _protobuf_library(path))
-        rows.append(("keelson", _rate(number, lambda: read(path), 3), library, 1.0))
-        number = json_log(path, count)
-        library = _rate(number, lambda: _json_library(path))
-        rows.append(("json", _rate(number, lambda: read(path), 3), library, 0.5))
+            theirs = number / fastest(lambda: _ros2_library(path), 1)
+            kinds = {"needed": WANTED} | ({"all": None} if compression.name == "NONE" else {})
+            for which, wanted in kinds.items():
+                ours = number / fastest(lambda wanted=wanted: read(path, wanted))
+                what = f"MCAP ROS 2 {compression.name.lower()}, {which} channels"
+                rows.append((what, ours, theirs, 5.0))
+        for what, write, library, asked in (
+            ("MCAP Keelson", keelson_log, _protobuf_library, 1.0),
+            ("MCAP JSON", json_log, _json_library, 0.5),
+        ):
+            number = write(path, count)
+            theirs = number / fastest(lambda library=library: library(path), 1)
+            rows.append((what, number / fastest(lambda: read(path)), theirs, asked))
     return rows
 
 
-PEAK = """
-import resource, sys, time
-from pathlib import Path
-from trialid.ingest import adapter_of, read
-path, wanted = Path(sys.argv[1]), tuple(sys.argv[2].split("|")) if sys.argv[2] else None
-start = time.perf_counter()
-recording = read(path, wanted)
-samples = sum(len(channel.y) for channel in recording.channels.values())
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-print(f"{len(recording.channels)} channels, {samples} samples, "
-      f"{time.perf_counter() - start:.1f} s, peak {peak:.0f} MB")
-"""
+def sized(path: Path, size: float) -> tuple[str, ...]:
+    """A ROS 2 log of that size, its numbers noise, which zstd hardly packs."""
+    ros2_log(path, round(size / BYTES), CompressionType.ZSTD, noise=True)
+    return WANTED
 
 
-def large(size: float = 1e9) -> None:
-    """Peak memory of reading a log of `size` bytes: the needed channels, then each batch."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "log"
-        for compression in (CompressionType.NONE, CompressionType.ZSTD):
-            number = ros2_log(path, round(size / 580), compression, noise=True)
-            words = f"{compression.name}: {path.stat().st_size / 1e6:.0f} MB, {number} messages"
-            print(words, flush=True)
-            _peak("needed channels", path, WANTED)
-            start = time.perf_counter()
-            batches = tuple(adapter_of(path).batches(path, NO_AIDS))
-            print(f"  {len(batches)} batches planned in {time.perf_counter() - start:.1f} s")
-            for i, wanted in enumerate(batches, 1):
-                _peak(f"batch {i}", path, wanted)
-
-
-def _peak(what: str, path: Path, wanted: tuple[str, ...] | None) -> None:
-    command = [sys.executable, "-c", PEAK, str(path), "|".join(wanted or ())]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    print(f"  {what}: {done.stdout.strip()}", flush=True)
-
-
-def main() -> None:
-    """Print the table, or with --large the peak memory."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--large", action="store_true", help="memory of reading 1 GB")
-    parser.add_argument("--scale", type=float, default=1.0, help="share of the usual size")
-    given = parser.parse_args()
-    if given.large:
-        large(1e9 * given.scale)
-        return
-    print(f"{'':32}{'ours':>12}{'library':>12}{'ratio':>8}{'asked':>8}   messages/s")
-    for what, ours, library, asked in measure(given.scale):
-        print(f"{what:32}{ours:12.0f}{library:12.0f}{ours / library:8.1f}{asked:8.1f}")
-
-
-if __name__ == "__main__":
-    main()
+SIZED: SizedLogs = {"MCAP": sized}

@@ -1,24 +1,18 @@
 """How fast NMEA 0183 and Signal K logs are read, beside pynmeagps on the same bytes.
 
-`PYTHONPATH=.:tests/ingest python tests/benchmarks/ingest_nmea0183.py`
+python tests/benchmarks/ingest.py --only nmea0183
 """
 
 import io
-import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
+from ingest_timing import Row, fastest
 from pynmeagps import NMEAReader
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "ingest"))
 from write_nmea0183 import OPENCPN, said, with_iso, with_opencpn, with_signal_k, with_tag_block
 
 from trialid.ingest import read
-
-Row = tuple[str, float, float, float]
-"""What, ours [sentences/s], pynmeagps' [sentences/s], the ratio that is asked."""
 
 START = 1_700_000_000_000_000_000
 ASKED = 10.0
@@ -33,10 +27,10 @@ LIBRARY_SHARE = 10
 
 
 def measure(scale: float = 1.0) -> list[Row]:
-    """Speed of ours in four containers, pynmeagps on the bare sentences; CPU time, best of 3."""
+    """Speed of ours in four containers, pynmeagps on the bare sentences."""
     sentences = said(_series(round(1200 * scale))) * 4
     bare = "".join(text + "\r\n" for _, _, text in sentences[::LIBRARY_SHARE]).encode()
-    library = len(sentences[::LIBRARY_SHARE]) / min(_library(bare) for _ in range(3))
+    library = len(sentences[::LIBRARY_SHARE]) / fastest(lambda: _library(bare))
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for name, (head, around) in CONTAINERS.items():
@@ -44,8 +38,8 @@ def measure(scale: float = 1.0) -> list[Row]:
             step = 10_000_000
             lines = [around(START + i * step, a, text) for i, (_, a, text) in enumerate(sentences)]
             path.write_bytes((head + "".join(lines)).encode())
-            seconds = min(_ours(path) for _ in range(3))
-            rows.append((name, len(sentences) / seconds, library, ASKED))
+            seconds = fastest(lambda path=path: _ours(path))
+            rows.append((f"NMEA 0183, {name}", len(sentences) / seconds, library, ASKED))
     return rows
 
 
@@ -56,20 +50,10 @@ def _series(seconds: int):
     return {name: (t, scale * rng.normal(size=len(t))) for name, scale in scales.items()}
 
 
-def _ours(path: Path) -> float:
-    start = time.process_time()
+def _ours(path: Path) -> None:
     assert len(read(path).channels) == 5
-    return time.process_time() - start
 
 
-def _library(data: bytes) -> float:
-    start = time.process_time()
+def _library(data: bytes) -> None:
     for _ in NMEAReader(io.BytesIO(data)):
         pass
-    return time.process_time() - start
-
-
-if __name__ == "__main__":
-    print(f"{'':12}{'ours/s':>12}{'pynmeagps/s':>14}{'ratio':>8}{'asked':>7}")
-    for what, ours, library, asked in measure(float(sys.argv[1]) if len(sys.argv) > 1 else 1.0):
-        print(f"{what:12}{ours:12.0f}{library:14.0f}{ours / library:8.1f}{asked:7.0f}")

@@ -1,11 +1,9 @@
 """How quickly tables are read, against the plain library of each format in the same run.
 
-`python tests/benchmarks/ingest_tables.py` prints rows a second of ours and theirs and their ratio.
+python tests/benchmarks/ingest.py --only tables
 """
 
-import sys
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,16 +13,10 @@ import pandas as pd
 import pyarrow.parquet as pq
 import python_calamine
 import scipy.io
+import write_tables
+from ingest_timing import Row, SizedLogs, fastest, repeated
 
-HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent / "ingest"))
-
-import write_tables  # noqa: E402
-
-from trialid.ingest import Aids, read  # noqa: E402
-
-Row = tuple[str, float, float, float]
-"""What, our rows a second, the library's, the ratio that is asked."""
+from trialid.ingest import Aids, read
 
 ROWS = 400_000
 EXCEL_ROWS = 20_000
@@ -44,8 +36,8 @@ def _row(folder: Path, form: write_tables.Format, scale: float) -> Row:
     count = int((EXCEL_ROWS if form.name == "xlsx" else ROWS) * scale)
     path = folder / form.name
     aids = form.write(path, _series(count)).aids
-    ours = _quickest(lambda: _all(path, aids, count))
-    theirs = _quickest(lambda: PLAIN[form.name](path))
+    ours = fastest(lambda: _all(path, aids, count), REPEATS)
+    theirs = fastest(lambda: PLAIN[form.name](path), REPEATS)
     return form.name, count / ours, count / theirs, ASKED.get(form.name, 0.5)
 
 
@@ -94,16 +86,13 @@ PLAIN: dict[str, Callable[[Path], object]] = {
 }
 
 
-def _quickest(work: Callable[[], object]) -> float:
-    times = []
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times)
+def sized(path: Path, size: float) -> tuple[str, ...]:
+    """A CSV of that size."""
+    write_tables.plain_csv(path, _series(50_000))
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    lines = [row[row.index(",") :] for row in rows]
+    repeated(path, lines, lambda i: f"{i / RATE:.3f}", size, f"{head}\n")
+    return tuple(write_tables.UNITS)
 
 
-if __name__ == "__main__":
-    print(f"{'':12}{'ours':>12}{'library':>12}{'ratio':>8}{'asked':>8}")
-    for what, ours, library, asked in measure():
-        print(f"{what:12}{ours:12.0f}{library:12.0f}{ours / library:8.2f}{asked:8.2f}")
+SIZED: SizedLogs = {"CSV": sized}

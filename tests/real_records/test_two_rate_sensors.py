@@ -4,14 +4,11 @@ One instrument smooths its rate of turn, and who fits a ship to it fits the smoo
 text of an NMEA 2000 bus; only the rate of turn (PGN 127251) is taken out, by its two sources.
 """
 
-import struct
-from datetime import datetime
-
 import numpy as np
 import pytest
 from real_record import DATA, HERE
 
-from trialid import auto, recipe
+from trialid import auto, ingest, recipe
 
 RECORDS = DATA / "canboat_n2k"
 pytestmark = [
@@ -21,23 +18,14 @@ pytestmark = [
 
 RUNS = {"8": "furuno-130842.raw", "wide": "furuno-130842-wide-turn.raw"}
 SENSORS = {"27": "first", "52": "second"}
-RATE_OF_TURN, UNKNOWN = "127251", 0x7FFFFFFF
-UNIT = 3.125e-8  # rad/s
 
 
 def rates(path):
-    """Time [s] and rate of turn [rad/s] by source; a line is time, priority, PGN, source, ..."""
-    found, first = {}, None
-    for line in path.read_text(encoding="ascii").splitlines():
-        if line.startswith("#"):
-            continue
-        time, _, pgn, source, _, _, *data = line.split(",")
-        at = datetime.fromisoformat(time)
-        first = first or at
-        (count,) = struct.unpack("<i", bytes(int(byte, 16) for byte in data[1:5]))
-        if pgn == RATE_OF_TURN and count != UNKNOWN:
-            found.setdefault(source, []).append(((at - first).total_seconds(), UNIT * count))
-    return found
+    """Time [s] and rate of turn [rad/s] by source; both from the log's first stamp."""
+    channels = ingest.read(path).channels
+    first = min(int(channel.t[0]) for channel in channels.values())
+    found = {source: channels[f"rate_of_turn/{source}:rate"] for source in SENSORS}
+    return {s: np.column_stack([(c.t - first) / 1e9, c.y]) for s, c in found.items()}
 
 
 @pytest.fixture(scope="module")

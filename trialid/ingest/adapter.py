@@ -5,6 +5,7 @@ message: `/imu:angular_velocity.z`, `rudder/11/255:position`, `ROT/HE:rate`, `AT
 Two sources are two channels, never one. A table's columns keep their bare names.
 """
 
+import functools
 import hashlib
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, fields
@@ -94,7 +95,22 @@ def asked(channel: str, wanted: Wanted) -> bool:
     return wanted is None or channel.startswith(tuple(wanted))
 
 
+State = tuple[Path, int, int, int]
+"""A file as it is now: place, node, size and last change [ns]."""
+
+
+def state(path: Path) -> State:
+    """What tells one state of a file from another; what was found in one is found in it again."""
+    now = path.stat()
+    return path.resolve(), now.st_ino, now.st_size, now.st_mtime_ns
+
+
 def sha256(path: Path) -> str:
-    """SHA-256 of the file's bytes, in hexadecimal."""
-    with path.open("rb") as file:
+    """SHA-256 of the file's bytes, in hexadecimal; once for a log that is read in batches."""
+    return _sha256(state(path))
+
+
+@functools.lru_cache(maxsize=16)
+def _sha256(of: State) -> str:
+    with of[0].open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

@@ -96,7 +96,8 @@ def _nmea2000(
             f"{path}: none of its {len(frames)} frames has a 29 bit identifier, so it is not NMEA "
             "2000; name the file that says what the frames mean with `dbc`"
         )
-    rows = np.flatnonzero(extended)
+    count = int(extended.sum())
+    rows = slice(None) if count == len(frames) else extended
     several = len(np.unique(frames.bus[rows])) > 1
     whole = nmea2000_frames.assemble(
         frames.t[rows], frames.can_id[rows], frames.table[rows], frames.length[rows],
@@ -111,8 +112,8 @@ def _nmea2000(
         wanted,
         frames.buses if several else (),
     )
-    if len(rows) < len(frames):
-        odd = len(frames) - len(rows)
+    if count < len(frames):
+        odd = len(frames) - count
         remarks.append(f"{odd} of {len(frames)} frames have 11 bit identifiers, not NMEA 2000")
     if whole.lost:
         words = f"{whole.lost} of {whole.packets} messages of several frames lack a frame"

@@ -5,6 +5,7 @@ checksum, so this is all that tells a whole message from a torn one. Memory is t
 asked for, whatever the size of the file.
 """
 
+import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.ingest.adapter import State, state
 from trialid.ingest.dataflash_layout import (
     CODES,
     FMT,
@@ -88,10 +90,17 @@ class Block:
 def layouts(path: Path) -> tuple[dict[int, Layout], tuple[str, ...]]:
     """Message types by number, from FMT messages anywhere in the file, and what was odd.
 
-    Of two different meanings of a number the first one stays.
+    Of two different meanings of a number the first one stays. Looked for once in a log that is
+    read in batches.
     """
+    found, odd = _layouts(state(path))
+    return dict(found), odd
+
+
+@functools.lru_cache(maxsize=4)
+def _layouts(of: State) -> tuple[Mapping[int, Layout], tuple[str, ...]]:
     found, odd = {FMT: FMT_LAYOUT}, {}
-    for message in _fmt_messages(path):
+    for message in _fmt_messages(of[0]):
         one = layout(message)
         if one is not None and found.setdefault(one.number, one) != one and one.number != FMT:
             odd[one.number] = f"type {one.number} is both {found[one.number].name} and {one.name}"

@@ -25,6 +25,8 @@ LATEST_US = 4_200_000_000_000_000
 OUT_OF_ORDER_NS = 500_000_000
 PAUSE_NS = 3600 * 10**9
 """No recorder falls silent for an hour after its first frame, or before its last."""
+BLOCK = 2**21
+"""Bytes looked at in one go: what is found in them stays in the processor's cache."""
 LONGEST = 280
 """Bytes of a signed MAVLink 2 frame with the longest payload."""
 
@@ -85,12 +87,12 @@ def find(data: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
     good[chain.kept] = _valid(data, candidates[chain.kept], extra[chain.kept])
     unknown = chain.kept & ~listed
     failed = chain.kept & listed & ~good
-    tried = np.flatnonzero(~chain.kept & listed & _in_gap(candidates, good))
+    tried = _uncovered(candidates, ~chain.kept & listed, candidates[good])
     valid = tried[_valid(data, candidates[tried], extra[tried])]
     good[_apart(candidates, good, valid)] = True
     frames = candidates[good]
-    covered = candidates[unknown & ~_covered(candidates, frames)]
-    lost = candidates[failed & ~_covered(candidates, frames)]
+    covered = candidates[_uncovered(candidates, unknown, frames)]
+    lost = candidates[_uncovered(candidates, failed, frames)]
     holes = _holes((frames, covered, lost), size)
     stamp = _stamps(data, frames.at)
     return Found(data, frames, stamp, _counts(covered), _counts(lost), holes)
@@ -98,7 +100,16 @@ def find(data: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
 
 def _candidates(data: NDArray[np.uint8], size: int) -> Frames:
     """Every place behind a stamp at which a frame may begin that ends within the file."""
-    at = np.flatnonzero((data[STAMP:size] == MAGIC_1) | (data[STAMP:size] == MAGIC_2)) + STAMP
+    begins = range(STAMP, max(size, STAMP + 1), BLOCK)
+    parts = [_starting(data, begin, min(begin + BLOCK, size), size) for begin in begins]
+    names = Frames.__dataclass_fields__
+    return Frames(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+def _starting(data: NDArray[np.uint8], begin: int, end_of_block: int, size: int) -> Frames:
+    """Of these those that begin in one block."""
+    block = data[begin:end_of_block]
+    at = np.flatnonzero((block == MAGIC_1) | (block == MAGIC_2)) + begin
     second = data[at] == MAGIC_2
     flags = np.where(second, data[at + 2], 0)
     length = data[at + 1].astype(np.int64)
@@ -115,9 +126,9 @@ def _candidates(data: NDArray[np.uint8], size: int) -> Frames:
 
 def _extra(messages: Places, known: Mapping[int, Definition]) -> Places:
     """The byte that stands for each message's definition, -1 for messages not known; (N,)."""
-    numbers, which = np.unique(messages, return_inverse=True)
+    numbers = np.unique(messages)
     bytes_ = [known[n].check if n in known else -1 for n in numbers.tolist()]
-    return np.array(bytes_, np.int64)[which] if len(numbers) else np.empty(0, np.int64)
+    return np.array(bytes_, np.int64)[np.searchsorted(numbers, messages)]
 
 
 def _valid(data: NDArray[np.uint8], frames: Frames, extra: Places) -> NDArray[np.bool_]:
@@ -139,9 +150,10 @@ def _covered(frames: Frames, good: Frames) -> NDArray[np.bool_]:
     return inside | reaches
 
 
-def _in_gap(frames: Frames, good: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which candidates lie where no good frame does; (N,)."""
-    return ~_covered(frames, frames[good])
+def _uncovered(frames: Frames, which: NDArray[np.bool_], good: Frames) -> Places:
+    """Of these frames those that lie where no good one does; indices."""
+    rows = np.flatnonzero(which)
+    return rows[~_covered(frames[rows], good)]
 
 
 def _apart(frames: Frames, good: NDArray[np.bool_], valid: Places) -> list[int]:
@@ -198,6 +210,7 @@ def payloads(found: Found, rows: Places, definition: Definition) -> NDArray[np.v
     count = len(found.data) - size + 1
     everywhere: NDArray[np.uint8] = np.ndarray((count, size), np.uint8, found.data.data, 0, (1, 1))
     raw = everywhere[np.minimum(frames.payload, count - 1)]
-    short = np.flatnonzero(frames.length < size)
-    raw[short] *= np.arange(size) < frames.length[short, None]
+    for length in np.unique(frames.length).tolist():
+        if length < size:
+            raw[frames.length == length, length:] = 0
     return raw.view(definition.kind)[:, 0]

@@ -188,10 +188,11 @@ def _of_message(
     table = tlog_frames.payloads(log.found, rows, one)
     sent = _sent(log, sender, one, rows, table)
     for source, part in _devices(sender, one, rows, table):
-        for name, field, raw in _columns(one, source, table[part]):
+        t, mine = sent.t[part], table[part]
+        received = log.found.stamp[rows[part]] if sent.own else None
+        for name, field, raw in _columns(one, source, mine):
             if asked(name, wanted):
-                received = log.found.stamp[rows[part]] if sent.own else None
-                yield _channel(one, field, name, (sent.t[part], raw, received), sent.clock)
+                yield _channel(one, field, name, (t, raw, received), sent.clock)
 
 
 def _sent(

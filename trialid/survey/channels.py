@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trialid.alignment import frames
 from trialid.alignment.frames import MARKER
@@ -31,19 +30,23 @@ REP_103: Final[Mapping[str, Literal["port"]]] = {"r": "port", "psi": "port"}
 
 def of_recording(recording: Recording) -> Iterator[ChannelSurvey]:
     """Every channel that holds a sample, and the roll and yaw of every quaternion."""
-    seen: tuple[NDArray[np.int64], Health] | None = None
+    seen: tuple[Channel, Health] | None = None
     for channel in recording.channels.values():
         if not len(channel.t):
             continue
         if seen is None or not _same_stamps(seen[0], channel):
-            seen = channel.t, health(channel.t, channel.clock, channel.received)
+            seen = channel, health(channel.t, channel.clock, channel.received)
         yield _channel(channel, seen[1])
     yield from _orientations(recording)
 
 
-def _same_stamps(t: NDArray[np.int64], channel: Channel) -> bool:
+def _same_stamps(one: Channel, other: Channel) -> bool:
     """Fields of a message share their stamps, which need not be looked at again."""
-    return channel.received is None and (t is channel.t or np.array_equal(t, channel.t))
+    if one.clock != other.clock:
+        return False
+    if one.received is not None or other.received is not None:
+        return one.t is other.t and one.received is other.received
+    return one.t is other.t or np.array_equal(one.t, other.t)
 
 
 def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
