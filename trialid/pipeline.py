@@ -182,13 +182,15 @@ def fit_of(
 
 
 def sources_of(recipe: Recipe) -> list[dict[str, str]]:
-    """What the result rests on besides the logs: the ship and the user's own effects."""
+    """What the result rests on besides the logs: ship, the user's own effects, how to read logs."""
+    logs = [log for trial in recipe.trials for log in trial.logs]
+    aids = dict.fromkeys(aid for log in logs for aid in (log.template, log.dbc))
     return [
         {
             "path": _as_written(recipe, path).as_posix(),
             "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
         }
-        for path in (recipe.ship, *recipe.model.effects_from)
+        for path in (recipe.ship, *recipe.model.effects_from, *aids)
         if path is not None
     ]
 
