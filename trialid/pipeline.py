@@ -116,6 +116,7 @@ def examine(
     present, *proposed = result["history"]
     result["history"] = [*history.continued(steps, present), *proposed]
     result |= {"history_remark": remark or None, "sources": sources_of(recipe)}
+    result["signals"] = signals_of(recipe)
     return Run(recipe, findings, result, time_series(fit))
 
 
@@ -192,6 +193,15 @@ def sources_of(recipe: Recipe) -> list[dict[str, str]]:
         }
         for path in (recipe.ship, *recipe.model.effects_from, *aids)
         if path is not None
+    ]
+
+
+def signals_of(recipe: Recipe) -> list[dict[str, str]]:
+    """Which channel each signal of each trial was read from."""
+    return [
+        {"trial": trial.name, "signal": quantity, "channel": source.channel}
+        for trial in recipe.trials
+        for quantity, source in trial.signals.items()
     ]
 
 
