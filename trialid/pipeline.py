@@ -116,6 +116,7 @@ def examine(
     present, *proposed = result["history"]
     result["history"] = [*history.continued(steps, present), *proposed]
     result |= {"history_remark": remark or None, "sources": sources_of(recipe)}
+    result["signals"] = signals_of(recipe)
     return Run(recipe, findings, result, time_series(fit))
 
 
@@ -182,14 +183,25 @@ def fit_of(
 
 
 def sources_of(recipe: Recipe) -> list[dict[str, str]]:
-    """What the result rests on besides the logs: the ship and the user's own effects."""
+    """What the result rests on besides the logs: ship, the user's own effects, how to read logs."""
+    logs = [log for trial in recipe.trials for log in trial.logs]
+    aids = dict.fromkeys(aid for log in logs for aid in (log.template, log.dbc))
     return [
         {
             "path": _as_written(recipe, path).as_posix(),
             "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
         }
-        for path in (recipe.ship, *recipe.model.effects_from)
+        for path in (recipe.ship, *recipe.model.effects_from, *aids)
         if path is not None
+    ]
+
+
+def signals_of(recipe: Recipe) -> list[dict[str, str]]:
+    """Which channel each signal of each trial was read from."""
+    return [
+        {"trial": trial.name, "signal": quantity, "channel": source.channel}
+        for trial in recipe.trials
+        for quantity, source in trial.signals.items()
     ]
 
 

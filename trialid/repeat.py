@@ -115,7 +115,8 @@ def _check_files(folder: Path, home: Path, result: Mapping[str, Any]) -> None:
     for row in _rests_on(result):
         path = home / row["path"]
         try:
-            digest = _hash(path.read_bytes())
+            with path.open("rb") as stream:
+                digest = hashlib.file_digest(stream, "sha256").hexdigest()
         except OSError as error:
             raise TrialidError(
                 f"{folder}: {row['path']}, which the run read, is not at {path} "
@@ -129,9 +130,9 @@ def _check_files(folder: Path, home: Path, result: Mapping[str, Any]) -> None:
 
 
 def _rests_on(result: Mapping[str, Any]) -> Iterator[Mapping[str, str]]:
-    for trial in result["trials"]:
+    for trial in result.get("trials") or ():
         yield from trial["logs"]
-    yield from result["sources"]
+    yield from result.get("sources") or ()
 
 
 def _hash(content: bytes) -> str:

@@ -16,7 +16,7 @@ def tables(result: Mapping[str, Any]) -> tuple[Table, ...]:
     made = (
         _parameters(run), _nuisance(run), _weak(run), _levers(run), _split(run), _history(run),
         _change(run), _validation(run), _missing(run), _force(run), _imo(run), _overshoots(run),
-        _logs(run),
+        _logs(run), _signals(run),
     )  # fmt: skip
     return tuple(table for table in made if table.rows)
 
@@ -273,3 +273,12 @@ def _logs(run: Run) -> Table:
     rows += [("", each["path"] or "", "", each["sha256"] or "") for each in run["sources"]]
     return Table("logs", "Files the run rests on", ("trial", "path", "format", "SHA-256"),
                  tuple(rows))  # fmt: skip
+
+
+def _signals(run: Run) -> Table:
+    rows = tuple(
+        (each["trial"] or "", labels.labelled(each["signal"] or ""), each["channel"] or "")
+        for each in run["signals"]
+    )
+    return Table("signals", "Channels the signals were read from",
+                 ("trial", "signal", "channel"), rows)  # fmt: skip

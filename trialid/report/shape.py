@@ -129,6 +129,7 @@ SHAPE: dict[str, Any] = _keys("schema version pipeline file") | {
     "history": [_STEP],
     "history_remark": None,
     "sources": [_keys("path sha256")],
+    "signals": [_keys("trial signal channel")],
     "before_after": Maybe(_CHANGE),
     "change": Maybe(_CHANGE),
     "missing_force": Maybe(_FORCE),

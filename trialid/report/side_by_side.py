@@ -134,6 +134,7 @@ def _of(runs: Sequence[Shown]) -> tuple[str, ...]:
 
 STACKED: Final = (
     "history", "validation", "missing", "imo", "stability", "weak_directions", "change", "logs",
+    "signals",
 )  # fmt: skip
 
 
