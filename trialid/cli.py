@@ -17,6 +17,7 @@ import click
 import trialid
 from trialid.cli_design import design
 from trialid.cli_logs import align, inspect
+from trialid.cli_replay import replay
 from trialid.console import Progress, complain, file_width, progress_bar, rendered, say
 from trialid.errors import TrialidError
 
@@ -166,6 +167,7 @@ def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> Non
 commands.add_command(inspect)
 commands.add_command(align)
 commands.add_command(design)
+commands.add_command(replay)
 
 
 def main() -> None:
