@@ -18,7 +18,7 @@ from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
 
-LOOK_BACK: Final = 30.0
+LOOK_BACK: Final = 10.0
 """Record [s] before a moment that tells what the ship was doing."""
 
 
@@ -86,7 +86,7 @@ class Playback:
         return longer
 
     def doing(self, samples: int) -> str:
-        """What the ship was doing in the last half minute before a sample."""
+        """What the ship was doing in the last ten seconds before a sample."""
         n = max(min(samples, self.stream.at), 1)
         first = max(n - round(LOOK_BACK / self.trial.period), 0)
         return doing(self._so_far(n), slice(first, n))
