@@ -1,7 +1,11 @@
 """The command: the run's numbers in its recording, and mistakes in one line."""
 
 import json
+import os
 import re
+import select
+import sys
+import time
 
 import late_effect
 import numpy as np
@@ -112,6 +116,59 @@ def test_a_run_of_another_model_is_refused(done, tmp_path):
 @pytest.mark.parametrize("options", [["--fast", "--speed", "2"], ["--loop", "--follow"]])
 def test_options_that_exclude_each_other(done, options):
     assert trialid_("replay", done[0], *options).exit_code == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
+def test_in_a_terminal_space_pauses_arrows_seek_and_q_ends(done):
+    pipeline, run = done
+    pid, place = os.forkpty()
+    if pid == 0:
+        os.environ |= {"TERM": "xterm", "COLUMNS": "120", "LINES": "40"}
+        code = "from trialid.cli import main; main()"
+        arguments = ["replay", pipeline, "--run", run, "--from", "100", "--speed", "2"]
+        os.execv(sys.executable, [sys.executable, "-c", code, *map(str, arguments)])
+    terminal = Terminal(place)
+    began = terminal.position(r"2 times")
+    assert 100.0 <= began < 110.0
+    os.write(place, b" ")
+    stood = terminal.position("paused")
+    os.write(place, b"\x1b[C")
+    assert terminal.position("paused", beyond=stood) == pytest.approx(stood + 10.0, abs=0.6)
+    os.write(place, b" ")
+    assert terminal.position(r"2 times", beyond=stood + 10.5) < stood + 40.0
+    os.write(place, b"q")
+    assert "no alarm" in terminal.rest()
+    assert os.waitpid(pid, 0)[1] == 0
+
+
+class Terminal:
+    """What a replay writes to its terminal."""
+
+    def __init__(self, place):
+        self.place, self.text = place, ""
+
+    def position(self, how, beyond=-1.0):
+        """Where the replay stands when its heading next says how it runs."""
+        until = time.monotonic() + 60.0
+        while time.monotonic() < until:
+            if select.select([self.place], [], [], 0.1)[0]:
+                self.text += os.read(self.place, 65536).decode(errors="replace")
+            found = re.findall(rf"halfway  ([\d.]+) of [\d.]+ s  {how}", self.text)
+            if found and float(found[-1]) > beyond:
+                self.text = ""
+                return float(found[-1])
+        raise AssertionError(self.text[-2000:])
+
+    def rest(self):
+        """All that comes until the other side hangs up."""
+        while True:
+            try:
+                sent = os.read(self.place, 65536)
+            except OSError:  # Linux says so where others send nothing
+                sent = b""
+            if not sent:
+                return self.text
+            self.text += sent.decode(errors="replace")
 
 
 def test_keys_that_mean_nothing_are_passed_over():

@@ -110,8 +110,10 @@ def threshold(samples: float) -> float:
 
     Siegmund (1985): samples = (exp(2 k b) - 2 k b - 1) / (2 k^2), b = h + 1.166.
 
-    >>> round(threshold(930.0), 1)
-    4.0
+    Tables have 465 for both sides together at a height of 5:
+
+    >>> round(threshold(2 * 465.0), 2)
+    4.99
     """
 
     def excess(b: float) -> float:

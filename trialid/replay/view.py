@@ -64,7 +64,7 @@ def drawing(playback: Playback, pace: Pace) -> "Group":
         )  # fmt: skip
     events = [e for e in playback.events() if e.t <= place * playback.trial.period][-LAST:]
     lines = [Text(f"{e.t:8.1f} s  {e.words}", style="red" if e.warning else "") for e in events]
-    return Group(_heading(playback, pace, place), table, *(lines or [Text("no alarm")]))
+    return Group(Text(_heading(playback, pace, place)), table, *(lines or [Text("no alarm")]))
 
 
 def bar(ratio: float) -> str:
