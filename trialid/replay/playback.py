@@ -51,6 +51,7 @@ class Playback:
         self.measured = measured(trial, fit.problem.outputs)
         self.compared = where_compared(trial, fit.problem.simulator)
         self.at = self.furthest = self.revised = 0
+        self._said: dict[tuple[str, float, int], str] = {}
 
     @property
     def available(self) -> int:
@@ -110,6 +111,13 @@ class Playback:
         return max(len(band.whitening) for band in self.bands.of)
 
     def _words(self, alarm: Alarm) -> str:
+        """An alarm in words, which do not change once it is raised."""
+        key = (alarm.output, alarm.raised, alarm.side)
+        if key not in self._said:
+            self._said[key] = self._put(alarm)
+        return self._said[key]
+
+    def _put(self, alarm: Alarm) -> str:
         what = self.doing(round(alarm.raised / self.trial.period) + 1)
         way = "above" if alarm.side > 0 else "below"
         return (
