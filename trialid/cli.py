@@ -17,6 +17,7 @@ import click
 import trialid
 from trialid.cli_design import design
 from trialid.cli_logs import align, inspect
+from trialid.cli_replay import replay
 from trialid.cli_report import DIFFERENT, repeated, report
 from trialid.console import Progress, complain, file_width, progress_bar, rendered, say
 from trialid.errors import TrialidError
@@ -184,6 +185,7 @@ commands.add_command(inspect)
 commands.add_command(align)
 commands.add_command(design)
 commands.add_command(report)
+commands.add_command(replay)
 
 
 def main() -> None:

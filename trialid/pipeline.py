@@ -225,11 +225,12 @@ def align_trials(recipe: Recipe, progress: Progress) -> tuple[Trial, ...]:
     done = []
     for i, trial in enumerate(recipe.trials):
         progress(f"reading {trial.name}", 0.3 * i / len(recipe.trials))
-        done.append(_aligned(recipe, trial))
+        done.append(align_trial(recipe, trial))
     return tuple(done)
 
 
-def _aligned(recipe: Recipe, trial: TrialRecipe) -> Trial:
+def align_trial(recipe: Recipe, trial: TrialRecipe) -> Trial:
+    """Logs of one trial, read and brought onto one clock."""
     sources = [
         SignalSource(q, s.channel, s.unit, s.positive, s.angle, s.delay, s.gain, s.offset)
         for q, s in trial.signals.items()

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.errors import SimulationError
+from trialid.errors import NotIdentifiable, SimulationError
 from trialid.identification.gauss_newton import REASONS, Iteration, Minimum, minimise
 from trialid.identification.output_error import (
     Problem,
@@ -176,6 +176,30 @@ def identify(
     return _finish(model, problem, trials, settings, best, (sum(map(bool, same)), len(starts)))
 
 
+@one_thread
+def revived(
+    trials: Sequence[Trial], model: ShipModel, settings: Settings, estimates: Mapping[str, float]
+) -> Fit:
+    """A fit whose search is over, from every unknown's value by name; it has no iterations.
+
+    Raises
+    ------
+    NotIdentifiable
+        An unknown without a value: they are of another model, or of other trials.
+    SimulationError
+        The model cannot be simulated with these values.
+    """
+    problem = pose(trials, model, settings, estimates)
+    missing = [x.name for x in problem.unknowns if x.name not in estimates]
+    if missing:
+        raise NotIdentifiable(f"there is no value for {', '.join(missing[:3])}")
+    point = linearise(problem, problem.start)
+    if isinstance(point, Departure):
+        raise SimulationError(f"the model cannot be simulated with these values: {point}")
+    minimum = Minimum(problem.start, *point, (), "orthogonal", 0)
+    return _finish(model, problem, trials, settings, _End(minimum, ()), (1, 1))
+
+
 def _same(V: float, best: float) -> bool:
     return best * (1.0 + SAME_OPTIMUM) + 1e-20 >= V
 
@@ -306,19 +330,27 @@ def _finish(
     )  # fmt: skip
 
 
-def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
-    """Simulate one trial with the fitted parameters.
+def of_trial(
+    problem: Problem, theta: Vector, trial: Trial
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Parameters and initial states with which a fit simulates one trial.
 
     A trial to check has no parameters of its own but where its motion starts, if the fit leaves
     that free too: sensors keep the mean of the fitted ones.
     """
-    compared = where_compared(trial, problem.simulator)
     if trial.use == "fit":
-        values = problem.values(theta, problem.trials.index(trial))
-        start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
-    else:
-        values = _mean_values(problem, theta)
-        start = _own_start(problem, trial, compared, values)
+        place = [t.name for t in problem.trials].index(trial.name)
+        values = problem.values(theta, place)
+        return values, {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+    values = _mean_values(problem, theta)
+    compared = where_compared(trial, problem.simulator)
+    return values, _own_start(problem, trial, compared, values)
+
+
+def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
+    """Simulate one trial with the fitted parameters."""
+    compared = where_compared(trial, problem.simulator)
+    values, start = of_trial(problem, theta, trial)
     response = respond(problem.simulator, trial, values, start, sensitivities=False)
     if response.departure is None:
         eps = scores(trial, response, compared, problem.outputs, problem.y_rms)

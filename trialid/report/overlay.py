@@ -26,14 +26,15 @@ def write_mcap(path: str | Path, result: Mapping[str, Any], series: Sequence[Tri
     inside a gap is NaN.
     """
     topics = stems(trial.name for trial in series)
-    tracks = [track for each in zip(series, topics, strict=True) for track in _tracks(*each)]
+    tracks = [track for each in zip(series, topics, strict=True) for track in tracks_of(*each)]
     library = f"trialid {result.get('version') or ''}".strip()
     about = About(library, _manifest(result), "result.json", result)
     with Path(path).open("wb") as stream:
         write_tracks(stream, tracks, about)
 
 
-def _tracks(trial: TrialSeries, stem: str) -> Iterator[Track]:
+def tracks_of(trial: TrialSeries, stem: str) -> Iterator[Track]:
+    """Inputs, measured, predicted and residual of a trial, a topic each."""
     t = np.rint(trial.t * 1e9).astype(np.int64)
     if len(t) and t.min() < 0:
         # MCAP times are unsigned, and its writer loses the whole file over one negative time.

@@ -8,11 +8,16 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from heapq import merge
+from operator import itemgetter
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.report import lines as log_lines
+from trialid.report.lines import Line
 from trialid.trial import Vector
 
 if TYPE_CHECKING:
@@ -58,20 +63,46 @@ def stems(names: Iterable[str]) -> list[str]:
     return found
 
 
-def write_tracks(stream: BinaryIO, tracks: Sequence[Track], about: About) -> None:
-    """The tracks as protobuf messages in the order of time, with metadata and an attachment."""
+def write_tracks(
+    stream: BinaryIO,
+    tracks: Sequence[Track],
+    about: About,
+    lines: Mapping[str, Sequence[Line]] = MappingProxyType({}),
+) -> None:
+    """The tracks as protobuf messages in the order of time, with metadata and an attachment.
+
+    `lines` are topics of text beside those of numbers.
+    """
     from mcap.writer import Writer
 
     writer = Writer(stream, chunk_size=CHUNK)
     writer.start(library=about.library)
     messages = _messages(tracks)
     channels = _channels(writer, tracks, messages)
-    for t, index, message in _in_order(tracks, messages):
-        writer.add_message(channels[index], t, message, t)
+    numbers = ((t, channels[index], message) for t, index, message in _in_order(tracks, messages))
+    for t, channel, message in merge(numbers, *_texts(writer, lines), key=itemgetter(0)):
+        writer.add_message(channel, t, message, t)
     writer.add_metadata("trialid", dict(about.manifest))
     attached = json.dumps(about.data, ensure_ascii=False, allow_nan=False).encode()
     writer.add_attachment(0, 0, about.attached, "application/json", attached)
     writer.finish()  # type: ignore[no-untyped-call]
+
+
+def _texts(
+    writer: "Writer", lines: Mapping[str, Sequence[Line]]
+) -> Iterator[Iterator[tuple[int, int, bytes]]]:
+    """Log time [ns], channel and message of the lines of each topic."""
+    from mcap_protobuf.schema import register_schema
+
+    for topic, each in lines.items():
+        schema = register_schema(writer, log_lines.message())
+        channel = writer.register_channel(topic, "protobuf", schema)
+        yield _on(channel, each)
+
+
+def _on(channel: int, lines: Sequence[Line]) -> Iterator[tuple[int, int, bytes]]:
+    for t, message in log_lines.encoded(lines):
+        yield t, channel, message
 
 
 def _messages(tracks: Iterable[Track]) -> "dict[str, type[Message]]":

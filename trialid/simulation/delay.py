@@ -105,7 +105,10 @@ def lagged(y: Vector, tau: float, period: float) -> tuple[Vector, Vector]:
 
 
 def _recursive(x: Vector, a: float) -> Vector:
-    """z(k) = a z(k-1) + x(k) from rest, block by block; like x, (N, ...)."""
+    """z(k) = a z(k-1) + x(k) from rest, block by block; like x, (N, ...).
+
+    The last block is filled up, so that a longer record has the same beginning bit for bit.
+    """
     columns = x.reshape(len(x), -1)
     ahead = np.subtract.outer(np.arange(BLOCK), np.arange(BLOCK))
     band = np.where(ahead >= 0, a ** np.maximum(ahead, 0), 0.0)
@@ -113,9 +116,10 @@ def _recursive(x: Vector, a: float) -> Vector:
     z = np.empty_like(columns)
     carried = np.zeros((1, columns.shape[1]))
     for k in range(0, len(x), BLOCK):
-        part = columns[k : k + BLOCK]
-        rows = len(part)
-        z[k : k + rows] = band[:rows, :rows] @ part + fading[:rows] * carried
+        rows = min(BLOCK, len(x) - k)
+        part = np.zeros((BLOCK, columns.shape[1]))
+        part[:rows] = columns[k : k + rows]
+        z[k : k + rows] = (band @ part + fading * carried)[:rows]
         carried = z[k + rows - 1 : k + rows]
     return z.reshape(x.shape)
 

@@ -148,21 +148,26 @@ def respond(
     start
         Initial states that are not to be guessed from the record.
     """
+    run, h = simulator.engine, trial.period
+    theta, x0, u, limit = arguments(simulator, trial, values, start)
+    if not sensitivities:
+        X, left = run.simulate(theta, x0, u, limit, h, simulator.substeps)
+        y, _ = sensed(simulator, h, X, None, u, theta)
+        return Response(X, y, None, departure(simulator, X, left, h, limit))
+    X, S, left = run.sensitivities(theta, x0, u, limit, h, simulator.substeps)
+    y, dy = sensed(simulator, h, X, S, u, theta)
+    return Response(X, y, dy, departure(simulator, X, left, h, limit))
+
+
+def arguments(
+    simulator: Simulator, trial: Trial, values: Mapping[str, float], start: Mapping[str, float]
+) -> tuple[Vector, Vector, Vector, Vector]:
+    """Parameters, initial states, inputs and bounds of a run; (n_p,), (n_x,), (N, n_u), (n_x,)."""
     eq = simulator.equations
     known = {**simulator.fixed, **values}
     theta = np.array([known[n] for n in eq.parameters])
     x0 = np.array([start.get(s, guess(simulator.model, trial, s)) for s in eq.states])
-    u = inputs(simulator, trial, known)
-    run = simulator.engine
-    limit = domain(simulator.model)
-    arguments = (theta, x0, u, limit, trial.period, simulator.substeps)
-    if not sensitivities:
-        X, left = run.simulate(*arguments)
-        y, _ = _outputs(simulator, trial, X, None, u, theta)
-        return Response(X, y, None, _departure(eq, X, left, trial.period, limit))
-    X, S, left = run.sensitivities(*arguments)
-    y, dy = _outputs(simulator, trial, X, S, u, theta)
-    return Response(X, y, dy, _departure(eq, X, left, trial.period, limit))
+    return theta, x0, inputs(simulator, trial, known), domain(simulator.model)
 
 
 def guess(model: ShipModel, trial: Trial, state: str) -> float:
@@ -256,13 +261,14 @@ def domain(model: ShipModel) -> Vector:
     return np.array([bounds.get(s, np.inf) for s in model.all_states])
 
 
-def _departure(
-    eq: Equations, X: Vector, left: int, period: float, limit: Vector
+def departure(
+    simulator: Simulator, X: Vector, left: int, period: float, limit: Vector
 ) -> Departure | None:
+    """Where states left their bounds, from the sample at which they did; None where it is 0."""
     if left == 0:
         return None
     outside = int(np.flatnonzero(~(np.abs(X[left]) < limit))[0])
-    return Departure(eq.states[outside], left * period, float(X[left, outside]))
+    return Departure(simulator.equations.states[outside], left * period, float(X[left, outside]))
 
 
 class _Readout:
@@ -305,17 +311,17 @@ def _zero(node: Node) -> bool:
     return node.is_constant(0.0)
 
 
-def _outputs(
-    simulator: Simulator, trial: Trial, X: Vector, S: Vector | None, u: Vector, theta: Vector
+def sensed(
+    simulator: Simulator, period: float, X: Vector, S: Vector | None, u: Vector, theta: Vector
 ) -> tuple[Vector, Vector | None]:
     """Outputs as a sensor records them, from states; (N, n_y), (N, n_y, n_columns)."""
     read = simulator.readout
     symbols = [*X.T, *u.T, *theta]
     y = np.column_stack([np.broadcast_to(c, len(X)) for c in read.value(symbols)])
     if S is None:
-        return _late(simulator, trial, y, None, symbols)
+        return _late(simulator, period, y, None, symbols)
     dy = _slopes(simulator, S, read.slope(symbols))
-    return _late(simulator, trial, y, dy, symbols)
+    return _late(simulator, period, y, dy, symbols)
 
 
 def _slopes(simulator: Simulator, S: Vector, slopes: Sequence[Vector | float]) -> Vector:
@@ -333,24 +339,24 @@ def _slopes(simulator: Simulator, S: Vector, slopes: Sequence[Vector | float]) -
 
 
 def _late(
-    simulator: Simulator, trial: Trial, y: Vector, dy: Vector | None, symbols: Sequence[Any]
+    simulator: Simulator, period: float, y: Vector, dy: Vector | None, symbols: Sequence[Any]
 ) -> tuple[Vector, Vector | None]:
     """Apply the low-passes and delays of the outputs, with the derivatives by their parameters."""
     read = simulator.readout
     for c, output in enumerate(simulator.outputs):
         for lag in read.lags[output]:
             [tau] = lag.value(symbols)
-            y[:, c], by_tau = lagged(y[:, c], float(tau), trial.period)
+            y[:, c], by_tau = lagged(y[:, c], float(tau), period)
             if dy is not None:
-                dy[:, c] = lagged(dy[:, c], float(tau), trial.period)[0]
+                dy[:, c] = lagged(dy[:, c], float(tau), period)[0]
                 _add_slopes(dy[:, c], lag, by_tau, symbols)
         if read.delay[output].absent:
             continue
         [tau] = read.delay[output].value(symbols)
-        y[:, c], by_lag = delayed(y[:, c], tau / trial.period)
+        y[:, c], by_lag = delayed(y[:, c], tau / period)
         if dy is not None:
-            dy[:, c] = shifted(dy[:, c], tau / trial.period)
-            _add_slopes(dy[:, c], read.delay[output], by_lag / trial.period, symbols)
+            dy[:, c] = shifted(dy[:, c], tau / period)
+            _add_slopes(dy[:, c], read.delay[output], by_lag / period, symbols)
     return y, dy
 
 

@@ -1,0 +1,1 @@
+"""A recorded log played back through the same chain, at its own pace or faster."""

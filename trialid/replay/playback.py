@@ -1,0 +1,137 @@
+"""What is played: one trial, the model in step with it, its residual watched."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.diagnosis.leftover.doing import doing
+from trialid.diagnosis.leftover.record import Leftover
+from trialid.diagnosis.residual import Residual
+from trialid.identification.fit import Fit, of_trial
+from trialid.identification.output_error import measured, output_error, where_compared
+from trialid.replay.alarm import Alarm, Bands, Monitor
+from trialid.replay.stream import Stream
+from trialid.threads import one_thread
+from trialid.trial import Trial
+
+Vector = NDArray[np.float64]
+
+LOOK_BACK: Final = 10.0
+"""Record [s] before a moment that tells what the ship was doing."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something worth a line: when in the record [s], what, and whether it is a warning."""
+
+    t: float
+    words: str
+    warning: bool
+
+
+class Playback:
+    """A trial as far as it was played.
+
+    Attributes
+    ----------
+    at
+        Samples played, counted from the start of the trial.
+    furthest
+        The most of them, whatever was sought since.
+    revised
+        Samples that were predicted anew because a longer log moved what was there.
+    """
+
+    def __init__(self, fit: Fit, trial: Trial, bands: Bands, growing: bool = False) -> None:
+        self.fit, self.trial, self.bands, self.growing = fit, trial, bands, growing
+        self.stream = Stream(fit.problem.simulator, trial, *of_trial(fit.problem, fit.theta, trial))
+        self.monitor = Monitor(bands.of, trial.period, trial.samples)
+        self.measured = measured(trial, fit.problem.outputs)
+        self.compared = where_compared(trial, fit.problem.simulator)
+        self.at = self.furthest = self.revised = 0
+        self._said: dict[tuple[str, float, int], str] = {}
+
+    @property
+    def available(self) -> int:
+        """Samples that can be played: at a growing end the last few are not settled yet."""
+        held = self.stream.open_end if self.growing else 0
+        return max(self.trial.samples - held, 0)
+
+    @property
+    def residual(self) -> Vector:
+        """Measured less predicted [SI], NaN where not compared or not yet played; (N, n_y)."""
+        return np.where(self.compared, output_error(self.measured, self.stream.y), np.nan)
+
+    @one_thread
+    def go_to(self, samples: int) -> None:
+        """Play or seek until so many samples are played; the numbers do not depend on the way."""
+        self.at = min(max(samples, 0), self.available)
+        first = self.stream.at
+        self.stream.advance(self.at)
+        if self.stream.departure is None and self.at > self.monitor.at:
+            low = max(min(first, self.monitor.at) - self._reach, 0)
+            eps = np.zeros((self.at, len(self.bands.of)))
+            eps[low:] = output_error(self.measured[low : self.at], self.stream.y[low : self.at])
+            self.monitor.advance(eps, self.compared, self.at)
+        self.furthest = max(self.furthest, self.at)
+
+    def grown(self, trial: Trial, growing: bool) -> "Playback":
+        """The same of a longer reading of the log, played as far."""
+        longer = Playback(self.fit, trial, self.bands, growing)
+        kept = longer.stream.take_over(self.stream)
+        longer.revised = self.revised + max(self.furthest - kept, 0)
+        longer.go_to(self.furthest)
+        longer.go_to(self.at)
+        return longer
+
+    def doing(self, samples: int) -> str:
+        """What the ship was doing in the last ten seconds before a sample."""
+        n = max(min(samples, self.stream.at), 1)
+        first = max(n - round(LOOK_BACK / self.trial.period), 0)
+        return doing(self._so_far(n), slice(first, n))
+
+    def events(self, start: float = 0.0) -> list[Event]:
+        """Alarms and their ends from a time [s] on, as far as the record was played."""
+        found = []
+        for alarm in self.monitor.alarms:
+            over = np.inf if alarm.over is None else alarm.over
+            if over >= start:
+                found.append(Event(alarm.raised, self._words(alarm), True))
+            if start <= over < np.inf:
+                found.append(Event(over, f"{alarm.output} is back in its noise band", False))
+        gone = self.stream.departure
+        if gone is not None:
+            found.append(Event(gone.t, f"simulation: {gone}; no prediction from here on", True))
+        return sorted(found, key=lambda event: event.t)
+
+    @property
+    def _reach(self) -> int:
+        return max(len(band.whitening) for band in self.bands.of)
+
+    def _words(self, alarm: Alarm) -> str:
+        """An alarm in words, which do not change once it is raised."""
+        key = (alarm.output, alarm.raised, alarm.side)
+        if key not in self._said:
+            self._said[key] = self._put(alarm)
+        return self._said[key]
+
+    def _put(self, alarm: Alarm) -> str:
+        what = self.doing(round(alarm.raised / self.trial.period) + 1)
+        way = "above" if alarm.side > 0 else "below"
+        return (
+            f"{alarm.output} left its noise band at {alarm.since:.1f} s, measured {way} predicted "
+            f"(sure at {alarm.raised:.1f} s): {what}"
+        )
+
+    def _so_far(self, n: int) -> Leftover:
+        """The record up to a sample, as the report's words take it."""
+        trial, y_rms = self.trial, self.fit.problem.y_rms
+        signals = {name: x[:n] for name, x in trial.signals.items()}
+        valid = {name: x[:n] for name, x in trial.valid.items()}
+        cut = Trial(trial.name, trial.use, trial.period, signals, valid)
+        compared = self.compared[:n]
+        eps = np.where(compared, output_error(self.measured[:n], self.stream.y[:n]) / y_rms, 0.0)
+        part = Residual(cut, eps, compared, self.stream.y[:n] / y_rms)
+        return Leftover(self.fit, (part,), eps, compared, (slice(0, n),))
