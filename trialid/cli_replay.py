@@ -281,7 +281,7 @@ def _summary(playback: "Playback", start: float, files: Sequence[Path]) -> str:
     events = [e for e in playback.events(start) if e.warning]
     lines += [f"  {event.words}" for event in events] or ["  no alarm"]
     if playback.revised:
-        lines.append(f"  {playback.revised} samples predicted anew as the log grew: its stamps are "
-                     "put right by all of it")  # fmt: skip
+        moved = f"{playback.revised:.2g} sigma"
+        lines.append(f"  what was shown as the log grew moved by up to {moved} once more was there")
     lines += [f"Written: {path}" for path in files]
     return "\n".join(lines)

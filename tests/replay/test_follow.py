@@ -79,6 +79,8 @@ def test_a_growing_log_is_followed_and_ends_in_the_numbers_of_the_batch_run(pipe
     )
     assert played.at == whole.samples
     assert np.array_equal(played.stream.y, batch.y)
+    print(f"\nwhat was shown moved by up to {played.revised:.2g} sigma")
+    assert 0.0 < played.revised < 0.5
     lengths = {samples for _, _, samples in course}
     assert len(lengths) > 50  # in step, not at the end
     behind = [n - at for _, at, n in course[1:]]

@@ -41,7 +41,8 @@ class Playback:
     furthest
         The most of them, whatever was sought since.
     revised
-        Samples that were predicted anew because a longer log moved what was there.
+        The most that a longer log moved a prediction already shown, in deviations of its noise:
+        stamps are put right by all of a log, and so is where a held-out trial starts.
     """
 
     def __init__(self, fit: Fit, trial: Trial, bands: Bands, growing: bool = False) -> None:
@@ -50,7 +51,8 @@ class Playback:
         self.monitor = Monitor(bands.of, trial.period, trial.samples)
         self.measured = measured(trial, fit.problem.outputs)
         self.compared = where_compared(trial, fit.problem.simulator)
-        self.at = self.furthest = self.revised = 0
+        self.at = self.furthest = 0
+        self.revised = 0.0
         self._said: dict[tuple[str, float, int], str] = {}
 
     @property
@@ -80,11 +82,18 @@ class Playback:
     def grown(self, trial: Trial, growing: bool) -> "Playback":
         """The same of a longer reading of the log, played as far."""
         longer = Playback(self.fit, trial, self.bands, growing)
-        kept = longer.stream.take_over(self.stream)
-        longer.revised = self.revised + max(self.furthest - kept, 0)
+        longer.stream.take_over(self.stream)
         longer.go_to(self.furthest)
         longer.go_to(self.at)
+        longer.revised = max(self.revised, self._moved(longer))
         return longer
+
+    def _moved(self, longer: "Playback") -> float:
+        """The largest difference of two predictions of the same samples, in deviations."""
+        n = min(self.furthest, longer.furthest)
+        sigma = np.array([band.sigma or np.inf for band in self.bands.of])
+        apart = np.abs(longer.stream.y[:n] - self.stream.y[:n]) / sigma
+        return float(np.nanmax(apart, initial=0.0))
 
     def doing(self, samples: int) -> str:
         """What the ship was doing in the last ten seconds before a sample."""
