@@ -19,7 +19,7 @@ from can.io.blf import BLFReader
 from can.io.csv import CSVReader
 from can.io.sqlite import SqliteReader
 from can.io.trc import TRCReader
-from ingest_timing import Row, SizedLogs, fastest, repeated
+from ingest_timing import Row, SizedLogs, race, repeated
 from nmea2000.decoder import NMEA2000Decoder
 
 from trialid.ingest import read
@@ -27,8 +27,6 @@ from trialid.ingest.adapter import Aids
 from trialid.ingest.nmea2000_groups import LAYOUTS
 
 MESSAGES = 20_000
-FEWEST = 0.5
-"""Share of them below which it is the opening of a file that is timed."""
 ASKED = 3.0
 DBC = """VERSION ""
 BU_: A
@@ -40,7 +38,7 @@ BO_ 2314276107 Rudder: 8 A
 
 def measure(scale: float = 1.0) -> list[Row]:
     """One row for each format."""
-    count = int(MESSAGES * max(scale, FEWEST))
+    count = max(MESSAGES, int(MESSAGES * scale))
     sent = _sent(count)
     frames = write_can.frames(sent)
     with tempfile.TemporaryDirectory() as folder:
@@ -118,7 +116,8 @@ def _by_dbc(path: Path, count: int) -> Row:
 def _row(what: str, count: int, path: Path, theirs: Callable[[], int], aids: Aids = Aids()) -> Row:  # noqa: B008
     assert theirs() == count
     assert read(path, None, aids).channels
-    return what, count / fastest(lambda: read(path, None, aids)), count / fastest(theirs), ASKED
+    own, other = race(lambda: read(path, None, aids), theirs)
+    return what, count / own, count / other, ASKED
 
 
 def sized(path: Path, size: float) -> tuple[str, ...]:

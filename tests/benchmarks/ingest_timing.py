@@ -21,12 +21,21 @@ Sized = Callable[[Path, float], Sequence[str]]
 
 def fastest(work: Callable[[], object], repeats: int = 3) -> float:
     """Seconds of the fastest of some runs: what other work on the machine disturbs least."""
-    seconds = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        seconds.append(time.perf_counter() - start)
-    return min(seconds)
+    return min(_seconds(work) for _ in range(repeats))
+
+
+def race(
+    ours: Callable[[], object], theirs: Callable[[], object], repeats: int = 3
+) -> tuple[float, float]:
+    """Seconds of the fastest run of each, run in turn, so that other work disturbs both."""
+    times = [(_seconds(ours), _seconds(theirs)) for _ in range(repeats)]
+    return min(own for own, _ in times), min(other for _, other in times)
+
+
+def _seconds(work: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
 
 
 def short(rows: Iterable[Row]) -> list[str]:
