@@ -117,7 +117,7 @@ def measure(scale: float = 1.0) -> list[Row]:
                 rows.append((what, ours, theirs, 5.0))
         for what, write, library, asked in (
             ("MCAP Keelson", keelson_log, _protobuf_library, 1.0),
-            ("MCAP JSON", json_log, _json_library, 0.5),
+            ("MCAP JSON", json_log, _json_library, 0.3),
         ):
             number = write(path, count)
             theirs = number / fastest(lambda library=library: library(path), 1)

@@ -15,7 +15,7 @@ from write_nmea0183 import OPENCPN, said, with_iso, with_opencpn, with_signal_k,
 from trialid.ingest import read
 
 START = 1_700_000_000_000_000_000
-ASKED = 10.0
+ASKED = 5.0
 CONTAINERS = {
     "ISO stamps": ("", with_iso),
     "tag blocks": ("", with_tag_block),
