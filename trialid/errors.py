@@ -3,9 +3,18 @@
 import difflib
 from collections.abc import Iterable
 
+LONGEST = 200
+"""Letters of a library's message that are passed on."""
+
 
 class TrialidError(Exception):
-    """The input is wrong: what, where, what was expected, what to do. The CLI prints one line."""
+    """The input is wrong: what, where, what was expected, what to do. The CLI prints one line.
+
+    Messages quote what files hold, which anybody may have written: they are made `printable`.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(printable(_folded(message)))
 
 
 class LogError(TrialidError):
@@ -38,6 +47,30 @@ class SimulationError(TrialidError):
 
 class NotIdentifiable(TrialidError):
     """The record cannot carry the question: no excitation, too few samples, nothing to compare."""
+
+
+def printable(text: str) -> str:
+    r"""Text of a file with what could steer a terminal or end a line escaped.
+
+    >>> printable("roll\x1b[31m\n")
+    'roll\\x1b[31m\\n'
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def said(error: Exception) -> str:
+    r"""What a library says of a file, for a message of ours: on one line, and not too long of it.
+
+    >>> said(ValueError("bad byte \x0f,\n  at 7")), len(said(ValueError("a" * 5000)))
+    ('bad byte \\x0f, at 7', 200)
+    """
+    return printable(_folded(str(error)))[:LONGEST]
+
+
+def _folded(text: str) -> str:
+    return " ".join(line.strip() for line in text.splitlines())
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -46,7 +46,7 @@ def disagreements(channels: Mapping[str, Series]) -> tuple[Finding, ...]:
 
 def _pair(names: tuple[str, str], first: Series, second: Series) -> Iterator[Finding]:
     both = together({"first": first, "second": second})
-    if both is None:
+    if both is None or len(both.signals) < 2:
         return
     valid = both.valid["first"] & both.valid["second"]
     if not valid.any():
