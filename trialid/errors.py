@@ -7,9 +7,18 @@ from typing import Final
 LISTED: Final = 30
 """Names that an error lists before it only counts them."""
 
+LONGEST = 200
+"""Letters of a library's message that are passed on."""
+
 
 class TrialidError(Exception):
-    """The input is wrong: what, where, what was expected, what to do. The CLI prints one line."""
+    """The input is wrong: what, where, what was expected, what to do. The CLI prints one line.
+
+    Messages quote what files hold, which anybody may have written: they are made `printable`.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(printable(_folded(message)))
 
 
 class LogError(TrialidError):
@@ -46,6 +55,30 @@ class NotIdentifiable(TrialidError):
 
 class DesignError(TrialidError):
     """A test cannot be run as wished, or cannot show what is asked of it."""
+
+
+def printable(text: str) -> str:
+    r"""Text of a file with what could steer a terminal or end a line escaped.
+
+    >>> printable("roll\x1b[31m\n")
+    'roll\\x1b[31m\\n'
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def said(error: Exception) -> str:
+    r"""What a library says of a file, for a message of ours: on one line, and not too long of it.
+
+    >>> said(ValueError("bad byte \x0f,\n  at 7")), len(said(ValueError("a" * 5000)))
+    ('bad byte \\x0f, at 7', 200)
+    """
+    return printable(_folded(str(error)))[:LONGEST]
+
+
+def _folded(text: str) -> str:
+    return " ".join(line.strip() for line in text.splitlines())
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -8,6 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.errors import printable
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -61,3 +63,7 @@ class Recording:
     sha256: str
     channels: Mapping[str, Channel]
     remarks: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        """Remarks quote what the log holds, which anybody may have written."""
+        object.__setattr__(self, "remarks", tuple(printable(one) for one in self.remarks))

@@ -1,7 +1,6 @@
 """Logs of CAN buses: every format comes back the same; the traps; damage; real records."""
 
 import gzip
-import random
 import struct
 import sys
 import time
@@ -10,7 +9,6 @@ from datetime import datetime
 from pathlib import Path
 
 import can
-import can_damage as damage
 import cantools
 import numpy as np
 import pytest
@@ -19,6 +17,7 @@ from can.io.asc import ASCReader
 from can.io.blf import BLFWriter
 from can.io.canutils import CanutilsLogReader
 from can.io.csv import CSVReader
+from damage import damaged
 from nmea2000.decoder import NMEA2000Decoder
 from written import Series
 
@@ -412,9 +411,9 @@ def outcome(path):
 def test_damage_gives_a_recording_or_one_line(tmp_path, form):
     form.write(tmp_path / "whole", series(20))
     content = (tmp_path / "whole").read_bytes()
-    rng = random.Random(7)
+    rng = np.random.default_rng(7)
     for _ in range(25):
-        path = log(tmp_path, damage.mutated(content, rng))
+        path = log(tmp_path, damaged(content, rng))
         lines, channels = outcome(path)
         assert lines <= 1
         assert all(len(channel.t) == len(channel.y) for channel in channels)

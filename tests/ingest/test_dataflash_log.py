@@ -1,13 +1,12 @@
-import random
 import struct
 
 import numpy as np
 import pytest
 import write_dataflash as w
+from damage import damaged
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from known_motion import SERIES, check_comes_back
-from mutated import mutated
 
 from trialid.errors import LogError
 from trialid.ingest import adapter_of, dataflash_log, dataflash_walk, read
@@ -259,10 +258,10 @@ def test_only_this_adapter_recognises_it(tmp_path):
 
 def test_damage_of_any_kind_gives_a_recording_or_one_line(tmp_path):
     whole = OPENING + b"".join(ROWS)
+    likeness = w.FMT.packer.pack(w.HEAD, 0x80, 100, 255, b"ATT", b"Q", b"TimeUS")
     for seed in range(60):
         path = tmp_path / "log"
-        path.write_bytes(mutated(whole, random.Random(seed), w.FMT.packer.pack(
-            w.HEAD, 0x80, 100, 255, b"ATT", b"Q", b"TimeUS")))  # fmt: skip
+        path.write_bytes(damaged(whole, np.random.default_rng(seed), 20, likeness))
         try:
             remarks = dataflash_log.read(path).remarks
         except LogError as error:

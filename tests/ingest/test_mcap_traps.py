@@ -8,9 +8,9 @@ import zlib
 import numpy as np
 import pytest
 import write_mcap
+from damage import damaged
 from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType, Writer
-from mutilate import mutilated
 from sample_writers import write_logs
 
 from trialid import units
@@ -398,7 +398,7 @@ def test_mutilated_logs_give_nothing_wrong_and_nothing_silently(written):
     true = {name: _samples(channel) for name, channel in read(path).channels.items()}
     count = sum(map(len, true.values()))
     for seed in range(12):
-        path.write_bytes(mutilated(whole, seed))
+        path.write_bytes(damaged(whole, np.random.default_rng(seed), keep=16))
         try:
             recording = read(path)
         except LogError:

@@ -5,10 +5,10 @@ import struct
 import numpy as np
 import pytest
 import write_tlog as w
+from damage import damaged
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from known_motion import SERIES, check_comes_back
-from mutated import mutated
 from pymavlink.dialects.v20 import all as dialect
 
 from trialid.errors import LogError
@@ -347,7 +347,8 @@ def test_a_log_without_a_good_frame_is_refused(tmp_path):
 
 def test_damage_of_any_kind_gives_no_wrong_sample(tmp_path, true):
     for seed in range(60):
-        content = mutated(WHOLE, random.Random(seed), b"\xfd\xff\x01" + bytes(8))
+        rng = np.random.default_rng(seed)
+        content = damaged(WHOLE, rng, 20, b"\xfd\xff\x01" + bytes(8))
         found, remarks = samples(tmp_path / "log", content)
         check_true(found, true)
         assert not any("\n" in one for one in remarks)

@@ -55,6 +55,9 @@ STILL = 0.1
 """[m/s] Speed at which no rudder steers: a moored boat's GPS shows 0.02 to 0.06 m/s."""
 UNITS = ("rad/s", "deg/s", "deg/min", "rad", "deg")
 
+EMPTIEST = 100
+"""Times the samples of the fastest that a common clock may have; with more a stamp is wild."""
+
 Severity = Literal["error", "remark"]
 
 
@@ -116,7 +119,10 @@ def of_series(
 
 
 def together(series: Mapping[str, Series]) -> Trial | None:
-    """Series on one clock, that of the slowest, unfiltered; None where they do not overlap."""
+    """Series on one clock, that of the slowest, unfiltered.
+
+    None where they do not overlap, and where nearly all of it would be between two samples.
+    """
     straight = {name: ordered(one) for name, one in series.items()}
     able = {k: s for k, s in straight.items() if np.isfinite(s.y).sum() >= FEWEST}
     if not able:
@@ -125,7 +131,7 @@ def together(series: Mapping[str, Series]) -> Trial | None:
     start = max(int(one.t[0]) for one in able.values())
     end = min(int(one.t[-1]) for one in able.values())
     samples = int((end - start) / 1e9 / period) + 1 if period > 0 else 0
-    if samples < FEWEST:
+    if not FEWEST <= samples <= EMPTIEST * max(len(one.t) for one in able.values()):
         return None
     grid = Grid(start, period, samples)
     laid = {name: onto(one, grid, smooth=False) for name, one in able.items()}

@@ -164,7 +164,11 @@ def _moving_parts(table: Vector) -> list[Vector]:
     if not len(table):
         return []
     moves = MOVES * np.ptp(table[:, 0])
-    return [part for part in np.array_split(table, PARTS) if np.ptp(part[:, 0]) > moves]
+    return [part for part in np.array_split(table, PARTS) if _moves(part, moves)]
+
+
+def _moves(part: Vector, least: float) -> bool:
+    return len(part) > 0 and float(np.ptp(part[:, 0])) > least
 
 
 def _stretches(

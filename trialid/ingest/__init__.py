@@ -157,6 +157,8 @@ def _head(path: Path) -> bytes:
         raise LogError(f"{path}: is a folder, not a log; name a file in it: {files}")
     if not path.exists():
         raise LogError(f"{path}: no such file; {_beside(path)}")
+    if not path.is_file():
+        raise LogError(f"{path}: is no file but a device or a pipe; save what it gives to a file")
     try:
         with path.open("rb") as file:
             return file.read(HEAD)

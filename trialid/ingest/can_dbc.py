@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.errors import LogError
+from trialid.errors import LogError, said
 from trialid.ingest.adapter import Wanted, asked
 from trialid.ingest.can_frames import Frames, chosen
 from trialid.recording import Channel
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 Raw = NDArray[np.int64]
 
+MOST_BYTES = 16_000_000
+"""Of a DBC file; those of whole truck fleets have a few."""
 FLOATS = {16: "<f2", 32: "<f4", 64: "<f8"}
 """Kinds of floating point numbers by their bits."""
 
@@ -68,6 +70,12 @@ def _messages(dbc: Path) -> Sequence["Message"]:
             f"{dbc}: reading frames by a DBC file needs cantools; pip install 'trialid[dbc]'"
         ) from error
     try:
+        size = dbc.stat().st_size
+        if size > MOST_BYTES:
+            raise LogError(
+                f"{dbc}: {size / 1e6:.0f} MB; a description of a bus of up to "
+                f"{MOST_BYTES / 1e6:.0f} MB is read: leave out what the log does not hold"
+            )
         raw = dbc.read_bytes()
     except OSError as error:
         raise LogError(f"{dbc}: cannot be read as a DBC file, {error.strerror}") from error
@@ -78,8 +86,9 @@ def _messages(dbc: Path) -> Sequence["Message"]:
     try:
         database = cantools.database.load_string(text, "dbc", strict=False)
     except cantools.Error as error:
-        why = " ".join(str(error).split())
-        raise LogError(f"{dbc}: is no DBC file that can be read: {why}; export it anew") from error
+        raise LogError(
+            f"{dbc}: is no DBC file that can be read: {said(error)}; export it anew"
+        ) from error
     return getattr(database, "messages", ())
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.errors import LogError
+from trialid.errors import LogError, said
 from trialid.ingest import text_fields
 from trialid.ingest.can_frames import EXTENDED_ID, Frames, Tally, joined, nothing
 from trialid.ingest.text_fields import Bools, Fields, Ints
@@ -107,7 +107,7 @@ def of_sqlite(path: Path, zone: str | None, tally: Tally) -> tuple[Frames, str]:
         finally:
             connection.close()
     except (sqlite3.Error, UnicodeDecodeError) as error:  # words of a damaged schema are no text
-        why = " ".join(str(error).split())
+        why = said(error)
         if not parts:
             raise LogError(f"{path}: SQLite cannot read it, {why}; copy it again") from error
         count = sum(len(part) for part in parts)

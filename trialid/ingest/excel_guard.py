@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from trialid.errors import LogError
+from trialid.errors import LogError, said
 
 MOST_BYTES = 400_000_000
 """Unpacked; a sheet of a million rows and ten columns has less."""
@@ -32,7 +32,7 @@ def check(path: Path) -> None:
                 total += _checked(path, file, member, MOST_BYTES - total)
     except (zipfile.BadZipFile, zlib.error, OSError, ValueError, NotImplementedError) as error:
         raise LogError(
-            f"{path}: is no sound Excel file ({error}); copy it again, or export it as CSV"
+            f"{path}: is no sound Excel file ({said(error)}); copy it again, or export it as CSV"
         ) from error
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.errors import LogError
+from trialid.errors import LogError, said
 from trialid.ingest import excel_guard, template
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
 from trialid.ingest.packages import needed
@@ -45,8 +45,8 @@ def sheets(path: Path) -> dict[str, Rows]:
         return {name: _rows(book, name) for name in book.sheet_names}
     except (calamine.CalamineError, ValueError, OSError, OverflowError) as error:
         raise LogError(
-            f"{path}: is no Excel file that can be read ({error}); save it as .xlsx, or export it "
-            "as CSV"
+            f"{path}: is no Excel file that can be read ({said(error)}); save it as .xlsx, or "
+            "export it as CSV"
         ) from error
 
 

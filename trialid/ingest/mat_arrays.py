@@ -14,14 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from trialid.errors import LogError
+from trialid.errors import LogError, said
 from trialid.ingest.packages import needed
 
 OLD = b"MATLAB 5.0 MAT-file"
 HEADER = 128
 COMPRESSED, MATRIX = 15, 14
-MOST_BYTES = 400_000_000
+MOST_BYTES = 300_000_000
 """Of all arrays together."""
+MOST_FILE = 2 * 10**9
+"""Bytes of a file before version 7.3, which is read whole; a variable of it has 2 GB at most."""
 EXPANSION = 1100
 """What deflation can at most make of a byte, and a little."""
 DEEPEST = 12
@@ -41,6 +43,9 @@ class Arrays:
 
 def of_version_5(path: Path) -> Arrays:
     """Arrays of a MAT-file before version 7.3; LogError when not one variable is intact."""
+    size = path.stat().st_size
+    if size > MOST_FILE:
+        raise LogError(f"{path}: {size / 1e9:.0f} GB; save it with -v7.3, or less of it")
     raw = path.read_bytes()
     order = {b"IM": "<", b"MI": ">"}.get(raw[126:128])
     if order is None:
@@ -48,8 +53,8 @@ def of_version_5(path: Path) -> Arrays:
     plain: dict[str, Any] = {}
     opaque: list[str] = []
     intact = lost = 0
-    for element in _elements(raw, order):
-        variables = None if element is None else _variables(raw[:HEADER] + element)
+    for one in _files(raw, order):
+        variables = None if one is None else _variables(one)
         intact, lost = intact + (variables is not None), lost + (variables is None)
         for name, value in (variables or {}).items():
             _collect(name, value, plain, opaque)
@@ -59,48 +64,52 @@ def of_version_5(path: Path) -> Arrays:
     return Arrays(plain, tuple(opaque), (said,) if lost else ())
 
 
-def _elements(raw: bytes, order: str) -> Iterator[bytes | None]:
-    """Variables as bytes, unpacked; None for one that is cut short or packed badly."""
+def _files(raw: bytes, order: str) -> Iterator[bytes | None]:
+    """A file for each variable, unpacked; None for one that is cut short or packed badly."""
     offset, left = HEADER, MOST_BYTES
     while offset + 8 <= len(raw):
         kind, size = struct.unpack_from(f"{order}II", raw, offset)
-        body = raw[offset + 8 : offset + 8 + size]
+        body = memoryview(raw)[offset : offset + 8 + size]
         offset += 8 + size + (0 if kind == COMPRESSED else -size % 8)
-        if len(body) < size or kind not in (COMPRESSED, MATRIX):
+        if len(body) < 8 + size or kind not in (COMPRESSED, MATRIX):
             yield None
             return
-        if kind == COMPRESSED:
-            element = _inflated(body, left)
-        else:
-            element = struct.pack(f"{order}II", kind, size) + body
-        left -= len(element or b"")
-        yield element if element and _believable(element, order) else None
+        parts = _inflated(body[8:], order, left) if kind == COMPRESSED else (body,)
+        file = b"".join((raw[:HEADER], *parts))
+        left -= len(file)
+        yield file if _believable(file, order) else None
 
 
-def _inflated(body: bytes, left: int) -> bytes | None:
+def _inflated(body: memoryview, order: str, left: int) -> tuple[bytes, ...]:
+    """A variable in pieces; none where it is damaged, or declares more than may be left."""
     inflate = zlib.decompressobj()
     try:
-        element = inflate.decompress(body, max(left, 1))
-    except zlib.error:
-        return None
-    return element if inflate.eof else None
+        head = inflate.decompress(body, 8)
+        size = struct.unpack(f"{order}II", head)[1]
+        if size > left:
+            return ()
+        rest = inflate.decompress(inflate.unconsumed_tail, size + 8)
+    except (zlib.error, struct.error):
+        return ()
+    return (head, rest) if inflate.eof else ()
 
 
-def _believable(element: bytes, order: str) -> bool:
+def _believable(file: bytes, order: str) -> bool:
     """False for a variable that declares more elements than it has bytes."""
-    if len(element) < 32:
+    size_here = len(file) - HEADER
+    if size_here < 32:
         return False
-    kind, size = struct.unpack_from(f"{order}II", element)
-    flags = struct.unpack_from(f"{order}I", element, 16)[0]
-    dims_size = struct.unpack_from(f"{order}I", element, 28)[0]
-    if kind != MATRIX or size > len(element) - 8 or not 8 <= dims_size <= 128:
+    kind, size = struct.unpack_from(f"{order}II", file, HEADER)
+    flags = struct.unpack_from(f"{order}I", file, HEADER + 16)[0]
+    dims_size = struct.unpack_from(f"{order}I", file, HEADER + 28)[0]
+    if kind != MATRIX or size > size_here - 8 or not 8 <= dims_size <= 128:
         return kind == MATRIX and (flags & 0xFF) == 17  # an object: has no dimensions there
-    if len(element) < 32 + dims_size:
+    if size_here < 32 + dims_size:
         return False
-    dims = np.frombuffer(element, f"{order}i4", dims_size // 4, 32).astype(object)
+    dims = np.frombuffer(file, f"{order}i4", dims_size // 4, HEADER + 32).astype(object)
     count = int(np.prod(dims))
     least = 8 if flags & 0xFF in CONTAINERS else 1
-    return bool((dims >= 0).all()) and count * least <= 2 * len(element)
+    return bool((dims >= 0).all()) and count * least <= 2 * size_here
 
 
 def _variables(file: bytes) -> dict[str, Any] | None:
@@ -114,7 +123,7 @@ def _variables(file: bytes) -> dict[str, Any] | None:
         found = read(io.BytesIO(file), simplify_cells=True, verify_compressed_data_integrity=True)
     except (
         MatReadError, ValueError, TypeError, IndexError, KeyError, OverflowError, OSError,
-        MemoryError, AttributeError, NotImplementedError, zlib.error,
+        MemoryError, AttributeError, NotImplementedError, UnboundLocalError, zlib.error,
     ):  # fmt: skip
         return None
     return {name: value for name, value in found.items() if not name.startswith("__")}
@@ -156,17 +165,16 @@ def of_hdf5(path: Path) -> Arrays:
             walk = _Walk(h5py, path.stat().st_size, matlab)
             walk.group(file, "", 0)
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, OverflowError) as error:
-        said = " ".join(str(error).split())[:200]
         raise LogError(
-            f"{path}: is no HDF5 file that can be read ({said}); copy it again, or save it anew "
-            "with save -v7"
+            f"{path}: is no HDF5 file that can be read ({said(error)}); copy it again, or save it "
+            "anew with save -v7"
         ) from error
     lost = len(walk.lost)
     read = len(walk.plain)
     if not read and walk.lost:
         raise LogError(f"{path}: no array in it can be read ({walk.lost[0]}); save it anew")
-    said = f"recovered {read} of {read + lost} arrays; {walk.lost[0]}" if lost else ""
-    return Arrays(walk.plain, tuple(walk.opaque), (said,) if said else ())
+    words = (f"recovered {read} of {read + lost} arrays; {walk.lost[0]}",) if lost else ()
+    return Arrays(walk.plain, tuple(walk.opaque), words)
 
 
 def _start(path: Path) -> bytes:
@@ -198,7 +206,7 @@ class _Walk:
             try:
                 self._one(group[name], f"{prefix}{name}", depth)
             except (OSError, RuntimeError, ValueError, KeyError, TypeError, MemoryError) as error:
-                self.lost.append(f"{prefix}{name}: {' '.join(str(error).split())[:120]}")
+                self.lost.append(f"{prefix}{name}: {said(error)}")
 
     def _one(self, item: Any, name: str, depth: int) -> None:
         if isinstance(item, self.h5py.Group):

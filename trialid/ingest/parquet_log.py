@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.errors import LogError
+from trialid.errors import LogError, said
 from trialid.ingest import table_time, template
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
 from trialid.ingest.packages import needed
@@ -53,10 +53,9 @@ def _opened(path: Path) -> Iterator[Any]:
         with parquet.ParquetFile(path) as file:
             yield file
     except (arrow.ArrowException, OSError, ValueError, OverflowError, MemoryError) as error:
-        said = " ".join(str(error).split())[:200]
         raise LogError(
-            f"{path}: is no Parquet file that can be read ({said}); copy it again, or export it "
-            "anew"
+            f"{path}: is no Parquet file that can be read ({said(error)}); copy it again, or "
+            "export it anew"
         ) from error
 
 

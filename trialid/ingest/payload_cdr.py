@@ -207,6 +207,8 @@ class Walk:
             size = int(NUMBERS[member.kind][1])
             self._skip(size, size * count)
             return
+        if count > len(self.payload):
+            raise Malformed(f"an array of {count} in a message of {len(self.payload)} bytes")
         self.unheard += count > LONGEST_ARRAY
         for i in range(count):
             self._value(member.kind, f"{path}[{names[i] if len(names) == count else i}]")

@@ -38,6 +38,7 @@ PLAIN = frozenset({*FIXED, *VARINTS, BOOL, STRING, MESSAGE, BYTES})
 LONGEST = 4096
 """Bytes of a message that is laid out."""
 DEEPEST = 16
+MOST_FIELDS = 10_000
 LONGEST_VARINT = 10
 
 
@@ -79,15 +80,32 @@ class Layout:
         return same
 
 
-def lays_out(descriptor: "Descriptor", depth: int = 0) -> bool:
-    """True when messages of this type are made of single numbers, texts and such messages."""
-    return depth < DEEPEST and all(
-        field.type in PLAIN
-        and not field.is_repeated
-        and (field.containing_oneof is None or len(field.containing_oneof.fields) == 1)
-        and (field.message_type is None or lays_out(field.message_type, depth + 1))
-        for field in descriptor.fields
-    )
+def lays_out(descriptor: "Descriptor") -> bool:
+    """True when messages of this type are made of single numbers, texts and such messages.
+
+    False also of types within types without end, and of more fields in all than anybody sends:
+    ten of a type in each of ten levels are ten thousand million.
+    """
+    level, fields = {descriptor.full_name: (descriptor, 1)}, 0
+    for _ in range(DEEPEST):
+        inside = [(one, many) for kind, many in level.values() for one in kind.fields]
+        fields += sum(many for _, many in inside)
+        if fields > MOST_FIELDS or not all(_single(one) for one, _ in inside):
+            return False
+        level = {}
+        for one, many in inside:
+            inner = one.message_type
+            if inner is not None:
+                before = level.get(inner.full_name, (inner, 0))[1]
+                level[inner.full_name] = inner, before + many
+        if not level:
+            return True
+    return False
+
+
+def _single(field: "FieldDescriptor") -> bool:
+    alone = field.containing_oneof is None or len(field.containing_oneof.fields) == 1
+    return field.type in PLAIN and not field.is_repeated and alone
 
 
 def layout(descriptor: "Descriptor", payload: bytes) -> Layout:

@@ -23,13 +23,24 @@ from trialid.ingest.table_layout import SPACES, Layout, Top, decimal, decoded, e
 from trialid.ingest.table_quick import is_number
 from trialid.ingest.template import Template, check_header, distinct
 
+MOST_BYTES = 2_000_000_000
+"""Of a table as text, which is read whole."""
+LONGEST_LINE = 2_000_000
+"""Bytes of a line, more than the columns of any table."""
 JOINT = "\x1f"
 """What takes the place of a separator of several characters."""
 
 
 def load(path: Path, layout: Layout, template: Template | None = None) -> Table:
     """The columns of a text; LogError for rows that are not of the header's length."""
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise LogError(
+            f"{path}: {size / 1e9:.0f} GB of text; tables of up to {MOST_BYTES / 1e9:.0f} GB are "
+            "read: split it, or save it as Parquet"
+        )
     raw, encoding = unified(path.read_bytes(), layout.encoding)
+    _check_lines(path, raw)
     layout = dataclasses.replace(layout, encoding=encoding)
     if len(layout.separator) > 1:
         raw = raw.replace(encoded(layout.separator, layout), JOINT.encode())
@@ -68,6 +79,20 @@ def _top(path: Path, raw: bytes, layout: Layout, template: Template | None) -> T
     heads = tuple(head(text, one) for text, one in zip(texts, unit, strict=False))
     _agree(path, heads, unit)
     return Top(heads, lines.offset, lines.number)
+
+
+def _check_lines(path: Path, raw: bytes) -> None:
+    """LogError for a line that is longer than the columns of any table."""
+    at = 0
+    while len(raw) - at > LONGEST_LINE:
+        end = raw.rfind(b"\n", at, at + LONGEST_LINE)
+        if end < 0:
+            line = raw.count(b"\n", 0, at) + 1
+            raise LogError(
+                f"{path}, line {line}: more than {LONGEST_LINE / 1e6:.0f} MB without an end of "
+                "line; it is no table, or damaged: mend or delete the line"
+            )
+        at = end + 1
 
 
 class _Lines:
@@ -136,7 +161,7 @@ def _ended(path: Path, raw: bytes, top: Top, layout: Layout) -> tuple[bytes, lis
             )
         raw = raw[:at]
     last = raw[raw.rfind(b"\n") + 1 :]
-    fields = len(_fields(decoded(last), layout)) if last.strip() else len(top.heads)
+    fields = _fields(decoded(last), layout, len(top.heads)) if last.strip() else len(top.heads)
     if fields >= len(top.heads) or len(raw) - len(last) < top.offset:
         return raw, []
     kept = raw[: len(raw) - len(last)]
@@ -158,8 +183,10 @@ def _end(raw: bytes, start: int, text: bytes) -> int | None:
     return None
 
 
-def _fields(line: str, layout: Layout) -> list[str]:
-    return line.split() if layout.separator == SPACES else line.split(layout.separator)
+def _fields(line: str, layout: Layout, most: int) -> int:
+    """How many fields a line has; it is not counted on beyond `most`."""
+    separator = None if layout.separator == SPACES else layout.separator
+    return len(line.split(separator, most))
 
 
 def _line(before: int) -> Callable[[int], str]:

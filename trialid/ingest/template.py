@@ -23,7 +23,7 @@ from pydantic import (
 )
 
 from trialid import units
-from trialid.errors import LogError, nearest
+from trialid.errors import LogError, nearest, said
 from trialid.ingest.local_time import known_zone
 
 WHITESPACE, TAB = "whitespace", "tab"
@@ -50,7 +50,9 @@ def _no_number(text: str) -> str:
     return text
 
 
-Count = Annotated[int, Strict(), Field(ge=0)]
+MOST_LINES = 100_000
+"""Lines before the data; none has so many, and each is gone through."""
+Count = Annotated[int, Strict(), Field(ge=0, le=MOST_LINES)]
 Text = Annotated[str, Field(min_length=1)]
 Texts = tuple[str, ...]
 
@@ -168,10 +170,12 @@ def parse(text: str, path: Path) -> Template:
     """The template in a text that stands, or is to stand, in a file; reviewed or not."""
     try:
         return Template.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
-        raise LogError(f"{path}: not TOML: {error}") from error
+    except RecursionError as error:
+        raise LogError(f"{path}: not TOML: nested too deeply") from error
     except ValidationError as error:
         raise LogError(_complaint(path, error)) from error
+    except ValueError as error:  # also of numbers with thousands of digits
+        raise LogError(f"{path}: not TOML: {said(error)}") from error
 
 
 def check_header(path: Path, found: Sequence[str], template: Template) -> None:

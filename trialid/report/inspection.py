@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from trialid.alignment.checks import Finding
 from trialid.alignment.clocks import CALENDAR_NS, moment
+from trialid.errors import printable
 from trialid.quantities import SIGNALS
 from trialid.report import labels
 from trialid.report.decisions import decisions
@@ -40,7 +41,7 @@ def shown(text: str) -> str:
     >>> shown("roll\x1b[31m")
     'roll\\x1b[31m'
     """
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return printable(text)
 
 
 def inspection(survey: Survey, *, everything: bool = False) -> Sequence[Any]:

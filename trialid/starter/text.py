@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+from trialid.errors import printable
 from trialid.starter.choice import RUDDERS, Chosen, Signal
 from trialid.survey.findings import ChannelSurvey
 
@@ -195,4 +196,4 @@ def comment(text: str) -> str:
     >>> comment("rud\nder")
     'rud\\nder'
     """
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return printable(text)

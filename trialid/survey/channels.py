@@ -56,7 +56,7 @@ def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
         t, y = t[there], y[there]
         own = health(t, channel.clock, None) if len(t) else stamps
         own = dataclasses.replace(own, clock=stamps.clock)
-    if own.order is not None:
+    if own.order is not None and len(t):
         t, y = t[own.order], y[own.order]
     unit = channel.unit or names.unit_in_name(channel.name)
     guess = _guess(channel, unit)

@@ -20,6 +20,8 @@ class Sketch:
     y: Vector
 
 
+EMPTIEST: Final = 100
+"""Times the points of a sketch that a common clock may have; with more a stamp is wild."""
 EMPTY: Final = Sketch(np.empty(0, np.int64), np.empty(0))
 
 
@@ -51,14 +53,15 @@ def joined(parts: list[Sketch]) -> Sketch:
 def together(*sketches: Sketch) -> tuple[float, list[Vector], NDArray[np.bool_]] | None:
     """The sketches on one even clock: its period [s], the values, where none has a hole.
 
-    None when they have too little in common.
+    None when they have too little in common, or nearly all of it lies between two samples.
     """
     if min(len(one.t) for one in sketches) < 2:
         return None
     start = max(int(one.t[0]) for one in sketches)
     end = min(int(one.t[-1]) for one in sketches)
     step = max(float(np.median(np.diff(one.t))) for one in sketches)
-    if step <= 0 or end - start < 40 * step:
+    most = EMPTIEST * max(len(one.t) for one in sketches)
+    if step <= 0 or not 40 * step <= end - start <= most * step:
         return None
     at = np.arange(start, end, step)
     values = [np.interp(at, one.t.astype(float), one.y) for one in sketches]

@@ -1,0 +1,315 @@
+"""Files made to do harm: they cost neither memory nor time, run nothing and steer no terminal."""
+
+import gzip
+import io
+import json
+import os
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+import openpyxl
+import pytest
+import scipy.io
+from click.testing import CliRunner
+from limits import bounded
+
+from trialid import cli
+from trialid.ingest import Aids, read
+from trialid.ingest.adapter import NO_AIDS
+
+MB = 1_000_000
+HEADS = {
+    "mcap": b"\x89MCAP0\r\n", "dataflash": b"\xa3\x95\x80\x80Y", "tlog": bytes(8) + b"\xfd\x09",
+    "blf": b"LOGG\x90\0\0\0", "sqlite": b"SQLite format 3\0", "xlsx": b"PK\x03\x04", "zip": b"PK",
+    "parquet": b"PAR1", "mat5": b"MATLAB 5.0 MAT-file", "hdf5": b"\x89HDF\r\n\x1a\n",
+    "nmea": b"$GPRMC,1*00\n", "candump": b"(1.0) can0 09F10D0B#00\n", "csv": b"t,u\n0,1\n",
+    "numpy": b"\x93NUMPY\x01\0", "pickle": b"\x80\x04\x95", "elf": b"\x7fELF", "none": b"",
+}  # fmt: skip
+
+
+def reading(path, aids=NO_AIDS, megabytes=400.0):
+    """What is read, or the message."""
+    return bounded(lambda: read(path, None, aids), megabytes)
+
+
+def refused(path, *words, aids=NO_AIDS, megabytes=400.0):
+    message = reading(path, aids, megabytes)
+    assert isinstance(message, str)
+    assert all(word in message for word in words), message
+
+
+def saved(path, content):
+    path.write_bytes(content)
+    return path
+
+
+# --- what is no log at all ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("head", HEADS.values(), ids=HEADS)
+@pytest.mark.parametrize("rest", [b"", b"\0" * MB, b"\xff" * MB], ids=["nothing", "0", "ff"])
+def test_a_beginning_and_then_nothing(tmp_path, head, rest):
+    reading(saved(tmp_path / "log", head + rest))
+
+
+def test_noise(tmp_path):
+    refused(saved(tmp_path / "log", np.random.default_rng(1).bytes(MB)), "none of the formats")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_a_pipe_that_nobody_writes_to(tmp_path):
+    os.mkfifo(tmp_path / "log")
+    refused(tmp_path / "log", "is no file")
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no such device here")
+def test_a_device_without_an_end():
+    refused(Path("/dev/zero"), "is no file")
+
+
+def test_a_python_pickle_runs_nothing(tmp_path):
+    class Evil:
+        def __reduce__(self):
+            return os.mkdir, (str(tmp_path / "harm"),)
+
+    np.save(tmp_path / "log.npy", np.array([Evil()]), allow_pickle=True)
+    refused(tmp_path / "log.npy", "none of the formats")
+    assert not (tmp_path / "harm").exists()
+
+
+# --- what unpacks to more -----------------------------------------------------------------------
+
+
+def test_a_gzip_bomb_is_not_unpacked(tmp_path):
+    with gzip.open(tmp_path / "log", "wb", 9) as file:
+        for _ in range(300):
+            file.write(bytes(MB))
+    refused(tmp_path / "log", "packed with gzip")
+
+
+def _sheets(count, size):
+    """An Excel file of blank sheets, and its bytes."""
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("[Content_Types].xml", "<a/>")
+        for i in range(count):
+            archive.writestr(f"xl/worksheets/sheet{i}.xml", b" " * size)
+    return made.getvalue()
+
+
+def test_a_zip_bomb_is_counted_before_it_is_believed(tmp_path):
+    path = saved(tmp_path / "log", _sheets(1, 500 * MB))
+    assert path.stat().st_size < MB
+    refused(path, "unpacks to more than 400 MB", megabytes=100)
+
+
+def test_a_zip_bomb_whose_members_overlap(tmp_path):
+    """A thousand entries of the directory that are one and the same member."""
+    raw = _sheets(1, 10 * MB)
+    at = raw.rindex(b"PK\x01\x02")
+    end = raw.rindex(b"PK\x05\x06")
+    entries = raw[at:end] * 1000
+    first = raw.index(b"PK\x01\x02")
+    head = raw[first:at]
+    tail = struct.pack("<4s4H2LH", b"PK\x05\x06", 0, 0, 1001, 1001, len(head + entries), first, 0)
+    path = saved(tmp_path / "log", raw[:first] + head + entries + tail)
+    refused(path, "unpacks to more than 400 MB", megabytes=100)
+
+
+def test_a_matlab_variable_that_unpacks_to_a_gigabyte(tmp_path):
+    packer = zlib.compressobj(9)
+    body = b"".join(packer.compress(bytes(MB)) for _ in range(1000)) + packer.flush()
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
+    refused(saved(tmp_path / "log", head + struct.pack("<II", 15, len(body)) + body))
+
+
+@pytest.mark.parametrize("kind", [1, 3, 16, 17, 18], ids=["cell", "object", "function", "17", "18"])
+def test_matlab_functions_and_objects_are_no_channels(tmp_path, kind):
+    with (tmp_path / "log").open("wb") as file:
+        scipy.io.savemat(file, {"f": {"x": np.arange(9.0)}, "t": np.arange(9.0), "u": np.ones(9)})
+    raw = (tmp_path / "log").read_bytes()
+    flags = struct.pack("<IIB", 6, 8, 2)
+    assert flags in raw
+    found = reading(saved(tmp_path / "log", raw.replace(flags, struct.pack("<IIB", 6, 8, kind))))
+    assert isinstance(found, str) or not any(name.startswith("f") for name in found.channels)
+
+
+# --- texts --------------------------------------------------------------------------------------
+
+
+def test_a_table_of_a_million_columns(tmp_path):
+    names = "t," + ",".join(f"c{i}" for i in range(MB))
+    row = ",".join(["1"] * (MB + 1))
+    refused(
+        saved(tmp_path / "log", f"{names}\n{row}\n{row}\n".encode()),
+        "line 1: more than 2 MB without",
+    )
+
+
+LINES = {
+    "csv": b"t,u\n0,1\n", "candump": b"(1.0) can0 09F10D0B#00FFFFFFFFFFFFFF\n",
+    "nmea": b"$GPROT,1.0,A*29\r\n" * 3, "signalk": b"1700000000000;N;$GPROT,1.0,A*29\n" * 3,
+    "trc": b";$FILEVERSION=1.1\n",
+    "asc": b"date Mon Jan 1 00:00:00 2024\nbase hex timestamps absolute\n",
+}  # fmt: skip
+
+
+FILLERS = {"digits": b"1", "fields": b"1,", "dollars": b"$", "quotes": b'"'}
+
+
+def _long_line(path, form, filler):
+    reading(saved(path, LINES[form] + filler * (200 * MB // len(filler)) + b"\n"), megabytes=900)
+
+
+@pytest.mark.parametrize("filler", FILLERS.values(), ids=FILLERS)
+def test_a_row_of_two_hundred_megabytes(tmp_path, filler):
+    _long_line(tmp_path / "log", "csv", filler)
+
+
+def test_a_sentence_of_two_hundred_megabytes(tmp_path):
+    _long_line(tmp_path / "log", "nmea", b"$")
+
+
+@pytest.mark.study
+@pytest.mark.parametrize("form", LINES)
+@pytest.mark.parametrize("filler", FILLERS.values(), ids=FILLERS)
+def test_a_line_of_two_hundred_megabytes_in_every_text(tmp_path, form, filler):
+    _long_line(tmp_path / "log", form, filler)
+
+
+def test_a_table_of_many_short_lines(tmp_path):
+    reading(saved(tmp_path / "log", b"t,u\n" + b"\n" * 20 * MB), megabytes=900)
+
+
+# --- aids ---------------------------------------------------------------------------------------
+
+TABLE = b"t,u\n0,1\n1,2\n"
+HUGE_NUMBERS = {
+    "skip": "skip = 1000000000000000000000000",
+    "skip, 64 bits": "skip = 9223372036854775807",
+    "header_rows": "header_rows = 1000000000",
+    "skip_after": "skip_after = 1000000000",
+    "float": "skip = 1e308",
+    "infinite": "skip = inf",
+    "digits": "skip = " + "9" * 5000,
+    "nested": "skip = " + "[" * 50_000 + "]" * 50_000,
+    "tables": "[" + ".".join("a" * 5000) + "]",
+    "inline": "skip = " + "{a=" * 5000 + "1" + "}" * 5000,
+}
+
+
+@pytest.mark.parametrize("line", HUGE_NUMBERS.values(), ids=HUGE_NUMBERS)
+def test_a_template_with_huge_numbers(tmp_path, line):
+    log = saved(tmp_path / "log", TABLE)
+    aid = tmp_path / "aid.toml"
+    aid.write_text(
+        f'reviewed = true\nseparator = ","\nheader = ["t", "u"]\n{line}\n'
+        '[time]\ncolumns = ["t"]\nunit = "s"\n'
+    )
+    refused(log, str(tmp_path), aids=Aids(template=aid))
+
+
+def test_a_description_of_a_million_signals(tmp_path):
+    log = saved(tmp_path / "log", b"(1.0) can0 123#00\n")
+    lines = [b'VERSION ""\nBU_: A\nBO_ 291 M: 8 A\n']
+    lines += [b' SG_ S%d : 0|8@1+ (1,0) [0|0] "" A\n' % i for i in range(MB)]
+    refused(log, "bus.dbc", aids=Aids(dbc=saved(tmp_path / "bus.dbc", b"".join(lines))))
+
+
+# --- Excel --------------------------------------------------------------------------------------
+
+
+def _with_sheet(path, rows, extra=None):
+    book = openpyxl.Workbook()
+    for row in rows:
+        book.active.append(row)
+    book.save(path)
+    with zipfile.ZipFile(path, "a") as archive:
+        for name, content in (extra or {}).items():
+            archive.writestr(name, content)
+    return path
+
+
+def test_formulas_and_links_to_other_files_are_not_followed(tmp_path):
+    saved(tmp_path / "other.csv", b"t,u\n0,666\n")
+    link = (
+        '<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/'
+        'relationships"><Relationship Id="rId1" Type="http://schemas.openxmlformats.org/'
+        f'officeDocument/2006/relationships/externalLinkPath" Target="{tmp_path}/other.csv" '
+        'TargetMode="External"/></Relationships>'
+    )
+    rows = [["t", "u"], [0, "=[1]other!B2"], [1, '=WEBSERVICE("http://example.org")'], [2, 2.5]]
+    links = {"xl/externalLinks/_rels/externalLink1.xml.rels": link}
+    found = reading(_with_sheet(tmp_path / "log.xlsx", rows, links))
+    np.testing.assert_array_equal(found.channels["u"].y, [np.nan, np.nan, 2.5])
+
+
+def test_entities_that_grow_are_not_expanded(tmp_path):
+    laughs = "".join(f'<!ENTITY l{i} "{f"&l{i - 1};" * 10}">' for i in range(1, 10))
+    sheet = (
+        f'<?xml version="1.0"?><!DOCTYPE x [<!ENTITY l0 "ha">{laughs}]><worksheet xmlns="http://'
+        'schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData><row r="1"><c r="A1" '
+        't="inlineStr"><is><t>&l9;</t></is></c></row></sheetData></worksheet>'
+    )
+    whole = _with_sheet(tmp_path / "whole.xlsx", [["t", "u"], [0, 1]])
+    with zipfile.ZipFile(whole) as old, zipfile.ZipFile(tmp_path / "log", "w") as new:
+        for member in old.infolist():
+            is_sheet = "sheet1" in member.filename
+            new.writestr(member.filename, sheet if is_sheet else old.read(member))
+    reading(tmp_path / "log")
+
+
+# --- names --------------------------------------------------------------------------------------
+
+NAMES = ("u[red]x", "r<script>alert(1)</script>", "roll\x1b[31m", "a[bold", "r\u202er")
+
+
+def inspected(path, *options):
+    return CliRunner().invoke(cli.commands, ["inspect", str(path), *options], prog_name="trialid")
+
+
+def _clean(text):
+    return text.replace("\n", "").isprintable()
+
+
+def test_names_of_columns_steer_no_terminal(tmp_path):
+    t = np.arange(0.0, 20.0, 0.1)
+    rows = [",".join(["t", *NAMES])]
+    rows += [",".join(f"{x:.3f}" for x in (k, *[np.sin(k)] * len(NAMES))) for k in t]
+    path = saved(tmp_path / "log.csv", "\n".join(rows).encode())
+    done = inspected(path, "--all")
+    assert done.exit_code == 0, done.output
+    assert _clean(done.stdout)
+    assert all(name in done.stdout for name in NAMES[:2])
+    assert NAMES[2] in {
+        one["channel"] for one in json.loads(inspected(path, "--json").stdout)["channels"]
+    }
+
+
+def test_names_of_files_steer_no_terminal(tmp_path):
+    name = "log\x1b[31m[red]\n<b>\r.csv"
+    good = saved(tmp_path / name, b"t,u\n0,1\n1,2\n2,4\n3,4\n")
+    assert _clean(inspected(good).stdout)
+    bad = saved(tmp_path / ("bad" + name), b"t,u\n0,x\n1,2\n")
+    done = inspected(bad)
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+    assert _clean(done.stderr)
+    refused(bad, "bad")
+
+
+def test_a_matlab_variable_of_as_much_as_is_read(tmp_path):
+    """Half a kilobyte to 290 MB of zeros: read, within a gigabyte in all."""
+    count = 290 * MB // 8
+    name = struct.pack("<IIIIIIIIHH4s", 6, 8, 6, 0, 5, 8, count, 1, 1, 1, b"x\0\0\0")
+    size = len(name) + 8 + 8 * count
+    packer = zlib.compressobj(9)
+    body = packer.compress(struct.pack("<II", 14, size) + name + struct.pack("<II", 9, 8 * count))
+    zeros = bytes(MB)
+    body += b"".join(packer.compress(zeros) for _ in range(290)) + packer.flush()
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
+    path = saved(tmp_path / "log", head + struct.pack("<II", 15, len(body)) + body)
+    reading(path, megabytes=950)
