@@ -3,6 +3,7 @@
 import re
 import time
 import traceback
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -90,7 +91,8 @@ def judged(seed: SeedLog, true: Truth, content: bytes, folder: Path, number: int
     forget_peak()
     begin = time.perf_counter()
     try:
-        with time_limit():
+        with time_limit(), warnings.catch_warnings():
+            warnings.simplefilter("error")
             _read(seed, true, path, aids, content, verdict)
             if number % SURVEYED == 0:
                 _look(seed, path, aids, verdict)

@@ -55,3 +55,18 @@ def test_messages_and_remarks_stay_on_one_line_and_steer_nothing():
     held = Recording(Path("log"), "csv", "", {}, ("bus can\x10\x1b[31m", "fine"))
     assert held.remarks == ("bus can\\x10\\x1b[31m", "fine")
     assert str(LogError("a column\x1b[31m\n  of the log")) == "a column\\x1b[31m of the log"
+
+
+def test_a_step_next_to_nothing_beside_any_other():
+    y = np.where(np.arange(len(T)) % 2, 1e-310, 0.0)
+    y[100:] = Y[100:]
+    assert np.isfinite(checks.together({"phi": series(T, y)}).signals["phi"]).all()
+
+
+def test_a_quaternion_of_numbers_past_all():
+    y = np.where(np.arange(len(T)) < 20, 1e300, 0.5)
+    held = {f"/imu.{axis}": Channel(f"/imu.{axis}", T, y) for axis in "xyzw"}
+    found = list(channels.of_recording(Recording(Path("log"), "mcap", "", held)))
+    assert {one.angle for one in found} == {None, "roll", "yaw"}
+    nothing = {name: Channel(name, T, np.full(len(T), np.nan)) for name in held}
+    assert len(list(channels.of_recording(Recording(Path("log"), "mcap", "", nothing)))) == 4

@@ -29,9 +29,14 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     channel = channel or find(source.channel, recordings, where)
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
     t = channel.t - round(source.delay * 1e9)
-    y = np.where(np.abs(channel.y) < MARKER, channel.y, np.nan)
+    y = measured(channel.y)
     value = (source.gain * y + source.offset) * factor
     return Series(quantity, t, value, channel.clock, channel.received)
+
+
+def measured(y: Vector) -> Vector:
+    """The values that a sensor may have sent; NaN for codes of `not available` and damage."""
+    return np.where(np.abs(y) < MARKER, y, np.nan)
 
 
 def _quantity(source: SignalSource, where: str) -> Quantity:
@@ -103,7 +108,7 @@ def _angle(source: SignalSource, recordings: Sequence[Recording], where: str) ->
             f"{where}: the four fields of {source.channel!r} do not share their stamps; "
             "a quaternion needs all of them at once"
         )
-    x, y, z, w = (part.y for part in parts)
+    x, y, z, w = (measured(part.y) for part in parts)
     square = x**2 + y**2 + z**2 + w**2
     angle = np.where(square > 0, _euler(source.as_, x, y, z, w), np.nan)
     first = parts[0]

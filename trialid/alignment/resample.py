@@ -108,7 +108,8 @@ def _curve(quantity: str, t: Vector, y: Vector) -> Callable[[Vector], Vector]:
         return lambda at: np.interp(at, t, y)
     from scipy.interpolate import PchipInterpolator
 
-    return PchipInterpolator(t, y)
+    with np.errstate(over="ignore"):  # beside a step of 1e-300 any other is without end
+        return PchipInterpolator(t, y)
 
 
 def _fine_steps(own: float, period: float) -> int:

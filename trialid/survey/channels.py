@@ -113,10 +113,12 @@ def _quaternions(channels: Mapping[str, Channel]) -> Iterator[str]:
         fields = [channels.get(f"{stem}.{axis}") for axis in AXES]
         if stem == name or any(field is None for field in fields):
             continue
-        values = [field.y for field in fields if field is not None]
+        values = [frames.measured(field.y) for field in fields if field is not None]
         if len({len(y) for y in values}) != 1 or not len(values[0]):
             continue
-        if abs(float(np.nanmedian(sum(y**2 for y in values))) - 1.0) < 0.01:
+        square = np.sum([y**2 for y in values], axis=0)
+        known = square[np.isfinite(square)]
+        if len(known) and abs(float(np.median(known)) - 1.0) < 0.01:
             yield stem
 
 
