@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from damage import damaged
+from nmea0183_damage import damaged
 from write_nmea0183 import FORMATS, checksum, iso, sentence, with_iso
 
 from trialid.alignment import align
