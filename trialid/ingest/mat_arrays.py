@@ -122,8 +122,9 @@ def _variables(file: bytes) -> dict[str, Any] | None:
     try:
         found = read(io.BytesIO(file), simplify_cells=True, verify_compressed_data_integrity=True)
     except (
-        MatReadError, ValueError, TypeError, IndexError, KeyError, OverflowError, OSError,
+        MatReadError, ValueError, TypeError, IndexError, KeyError, OSError,
         MemoryError, AttributeError, NotImplementedError, UnboundLocalError, zlib.error,
+        ArithmeticError,
     ):  # fmt: skip
         return None
     return {name: value for name, value in found.items() if not name.startswith("__")}
