@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from trialid.alignment import checks, signs, twins
+from trialid.alignment import checks, clocks, signs, twins
 from trialid.alignment.clocks import Series
-from trialid.errors import LogError
+from trialid.errors import AlignmentError, LogError
+from trialid.ingest import template
 from trialid.quantities import SIGNALS
 from trialid.recording import Channel, Recording
 from trialid.survey import channels, sketch
@@ -70,3 +72,19 @@ def test_a_quaternion_of_numbers_past_all():
     assert {one.angle for one in found} == {None, "roll", "yaw"}
     nothing = {name: Channel(name, T, np.full(len(T), np.nan)) for name in held}
     assert len(list(channels.of_recording(Recording(Path("log"), "mcap", "", nothing)))) == 4
+
+
+def test_a_trial_of_years_between_two_stamps():
+    wild = series(WILD[-300:], np.append(Y, 0.0))
+    with pytest.raises(AlignmentError, match="a stamp is wild"):
+        clocks.common([wild], 1000.0, None, "trial 'a'")
+    assert clocks.common([wild], 0.2, (0.0, 20.0), "trial 'a'").samples == 101
+
+
+def test_a_form_of_dates_with_a_code_twice(tmp_path):
+    aid = tmp_path / "aid.toml"
+    aid.write_text(
+        'reviewed = true\nheader = ["t", "u"]\n[time]\ncolumns = ["t"]\nformat = "%d.%m.%d"\n'
+    )
+    with pytest.raises(LogError, match=r"time\.format: '%d\.%m\.%d' holds a code twice"):
+        template.load(aid)

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from trialid import ingest
 from trialid.alignment import align
 from trialid.errors import LogError
-from trialid.ingest import Aids, excel_guard, mat_arrays, packages, parquet_log, read, table_quick
+from trialid.ingest import Aids, excel_guard, packages, parquet_log, read, table_quick
 
 RECORDS = Path(__file__).parents[3] / "shared/data/kvlcc2_hsva_zigzag"
 T = np.arange(0.0, 60.0, 0.1)
@@ -320,8 +320,7 @@ def test_structs_matrices_and_other_lengths_of_matlab(tmp_path):
     assert recording.channels["trial.roll"].quantity == "phi"
 
 
-def test_matlab_objects_are_asked_for_as_plain_arrays(tmp_path, monkeypatch):
-    """Only MATLAB writes these: what scipy makes of one is put in its place."""
+def test_matlab_objects_are_asked_for_as_plain_arrays(tmp_path):
     with h5py.File(tmp_path / "log", "w") as file:
         file["roll"] = np.arange(5.0)
         file["Time"] = np.arange(6, dtype=np.uint32)
@@ -330,12 +329,6 @@ def test_matlab_objects_are_asked_for_as_plain_arrays(tmp_path, monkeypatch):
     assert (
         "Time can only be read by MATLAB itself; save plain arrays, as in t = seconds(" in message
     )
-    plain, opaque = {}, []
-    value = scipy.io.matlab.MatlabOpaque(
-        np.array([(b"T", b"MCOS", b"datetime", 1)], [(f"s{i}", "O") for i in range(4)])
-    )
-    mat_arrays._collect("None", value, plain, opaque)
-    assert (plain, opaque) == ({}, ["T"])
 
 
 @pytest.mark.parametrize("form", ["xlsx", "parquet", "mat73"])

@@ -15,7 +15,7 @@ import numpy as np
 
 from trialid import units
 from trialid.alignment import relation, signs
-from trialid.alignment.clocks import FEWEST, Grid, Series, ordered
+from trialid.alignment.clocks import EMPTIEST, FEWEST, Grid, Series, ordered
 from trialid.alignment.frames import RUDDERS
 from trialid.alignment.relation import Relation
 from trialid.alignment.resample import onto
@@ -54,9 +54,6 @@ TURNS = np.deg2rad(20.0)
 STILL = 0.1
 """[m/s] Speed at which no rudder steers: a moored boat's GPS shows 0.02 to 0.06 m/s."""
 UNITS = ("rad/s", "deg/s", "deg/min", "rad", "deg")
-
-EMPTIEST = 100
-"""Times the samples of the fastest that a common clock may have; with more a stamp is wild."""
 
 Severity = Literal["error", "remark"]
 

@@ -20,6 +20,10 @@ MOST = 10_000_000
 """Samples above which a wild stamp is the likelier explanation: it is a day at 100 Hz."""
 LONGEST = 1e6
 """Duration [s] above which a wild stamp is likelier than a long trial: it is twelve days."""
+EMPTIEST = 100
+"""Times the samples of the fastest signal that a clock may have; with more a stamp is wild, ..."""
+FEW = 100_000
+"""... unless they are no more than this."""
 CALENDAR_NS = 10**17
 """Stamps above this count from 1970 (it is 1973) and are shown as dates."""
 
@@ -112,12 +116,13 @@ def common(
         )
     opening, duration = _cut((end - start) / 1e9, window, where)
     samples = math.floor(duration / period + 1e-6) + 1
-    _check_count(samples, duration, period, (start, end), where)
+    logged = max(len(one.t) for one in series)
+    _check_count(samples, logged, duration, period, (start, end), where)
     return Grid(start + round(opening * 1e9), period, samples)
 
 
 def _check_count(
-    samples: int, duration: float, period: float, ends: tuple[int, int], where: str
+    samples: int, logged: int, duration: float, period: float, ends: tuple[int, int], where: str
 ) -> None:
     if samples < FEWEST:
         raise AlignmentError(
@@ -129,7 +134,7 @@ def _check_count(
             f"{where}: {duration:.6g} s hold {samples} samples at period = {period:.6g} s, at most "
             f"{MOST} are taken; choose a longer period"
         )
-    if samples > MOST:
+    if samples > min(MOST, max(EMPTIEST * logged, FEW)):
         raise AlignmentError(
             f"{where}: the channels seem to last {duration:.4g} s, {moment(ends[0])} to "
             f"{moment(ends[1])}; a stamp is wild: cut the log, or choose a window"

@@ -4,22 +4,20 @@ Of version 5 every variable is read for itself, so that a damaged one takes no o
 HDF5 only what lies in the file itself: links to other files are not followed.
 """
 
-import io
 import struct
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from trialid.errors import LogError, said
+from trialid.ingest.mat_elements import MATRIX, Damaged, Variable, variable
 from trialid.ingest.packages import needed
 
 OLD = b"MATLAB 5.0 MAT-file"
 HEADER = 128
-COMPRESSED, MATRIX = 15, 14
+COMPRESSED = 15
 MOST_BYTES = 300_000_000
 """Of all arrays together."""
 MOST_FILE = 2 * 10**9
@@ -27,9 +25,7 @@ MOST_FILE = 2 * 10**9
 EXPANSION = 1100
 """What deflation can at most make of a byte, and a little."""
 DEEPEST = 12
-"""Structs in structs, groups in groups."""
-CONTAINERS = 1, 2, 3
-"""Classes cell, struct, object: an element of theirs takes a tag of eight bytes at least."""
+"""Groups in groups."""
 
 
 @dataclass(frozen=True)
@@ -53,19 +49,19 @@ def of_version_5(path: Path) -> Arrays:
     plain: dict[str, Any] = {}
     opaque: list[str] = []
     intact = lost = 0
-    for one in _files(raw, order):
-        variables = None if one is None else _variables(one)
-        intact, lost = intact + (variables is not None), lost + (variables is None)
-        for name, value in (variables or {}).items():
-            _collect(name, value, plain, opaque)
+    for one in _variables(raw, order):
+        intact, lost = intact + (one is not None), lost + (one is None)
+        if one is not None:
+            plain |= one.plain
+            opaque += one.opaque
     if not intact:
         raise LogError(f"{path}: no variable in it is intact; copy it again, or save it anew")
-    said = f"recovered {intact} of about {intact + lost} variables, the others are damaged"
-    return Arrays(plain, tuple(opaque), (said,) if lost else ())
+    words = f"recovered {intact} of about {intact + lost} variables, the others are damaged"
+    return Arrays(plain, tuple(opaque), (words,) if lost else ())
 
 
-def _files(raw: bytes, order: str) -> Iterator[bytes | None]:
-    """A file for each variable, unpacked; None for one that is cut short or packed badly."""
+def _variables(raw: bytes, order: str) -> Iterator[Variable | None]:
+    """The variables in turn; None for one that is damaged, and after one that is cut short."""
     offset, left = HEADER, MOST_BYTES
     while offset + 8 <= len(raw):
         kind, size = struct.unpack_from(f"{order}II", raw, offset)
@@ -74,86 +70,25 @@ def _files(raw: bytes, order: str) -> Iterator[bytes | None]:
         if len(body) < 8 + size or kind not in (COMPRESSED, MATRIX):
             yield None
             return
-        parts = _inflated(body[8:], order, left) if kind == COMPRESSED else (body,)
-        file = b"".join((raw[:HEADER], *parts))
-        left -= len(file)
-        yield file if _believable(file, order) else None
+        try:
+            element = body if kind == MATRIX else _inflated(body[8:], order, left)
+            left -= len(element)
+            yield variable(element, order)
+        except (Damaged, zlib.error, struct.error):
+            yield None
 
 
-def _inflated(body: memoryview, order: str, left: int) -> tuple[bytes, ...]:
-    """A variable in pieces; none where it is damaged, or declares more than may be left."""
+def _inflated(body: memoryview, order: str, left: int) -> bytes:
+    """A packed variable; Damaged where it declares more than may be left."""
     inflate = zlib.decompressobj()
-    try:
-        head = inflate.decompress(body, 8)
-        size = struct.unpack(f"{order}II", head)[1]
-        if size > left:
-            return ()
-        rest = inflate.decompress(inflate.unconsumed_tail, size + 8)
-    except (zlib.error, struct.error):
-        return ()
-    return (head, rest) if inflate.eof else ()
-
-
-def _believable(file: bytes, order: str) -> bool:
-    """False for a variable that declares more elements than it has bytes."""
-    size_here = len(file) - HEADER
-    if size_here < 32:
-        return False
-    kind, size = struct.unpack_from(f"{order}II", file, HEADER)
-    flags = struct.unpack_from(f"{order}I", file, HEADER + 16)[0]
-    dims_size = struct.unpack_from(f"{order}I", file, HEADER + 28)[0]
-    if kind != MATRIX or size > size_here - 8 or not 8 <= dims_size <= 128:
-        return kind == MATRIX and (flags & 0xFF) == 17  # an object: has no dimensions there
-    if size_here < 32 + dims_size:
-        return False
-    dims = np.frombuffer(file, f"{order}i4", dims_size // 4, HEADER + 32).astype(object)
-    count = int(np.prod(dims))
-    least = 8 if flags & 0xFF in CONTAINERS else 1
-    return bool((dims >= 0).all()) and count * least <= 2 * size_here
-
-
-def _variables(file: bytes) -> dict[str, Any] | None:
-    """Variables of a file of one; None for a damaged one."""
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
-
-    read: Callable[..., dict[str, Any]] = loadmat  # its types do not know of files in memory
-
-    try:
-        found = read(io.BytesIO(file), simplify_cells=True, verify_compressed_data_integrity=True)
-    except (
-        MatReadError, ValueError, TypeError, IndexError, KeyError, OverflowError, OSError,
-        MemoryError, AttributeError, NotImplementedError, UnboundLocalError, zlib.error,
-    ):  # fmt: skip
-        return None
-    return {name: value for name, value in found.items() if not name.startswith("__")}
-
-
-def _collect(
-    name: str, value: Any, plain: dict[str, Any], opaque: list[str], depth: int = 0
-) -> None:
-    """Numbers below a value; an object that only MATLAB can read is noted by name."""
-    if isinstance(value, dict):
-        for key, one in value.items() if depth < DEEPEST else ():
-            _collect(f"{name}.{key}", one, plain, opaque, depth + 1)
-        return
-    if type(value).__name__ in ("MatlabOpaque", "MatlabFunction", "MatlabObject"):
-        opaque.append(_object_name(name, value))
-        return
-    array = np.asarray(value) if isinstance(value, np.ndarray) else None
-    if array is not None and array.dtype.kind in "fiu" and array.size > 1:
-        plain[name] = array
-
-
-def _object_name(name: str, value: Any) -> str:
-    """MATLAB's own name of it: scipy files objects under `None`."""
-    fields = getattr(getattr(value, "dtype", None), "names", None) or ()
-    if "s0" not in fields or not np.size(value):
-        return name
-    first = np.ravel(value)[0]
-    inside = first["s0"]
-    text = inside.decode("ascii", "replace") if isinstance(inside, bytes) else str(inside)
-    return text if name == "None" else name
+    head = inflate.decompress(body, 8)
+    size = struct.unpack(f"{order}II", head)[1]
+    if size > left:
+        raise Damaged(f"a variable of {size} bytes")
+    rest = inflate.decompress(inflate.unconsumed_tail, size + 8)
+    if not inflate.eof:
+        raise Damaged("a packed variable that is cut short, or longer than it says")
+    return head + rest
 
 
 def of_hdf5(path: Path) -> Arrays:

@@ -6,6 +6,7 @@ idea is that of the equipment templates of marinerg-data.
 
 import json
 import re
+import time
 import tomllib
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
@@ -44,6 +45,16 @@ def _encoding(name: str) -> str:
     return name
 
 
+def _format(text: str) -> str:
+    try:
+        time.strptime("", text)
+    except re.error as error:
+        raise ValueError(f"{text!r} holds a code twice, or one that is no code") from error
+    except ValueError:  # nothing is no date of this form
+        return text
+    return text
+
+
 def _no_number(text: str) -> str:
     if text not in (WHITESPACE, TAB) and re.search(r"[\w.+\-\n\r\"]", text):
         raise ValueError(f"{text!r} cannot separate fields, for it stands in numbers")
@@ -77,7 +88,7 @@ class Time(Section):
         "datetime"
     )
     unit: Annotated[str, AfterValidator(_unit)] | None = None
-    format: Text | None = None
+    format: Annotated[Text, AfterValidator(_format)] | None = None
     zone: Annotated[str, AfterValidator(known_zone)] | None = None
     rate: Annotated[float, Strict(), Field(gt=0)] | None = None
 
