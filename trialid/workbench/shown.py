@@ -1,0 +1,74 @@
+"""What the workbench shows at one moment: frozen, and replaced as a whole when more is known."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from trialid.identification.fit import Fit
+from trialid.pipeline import Run
+from trialid.recipe import Recipe
+from trialid.report.series import TrialSeries
+from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
+from trialid.trial import Trial
+
+
+@dataclass(frozen=True)
+class Working:
+    """What is being computed: because of what, which part of it, and the share that is done."""
+
+    why: str
+    words: str
+    share: float | None
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """A mistake that stands until it is mended, and where it was made."""
+
+    where: Literal["pipeline", "effects", "logs", "fit"]
+    words: str
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One model as far as it is known.
+
+    Attributes
+    ----------
+    recipe
+        The pipeline as its file has it.
+    catalogue
+        Every effect that can be added, the user's own among them.
+    model
+        With the fitted values once there is a fit; None before it could be built.
+    trials
+        Aligned; empty while the logs are read.
+    series
+        Measured, and predicted where there is a fit: NaN before.
+    fit
+        The fit of this model: its error is known a second before what it is made of. None while it
+        is sought, and where `run` was computed earlier and kept.
+    run
+        Everything about this model; None until it is all known.
+    before
+        Everything about the model before the last change, to be shown beside, or greyed meanwhile.
+    """
+
+    recipe: Recipe
+    catalogue: Mapping[str, Effect]
+    model: ShipModel | None = None
+    trials: tuple[Trial, ...] = ()
+    series: tuple[TrialSeries, ...] = ()
+    fit: Fit | None = None
+    run: Run | None = None
+    before: Run | None = None
+
+    @property
+    def stage(self) -> Literal["reading", "measured", "fitted", "diagnosed"]:
+        """How far it is known."""
+        if self.run is not None:
+            return "diagnosed"
+        if self.fit is not None:
+            return "fitted"
+        return "measured" if self.trials else "reading"
