@@ -159,7 +159,11 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     known = _before(edit, trials, folder, progress)
     before, foreseen = (None, known) if isinstance(known, str) else known
     edit, fit = fitted_after(edit, trials, foreseen, progress)
-    run = examine(edit.after, trials, progress, fit)
+    return told(edit, examine(edit.after, trials, progress, fit), before, foreseen)
+
+
+def told(edit: Edit, run: Run, before: Plain | None, foreseen: Foreseen | str) -> Changed:
+    """The run of a changed model, with the model before beside it and its step in the history."""
     steps, _ = history.read(edit.before.path)
     own = {key: edit.effect.name if key == edit.step else None for key in ("added", "dropped")}
     row = present(run.result) | {"step": edit.step} | own
@@ -239,7 +243,7 @@ def _before(
     """
     try:
         fit = fit_of(edit.before, trials, available(edit.before), progress)
-        foreseen = _foreseen(edit, fit)
+        foreseen = foreseen_by(edit, fit)
         found = earlier(folder, edit.before, fit)
         found = found or dict(examine(edit.before, trials, progress, fit).result)
     except TrialidError as error:
@@ -247,7 +251,8 @@ def _before(
     return found, foreseen
 
 
-def _foreseen(edit: Edit, fit: Fit) -> Foreseen | str:
+def foreseen_by(edit: Edit, fit: Fit) -> Foreseen | str:
+    """What linearisation about the model before foresees; words where it cannot."""
     if edit.step == "dropped":
         return foresee_dropping(fit, edit.effect)
     held = [n for n in edit.effect.parameters if n not in edit.after.identify.free]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from trialid.identification.fit import Fit
-from trialid.pipeline import Run
+from trialid.pipeline import Outcome
 from trialid.recipe import Recipe
 from trialid.report.series import TrialSeries
 from trialid.ship.effect import Effect
@@ -61,8 +61,8 @@ class Shown:
     trials: tuple[Trial, ...] = ()
     series: tuple[TrialSeries, ...] = ()
     fit: Fit | None = None
-    run: Run | None = None
-    before: Run | None = None
+    run: Outcome | None = None
+    before: Outcome | None = None
 
     @property
     def stage(self) -> Literal["reading", "measured", "fitted", "diagnosed"]:
