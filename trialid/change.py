@@ -159,21 +159,25 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     known = _before(edit, trials, folder, progress)
     before, foreseen = (None, known) if isinstance(known, str) else known
     edit, fit = fitted_after(edit, trials, foreseen, progress)
-    return told(edit, examine(edit.after, trials, progress, fit), before, foreseen)
+    run = examine(edit.after, trials, progress, fit)
+    result, steps = beside(edit, run.result, before, foreseen)
+    return Changed(edit, replace(run, result=result), steps)
 
 
-def told(edit: Edit, run: Run, before: Plain | None, foreseen: Foreseen | str) -> Changed:
-    """The run of a changed model, with the model before beside it and its step in the history."""
+def beside(
+    edit: Edit, after: Mapping[str, Any], before: Mapping[str, Any] | None, foreseen: Foreseen | str
+) -> tuple[Plain, tuple[Step, ...]]:
+    """The result of a changed model with the one before beside it, and the steps history lacks."""
     steps, _ = history.read(edit.before.path)
     own = {key: edit.effect.name if key == edit.step else None for key in ("added", "dropped")}
-    row = present(run.result) | {"step": edit.step} | own
+    row = present(after) | {"step": edit.step} | own
     base = steps if before is None else history.continued(steps, present(before))
     result = {
-        **run.result,
-        "history": [*base, row, *proposed(run.result)],
-        "change": compared(edit.step, edit.effect, before, run.result, foreseen, edit.taken_out),
+        **after,
+        "history": [*base, row, *proposed(after)],
+        "change": compared(edit.step, edit.effect, before, after, foreseen, edit.taken_out),
     }
-    return Changed(edit, replace(run, result=result), (*base, row)[len(steps) :])
+    return result, (*base, row)[len(steps) :]
 
 
 def fitted_after(

@@ -46,7 +46,7 @@ from trialid.identification.pose import Settings
 from trialid.ingest import Aids, LogFile
 from trialid.recipe import Recipe, TrialRecipe
 from trialid.recipe.form import ClockRecipe
-from trialid.report.force import force_series, write_force_csv
+from trialid.report.force import ForceSeries, force_series, write_force_csv
 from trialid.report.overlay import write_mcap
 from trialid.report.page import write_page
 from trialid.report.series import OutputSeries, TrialSeries, write_csv
@@ -75,6 +75,11 @@ class Outcome:
     result: Mapping[str, Any]
     series: tuple[TrialSeries, ...]
     force: MissingForce | None
+
+    @property
+    def forces(self) -> tuple[ForceSeries, ...]:
+        """The missing force in time, as pages draw it; empty where it was not sought."""
+        return () if self.force is None else force_series(self.force)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,9 @@ from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.trial import Trial
 
+Place = Literal["pipeline", "effects", "logs", "fit"]
+"""Where a mistake was made."""
+
 
 @dataclass(frozen=True)
 class Working:
@@ -26,7 +29,7 @@ class Working:
 class Trouble:
     """A mistake that stands until it is mended, and where it was made."""
 
-    where: Literal["pipeline", "effects", "logs", "fit"]
+    where: Place
     words: str
 
 
@@ -45,7 +48,7 @@ class Shown:
     trials
         Aligned; empty while the logs are read.
     series
-        Measured, and predicted where there is a fit: NaN before.
+        Measured, and predicted where there is a fit; until then by the model before, or NaN.
     fit
         The fit of this model: its error is known a second before what it is made of. None while it
         is sought, and where `run` was computed earlier and kept.
