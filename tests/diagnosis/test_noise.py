@@ -7,7 +7,7 @@ import pytest
 from s175q import MODEL, SETTINGS, waves, white, with_noise, zigzag
 
 from trialid.diagnosis.augment import augment
-from trialid.diagnosis.noise import split
+from trialid.diagnosis.noise import _period, split
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.trial import Trial
@@ -146,3 +146,17 @@ def test_first_differences_would_be_wrong_on_waves():
     """Why there is no such route: it finds a small part of the variance of wave noise."""
     e, _ = waves(np.random.default_rng(9), 4000)
     assert np.mean(np.diff(e) ** 2) / 2.0 < 0.15 * np.mean(e**2)
+
+
+def test_a_slow_rudder_logged_fast_does_not_repeat_itself() -> None:
+    """Ten samples of 10 Hz are a second: a rudder is like itself a second before."""
+    rng = np.random.default_rng(4)
+    switches = np.cumsum(rng.uniform(20.0, 80.0, 60))
+    t = np.arange(20_000) * 0.1
+    held = np.where(np.searchsorted(switches, t) % 2, 0.2, -0.2) * (t > 30.0)
+    smooth = np.convolve(held, np.ones(50) / 50, mode="same")
+    assert _period(smooth) is None
+    again = np.tile(smooth[:6000], 3)
+    found = _period(again)
+    assert found is not None
+    assert found[1] == pytest.approx(6000, abs=2)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy import Stretch
+from trialid.diagnosis.coarse import coarse
 from trialid.diagnosis.evidence import Evidence, gather
 from trialid.diagnosis.scan import secants
 from trialid.identification.fit import Fit
@@ -136,6 +137,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     A candidate that cannot be simulated, or acts on nothing that is an output, is left out with
     the reason.
     """
+    fit = coarse(fit)
     problem = fit.problem
     base = _fitted_model(fit)
     able, left_out = candidates_for(base, problem.trials[0], catalogue)

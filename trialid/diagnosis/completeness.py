@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, chdtri  # scipy.stats would take another 0.4 s to import
 
 from trialid.diagnosis.augment import Augmented
+from trialid.diagnosis.coarse import coarse
 from trialid.diagnosis.evidence import Evidence, Projected, gather, likeliest, without
 from trialid.diagnosis.probes import Probes, probes
 from trialid.diagnosis.whitening import whitened
@@ -54,7 +55,7 @@ def completeness(fit: Fit, augmented: Augmented) -> Completeness | None:
     moved = set(ROWS) & set(fit.problem.simulator.equations.states)
     if not augmented.traces or not moved:
         return None
-    tried = probes(fit)
+    tried = probes(coarse(fit))
     evidence = _with_colour(augmented, tried)
     white, _ = whitened(tried.columns, augmented.stretches, evidence.colour)
     white -= evidence.white.Q @ (evidence.white.Q.T @ white)

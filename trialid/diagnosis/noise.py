@@ -165,13 +165,24 @@ def _period(rudder: Vector) -> tuple[int, int] | None:
         return None
     start = int(moving[0])
     active = rudder[start:] - rudder[start:].mean()
-    n = len(active)
-    spread = float(np.mean(active**2))
-    for lag in range(10, n // 2 + 1):
-        gap = active[lag:] - active[:-lag]
-        if float(np.mean(gap**2)) < SAME_RUDDER * spread:
-            return start, lag
-    return None
+    gap = _gaps(active) / float(np.mean(active**2))
+    apart = np.flatnonzero(gap > 1.0)
+    if len(apart) == 0:
+        return None
+    # a rudder is like itself a moment before; it repeats where it has been unlike in between
+    again = np.flatnonzero(gap[apart[0] :] < SAME_RUDDER)
+    return (start, int(apart[0] + again[0])) if len(again) else None
+
+
+def _gaps(x: Vector) -> Vector:
+    """Mean square of what a record differs by from itself so many samples later, up to half."""
+    n = len(x)
+    lags = np.arange(n // 2 + 1)
+    spectrum = np.fft.rfft(x, 1 << (2 * n - 1).bit_length())
+    products = np.fft.irfft(np.abs(spectrum) ** 2)[: len(lags)]
+    before = np.concatenate([[0.0], np.cumsum(x**2)])
+    squares = (before[n] - before[lags]) + before[n - lags]
+    return np.asarray((squares - 2.0 * products) / (n - lags))
 
 
 def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:

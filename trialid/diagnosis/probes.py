@@ -122,4 +122,4 @@ def _between(y: Vector, every: int, samples: int) -> Vector:
 
 
 def _stacked(found: Sequence[Vector], parts: Sequence[Stretch]) -> Vector:
-    return np.concatenate([found[s.trial][s.compared, s.output] for s in parts])
+    return np.concatenate([s.taken(found[s.trial][:, s.output]) for s in parts])

@@ -40,7 +40,7 @@ def secants(
 def _difference(problem: Problem, plain: list[Response], changed: list[Response]) -> Vector:
     scale = row_scale(problem)
     return np.concatenate([
-        (changed[s.trial].y[:, s.output] - plain[s.trial].y[:, s.output])[s.compared]
+        s.taken(changed[s.trial].y[:, s.output] - plain[s.trial].y[:, s.output])
         * scale[s.output]
         for s in stretches(problem)
     ])  # fmt: skip

@@ -17,6 +17,9 @@ Colour = Mapping[int, Vector]
 MEMORY_SHARE: Final = 1.0 / 6.0
 """Memory of the autoregression over the lag window: 10 s of 20 minutes, a wave or two."""
 
+MOST_TAPS: Final = 160
+"""Reached by trials of 19 200 samples; the cost grows with the square of it."""
+
 ROWS_FOR_EACH: Final = 4
 """Rows that a coefficient needs; shorter records are left as they are."""
 
@@ -27,7 +30,7 @@ BLOCK: Final = 64
 
 def memory(parts: Sequence[Stretch]) -> int:
     """Samples that an autoregression of these records looks back."""
-    return max(round(MEMORY_SHARE * lag_window(parts)), 1)
+    return min(max(round(MEMORY_SHARE * lag_window(parts)), 1), MOST_TAPS)
 
 
 def colour_of(residual: Vector, parts: Sequence[Stretch]) -> Colour:

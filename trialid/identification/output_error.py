@@ -52,6 +52,8 @@ class Problem:
         Per trial where measurement and simulation are compared; (N, n_y) each.
     y_rms, weights
         Norm of each output [SI] and its weight; (n_y,).
+    every
+        How many samples make one row of the residual: 1 but where a long record is examined.
     """
 
     simulator: Simulator
@@ -60,6 +62,7 @@ class Problem:
     compared: tuple[Mask, ...]
     y_rms: Vector
     weights: Vector
+    every: int = 1
 
     @property
     def start(self) -> Vector:
@@ -123,30 +126,35 @@ def respond_all(
 ) -> list[Response] | Departure:
     """Responses of all trials, or the first departure from the model's domain."""
     responses = []
-    for i, trial in enumerate(problem.trials):
-        values = problem.values(theta, i)
-        start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
-        response = respond(problem.simulator, trial, values, start, sensitivities)
+    for i in range(len(problem.trials)):
+        response = _respond(problem, theta, i, sensitivities)
         if response.departure is not None:
             return response.departure
         responses.append(response)
     return responses
 
 
+def _respond(problem: Problem, theta: Vector, trial: int, sensitivities: bool) -> Response:
+    values = problem.values(theta, trial)
+    start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+    return respond(problem.simulator, problem.trials[trial], values, start, sensitivities)
+
+
 def linearise(problem: Problem, theta: Vector) -> tuple[Vector, Vector] | Departure:
     """Normed residual (M,) and normed gradient (M, n_theta), rows as in `stretches`."""
-    responses = respond_all(problem, theta)
-    if isinstance(responses, Departure):
-        return responses
     parts, scale = stretches(problem), row_scale(problem)
     residual = np.empty(parts[-1].rows.stop)
     psi = np.zeros((len(residual), len(problem.unknowns)))
-    for part in parts:
-        response, c = responses[part.trial], part.output
-        y = problem.trials[part.trial].signals[problem.outputs[c]]
-        residual[part.rows] = output_error(y, response.y[:, c])[part.compared] * scale[c]
-        acting, slopes = gradient(response, problem, part.trial, c)
-        psi[part.rows, acting] = slopes[part.compared] * scale[c]
+    for i, trial in enumerate(problem.trials):  # one at a time: a response is larger than its rows
+        response = _respond(problem, theta, i, sensitivities=True)
+        if response.departure is not None:
+            return response.departure
+        for part in (p for p in parts if p.trial == i):
+            c = part.output
+            eps = output_error(trial.signals[problem.outputs[c]], response.y[:, c])
+            residual[part.rows] = part.taken(eps) * scale[c]
+            acting, slopes = gradient(response, problem, i, c)
+            psi[part.rows, acting] = part.taken(slopes) * scale[c]
     return residual, psi
 
 
@@ -158,11 +166,12 @@ def row_scale(problem: Problem) -> Vector:
 
 def stretches(problem: Problem) -> tuple[Stretch, ...]:
     """Which rows are which output of which trial."""
-    made, at = [], 0
+    made, at, every = [], 0, problem.every
     for i, masks in enumerate(problem.compared):
         for c in range(masks.shape[1]):
-            count = int(masks[:, c].sum())
-            made.append(Stretch(i, c, slice(at, at + count), masks[:, c]))
+            blocks = np.all(masks[: len(masks) // every * every, c].reshape(-1, every), axis=1)
+            count = int(blocks.sum())
+            made.append(Stretch(i, c, slice(at, at + count), blocks, every))
             at += count
     return tuple(made)
 

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.noise import Split
-from trialid.diagnosis.whitening import colour_of
+from trialid.diagnosis.whitening import Colour, colour_of
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale, stretches
 from trialid.trial import Mask
@@ -88,7 +88,7 @@ def bands(fit: Fit, split: Split, augmented: Augmented) -> Bands:
     problem = fit.problem
     scale = row_scale(problem)
     if split.by_output is not None and augmented.traces:
-        colour = augmented.evidence.colour
+        colour = _colour(fit, augmented)
         sigma = [noise for noise, _ in split.by_output.values()]
         source = f"noise part of the fit's error ({split.method})"
     else:
@@ -103,6 +103,13 @@ def bands(fit: Fit, split: Split, augmented: Augmented) -> Bands:
         source,
         split.by_output is not None,
     )
+
+
+def _colour(fit: Fit, augmented: Augmented) -> Colour:
+    """The noise's colour, sample by sample; of the residual where the record was too long."""
+    if any(part.every > 1 for part in augmented.stretches):
+        return colour_of(fit.residual, stretches(fit.problem))
+    return augmented.evidence.colour
 
 
 def threshold(samples: float) -> float:

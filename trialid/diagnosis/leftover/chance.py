@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import next_fast_len, rfft
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.special import chdtri, fdtr, fdtrc, stdtr  # scipy.stats takes 0.4 s to import
 
 from trialid.diagnosis.leftover.record import Leftover
@@ -82,16 +82,23 @@ def gram(columns: Vector, kernel: Vector, spans: Sequence[slice]) -> Vector:
     return total
 
 
-def along(columns: Vector, kernel: Vector, spans: Sequence[slice]) -> Vector:
+def along(columns: Vector | Mask, kernel: Vector, spans: Sequence[slice]) -> Vector:
     """The diagonal of `gram`; (q,)."""
-    total = np.zeros(columns.shape[1])
-    for span in spans:
-        piece = columns[span]
-        here = piece.any(axis=0)  # a stretch lies in one trial
-        if here.any():
-            P, weights = _transformed(piece[:, here], kernel)
-            total[here] += weights @ (P.real**2 + P.imag**2)
-    return total
+    rows = np.ascontiguousarray(columns.T)
+    return np.array([sum(_chained(row[span], kernel) for span in spans) for row in rows])
+
+
+def _chained(row: Vector | Mask, kernel: Vector) -> float:
+    """One column's own product, by its autocorrelation where it is not zero."""
+    at = np.flatnonzero(row)
+    if len(at) == 0:
+        return 0.0
+    piece = row[at[0] : at[-1] + 1].astype(float)
+    reach = min(len(kernel), len(piece))
+    size = next_fast_len(len(piece) + reach, real=True)
+    P = rfft(piece, size)
+    lagged = irfft(P.real**2 + P.imag**2, size)[:reach]
+    return float(2.0 * kernel[:reach] @ lagged - kernel[0] * lagged[0])
 
 
 def _transformed(piece: Vector, kernel: Vector) -> tuple[NDArray[np.complex128], Vector]:
@@ -189,8 +196,8 @@ def squares(left: Leftover, colour: Colour, output: int, slices: Mask) -> Square
     e2 = left.eps[:, output] ** 2
     count, total = inside.sum(axis=0).astype(float), float(e2.sum())
     every = float(left.compared[:, output].sum())
-    held = inside.T.astype(float) @ e2
-    chain = along(inside.astype(float), colour.squared[:, output], left.spans)
+    held = np.array([e2[column].sum() for column in np.ascontiguousarray(inside.T)])
+    chain = along(inside, colour.squared[:, output], left.spans)
     own = count**2 / np.maximum(chain, 1e-300)
     rest = np.maximum(float(colour.independent[output]) - own, 1.0)
     here = held / np.maximum(count, 1.0)

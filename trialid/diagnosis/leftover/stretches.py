@@ -70,7 +70,7 @@ def failing(left: Leftover, colour: Colour, output: int) -> Examined | str:
     if len(rows) < FEWEST:
         return f"the trials are shorter than {FEWEST} windows"
     tried = spells(rows)
-    inside = np.zeros((len(left.eps), len(tried)), dtype=bool)
+    inside = np.zeros((len(left.eps), len(tried)), dtype=bool, order="F")
     for k, spell in enumerate(tried):
         inside[rows[spell[0]].start : rows[spell[-1]].stop, k] = True
     held = squares(left, colour, output, inside)
@@ -111,7 +111,7 @@ def _finding(
 ) -> Finding:
     first, last = rows[run[0]], rows[run[-1]]
     mine = [k for k, w in enumerate(rows) if w.trial == first.trial]
-    inside = np.zeros((len(left.eps), len(mine) + 1), dtype=bool)
+    inside = np.zeros((len(left.eps), len(mine) + 1), dtype=bool, order="F")
     inside[first.start : last.stop, 0] = True
     for column, k in enumerate(mine, start=1):
         inside[rows[k].start : rows[k].stop, column] = True
