@@ -290,5 +290,5 @@ const trialidPlots = (() => {
     }));
   }
 
-  return { HEIGHTS, trialOf, build, fill, listen, draw, show, around, resize, setBeside, onPaper };
+  return { HEIGHTS, trialOf, build, fill, listen, draw, show, tell, around, resize, setBeside };
 })();
