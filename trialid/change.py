@@ -160,16 +160,24 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     before, foreseen = (None, known) if isinstance(known, str) else known
     edit, fit = fitted_after(edit, trials, foreseen, progress)
     run = examine(edit.after, trials, progress, fit)
+    result, steps = beside(edit, run.result, before, foreseen)
+    return Changed(edit, replace(run, result=result), steps)
+
+
+def beside(
+    edit: Edit, after: Mapping[str, Any], before: Mapping[str, Any] | None, foreseen: Foreseen | str
+) -> tuple[Plain, tuple[Step, ...]]:
+    """The result of a changed model with the one before beside it, and the steps history lacks."""
     steps, _ = history.read(edit.before.path)
     own = {key: edit.effect.name if key == edit.step else None for key in ("added", "dropped")}
-    row = present(run.result) | {"step": edit.step} | own
+    row = present(after) | {"step": edit.step} | own
     base = steps if before is None else history.continued(steps, present(before))
     result = {
-        **run.result,
-        "history": [*base, row, *proposed(run.result)],
-        "change": compared(edit.step, edit.effect, before, run.result, foreseen, edit.taken_out),
+        **after,
+        "history": [*base, row, *proposed(after)],
+        "change": compared(edit.step, edit.effect, before, after, foreseen, edit.taken_out),
     }
-    return Changed(edit, replace(run, result=result), (*base, row)[len(steps) :])
+    return result, (*base, row)[len(steps) :]
 
 
 def fitted_after(
@@ -239,7 +247,7 @@ def _before(
     """
     try:
         fit = fit_of(edit.before, trials, available(edit.before), progress)
-        foreseen = _foreseen(edit, fit)
+        foreseen = foreseen_by(edit, fit)
         found = earlier(folder, edit.before, fit)
         found = found or dict(examine(edit.before, trials, progress, fit).result)
     except TrialidError as error:
@@ -247,7 +255,8 @@ def _before(
     return found, foreseen
 
 
-def _foreseen(edit: Edit, fit: Fit) -> Foreseen | str:
+def foreseen_by(edit: Edit, fit: Fit) -> Foreseen | str:
+    """What linearisation about the model before foresees; words where it cannot."""
     if edit.step == "dropped":
         return foresee_dropping(fit, edit.effect)
     held = [n for n in edit.effect.parameters if n not in edit.after.identify.free]

@@ -19,6 +19,7 @@ from trialid.cli_design import design
 from trialid.cli_logs import align, inspect
 from trialid.cli_replay import replay
 from trialid.cli_report import DIFFERENT, repeated, report
+from trialid.cli_workbench import workbench
 from trialid.console import Progress, complain, file_width, progress_bar, rendered, say
 from trialid.errors import TrialidError
 
@@ -186,6 +187,7 @@ commands.add_command(align)
 commands.add_command(design)
 commands.add_command(report)
 commands.add_command(replay)
+commands.add_command(workbench)
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ from trialid.ship.effect import Effect
 def compared(
     step: str,
     effect: Effect,
-    before: Plain | None,
+    before: Mapping[str, Any] | None,
     after: Mapping[str, Any],
     foreseen: Foreseen | str,
     taken_out: Sequence[str] = (),

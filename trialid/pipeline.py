@@ -34,7 +34,7 @@ from trialid.design.standard import Measure
 from trialid.diagnosis.augment import Augmented
 from trialid.diagnosis.completeness import Completeness, completeness
 from trialid.diagnosis.missing_effect import Verdict, decide, refit
-from trialid.diagnosis.missing_force import missing_force
+from trialid.diagnosis.missing_force import MissingForce, missing_force
 from trialid.diagnosis.noise import Split, split
 from trialid.diagnosis.score import Candidate, rank
 from trialid.diagnosis.where import where as stretches_that_fail
@@ -46,7 +46,7 @@ from trialid.identification.pose import Settings
 from trialid.ingest import Aids, LogFile
 from trialid.recipe import Recipe, TrialRecipe
 from trialid.recipe.form import ClockRecipe
-from trialid.report.force import force_series, write_force_csv
+from trialid.report.force import ForceSeries, force_series, write_force_csv
 from trialid.report.overlay import write_mcap
 from trialid.report.page import write_page
 from trialid.report.series import OutputSeries, TrialSeries, write_csv
@@ -68,6 +68,21 @@ MOST_SUBSTEPS: Final = 16
 
 
 @dataclass(frozen=True)
+class Outcome:
+    """What a finished run leaves behind: plain data, the time series, the force where sought."""
+
+    recipe: Recipe
+    result: Mapping[str, Any]
+    series: tuple[TrialSeries, ...]
+    force: MissingForce | None
+
+    @property
+    def forces(self) -> tuple[ForceSeries, ...]:
+        """The missing force in time, as pages draw it; empty where it was not sought."""
+        return () if self.force is None else force_series(self.force)
+
+
+@dataclass(frozen=True)
 class Run:
     """A finished run: its findings, the same as plain data, and the time series."""
 
@@ -75,6 +90,16 @@ class Run:
     findings: Findings
     result: Mapping[str, Any]
     series: tuple[TrialSeries, ...]
+
+    @property
+    def force(self) -> MissingForce | None:
+        """The missing force, where it was sought."""
+        return self.findings.force
+
+    @property
+    def outcome(self) -> Outcome:
+        """The run without the matrices of its fits, which take most of the room."""
+        return Outcome(self.recipe, self.result, self.series, self.force)
 
 
 @one_thread
@@ -333,7 +358,7 @@ def time_series(fit: Fit) -> tuple[TrialSeries, ...]:
     )  # fmt: skip
 
 
-def write(done: Run, folder: Path) -> None:
+def write(done: Run | Outcome, folder: Path) -> None:
     """The run's folder: report, result, series, a recording that opens in plot tools, the pipeline.
 
     Everything is written beside and moved in place at the end, so that a run that is broken off
@@ -359,7 +384,7 @@ def write(done: Run, folder: Path) -> None:
                     parent.rmdir()
 
 
-def _write_beside(done: Run, folder: Path) -> None:
+def _write_beside(done: Run | Outcome, folder: Path) -> None:
     work = Path(tempfile.mkdtemp(prefix=".trialid-", dir=folder.parent))
     new, old = work / "new", work / "old"
     try:
@@ -375,19 +400,19 @@ def _write_beside(done: Run, folder: Path) -> None:
         shutil.rmtree(work, ignore_errors=True)
 
 
-def _write_files(done: Run, folder: Path) -> None:
+def _write_files(done: Run | Outcome, folder: Path) -> None:
     text = json.dumps(done.result, indent=1, allow_nan=False)
     (folder / "result.json").write_text(text + "\n", encoding="utf-8")
     write_csv(folder / "series.csv", done.series)
     write_mcap(folder / "predicted.mcap", done.result, done.series)
-    forces = force_series(done.findings.force) if done.findings.force is not None else ()
+    forces = force_series(done.force) if done.force is not None else ()
     if forces:
         write_force_csv(folder / "missing_force.csv", forces)
     write_page(folder / "report.html", done.result, done.series, forces)
     (folder / "pipeline.toml").write_bytes(done.recipe.content)
 
 
-def _write_origin(done: Run, work: Path, folder: Path) -> None:
+def _write_origin(done: Run | Outcome, work: Path, folder: Path) -> None:
     """`run.json`: what `trialid run --repeat` needs to find the logs again from the folder."""
     recipe = done.recipe
     origin = {
@@ -396,7 +421,7 @@ def _write_origin(done: Run, work: Path, folder: Path) -> None:
         "pipeline": Path(os.path.relpath(recipe.path.resolve(), folder.resolve())).as_posix(),
         "sha256": hashlib.sha256(recipe.content).hexdigest(),
         "seed": recipe.identify.seed,
-        "force": done.findings.force is not None,
+        "force": done.force is not None,
     }
     text = json.dumps(origin, indent=1) + "\n"
     (work / "run.json").write_text(text, encoding="utf-8")

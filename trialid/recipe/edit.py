@@ -1,36 +1,39 @@
-"""An effect into a pipeline's text or out of it, and nothing else: comments and form are kept.
+"""What a person changes in a pipeline's model: an effect more or less, a parameter free or fixed.
 
-Text in, text out. Each change is checked by reading the new text: it must say what the old one said
-but for the names asked for, else the file is the user's to edit by hand.
+Text in, text out; comments and form are kept, as `place` sees to.
 """
 
 import copy
-import json
 import re
-import tomllib
-from collections.abc import Callable, Iterable, Sequence
-from operator import delitem, setitem
-from typing import Any, Final
+from collections.abc import Iterable, Sequence
+from itertools import product
+from typing import Final
 
-import tomlkit
-from tomlkit.exceptions import TOMLKitError
-
-from trialid.errors import RecipeError
-from trialid.recipe.array_text import with_name, without_name
 from trialid.recipe.complaints import dotted
+from trialid.recipe.place import (
+    Keys,
+    data_of,
+    inline,
+    names_in,
+    says,
+    source_of,
+    with_entry,
+    with_item,
+    with_key_of,
+    without_entry,
+    without_item,
+)
 
-Keys = tuple[str, str]
 EFFECTS: Final[Keys] = ("model", "effects")
 FREE: Final[Keys] = ("identify", "free")
-OWN_WORDS: Final[tuple[Keys, ...]] = (
-    ("identify", "priors"), ("identify", "bounds"), ("model", "values"),
-)  # fmt: skip
+PRIORS: Final[Keys] = ("identify", "priors")
+BOUNDS: Final[Keys] = ("identify", "bounds")
+VALUES: Final[Keys] = ("model", "values")
+OWN_WORDS: Final[tuple[Keys, ...]] = (PRIORS, BOUNDS, VALUES)
 """Tables in which a user says something of one parameter."""
 
 BY_ADD: Final = "  # start, by linearisation"
 """Marks a line that is not the user's."""
-
-BOM: Final = "\N{ZERO WIDTH NO-BREAK SPACE}"
 
 
 def add_effect(text: str, effect: str, parameters: Iterable[str]) -> str:
@@ -41,9 +44,9 @@ def add_effect(text: str, effect: str, parameters: Iterable[str]) -> str:
     RecipeError
         The lists are not there, or cannot be changed without changing something else.
     """
-    text = _with(text, EFFECTS, effect)
+    text = with_item(text, EFFECTS, effect)
     for name in parameters:
-        text = _with(text, FREE, name)
+        text = with_item(text, FREE, name)
     return text
 
 
@@ -59,19 +62,85 @@ def drop_effect(text: str, effect: str, parameters: Sequence[str]) -> tuple[str,
     RecipeError
         As `add_effect`.
     """
-    free = _list(text, FREE)
+    free = names_in(text, FREE)
     for name in [n for n in reversed(free) if n in parameters]:
-        text = _without(text, FREE, name)
+        text = without_item(text, FREE, name)
     for name in parameters:
         text = _without_start(text, name)
-    text = _without(text, EFFECTS, effect)
+    text = without_item(text, EFFECTS, effect)
+    return _without_words(text, OWN_WORDS, parameters)
+
+
+def set_free(text: str, name: str) -> str:
+    """The pipeline with a parameter free.
+
+    Raises
+    ------
+    RecipeError
+        As `add_effect`.
+    """
+    return with_item(text, FREE, name)
+
+
+def set_fixed(text: str, name: str) -> tuple[str, tuple[str, ...]]:
+    """The pipeline with a parameter fixed, and without its prior and bounds, which come in words.
+
+    Raises
+    ------
+    RecipeError
+        As `add_effect`.
+    """
+    return _without_words(without_item(text, FREE, name), (PRIORS, BOUNDS), [name])
+
+
+def set_bounds(text: str, name: str, bounds: tuple[float, float] | None) -> str:
+    """The pipeline with these bounds of a parameter, or with none.
+
+    Raises
+    ------
+    RecipeError
+        As `add_effect`.
+    """
+    if bounds is None:
+        return _without_words(text, (BOUNDS,), [name])[0]
+    return with_entry(text, BOUNDS, name, list(bounds))
+
+
+def set_value(text: str, name: str, value: float | None) -> str:
+    """The pipeline with a parameter's value or start, or with the ship file's again.
+
+    Raises
+    ------
+    RecipeError
+        As `add_effect`.
+    """
+    text = _without_start(text, name)
+    if value is None:
+        return _without_words(text, (VALUES,), [name])[0]
+    return with_entry(text, VALUES, name, value)
+
+
+def set_use(text: str, trial: int, use: str) -> str:
+    """The pipeline with a trial, counted from 0, to `fit` or to `check`.
+
+    Raises
+    ------
+    RecipeError
+        As `add_effect`.
+    """
+    return with_key_of(text, "trial", trial, "use", use)
+
+
+def _without_words(
+    text: str, tables: Sequence[Keys], names: Sequence[str]
+) -> tuple[str, tuple[str, ...]]:
+    """The text without what tables say of parameters, and that in words."""
     said = []
-    for table in OWN_WORDS:
-        for name in parameters:
-            value = _data(text).get(table[0], {}).get(table[1], {}).get(name)
-            if value is not None:
-                said.append(f"{dotted(*table, name)} = {_inline(value)}")
-                text = _without_entry(text, table, name)
+    for table, name in product(tables, names):
+        value = data_of(text).get(table[0], {}).get(table[1], {}).get(name)
+        if value is not None:
+            said.append(f"{dotted(*table, name)} = {inline(value)}")
+            text = without_entry(text, table, name)
     return text, tuple(said)
 
 
@@ -85,23 +154,16 @@ def start_at(text: str, name: str, value: float) -> str:
     RecipeError
         As `add_effect`.
     """
-    expected = copy.deepcopy(_data(text))
+    expected = copy.deepcopy(data_of(text))
     expected[EFFECTS[0]].setdefault("values", {})[name] = value
-    array = _source(text, EFFECTS)
+    array = source_of(text, EFFECTS)
     at = text.find(array)
     while at >= 0:
         new = _with_line(text, at, at + len(array), f"values.{name} = {value}{BY_ADD}")
-        if _says(new, expected):
+        if says(new, expected):
             return new
         at = text.find(array, at + 1)
-    new = _dumped(text, EFFECTS, "add", name, lambda model: setitem(_values(model), name, value))
-    if not _says(new, expected):
-        raise RecipeError(_by_hand(("model", "values"), "add", name))
-    return new
-
-
-def _values(model: Any) -> Any:
-    return model.setdefault("values", tomlkit.inline_table())
+    return with_entry(text, VALUES, name, value)
 
 
 def _with_line(text: str, start: int, stop: int, line: str) -> str:
@@ -119,106 +181,3 @@ def _with_line(text: str, start: int, stop: int, line: str) -> str:
 def _without_start(text: str, name: str) -> str:
     line = rf"[ \t]*(?:[\w-]+\s*\.\s*)?values\.{re.escape(name)} = \S+{re.escape(BY_ADD)}"
     return re.sub(rf"(?m)^{line}\r?\n|\r?\n{line}\Z", "", text, count=1)
-
-
-def _with(text: str, keys: Keys, name: str) -> str:
-    return _rewritten(
-        text, keys, lambda array: with_name(array, name), [*_list(text, keys), name], "add", name
-    )
-
-
-def _without(text: str, keys: Keys, name: str) -> str:
-    wanted = [n for n in _list(text, keys) if n != name]
-    return _rewritten(text, keys, lambda array: without_name(array, name), wanted, "drop", name)
-
-
-def _rewritten(
-    text: str, keys: Keys, change: Callable[[str], str], wanted: list[str], verb: str, name: str
-) -> str:
-    """The text with one array changed where that, and only that, gives the list wanted."""
-    expected = copy.deepcopy(_data(text))
-    expected[keys[0]][keys[1]] = wanted
-    array = _source(text, keys)
-    changed = change(array)
-    at = text.find(array)
-    while at >= 0:
-        new = text[:at] + changed + text[at + len(array) :]
-        if _says(new, expected):
-            return new
-        at = text.find(array, at + 1)
-    raise RecipeError(_by_hand(keys, verb, name))
-
-
-def _without_entry(text: str, table: Keys, name: str) -> str:
-    expected = copy.deepcopy(_data(text))
-    del expected[table[0]][table[1]][name]
-    new = _dumped(text, table, "drop", name, lambda section: delitem(section[table[1]], name))
-    if not _says(new, expected):
-        raise RecipeError(_by_hand(table, "drop", name))
-    return new
-
-
-def _dumped(text: str, keys: Keys, verb: str, name: str, change: Callable[[Any], object]) -> str:
-    """The text with one of its sections changed by TOML Kit."""
-    try:
-        document = tomlkit.parse(text.removeprefix(BOM))
-        change(document[keys[0]])
-        return text[: text.startswith(BOM)] + tomlkit.dumps(document)
-    except (TOMLKitError, KeyError) as error:
-        raise RecipeError(_by_hand(keys, verb, name)) from error
-
-
-def _by_hand(keys: Keys, verb: str, name: str) -> str:
-    return f"{dotted(*keys)}: cannot be changed without touching the rest; {verb} {name!r} by hand"
-
-
-def _source(text: str, keys: Keys) -> str:
-    """An array as the file writes it."""
-    try:
-        section: Any = tomlkit.parse(text.removeprefix(BOM))[keys[0]]
-        return str(section[keys[1]].as_string())
-    except TOMLKitError as error:
-        raise RecipeError(f"{dotted(*keys)}: cannot be found in the text: {error}") from error
-
-
-def _list(text: str, keys: Keys) -> list[str]:
-    table = _data(text).get(keys[0])
-    found = table.get(keys[1]) if isinstance(table, dict) else None
-    if not isinstance(found, list):
-        raise RecipeError(f"{dotted(*keys)}: missing; the pipeline needs it")
-    return found
-
-
-def _data(text: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(text.removeprefix(BOM))
-    except tomllib.TOMLDecodeError as error:
-        raise RecipeError(f"not TOML: {error}") from error
-
-
-def _says(text: str, expected: dict[str, Any]) -> bool:
-    """Whether a text holds this data, an empty table being none."""
-    try:
-        return _pruned(tomllib.loads(text.removeprefix(BOM))) == _pruned(expected)
-    except tomllib.TOMLDecodeError:
-        return False
-
-
-def _pruned(value: Any) -> Any:
-    if not isinstance(value, dict):
-        return value
-    kept = {key: _pruned(each) for key, each in value.items()}
-    return {key: each for key, each in kept.items() if each != {}}
-
-
-def _inline(value: Any) -> str:
-    """A value as TOML has it on one line.
-
-    >>> _inline({"mean": 2.0, "std": 0.5}), _inline([-1, 2.5]), _inline("m")
-    ('{ mean = 2.0, std = 0.5 }', '[-1, 2.5]', '"m"')
-    """
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {_inline(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_inline, value)) + "]"
-    return json.dumps(value) if isinstance(value, str) else str(value)

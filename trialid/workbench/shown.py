@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 from trialid.identification.fit import Fit
-from trialid.pipeline import Run
+from trialid.pipeline import Outcome
 from trialid.recipe import Recipe
 from trialid.report.series import TrialSeries
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.trial import Trial
+
+Place = Literal["pipeline", "effects", "logs", "fit"]
+"""Where a mistake was made."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,7 @@ class Working:
 class Trouble:
     """A mistake that stands until it is mended, and where it was made."""
 
-    where: Literal["pipeline", "effects", "logs", "fit"]
+    where: Place
     words: str
 
 
@@ -45,7 +48,7 @@ class Shown:
     trials
         Aligned; empty while the logs are read.
     series
-        Measured, and predicted where there is a fit: NaN before.
+        Measured, and predicted where there is a fit; until then by the model before, or NaN.
     fit
         The fit of this model: its error is known a second before what it is made of. None while it
         is sought, and where `run` was computed earlier and kept.
@@ -61,8 +64,8 @@ class Shown:
     trials: tuple[Trial, ...] = ()
     series: tuple[TrialSeries, ...] = ()
     fit: Fit | None = None
-    run: Run | None = None
-    before: Run | None = None
+    run: Outcome | None = None
+    before: Outcome | None = None
 
     @property
     def stage(self) -> Literal["reading", "measured", "fitted", "diagnosed"]:

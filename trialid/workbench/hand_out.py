@@ -1,0 +1,53 @@
+"""What leaves the workbench: a copy of the pipeline beside it, the folder of a finished run."""
+
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from trialid.errors import RecipeError
+from trialid.pipeline import write
+from trialid.recipe import Recipe, sources
+from trialid.workbench.shown import Shown
+
+
+def copied(recipe: Recipe, name: str) -> str:
+    """Write the pipeline under another name into its own folder, where its paths hold; the name.
+
+    Raises
+    ------
+    RecipeError
+        The name is none, or taken.
+    """
+    bare = {PurePosixPath(name).name, PureWindowsPath(name).name} == {name}
+    if not bare or name.startswith(".") or not name.isprintable() or len(name.encode()) > 200:
+        raise RecipeError(f"{name!r}: give a plain file name, without a folder")
+    if not name.endswith(".toml"):
+        raise RecipeError(f"{name!r}: a pipeline's name ends in .toml")
+    place = recipe.path.with_name(name)
+    try:
+        with place.open("xb") as stream:
+            stream.write(recipe.content)
+    except FileExistsError as error:
+        raise RecipeError(f"{name}: is there already; choose another name") from error
+    except OSError as error:
+        raise RecipeError(f"{name}: cannot be written ({error.strerror})") from error
+    return name
+
+
+def written(shown: Shown) -> list[str]:
+    """Write the run's folder as `trialid run` would; what is in it.
+
+    Raises
+    ------
+    RecipeError
+        There is no finished run to write, or it cannot be written.
+    """
+    if shown.run is None:
+        raise RecipeError("the model is still being worked out; write it when it is done")
+    folder = Path("runs", shown.recipe.path.stem)
+    inside = [p for p in sources(shown.recipe) if p.resolve().is_relative_to(folder.resolve())]
+    if inside:
+        raise RecipeError(f"{folder}: holds {inside[0]}, which the pipeline reads")
+    try:
+        write(shown.run, folder)
+    except OSError as error:
+        raise RecipeError(f"{folder}: cannot be written ({error.strerror})") from error
+    return [(folder / each.name).as_posix() for each in sorted(folder.iterdir())]

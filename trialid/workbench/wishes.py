@@ -1,0 +1,174 @@
+"""What a person can ask of a model on the screen, and the edit of the pipeline that does it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, ValidationError
+
+from trialid.assembly import available, build_model, check_bounds, settings_of
+from trialid.change import Edit, adding, dropping
+from trialid.errors import RecipeError, nearest
+from trialid.recipe import Recipe, read
+from trialid.recipe.edit import set_bounds, set_fixed, set_free, set_use, set_value
+
+
+class Wish(BaseModel):
+    """An edit asked for in view of one content of the file."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    version: str
+
+
+class Add(Wish):
+    """An effect more."""
+
+    do: Literal["add"]
+    effect: str
+
+
+class Drop(Wish):
+    """An effect less."""
+
+    do: Literal["drop"]
+    effect: str
+
+
+class Free(Wish):
+    """A parameter estimated, or fixed."""
+
+    do: Literal["free"]
+    parameter: str
+    free: bool
+
+
+class Bounds(Wish):
+    """Bounds of a free parameter in its own unit; none where both are null."""
+
+    do: Literal["bounds"]
+    parameter: str
+    low: FiniteFloat | None
+    high: FiniteFloat | None
+
+
+class Value(Wish):
+    """A parameter's value or start in its own unit; null for the ship file's or the effect's."""
+
+    do: Literal["value"]
+    parameter: str
+    value: FiniteFloat | None
+
+
+class Use(Wish):
+    """A trial fitted, or held out."""
+
+    do: Literal["use"]
+    trial: str
+    use: Literal["fit", "check"]
+
+
+AnyWish = Annotated[Add | Drop | Free | Bounds | Value | Use, Field(discriminator="do")]
+_ADAPTER: Final[TypeAdapter[Any]] = TypeAdapter(AnyWish)
+
+
+@dataclass(frozen=True)
+class Granted:
+    """A pipeline as wished for, the wish in words, and the edit where an effect comes or goes."""
+
+    after: Recipe
+    words: str
+    edit: Edit | None = None
+
+
+def understood(asked: object) -> Any:
+    """The wish in what a page sent.
+
+    Raises
+    ------
+    RecipeError
+        It is none, in one line.
+    """
+    try:
+        return _ADAPTER.validate_python(asked)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(step) for step in first["loc"][1:]) or "edit"
+        raise RecipeError(f"{place}: {first['msg']}") from error
+
+
+def granted(recipe: Recipe, wish: Any) -> Granted:
+    """The pipeline as wished for, checked as far as can be without fitting it.
+
+    Raises
+    ------
+    TrialidError
+        In one line: what cannot be, and why.
+    """
+    found = _GRANTS[type(wish)](recipe, wish)
+    model = build_model(found.after, available(found.after))
+    check_bounds(found.after, model, settings_of(found.after))
+    return found
+
+
+def between(old: Recipe, new: Recipe) -> Edit | None:
+    """The edit that one effect came or went by; None where two pipelines differ otherwise."""
+    had, has = old.model.effects, new.model.effects
+    came = [n for n in has if n not in had]
+    went = [n for n in had if n not in has]
+    if len(came) + len(went) != 1:
+        return None
+    edit = adding(old, came[0]) if came else dropping(old, went[0])
+    return replace(edit, after=new)
+
+
+def _add(recipe: Recipe, wish: Add) -> Granted:
+    edit = adding(recipe, wish.effect)
+    return Granted(edit.after, f"add {wish.effect}", edit)
+
+
+def _drop(recipe: Recipe, wish: Drop) -> Granted:
+    edit = dropping(recipe, wish.effect)
+    return Granted(edit.after, f"drop {wish.effect}", edit)
+
+
+def _free(recipe: Recipe, wish: Free) -> Granted:
+    name = wish.parameter
+    if wish.free == (name in recipe.identify.free):
+        raise RecipeError(f"{name} is {'free' if wish.free else 'fixed'} already")
+    if wish.free:
+        return _edited(recipe, f"free {name}", lambda text: set_free(text, name))
+    return _edited(recipe, f"fix {name}", lambda text: set_fixed(text, name)[0])
+
+
+def _bounds(recipe: Recipe, wish: Bounds) -> Granted:
+    name, low, high = wish.parameter, wish.low, wish.high
+    if low is None and high is None:
+        return _edited(recipe, f"no bounds of {name}", lambda text: set_bounds(text, name, None))
+    if low is None or high is None:
+        raise RecipeError(f"bounds of {name}: give both a lower and an upper one, or none")
+    words = f"bounds of {name} {low:g} to {high:g}"
+    return _edited(recipe, words, lambda text: set_bounds(text, name, (low, high)))
+
+
+def _value(recipe: Recipe, wish: Value) -> Granted:
+    name, value = wish.parameter, wish.value
+    words = f"no value of {name}" if value is None else f"{name} = {value:g}"
+    return _edited(recipe, words, lambda text: set_value(text, name, value))
+
+
+def _use(recipe: Recipe, wish: Use) -> Granted:
+    names = [trial.name for trial in recipe.trials]
+    if wish.trial not in names:
+        raise RecipeError(f"there is no trial {wish.trial!r}; {nearest(wish.trial, names)}")
+    index = names.index(wish.trial)
+    words = f"{wish.trial} {'fitted' if wish.use == 'fit' else 'held out'}"
+    return _edited(recipe, words, lambda text: set_use(text, index, wish.use))
+
+
+def _edited(recipe: Recipe, words: str, change: Callable[[str], str]) -> Granted:
+    return Granted(read(change(recipe.text).encode("utf-8"), recipe.path), words)
+
+
+_GRANTS: Final[dict[type, Callable[[Recipe, Any], Granted]]] = {
+    Add: _add, Drop: _drop, Free: _free, Bounds: _bounds, Value: _value, Use: _use,
+}  # fmt: skip
