@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from trialid.pipeline import Run
+from trialid.pipeline import Outcome
 from trialid.workbench.shown import Shown
 
 
@@ -32,7 +32,7 @@ def _now(shown: Shown) -> tuple[float | None, float | None]:
     return None, None
 
 
-def _of_run(run: Run) -> tuple[float | None, float | None]:
+def _of_run(run: Outcome) -> tuple[float | None, float | None]:
     return run.result["fit"]["eps_rmsn"], run.result["fit"]["eps_rmsn_check"]
 
 

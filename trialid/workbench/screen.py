@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trialid.pipeline import Run, signals_of
+from trialid.pipeline import Outcome, signals_of
 from trialid.report import advice, bars, labels, ranking
 from trialid.report import page as report
 from trialid.report.panels import encoded, trial_panels
@@ -40,9 +40,9 @@ def environment() -> "jinja2.Environment":
     return report.environment().overlay(loader=jinja2.ChoiceLoader([own, theirs]))
 
 
-def index(title: str) -> str:
-    """The page, empty: its script asks for the parts."""
-    return environment().get_template("index.html.j2").render(title=title, parts=PARTS)
+def page(shown: Shown) -> str:
+    """The page, empty but for its title: its script asks for the parts."""
+    return environment().get_template("index.html.j2").render(title=shown.recipe.name)
 
 
 def parts(shown: Shown) -> dict[str, str]:
@@ -98,7 +98,7 @@ def changed(shown: Shown) -> bool:
     return shown.before is not None and shown.before.recipe.content != shown.recipe.content
 
 
-def _told(run: Run | None) -> Plain:
+def _told(run: Outcome | None) -> Plain:
     return whole(run.result if run else {})
 
 
