@@ -35,19 +35,22 @@ const trialidPlots = (() => {
     const label = panel.symbol;
     let values;
     const read = () => (values = values || outputValues(panel));
-    const lines = [{ label: "measured", stroke: "measured", width: 1 }, { label: "predicted", stroke: "predicted", width: 1.8 }];
-    const before = panel.before === undefined ? [] : [{ label: "model before", stroke: "second", width: 1.2, dash: [5, 4], before: true }];
+    const before = panel.before === undefined ? [] : [{ label: "model before", stroke: "second", width: 1.2, before: true }];
     return [
       {
         kind: "output", title: panel.title, unit: panel.unit, stretches: panel.stretches,
-        lines: [...lines, ...before],
-        values: () => [...read().slice(0, 2), ...before.map(() => numbers(panel.before))],
+        lines: [
+          { label: "measured", stroke: "measured", width: 1 },
+          ...before.map((line) => ({ ...line, dash: [5, 4] })),
+          { label: "predicted", stroke: "predicted", width: 1.8 },
+        ],
+        values: () => [read().measured, ...read().before, read().predicted],
       },
       {
         kind: "residual", title: "residual of " + label, unit: panel.unit, stretches: panel.stretches, zero: true,
         noise: panel.noise,
-        lines: [{ label: "measured \u2212 predicted", stroke: "residual", width: 1 }],
-        values: () => read().slice(2),
+        lines: [...before, { label: "measured \u2212 predicted", stroke: "residual", width: 1 }],
+        values: () => [...read().before.map((predicted) => difference(read().measured, predicted)), read().residual],
       },
     ];
   }
@@ -64,8 +67,12 @@ const trialidPlots = (() => {
   function outputValues(panel) {
     const measured = numbers(panel.measured);
     const predicted = numbers(panel.predicted);
-    const residual = measured.map((y, k) => (y === null || predicted[k] === null ? null : y - predicted[k]));
-    return [measured, predicted, residual];
+    const before = panel.before === undefined ? [] : [numbers(panel.before)];
+    return { measured, predicted, before, residual: difference(measured, predicted) };
+  }
+
+  function difference(measured, predicted) {
+    return measured.map((y, k) => (y === null || predicted[k] === null ? null : y - predicted[k]));
   }
 
   /* Runs of samples that were not measured, as [from, to] in seconds. */
@@ -212,7 +219,7 @@ const trialidPlots = (() => {
     plot.top.querySelectorAll(".u-legend").forEach((legend) => legend.remove());
     const values = plot.drawing.values();
     const t = plot.trial.t();
-    plot.gaps = plot.drawing.kind === "input" ? [] : gaps(t, values[0]);
+    plot.gaps = plot.drawing.kind === "input" ? [] : gaps(t, values[plot.drawing.kind === "output" ? 0 : values.length - 1]);
     plot.chart = new uPlot(options(plot, onPaper() ? PRINTED : plot.box.clientWidth), [t, ...values], plot.box);
     plot.chart.setScale("x", plot.trial.window);
   }

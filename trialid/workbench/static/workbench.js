@@ -3,8 +3,9 @@
 (() => {
   "use strict";
 
-  const TIGHT = { input: 58, output: 132, residual: 78 };    // px; a trial with two outputs fits a laptop
-  const ROOMY = 900;                                         // px; a window this high has room for the report's sizes
+  const ABOVE = 22;                     // px a panel's heading takes
+  const CLOCK = 26;                     // px of the time axis below a residual
+  const LEAST = 0.58, MOST = 1.2;       // of the report's sizes: a trial with two outputs fits a laptop
   const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
   const byId = (id) => document.getElementById(id);
@@ -17,7 +18,7 @@
     screen: null,          // number of the parts on show
     html: {},              // each part as it came
     trial: null,           // name of the chosen trial
-    drawn: null,           // what is plotted: {trial, name, series}
+    drawn: null,           // what is plotted: {trial, name, mark}
     windows: new Map(),    // zoom by trial
     beside: true,          // the model before, in the plots
     edited: null,          // key of the control that made the last edit
@@ -62,8 +63,11 @@
     if (state.refused) return state.refused;
     const trouble = state.status && state.status.trouble;
     if (!trouble) return null;
-    return { key: trouble.where === "fit" ? state.edited : null, words: trouble.words };
+    return { key: taken(trouble) ? state.edited : null, words: trouble.words };
   }
+
+  /* Whether it is about an edit, which was taken back, and not about a file as somebody left it. */
+  const taken = (trouble) => trouble.where === "fit" || trouble.words.endsWith("taken back");
 
   /* Beside the control that made the edit where it is still there and seen, else under the bar. */
   function complain() {
@@ -215,13 +219,18 @@
     kept.scrolled.forEach(([each, top]) => { each.scrollTop = top; });
   }
 
-  /* What had the focus has it again; where that is gone, as the Add of what was added, its part has. */
+  /* What had the focus has it again; where that is gone, as the Add of what was added, the tab above it has. */
   function refocus(place, kept) {
     const found = kept.focus && keyed(kept.focus);
     const target = found && (found.tagName === "DETAILS" ? found.querySelector("summary") : found);
-    if (!target) place.tabIndex = -1;
-    (target || place).focus({ preventScroll: true });
+    (target || fallback(place)).focus({ preventScroll: true });
     if (target && kept.range && kept.range[0] !== null && target.setSelectionRange) target.setSelectionRange(...kept.range);
+  }
+
+  function fallback(place) {
+    const tab = byId(place.getAttribute("aria-labelledby"));
+    if (!tab) place.tabIndex = -1;
+    return tab || place;
   }
 
   /* ---- trials ---- */
@@ -257,25 +266,44 @@
     } catch { /* between two runs there may be none; the next status asks again */ } finally { plotting = false; }
   }
 
+  /* What the plots depend on: the curves, and the shades and noise lines that come with the diagnosis. */
+  const mark = (series, stage) => series + (stage === "diagnosed" ? " diagnosed" : "");
+
   function wanted() {
     const tab = trialTabs().find((each) => each.dataset.trial === state.trial);
-    const drawn = state.drawn;
-    if (!tab || (drawn && drawn.name === state.trial && drawn.series >= state.status.series)) return null;
-    return tab;
+    const { series, stage } = state.status;
+    if (!tab) return null;
+    const drawn = state.drawn && state.drawn.name === state.trial ? state.drawn.mark : "";
+    const waiting = stage === "measured" && drawn.startsWith(series + " ");     // the same curves, less known of them
+    return drawn === mark(series, stage) || waiting ? null : tab;
   }
 
   async function plot(tab) {
+    const { stage } = state.status;
     const data = await answer("/api/series/" + tab.dataset.place);
     const name = tab.dataset.trial;
     if (state.trial !== name) return;
-    state.drawn = { name, series: Math.max(data.series, data.name === name ? state.status.series : -1), trial: null };
-    if (data.name !== name) return;      // the trials' order has changed meanwhile: the parts come anew
-    drawTrial(data, Number(tab.dataset.place));
+    rememberWindow();
+    // Where the trials' order has changed meanwhile it is another's: the parts come anew, and ask again.
+    const own = data.name === name;
+    state.drawn = { name, mark: mark(own ? data.series : state.status.series, stage), trial: null };
+    if (own) drawTrial(data, Number(tab.dataset.place));
+  }
+
+  /* Panels as high as the pane has room for, within reason. */
+  function heightsFor(panels) {
+    const report = trialidPlots.HEIGHTS;
+    const kinds = panels.flatMap((panel) => (panel.kind === "input" ? ["input"] : ["output", "residual"]));
+    const fixed = kinds.length * ABOVE + kinds.filter((kind) => kind === "residual").length * CLOCK;
+    const top = document.querySelector("#trial .panels").getBoundingClientRect().top + byId("left").scrollTop;
+    const room = window.innerHeight - Math.min(top, 200) - fixed - 12;
+    const share = room / kinds.reduce((sum, kind) => sum + report[kind], 0);
+    const scale = Math.min(Math.max(share, LEAST), MOST);
+    return Object.fromEntries(Object.entries(report).map(([kind, height]) => [kind, Math.round(scale * height)]));
   }
 
   function drawTrial(data, index) {
-    const heights = window.innerHeight < ROOMY ? TIGHT : trialidPlots.HEIGHTS;
-    const trial = trialidPlots.trialOf(data, index, heights, state.beside);
+    const trial = trialidPlots.trialOf(data, index, heightsFor(data.panels), state.beside);
     state.drawn.trial = trial;
     const kept = state.windows.get(trial.name);
     if (kept && kept.min >= trial.from && kept.max <= trial.to) trial.window = kept;
@@ -292,7 +320,9 @@
 
   function rememberWindow() {
     const trial = shownTrial();
-    if (trial) state.windows.set(trial.name, trial.window);
+    if (!trial) return;
+    const all = trial.window.max - trial.window.min > trial.to - trial.from - 0.5 * trial.period;
+    state.windows.set(trial.name, all ? null : trial.window);
   }
 
   function showStretch(button) {
@@ -505,8 +535,6 @@
     trialidPlots.listen(byId("trial"), () => shownTrial() || nothing);
     new ResizeObserver(() => shownTrial() && trialidPlots.resize(shownTrial().plots)).observe(document.querySelector("#trial .panels"));
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => shownTrial() && shownTrial().plots.forEach(trialidPlots.draw));
-    document.querySelector("#trial .panels").addEventListener("pointerup", () => setTimeout(rememberWindow));
-    document.addEventListener("keyup", rememberWindow);
   }
 
   function connect() {
