@@ -7,6 +7,7 @@ const trialidPlots = (() => {
   const PAPER = { input: 76, output: 150, residual: 96 };    // a trial with two outputs fills a page
   const AXIS = 52;          // px; the same in every panel, so that they stand under one another
   const CLOCK = 30;         // px below the panels that carry the time axis
+  const LOW = 72;           // px; a panel below this height would else have a single number on its axis
   const PRINTED = 690;      // px; the width of an A4 page between its margins
 
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
@@ -120,7 +121,7 @@ const trialidPlots = (() => {
     return value.toFixed(places).replace("-", "\u2212");
   }
 
-  function axes(withClock) {
+  function axes(withClock, height) {
     const line = { stroke: colour("grid"), width: 1 };
     const font = "11px system-ui, sans-serif";
     const shared = { stroke: colour("soft"), grid: line, ticks: { ...line, size: 4 }, font };
@@ -128,7 +129,7 @@ const trialidPlots = (() => {
       withClock
         ? { ...shared, size: CLOCK, values: (u, at) => at.map((v) => v + " s") }
         : { ...shared, size: 4, values: (u, at) => at.map(() => "") },
-      { ...shared, size: AXIS, space: 24, values: (u, at) => at.map((v) => String(+v.toPrecision(6)).replace("-", "\u2212")) },
+      { ...shared, size: AXIS, space: height < LOW ? 15 : 24, values: (u, at) => at.map((v) => String(+v.toPrecision(6)).replace("-", "\u2212")) },
     ];
   }
 
@@ -144,7 +145,7 @@ const trialidPlots = (() => {
       width, height: heights[drawing.kind] + (withClock ? CLOCK - 4 : 0), padding: [6, 8, 0, 0],
       series: [{ label: "\u00a0", value: (u, v) => (v === null || v === undefined ? "" : v.toFixed(1) + " s") }, ...lines],
       scales: { x: { time: false } },
-      axes: axes(withClock),
+      axes: axes(withClock, heights[drawing.kind]),
       legend: { mount: (u, legend) => { legend.setAttribute("role", "presentation"); plot.top.append(legend); }, markers: { width: 2 } },
       cursor: {
         y: false,

@@ -23,6 +23,8 @@
     beside: true,          // the model before, in the plots
     edited: null,          // key of the control that made the last edit
     refused: null,         // {key, words} of an edit that was refused
+    declined: "",          // the numbers of it: leaving the field does not send them again
+    replacing: false,      // a part is being replaced
     lost: false,           // the connection
   };
 
@@ -47,7 +49,7 @@
     complain();
     try {
       const told = await answer(path, { version: state.version, ...body });
-      if (told.version) state.version = told.version;
+      hear(told);
       return true;
     } catch (error) {
       state.refused = { key, words: error.message };
@@ -76,7 +78,7 @@
     const shown = [...document.querySelectorAll(".complaint")];
     if (row && shown.length === 1 && shown[0].parentElement === row && shown[0].textContent === told.words) return;
     shown.forEach((each) => each.remove());
-    if (row) row.append(complaintOf(told.words));
+    if (row) complainIn(row, told.words, shown.length === 0);
     banner(told && !row ? told.words : state.lost ? "No connection to trialid. Is it still running in its terminal?" : "");
   }
 
@@ -84,6 +86,12 @@
     const control = keyed(key);
     const row = control && control.closest("[data-row]");
     return row && row.checkVisibility() ? row : null;
+  }
+
+  function complainIn(row, words, fresh) {
+    const told = complaintOf(words);
+    row.append(told);
+    if (fresh) told.scrollIntoView({ block: "nearest" });
   }
 
   function complaintOf(words) {
@@ -110,6 +118,7 @@
     working(status.working);
     reversible("undo", status.undo);
     reversible("redo", status.redo);
+    byId("again").hidden = Boolean(status.working) || status.stage === "diagnosed";
     complain();
     announce(before, status);
     if (status.screen !== state.screen) refresh();
@@ -179,7 +188,9 @@
   /* New content in a part's place; focus, open details, scrolling and what is being typed stay. */
   function replace(place, html) {
     const kept = keep(place);
+    state.replacing = true;              // a field that goes loses the focus, but nobody has left it
     place.innerHTML = html;
+    state.replacing = false;
     restore(place, kept);
   }
 
@@ -395,7 +406,6 @@
     const input = event.target;
     if (input.id === "beside") setBeside(input.checked);
     else if (input.dataset.do === "free") tick(input);
-    else if (input.dataset.do === "bounds") bounds(input);
     else if (input.dataset.do === "value") value(input);
   }
 
@@ -428,9 +438,20 @@
 
   async function bounds(input) {
     const { parameter, key } = input.dataset;
-    const [low, high] = ["low", "high"].map((end) => numberIn(keyed(end + " " + parameter)));
+    const ends = ["low", "high"].map((end) => keyed(end + " " + parameter));
+    const [low, high] = ends.map(numberIn);
     if (low === undefined || high === undefined) return;
-    await sendNumbers([keyed("low " + parameter), keyed("high " + parameter)], { do: "bounds", parameter, low, high }, key);
+    await sendNumbers(ends, { do: "bounds", parameter, low, high }, key);
+  }
+
+  /* Bounds go as a pair: from the one field to the other nothing is sent while one of them is empty. */
+  function boundsLeft(event) {
+    const { dataset } = event.target;
+    if (state.replacing || !event.target.isConnected) return;
+    const other = event.relatedTarget && event.relatedTarget.dataset;
+    const within = other && other.do === "bounds" && other.parameter === dataset.parameter;
+    if (within && !(event.target.value.trim() && event.relatedTarget.value.trim())) return;
+    bounds(event.target);
   }
 
   async function value(input) {
@@ -440,11 +461,22 @@
   }
 
   async function sendNumbers(inputs, body, key) {
+    const asked = JSON.stringify(body);
+    if (state.refused && asked === state.declined) return;
     inputs.forEach((input) => input.removeAttribute("aria-invalid"));
-    if (inputs.every((input) => input.value === input.defaultValue)) { state.refused = null; complain(); return; }
+    if (inputs.every((input) => input.value === input.defaultValue)) { settle(inputs); return; }
+    state.declined = asked;
     const done = await edit("/api/edit", body, key);
+    if (done) state.declined = "";
     const now = inputs.map((input) => keyed(input.dataset.key) || input);
     now.forEach((input) => { if (done) input.defaultValue = input.value; else input.setAttribute("aria-invalid", "true"); });
+  }
+
+  /* Fields that hold again what the pipeline says need no complaint. */
+  function settle(inputs) {
+    if (!state.refused || !inputs.some((input) => input.dataset.key === state.refused.key)) return;
+    state.refused = null;
+    complain();
   }
 
   async function submitted(event) {
@@ -472,7 +504,7 @@
     told.className = "told";
     told.textContent = "Writing \u2026";
     try {
-      told.textContent = (await answer("/api/export", body)).files.join("\n");
+      told.textContent = "Written:\n" + (await answer("/api/export", body)).files.join("\n");
     } catch (error) {
       told.className = "told bad";
       told.textContent = error.message;
@@ -511,7 +543,8 @@
     const input = event.target;
     if (event.key !== "Enter" || !input.matches("input[data-do=bounds], input[data-do=value]")) return;
     event.preventDefault();
-    changed(event);
+    if (input.dataset.do === "bounds") bounds(input);
+    else value(input);
   }
 
   /* ---- start ---- */
@@ -519,6 +552,7 @@
   function listen() {
     document.addEventListener("click", pressed);
     document.addEventListener("change", changed);
+    document.addEventListener("focusout", (event) => { if (event.target.dataset.do === "bounds") boundsLeft(event); });
     document.addEventListener("submit", submitted);
     document.addEventListener("keydown", tabKey);
     document.addEventListener("keydown", entered);
@@ -527,6 +561,7 @@
     byId("undo").addEventListener("click", () => back("undo"));
     byId("redo").addEventListener("click", () => back("redo"));
     byId("cancel").addEventListener("click", () => answer("/api/cancel", {}).catch(() => {}));
+    byId("again").addEventListener("click", () => edit("/api/again", {}, null));
     byId("export-run").addEventListener("click", () => exported({}));
   }
 
@@ -540,7 +575,8 @@
   function connect() {
     const events = new EventSource("/api/events");
     const found = (lost) => { if (state.lost !== lost) { state.lost = lost; complain(); } };
-    events.onopen = () => found(false);
+    // A workbench that was started anew counts from the beginning.
+    events.onopen = () => { if (state.lost) Object.assign(state, { status: null, screen: null, drawn: null }); found(false); };
     events.onmessage = (event) => { found(false); hear(JSON.parse(event.data)); };
     events.onerror = () => found(true);
   }
