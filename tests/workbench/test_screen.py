@@ -170,6 +170,22 @@ def test_what_belongs_to_the_model_before_says_so(turn):
     assert "→" not in texts(turn.before)["error"]
 
 
+def test_estimates_before_the_fit_are_those_of_the_model_before(turn):
+    def said(shown):
+        rows = shown.run.result["accuracy"]["parameters"]
+        row = next(row for row in rows if row["name"] == "Nr")
+        return f"{wording.by_error(row['value'], row['standard_error'])} ± "
+
+    fitting, fitted, after = (
+        texts(each)["model"] for each in (turn.measured, turn.fitted, turn.after)
+    )
+    assert said(turn.before) in fitting
+    assert "of the model before" in fitting
+    assert " ± " not in fitted
+    assert wording.number(turn.fitted.fit.estimates["Nr"]) in fitted
+    assert said(turn.after) in after
+
+
 def test_a_screen_without_anything_known_is_calm(turn):
     reading, opening = texts(turn.reading), texts(turn.opening)
     assert "being read" in reading["error"]

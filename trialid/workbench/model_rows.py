@@ -20,7 +20,8 @@ class ParameterRow:
 
     `error` is the standard error; `relative`, `noise`, `model` are those of Eq. 14. `low`, `high`
     and `given` are what the pipeline says, as it may be edited; `limits` the physical range;
-    `own` the value without the pipeline's, and `source` where the present one is from.
+    `own` the value without the pipeline's, and `source` where the present one is from. `stale`
+    says that value and errors are those of the model before.
     """
 
     name: str
@@ -39,6 +40,7 @@ class ParameterRow:
     own: float | None = None
     source: str = ""
     prior: tuple[float, float] | None = None
+    stale: bool = False
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,9 @@ def _rows(found: Mapping[str, Parameter], shown: Shown) -> tuple[ParameterRow, .
 
 
 def _estimated(shown: Shown) -> dict[str, Mapping[str, Any]]:
-    rows = shown.run.result["accuracy"]["parameters"] if shown.run else ()
+    """What is known of the estimates; until there is a fit it is that of the model before."""
+    known = shown.before if shown.run is None and shown.fit is None else shown.run
+    rows = known.result["accuracy"]["parameters"] if known else ()
     return {row["name"]: row for row in rows if row["kind"] != "nuisance"}
 
 
@@ -120,7 +124,7 @@ def _free(
         return made
     return replace(
         made, value=row["value"], error=row["standard_error"], relative=row["relative_error"],
-        noise=row["noise_error"], model=row["undermodelling_error"],
+        noise=row["noise_error"], model=row["undermodelling_error"], stale=shown.run is None,
     )  # fmt: skip
 
 

@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 
 Plain = dict[str, Any]
 
-PARTS = ("title", "tabs", "about", "where", "error", "history", "verdict", "missing", "model")
+PARTS = (
+    "title", "tabs", "about", "where", "error", "history", "verdict", "now", "missing", "model",
+)  # fmt: skip
 """The pieces, each under the name of its place on the page and of its template."""
 
 

@@ -9,7 +9,7 @@
   const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
   const byId = (id) => document.getElementById(id);
-  const keyed = (key) => document.querySelector(`[data-key="${CSS.escape(key)}"]`);
+  const keyed = (key) => key && document.querySelector(`[data-key="${CSS.escape(key)}"]`);
   const partOf = (name) => document.querySelector(`[data-part="${CSS.escape(name)}"]`);
 
   const state = {
@@ -46,6 +46,7 @@
   async function edit(path, body, key) {
     state.edited = key;
     state.refused = null;
+    forget(key);
     complain();
     try {
       const told = await answer(path, { version: state.version, ...body });
@@ -57,6 +58,16 @@
       if (error.kind === "changed") hear(await answer("/api/status"));
       return false;
     }
+  }
+
+  /* What was refused before is not asked for any more: those fields hold again what the pipeline says. */
+  function forget(key) {
+    const row = keyed(key) && keyed(key).closest("[data-row]");
+    document.querySelectorAll("input[aria-invalid]").forEach((input) => {
+      if (row && row.contains(input)) return;
+      input.value = input.defaultValue;
+      input.removeAttribute("aria-invalid");
+    });
   }
 
   /* ---- what went wrong ---- */
@@ -255,6 +266,7 @@
     if (!tab) return;
     state.trial = tab.dataset.trial;
     select(tabs, tab);
+    tab.scrollIntoView({ block: "nearest", inline: "nearest" });
     byId("trial").setAttribute("aria-labelledby", tab.id);
     document.querySelectorAll("[data-of]").forEach((each) => { each.hidden = each.dataset.of !== state.trial; });
   }
@@ -316,6 +328,7 @@
   function drawTrial(data, index) {
     const trial = trialidPlots.trialOf(data, index, heightsFor(data.panels), state.beside);
     state.drawn.trial = trial;
+    document.querySelector("#trial .tools").hidden = false;
     const kept = state.windows.get(trial.name);
     if (kept && kept.min >= trial.from && kept.max <= trial.to) trial.window = kept;
     byId("beside-switch").hidden = !data.panels.some((panel) => panel.before !== undefined);
