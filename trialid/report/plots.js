@@ -121,7 +121,7 @@ const trialidPlots = (() => {
     return value.toFixed(places).replace("-", "\u2212");
   }
 
-  function axes(withClock, height) {
+  function axes(withClock, height, empty) {
     const line = { stroke: colour("grid"), width: 1 };
     const font = "11px system-ui, sans-serif";
     const shared = { stroke: colour("soft"), grid: line, ticks: { ...line, size: 4 }, font };
@@ -129,7 +129,7 @@ const trialidPlots = (() => {
       withClock
         ? { ...shared, size: CLOCK, values: (u, at) => at.map((v) => v + " s") }
         : { ...shared, size: 4, values: (u, at) => at.map(() => "") },
-      { ...shared, size: AXIS, space: height < LOW ? 15 : 24, values: (u, at) => at.map((v) => String(+v.toPrecision(6)).replace("-", "\u2212")) },
+      { ...shared, size: AXIS, space: height < LOW ? 15 : 24, values: (u, at) => at.map((v) => (empty ? "" : String(+v.toPrecision(6)).replace("-", "\u2212"))) },
     ];
   }
 
@@ -144,8 +144,8 @@ const trialidPlots = (() => {
     return {
       width, height: heights[drawing.kind] + (withClock ? CLOCK - 4 : 0), padding: [6, 8, 0, 0],
       series: [{ label: "\u00a0", value: (u, v) => (v === null || v === undefined ? "" : v.toFixed(1) + " s") }, ...lines],
-      scales: { x: { time: false } },
-      axes: axes(withClock, heights[drawing.kind]),
+      scales: { x: { time: false }, ...(plot.empty ? { y: { range: [-1, 1] } } : {}) },
+      axes: axes(withClock, heights[drawing.kind], plot.empty),
       legend: { mount: (u, legend) => { legend.setAttribute("role", "presentation"); plot.top.append(legend); }, markers: { width: 2 } },
       cursor: {
         y: false,
@@ -156,7 +156,7 @@ const trialidPlots = (() => {
       },
       hooks: {
         drawClear: [(u) => shade(u, plot)],
-        drawAxes: [(u) => drawing.zero && level(u, 0, [])],
+        drawAxes: [(u) => drawing.zero && !plot.empty && level(u, 0, [])],
         draw: [(u) => noiseLines(u, drawing)],
         setSelect: [(u) => choose(u, trial)],
       },
@@ -220,7 +220,9 @@ const trialidPlots = (() => {
     plot.top.querySelectorAll(".u-legend").forEach((legend) => legend.remove());
     const values = plot.drawing.values();
     const t = plot.trial.t();
-    plot.gaps = plot.drawing.kind === "input" ? [] : gaps(t, values[plot.drawing.kind === "output" ? 0 : values.length - 1]);
+    const own = values[plot.drawing.kind === "output" ? 0 : values.length - 1];
+    plot.empty = own.every((value) => value === null);      // a residual before there is a prediction
+    plot.gaps = plot.drawing.kind === "input" || plot.empty ? [] : gaps(t, own);
     plot.chart = new uPlot(options(plot, onPaper() ? PRINTED : plot.box.clientWidth), [t, ...values], plot.box);
     plot.chart.setScale("x", plot.trial.window);
   }

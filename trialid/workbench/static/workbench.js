@@ -5,6 +5,7 @@
 
   const ABOVE = 22;                     // px a panel's heading takes
   const CLOCK = 26;                     // px of the time axis below a residual
+  const AGAIN = 1000;                   // ms until the parts are asked for again
   const LEAST = 0.58, MOST = 1.2;       // of the report's sizes: a trial with two outputs fits a laptop
   const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
@@ -182,7 +183,10 @@
         if (told.screen < state.status.screen) continue;
         break;
       }
-    } catch { /* the next status asks again */ } finally { fetching = false; }
+    } catch {
+      if (!state.lost) setTimeout(refresh, AGAIN);
+      return;
+    } finally { fetching = false; }
     sayResult();
     follow();
   }
@@ -285,7 +289,7 @@
     if (plotting || !state.status || state.status.stage === "reading") return;
     plotting = true;
     try {
-      while (wanted()) await plot(wanted());
+      for (let tab = wanted(); tab && await plot(tab); tab = wanted());
     } catch { /* between two runs there may be none; the next status asks again */ } finally { plotting = false; }
   }
 
@@ -301,16 +305,17 @@
     return drawn === mark(series, stage) || waiting ? null : tab;
   }
 
+  /* False where the curves that came are another trial's: their order has changed, and so will the parts. */
   async function plot(tab) {
     const { stage } = state.status;
     const data = await answer("/api/series/" + tab.dataset.place);
     const name = tab.dataset.trial;
-    if (state.trial !== name) return;
+    if (data.name !== name) return false;
+    if (state.trial !== name) return true;
     rememberWindow();
-    // Where the trials' order has changed meanwhile it is another's: the parts come anew, and ask again.
-    const own = data.name === name;
-    state.drawn = { name, mark: mark(own ? data.series : state.status.series, stage), trial: null };
-    if (own) drawTrial(data, Number(tab.dataset.place));
+    state.drawn = { name, mark: mark(data.series, stage), trial: null };
+    drawTrial(data, Number(tab.dataset.place));
+    return true;
   }
 
   /* Panels as high as the pane has room for, within reason. */
