@@ -170,8 +170,13 @@ def _period(rudder: Vector) -> tuple[int, int] | None:
     if len(apart) == 0:
         return None
     # a rudder is like itself a moment before; it repeats where it has been unlike in between
-    again = np.flatnonzero(gap[apart[0] :] < SAME_RUDDER)
-    return (start, int(apart[0] + again[0])) if len(again) else None
+    alike = gap < SAME_RUDDER
+    alike[: apart[0]] = False
+    if not alike.any():
+        return None
+    first = int(np.argmax(alike))
+    end = first + int(np.argmin(np.append(alike[first:], False)))
+    return start, first + int(np.argmin(gap[first:end]))
 
 
 def _gaps(x: Vector) -> Vector:
