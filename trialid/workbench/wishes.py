@@ -1,5 +1,6 @@
 """What a person can ask of a model on the screen, and the edit of the pipeline that does it."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Final, Literal
@@ -43,7 +44,7 @@ class Free(Wish):
 
 
 class Bounds(Wish):
-    """Bounds of a free parameter in its own unit; none where both are null."""
+    """Bounds of a free parameter in its own unit; null where there is none on that side."""
 
     do: Literal["bounds"]
     parameter: str
@@ -144,10 +145,9 @@ def _bounds(recipe: Recipe, wish: Bounds) -> Granted:
     name, low, high = wish.parameter, wish.low, wish.high
     if low is None and high is None:
         return _edited(recipe, f"no bounds of {name}", lambda text: set_bounds(text, name, None))
-    if low is None or high is None:
-        raise RecipeError(f"bounds of {name}: give both a lower and an upper one, or none")
-    words = f"bounds of {name} {low:g} to {high:g}"
-    return _edited(recipe, words, lambda text: set_bounds(text, name, (low, high)))
+    between = (-math.inf if low is None else low, math.inf if high is None else high)
+    words = f"bounds of {name} {between[0]:g} to {between[1]:g}"
+    return _edited(recipe, words, lambda text: set_bounds(text, name, between))
 
 
 def _value(recipe: Recipe, wish: Value) -> Granted:
