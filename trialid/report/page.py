@@ -156,7 +156,7 @@ def _assets() -> dict[str, str]:
     names = {
         "style": ("uplot/uPlot.min.css", "page.css"),
         "licence": ("uplot/LICENSE",),
-        "script": ("uplot/uPlot.iife.min.js", "page.js"),
+        "script": ("uplot/uPlot.iife.min.js", "plots.js", "page.js"),
     }
     return {
         asset: "\n".join(files.joinpath(name).read_text(encoding="utf-8") for name in each)

@@ -1,0 +1,72 @@
+"""The error of the model shown as one number, as far as it is known, beside the one before."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from trialid.pipeline import Outcome
+from trialid.workbench.shown import Shown
+
+
+@dataclass(frozen=True)
+class ErrorNumber:
+    """Errors of the fitted and of the held-out trials, now and before; None where not known."""
+
+    eps: float | None
+    check: float | None
+    old: float | None
+    old_check: float | None
+
+
+def of(shown: Shown) -> ErrorNumber:
+    """The error: known with the fit, before what it is made of is."""
+    return ErrorNumber(*_now(shown), *_old(shown))
+
+
+def _now(shown: Shown) -> tuple[float | None, float | None]:
+    if shown.run is not None:
+        return _of_run(shown.run)
+    if shown.fit is not None:
+        return shown.fit.eps_rmsn, _finite(shown.fit.eps_check)
+    return None, None
+
+
+def _of_run(run: Outcome) -> tuple[float | None, float | None]:
+    return run.result["fit"]["eps_rmsn"], run.result["fit"]["eps_rmsn_check"]
+
+
+def _old(shown: Shown) -> tuple[float | None, float | None]:
+    """Of the model before, or of the one that a change kept in the result began with."""
+    if shown.before is not None and shown.before.recipe.content != shown.recipe.content:
+        return _of_run(shown.before)
+    pair = (shown.run.result.get("change") if shown.run else None) or {}
+    return _first(pair.get("eps_rmsn")), _first(pair.get("eps_rmsn_check"))
+
+
+def _first(pair: list[float | None] | None) -> float | None:
+    return pair[0] if pair else None
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None
+
+
+def by_output(shown: Shown, trial: str, run: Mapping[str, Any]) -> dict[str, float | None]:
+    """A trial's error by output; `run` is that of the model before where no fit is known yet."""
+    if shown.run is None and shown.fit is not None:
+        found = [s for s in shown.fit.scores if s.trial.name == trial]
+        return {output: _finite(eps) for s in found for output, eps in s.eps_rmsn.items()}
+    return next((dict(row["eps_rmsn"]) for row in run["trials"] if row["name"] == trial), {})
+
+
+def pooled(errors: Mapping[str, float | None]) -> float | None:
+    """The error of all outputs of a trial, each counting alike.
+
+    >>> pooled({"r": 0.3, "phi": 0.4}), pooled({})
+    (0.3535533905932738, None)
+    """
+    known = [eps for eps in errors.values() if eps is not None]
+    if not known or len(known) < len(errors):
+        return None
+    return math.sqrt(sum(eps**2 for eps in known) / len(known))
