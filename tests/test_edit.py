@@ -1,12 +1,15 @@
 """An effect put into a pipeline's text and taken out: nothing else changes, byte for byte."""
 
+import copy
 import os
 import signal
 import stat
 import subprocess
 import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -14,7 +17,16 @@ from hypothesis import strategies as st
 
 from trialid.errors import RecipeError
 from trialid.recipe.array_text import with_name, without_name
-from trialid.recipe.edit import add_effect, drop_effect, start_at
+from trialid.recipe.edit import (
+    add_effect,
+    drop_effect,
+    set_bounds,
+    set_fixed,
+    set_free,
+    set_use,
+    set_value,
+    start_at,
+)
 from trialid.recipe.rewrite import rewriting
 
 ROOT = Path(__file__).parent.parent
@@ -190,6 +202,171 @@ def test_a_start_is_put_in_and_taken_out(form: str, ends: str) -> None:
 def test_a_text_without_the_lists_is_refused(text: str, words: str) -> None:
     with pytest.raises(RecipeError, match=words):
         add_effect(text, "new", OWN)
+
+
+# --- one setting of a parameter or of a trial ---------------------------------------------------
+
+
+Data = dict[str, Any]
+WAYS = [("\n", ""), ("\r\n", ""), ("\n", "\ufeff")]
+
+
+def data_of(text: str) -> Data:
+    return tomllib.loads(text.removeprefix("\ufeff"))
+
+
+def no_empty(value: Any) -> Any:
+    """Data without tables that are empty: they say nothing."""
+    if not isinstance(value, dict):
+        return value
+    kept = {key: no_empty(each) for key, each in value.items()}
+    return {key: each for key, each in kept.items() if each != {}}
+
+
+def changed(text: str, new: str, expect: Callable[[Data], object]) -> str:
+    """A new text, which says what the old one said but for what is expected, in the old form."""
+    wanted = copy.deepcopy(data_of(text))
+    expect(wanted)
+    assert no_empty(data_of(new)) == no_empty(wanted)
+    assert new.startswith("\ufeff") == text.startswith("\ufeff")
+    if "\r\n" in text:
+        assert "\n" not in new.replace("\r\n", "")
+    else:
+        assert "\r" not in new
+    comments = [line.partition("#")[2] for line in text.splitlines() if "#" in line]
+    assert [comment for comment in comments if comment not in new] == []
+    return new
+
+
+def told(data: Data, section: str, table: str) -> Data:
+    """A table of a section, made where it is not there."""
+    return data.setdefault(section, {}).setdefault(table, {})
+
+
+def few_lines(text: str, new: str) -> bool:
+    """Whether no more than one line is other than it was, or new; a blank one may come with it."""
+    old, now = ([line for line in t.splitlines() if line] for t in (text, new))
+    return len(set(old) - set(now)) <= 1 and len(now) - len(old) in (0, 1)
+
+
+@pytest.mark.parametrize(("ends", "mark"), WAYS)
+@pytest.mark.parametrize("path", PIPELINES, ids=lambda path: path.stem)
+def test_one_setting_of_every_pipeline(path: Path, ends: str, mark: str) -> None:
+    text = mark + path.read_text(encoding="utf-8").replace("\n", ends)
+    free = data_of(text)["identify"]["free"]
+    more = set_free(text, "new")
+    changed(text, more, lambda d: d["identify"]["free"].append("new"))
+    assert set_fixed(more, "new") == (text, ())
+    bound = set_bounds(text, free[0], (-1.5, 2e-5))
+    expect = {free[0]: [-1.5, 2e-5]}
+    changed(text, bound, lambda d: told(d, "identify", "bounds").update(expect))
+    value = set_value(text, free[0], -2.5e-4)
+    changed(text, value, lambda d: told(d, "model", "values").update({free[0]: -2.5e-4}))
+    for i in range(len(data_of(text)["trial"])):
+        for use in ("fit", "check"):
+            one = set_use(text, i, use)
+            changed(text, one, lambda d, i=i, use=use: d["trial"][i].update(use=use))
+            assert few_lines(text, one)
+    assert few_lines(text, more)
+    assert few_lines(text, bound)
+    assert few_lines(text, value)
+    assert no_empty(data_of(set_bounds(bound, free[0], None))) == _without(
+        text, "identify", free[0]
+    )
+
+
+def _without(text: str, section: str, name: str) -> Data:
+    data = data_of(text)
+    told(data, section, "bounds").pop(name, None)
+    return no_empty(data)
+
+
+SETTINGS = {
+    "none": "# top\n[model]\neffects = []  # none\n[identify]\nfree = ['GM', 'Yv']  # both\n",
+    "inline": "[model]\neffects = []\nvalues = { Yv = 1.0 }  # of Yv\n"
+    "[identify]\nfree = ['GM', 'Yv']\nbounds = { Yv = [0.0, 1] }  # of Yv\n",
+    "dotted": "[model]\neffects = []\nvalues.Yv = 1.0  # of Yv\n"
+    "[identify]\nfree = ['GM', 'Yv']\nbounds.Yv = [0.0, 1]  # of Yv\n",
+    "tables": "[model]\neffects = []\n[model.values]\nYv = 1.0  # of Yv\n"
+    "[identify]\nfree = ['GM', 'Yv']\n# of them all\n[identify.bounds]\nYv = [0.0, 1]  # of Yv\n"
+    "[other]\nGM = 3  # not this\n",
+    "one": "model = { effects = [], values = { Yv = 1.0 } }  # one line\n"
+    "identify = { free = ['GM', 'Yv'], bounds = { Yv = [0.0, 1] } }\n",
+    "start": "[model]\neffects = []\nvalues.Yv = 1.0  # start, by linearisation\n"
+    "[identify]\nfree = ['GM', 'Yv']\n",
+}
+
+
+@pytest.mark.parametrize(("ends", "mark"), WAYS)
+@pytest.mark.parametrize("form", SETTINGS)
+@pytest.mark.parametrize("name", ["GM", "Yv"])
+def test_a_setting_in_every_form(form: str, name: str, ends: str, mark: str) -> None:
+    """Set where there is none, set over another, and taken out again."""
+    text = mark + SETTINGS[form].replace("\n", ends)
+    own = text.replace("  # start, by linearisation", "")  # marks a line that is not the user's
+    for value in (0.25, -3.0, 1e-7):
+        bound = set_bounds(text, name, (value, 4.0))
+        expect = {name: [value, 4.0]}
+        changed(text, bound, lambda d, e=expect: told(d, "identify", "bounds").update(e))
+        valued = set_value(text, name, value)
+        wanted = copy.deepcopy(data_of(text))
+        told(wanted, "model", "values")[name] = value
+        assert data_of(valued) == wanted
+        if form != "start" or name == "GM":
+            changed(own, valued.replace("  # start, by linearisation", ""),
+                    lambda d, v=value: told(d, "model", "values").update({name: v}))  # fmt: skip
+    for table, undone in (
+        (("identify", "bounds"), set_bounds(bound, name, None)),
+        (("model", "values"), set_value(valued, name, None)),
+    ):
+        wanted = copy.deepcopy(data_of(text))
+        told(wanted, *table).pop(name, None)
+        assert no_empty(data_of(undone)) == no_empty(wanted)
+
+
+def test_a_start_by_linearisation_gives_way_to_ones_own() -> None:
+    text = SETTINGS["start"]
+    assert set_value(text, "Yv", None) == text.replace(
+        "values.Yv = 1.0  # start, by linearisation\n", ""
+    )
+    assert "linearisation" not in set_value(text, "Yv", 2.0)
+    assert "linearisation" in set_value(text, "GM", 2.0)
+
+
+@pytest.mark.parametrize(("ends", "mark"), WAYS)
+def test_what_is_fixed_loses_its_prior_and_bounds_and_keeps_its_value(ends: str, mark: str) -> None:
+    text = mark + SAID.replace("\n", ends)
+    fixed, said = set_fixed(text, "P2")
+    assert said == (
+        "identify.priors.P2 = { mean = 2.0, std = 0.5 }",
+        "identify.bounds.P2 = [0.0, 9.0]",
+    )
+    wanted = data_of(text)
+    wanted["identify"]["free"] = ["Yv"]
+    del wanted["identify"]["priors"]["P2"], wanted["identify"]["bounds"]
+    assert no_empty(data_of(fixed)) == wanted
+    assert set_fixed(fixed, "Yv")[1] == ("identify.priors.Yv = { mean = 1.0, std = 0.1 }",)
+
+
+@pytest.mark.parametrize("name", ["", "a b", 'a"b', "a\nb", "a.b", "\u00e9", "\x00", "'", "#", "]"])
+@pytest.mark.parametrize("form", SETTINGS)
+def test_a_strange_name_is_written_right_or_refused(name: str, form: str) -> None:
+    text = SETTINGS[form]
+    for change, section, key, value in (
+        (lambda: set_free(text, name), "identify", "free", ["GM", "Yv", name]),
+        (lambda: set_bounds(text, name, (0.0, 1.0)), "identify", "bounds", [0.0, 1.0]),
+        (lambda: set_value(text, name, 1.0), "model", "values", 1.0),
+    ):
+        try:
+            new = change()
+        except RecipeError:
+            continue
+        wanted = data_of(text)
+        if key == "free":
+            wanted[section][key] = value
+        else:
+            told(wanted, section, key)[name] = value
+        assert data_of(new) == wanted
 
 
 # --- the file replaced at one stroke ------------------------------------------------------------

@@ -6,6 +6,7 @@ asked for, else the file is the user's to edit by hand.
 
 import copy
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from operator import delitem, setitem
@@ -93,9 +94,12 @@ def _dumped(text: str, keys: Keys, verb: str, name: str, change: Callable[[Any],
     try:
         document = tomlkit.parse(text.removeprefix(BOM))
         change(document[keys[0]])
-        return text[: text.startswith(BOM)] + tomlkit.dumps(document)
+        new = tomlkit.dumps(document)
     except (TOMLKitError, KeyError) as error:
         raise RecipeError(by_hand(keys, verb, name)) from error
+    if "\n" not in text.replace("\r\n", ""):  # every line ends as on Windows: new ones too
+        new = re.sub(r"(?<!\r)\n", "\r\n", new)
+    return text[: text.startswith(BOM)] + new
 
 
 def by_hand(keys: Keys, verb: str, name: str) -> str:

@@ -5,7 +5,8 @@ is let go at once; it ends by itself at its next word of progress.
 """
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -15,14 +16,14 @@ from trialid.assembly import available
 from trialid.change import Edit
 from trialid.errors import EffectError, LogError, RecipeError, TrialidError
 from trialid.history import Step as HistoryStep
-from trialid.pipeline import Outcome, sources_of
+from trialid.pipeline import Outcome
 from trialid.recipe import Recipe
 from trialid.workbench.compute import Task, work_out
 from trialid.workbench.document import Document, Step
 from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Place, Shown, Trouble, Working
 from trialid.workbench.status import Counts, Status, status_of
-from trialid.workbench.watch import watched
+from trialid.workbench.watch import Files, resting, watched
 from trialid.workbench.wishes import Granted, between, granted, understood
 
 KEPT: Final = 12
@@ -38,10 +39,14 @@ class _LetGo(Exception):
 
 @dataclass
 class Job:
-    """A computation under way, the edit that began it, and whether it is still wanted."""
+    """A computation under way, the edit that began it, and whether it is still wanted.
+
+    `files` are those it rests on, as they were when it began.
+    """
 
     task: Task
     step: Step | None
+    files: Files
     wanted: bool = True
 
 
@@ -69,7 +74,8 @@ class Desk:
         self._job: Job | None = None
         self._counts = Counts()
         self._begin(Task(recipe, "opening"), None)
-        threading.Thread(target=self._watch, daemon=True).start()
+        known = {path: one for path, one in watched(recipe).items() if path != self.path}
+        threading.Thread(target=self._watch, args=(known,), daemon=True).start()
 
     @property
     def shown(self) -> Shown:
@@ -95,7 +101,7 @@ class Desk:
             It cannot be done; nothing has changed.
         """
         wish = understood(asked)
-        with self._lock:
+        with self._open():
             self._document.check(wish.version)
             found = granted(self._document.recipe, wish)
             step = self._document.put(found.after, found.words)
@@ -111,7 +117,7 @@ class Desk:
 
     def again(self) -> None:
         """Work the file's model out once more."""
-        with self._lock:
+        with self._open():
             self._document.reread()
             self._trouble = None
             self._begin(Task(self._document.recipe, "fit again", None, self._shown), None)
@@ -123,7 +129,10 @@ class Desk:
             if job is not None:
                 self._trouble = None
                 self._let_go(job)
-                self._back(job, "cancelled")
+                if not self._back(job, "cancelled"):
+                    words = "stopped; what is shown is not all of the file's model: fit it again"
+                    self._trouble = Trouble("fit", f"{job.task.why}: {words}")
+                    self._count()
 
     def close(self) -> None:
         """Stop computing and watching; nothing is written any more."""
@@ -132,8 +141,16 @@ class Desk:
             if self._job is not None:
                 self._let_go(self._job)
 
-    def _stepped(self, version: str, move: Callable[[], Step], words: str) -> None:
+    @contextmanager
+    def _open(self) -> Iterator[None]:
+        """The lock, unless it is closed: nothing is written then."""
         with self._lock:
+            if self._ended.is_set():
+                raise RecipeError("the workbench is closed; nothing was done")
+            yield
+
+    def _stepped(self, version: str, move: Callable[[], Step], words: str) -> None:
+        with self._open():
             self._document.check(version)
             old = self._document.recipe
             step = move()
@@ -144,17 +161,21 @@ class Desk:
         """Work out what the file holds now, its last complete model being the one before."""
         before = self._shown
         whole = self._job is None and before.run is not None
-        kept = self._kept.get(_name(found.after)) if step is None else None
+        kept = self._known(found.after) if step is None else None
         self._trouble = None
         task = Task(
             found.after, found.words, found.edit if whole else None, before, kept, recorded=True
         )
         self._begin(task, step)
 
+    def _known(self, recipe: Recipe) -> Outcome | None:
+        """What was found for this very model on these very files."""
+        return self._kept.get(_name(recipe, resting(recipe)))
+
     def _begin(self, task: Task, step: Step | None) -> None:
         if self._job is not None:
             self._let_go(self._job)
-        self._job = Job(task, step)
+        self._job = Job(task, step, resting(task.recipe))
         self._working = Working(task.why, "waiting", None)
         self._count()
         threading.Thread(target=self._compute, args=(self._job,), daemon=True).start()
@@ -188,7 +209,7 @@ class Desk:
             self._let_go(job)
             taken = self._back(job, "back")
             end = f"; {job.task.why}: taken back" if taken else ""
-            self._trouble = Trouble(_place_of(error), f"{error}{end}")
+            self._trouble = Trouble("fit" if taken else _place_of(error), f"{error}{end}")
             self._count()
 
     def _let_go(self, job: Job) -> None:
@@ -201,33 +222,35 @@ class Desk:
         taken = job.step is not None and self._document.take_back(job.step)
         if taken:
             recipe = self._document.recipe
-            kept = self._kept.get(_name(recipe))
-            self._begin(Task(recipe, why, None, self._shown, kept), None)
+            self._begin(Task(recipe, why, None, self._shown, self._known(recipe)), None)
         return taken
 
-    def _watch(self) -> None:
+    def _watch(self, known: Files) -> None:
         """Look at the files until the end; a change counts when it has stood for one look."""
-        stood = known = watched(self._document.recipe)
+        stood: Files = {}
         while not self._ended.wait(POLL):
             now = watched(self._document.recipe)
             if now == stood and now != known:
-                self._look(set(now) == set(known) and now[self.path] == known[self.path])
-                known = watched(self._document.recipe)
+                self._look({path for path in now if now[path] != known.get(path, now[path])})
+                known = now
             stood = now
 
-    def _look(self, same_file: bool) -> None:
+    def _look(self, changed: set[Path]) -> None:
         """Take over what was changed elsewhere."""
         with self._lock:
+            if self._ended.is_set():
+                return
             trouble, self._outside = self._outside, None
             try:
                 if self._document.reread():
                     self._changed_elsewhere(f"{self.path.name} was edited elsewhere")
-                elif same_file or trouble is not None:
+                elif trouble is not None or changed - {self.path}:
                     available(self._document.recipe)
                     self._changed_elsewhere("an effect file or the ship was edited")
             except TrialidError as error:
                 self._outside = Trouble(_place_of(error), str(error))
-            self._count()
+            if self._outside != trouble:
+                self._count()
 
     def _changed_elsewhere(self, why: str) -> None:
         self._trouble = None
@@ -255,7 +278,7 @@ class _Seat:
         with desk._lock:
             self._check()
             if shown.run is not None:
-                kept = {**desk._kept, _name(shown.recipe): shown.run}
+                kept = {**desk._kept, _name(shown.recipe, self.job.files): shown.run}
                 desk._kept = dict(list(kept.items())[-KEPT:])
             series = shown.series is not desk._shown.series
             desk._shown = shown
@@ -279,9 +302,9 @@ class _Seat:
             raise _LetGo
 
 
-def _name(recipe: Recipe) -> str:
-    """What one model is told from another by: the file, and the files it rests on."""
-    return repr((recipe.content, sources_of(recipe)))
+def _name(recipe: Recipe, files: Files) -> str:
+    """What one model is told from another by: its pipeline, and the files it rests on."""
+    return repr((recipe.content, files))
 
 
 def _place_of(error: TrialidError) -> Place:

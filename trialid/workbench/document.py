@@ -92,10 +92,16 @@ class Document:
         return step
 
     def take_back(self, step: Step) -> bool:
-        """Undo the last edit as if it had never been; False where the file holds more by now."""
+        """Undo the last edit as if it had never been; False where the file does not allow it.
+
+        It may hold more by now, or the disk may be full.
+        """
         if not self.done or self.done[-1] != step or self.on_disk() != step.new:
             return False
-        self._write(read(step.old, self.path))
+        try:
+            self._write(read(step.old, self.path))
+        except RecipeError:
+            return False
         self.done = self.done[:-1]
         return True
 

@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
-from trialid.recipe import Recipe
+from trialid.recipe import Recipe, sources
 
 Seen = tuple[int, int, int] | None
+Files = dict[Path, Seen]
 
 
 def seen(path: Path) -> Seen:
@@ -16,7 +17,16 @@ def seen(path: Path) -> Seen:
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def watched(recipe: Recipe) -> dict[Path, Seen]:
+def watched(recipe: Recipe) -> Files:
     """The pipeline, the user's own effects and the ship, as they are now."""
     ship = () if recipe.ship is None else (recipe.ship,)
     return {path: seen(path) for path in (recipe.path, *recipe.model.effects_from, *ship)}
+
+
+def resting(recipe: Recipe) -> Files:
+    """What a model rests on besides its pipeline, as it is now: logs, ship, the user's effects."""
+    found: Files = {}
+    for place in sources(recipe)[1:]:
+        inside = sorted(place.glob("*")) if place.is_dir() else []
+        found |= {path: seen(path) for path in (place, *inside)}
+    return found

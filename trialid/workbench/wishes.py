@@ -5,11 +5,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, ValidationError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    TypeAdapter,
+    ValidationError,
+    field_validator,
+)
 
 from trialid.assembly import available, build_model, check_bounds, settings_of
 from trialid.change import Edit, adding, dropping
-from trialid.errors import RecipeError, nearest
+from trialid.errors import RecipeError, TrialidError, nearest
 from trialid.recipe import Recipe, read
 from trialid.recipe.edit import set_bounds, set_fixed, set_free, set_use, set_value
 
@@ -19,6 +27,14 @@ class Wish(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
     version: str
+
+    @field_validator("*")
+    @classmethod
+    def _writable(cls, value: Any) -> Any:
+        """Half a character, which JSON can hold, no file can."""
+        if isinstance(value, str) and value.encode("utf-8", "ignore").decode() != value:
+            raise ValueError("not a text that a file can hold")
+        return value
 
 
 class Add(Wish):
@@ -69,6 +85,7 @@ class Use(Wish):
 
 
 AnyWish = Annotated[Add | Drop | Free | Bounds | Value | Use, Field(discriminator="do")]
+_DONE: Final = {"fit": "fitted", "check": "held out"}
 _ADAPTER: Final[TypeAdapter[Any]] = TypeAdapter(AnyWish)
 
 
@@ -94,7 +111,8 @@ def understood(asked: object) -> Any:
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(str(step) for step in first["loc"][1:]) or "edit"
-        raise RecipeError(f"{place}: {first['msg']}") from error
+        words = f"{place}: {first['msg']}".encode("utf-8", "backslashreplace").decode()
+        raise RecipeError(words) from error
 
 
 def granted(recipe: Recipe, wish: Any) -> Granted:
@@ -106,6 +124,8 @@ def granted(recipe: Recipe, wish: Any) -> Granted:
         In one line: what cannot be, and why.
     """
     found = _GRANTS[type(wish)](recipe, wish)
+    if found.after.content == recipe.content:
+        raise RecipeError(f"{found.words}: it is so already")
     model = build_model(found.after, available(found.after))
     check_bounds(found.after, model, settings_of(found.after))
     return found
@@ -118,7 +138,10 @@ def between(old: Recipe, new: Recipe) -> Edit | None:
     went = [n for n in had if n not in has]
     if len(came) + len(went) != 1:
         return None
-    edit = adding(old, came[0]) if came else dropping(old, went[0])
+    try:
+        edit = adding(old, came[0]) if came else dropping(old, went[0])
+    except TrialidError:  # it was written by hand, or an effect file is broken by now
+        return None
     return replace(edit, after=new)
 
 
@@ -161,7 +184,9 @@ def _use(recipe: Recipe, wish: Use) -> Granted:
     if wish.trial not in names:
         raise RecipeError(f"there is no trial {wish.trial!r}; {nearest(wish.trial, names)}")
     index = names.index(wish.trial)
-    words = f"{wish.trial} {'fitted' if wish.use == 'fit' else 'held out'}"
+    if recipe.trials[index].use == wish.use:
+        raise RecipeError(f"{wish.trial} is {_DONE[wish.use]} already")
+    words = f"{wish.trial} {_DONE[wish.use]}"
     return _edited(recipe, words, lambda text: set_use(text, index, wish.use))
 
 

@@ -1,0 +1,605 @@
+"""The loop by hand: every edit in the file, fitted as the command line fits, and taken back."""
+
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import quick
+from click.testing import CliRunner
+from quick import ADDED, OTHER, SPARE, diagnosed, edit, opened, settled, until
+
+from trialid import cli, history
+from trialid.errors import RecipeError, TrialidError
+from trialid.pipeline import run
+from trialid.recipe import load
+from trialid.workbench import compute, desk as desk_module
+from trialid.workbench.desk import Desk
+from trialid.workbench.document import Outdated
+from trialid.workbench.shown import Shown
+
+
+@pytest.fixture(autouse=True)
+def _quick_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(desk_module, "POLL", 0.05)
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return quick.write(tmp_path)
+
+
+class Gate:
+    """Holds a computation where it examines its fit: for as long as a test likes."""
+
+    def __init__(self) -> None:
+        self.open = threading.Event()
+        self.reached = threading.Event()
+        self.open.set()
+
+    def examine(self, *arguments: Any) -> Any:
+        self.reached.set()
+        assert self.open.wait(quick.LONGEST)
+        return EXAMINE(*arguments)
+
+    def close(self) -> None:
+        self.open.clear()
+        self.reached.clear()
+
+
+EXAMINE = compute.examine
+
+
+@pytest.fixture
+def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
+    made = Gate()
+    monkeypatch.setattr(compute, "examine", made.examine)
+    yield made
+    made.open.set()
+
+
+@pytest.fixture
+def told(monkeypatch: pytest.MonkeyPatch) -> list[Shown]:
+    """Everything that was shown, in order."""
+    shown: list[Shown] = []
+    show = desk_module._Seat.show
+
+    def showing(self: Any, one: Shown) -> None:
+        show(self, one)
+        shown.append(one)
+
+    monkeypatch.setattr(desk_module._Seat, "show", showing)
+    return shown
+
+
+def result(desk: Desk) -> dict[str, Any]:
+    """The result shown, without what stands in it of the model before."""
+    shown = desk.shown
+    assert shown.run is not None
+    return {key: value for key, value in shown.run.result.items() if key != "change"}
+
+
+def steps(path: Path) -> list[tuple[str, str | None]]:
+    """The history in the file."""
+    rows, words = history.read(path)
+    assert words == ""
+    return [(row["step"], row["added"] or row["dropped"]) for row in rows]
+
+
+def still_alone(path: Path) -> bool:
+    """Whether nothing but the history was left beside the pipeline."""
+    names = {p.name for p in path.parent.iterdir()}
+    return names <= {"log.csv", "quick.toml", "s175q.toml", "quick.history.jsonl", "__pycache__"}
+
+
+# --- what is shown ------------------------------------------------------------------------------
+
+
+def test_what_is_known_is_shown_at_once(path: Path, told: list[Shown]) -> None:
+    text = path.read_bytes()
+    with opened(path) as desk:
+        diagnosed(desk)
+        assert [s.stage for s in told] == ["reading", "measured", "fitted", "diagnosed"]
+        reading, measured, fitted, whole = told
+        assert reading.model is not None
+        assert [s.name for s in measured.series] == ["early", "late"]
+        assert all(o.predicted.size == o.measured.size for s in measured.series for o in s.outputs)
+        assert fitted.fit is not None
+        assert whole.run is not None
+        assert whole.run.result["fit"]["eps_rmsn"] == fitted.fit.eps_rmsn
+        assert whole.before is None
+        assert result(desk) == dict(run(load(path)).result)
+    assert path.read_bytes() == text
+    assert not history.place(path).exists()  # looking leaves no trace
+    assert still_alone(path)
+
+
+def test_counts_grow_with_what_a_page_should_ask_for(path: Path) -> None:
+    with opened(path) as desk:
+        first = diagnosed(desk)
+        edit(desk, "add", effect=ADDED)
+        second = diagnosed(desk)
+    assert second.serial > first.serial
+    assert second.screen > first.screen
+    assert second.series > first.series
+    assert second.version != first.version
+
+
+# --- edits --------------------------------------------------------------------------------------
+
+
+def test_add_and_drop_as_the_command_line_does(tmp_path: Path) -> None:
+    """Bit for bit: the file, the numbers, the model before beside, and the history."""
+    for folder in ("screen", "line"):
+        (tmp_path / folder).mkdir()
+    screen, line = (quick.write(tmp_path / folder) for folder in ("screen", "line"))
+    with opened(screen) as desk:
+        diagnosed(desk)
+        for verb, effect in (("add", ADDED), ("drop", SPARE)):
+            edit(desk, verb, effect=effect)
+            version = desk.status.version
+            assert screen.read_bytes() == desk.shown.recipe.content or desk.status.working
+            assert diagnosed(desk).version == version
+            out = tmp_path / f"out-{verb}"
+            words = [verb, str(line), effect, "--out", str(out), "--quiet"]
+            done = CliRunner().invoke(cli.commands, words)
+            assert done.exit_code == 0, done.output
+            shown = desk.shown.run
+            assert shown is not None
+            assert screen.read_bytes() == line.read_bytes()
+            assert dict(shown.result) == quick.json.loads((out / "result.json").read_text())
+            assert history.place(screen).read_bytes() == history.place(line).read_bytes()
+            assert result(desk) == dict(run(load(screen)).result)
+            assert desk.shown.recipe == load(screen)
+    assert still_alone(screen)
+
+
+def test_undo_and_redo_show_again_what_was_known(path: Path, monkeypatch: Any) -> None:
+    with opened(path) as desk:
+        diagnosed(desk)
+        texts, results = [path.read_bytes()], [result(desk)]
+        for do, what in (("add", {"effect": ADDED}), ("drop", {"effect": SPARE}),
+                         ("free", {"parameter": "Nrar", "free": False})):  # fmt: skip
+            edit(desk, do, **what)
+            status = diagnosed(desk)
+            texts.append(path.read_bytes())
+            results.append(result(desk))
+        assert status.undo == "fix Nrar"
+        monkeypatch.setattr(compute, "fit_of", _no_fit)
+        monkeypatch.setattr(compute, "fitted_after", _no_fit)
+        monkeypatch.setattr(compute, "examine", _no_fit)
+        for i in (2, 1, 0, 1, 2, 3):
+            move = desk.undo if texts.index(path.read_bytes()) > i else desk.redo
+            move(desk.status.version)
+            assert path.read_bytes() == texts[i]  # at once
+            status = diagnosed(desk)
+            assert (status.undo is None, status.redo is None) == (i == 0, i == 3)
+            again = result(desk)
+            for key in ("fit", "accuracy", "split", "verdict", "missing"):
+                assert again[key] == results[i][key]
+            model = desk.shown.model
+            assert model is not None
+            for row in again["accuracy"]["parameters"]:
+                if row["name"] in model.parameters:
+                    assert model.value(row["name"]) == row["value"]
+    told_ = steps(path)
+    assert told_[:4] == [("as written", None), ("added", ADDED), ("dropped", SPARE),
+                         ("as written", None)]  # fmt: skip
+    assert ("added", SPARE) in told_[4:]
+    assert ("dropped", ADDED) in told_[4:]
+
+
+def _no_fit(*_: object) -> Any:
+    raise AssertionError("nothing is to be fitted")
+
+
+def test_nothing_to_undo_is_refused(path: Path) -> None:
+    with opened(path) as desk:
+        status = diagnosed(desk)
+        assert (status.undo, status.redo) == (None, None)
+        for move in (desk.undo, desk.redo):
+            with pytest.raises(RecipeError, match="nothing to"):
+                move(status.version)
+        assert desk.status.working is None
+
+
+@pytest.mark.parametrize("stage", ["waiting", "fitted"])
+def test_cancel_takes_the_edit_back_at_once(path: Path, gate: Gate, stage: str) -> None:
+    text = path.read_bytes()
+    with opened(path) as desk:
+        first = diagnosed(desk)
+        shown = result(desk)
+        gate.close()
+        edit(desk, "add", effect=ADDED)
+        if stage == "fitted":
+            assert gate.reached.wait(quick.LONGEST)
+            assert desk.status.stage == "fitted"
+        assert path.read_bytes() != text
+        desk.cancel()
+        assert path.read_bytes() == text
+        status = desk.status
+        assert (status.version, status.undo, status.redo) == (first.version, None, None)
+        gate.open.set()
+        diagnosed(desk)
+        again = result(desk)
+        assert again["fit"] == shown["fit"]
+        assert again["history"] == shown["history"]
+    assert path.read_bytes() == text
+    assert not history.place(path).exists()
+    assert still_alone(path)
+
+
+def test_cancel_when_nothing_is_done(path: Path) -> None:
+    text = path.read_bytes()
+    with opened(path) as desk:
+        edit(desk, "add", effect=ADDED)
+        status = diagnosed(desk)
+        desk.cancel()
+        assert desk.status == status
+    assert path.read_bytes() != text
+
+
+def test_what_is_stopped_without_an_edit_is_said(path: Path, gate: Gate) -> None:
+    """An undo that is cancelled leaves the file as it is: the screen then says what it shows."""
+    with opened(path) as desk:
+        diagnosed(desk)
+        edit(desk, "add", effect=ADDED)
+        diagnosed(desk)
+        text = path.read_bytes()
+        desk._kept.clear()
+        gate.close()
+        desk.undo(desk.status.version)
+        assert gate.reached.wait(quick.LONGEST)
+        assert path.read_bytes() != text
+        desk.cancel()
+        status = desk.status
+        assert status.working is None
+        assert status.trouble is not None
+        assert status.trouble.where == "fit"
+        assert "stopped" in status.trouble.words
+        gate.open.set()
+        desk.again()
+        diagnosed(desk)
+        assert result(desk) == dict(run(load(path)).result)
+
+
+def test_a_second_edit_during_a_refit_keeps_both(path: Path, gate: Gate) -> None:
+    with opened(path) as desk:
+        diagnosed(desk)
+        gate.close()
+        edit(desk, "add", effect=ADDED)
+        assert gate.reached.wait(quick.LONGEST)
+        edit(desk, "add", effect=OTHER)
+        gate.open.set()
+        status = diagnosed(desk)
+        assert load(path).model.effects[-2:] == (ADDED, OTHER)
+        assert desk.shown.recipe == load(path)
+        assert result(desk) == dict(run(load(path)).result)
+        assert (status.undo, len(desk._document.done)) == (f"add {OTHER}", 2)
+        desk.undo(status.version)
+        assert load(path).model.effects[-1] == ADDED
+        diagnosed(desk)
+        assert result(desk) == dict(run(load(path)).result)
+
+
+def test_cancel_of_the_second_edit_keeps_the_first(path: Path, gate: Gate) -> None:
+    with opened(path) as desk:
+        diagnosed(desk)
+        gate.close()
+        edit(desk, "add", effect=ADDED)
+        one = path.read_bytes()
+        edit(desk, "add", effect=OTHER)
+        desk.cancel()
+        assert path.read_bytes() == one
+        gate.open.set()
+        assert diagnosed(desk).undo == f"add {ADDED}"
+        assert result(desk) == dict(run(load(path)).result)
+
+
+def test_an_edit_that_cannot_be_fitted_is_taken_back(path: Path) -> None:
+    text = path.read_bytes()
+    with opened(path) as desk:
+        first = diagnosed(desk)
+        edit(desk, "add", effect="propeller_thrust")
+        assert path.read_bytes() != text
+        status = settled(desk)
+        assert path.read_bytes() == text
+        assert (status.version, status.undo, status.stage) == (first.version, None, "diagnosed")
+        assert status.trouble is not None
+        assert status.trouble.where == "fit"
+        assert "add propeller_thrust: taken back" in status.trouble.words
+        assert "'n'" in status.trouble.words
+        assert "\n" not in status.trouble.words
+        edit(desk, "add", effect=ADDED)
+        assert desk.status.trouble is None  # it stood until the next edit
+        diagnosed(desk)
+    assert steps(path) == [("as written", None), ("added", ADDED)]
+
+
+def test_an_effect_of_ones_own_that_needs_better_starts(tmp_path: Path) -> None:
+    """What the search begins from is in the file then, and undone with the edit it belongs to."""
+    path = quick.write(tmp_path)
+    stiff = quick.OWN.replace("-0.001", "1e3").replace("N=Nx * v * abs(v)", "K=Nx * phi")
+    (tmp_path / "mine.py").write_text(stiff.replace("(v, r", "(phi"), encoding="utf-8")
+    text = quick.TEXT.replace("\n\n[identify]", '\neffects_from = ["mine.py"]\n\n[identify]')
+    text = text.replace('"linear_rudder", ', '"linear_rudder",\n  ')
+    path.write_text(text, encoding="utf-8")
+    with opened(path) as desk:
+        first = diagnosed(desk)
+        edit(desk, "add", effect="mine")
+        put = desk.status.version
+        status = diagnosed(desk)
+        assert status.version != put
+        assert "  # start, by linearisation" in path.read_text(encoding="utf-8")
+        assert abs(load(path).model.values["Nx"].value) < 1.0
+        assert desk.shown.recipe == load(path)
+        assert result(desk) == dict(run(load(path)).result)
+        desk.undo(status.version)
+        assert path.read_text(encoding="utf-8") == text
+        assert diagnosed(desk).version == first.version
+
+
+# --- others at work -----------------------------------------------------------------------------
+
+
+def test_a_second_window_loses_nothing(path: Path) -> None:
+    with opened(path) as desk:
+        seen_by_both = diagnosed(desk).version
+        desk.edit({"version": seen_by_both, "do": "add", "effect": ADDED})
+        content = path.read_bytes()
+        for late in (
+            lambda: desk.edit({"version": seen_by_both, "do": "add", "effect": OTHER}),
+            lambda: desk.undo(seen_by_both),
+            lambda: desk.redo(seen_by_both),
+        ):
+            with pytest.raises(Outdated):
+                late()
+            assert path.read_bytes() == content
+        assert diagnosed(desk).undo == f"add {ADDED}"
+
+
+def test_an_edit_in_an_editor_is_not_overwritten(path: Path) -> None:
+    """Not even before the change was noticed."""
+    with opened(path) as desk:
+        version = diagnosed(desk).version
+        theirs = quick.TEXT.replace('"Nrar"]', '"Kphi"]')
+        path.write_text(theirs, encoding="utf-8")
+        with pytest.raises(TrialidError):
+            desk.edit({"version": version, "do": "add", "effect": ADDED})
+        assert path.read_text(encoding="utf-8") == theirs
+
+
+def test_an_edit_made_elsewhere_is_taken_over(path: Path) -> None:
+    text = path.read_bytes()
+    with opened(path) as desk:
+        first = diagnosed(desk)
+        path.write_bytes(text.replace(b', "Nrar"]', b"]"))
+        until(lambda: desk.status.version != first.version, "the edit to be seen")
+        status = diagnosed(desk)
+        assert desk.shown.recipe == load(path)
+        assert desk.shown.before is not None
+        assert result(desk) == dict(run(load(path)).result)
+        assert status.undo == "the edit made outside"
+        desk.undo(status.version)
+        assert path.read_bytes() == text
+        diagnosed(desk)
+
+
+def test_an_edit_made_elsewhere_ends_a_refit(path: Path, gate: Gate) -> None:
+    with opened(path) as desk:
+        diagnosed(desk)
+        gate.close()
+        edit(desk, "add", effect=ADDED)
+        assert gate.reached.wait(quick.LONGEST)
+        version = desk.status.version
+        theirs = path.read_bytes().replace(b'"Nrar", ', b"")
+        path.write_bytes(theirs)
+        until(lambda: desk.status.version != version, "the edit to be seen")
+        gate.open.set()
+        diagnosed(desk)
+        assert path.read_bytes() == theirs
+        assert result(desk) == dict(run(load(path)).result)
+
+
+@pytest.mark.parametrize("broken", ["[model", "name = 3\n", None])
+def test_a_broken_file_keeps_the_screen(path: Path, broken: str | None) -> None:
+    text = path.read_text(encoding="utf-8")
+    with opened(path) as desk:
+        first = diagnosed(desk)
+        shown = result(desk)
+        path.unlink() if broken is None else path.write_text(broken, encoding="utf-8")
+        status = until(lambda: (s := desk.status).trouble and s, "the trouble to be seen")
+        assert status.trouble is not None
+        assert status.trouble.where == "pipeline"
+        assert "quick.toml" in status.trouble.words
+        assert (status.stage, status.version) == ("diagnosed", first.version)
+        assert result(desk) == shown
+        with pytest.raises(Outdated):
+            edit(desk, "add", effect=ADDED)
+        assert (path.read_text() if path.exists() else None) == broken
+        path.write_text(text.replace('"Nrar"]', '"Nrar", "Kphi"]'), encoding="utf-8")
+        until(lambda: desk.status.version != first.version, "the mended file to be seen")
+        diagnosed(desk)
+        assert result(desk) == dict(run(load(path)).result)
+
+
+def test_a_file_mended_to_what_it_was(path: Path) -> None:
+    text = path.read_bytes()
+    with opened(path) as desk:
+        first = diagnosed(desk)
+        path.write_bytes(b"[model")
+        until(lambda: desk.status.trouble, "the trouble to be seen")
+        path.write_bytes(text)
+        until(lambda: desk.status.trouble is None, "the trouble to go")
+        assert diagnosed(desk).version == first.version
+        edit(desk, "add", effect=ADDED)
+        diagnosed(desk)
+
+
+def test_an_effect_file_edited_broken_and_mended(tmp_path: Path) -> None:
+    path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
+    with opened(path) as desk:
+        serial = diagnosed(desk).serial
+        first = result(desk)
+        mine.write_text(quick.OWN.replace("v * abs(v)", "r * abs(r)"), encoding="utf-8")
+        until(lambda: desk.status.serial > serial, "the effect file to be seen")
+        diagnosed(desk)
+        second = result(desk)
+        assert second == dict(run(load(path)).result)
+        assert second["fit"]["eps_rmsn"] != first["fit"]["eps_rmsn"]
+        mine.write_text("def\n", encoding="utf-8")
+        status = until(lambda: (s := desk.status).trouble and s, "the trouble to be seen")
+        assert status.trouble is not None
+        assert status.trouble.where == "effects"
+        assert "mine.py" in status.trouble.words
+        assert result(desk) == second
+        with pytest.raises(TrialidError, match=r"mine\.py"):
+            edit(desk, "add", effect=ADDED)
+        mine.write_text(quick.OWN, encoding="utf-8")
+        until(lambda: desk.status.trouble is None, "the trouble to go")
+        diagnosed(desk)
+        assert result(desk)["fit"] == first["fit"]
+
+
+def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
+    """The file is as it was before the edit; what cannot be fitted now is, once it is mended."""
+    path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
+    text = path.read_bytes()
+    with opened(path) as desk:
+        diagnosed(desk)
+        edit(desk, "drop", effect="mine")
+        diagnosed(desk)
+        mine.write_text("def\n", encoding="utf-8")
+        desk.undo(desk.status.version)
+        assert path.read_bytes() == text
+        status = until(
+            lambda: (s := desk.status).trouble and s.working is None and s, "the trouble"
+        )
+        assert status.trouble is not None
+        assert status.trouble.where == "effects"
+        mine.write_text(quick.OWN, encoding="utf-8")
+        until(lambda: desk.status.trouble is None, "the trouble to go")
+        diagnosed(desk)
+        assert result(desk) == dict(run(load(path)).result)
+        assert path.read_bytes() == text
+
+
+def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: Any) -> None:
+    """Between the same two looks as an edit on the screen: it is seen all the same."""
+    path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
+    looks = Looks(desk_module.watched)
+    monkeypatch.setattr(desk_module, "watched", looks.watched)
+    with opened(path) as desk:
+        diagnosed(desk)
+        looks.stop()
+        edit(desk, "free", parameter="Nrar", free=False)
+        diagnosed(desk)
+        mine.write_text(quick.OWN.replace("v * abs(v)", "r * abs(r)"), encoding="utf-8")
+        serial = desk.status.serial
+        looks.go()
+        until(lambda: desk.status.serial > serial + 3, "the effect file to be seen")
+        diagnosed(desk)
+        assert result(desk) == dict(run(load(path)).result)
+
+
+class Looks:
+    """Looks at the files that see nothing new for a while."""
+
+    def __init__(self, watched: Callable[..., Any]) -> None:
+        self.watched_, self.still, self.last = watched, False, None
+
+    def watched(self, recipe: Any) -> Any:
+        if not self.still or self.last is None:
+            self.last = self.watched_(recipe)
+        return self.last
+
+    def stop(self) -> None:
+        self.still = True
+
+    def go(self) -> None:
+        self.still = False
+
+
+def test_a_file_edited_while_it_is_taken_over(path: Path, monkeypatch: Any) -> None:
+    """The second of two edits elsewhere, made while the first is being read, is seen too."""
+    text = path.read_bytes()
+    second = text.replace(b', "Nrar"]', b', "Kphi"]')
+    reread = desk_module.Document.reread
+    late = [second]
+
+    def rereading(self: Any) -> bool:
+        found = reread(self)
+        if found and late:
+            path.write_bytes(late.pop())
+        return found
+
+    monkeypatch.setattr(desk_module.Document, "reread", rereading)
+    with opened(path) as desk:
+        diagnosed(desk)
+        path.write_bytes(text.replace(b', "Nrar"]', b"]"))
+        until(lambda: desk._document.recipe.content == second, "the second edit to be seen")
+        diagnosed(desk)
+        assert result(desk) == dict(run(load(path)).result)
+
+
+def test_a_log_that_grew_is_not_shown_as_it_was(path: Path) -> None:
+    """An undo shows again what was known, but not of another record."""
+    log = path.with_name("log.csv")
+    with opened(path) as desk:
+        diagnosed(desk)
+        edit(desk, "free", parameter="Nrar", free=False)
+        diagnosed(desk)
+        lines = log.read_text(encoding="utf-8").splitlines(keepends=True)
+        log.write_text("".join([lines[0], *lines[500:]]), encoding="utf-8")
+        desk.undo(desk.status.version)
+        diagnosed(desk)
+        assert result(desk) == dict(run(load(path)).result)
+
+
+# --- the end ------------------------------------------------------------------------------------
+
+
+def test_nothing_is_written_after_the_end(path: Path, gate: Gate) -> None:
+    with opened(path) as desk:
+        diagnosed(desk)
+        gate.close()
+        edit(desk, "add", effect=ADDED)
+        assert gate.reached.wait(quick.LONGEST)
+        content = path.read_bytes()
+        desk.close()
+        gate.open.set()
+        with desk._computing:
+            assert not history.place(path).exists()
+        version = desk.status.version
+        for late in (
+            lambda: desk.edit({"version": version, "do": "add", "effect": OTHER}),
+            lambda: desk.undo(version),
+            lambda: desk.redo(version),
+            desk.again,
+        ):
+            with pytest.raises(RecipeError, match="closed"):
+                late()
+        desk.cancel()
+        assert desk.status.working is None
+    assert path.read_bytes() == content
+
+
+def test_a_bug_is_said_and_takes_the_edit_back(path: Path, monkeypatch: Any) -> None:
+    text = path.read_bytes()
+    caught: list[Any] = []
+    monkeypatch.setattr(threading, "excepthook", caught.append)
+    with opened(path) as desk:
+        diagnosed(desk)
+        monkeypatch.setattr(compute, "fitted_after", _no_fit)
+        edit(desk, "add", effect=ADDED)
+        status = settled(desk)
+        assert status.trouble is not None
+        assert "a bug in trialid: AssertionError: nothing is to be fitted" in status.trouble.words
+    assert path.read_bytes() == text
+    assert [each.exc_type for each in caught] == [AssertionError]
+
+
+def test_no_pipeline_to_begin_with(tmp_path: Path) -> None:
+    with pytest.raises(RecipeError, match="no such pipeline"):
+        Desk(tmp_path / "no.toml")
