@@ -7,6 +7,7 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import asdict
 from functools import cache
 from importlib import resources
+from types import FrameType
 from typing import Any, Final
 
 import uvicorn
@@ -60,6 +61,19 @@ def application(desk: Desk, token: str | None = None) -> Guard:
     return Guard(app, token)
 
 
+class _Server(uvicorn.Server):
+    """Ends the streams of listening pages with itself, which would keep it waiting."""
+
+    def __init__(self, config: uvicorn.Config, desk: Desk) -> None:
+        super().__init__(config)
+        self._desk = desk
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """Close the desk at the first sign of the end."""
+        self._desk.close()
+        super().handle_exit(sig, frame)
+
+
 def serve(desk: Desk, listening: socket.socket, token: str | None = None) -> None:
     """Answer until Ctrl-C."""
     config = uvicorn.Config(
@@ -70,7 +84,7 @@ def serve(desk: Desk, listening: socket.socket, token: str | None = None) -> Non
         server_header=False,
     )
     try:
-        uvicorn.Server(config).run(sockets=[listening])
+        _Server(config, desk).run(sockets=[listening])
     finally:
         desk.close()
 
@@ -110,7 +124,7 @@ async def _events(request: Request) -> Response:
 async def _news(request: Request) -> AsyncIterator[str]:
     """Every new status as an event, at most one a tick."""
     desk, serial, silent = _desk(request), -1, 0.0
-    while True:
+    while not desk.closed:
         status = _plain_status(desk)
         if status["serial"] != serial:
             serial, silent = status["serial"], 0.0
@@ -235,5 +249,5 @@ def _text(asked: Mapping[str, Any], key: str) -> str:
 async def _refused(request: Request, error: Exception) -> Response:
     """The user's mistake, in one line, to be shown where it was made."""
     kind, status = ("changed", 409) if isinstance(error, Outdated) else ("refused", 400)
-    words = " ".join(str(error).split())
+    words = " ".join(str(error).split()).removeprefix(f"{_desk(request).path}: ")
     return JSONResponse({"error": words, "kind": kind}, status_code=status)
