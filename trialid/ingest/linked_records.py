@@ -63,11 +63,17 @@ def linked(starts: Places, nexts: Places, stretch: Stretch) -> Linked:
     run_end = follower != np.arange(1, len(starts) + 1)
     run_end[-1:] = True
     ends = np.flatnonzero(run_end)
+    begins = np.concatenate([[0], ends[:-1] + 1])[: len(ends)]
+    alone = (begins == ends) & (follower[ends] == UNLINKED)  # chance starts, and many
+    ends, begins = ends[~alone], begins[~alone]
     kept = np.zeros(len(starts), bool)
     holes, reached, i = [], stretch.reached, 0
-    for e, after in zip(ends.tolist(), follower[ends].tolist(), strict=True):
+    for begin, e, after in zip(
+        begins.tolist(), ends.tolist(), follower[ends].tolist(), strict=True
+    ):
         if e < i:
             continue
+        i = max(i, begin)
         last = e if after >= 0 else e - 1
         if last >= i:
             kept[i : last + 1] = True

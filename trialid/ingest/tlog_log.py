@@ -42,6 +42,7 @@ ROVERS = (10, 11)
 """MAV_TYPE of a ground rover and of a surface boat."""
 NO_AUTOPILOT = 8
 ARMED = 128
+NO_FRAMES = np.zeros(0, np.int64)
 
 
 def recognises(head: bytes) -> bool:
@@ -94,27 +95,26 @@ class Sender:
         return f"{self.system}/{self.component}"
 
 
+Sources = Mapping[tuple[int, int, int], Places]
+"""Indices of frames by system, component and message."""
+
+
 @dataclass(frozen=True)
 class Log:
     """The frames of a file, the definitions of their messages, and who sent them."""
 
     found: tlog_frames.Found
     known: Mapping[int, Definition]
+    sources: Sources
     senders: tuple[Sender, ...]
 
     def rows(self, sender: Sender, message: int) -> Places:
         """Indices of one sender's frames of one message; (N,)."""
-        return _rows(self.found, (sender.system, sender.component), message)
+        return self.sources.get((sender.system, sender.component, message), NO_FRAMES)
 
     def number(self, name: str) -> int:
         """Number of a message by its name."""
         return next(number for number, one in self.known.items() if one.name == name)
-
-
-def _rows(found: tlog_frames.Found, source: tuple[int, int], message: int) -> Places:
-    frames = found.frames
-    same = (frames.system == source[0]) & (frames.component == source[1])
-    return np.flatnonzero(same & (frames.message == message))
 
 
 @np.errstate(invalid="ignore", over="ignore")  # a broken number is no reason to warn
@@ -128,7 +128,8 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     found = tlog_frames.find(tlog_frames.content(path), known)
     if not len(found.frames):
         raise LogError(f"{path}: holds no frame with a valid checksum; take another copy of it")
-    log = Log(found, known, _senders(found, known))
+    sources = tlog_frames.by_message(found.frames)
+    log = Log(found, known, sources, _senders(found, known, sources))
     channels = {one.name: one for one in _channels(log, wanted)}
     remarks = list(_damage(log))
     for sender in log.senders:
@@ -139,24 +140,24 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     return Recording(path, ADAPTER.name, sha256(path), channels, tuple(remarks))
 
 
-def _senders(found: tlog_frames.Found, known: Mapping[int, Definition]) -> tuple[Sender, ...]:
-    frames = found.frames
-    pairs = frames.system.astype(np.int64) << 8 | frames.component
-    sources = [divmod(pair, 256) for pair in np.unique(pairs).tolist()]
-    return tuple(Sender(one[0], one[1], _boot(found, known, one)) for one in sources)
+def _senders(
+    found: tlog_frames.Found, known: Mapping[int, Definition], sources: Sources
+) -> tuple[Sender, ...]:
+    pairs = dict.fromkeys((system, component) for system, component, _ in sources)
+    return tuple(Sender(*one, _boot(found, known, sources, one)) for one in pairs)
 
 
 def _boot(
-    found: tlog_frames.Found, known: Mapping[int, Definition], source: tuple[int, int]
+    found: tlog_frames.Found,
+    known: Mapping[int, Definition],
+    sources: Sources,
+    source: tuple[int, int],
 ) -> tlog_clock.Boot | None:
     """The clock of a sender by its most frequent message that carries time_boot_ms."""
-    frames = found.frames
-    mine = (frames.system == source[0]) & (frames.component == source[1])
-    numbers, counts = np.unique(frames.message[mine], return_counts=True)
-    for number in numbers[np.argsort(-counts, kind="stable")].tolist():
+    mine = {key[2]: rows for key, rows in sources.items() if key[:2] == source}
+    for number, rows in sorted(mine.items(), key=lambda item: -len(item[1])):
         one = known[number]
         if one.clock == "time_boot_ms":
-            rows = np.flatnonzero(mine & (frames.message == number))
             raw = tlog_frames.payloads(found, rows, one)["time_boot_ms"]
             boot = tlog_clock.boot(f"{one.name} time_boot_ms", rows, found.stamp[rows], raw)
             if boot is not None:
@@ -165,7 +166,7 @@ def _boot(
 
 
 def _channels(log: Log, wanted: Wanted) -> Iterator[Channel]:
-    for number in np.unique(log.found.frames.message).tolist():
+    for number in sorted({message for _, _, message in log.sources}):
         one = log.known[number]
         if one.name in PARAMETERS or not _maybe(one.name, wanted):
             continue
@@ -204,15 +205,26 @@ def _sent(
 
 def _devices(
     sender: Sender, one: Definition, rows: Places, table: NDArray[np.void]
-) -> Iterator[tuple[str, Places]]:
+) -> Iterator[tuple[str, Places | slice]]:
     """What stands between message and field in channel names, and the rows it is for."""
-    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    starts = _starts(sender, rows)
+    if one.instance is None and not starts.any():
+        yield f"/{sender.name}", slice(None)
+        return
     device = table[one.instance] if one.instance else np.zeros(len(rows), np.uint8)
     devices, which = np.unique(device, return_inverse=True)
-    for i, start in sorted(set(zip(which.tolist(), starts.tolist(), strict=True))):
-        part = np.flatnonzero((which == i) & (starts == start))
+    kind = which * (int(starts.max()) + 1) + starts
+    for value in np.unique(kind).tolist():
+        i, start = divmod(value, int(starts.max()) + 1)
         boot = f"/boot{start + 1}" if start else ""
-        yield f"/{sender.name}{_device(devices[i].item())}{boot}", part
+        yield f"/{sender.name}{_device(devices[i].item())}{boot}", np.flatnonzero(kind == value)
+
+
+def _starts(sender: Sender, rows: Places) -> Places:
+    """Which start of the sender each of these frames is of; (N,)."""
+    if sender.boot is None or not len(sender.boot.first):
+        return np.zeros(len(rows), np.int64)
+    return sender.boot.start(rows)
 
 
 def _device(instance: int | bytes) -> str:
@@ -270,7 +282,7 @@ def _parameters(log: Log, sender: Sender, start: int) -> servo_deflection.Parame
     rows = log.rows(sender, number)
     table = tlog_frames.payloads(log.found, rows, log.known[number])
     sent = _sent(log, sender, log.known[number], rows, table).t
-    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    starts = _starts(sender, rows)
     t = np.where(
         starts < start,
         servo_deflection.EVER,
@@ -288,7 +300,7 @@ def _deflections(
     rows = log.rows(sender, one.number)
     table = tlog_frames.payloads(log.found, rows, one)
     sent = _sent(log, sender, one, rows, table)
-    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    starts = _starts(sender, rows)
     channels: dict[str, Channel] = {}
     names: dict[int, str] = {}
     for start in np.unique(starts).tolist():
