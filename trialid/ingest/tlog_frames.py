@@ -222,12 +222,13 @@ def _stamps(data: NDArray[np.uint8], at: Places) -> NDArray[np.int64]:
         step = (stamps[beside] - stamps[end]) * (1 if end == 0 else -1)
         if not -OUT_OF_ORDER_NS <= step <= PAUSE_NS:
             stamps[end] = stamps[beside]
-    padded = np.pad(stamps, 2, mode="edge")
-    leap = np.abs(np.diff(padded)) > OUT_OF_ORDER_NS // 4  # where none is near, none is off
-    rows = np.flatnonzero(leap[:-3] | leap[1:-2] | leap[2:-1] | leap[3:])
-    middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5)[rows], axis=1)
-    off = np.abs(stamps[rows] - middle) > OUT_OF_ORDER_NS
-    stamps[rows[off]] = middle[off].astype(np.int64)
+    leaps = np.flatnonzero(np.abs(np.diff(stamps)) > OUT_OF_ORDER_NS // 4)
+    if len(leaps):  # where none is near, none is off
+        near = np.unique(np.clip(leaps[:, None] + np.arange(-1, 3), 0, len(stamps) - 1))
+        padded = np.pad(stamps, 2, mode="edge")
+        middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5)[near], axis=1)
+        off = np.abs(stamps[near] - middle) > OUT_OF_ORDER_NS
+        stamps[near[off]] = middle[off].astype(np.int64)
     return stamps
 
 

@@ -65,8 +65,8 @@ def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
     angle = guess is not None and SIGNALS[guess.quantity].angle
     return ChannelSurvey(
         name=channel.name,
-        start=int(channel.t.min()),
-        end=int(channel.t.max()),
+        start=stamps.start,
+        end=stamps.end,
         samples=len(channel.t),
         missing=1.0 - len(y) / len(channel.y),
         rate=1.0 / own.period if own.period else 0.0,
