@@ -138,10 +138,12 @@ def _devices(sender: Sender, sent: Messages) -> Iterator[tuple[str, Places | sli
     device = sent.table[one.instance] if one.instance else np.zeros(len(starts), np.uint8)
     devices, which = np.unique(device, return_inverse=True)
     kind = which * (int(starts.max()) + 1) + starts
-    for value in np.unique(kind).tolist():
+    kinds = np.unique(kind).tolist()
+    for value in kinds:
         i, start = divmod(value, int(starts.max()) + 1)
         boot = f"/boot{start + 1}" if start else ""
-        yield f"/{sender.name}{_device(devices[i].item())}{boot}", np.flatnonzero(kind == value)
+        part = np.flatnonzero(kind == value) if len(kinds) > 1 else slice(None)
+        yield f"/{sender.name}{_device(devices[i].item())}{boot}", part
 
 
 def _device(instance: int | bytes) -> str:

@@ -73,11 +73,14 @@ def against(t: Stamps, received: Stamps) -> Received | None:
     """
     if len(t) < 10:
         return None
-    late = (received - t) / 1e9
-    at = (t - t[0]) / 1e9
-    if np.ptp(at) == 0.0:
+    if t.min() == t.max():
         return None
-    centred = at - at.mean()
-    drift = float(centred @ (late - late.mean()) / (centred @ centred))
-    left = late - late.mean() - drift * centred
-    return Received(float(np.median(late)), drift, float(np.sqrt(np.mean(left**2))))
+    late = (received - t) / 1e9
+    centred = (t - t[0]) / 1e9
+    centred -= centred.mean()
+    left = late - late.mean()
+    drift = float(centred @ left / (centred @ centred))
+    centred *= drift
+    left -= centred
+    left *= left
+    return Received(float(np.median(late)), drift, float(np.sqrt(np.mean(left))))
