@@ -23,8 +23,9 @@ from written import Series
 
 from trialid import alignment
 from trialid.errors import LogError
-from trialid.ingest import read
+from trialid.ingest import can_alike, can_candump, read
 from trialid.ingest.adapter import NO_AIDS, Aids
+from trialid.ingest.can_frames import Tally
 
 START = 1_700_000_000_123_456_000
 
@@ -85,6 +86,48 @@ def sent(count=40):
 
 LINE = "(1700000000.100000) can0 09F10D0B#00F8FF7FE803FFFF"
 RUDDER = "rudder/11/0:position"
+
+
+ODD = (
+    *("", "# comment", "garbage here", "(1700000000.1) can0", "(1700000000.5) can0 123#0102"),
+    *("(17000000x0.100000) can0 09F10D0B#00", "(1700000000.1000001234) can0 09F10D0B#0011"),
+    *("  (1700000000.100000)  can0\t09F10D0B#0011 ", "(1700000000.100000) can0 09F10D0B#001"),
+    *("(99999999999.100000) can0 09F10D0B#0011", "(9999999999.100000) can0 09F10D0B#0011"),
+    *("(1700000000.100000) can0 49F10D0B#0011", "(1700000000.100000) can0 29F10D0B#0011"),
+    *("(1700000000.100000) can0 09F10D0B#R", "(1700000000.100000) can0 09F10D0B##10011"),
+    *("(1700000000.100000) can0 09F10D0B#", "(1700000000.100000) can1 09f10d0b#00F8FF7FE803FFFF"),
+    *("(1700000000.100000) Can0 09F10D0B#00F8FF7FE803FFFF", "(1700000000) can0 09F10D0B#00"),
+    *(" (1700000000.100000)  can0  09F10D0B   [3]  00 F8", "(5.5) can0 09F10D0B#00"),
+    *(" (1700000000.100000)  can0  09F10D0B   [2]  00 F8   '..'", "\xe9\xff"),
+    *(" (1700000000.100000)  can0  123   [1]  0G", " (1700000000.100000)  can0  123   [1]  remote"),
+)
+"""Lines of other kinds and widths, right and wrong."""
+
+
+@pytest.mark.parametrize("form", ["-l", "-ta", "-tA", "-tz"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_lines_read_side_by_side_are_what_they_are_field_by_field(tmp_path, monkeypatch, form, end):
+    rng = np.random.default_rng(5)
+    lines = write_can.candump_lines(sent(400), form)
+    for k in rng.integers(0, len(lines), 200):
+        odd = str(rng.choice(ODD))
+        lines.insert(int(k), odd.replace("1700000000.100000", "1.1") if form == "-tz" else odd)
+    path = log(tmp_path, end.join(lines).encode("latin-1"))
+    found = []
+    for layouts in (can_alike.LAYOUTS, 0):
+        monkeypatch.setattr(can_alike, "LAYOUTS", layouts)
+        tally = Tally()
+        try:
+            frames, clock = can_candump.frames(path, None, tally)
+        except LogError as error:  # dates and seconds in one log
+            found.append((str(error), tally))
+            continue
+        buses = [frames.buses[k] for k in frames.bus]
+        columns = (frames.t, frames.can_id, frames.extended, frames.length, frames.table)
+        found.append((*(column.tolist() for column in columns), buses, clock, tally))
+    assert found[0] == found[1]
+    assert tally.strange > 0
+    assert tally.remote > 0
 
 
 def test_frames_without_a_time_are_refused(tmp_path):

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Grid, Series
+from trialid.alignment.curve import curve
 from trialid.alignment.frames import RUDDERS
 
 Vector = NDArray[np.float64]
@@ -106,10 +107,8 @@ def _curve(quantity: str, t: Vector, y: Vector) -> Callable[[Vector], Vector]:
     """The motion between its samples."""
     if quantity in RUDDERS or len(t) == 1:
         return lambda at: np.interp(at, t, y)
-    from scipy.interpolate import PchipInterpolator
-
     with np.errstate(over="ignore"):  # beside a step of 1e-300 any other is without end
-        return PchipInterpolator(t, y)
+        return curve(t, y)
 
 
 def _fine_steps(own: float, period: float) -> int:

@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from trialid.errors import LogError
-from trialid.ingest import local_time, text_fields
+from trialid.ingest import can_alike, local_time, text_fields
+from trialid.ingest.can_alike import Alike
 from trialid.ingest.can_frames import EXTENDED_ID, Frames, Tally, joined
-from trialid.ingest.text_fields import Bools, Fields, Ints
+from trialid.ingest.text_fields import NEWLINE, Bools, Fields, Ints
 
 REMOTE_FLAG, ERROR_FLAG = 0x4000_0000, 0x2000_0000
 """Bits of an identifier that say the frame is none of data."""
@@ -47,16 +48,32 @@ class Shape:
     good: Bools
 
 
+@dataclass(frozen=True)
+class Block:
+    """Data frames of a block, and where the line of each begins; (n,).
+
+    `dated` are stamped with dates; `untimed`, which are not among them, not at all.
+    """
+
+    frames: Frames
+    begin: Ints
+    dated: int
+    untimed: int
+
+
 def frames(path: Path, zone: str | None, tally: Tally) -> tuple[Frames, str]:
     """The data frames of the file, and words for their clock; LogError when none has a time."""
     parts: list[Frames] = []
     dated = untimed = 0
     for text in text_fields.blocks(path):
-        lines = text_fields.fields(text, b" \t#")
-        part, some_dated, some_untimed = _block(lines, tally)
-        parts.append(part)
-        dated += some_dated
-        untimed += some_untimed
+        alike = can_alike.read(text)
+        tally.lines += len(alike.lines)
+        parts.append(alike.frames)
+        if len(alike.rest):
+            other = _block(text_fields.fields(alike.rest, b" \t#"), tally)
+            parts[-1] = _together(alike, other)
+            dated += other.dated
+            untimed += other.untimed
     whole = joined(parts)
     if not len(whole):
         if untimed:
@@ -88,8 +105,16 @@ def _clock(t: Ints, dated: bool, zone: str | None, tally: Tally) -> tuple[Ints, 
     return t, "line stamps (since the start of the log; no date)"
 
 
-def _block(lines: Fields, tally: Tally) -> tuple[Frames, int, int]:
-    """Data frames of a block, how many of them are stamped with dates, and how many not at all."""
+def _together(alike: Alike, other: Block) -> Frames:
+    """Frames of both in the order of their lines."""
+    newline = np.flatnonzero(alike.rest == NEWLINE)
+    lines = alike.rest_lines[np.searchsorted(newline, other.begin)]
+    frames = joined([alike.frames, other.frames])
+    return can_alike.in_order(frames, np.concatenate([alike.lines, lines]))[0]
+
+
+def _block(lines: Fields, tally: Tally) -> Block:
+    """Data frames of a block of lines."""
     first = lines.start[lines.first]
     comment = lines.text[np.minimum(lines.begin, first)] == ord("#")
     shape = _shape(lines, first)
@@ -113,7 +138,8 @@ def _block(lines: Fields, tally: Tally) -> tuple[Frames, int, int]:
     table = np.where(used, table, 0)[rows].astype(np.uint8)
     extended = digits[rows] > 3
     made = Frames(t[rows], can_id[rows] & EXTENDED_ID, extended, table, length[rows], bus, buses)
-    return made, int(np.sum(shape.stamp[rows] == 2)), int(untimed.sum())
+    dated = int(np.sum(shape.stamp[rows] == 2))
+    return Block(made, lines.begin[rows], dated, int(untimed.sum()))
 
 
 def _shape(lines: Fields, first: Ints) -> Shape:

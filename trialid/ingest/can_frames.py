@@ -70,6 +70,7 @@ class Tally:
 
 def joined(parts: Sequence[Frames]) -> Frames:
     """One after the other; a bus of the same name is the same bus."""
+    parts = [part for part in parts if len(part)]
     names = tuple(sorted({name for part in parts for name in part.buses})) or ("",)
     if not parts:
         return nothing()

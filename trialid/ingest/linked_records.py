@@ -60,17 +60,22 @@ def linked(starts: Places, nexts: Places, stretch: Stretch) -> Linked:
     it would start; both (N,).
     """
     follower = _followers(starts, nexts, stretch)
-    run_end = follower != np.arange(1, len(starts) + 1)
-    run_end[-1:] = True
-    ends = np.flatnonzero(run_end)
+    begins, ends, stray = _runs(follower)
     kept = np.zeros(len(starts), bool)
     holes, reached, i = [], stretch.reached, 0
-    for e, after in zip(ends.tolist(), follower[ends].tolist(), strict=True):
+    for begin, e, after in zip(
+        begins.tolist(), ends.tolist(), follower[ends].tolist(), strict=True
+    ):
         if e < i:
             continue
+        i = max(i, begin)
+        while stray[i]:
+            i += 1
         last = e if after >= 0 else e - 1
+        while last > i and stray[last]:
+            last -= 1
         if last >= i:
-            kept[i : last + 1] = True
+            kept[i : last + 1] = ~stray[i : last + 1]
             if starts[i] > reached:
                 holes.append((reached, int(starts[i])))
             reached = int(nexts[last])
@@ -79,6 +84,26 @@ def linked(starts: Places, nexts: Places, stretch: Stretch) -> Linked:
         i = after if after >= 0 else e + 1
     resume = stretch.end if stretch.closing is not None else stretch.end - stretch.header + 1
     return Linked(kept, tuple(holes), reached, max(resume, 0))
+
+
+def _runs(follower: Places) -> tuple[Places, Places, NDArray[np.bool_]]:
+    """First and last of each run of records, and which starts stand alone within or between them.
+
+    A run goes on behind starts that no other follows: such are there by chance within records, and
+    there are many.
+    """
+    run_end = follower != np.arange(1, len(follower) + 1)
+    run_end[-1:] = True
+    ends = np.flatnonzero(run_end)
+    begins = np.concatenate([[0], ends[:-1] + 1])[: len(ends)]
+    alone = (begins == ends) & (follower[ends] == UNLINKED)
+    stray = np.zeros(len(follower), bool)
+    stray[ends[alone]] = True
+    begins, ends = begins[~alone], ends[~alone]
+    goes_on = np.zeros(len(ends), bool)
+    goes_on[:-1] = follower[ends[:-1]] == begins[1:]
+    first = np.concatenate([[True], ~goes_on[:-1]])[: len(ends)]
+    return begins[first], ends[~goes_on], stray
 
 
 def _followers(starts: Places, nexts: Places, stretch: Stretch) -> Places:

@@ -63,17 +63,23 @@ class Boot:
 
     def at(self, index: Places, received: Times) -> Times:
         """Time since the sender's start at which messages were sent, by their neighbours; (M,)."""
+        if not len(self.first):
+            return self._within(0, received)
         sent = np.empty(len(index), np.int64)
         starts = self.start(index)
         for start in np.unique(starts).tolist():
             rows = np.flatnonzero(starts == start)
-            part = slice(self.edges[start], self.edges[start + 1])
-            late, known = self.received[part] - self.sent[part], self.received[part]
-            since = np.interp(received[rows] - known[0], known - known[0], late - late[0])
-            about = received[rows] - late[0] - np.rint(since).astype(np.int64)
-            ends = self.sent[part].min() - AROUND_NS, self.sent[part].max() + AROUND_NS
-            sent[rows] = np.clip(about, *ends)
+            sent[rows] = self._within(start, received[rows])
         return sent
+
+    def _within(self, start: int, received: Times) -> Times:
+        """The same within one start."""
+        part = slice(self.edges[start], self.edges[start + 1])
+        late, known = self.received[part] - self.sent[part], self.received[part]
+        since = np.interp(received - known[0], known - known[0], late - late[0])
+        about = received - late[0] - np.rint(since).astype(np.int64)
+        ends = self.sent[part].min() - AROUND_NS, self.sent[part].max() + AROUND_NS
+        return np.clip(about, *ends)
 
 
 def boot(source: str, index: Places, received: Times, raw: NDArray[np.uint32]) -> Boot | None:

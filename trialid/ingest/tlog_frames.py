@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from trialid.ingest import mavlink_crc
 from trialid.ingest.linked_records import Places, Stretch, linked
 from trialid.ingest.mavlink_dialect import Definition
+from trialid.ingest.unaligned import numbers
 
 STAMP = 8
 MAGIC_1, MAGIC_2 = 0xFE, 0xFD
@@ -33,15 +34,23 @@ LONGEST = 280
 
 @dataclass(frozen=True)
 class Frames:
-    """Frames by place, (N,) each: of the first byte, the payload, and its length [bytes]."""
+    """Frames by place, (N,) each: of the first byte and behind the last.
+
+    `header` and `length` are the bytes before the payload and of it.
+    """
 
     at: Places
-    payload: Places
-    length: Places
     end: Places
-    message: Places
+    header: NDArray[np.uint8]
+    length: NDArray[np.uint8]
+    message: NDArray[np.int32]
     system: NDArray[np.uint8]
     component: NDArray[np.uint8]
+
+    @property
+    def payload(self) -> Places:
+        """Place of the payload of each; (N,)."""
+        return self.at + self.header
 
     def __getitem__(self, rows: NDArray[np.bool_] | Places) -> "Frames":
         return Frames(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
@@ -81,19 +90,33 @@ def find(data: NDArray[np.uint8], known: Mapping[int, Definition]) -> Found:
     size = len(data) - LONGEST
     candidates = _candidates(data, size)
     chain = linked(candidates.at - STAMP, candidates.end, Stretch(0, size, size - STAMP, STAMP + 1))
+    kept = candidates[chain.kept]
+    fine = _valid(data, kept, _extra(kept.message, known))
+    if fine.all() and not _holes((kept,), size):
+        return Found(data, kept, _stamps(data, kept.at), {}, {}, ())
+    good = np.zeros(len(candidates), bool)
+    good[chain.kept] = fine
+    return _among_gaps(data, candidates, chain.kept, good, known)
+
+
+def _among_gaps(
+    data: NDArray[np.uint8],
+    candidates: Frames,
+    kept: NDArray[np.bool_],
+    good: NDArray[np.bool_],
+    known: Mapping[int, Definition],
+) -> Found:
+    """The good frames of a damaged log: those that are good in the chain, and between them."""
     extra = _extra(candidates.message, known)
     listed = extra >= 0
-    good = np.zeros(len(candidates), bool)
-    good[chain.kept] = _valid(data, candidates[chain.kept], extra[chain.kept])
-    unknown = chain.kept & ~listed
-    failed = chain.kept & listed & ~good
-    tried = _uncovered(candidates, ~chain.kept & listed, candidates[good])
+    unknown, failed = kept & ~listed, kept & listed & ~good
+    tried = _uncovered(candidates, ~kept & listed, candidates[good])
     valid = tried[_valid(data, candidates[tried], extra[tried])]
     good[_apart(candidates, good, valid)] = True
     frames = candidates[good]
     covered = candidates[_uncovered(candidates, unknown, frames)]
     lost = candidates[_uncovered(candidates, failed, frames)]
-    holes = _holes((frames, covered, lost), size)
+    holes = _holes((frames, covered, lost), len(data) - LONGEST)
     stamp = _stamps(data, frames.at)
     return Found(data, frames, stamp, _counts(covered), _counts(lost), holes)
 
@@ -108,33 +131,33 @@ def _candidates(data: NDArray[np.uint8], size: int) -> Frames:
 
 def _starting(data: NDArray[np.uint8], begin: int, end_of_block: int, size: int) -> Frames:
     """Of these those that begin in one block."""
-    block = data[begin:end_of_block]
-    at = np.flatnonzero((block == MAGIC_1) | (block == MAGIC_2)) + begin
-    second = data[at] == MAGIC_2
-    flags = np.where(second, data[at + 2], 0)
-    length = data[at + 1].astype(np.int64)
-    payload = at + np.where(second, 10, 6)
-    end = payload + length + 2 + np.where(flags & SIGNED, SIGNATURE, 0)
-    shift = np.where(second, 2, 0)
-    low = data[at + np.where(second, 7, 5)].astype(np.int64)
-    rest = data[at + 8].astype(np.int64) << 8 | data[at + 9].astype(np.int64) << 16
-    message = np.where(second, low | rest, low)
-    system, component = data[at + 3 + shift], data[at + 4 + shift]
-    every = Frames(at, payload, length, end, message, system, component)
-    return every[(end <= size) & ((flags | SIGNED) == SIGNED)]
+    at = np.flatnonzero(data[begin:end_of_block] - MAGIC_2 < 2) + begin  # the two are neighbours
+    first = numbers(data, at, "<u8").view(np.uint8).reshape(-1, 8)
+    second = first[:, 0] == MAGIC_2
+    flags = np.where(second, first[:, 2], 0)
+    header = np.where(second, 10, 6).astype(np.uint8)
+    signed = flags & SIGNED
+    end = at + header + first[:, 1] + (2 + SIGNATURE * signed)
+    able = (end <= size) & (flags == signed)
+    at, first, second = at[able], first[able], second[able]
+    rest = numbers(data, at + 8, "<u2").astype(np.int32) << 8
+    message = np.where(second, first[:, 7] | rest, first[:, 5])
+    system = np.where(second, first[:, 5], first[:, 3])
+    component = np.where(second, first[:, 6], first[:, 4])
+    return Frames(at, end[able], header[able], first[:, 1].copy(), message, system, component)
 
 
-def _extra(messages: Places, known: Mapping[int, Definition]) -> Places:
+def _extra(messages: NDArray[np.int32], known: Mapping[int, Definition]) -> NDArray[np.int16]:
     """The byte that stands for each message's definition, -1 for messages not known; (N,)."""
-    numbers = np.unique(messages)
-    bytes_ = [known[n].check if n in known else -1 for n in numbers.tolist()]
-    return np.array(bytes_, np.int64)[np.searchsorted(numbers, messages)]
+    bytes_ = np.full(max(known) + 2, -1, np.int16)
+    bytes_[list(known)] = [one.check for one in known.values()]
+    return bytes_[np.minimum(messages, len(bytes_) - 1)]
 
 
-def _valid(data: NDArray[np.uint8], frames: Frames, extra: Places) -> NDArray[np.bool_]:
+def _valid(data: NDArray[np.uint8], frames: Frames, extra: NDArray[np.int16]) -> NDArray[np.bool_]:
     """Which frames have the checksum they state; (N,)."""
     end = frames.payload + frames.length
-    stated = data[end].astype(np.uint16) | data[end + 1].astype(np.uint16) << 8
+    stated = numbers(data, end, "<u2")
     found = mavlink_crc.checksums(data, frames.at + 1, end, (extra & 0xFF).astype(np.uint8))
     return (stated == found) & (extra >= 0)
 
@@ -170,12 +193,14 @@ def _apart(frames: Frames, good: NDArray[np.bool_], valid: Places) -> list[int]:
 
 def _holes(frames: Sequence[Frames], size: int) -> tuple[tuple[int, int], ...]:
     """Bytes that belong to no frame, good, unknown or failed."""
-    begin = np.concatenate([one.at - STAMP for one in frames])
-    end = np.concatenate([one.end for one in frames])
-    order = np.argsort(begin)
-    begins, ends = np.append(begin[order], size), np.append(0, end[order])
-    gaps = np.flatnonzero(begins > ends)
-    return tuple(zip(ends[gaps].tolist(), begins[gaps].tolist(), strict=True))
+    some = [one for one in frames if len(one)]
+    begin = np.concatenate([*(one.at - STAMP for one in some), [size]])
+    end = np.concatenate([[0], *(one.end for one in some)])
+    if len(some) > 1:
+        order = np.argsort(begin[:-1])
+        begin[:-1], end[1:] = begin[order], end[1:][order]
+    gaps = np.flatnonzero(begin > end)
+    return tuple(zip(end[gaps].tolist(), begin[gaps].tolist(), strict=True))
 
 
 def _counts(frames: Frames) -> dict[int, int]:
@@ -197,20 +222,40 @@ def _stamps(data: NDArray[np.uint8], at: Places) -> NDArray[np.int64]:
         step = (stamps[beside] - stamps[end]) * (1 if end == 0 else -1)
         if not -OUT_OF_ORDER_NS <= step <= PAUSE_NS:
             stamps[end] = stamps[beside]
-    padded = np.pad(stamps, 2, mode="edge")
-    middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=1)
-    off = np.abs(stamps - middle) > OUT_OF_ORDER_NS
-    return np.where(off, middle.astype(np.int64), stamps)
+    leaps = np.flatnonzero(np.abs(np.diff(stamps)) > OUT_OF_ORDER_NS // 4)
+    if len(leaps):  # where none is near, none is off
+        near = np.unique(np.clip(leaps[:, None] + np.arange(-1, 3), 0, len(stamps) - 1))
+        padded = np.pad(stamps, 2, mode="edge")
+        middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5)[near], axis=1)
+        off = np.abs(stamps[near] - middle) > OUT_OF_ORDER_NS
+        stamps[near[off]] = middle[off].astype(np.int64)
+    return stamps
 
 
 def payloads(found: Found, rows: Places, definition: Definition) -> NDArray[np.void]:
     """Payloads of frames of one message as a table, zeros that were cut off put back; (N,)."""
     size = definition.kind.itemsize
-    frames = found.frames[rows]
+    frames = found.frames
+    length = frames.length[rows]
     count = len(found.data) - size + 1
     everywhere: NDArray[np.uint8] = np.ndarray((count, size), np.uint8, found.data.data, 0, (1, 1))
-    raw = everywhere[np.minimum(frames.payload, count - 1)]
-    for length in np.unique(frames.length).tolist():
-        if length < size:
-            raw[frames.length == length, length:] = 0
+    raw = everywhere[np.minimum(frames.at[rows] + frames.header[rows], count - 1)]
+    for short in np.flatnonzero(np.bincount(length)[:size]).tolist():
+        raw[length == short, short:] = 0
     return raw.view(definition.kind)[:, 0]
+
+
+def by_message(frames: Frames) -> dict[tuple[int, int, int], Places]:
+    """Indices of the frames of each system, component and message, by these; increasing."""
+    source = frames.system.astype(np.uint16) << 8 | frames.component
+    sources, numbers = (np.flatnonzero(np.bincount(x)) for x in (source, frames.message))
+    kinds = len(sources) * len(numbers)
+    place = np.zeros(max(numbers.max(initial=0), sources.max(initial=0)) + 1, np.int64)
+    place[sources] = np.arange(len(sources)) * len(numbers)
+    kind = place[source]
+    place[numbers] = np.arange(len(numbers))
+    kind += place[frames.message]
+    order = np.argsort(kind.astype(np.min_scalar_type(kinds)), kind="stable")
+    parts = np.split(order, np.cumsum(np.bincount(kind, minlength=kinds))[:-1])
+    names = [(*divmod(one, 256), n) for one in sources.tolist() for n in numbers.tolist()]
+    return {name: part for name, part in zip(names, parts, strict=True) if len(part)}

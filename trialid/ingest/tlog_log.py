@@ -7,8 +7,7 @@ rudder servo 3 of the autopilot 1/1 was ordered. Texts are no channels, nor are 
 """
 
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -24,11 +23,13 @@ from trialid.ingest import (
     servo_deflection,
     tlog_clock,
     tlog_frames,
+    tlog_messages,
     vehicle_modes,
 )
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked, sha256
 from trialid.ingest.linked_records import Places
 from trialid.ingest.mavlink_dialect import Definition, Field
+from trialid.ingest.tlog_messages import Log, Messages, Sender
 from trialid.recording import Channel, Recording
 
 CHAIN = 3
@@ -80,43 +81,6 @@ def _frame_size(head: bytes) -> int:
     return length + 12 + tlog_frames.SIGNATURE * signed if good else 0
 
 
-@dataclass(frozen=True)
-class Sender:
-    """One component of a system: its clock and its parameters."""
-
-    system: int
-    component: int
-    boot: tlog_clock.Boot | None
-
-    @property
-    def name(self) -> str:
-        """How channels and remarks call it."""
-        return f"{self.system}/{self.component}"
-
-
-@dataclass(frozen=True)
-class Log:
-    """The frames of a file, the definitions of their messages, and who sent them."""
-
-    found: tlog_frames.Found
-    known: Mapping[int, Definition]
-    senders: tuple[Sender, ...]
-
-    def rows(self, sender: Sender, message: int) -> Places:
-        """Indices of one sender's frames of one message; (N,)."""
-        return _rows(self.found, (sender.system, sender.component), message)
-
-    def number(self, name: str) -> int:
-        """Number of a message by its name."""
-        return next(number for number, one in self.known.items() if one.name == name)
-
-
-def _rows(found: tlog_frames.Found, source: tuple[int, int], message: int) -> Places:
-    frames = found.frames
-    same = (frames.system == source[0]) & (frames.component == source[1])
-    return np.flatnonzero(same & (frames.message == message))
-
-
 @np.errstate(invalid="ignore", over="ignore")  # a broken number is no reason to warn
 def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted channels; frames with a wrong checksum are left out and counted.
@@ -128,7 +92,7 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     found = tlog_frames.find(tlog_frames.content(path), known)
     if not len(found.frames):
         raise LogError(f"{path}: holds no frame with a valid checksum; take another copy of it")
-    log = Log(found, known, _senders(found, known))
+    log = tlog_messages.log(found, known)
     channels = {one.name: one for one in _channels(log, wanted)}
     remarks = list(_damage(log))
     for sender in log.senders:
@@ -139,40 +103,14 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     return Recording(path, ADAPTER.name, sha256(path), channels, tuple(remarks))
 
 
-def _senders(found: tlog_frames.Found, known: Mapping[int, Definition]) -> tuple[Sender, ...]:
-    frames = found.frames
-    pairs = frames.system.astype(np.int64) << 8 | frames.component
-    sources = [divmod(pair, 256) for pair in np.unique(pairs).tolist()]
-    return tuple(Sender(one[0], one[1], _boot(found, known, one)) for one in sources)
-
-
-def _boot(
-    found: tlog_frames.Found, known: Mapping[int, Definition], source: tuple[int, int]
-) -> tlog_clock.Boot | None:
-    """The clock of a sender by its most frequent message that carries time_boot_ms."""
-    frames = found.frames
-    mine = (frames.system == source[0]) & (frames.component == source[1])
-    numbers, counts = np.unique(frames.message[mine], return_counts=True)
-    for number in numbers[np.argsort(-counts, kind="stable")].tolist():
-        one = known[number]
-        if one.clock == "time_boot_ms":
-            rows = np.flatnonzero(mine & (frames.message == number))
-            raw = tlog_frames.payloads(found, rows, one)["time_boot_ms"]
-            boot = tlog_clock.boot(f"{one.name} time_boot_ms", rows, found.stamp[rows], raw)
-            if boot is not None:
-                return boot
-    return None
-
-
 def _channels(log: Log, wanted: Wanted) -> Iterator[Channel]:
-    for number in np.unique(log.found.frames.message).tolist():
+    for number in sorted({message for _, _, message in log.sources}):
         one = log.known[number]
         if one.name in PARAMETERS or not _maybe(one.name, wanted):
             continue
         for sender in log.senders:
-            rows = log.rows(sender, number)
-            if len(rows):
-                yield from _of_message(log, sender, one, rows, wanted)
+            if (sender.system, sender.component, number) in log.sources:
+                yield from _of_message(sender, log.messages(sender, number), wanted)
 
 
 def _maybe(message: str, wanted: Wanted) -> bool:
@@ -181,37 +119,30 @@ def _maybe(message: str, wanted: Wanted) -> bool:
     return wanted is None or any(w.startswith(begin) or begin.startswith(w) for w in wanted)
 
 
-def _of_message(
-    log: Log, sender: Sender, one: Definition, rows: Places, wanted: Wanted
-) -> Iterator[Channel]:
+def _of_message(sender: Sender, sent: Messages, wanted: Wanted) -> Iterator[Channel]:
     """The wanted channels of one message from one sender, device by device, start by start."""
-    table = tlog_frames.payloads(log.found, rows, one)
-    sent = _sent(log, sender, one, rows, table)
-    for source, part in _devices(sender, one, rows, table):
-        t, mine = sent.t[part], table[part]
-        received = log.found.stamp[rows[part]] if sent.own else None
-        for name, field, raw in _columns(one, source, mine):
+    for source, part in _devices(sender, sent):
+        t, mine = sent.sent.t[part], sent.table[part]
+        received = sent.received[part] if sent.sent.own else None
+        for name, one, raw in _columns(sent.definition, source, mine):
             if asked(name, wanted):
-                yield _channel(one, field, name, (t, raw, received), sent.clock)
+                yield _channel(sent.definition, one, name, (t, raw, received), sent.sent.clock)
 
 
-def _sent(
-    log: Log, sender: Sender, one: Definition, rows: Places, table: NDArray[np.void]
-) -> tlog_clock.Sent:
-    raw = table[one.clock] if one.clock else None
-    return tlog_clock.sent(one.clock, raw, rows, log.found.stamp[rows], sender.boot)
-
-
-def _devices(
-    sender: Sender, one: Definition, rows: Places, table: NDArray[np.void]
-) -> Iterator[tuple[str, Places]]:
+def _devices(sender: Sender, sent: Messages) -> Iterator[tuple[str, Places | slice]]:
     """What stands between message and field in channel names, and the rows it is for."""
-    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
-    device = table[one.instance] if one.instance else np.zeros(len(rows), np.uint8)
+    one, starts = sent.definition, sender.starts(sent.rows)
+    if one.instance is None and not starts.any():
+        yield f"/{sender.name}", slice(None)
+        return
+    device = sent.table[one.instance] if one.instance else np.zeros(len(starts), np.uint8)
     devices, which = np.unique(device, return_inverse=True)
-    for i, start in sorted(set(zip(which.tolist(), starts.tolist(), strict=True))):
-        part = np.flatnonzero((which == i) & (starts == start))
+    kind = which * (int(starts.max()) + 1) + starts
+    kinds = np.unique(kind).tolist()
+    for value in kinds:
+        i, start = divmod(value, int(starts.max()) + 1)
         boot = f"/boot{start + 1}" if start else ""
+        part = np.flatnonzero(kind == value) if len(kinds) > 1 else slice(None)
         yield f"/{sender.name}{_device(devices[i].item())}{boot}", part
 
 
@@ -266,15 +197,12 @@ def _parameters(log: Log, sender: Sender, start: int) -> servo_deflection.Parame
     What was said in an earlier start held from its beginning on; what is only said later is the
     best that is known.
     """
-    number = log.number("PARAM_VALUE")
-    rows = log.rows(sender, number)
-    table = tlog_frames.payloads(log.found, rows, log.known[number])
-    sent = _sent(log, sender, log.known[number], rows, table).t
-    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    said = log.messages(sender, log.number("PARAM_VALUE"))
+    starts, table = sender.starts(said.rows), said.table
     t = np.where(
         starts < start,
         servo_deflection.EVER,
-        np.where(starts > start, servo_deflection.NEVER, sent),
+        np.where(starts > start, servo_deflection.NEVER, said.sent.t),
     )
     names = [name.decode("latin-1") for name in table["param_id"].tolist()]
     return servo_deflection.parameters(names, t, table["param_value"].astype(np.float64))
@@ -284,11 +212,8 @@ def _deflections(
     log: Log, sender: Sender, wanted: Wanted
 ) -> tuple[dict[str, Channel], dict[int, str]]:
     """Channels of what rudder servos were ordered, and their names by output."""
-    one = log.known[log.number(SERVO_MESSAGE)]
-    rows = log.rows(sender, one.number)
-    table = tlog_frames.payloads(log.found, rows, one)
-    sent = _sent(log, sender, one, rows, table)
-    starts = np.zeros(len(rows), np.int64) if sender.boot is None else sender.boot.start(rows)
+    said = log.messages(sender, log.number(SERVO_MESSAGE))
+    starts, table = sender.starts(said.rows), said.table
     channels: dict[str, Channel] = {}
     names: dict[int, str] = {}
     for start in np.unique(starts).tolist():
@@ -302,13 +227,13 @@ def _deflections(
             name = f"servo/{sender.name}/{n}{boot}:deflection"
             names.setdefault(n, name)
             if asked(name, wanted):
-                t = sent.t[part]
+                t = said.sent.t[part]
                 pwm = table[f"servo{output + 1}_raw"][part].astype(np.float64)
                 y = servo_deflection.deflection(pwm, t, n, known)
                 words = servo_deflection.description(n, function)
                 channels[name] = Channel(
-                    name, t, y, None, sent.clock, words, "delta_order", "starboard",
-                    log.found.stamp[rows[part]],
+                    name, t, y, None, said.sent.clock, words, "delta_order", "starboard",
+                    said.received[part],
                 )  # fmt: skip
     return channels, names
 
@@ -360,27 +285,23 @@ def _words_of_sender(log: Log, sender: Sender, names: dict[int, str]) -> Iterato
             f"restarted {len(sender.boot.first)} times (received {dates}); the channels after a "
             "restart are called boot2 and so on"
         )
-    beats = log.rows(sender, log.number("HEARTBEAT"))
-    one = log.known[log.number("HEARTBEAT")]
-    table = tlog_frames.payloads(log.found, beats, one)
+    beats = log.messages(sender, log.number("HEARTBEAT"))
+    table = beats.table
     steers = table["autopilot"] != NO_AUTOPILOT
     if not steers.any():
         return
     known = _parameters(log, sender, 0)
     yield from servo_deflection.remarks(known, names)
     yield from servo_deflection.changes(known)
-    t = _sent(log, sender, one, beats, table).t
     rover = bool(np.isin(table["type"], ROVERS).any())
-    yield from vehicle_modes.modes(t, table["custom_mode"].astype(np.int64), rover)
-    yield from vehicle_modes.arming(t, (table["base_mode"] & ARMED) != 0)
+    yield from vehicle_modes.modes(beats.sent.t, table["custom_mode"].astype(np.int64), rover)
+    yield from vehicle_modes.arming(beats.sent.t, (table["base_mode"] & ARMED) != 0)
     yield from _start_date(log, sender)
 
 
 def _start_date(log: Log, sender: Sender) -> Iterator[str]:
     """A remark on the date, by the sender's own SYSTEM_TIME."""
-    number = log.number("SYSTEM_TIME")
-    rows = log.rows(sender, number)
-    table = tlog_frames.payloads(log.found, rows, log.known[number])
+    table = log.messages(sender, log.number("SYSTEM_TIME")).table
     dated = np.flatnonzero(table["time_unix_usec"] > tlog_clock.CALENDAR_US)
     if len(dated) and table["time_unix_usec"][dated[0]] < tlog_frames.LATEST_US:
         unix = int(table["time_unix_usec"][dated[0]])

@@ -51,9 +51,11 @@ def _same_stamps(one: Channel, other: Channel) -> bool:
 
 def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
     t, y, own = channel.t, channel.y, stamps
-    there = np.isfinite(y) & (np.abs(y) < MARKER)
-    if not there.all():
+    low, high = y.min(), y.max()
+    if not (low > -MARKER and high < MARKER):  # nor where one is NaN
+        there = np.isfinite(y) & (np.abs(y) < MARKER)
         t, y = t[there], y[there]
+        low, high = (y.min(), y.max()) if len(y) else (np.nan, np.nan)
         own = health(t, channel.clock, None) if len(t) else stamps
         own = dataclasses.replace(own, clock=stamps.clock)
     if own.order is not None and len(t):
@@ -63,14 +65,14 @@ def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
     angle = guess is not None and SIGNALS[guess.quantity].angle
     return ChannelSurvey(
         name=channel.name,
-        start=int(channel.t.min()),
-        end=int(channel.t.max()),
+        start=stamps.start,
+        end=stamps.end,
         samples=len(channel.t),
         missing=1.0 - len(y) / len(channel.y),
         rate=1.0 / own.period if own.period else 0.0,
         gaps=own.gaps,
-        low=float(y.min()) if len(y) else np.nan,
-        high=float(y.max()) if len(y) else np.nan,
+        low=float(low),
+        high=float(high),
         clock=own.clock,
         unit=channel.unit,
         unit_in_name=None if channel.unit else names.unit_in_name(channel.name),

@@ -31,7 +31,7 @@ def sketch(t: NDArray[np.int64], y: Vector, turn: float | None = None) -> Sketch
     >>> sketch(np.array([0, 10, 20]), np.array([1.0, 2.0, 4.0])).y.tolist()
     [1.0, 2.0, 4.0]
     """
-    if turn is not None:
+    if turn is not None and np.abs(np.diff(y)).max(initial=0.0) >= turn / 2:
         y = np.unwrap(y, period=turn)
     size = -(-len(t) // POINTS)
     if size <= 1:

@@ -13,8 +13,13 @@ Stamps = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Health:
-    """What the stamps of one channel say; `order` sorts them, None where they are sorted."""
+    """What the stamps of one channel say; `order` sorts them, None where they are sorted.
 
+    `start` and `end` are the first and the last in time [ns].
+    """
+
+    start: int
+    end: int
     period: float
     gaps: Gaps
     clock: Clock
@@ -26,18 +31,20 @@ def health(t: Stamps, words: str, received: Stamps | None) -> Health:
     steps = np.diff(t)
     back = steps[steps < 0]
     order = np.argsort(t, kind="stable") if len(back) else None
+    first, last = (0, -1) if order is None else order[[0, -1]].tolist()
     forward = steps if order is None else np.diff(t[order])
     new = forward[forward > 0]
     period = float(np.median(new)) / 1e9 if len(new) else 0.0
+    seconds = new / 1e9
     clock = Clock(
         words=words,
-        jitter=_jitter(new / 1e9, period),
+        jitter=_jitter(seconds, period),
         steps_back=len(back),
         furthest_back=float(-back.min()) / 1e9 if len(back) else 0.0,
         same=len(forward) - len(new),
         received=None if received is None else against(t, received),
     )
-    return Health(period, gaps(new / 1e9, period), clock, order)
+    return Health(int(t[first]), int(t[last]), period, gaps(seconds, period), clock, order)
 
 
 def gaps(steps: NDArray[np.float64], period: float) -> Gaps:
@@ -66,11 +73,14 @@ def against(t: Stamps, received: Stamps) -> Received | None:
     """
     if len(t) < 10:
         return None
-    late = (received - t) / 1e9
-    at = (t - t[0]) / 1e9
-    if np.ptp(at) == 0.0:
+    if t.min() == t.max():
         return None
-    centred = at - at.mean()
-    drift = float(centred @ (late - late.mean()) / (centred @ centred))
-    left = late - late.mean() - drift * centred
-    return Received(float(np.median(late)), drift, float(np.sqrt(np.mean(left**2))))
+    late = (received - t) / 1e9
+    centred = (t - t[0]) / 1e9
+    centred -= centred.mean()
+    left = late - late.mean()
+    drift = float(centred @ left / (centred @ centred))
+    centred *= drift
+    left -= centred
+    left *= left
+    return Received(float(np.median(late)), drift, float(np.sqrt(np.mean(left))))
