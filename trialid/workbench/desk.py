@@ -249,7 +249,7 @@ class Desk:
             try:
                 if self._document.reread():
                     self._changed_elsewhere(f"{self.path.name} was edited elsewhere")
-                elif trouble is not None or changed - {self.path}:
+                elif changed - {self.path} or (trouble and trouble.where == "effects"):
                     available(self._document.recipe)
                     self._changed_elsewhere("an effect file or the ship was edited")
             except TrialidError as error:

@@ -3,6 +3,8 @@
 (() => {
   "use strict";
 
+  const LOST = "No connection to trialid. Is it still running in its terminal?";
+
   const ABOVE = 22;                     // px a panel's heading takes
   const CLOCK = 26;                     // px of the time axis below a residual
   const AGAIN = 1000;                   // ms until the parts are asked for again
@@ -73,25 +75,25 @@
 
   /* ---- what went wrong ---- */
 
-  function complaint() {
+  /* About an edit: refused, or taken back since it could not be fitted. */
+  function complaint(trouble) {
     if (state.refused) return state.refused;
-    const trouble = state.status && state.status.trouble;
-    if (!trouble) return null;
-    return { key: taken(trouble) ? state.edited : null, words: trouble.words };
+    return trouble && taken(trouble) ? { key: state.edited, words: trouble.words } : null;
   }
 
   /* Whether it is about an edit, which was taken back, and not about a file as somebody left it. */
   const taken = (trouble) => trouble.where === "fit" || trouble.words.endsWith("taken back");
 
-  /* Beside the control that made the edit where it is still there and seen, else under the bar. */
+  /* About an edit: beside its control where that is still there and seen; all else under the bar. */
   function complain() {
-    const told = complaint();
+    const trouble = state.status && state.status.trouble;
+    const told = complaint(trouble);
     const row = told && told.key && rowOf(told.key);
+    banner(trouble && !taken(trouble) ? trouble.words : told && !row ? told.words : state.lost ? LOST : "");
     const shown = [...document.querySelectorAll(".complaint")];
     if (row && shown.length === 1 && shown[0].parentElement === row && shown[0].textContent === told.words) return;
     shown.forEach((each) => each.remove());
     if (row) complainIn(row, told.words, shown.length === 0);
-    banner(told && !row ? told.words : state.lost ? "No connection to trialid. Is it still running in its terminal?" : "");
   }
 
   function rowOf(key) {
