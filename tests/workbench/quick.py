@@ -191,7 +191,6 @@ class Address:
         """Everything that comes back for bytes sent as they are, up to the end."""
         with socket.create_connection(("127.0.0.1", self.port), timeout=LONGEST) as link:
             link.sendall(text)
-            link.shutdown(socket.SHUT_WR)
             return b"".join(iter(lambda: link.recv(65536), b""))
 
 

@@ -14,7 +14,8 @@ from trialid import cli, history
 from trialid.errors import RecipeError, TrialidError
 from trialid.pipeline import run
 from trialid.recipe import load
-from trialid.workbench import compute, desk as desk_module
+from trialid.workbench import compute
+from trialid.workbench import desk as desk_module
 from trialid.workbench.desk import Desk
 from trialid.workbench.document import Outdated
 from trialid.workbench.shown import Shown

@@ -51,11 +51,12 @@ def application(desk: Desk, token: str | None = None) -> Guard:
         Route("/api/events", _events),
         Route("/api/status", _status),
         Route("/api/screen", _screen),
-        Route("/api/series/{index:int}", _series),
+        Route("/api/series/{index}", _series),
         Route("/api/result", _result),
         *(Route(f"/api/{name}", _post(act), methods=["POST"]) for name, act in ACTS.items()),
     ]
     app = Starlette(routes=routes, exception_handlers={TrialidError: _refused})
+    app.router.redirect_slashes = False
     app.state.desk = desk
     return Guard(app, token)
 
@@ -138,9 +139,10 @@ def _screen(request: Request) -> Response:
 def _series(request: Request) -> Response:
     desk = _desk(request)
     count, shown = desk.status.series, desk.shown
-    index = request.path_params["index"]
-    if index >= len(shown.series):
-        return JSONResponse({"error": f"there is no trial {index}"}, status_code=404)
+    wanted = request.path_params["index"]
+    index = next((i for i in range(len(shown.series)) if str(i) == wanted), None)
+    if index is None:
+        return JSONResponse({"error": "there is no such trial"}, status_code=404)
     return JSONResponse({"series": count, **screen.panels(shown, index)})
 
 
