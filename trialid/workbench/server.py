@@ -177,7 +177,7 @@ def _post(act: Act) -> Callable[[Request], Any]:
     async def answered(request: Request) -> Response:
         try:
             asked = await request.json()
-        except ValueError:
+        except (ValueError, RecursionError):  # a thousand brackets, one in another
             asked = None
         if not isinstance(asked, dict):
             return JSONResponse({"error": "send one JSON object", "kind": "invalid"}, 400)
