@@ -4,6 +4,7 @@ import asyncio
 import json
 import socket
 from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from functools import cache
 from importlib import resources
@@ -61,6 +62,19 @@ def application(desk: Desk, token: str | None = None) -> Guard:
     return Guard(app, token)
 
 
+class _Server(uvicorn.Server):
+    """Ends the pages' news before it waits for them."""
+
+    def __init__(self, config: uvicorn.Config, desk: Desk) -> None:
+        super().__init__(config)
+        self._desk = desk
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Close the desk, then the connections."""
+        self._desk.close()
+        await super().shutdown(sockets)
+
+
 def serve(desk: Desk, listening: socket.socket, token: str | None = None) -> None:
     """Answer until Ctrl-C."""
     config = uvicorn.Config(
@@ -71,7 +85,8 @@ def serve(desk: Desk, listening: socket.socket, token: str | None = None) -> Non
         server_header=False,
     )
     try:
-        uvicorn.Server(config).run(sockets=[listening])
+        with suppress(KeyboardInterrupt):  # the way to end it, which is no failure
+            _Server(config, desk).run(sockets=[listening])
     finally:
         desk.close()
 
@@ -111,7 +126,7 @@ async def _events(request: Request) -> Response:
 async def _news(request: Request) -> AsyncIterator[str]:
     """Every new status as an event, at most one a tick."""
     desk, serial, silent = _desk(request), -1, 0.0
-    while True:
+    while not desk.closed:
         status = _plain_status(desk)
         if status["serial"] != serial:
             serial, silent = status["serial"], 0.0
