@@ -66,6 +66,8 @@ def _loopback(host: str) -> bool:
 
 def _listening(host: str, port: int | None) -> socket.socket:
     """A socket that listens on the port asked for, or on the first free one."""
+    if not host.strip():  # which would be every address there is
+        raise TrialidError("the workbench cannot answer on no address; give a --host, or none")
     last: OSError | None = None
     for wanted in range(PORT, PORT + TRIED) if port is None else (port,):
         try:

@@ -3,8 +3,12 @@
 import contextlib
 import http.client
 import json
+import os
+import re
 import shutil
 import socket
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -28,7 +32,7 @@ OTHER = "sway_froude"
 SPARE = "roll_rate_yaw"
 """An effect of the model without which it still can be fitted."""
 
-LONGEST = 15.0
+LONGEST = 60.0
 """A machine that needs more for what takes a second here is broken [s]."""
 
 TEXT = """\
@@ -191,7 +195,6 @@ class Address:
         """Everything that comes back for bytes sent as they are, up to the end."""
         with socket.create_connection(("127.0.0.1", self.port), timeout=LONGEST) as link:
             link.sendall(text)
-            link.shutdown(socket.SHUT_WR)
             return b"".join(iter(lambda: link.recv(65536), b""))
 
 
@@ -211,3 +214,41 @@ def serving(desk: Desk, token: str | None = None) -> Iterator[Address]:
         finally:
             running.should_exit = True
             thread.join(LONGEST)
+
+
+@dataclass(frozen=True)
+class Running:
+    """`trialid workbench` in a process of its own, and what it printed first."""
+
+    process: subprocess.Popen[str]
+    address: Address
+    said: str
+
+    def ended(self) -> tuple[int, str, str]:
+        """Wait for its end: its status, the rest of what it printed, and its complaints."""
+        out, err = self.process.communicate(timeout=LONGEST)
+        return self.process.returncode, out, err
+
+
+def command(*words: str) -> subprocess.Popen[str]:
+    """`trialid workbench` with these words."""
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    return subprocess.Popen(
+        [sys.executable, "-u", "-m", "trialid", "workbench", *words],
+        env={**os.environ, "PYTHONPATH": path}, text=True,
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+
+
+@contextmanager
+def running(*words: str) -> Iterator[Running]:
+    """The command once it answers; ended in any case."""
+    with command(*words) as process:
+        try:
+            assert process.stdout is not None
+            said = process.stdout.readline()
+            found = re.search(r":(\d+)/", said)
+            assert found is not None, said + "".join(process.stderr or ())
+            yield Running(process, Address(int(found[1])), said)
+        finally:
+            process.kill()

@@ -499,7 +499,7 @@ def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: An
         mine.write_text(quick.OWN.replace("v * abs(v)", "r * abs(r)"), encoding="utf-8")
         serial = desk.status.serial
         looks.go()
-        until(lambda: desk.status.serial > serial + 3, "the effect file to be seen")
+        until(lambda: desk.status.serial > serial, "the effect file to be seen")
         diagnosed(desk)
         assert result(desk) == dict(run(load(path)).result)
 

@@ -90,6 +90,11 @@ class Desk:
             trouble = self._outside or self._trouble
             return status_of(self._document, self._shown, self._counts, self._working, trouble)
 
+    @property
+    def closed(self) -> bool:
+        """Whether it is at its end: nothing is written any more."""
+        return self._ended.is_set()
+
     def edit(self, asked: object) -> None:
         """Do what a page asks for: it is in the file when this returns, the refit has begun.
 
@@ -150,7 +155,7 @@ class Desk:
     def _open(self) -> Iterator[None]:
         """The lock, unless it is closed: nothing is written then."""
         with self._lock:
-            if self._ended.is_set():
+            if self.closed:
                 raise RecipeError("the workbench is closed; nothing was done")
             yield
 
@@ -243,7 +248,7 @@ class Desk:
     def _look(self, changed: set[Path]) -> None:
         """Take over what was changed elsewhere."""
         with self._lock:
-            if self._ended.is_set():
+            if self.closed:
                 return
             trouble, self._outside = self._outside, None
             try:

@@ -5,6 +5,7 @@ both are told by headers that no page can forge.
 """
 
 import hmac
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -91,7 +92,8 @@ def _refused_body(headers: Headers) -> Response | None:
     if kind != "application/json":  # what another site's form cannot send unasked
         return _no(415, "send application/json")
     length = headers.get("content-length", "")
-    if not length.isdigit() or int(length) > LARGEST:
+    known = re.fullmatch("[0-9]{1,9}", length) and "transfer-encoding" not in headers
+    if not known or int(length) > LARGEST:
         return _no(413, f"send at most {LARGEST} bytes, and say how many")
     return None
 

@@ -1,11 +1,20 @@
 """What leaves the workbench: a copy of the pipeline beside it, the folder of a finished run."""
 
+import re
 from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Final
 
 from trialid.errors import RecipeError
 from trialid.pipeline import write
 from trialid.recipe import Recipe, sources
 from trialid.workbench.shown import Shown
+
+LONGEST: Final = 200
+"""Bytes of a file's name; file systems end at 255."""
+
+ODD: Final = frozenset('<>:"|?*')
+DEVICE: Final = re.compile(r"(con|prn|aux|nul|(com|lpt)\d)\.", re.IGNORECASE)
+"""What Windows cannot have in a name, or does not take for a file's."""
 
 
 def copied(recipe: Recipe, name: str) -> str:
@@ -16,8 +25,7 @@ def copied(recipe: Recipe, name: str) -> str:
     RecipeError
         The name is none, or taken.
     """
-    bare = {PurePosixPath(name).name, PureWindowsPath(name).name} == {name}
-    if not bare or name.startswith(".") or not name.isprintable() or len(name.encode()) > 200:
+    if not _plain(name):
         raise RecipeError(f"{name!r}: give a plain file name, without a folder")
     if not name.endswith(".toml"):
         raise RecipeError(f"{name!r}: a pipeline's name ends in .toml")
@@ -30,6 +38,14 @@ def copied(recipe: Recipe, name: str) -> str:
     except OSError as error:
         raise RecipeError(f"{name}: cannot be written ({error.strerror})") from error
     return name
+
+
+def _plain(name: str) -> bool:
+    """Whether it names a file in the same folder, and on every system."""
+    if not name.isprintable() or name.startswith(".") or len(name.encode()) > LONGEST:
+        return False
+    bare = {PurePosixPath(name).name, PureWindowsPath(name).name} == {name}
+    return bare and not set(name) & ODD and DEVICE.match(name) is None
 
 
 def written(shown: Shown) -> list[str]:

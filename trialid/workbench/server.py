@@ -4,10 +4,10 @@ import asyncio
 import json
 import socket
 from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from functools import cache
 from importlib import resources
-from types import FrameType
 from typing import Any, Final
 
 import uvicorn
@@ -52,26 +52,27 @@ def application(desk: Desk, token: str | None = None) -> Guard:
         Route("/api/events", _events),
         Route("/api/status", _status),
         Route("/api/screen", _screen),
-        Route("/api/series/{index:int}", _series),
+        Route("/api/series/{index}", _series),
         Route("/api/result", _result),
         *(Route(f"/api/{name}", _post(act), methods=["POST"]) for name, act in ACTS.items()),
     ]
     app = Starlette(routes=routes, exception_handlers={TrialidError: _refused})
+    app.router.redirect_slashes = False
     app.state.desk = desk
     return Guard(app, token)
 
 
 class _Server(uvicorn.Server):
-    """Ends the streams of listening pages with itself, which would keep it waiting."""
+    """Ends the pages' news before it waits for them."""
 
     def __init__(self, config: uvicorn.Config, desk: Desk) -> None:
         super().__init__(config)
         self._desk = desk
 
-    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        """Close the desk at the first sign of the end."""
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Close the desk, then the connections."""
         self._desk.close()
-        super().handle_exit(sig, frame)
+        await super().shutdown(sockets)
 
 
 def serve(desk: Desk, listening: socket.socket, token: str | None = None) -> None:
@@ -84,7 +85,8 @@ def serve(desk: Desk, listening: socket.socket, token: str | None = None) -> Non
         server_header=False,
     )
     try:
-        _Server(config, desk).run(sockets=[listening])
+        with suppress(KeyboardInterrupt):  # the way to end it, which is no failure
+            _Server(config, desk).run(sockets=[listening])
     finally:
         desk.close()
 
@@ -152,9 +154,10 @@ def _screen(request: Request) -> Response:
 def _series(request: Request) -> Response:
     desk = _desk(request)
     count, shown = desk.status.series, desk.shown
-    index = request.path_params["index"]
-    if index >= len(shown.series):
-        return JSONResponse({"error": f"there is no trial {index}"}, status_code=404)
+    wanted = request.path_params["index"]
+    index = next((i for i in range(len(shown.series)) if str(i) == wanted), None)
+    if index is None:
+        return JSONResponse({"error": "there is no such trial"}, status_code=404)
     return JSONResponse({"series": count, **screen.panels(shown, index)})
 
 
@@ -189,7 +192,7 @@ def _post(act: Act) -> Callable[[Request], Any]:
     async def answered(request: Request) -> Response:
         try:
             asked = await request.json()
-        except ValueError:
+        except (ValueError, RecursionError):  # a thousand brackets, one in another
             asked = None
         if not isinstance(asked, dict):
             return JSONResponse({"error": "send one JSON object", "kind": "invalid"}, 400)

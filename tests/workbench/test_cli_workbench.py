@@ -1,0 +1,123 @@
+"""The command: what it prints, where it answers, and how it ends."""
+
+import contextlib
+import http.client
+import re
+import signal
+import socket
+import time
+from pathlib import Path
+
+import pytest
+import quick
+from click.testing import CliRunner
+from quick import ADDED
+
+from trialid import cli
+from trialid.cli_workbench import PORT, TRIED
+from trialid.recipe import load
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return quick.write(tmp_path)
+
+
+def refused(*words: str) -> str:
+    """The one line with which the command ends."""
+    done = CliRunner().invoke(cli.commands, ["workbench", *words], prog_name="trialid")
+    assert isinstance(done.exception, SystemExit), repr(done.exception)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr.startswith("trialid: ")
+    assert done.stderr.count("\n") == 1
+    return done.stderr
+
+
+@pytest.mark.parametrize(("spoil", "words"), [
+    (lambda p: p.unlink(), ("no such pipeline",)),
+    (lambda p: p.write_text("[model"), ("quick.toml: not TOML",)),
+    (lambda p: p.write_text(quick.TEXT.replace("outputs", "outptus")), ("identify.outptus",)),
+    (lambda p: p.write_text(quick.TEXT.replace("log.csv", "lg.csv")), ("lg.csv",)),
+    (lambda p: p.write_text(quick.TEXT + '[model]\n'), ("not TOML",)),
+    (lambda p: (p.unlink(), p.mkdir()), ("quick.toml",)),
+])  # fmt: skip
+def test_a_wrong_file_is_one_line(path: Path, spoil, words) -> None:
+    spoil(path)
+    said = refused(str(path))
+    assert [word for word in words if word not in said] == [], said
+
+
+def test_a_port_that_is_taken_is_one_line(path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        said = refused(str(path), "--port", str(port))
+    assert f"port {port}" in said
+    assert "--port" in said
+
+
+@pytest.mark.parametrize("host", ["192.0.2.1", "no.such.host.invalid", "::zz", "a b", ""])
+def test_an_address_that_is_not_this_machines_is_one_line(path: Path, host: str) -> None:
+    assert "cannot answer on" in refused(str(path), "--host", host, "--port", "0")
+
+
+@pytest.mark.parametrize("port", ["-1", "65536", "x"])
+def test_a_port_that_is_none(path: Path, port: str) -> None:
+    done = CliRunner().invoke(cli.commands, ["workbench", str(path), "--port", port])
+    assert done.exit_code == 2
+
+
+def test_it_says_where_it_is_and_edits_the_file(path: Path) -> None:
+    with quick.running(str(path), "--port", "0") as bench:
+        port = bench.address.port
+        assert bench.said == f"Workbench: http://127.0.0.1:{port}/\n"
+        assert bench.process.stdout is not None
+        assert bench.process.stdout.readline() == (
+            f"Every edit is in {path} at once. Ctrl-C ends it.\n"
+        )
+        answer = bench.address.get("/")
+        assert answer.status == 200
+        assert "server" not in answer.headers
+        assert bench.address.edit("add", effect=ADDED).status == 200
+        assert load(path).model.effects[-1] == ADDED
+        bench.process.send_signal(signal.SIGINT)  # with a fit under way
+        assert bench.ended() == (0, "", "")
+    assert load(path).model.effects[-1] == ADDED
+
+
+def test_the_next_port_is_taken_where_the_usual_one_is(path: Path) -> None:
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):  # something else has it: as good
+            stack.enter_context(socket.create_server(("127.0.0.1", PORT)))
+        bench = stack.enter_context(quick.running(str(path)))
+        assert PORT < bench.address.port < PORT + TRIED
+        assert bench.address.get("/api/status").status == 200
+
+
+def test_ctrl_c_ends_it_with_pages_listening(path: Path) -> None:
+    with quick.running(str(path), "--port", "0") as bench, contextlib.ExitStack() as stack:
+        for _ in range(3):
+            link = http.client.HTTPConnection("127.0.0.1", bench.address.port, timeout=30)
+            stack.enter_context(contextlib.closing(link))
+            link.request("GET", "/api/events")
+            assert link.getresponse().readline().startswith(b"data: ")
+        quick.until(lambda: bench.address.status()["working"] is None, "the work to end")
+        begin = time.monotonic()
+        bench.process.send_signal(signal.SIGINT)
+        status, _, complaints = bench.ended()
+        assert (status, complaints) == (0, "")
+        assert time.monotonic() - begin < 3.0
+    assert path.read_text(encoding="utf-8") == quick.TEXT
+
+
+def test_on_every_address_it_asks_for_a_token(path: Path) -> None:
+    with quick.running(str(path), "--host", "0.0.0.0", "--port", "0") as bench:
+        found = re.search(r"\?token=([\w-]{32,})\n", bench.said)
+        assert found is not None, bench.said
+        assert bench.address.get("/api/status").status == 401
+        greeted = bench.address.get(f"/?token={found[1]}")
+        assert greeted.status == 303
+        cookie = greeted.headers["set-cookie"].partition(";")[0]
+        assert bench.address.get("/api/status", Cookie=cookie).status == 200
+    with quick.running(str(path), "--host", "0.0.0.0", "--port", "0") as other:
+        assert found[1] not in other.said
+        assert other.address.get("/api/status", Cookie=cookie).status == 401
