@@ -146,11 +146,6 @@ class Desk:
             if self._job is not None:
                 self._let_go(self._job)
 
-    @property
-    def closed(self) -> bool:
-        """Whether nothing is done here any more."""
-        return self._ended.is_set()
-
     @contextmanager
     def _open(self) -> Iterator[None]:
         """The lock, unless it is closed: nothing is written then."""
