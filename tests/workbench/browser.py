@@ -58,6 +58,7 @@ class Screen:
         """Wait until nothing is worked out any more."""
         self.page.locator("#working").wait_for(state="hidden")
         self.page.locator("[data-part] .stale").first.wait_for(state="detached")
+        self.page.locator(".panels canvas").first.wait_for()
 
     def picture(self, name: str) -> None:
         """Keep what is to be seen."""
