@@ -8,7 +8,6 @@ from typing import Final, Literal
 import numpy as np
 
 from trialid.alignment import frames
-from trialid.alignment.frames import MARKER
 from trialid.alignment.sources import SignalSource
 from trialid.errors import TrialidError
 from trialid.quantities import SIGNALS
@@ -51,7 +50,7 @@ def _same_stamps(one: Channel, other: Channel) -> bool:
 
 def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
     t, y, own = channel.t, channel.y, stamps
-    there = np.isfinite(y) & (np.abs(y) < MARKER)
+    there = np.isfinite(frames.measured(y))
     if not there.all():
         t, y = t[there], y[there]
         own = health(t, channel.clock, None) if len(t) else stamps
