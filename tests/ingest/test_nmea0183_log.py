@@ -324,6 +324,18 @@ def test_sentences_run_together_are_none_though_their_checksum_fits(tmp_path, bo
     assert any(one.startswith(counted) for one in found.remarks)
 
 
+def test_a_writer_that_runs_sentences_together_is_counted_once_a_line(tmp_path):
+    """As a multiplexer does with VLW: the checksum is that of the whole line."""
+    body = "SDVLW,$SDVLW,,N,322.0,N,$SDVLW,$SDVLW,,N,322.0,N,2315.4,N"
+    lines = [with_iso(t, "", text) + f"${body}*{checksum(body)}\r\n" for t, text in stamped()]
+    recording = read_text(tmp_path, "".join(lines))
+    assert len(recording.channels["ROT/TI:rate"].y) == 40
+    assert recording.remarks == (
+        "recovered 40 of about 80 sentences: 0 with a wrong checksum, 40 with characters no "
+        "sentence holds and 0 cut or without one left out",
+    )
+
+
 def test_without_any_checksum_all_is_taken_and_said(tmp_path):
     lines = [f"{iso(t)} {text.partition('*')[0]}\r\n" for t, text in stamped()]
     recording = read_text(tmp_path, "".join(lines))

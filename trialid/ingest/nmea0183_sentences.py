@@ -104,13 +104,14 @@ def sentences(data: Bytes, checked: bool = True) -> Sentences:
     ended = np.concatenate([[-1], stars[:-1] + 2]) if len(stars) else stars
     low, start = np.maximum(_last(lines, stars), ended), _last(marks, stars)
     found = start > low
-    stars, start = stars[found], start[found]
-    low = np.maximum(low[found], _last(marks, start))
-    body = Span(start + 1, stars)
+    first, body = _next(marks, low[found], len(data)), Span(start[found] + 1, stars[found])
     right, plain = agrees(data, body), _plain(data, body)
-    lost = int((~right).sum()), int((right & ~plain).sum()), len(marks) - len(start)
-    sound = right & plain
-    return _indexed(data, body.of(sound), low[sound] + 1, lost)
+    sound, cut = right & plain, first < body.a - 1
+    doubled = _agree(data, Span(first + 1, body.b), cut & ~right)
+    wrong, foreign = ~right & ~doubled, (right & ~plain) | doubled
+    bare = int((cut & ~doubled).sum()) + _lines_with_none(lines, marks, stars, len(data))
+    low = np.maximum(low[found], _last(marks, body.a - 1))[sound] + 1
+    return _indexed(data, body.of(sound), low, (int(wrong.sum()), int(foreign.sum()), bare))
 
 
 def has_checksums(data: Bytes) -> bool:
@@ -151,6 +152,22 @@ def _last(places: Places, before: Places) -> Places:
 
 def _next(places: Places, after: Places, none: int) -> Places:
     return np.concatenate([places, [none]])[np.searchsorted(places, after, "right")].astype(np.intp)
+
+
+def _agree(data: Bytes, span: Span, asked: Mask) -> Mask:
+    """True where a stretch that is asked has the checksum stated behind."""
+    right, rows = np.zeros(len(asked), np.bool_), np.flatnonzero(asked)
+    right[rows] = agrees(data, span.of(rows))
+    return right
+
+
+def _lines_with_none(lines: Places, marks: Places, stars: Places, size: int) -> int:
+    """How many lines have a `$` and no checksum at all."""
+    edges = np.concatenate([lines, [size]])
+    cut = np.zeros(len(edges), np.bool_)
+    cut[np.searchsorted(edges, marks)] = True
+    cut[np.searchsorted(edges, stars)] = False
+    return int(cut.sum())
 
 
 def _marks(data: Bytes) -> Places:
