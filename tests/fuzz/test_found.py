@@ -1,14 +1,18 @@
 """What fuzzing found, each by the smallest thing that shows it."""
 
+import struct
 from pathlib import Path
 
 import numpy as np
 import pytest
+import seed_logs  # it finds the writers
+from resealed import SEALS
 
-from trialid.alignment import checks, clocks, signs, twins
+from trialid.alignment import LogClock, SignalSource, checks, clocks, signs, twins
 from trialid.alignment.clocks import Series
+from trialid.alignment.log_clock import on_one_clock
 from trialid.errors import AlignmentError, LogError
-from trialid.ingest import template
+from trialid.ingest import read, template
 from trialid.quantities import SIGNALS
 from trialid.recording import Channel, Recording
 from trialid.survey import channels, sketch
@@ -88,3 +92,46 @@ def test_a_form_of_dates_with_a_code_twice(tmp_path):
     )
     with pytest.raises(LogError, match=r"time\.format: '%d\.%m\.%d' holds a code twice"):
         template.load(aid)
+
+
+def test_numbers_past_all_in_one_of_two_channels_of_a_quantity():
+    wild = np.where(np.arange(len(T)) == 7, 1e200, Y)
+    pair = {
+        name: Channel(name, T, y, "rad/s", quantity="r") for name, y in {"a": Y, "b": wild}.items()
+    }
+    chosen = SignalSource("r", "a", "rad/s")
+    assert twins.unchosen([chosen], [Recording(Path("log"), "mcap", "", pair)]) == ()
+
+
+def by_match(y):
+    """The clock of a log by a channel of these values and that of another log."""
+    t = np.arange(len(y), dtype=np.int64) * 100_000_000
+    rough = np.convolve(np.random.default_rng(0).normal(size=len(y)), np.ones(50) / 50, "same")
+    logs = {"a": rough + y, "b": rough}
+    recordings = [
+        Recording(Path(name), "csv", "", {name: Channel(name, t, y)}) for name, y in logs.items()
+    ]
+    return on_one_clock(recordings, [LogClock(match=("a", "b")), None], "trial", repair=False)
+
+
+def test_a_clock_by_a_channel_with_numbers_past_all():
+    y = np.zeros(2000)
+    y[7] = 1e200
+    (line,) = by_match(y)[1]
+    assert "0.0000 s ahead" in line
+
+
+def test_a_clock_by_a_channel_without_a_value():
+    with pytest.raises(AlignmentError, match="'a' has 0 values, at least 100 are needed"):
+        by_match(np.full(2000, np.nan))
+
+
+def test_a_message_of_blf_too_short_for_its_kind_of_header(tmp_path):
+    short = struct.pack("<4sHHLL", b"LOBJ", 40, 2, 48, 86).ljust(48, b"\0")
+    (seed,) = (s for s in seed_logs.seed_logs(tmp_path) if s.name == "blf, small containers")
+    path = tmp_path / "log"
+    path.write_bytes(SEALS["blf"](seed.log, lambda number, c: short + c if not number else c)[0])
+    whole, found = tmp_path / "whole", read(path)
+    whole.write_bytes(seed.log)
+    for name, channel in read(whole).channels.items():
+        np.testing.assert_array_equal(found.channels[name].y, channel.y)

@@ -1,5 +1,7 @@
 """NMEA 0183 and Signal K logs: what was written comes back, the clocks, the traps of recorders."""
 
+from functools import reduce
+from operator import xor
 from pathlib import Path
 
 import numpy as np
@@ -268,14 +270,69 @@ def test_a_wrong_checksum_is_left_out_and_counted(tmp_path):
     lines = [with_iso(t, "", text) for t, text in stamped()]
     lines[3] = lines[3].replace("3.0,A", "8.0,A")
     lines[4] = lines[4].partition("*")[0] + "\r\n"
-    lines[5] = lines[5][:35] + lines[6]
+    lines[5] = lines[5].partition(",A*")[0] + " " + lines[6]
     del lines[6]
     recording = read_text(tmp_path, "".join(lines))
-    kept = [*range(3), *range(6, 40)]
-    np.testing.assert_array_equal(recording.channels["ROT/TI:rate"].y, kept)
+    channel = recording.channels["ROT/TI:rate"]
+    np.testing.assert_array_equal(channel.y, [*range(3), *range(6, 40)])
+    np.testing.assert_array_equal(channel.t, START + channel.y.astype(np.int64) * SECOND // 10)
     assert recording.remarks == (
-        "recovered 37 of about 39 sentences: 1 with a wrong checksum and 1 lines cut or without "
-        "one left out",
+        "recovered 37 of about 40 sentences: 1 with a wrong checksum and 2 cut or without one left "
+        "out",
+    )
+
+
+def test_the_stamp_of_a_sentence_that_was_cut_is_not_that_of_the_next(tmp_path):
+    lines = [with_iso(t, "", text) for t, text in stamped()]
+    lines[5:10] = [lines[5].partition(",A*")[0] + lines[9].partition(" ")[2]]
+    recording = read_text(tmp_path, "".join(lines))
+    np.testing.assert_array_equal(recording.channels["ROT/TI:rate"].y, [*range(5), *range(10, 40)])
+    assert recording.remarks[1] == "1 of 36 sentences without a usable time left out"
+
+
+def test_a_sentence_behind_a_wrong_one_does_not_take_the_stamp_of_the_line_before(tmp_path):
+    lines = [with_iso(t, "", text) for t, text in stamped()]
+    lines[5] = lines[5].rstrip() + rot(105.0) + "\r\n"
+    lines[7] = lines[7].replace("7.0,A", "8.0,A").rstrip() + rot(107.0) + "\r\n"
+    channel = read_text(tmp_path, "".join(lines)).channels["ROT/TI:rate"]
+    assert channel.t[channel.y == 105.0] == channel.t[channel.y == 5.0]
+    assert not {7.0, 107.0} & set(channel.y)
+
+
+RUN_TOGETHER = {
+    "a sentence in a name": b"IIXDR,A,-2.02,D,11\\$TIROT,31.24,A",
+    "a line in a name": b"IIXDR,A,1.85,D,\xff\xff1700000001400;N;$TIROT,-2.06,A",
+    "a row in a name": b'IIXDR,A,0.57,D,R,NMEA0183,TCP,XDR,"$IIXDR,A,0.85,D,ROLL',
+    "another kind": b"IIXDR,A,0.57,D,R!AIVDM,1,1",
+    "a mark alone": b"IIXDR,A,0.57,D,R$1",
+    "bytes": b"IIXDR,A,0.57,D,\xff\x01R",
+}
+
+
+@pytest.mark.parametrize("body", RUN_TOGETHER.values(), ids=RUN_TOGETHER)
+@pytest.mark.parametrize("checked", [True, False], ids=["checked", "bare"])
+def test_sentences_run_together_are_none_though_their_checksum_fits(tmp_path, body, checked):
+    good = [with_iso(t, "", text).encode() for t, text in stamped()]
+    bad = good[7].partition(b"$")[0] + b"$" + body + b"*%02X\r\n" % reduce(xor, body)
+    lines = [*good[:7], bad, *good[8:]]
+    if not checked:
+        lines = [line.partition(b"*")[0] + b"\r\n" for line in lines]
+    found = read(log(tmp_path, b"".join(lines)))
+    assert list(found.channels) == ["ROT/TI:rate"]
+    np.testing.assert_array_equal(found.channels["ROT/TI:rate"].y, [*range(7), *range(8, 40)])
+    counted = ("recovered 39 of about 4", "recovered 40 of about 41")  # the last may be sound
+    assert any(one.startswith(counted) for one in found.remarks)
+
+
+def test_a_writer_that_runs_sentences_together_is_counted_once_a_line(tmp_path):
+    """As a multiplexer does with VLW: the checksum is that of the whole line."""
+    body = "SDVLW,$SDVLW,,N,322.0,N,$SDVLW,$SDVLW,,N,322.0,N,2315.4,N"
+    lines = [with_iso(t, "", text) + f"${body}*{checksum(body)}\r\n" for t, text in stamped()]
+    recording = read_text(tmp_path, "".join(lines))
+    assert len(recording.channels["ROT/TI:rate"].y) == 40
+    assert recording.remarks == (
+        "recovered 40 of about 80 sentences: 0 with a wrong checksum, 40 with characters no "
+        "sentence holds and 0 cut or without one left out",
     )
 
 

@@ -109,16 +109,19 @@ class _Peak:
     why_not: str = ""
 
 
+def refuse_few(signal: Signal, where: str) -> None:
+    """AlignmentError for a channel of too few values to match anything with."""
+    if len(signal.t) < FEWEST:
+        raise AlignmentError(
+            f"{where}: {signal.name!r} has {len(signal.t)} values, at least {FEWEST} are needed"
+        )
+
+
 def matched(here: Signal, there: Signal, about: int, within: float, where: str) -> Match:
     """How far the clock of `here` is ahead of `there`, beyond `about` [ns] and `within` [s].
 
     AlignmentError where it cannot be told.
     """
-    for signal in (here, there):
-        if len(signal.t) < FEWEST:
-            raise AlignmentError(
-                f"{where}: {signal.name!r} has {len(signal.t)} values, at least {FEWEST} are needed"
-            )
     origin = int(there.t[0])
     widths = _widths(here, there)
     if not widths:

@@ -11,8 +11,8 @@ from datetime import UTC, datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.alignment import clock_health, dejitter
-from trialid.alignment.clock_match import Signal, matched
+from trialid.alignment import clock_health, dejitter, frames
+from trialid.alignment.clock_match import Signal, matched, refuse_few
 from trialid.alignment.clocks import CALENDAR_NS, Series, moment
 from trialid.alignment.sources import find
 from trialid.errors import AlignmentError
@@ -188,9 +188,12 @@ def _by_match(
 ) -> Line:
     here = _signal(find(match[0], log, where), repair=repair)
     there = _signal(find(match[1], others, where), repair=repair)
+    place = f"{where}, match of {match[0]!r} here"
+    for signal in (here, there):
+        refuse_few(signal, place)
     epochs = (here.t[0] > CALENDAR_NS) != (there.t[0] > CALENDAR_NS)
     about = int(here.t[0] - there.t[0]) if epochs else 0
-    found = matched(here, there, about, clock.within, f"{where}, match of {match[0]!r} here")
+    found = matched(here, there, about, clock.within, place)
     offset = about / 1e9 + found.offset
     words = (
         f"its clock is {_ahead(offset)} ahead of the trial's, 95 % interval "
@@ -211,7 +214,8 @@ def _leap(offset: float) -> Iterator[str]:
 
 def _signal(channel: Channel, *, repair: bool) -> Signal:
     """A channel's values that are available, in the order of time, on repaired stamps."""
-    series = Series(SIGNALS["t"], channel.t, channel.y, channel.clock, channel.received)
+    y = frames.measured(channel.y)
+    series = Series(SIGNALS["t"], channel.t, y, channel.clock, channel.received)
     if repair:
         series, _ = dejitter.repaired(clock_health.set_right(series)[0])
     finite = np.isfinite(series.y)

@@ -14,6 +14,7 @@ from trialid import units
 from trialid.alignment import relation
 from trialid.alignment.checks import FAIR, LATE, LOOSE, MOVING, Finding, together, told
 from trialid.alignment.clocks import Series
+from trialid.alignment.frames import measured
 from trialid.alignment.relation import Relation
 from trialid.alignment.sources import SignalSource
 from trialid.errors import UnitError
@@ -147,4 +148,4 @@ def series_of(channel: Channel) -> Series | None:
     except UnitError:
         return None
     side = -1.0 if channel.positive == "port" and quantity.mirror < 0 else 1.0
-    return Series(quantity, channel.t, side * factor * channel.y, channel.clock)
+    return Series(quantity, channel.t, side * factor * measured(channel.y), channel.clock)

@@ -30,10 +30,10 @@ LARGEST = 1 << 24
 """Bytes a container unpacks to at most; Vector's hold 128 kB."""
 BLOCK = 1 << 22
 """Bytes of unpacked objects that are read at once."""
-SPAN = 48
-"""Bytes of a CAN message: 16 of the base header, 16 with its stamp, 16 of its own."""
 HEAD = 32
-"""Bytes of an object with a stamp at least."""
+"""Bytes of an object with a stamp at least: 16 of the base header, 16 with the stamp."""
+OWN = 16
+"""Bytes of a CAN message after its headers."""
 PACKED = 32
 """Bytes of a container before what it contains."""
 MESSAGES = (MESSAGE, MESSAGE2)
@@ -118,7 +118,7 @@ def _objects(content: bytes, tally: Tally) -> tuple[Frames, int]:
         if at + BASE.size > len(content):
             break
         _, _, version, size, kind = BASE.unpack_from(content, at)
-        if not SPAN <= size <= LARGEST and not (HEAD <= size < SPAN and kind not in MESSAGES):
+        if not _least(kind, version) <= size <= LARGEST:
             tally.lines, tally.strange = tally.lines + 1, tally.strange + 1
             at += len(OBJECT)
             continue
@@ -136,6 +136,11 @@ def _objects(content: bytes, tally: Tally) -> tuple[Frames, int]:
             tally.flexible += kind in (FLEXIBLE, FLEXIBLE_64)
         at += size * count
     return joined([_run(content, *run, tally) for run in runs]), at
+
+
+def _least(kind: int, version: int) -> int:
+    """Bytes an object of this type must have."""
+    return BODIES.get(version, HEAD) + OWN if kind in MESSAGES else HEAD
 
 
 def _follows(content: bytes, end: int) -> bool:

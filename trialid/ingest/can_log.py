@@ -16,6 +16,7 @@ from trialid.ingest import (
     can_asc,
     can_blf,
     can_candump,
+    can_sqlite,
     can_table,
     can_trc,
     nmea2000,
@@ -131,5 +132,5 @@ ADAPTERS = (
     _adapter("trc", is_trc, can_trc.frames, "dbc", "zone"),
     _adapter("blf", is_blf, can_blf.frames, "dbc", "zone"),
     _adapter("python-can csv", can_table.is_csv, can_table.of_csv, "dbc"),
-    _adapter("python-can sqlite", can_table.is_sqlite, can_table.of_sqlite, "dbc"),
+    _adapter("python-can sqlite", can_sqlite.is_sqlite, can_sqlite.of_sqlite, "dbc"),
 )

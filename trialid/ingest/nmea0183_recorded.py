@@ -43,6 +43,7 @@ class Stream:
     ticks: dict[str, list[nmea0183_clock.Ticks]] = field(default_factory=dict)
     total: int = 0
     wrong: int = 0
+    foreign: int = 0
     bare: int = 0
     useful: int = 0
 
@@ -147,14 +148,14 @@ def _take(
     stream.coarse.append(coarse)
     stream.total += len(t)
     stream.wrong += block.wrong + int(damaged.sum())
+    stream.foreign += block.foreign
     stream.bare += block.bare
 
 
 def _inherit(block: Sentences, t: Ints, kind: NDArray[np.int8]) -> None:
     """A sentence behind another on one line, with nothing between them, has its stamp."""
-    behind = ~block.alone & (block.before.b - block.before.a <= 0)
     rows = np.arange(len(t))
-    origin = np.maximum.accumulate(np.where(behind, 0, rows)) if len(t) else rows
+    origin = np.maximum.accumulate(np.where(block.joined, 0, rows)) if len(t) else rows
     t[:], kind[:] = t[origin], kind[origin]
 
 
@@ -264,15 +265,18 @@ def _untimed(t: Ints) -> tuple[str, ...]:
 
 
 def _losses(stream: Stream, checked: bool) -> list[str]:
+    remarks = []
     if not checked:
-        return [
+        remarks.append(
             "no sentence of this log has a checksum: damage and half lines cannot be told from "
             "data; have the recorder keep the checksums"
-        ]
-    lost = stream.wrong + stream.bare
-    if not lost:
-        return []
-    return [
-        f"recovered {stream.total} of about {stream.total + lost} sentences: {stream.wrong} with a "
-        f"wrong checksum and {stream.bare} lines cut or without one left out"
-    ]
+        )
+    lost = stream.wrong + stream.foreign + stream.bare
+    whole = stream.total + lost
+    foreign = f", {stream.foreign} with characters no sentence holds" if stream.foreign else ""
+    if lost:
+        remarks.append(
+            f"recovered {stream.total} of about {whole} sentences: {stream.wrong} with a wrong "
+            f"checksum{foreign} and {stream.bare} cut or without one left out"
+        )
+    return remarks

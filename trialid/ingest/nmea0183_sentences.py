@@ -1,7 +1,8 @@
 """NMEA 0183 sentences in a block of bytes: where each begins and ends, and its fields as columns.
 
 A sentence is `$` or `!`, an address, comma and field again and again, and `*hh`: the exclusive or
-of all bytes between `$` and `*`, in hexadecimal (NMEA 0183, IEC 61162-1).
+of all bytes between `$` and `*`, in hexadecimal (NMEA 0183, IEC 61162-1). Between them stand
+printable characters of ASCII, no `$` and no `!`: what holds one is two sentences run together.
 """
 
 from collections.abc import Iterator
@@ -50,24 +51,26 @@ class Sentences:
         From the byte after `$` up to `*`.
     before
         What stands before `$`: from the line's beginning, or the end of the sentence before on
-        the same line.
-    alone
-        True where no other sentence stands before on the same line.
+        the same line, or the beginning of one that was cut.
+    joined
+        True where the sentence before, which is sound, ends right before `$`.
     comma
         Places of all commas of the block; `first` is the index in it of each sentence's first, and
         `fields` how many fields follow the address.
-    wrong, bare
-        How many sentences had a wrong checksum, and how many none or were cut.
+    wrong, foreign, bare
+        How many sentences had a wrong checksum, held what no sentence holds though it was right,
+        and had none or were cut.
     """
 
     data: Bytes
     body: Span
     before: Span
-    alone: Mask
+    joined: Mask
     comma: Places
     first: Places
     fields: Places
     wrong: int
+    foreign: int
     bare: int
 
     def field(self, rows: Places, number: int | Places) -> Span:
@@ -93,22 +96,22 @@ class Sentences:
 def sentences(data: Bytes, checked: bool = True) -> Sentences:
     """The sentences of a block; with `checked` False those of a log that knows no checksums."""
     lines = np.flatnonzero((data == 10) | (data == 13))
-    marks = np.flatnonzero((data == 36) | (data == 33))
+    marks = _marks(data)
     if not checked:
         return _unchecked(data, lines, marks)
     stars = _checksums(data)
     stars = stars[_last(marks, stars) > _last(np.flatnonzero(data == 92), stars)]
-    line = _last(lines, stars)
     ended = np.concatenate([[-1], stars[:-1] + 2]) if len(stars) else stars
-    low = np.maximum(line, ended)
-    start = _next(marks, low, len(data))
-    found = start < stars
-    stars, low, start, line = stars[found], low[found], start[found], line[found]
-    start, right = _right(data, start, _last(marks, stars), stars)
-    lost = _lines_with_none(lines, marks, stars, len(data))
-    begin, star = start[right], stars[right]
-    before = Span(low[right] + 1, begin)
-    return _indexed(data, Span(begin + 1, star), before, (low == line)[right], (~right).sum(), lost)
+    low, start = np.maximum(_last(lines, stars), ended), _last(marks, stars)
+    found = start > low
+    first, body = _next(marks, low[found], len(data)), Span(start[found] + 1, stars[found])
+    right, plain = agrees(data, body), _plain(data, body)
+    sound, cut = right & plain, first < body.a - 1
+    doubled = _agree(data, Span(first + 1, body.b), cut & ~right)
+    wrong, foreign = ~right & ~doubled, (right & ~plain) | doubled
+    bare = int((cut & ~doubled).sum()) + _lines_with_none(lines, marks, stars, len(data))
+    low = np.maximum(low[found], _last(marks, body.a - 1))[sound] + 1
+    return _indexed(data, body.of(sound), low, (int(wrong.sum()), int(foreign.sum()), bare))
 
 
 def has_checksums(data: Bytes) -> bool:
@@ -151,19 +154,11 @@ def _next(places: Places, after: Places, none: int) -> Places:
     return np.concatenate([places, [none]])[np.searchsorted(places, after, "right")].astype(np.intp)
 
 
-def _right(data: Bytes, start: Places, last: Places, stars: Places) -> tuple[Places, Mask]:
-    """Where the sentences begin, and which are sound.
-
-    A sentence that was cut and runs into the next one leaves two `$` before one checksum: then the
-    last begins the sound one.
-    """
-    right = agrees(data, Span(start + 1, stars))
-    again = np.flatnonzero(~right & (last > start))
-    second = agrees(data, Span(last[again] + 1, stars[again]))
-    start = start.copy()
-    start[again[second]] = last[again[second]]
-    right[again[second]] = True
-    return start, right
+def _agree(data: Bytes, span: Span, asked: Mask) -> Mask:
+    """True where a stretch that is asked has the checksum stated behind."""
+    right, rows = np.zeros(len(asked), np.bool_), np.flatnonzero(asked)
+    right[rows] = agrees(data, span.of(rows))
+    return right
 
 
 def _lines_with_none(lines: Places, marks: Places, stars: Places, size: int) -> int:
@@ -175,25 +170,42 @@ def _lines_with_none(lines: Places, marks: Places, stars: Places, size: int) -> 
     return int(cut.sum())
 
 
+def _marks(data: Bytes) -> Places:
+    """Places of `$` and `!` with the first letter of an address behind."""
+    marks = np.flatnonzero((data[:-1] == 36) | (data[:-1] == 33))
+    return marks[(data[marks + 1] >= ord("A")) & (data[marks + 1] <= ord("Z"))]
+
+
+def _plain(data: Bytes, body: Span) -> Mask:
+    """True where nothing stands that no sentence holds: control characters, bytes past ASCII, `$`.
+
+    None of them may come into the name of a device.
+    """
+    foreign = np.flatnonzero((data < 32) | (data > 126) | (data == 36) | (data == 33))
+    return np.searchsorted(foreign, body.a) == np.searchsorted(foreign, body.b)
+
+
 def _unchecked(data: Bytes, lines: Places, marks: Places) -> Sentences:
     """One sentence a line; a last line without an end is cut."""
     begin = np.concatenate([[-1], lines[:-1]]) if len(lines) else lines
     start = _next(marks, begin, len(data))
     found = start < lines
-    start, end, begin = start[found], lines[found], begin[found]
+    body, low = Span(start[found] + 1, lines[found]), begin[found] + 1
+    plain = _plain(data, body)
     cut = int(len(marks) > 0 and marks[-1] > (lines[-1] if len(lines) else -1))
-    alone = np.ones(len(start), np.bool_)
-    return _indexed(data, Span(start + 1, end), Span(begin + 1, start), alone, 0, cut)
+    return _indexed(data, body.of(plain), low[plain], (0, int((~plain).sum()), cut))
 
 
-def _indexed(
-    data: Bytes, body: Span, before: Span, alone: Mask, wrong: int, bare: int
-) -> Sentences:
+def _indexed(data: Bytes, body: Span, low: Places, lost: tuple[int, int, int]) -> Sentences:
+    """With the index of its commas; `low` is where what stands before begins."""
+    joined = np.zeros(len(low), np.bool_)
+    joined[1:] = body.a[1:] - 1 == body.b[:-1] + len("*hh")
     comma = np.flatnonzero(data == 44)
     first = np.searchsorted(comma, body.a)
     fields = np.searchsorted(comma, body.b) - first
     comma = np.append(comma, len(data))  # what stands behind the last
-    return Sentences(data, body, before, alone, comma, first, fields, int(wrong), int(bare))
+    before = Span(low, body.a - 1)
+    return Sentences(data, body, before, joined, comma, first, fields, *lost)
 
 
 def table(data: Bytes, span: Span, width: int) -> Bytes:

@@ -8,7 +8,6 @@ from typing import Final, Literal
 import numpy as np
 
 from trialid.alignment import frames
-from trialid.alignment.frames import MARKER
 from trialid.alignment.sources import SignalSource
 from trialid.errors import TrialidError
 from trialid.quantities import SIGNALS
@@ -52,8 +51,8 @@ def _same_stamps(one: Channel, other: Channel) -> bool:
 def _channel(channel: Channel, stamps: Health) -> ChannelSurvey:
     t, y, own = channel.t, channel.y, stamps
     low, high = y.min(), y.max()
-    if not (low > -MARKER and high < MARKER):  # nor where one is NaN
-        there = np.isfinite(y) & (np.abs(y) < MARKER)
+    if not (low > -frames.MARKER and high < frames.MARKER):  # nor where one is NaN
+        there = np.isfinite(frames.measured(y))
         t, y = t[there], y[there]
         low, high = (y.min(), y.max()) if len(y) else (np.nan, np.nan)
         own = health(t, channel.clock, None) if len(t) else stamps
