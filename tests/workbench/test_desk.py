@@ -489,7 +489,7 @@ def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
 def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: Any) -> None:
     """Between the same two looks as an edit on the screen: it is seen all the same."""
     path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
-    looks = Looks(desk_module.watched)
+    looks = Looks(desk_module.watched, path)
     monkeypatch.setattr(desk_module, "watched", looks.watched)
     with opened(path) as desk:
         diagnosed(desk)
@@ -505,12 +505,14 @@ def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: An
 
 
 class Looks:
-    """Looks at the files that see nothing new for a while."""
+    """Looks at the files of one pipeline that see nothing new for a while; others look on."""
 
-    def __init__(self, watched: Callable[..., Any]) -> None:
-        self.watched_, self.still, self.last = watched, False, None
+    def __init__(self, watched: Callable[..., Any], path: Path) -> None:
+        self.watched_, self.path, self.still, self.last = watched, path, False, None
 
     def watched(self, recipe: Any) -> Any:
+        if recipe.path != self.path:
+            return self.watched_(recipe)
         if not self.still or self.last is None:
             self.last = self.watched_(recipe)
         return self.last
