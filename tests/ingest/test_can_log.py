@@ -437,9 +437,14 @@ def test_a_container_that_unpacks_without_end_is_cut(tmp_path):
 def test_a_damaged_database_gives_what_it_can(tmp_path):
     path = tmp_path / "whole"
     write_can.by_python_can(path, write_can.frames(sent(800)), ".db")
-    content = path.read_bytes()
-    with pytest.raises(LogError, match="SQLite cannot read it"):
-        read(log(tmp_path, content[: len(content) // 2]))
+    content, whole = path.read_bytes(), read(path).channels["rate_of_turn/11:rate"]
+    found = read(log(tmp_path, content[: len(content) // 2]))
+    y = found.channels["rate_of_turn/11:rate"].y
+    np.testing.assert_array_equal(y, whole.y[: len(y)])
+    assert 0.2 * len(whole.y) < len(y) < 0.6 * len(whole.y)
+    assert any("the database is damaged" in remark for remark in found.remarks)
+    with pytest.raises(LogError, match="SQLite cannot read"):
+        read(log(tmp_path, content[:4096]))
 
 
 def outcome(path):
