@@ -4,7 +4,8 @@ import re
 from functools import reduce
 from operator import xor
 
-SENTENCE = re.compile(rb"[$!]([^$!*\r\n]*)\*([0-9A-Fa-f]{2})")
+SENTENCE = re.compile(rb"[$!]([A-Z](?:(?![$!*])[ -~])*)\*([0-9A-Fa-f]{2})")
+"""Printable characters, an address first; anything else a reader can see."""
 
 
 def forged(log: bytes, original: bytes) -> set[bytes]:
