@@ -1,5 +1,6 @@
 """The command that opens the workbench in a browser."""
 
+import errno
 import ipaddress
 import secrets
 import socket
@@ -12,6 +13,9 @@ from trialid.console import say
 from trialid.errors import TrialidError
 
 PORT: Final = 8642
+TAKEN: Final = (errno.EADDRINUSE, errno.EACCES)
+"""What another port may mend."""
+
 TRIED: Final = 20
 """Ports tried from the usual one on, so that several pipelines can be open at once."""
 
@@ -67,12 +71,19 @@ def _loopback(host: str) -> bool:
 def _listening(host: str, port: int | None) -> socket.socket:
     """A socket that listens on the port asked for, or on the first free one."""
     if not host.strip():  # which would be every address there is
-        raise TrialidError("the workbench cannot answer on no address; give a --host, or none")
+        raise TrialidError(
+            "the workbench cannot answer on an empty --host; give an address, or none"
+        )
     last: OSError | None = None
     for wanted in range(PORT, PORT + TRIED) if port is None else (port,):
         try:
             return socket.create_server((host, wanted), family=_family(host))
         except OSError as error:
+            if error.errno not in TAKEN:
+                why = (error.strerror or str(error)).lower().partition(" (while")[0]
+                raise TrialidError(
+                    f"--host {host}: the workbench cannot answer on it ({why})"
+                ) from error
             last = error
     reason = "" if last is None else (last.strerror or str(last)).lower()
     where = f"{host} port {PORT if port is None else port}"
