@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.accuracy import triangle
 from trialid.design.helm import Vessel
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
@@ -118,10 +119,10 @@ def looked_at(effect: Effect) -> dict[str, float]:
 
 def likeness(rivals: Rivals, trials: Sequence[Trial]) -> Likeness:
     """How alike the two look in these trials."""
-    A, names = whitened(rivals.goal, trials)
+    rows, names = whitened(rivals.goal, trials)
+    A = triangle(rows)  # as far as angles and lengths go, the same; a record long, a square high
     one, other = (np.isin(names, part) for part in (rivals.first, rivals.second))
-    base = A[:, ~(one | other)]
-    Q, _ = np.linalg.qr(base / np.maximum(np.linalg.norm(base, axis=0), 1e-300))
+    Q = _span(A[:, ~(one | other)])
     first, second = (A[:, c] - Q @ (Q.T @ A[:, c]) for c in (one, other))
     return Likeness(
         _cosine(first, second),
