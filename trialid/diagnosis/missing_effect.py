@@ -33,6 +33,13 @@ part of the error: a centre of gravity or a scale keeps less, and other errors l
 DOMINANT: Final = 0.2
 """Share of the squared error from which on an effect is named however little of it shows."""
 
+TRIFLE: Final = 0.01
+"""Share of the squared error below which a likely effect is hardly worth its name, ..."""
+
+FAR_MORE: Final = 10.0
+"""... where another that stands out lowers the error by so many times as much: the likelihood is of
+whitened residuals, and on smooth records it is won by what is fast."""
+
 
 @dataclass(frozen=True)
 class Refit:
@@ -102,6 +109,9 @@ def decide(
         return Verdict("not in catalogue", None, (), _gap(named, whole))
     if named is not None and _is_faint(fit, named):
         return Verdict("cannot tell", None, (), _faint(named))
+    larger = None if named is None else _larger(fit, named, refits, level)
+    if named is not None and larger is not None:
+        return Verdict("cannot tell", None, (), _trifle(fit, named, larger))
     if named is not None:
         return _missing(fit, named, rivals(fit, named, ranking, refits))
     return _unnamed(parts, whole)
@@ -142,8 +152,43 @@ def _gap(named: Refit | None, whole: Completeness) -> str:
 
 def _is_faint(fit: Fit, named: Refit) -> bool:
     """Whether little of the effect shows, and it explains little: other errors may look so."""
-    fall = 1.0 - (named.fit.eps_rmsn / fit.eps_rmsn) ** 2
-    return named.candidate.visibility < FAINT and fall < DOMINANT
+    return named.candidate.visibility < FAINT and _fall(fit, named) < DOMINANT
+
+
+def _fall(fit: Fit, refit: Refit) -> float:
+    """Share of the squared error that goes with an effect."""
+    return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
+
+
+def _larger(fit: Fit, named: Refit, refits: Sequence[Refit], level: float) -> Refit | None:
+    """What lowers the error far more than the likeliest effect, where that hardly lowers it."""
+    if _fall(fit, named) >= TRIFLE:
+        return None
+    more = [
+        r
+        for r in refits
+        if r.candidate.p_value < level
+        and r.candidate.allowed
+        and _fall(fit, r) > max(FAR_MORE * _fall(fit, named), TRIFLE)
+        and _helps_held_out(fit, r.fit)
+    ]
+    return max(more, key=lambda r: _fall(fit, r), default=None)
+
+
+def _helps_held_out(before: Fit, after: Fit) -> bool:
+    """Whether held-out trials, where there are any, come out better."""
+    old, new = before.eps_check, after.eps_check
+    return old is None or (new is not None and new < old)
+
+
+def _trifle(fit: Fit, named: Refit, larger: Refit) -> str:
+    one, other = named.candidate.effect.name, larger.candidate.effect.name
+    held = f" (held out {larger.fit.eps_check:.2%})" if larger.fit.eps_check is not None else ""
+    return (
+        f"{one} is the likeliest by what is left when the noise's colour is taken out, but lowers "
+        f"the error from {fit.eps_rmsn:.2%} to {named.fit.eps_rmsn:.2%} only; {other} would bring "
+        f"it to {larger.fit.eps_rmsn:.2%}{held}: this record cannot tell which is missing"
+    )
 
 
 def _faint(named: Refit) -> str:
