@@ -254,6 +254,22 @@ def test_whatever_the_pace_the_repair_is_never_worse_than_the_jitter(
     assert np.abs(again.t - made.t).max(initial=0) < 0.06 * period * 1e9
 
 
+def test_in_more_jitter_the_repair_is_seldom_worse():
+    """Ours: 2 of 300, by 1.11 times; what is lost next to an end is then off by one period."""
+    worse = []
+    for seed in range(300):
+        random = rng(seed)
+        share, count = random.uniform(0.15, 0.3), int(random.integers(60, 400))
+        keep = random.random(count) >= random.uniform(0.0, 0.02)
+        true = np.arange(count)[keep] * 0.5
+        jitter = share * 0.5 * random.standard_normal(len(true))
+        made, _ = repaired(series(true + jitter, np.zeros(len(true))))
+        worse.append(((made.t - START) / 1e9 - true).std() / jitter.std())
+    print(sum(w > 1.05 for w in worse), max(worse))
+    assert sum(w > 1.05 for w in worse) <= 6
+    assert max(worse) < 2.0
+
+
 @pytest.mark.parametrize("lost", [2, 3, 7, 9, 56, 61, 62])
 @pytest.mark.parametrize("share", [0.06, 0.1, 0.14])
 def test_a_loss_next_to_an_end_is_counted(share, lost):

@@ -105,17 +105,18 @@ def test_where_nothing_is_to_be_seen_nothing_is_said_to_be_wrong(side):
     t = np.arange(0, 300, 0.25)
     noise = rng.normal(size=len(t))
     constant = log_of(t, delta=0.05 + 0 * t, r=noise)
-    align("t", "fit", [constant], sources(side), 0.5)
+    assert align("t", "fit", [constant], sources(side), 0.5).samples == 600
     unrelated = log_of(t, delta=rng.normal(size=len(t)), r=noise)
-    align("t", "fit", [unrelated], sources(side), 0.5)
+    assert align("t", "fit", [unrelated], sources(side), 0.5).samples == 600
     short = log_of(t[:20], delta=-noise[:20], r=noise[:20])
-    align("t", "fit", [short], sources(side), 0.25)
+    assert align("t", "fit", [short], sources(side), 0.25).samples == 20
 
 
 def test_astern_the_rudder_is_not_judged():
     t, delta, r, _ = ship("zigzag", 3)
     log = log_of(t, delta=-delta, r=r, u=-3 + 0 * t)
-    align("t", "fit", [log], [*sources(), SignalSource("u", "u", "m/s")], 0.5)
+    made = align("t", "fit", [log], [*sources(), SignalSource("u", "u", "m/s")], 0.5)
+    assert np.corrcoef(made.signals["delta"], -np.interp(made.t, t, delta))[0, 1] > 0.99
 
 
 def test_the_ordered_rudder_is_judged_too():
