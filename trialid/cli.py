@@ -210,11 +210,12 @@ def _check_options(auto: bool, keep: bool, draft: Path | None) -> None:
 def _opened(pipeline: Path, out: Path | None) -> tuple["Recipe", Path]:
     """The pipeline, and the folder for its results, which may be replaced."""
     from trialid.recipe import load
+    from trialid.recipe.run_folder import check_replaceable, folder_of
 
     recipe = load(pipeline)
-    folder = out or Path("runs", pipeline.stem)
+    folder = out or folder_of(recipe)
     try:
-        _check_replaceable(folder, recipe)
+        check_replaceable(folder, recipe)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise TrialidError(f"{_short(folder)}: {reason}; choose another --out") from error
@@ -326,21 +327,6 @@ def _writing(folder: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise TrialidError(f"{folder}: cannot be written ({error.strerror or error})") from error
-
-
-def _check_replaceable(folder: Path, recipe: "Recipe") -> None:
-    """Refuse, before the work, to replace a folder that holds anything but an earlier run."""
-    from trialid.recipe import sources
-
-    if folder.exists() and not folder.is_dir():
-        raise TrialidError(f"{folder}: is a file; --out takes a folder")
-    inside = [path for path in sources(recipe) if path.resolve().is_relative_to(folder.resolve())]
-    if folder.is_dir() and inside:
-        raise TrialidError(
-            f"{folder}: holds {inside[0]}, which this run reads; choose another --out"
-        )
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / "result.json").is_file():
-        raise TrialidError(f"{folder}: holds other files and no earlier run; choose another --out")
 
 
 def _check_draft(draft: Path | None) -> None:

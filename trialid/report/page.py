@@ -115,7 +115,13 @@ def environment() -> "jinja2.Environment":
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {
+    environment.filters |= _filters()
+    return environment
+
+
+def _filters() -> dict[str, Any]:
+    """What the templates write numbers and names with."""
+    return {
         "number": wording.number,
         "percent": wording.percent,
         "percent_range": wording.percent_range,
@@ -135,7 +141,6 @@ def environment() -> "jinja2.Environment":
         "picture": where_pictures.picture,
         "in_shown_unit": labels.shown,
     }
-    return environment
 
 
 def _finalized(value: object) -> object:

@@ -17,6 +17,7 @@ from trialid.identification.fit import Fit
 from trialid.pipeline import Outcome, examine, fit_of, time_series
 from trialid.recipe import Recipe
 from trialid.report.series import OutputSeries, TrialSeries
+from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.trial import Trial
 from trialid.workbench.shelf import Shelf
@@ -53,7 +54,7 @@ class Task:
     recorded: bool = False
 
 
-class Desk(Protocol):
+class Seat(Protocol):
     """Where the work is shown. Each call raises when nobody wants the work any more."""
 
     def progress(self, words: str, share: float | None) -> None:
@@ -70,7 +71,7 @@ class Desk(Protocol):
 
 
 @one_thread
-def work_out(task: Task, shelf: Shelf, desk: Desk) -> None:
+def work_out(task: Task, shelf: Shelf, seat: Seat) -> None:
     """Read, fit and examine; every stage is shown when it is reached.
 
     Raises
@@ -83,50 +84,50 @@ def work_out(task: Task, shelf: Shelf, desk: Desk) -> None:
     model = build_model(task.recipe, catalogue)
     shown = Shown(task.recipe, catalogue, model, before=outcome)
     if task.before is None:
-        desk.show(shown)
-    trials = shelf.trials(task.recipe, desk.progress)
+        seat.show(shown)
+    trials = shelf.trials(task.recipe, seat.progress)
     shown = replace(shown, trials=trials, series=_so_far(task, trials))
     if task.kept is not None:
-        _restored(task, task.kept, shown, desk)
+        _restored(task, task.kept, model, shown, seat)
         return
-    desk.show(shown)
-    edit, foreseen, fit = _fit(task, trials, desk)
+    seat.show(shown)
+    edit, foreseen, fit = _fit(task, trials, seat)
     recipe = task.recipe if edit is None else edit.after
     shown = replace(shown, recipe=recipe, model=fit.model, fit=fit, series=time_series(fit))
-    desk.show(shown)
-    run = examine(recipe, trials, desk.progress, fit)
-    outcome = _concluded(replace(task, edit=edit), run.outcome, foreseen, desk)
-    desk.show(replace(shown, run=outcome))
+    seat.show(shown)
+    run = examine(recipe, trials, seat.progress, fit)
+    outcome = _concluded(replace(task, edit=edit), run.outcome, foreseen, seat)
+    seat.show(replace(shown, run=outcome))
 
 
 def _fit(
-    task: Task, trials: tuple[Trial, ...], desk: Desk
+    task: Task, trials: tuple[Trial, ...], seat: Seat
 ) -> tuple[Edit | None, Foreseen | str, Fit]:
     """The fit, as the command line makes it: by the pipeline, or from the foreseen values."""
     if task.edit is None:
         catalogue = available(task.recipe)
-        return None, UNKNOWN, fit_of(task.recipe, trials, catalogue, desk.progress)
-    foreseen = _foreseen(task.edit, task.before, trials, desk)
-    edit, fit = fitted_after(task.edit, trials, foreseen, desk.progress)
+        return None, UNKNOWN, fit_of(task.recipe, trials, catalogue, seat.progress)
+    foreseen = _foreseen(task.edit, task.before, trials, seat)
+    edit, fit = fitted_after(task.edit, trials, foreseen, seat.progress)
     if edit is not task.edit:
-        desk.amend(edit)
+        seat.amend(edit)
     return edit, foreseen, fit
 
 
 def _foreseen(
-    edit: Edit, before: Shown | None, trials: tuple[Trial, ...], desk: Desk
+    edit: Edit, before: Shown | None, trials: tuple[Trial, ...], seat: Seat
 ) -> Foreseen | str:
     """What linearisation foresees; the model before is fitted again where its fit was not kept."""
     if before is None or before.run is None:
         return UNKNOWN
     try:
-        fit = before.fit or fit_of(edit.before, trials, available(edit.before), desk.progress)
+        fit = before.fit or fit_of(edit.before, trials, available(edit.before), seat.progress)
     except TrialidError as error:
         return f"the model before cannot be fitted: {error}"
     return foreseen_by(edit, fit)
 
 
-def _concluded(task: Task, outcome: Outcome, foreseen: Foreseen | str, desk: Desk) -> Outcome:
+def _concluded(task: Task, outcome: Outcome, foreseen: Foreseen | str, seat: Seat) -> Outcome:
     """The outcome with the model before beside it; the step is in the history."""
     before = _result(task.before)
     if task.edit is not None and before is not None:
@@ -139,7 +140,7 @@ def _concluded(task: Task, outcome: Outcome, foreseen: Foreseen | str, desk: Des
         result = {**outcome.result, "history": [*every, *proposed(outcome.result)]}
         outcome = replace(outcome, result=result)
     if task.recorded:
-        desk.record(steps)
+        seat.record(steps)
     return outcome
 
 
@@ -147,15 +148,12 @@ def _result(before: Shown | None) -> Mapping[str, Any] | None:
     return None if before is None or before.run is None else before.run.result
 
 
-def _restored(task: Task, kept: Outcome, shown: Shown, desk: Desk) -> None:
+def _restored(task: Task, kept: Outcome, model: ShipModel, shown: Shown, seat: Seat) -> None:
     """A model that was worked out earlier, shown again without a fit."""
     values = {row["name"]: row["value"] for row in kept.result["accuracy"]["parameters"]}
-    model = shown.model
-    if model is not None:
-        own = {n: x for n, x in values.items() if n in model.parameters}
-        shown = replace(shown, model=model.with_values(own))
-    outcome = _concluded(task, kept, "it was fitted before", desk)
-    desk.show(replace(shown, series=kept.series, run=outcome))
+    fitted = model.with_values({n: x for n, x in values.items() if n in model.parameters})
+    outcome = _concluded(task, kept, "it was fitted before", seat)
+    seat.show(replace(shown, model=fitted, series=kept.series, run=outcome))
 
 
 def _so_far(task: Task, trials: tuple[Trial, ...]) -> tuple[TrialSeries, ...]:

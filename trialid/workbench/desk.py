@@ -18,7 +18,7 @@ from trialid.errors import EffectError, LogError, RecipeError, TrialidError
 from trialid.history import Step as HistoryStep
 from trialid.pipeline import Outcome
 from trialid.recipe import Recipe
-from trialid.workbench.compute import Task, work_out
+from trialid.workbench.compute import Seat, Task, work_out
 from trialid.workbench.document import Document, Step
 from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Place, Shown, Trouble, Working
@@ -266,7 +266,7 @@ class Desk:
 
 
 @dataclass(frozen=True)
-class _Seat:
+class _Seat(Seat):
     """The desk as one job sees it: closed to it as soon as the job is not wanted any more."""
 
     desk: Desk

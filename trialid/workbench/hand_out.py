@@ -1,12 +1,13 @@
 """What leaves the workbench: a copy of the pipeline beside it, the folder of a finished run."""
 
 import re
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import PurePosixPath, PureWindowsPath
 from typing import Final
 
 from trialid.errors import RecipeError
 from trialid.pipeline import write
-from trialid.recipe import Recipe, sources
+from trialid.recipe import Recipe
+from trialid.recipe.run_folder import check_replaceable, folder_of
 from trialid.workbench.shown import Shown
 
 LONGEST: Final = 200
@@ -58,11 +59,9 @@ def written(shown: Shown) -> list[str]:
     """
     if shown.run is None:
         raise RecipeError("the model is still being worked out; write it when it is done")
-    folder = Path("runs", shown.recipe.path.stem)
-    inside = [p for p in sources(shown.recipe) if p.resolve().is_relative_to(folder.resolve())]
-    if inside:
-        raise RecipeError(f"{folder}: holds {inside[0]}, which the pipeline reads")
+    folder = folder_of(shown.recipe)
     try:
+        check_replaceable(folder, shown.recipe)
         write(shown.run, folder)
     except OSError as error:
         raise RecipeError(f"{folder}: cannot be written ({error.strerror})") from error
