@@ -82,3 +82,13 @@ def test_a_fast_ship_is_examined_sample_by_sample(
         for s in fit.scores
     ))  # fmt: skip
     assert coarse(fast) is fast
+
+
+def test_a_trial_in_which_an_output_rests_does_not_stand_in_the_way(
+    fit: Fit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "LONGEST", 800)
+    first, *others = fit.scores
+    still = replace(first.response, y=first.response.y * np.array([1.0, 0.0]))
+    resting = replace(fit, scores=(replace(first, response=still), *others))
+    assert coarse(resting).problem.every == coarse(fit).problem.every == 3

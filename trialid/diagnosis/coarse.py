@@ -23,17 +23,18 @@ def coarse(fit: Fit) -> Fit:
 
     Fewer samples a row than asked for where the ship moves faster than that.
     """
-    every = -(-max(s.trial.samples for s in fit.scores) // LONGEST)
+    every = -(-max(t.samples for t in fit.problem.trials) // LONGEST)
     while every > 1 and _kept(fit, every) < KEPT:
         every -= 1
     return fit if every == 1 else replace(fit, problem=replace(fit.problem, every=every))
 
 
 def _kept(fit: Fit, every: int) -> float:
-    """The smallest share of variance that means keep, over outputs and trials."""
-    shares = []
-    for score in fit.scores:
+    """The smallest share of variance that means keep, over outputs; all fitted trials together."""
+    kept, whole = np.zeros((2, len(fit.problem.outputs)))
+    for score in (s for s in fit.scores if s.trial.use == "fit"):
         y = score.response.y - score.response.y.mean(axis=0)
         means = y[: len(y) // every * every].reshape(-1, every, y.shape[1]).mean(axis=1)
-        shares.append(np.mean(means**2, axis=0) / np.maximum(np.mean(y**2, axis=0), 1e-300))
-    return float(np.min(shares))
+        kept += every * np.sum(means**2, axis=0)
+        whole += np.sum(y**2, axis=0)
+    return float(np.min(kept / np.maximum(whole, 1e-300)))
