@@ -108,5 +108,5 @@ def write_logs(folder, coloured, seed):
 
 def noise_share(result):
     """What the error would be if nothing but the sensors' noise were left, as eps_RMSn."""
-    rms = result["fit"]["y_rms"]
+    rms = result.fit.y_rms
     return float(np.sqrt(np.mean([(NOISE[s] / rms[s]) ** 2 for s in rms])))

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from trialid.maths import exp
 from trialid.ship.effect import Delayed
-from trialid.ship.model import ShipModel, derivatives, late, readings
+from trialid.ship.model import ShipModel, late
 from trialid.ship.model import slope as slope_of
+from trialid.ship.motion import derivatives, readings
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]

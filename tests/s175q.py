@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from trialid.effects import CATALOGUE
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import read_ship
 from trialid.simulation.integrate import prepare, respond

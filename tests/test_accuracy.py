@@ -2,23 +2,19 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import toeplitz
 from scipy.signal import lfilter
 
-from trialid.accuracy import (
-    Stretch,
-    Subject,
-    assess,
-    autocovariance,
-    coloured_covariance,
+from trialid.accuracy.coloured import autocovariance, coloured_covariance, white_covariance
+from trialid.accuracy.equations import (
     correlation_ratio,
     minimum_sensitivity,
     sensitivity,
     sensitivity_range,
-    spoken,
-    weak_directions,
-    white_covariance,
-    without_nuisance,
 )
+from trialid.accuracy.parameter_table import Subject, assess
+from trialid.accuracy.weak import coefficient_label, weak_directions, without_nuisance
+from trialid.trial_rows import Stretch
 
 rng = np.random.default_rng(5)
 A = rng.standard_normal((400, 4)) @ np.diag([1.0, 0.1, 3.0, 0.5])
@@ -79,7 +75,7 @@ def test_a_parameter_without_trace_is_named():
 
 def test_orthogonal_parameters_are_not_weak():
     assert weak_directions(A, ["a", "b", "c", "d"], 0.01) == ()
-    assert [spoken(n) for n in ("Nrar", "Yphiauv", "GM")] == ["Nr|r|", "Yphiauv", "GM"]
+    assert [coefficient_label(n) for n in ("Nrar", "Yphiauv", "GM")] == ["Nr|r|", "Yphiauv", "GM"]
 
 
 def test_nuisance_columns_are_projected_out():
@@ -130,6 +126,15 @@ def test_autocovariance_does_not_mind_gaps():
     np.testing.assert_allclose(holed[:n], whole[:n], rtol=0.15)
 
 
+def test_half_of_a_record_in_gaps_says_the_same_of_the_noise():
+    """Pairs are counted where both were compared: half of the samples make half of the sums."""
+    e = ar1(6, 40_000, 0.8)
+    mask = np.arange(len(e)) // 500 % 2 == 0
+    holed = autocovariance(np.where(mask, e, 0.0), mask)
+    assert holed[1] / holed[0] == pytest.approx(0.8, rel=0.1)
+    assert holed[0] == pytest.approx(1.0, rel=0.05)
+
+
 def test_absent_knowledge_stays_absent():
     subjects = [Subject(n, "physical", "1", 1.0, 1.0) for n in "abcd"]
     e = rng.standard_normal(400) / 20.0
@@ -174,3 +179,62 @@ def test_what_only_the_prior_knows_has_the_priors_error():
     alone = assess([*subjects[:1], Subject("b", "physical", "1", 1.0, 1.0)], twins, e, stretch,
                    None, None).parameters  # fmt: skip
     assert np.isnan(alone[1].standard_error)
+
+
+def alone(n, rho=0.0, seed=1):
+    """The stretch of one output, noise of a colour with squares that sum to 1."""
+    e = ar1(seed, n, rho)
+    return [Stretch(0, 0, slice(0, n), np.ones(n, dtype=bool))], e / np.linalg.norm(e)
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.8, 0.95])
+def test_autocovariance_sums_to_the_long_run_variance(rho):
+    """(1 + rho) / (1 - rho) for a first-order process; what is cut off is a tenth at most."""
+    e = ar1(2, 200_000, rho)
+    c = autocovariance(e, np.ones(len(e), dtype=bool))
+    share = (c[0] + 2.0 * c[1:].sum()) * (1.0 - rho) / (1.0 + rho)
+    assert 0.84 < share < 1.06
+
+
+def test_autocovariance_is_one_of_a_process():
+    """No combination of samples has a negative variance, however regular the sea."""
+    t = np.arange(20_000)
+    e = np.sin(0.31 * t) + 0.3 * ar1(4, len(t), 0.5)
+    c = autocovariance(e, np.ones(len(t), dtype=bool))[:800]
+    assert np.linalg.eigvalsh(toeplitz(c)).min() > -0.02 * c[0]
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.9])
+def test_errors_of_a_mean_in_coloured_noise(rho):
+    """The mean of n samples: variance (1 + rho) / (1 - rho) / n, as known as that many fewer."""
+    n, slow = 40_000, (1.0 + rho) / (1.0 - rho)
+    stretch, e = alone(n, rho)
+    subjects = [Subject("Nr", "physical", "m", 2.0, 2.0)]
+    mean = np.full((n, 1), 1.0 / np.sqrt(n))
+    accuracy = assess(subjects, mean, 0.1 * e, stretch, 0.1, 0.03)
+    (p,) = accuracy.parameters
+    assert p.S_imin == pytest.approx(2.0)
+    assert p.white_error == pytest.approx(0.1 / np.sqrt(n), rel=1e-3)
+    assert p.standard_error == pytest.approx(0.1 * np.sqrt(slow / n), rel=0.12)
+    assert p.n_effective == pytest.approx(n / slow, rel=0.25)
+    assert accuracy.covariance[0, 0] == pytest.approx(p.standard_error**2)
+    # all of the error is noise: Eq. 14 says of it what the covariance says
+    assert p.noise_error == pytest.approx(p.standard_error, rel=1e-3)
+    assert p.undermodelling_error == pytest.approx(0.03 * 2.0 / p.S_imin)
+    assert p.relative_error == pytest.approx((p.noise_error + p.undermodelling_error) / 2.0)
+
+
+def test_what_is_fitted_is_no_noise_of_the_rest():
+    """A third of the rows taken up by parameters: the residual alone says a third too little."""
+    n, columns = 120, 40
+    design = np.random.default_rng(8).standard_normal((n, columns))
+    stretch = [Stretch(0, 0, slice(0, n), np.ones(n, dtype=bool))]
+    truth = np.diag(np.linalg.inv(design.T @ design))
+    coloured, white = [], []
+    for seed in range(150):
+        e = np.random.default_rng(seed).standard_normal(n)
+        left = e - design @ np.linalg.lstsq(design, e, rcond=None)[0]
+        coloured.append(np.diag(coloured_covariance(design, left, stretch)) / truth)
+        white.append(np.diag(white_covariance(design, left)) / truth)
+    assert np.mean(white) == pytest.approx(1.0, abs=0.05)
+    assert np.median(np.mean(coloured, axis=1)) == pytest.approx(1.0, abs=0.12)

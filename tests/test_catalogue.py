@@ -5,9 +5,9 @@ from collections import Counter
 import pytest
 
 from trialid.effects import CATALOGUE, FILES
-from trialid.effects.coverage import besides, left_out, measured, rows, rows_of
-from trialid.quantities import SIGNALS
-from trialid.report.catalogue import KINDS, kind, needs, part
+from trialid.effects.coverage import besides, left_out, rows, rows_of, trial_results
+from trialid.names.quantities import SIGNALS
+from trialid.report.terminal.catalogue import KINDS, kind, needs, part
 
 CONSIDERED = {"H": 19, "E": 11, "R": 11, "S": 16, "P": 6, "W": 7, "M": 14, "L": 6}
 """Rows by part: hull, heel, roll, rudder, propulsion, environment, measurement, loading."""
@@ -43,14 +43,14 @@ def test_names_in_reasons_are_names() -> None:
 
 
 def test_what_looks_alike_is_in_the_catalogue_and_mutual() -> None:
-    seen = [(name, s) for name in CATALOGUE for s in measured(name)]
+    seen = [(name, s) for name in CATALOGUE for s in trial_results(name)]
     assert len(seen) > 150
     for name, s in seen:
         assert 0.0 < s.visible <= 1.0
         assert name not in s.alike
         for other, x in s.alike.items():
             assert 0.7 <= x <= 1.0
-            [back] = [b for b in measured(other) if b.trial == s.trial]
+            [back] = [b for b in trial_results(other) if b.trial == s.trial]
             assert back.alike[name] == x
 
 

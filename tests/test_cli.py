@@ -17,11 +17,14 @@ import pytest
 from click.testing import CliRunner, Result
 
 import trialid
-from trialid import cli, console
+from trialid import own_files
+from trialid.cli import console, main
 from trialid.errors import LogError
-from trialid.recipe import Recipe
+from trialid.pipeline_file import Pipeline
+from trialid.result import schema
+from trialid.result.json_file import text_of
 
-RESULT = {"schema": "trialid-result/1", "pipeline": "zigzag", "split": {"noise": None}}
+RESULT = schema.Result(pipeline="zigzag")
 
 PIPELINE = """
 ship = "ship.toml"
@@ -39,29 +42,32 @@ outputs = ["r"]
 STUBS = """
 import sys, types
 from pathlib import Path
+from trialid.result.schema import Result
 
 def run(recipe, progress, force=False):
     progress("fitting", 0.5)
     {body}
-    return types.SimpleNamespace(result={{"schema": "trialid-result/1", "long": "x" * {size}}})
+    return types.SimpleNamespace(result=Result(pipeline="x" * {size}))
 
 def write(done, folder):
     folder.mkdir(parents=True)
 
-pipeline = types.ModuleType("trialid.pipeline")
-pipeline.run, pipeline.write = run, write
-summary = types.ModuleType("trialid.report.summary")
+chain = types.ModuleType("trialid.workflow.run")
+chain.run = run
+folder = types.ModuleType("trialid.workflow.write_run")
+folder.write = write
+summary = types.ModuleType("trialid.report.terminal.summary")
 summary.summary = lambda result: "a summary\\n" * {size}
-sys.modules |= {{"trialid.pipeline": pipeline, "trialid.report.summary": summary}}
+sys.modules |= {{each.__name__: each for each in (chain, folder, summary)}}
 
-from trialid.cli import main
+from trialid.cli.main import main
 main()
 """
 
 
 @dataclass(frozen=True)
 class Done:
-    result: dict[str, Any]
+    result: schema.Result
 
 
 Stub = Callable[[Callable[[str, float | None], None]], None]
@@ -76,22 +82,25 @@ def stub(monkeypatch: pytest.MonkeyPatch, working: Stub = quietly) -> None:
     """Put a stand-in for the chain and the summary where the command imports them."""
 
     def run(
-        recipe: Recipe, progress: Callable[[str, float | None], None], force: bool = False
+        recipe: Pipeline, progress: Callable[[str, float | None], None], force: bool = False
     ) -> Done:
         working(progress)
         return Done(RESULT)
 
     def write(done: Done, folder: Path) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "result.json").write_text(json.dumps(done.result), encoding="utf-8")
+        with own_files.replacing(folder) as work:
+            (work / "result.json").write_text(text_of(done.result), encoding="utf-8")
+            (work / "run.json").write_text('{"schema": "trialid-run/1"}', encoding="utf-8")
 
-    pipeline = ModuleType("trialid.pipeline")
-    monkeypatch.setattr(pipeline, "run", run, raising=False)
-    monkeypatch.setattr(pipeline, "write", write, raising=False)
-    report = ModuleType("trialid.report.summary")
-    monkeypatch.setattr(report, "summary", lambda result: "fit [bold] 12.3 %", raising=False)
-    monkeypatch.setitem(sys.modules, "trialid.pipeline", pipeline)
-    monkeypatch.setitem(sys.modules, "trialid.report.summary", report)
+    for name, function in {
+        "trialid.workflow.run": run,
+        "trialid.workflow.write_run": write,
+        "trialid.report.terminal.summary": lambda result: "fit [bold] 12.3 %",
+    }.items():
+        stand_in = ModuleType(name)
+        called = name.rpartition(".")[2].removesuffix("_run")
+        monkeypatch.setattr(stand_in, called, function, raising=False)
+        monkeypatch.setitem(sys.modules, name, stand_in)
 
 
 @pytest.fixture
@@ -105,7 +114,7 @@ def pipeline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def trialid_(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(cli.commands, [str(a) for a in arguments], prog_name="trialid")
+    return CliRunner().invoke(main.commands, [str(a) for a in arguments], prog_name="trialid")
 
 
 def spawn(*code: str, **options: Any) -> subprocess.CompletedProcess[str]:
@@ -125,7 +134,7 @@ def test_the_summary_and_the_report_are_shown(
     assert (outcome.exit_code, outcome.stderr) == (0, "")
     report = Path("runs/zigzag/report.html")
     assert outcome.stdout == f"fit [bold] 12.3 %\nReport: {report}\n"
-    assert json.loads(Path("runs/zigzag/result.json").read_text()) == RESULT
+    assert Path("runs/zigzag/result.json").read_text() == text_of(RESULT)
 
 
 def test_out_names_the_folder(pipeline: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -141,7 +150,7 @@ def test_json_prints_the_result_and_nothing_else(
     stub(monkeypatch)
     outcome = trialid_("run", pipeline, "--json")
     assert (outcome.exit_code, outcome.stderr) == (0, "")
-    assert json.loads(outcome.stdout) == RESULT
+    assert json.loads(outcome.stdout) == json.loads(text_of(RESULT))
 
 
 def test_quiet_prints_nothing(pipeline: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -165,7 +174,7 @@ def test_progress_is_shown_on_a_terminals_stderr(
 
 
 def test_every_command_and_option_has_help() -> None:
-    for name, command in cli.commands.commands.items():
+    for name, command in main.commands.commands.items():
         assert command.help, name
         for option in command.params:
             assert isinstance(option, click.Argument) or getattr(option, "help", None), option.name
@@ -307,7 +316,7 @@ def test_python_dash_m_is_the_same_command() -> None:
 
 def test_help_waits_for_nothing_heavy() -> None:
     code = (
-        "import sys, trialid.cli\n"
+        "import sys, trialid.cli.main\n"
         "heavy = {'numpy', 'scipy', 'pandas', 'pydantic', 'pint', 'llvmlite', 'rich', 'jinja2'}\n"
         "print(sorted(heavy & sys.modules.keys()))"
     )
@@ -317,7 +326,7 @@ def test_help_waits_for_nothing_heavy() -> None:
 def test_effects_lists_the_catalogue() -> None:
     from trialid.effects import CATALOGUE
 
-    answer = CliRunner().invoke(cli.commands, ["effects", "--json"])
+    answer = CliRunner().invoke(main.commands, ["effects", "--json"])
     assert answer.exit_code == 0
     told = json.loads(answer.stdout)
     rows = {row["name"]: row for row in told["effects"]}
@@ -332,7 +341,7 @@ def test_effects_lists_the_catalogue() -> None:
 def test_effects_takes_one_line_each_and_says_what_is_left_out(width: int) -> None:
     from trialid.effects import CATALOGUE
 
-    shown = CliRunner().invoke(cli.commands, ["effects"], env={"COLUMNS": str(width)})
+    shown = CliRunner().invoke(main.commands, ["effects"], env={"COLUMNS": str(width)})
     lines = shown.stdout.splitlines()
     assert max(map(len, lines)) <= width
     for name, effect in CATALOGUE.items():
@@ -364,18 +373,18 @@ def without_columns() -> dict[str, str]:
 
 
 def test_effects_tells_how_one_looks_and_what_it_is_taken_for() -> None:
-    shown = CliRunner().invoke(cli.commands, ["effects", "gyro_cross_axis"])
+    shown = CliRunner().invoke(main.commands, ["effects", "gyro_cross_axis"])
     for said in (
         "r_measured = r + e_rp p", "source: sensor practice", "needs: p, r", "scored: linear",
         "shows as: a line at the roll frequency in r", "-0.2 .. 0.2", "heel_yaw 0.70",
     ):  # fmt: skip
         assert said in shown.stdout
-    one = CliRunner().invoke(cli.commands, ["effects", "gyro_cross_axis", "--json"])
+    one = CliRunner().invoke(main.commands, ["effects", "gyro_cross_axis", "--json"])
     assert json.loads(one.stdout)["looks_like"]["mixed amplitudes"]["cos"]["heel_yaw"] == 0.7
 
 
 def test_effects_tells_all_about_one_and_includes_ones_own(tmp_path: Path) -> None:
-    shown = CliRunner().invoke(cli.commands, ["effects", "rudder_servo"])
+    shown = CliRunner().invoke(main.commands, ["effects", "rudder_servo"])
     assert "T_delta" in shown.stdout
     assert "adds the states: delta" in shown.stdout
     own = tmp_path / "mine.py"
@@ -386,8 +395,8 @@ def test_effects_tells_all_about_one_and_includes_ones_own(tmp_path: Path) -> No
         '    """Y = Ykeel v."""\n'
         "    return Force(Y=Ykeel * v)\n"
     )
-    mine = CliRunner().invoke(cli.commands, ["effects", "keel", "--from", str(own)])
+    mine = CliRunner().invoke(main.commands, ["effects", "keel", "--from", str(own)])
     assert "Ykeel" in mine.stdout
-    lost = CliRunner().invoke(cli.commands, ["effects", "kel", "--from", str(own)])
+    lost = CliRunner().invoke(main.commands, ["effects", "kel", "--from", str(own)])
     assert lost.exit_code == 2
     assert "did you mean 'keel'" in lost.stderr

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from trialid import cli, ingest, recipe
+from trialid import ingest, pipeline_file
+from trialid.cli import console, main
 
 ROOT = Path(__file__).parent.parent
 LOGS = ROOT / "sample_data" / "hidden_effect"
@@ -17,7 +18,7 @@ CSV = LOGS / "zigzag-15.csv"
 
 
 def trialid_(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(cli.commands, [str(a) for a in arguments], prog_name="trialid")
+    return CliRunner().invoke(main.commands, [str(a) for a in arguments], prog_name="trialid")
 
 
 def refused(*arguments: str | Path) -> str:
@@ -59,7 +60,7 @@ def test_init_writes_a_pipeline_that_is_read(tmp_path: Path) -> None:
     done = trialid_("inspect", CSV, "--init", tmp_path / "a.toml", "--length", "175")
     assert done.exit_code == 0, done.output
     assert f"trialid run {tmp_path / 'a.toml'}" in done.stderr
-    made = recipe.load(tmp_path / "a.toml")
+    made = pipeline_file.load(tmp_path / "a.toml")
     assert made.trials[0].use == "fit"
     assert made.ship == tmp_path / "a_ship.toml"
 
@@ -196,3 +197,37 @@ def test_an_unknown_channel_and_a_damaged_log_are_one_line(tmp_path: Path) -> No
     (tmp_path / "log.csv").write_text(text[:2000] + "\nx,y\n" + text[2000:])
     assert "log.csv, line" in refused("align", pipeline, "--out", tmp_path / "a.csv")
     assert not (tmp_path / "a.csv").exists()
+
+
+# --- numbers and names on the line ----------------------------------------------------------------
+
+
+def test_only_the_trials_that_are_named_are_written(tmp_path: Path) -> None:
+    out = tmp_path / "one.csv"
+    options = ("--out", out, "--trial", "zigzag-15", "--quiet")
+    done = trialid_("align", PIPELINE, *options)
+    assert done.exit_code == 0, done.output
+    names = {line.partition(",")[0] for line in out.read_text(encoding="utf-8").splitlines()[1:]}
+    assert names == {"zigzag-15"}
+
+
+def test_a_stated_speed_is_in_knots(tmp_path: Path) -> None:
+    """Fourteen of them are 7.2 m/s."""
+    t = np.arange(0.0, 600.0, 0.5)
+    delta = 10.0 * np.sign(np.sin(t / 40.0))
+    rate = 0.4 * np.sin(t / 40.0 - 0.3)
+    log, path = tmp_path / "a.csv", tmp_path / "a.toml"
+    table = np.column_stack([t, delta, rate])
+    np.savetxt(log, table, delimiter=",", header="t[s],rudder[deg],rot[deg/s]", comments="")
+    options = ("--init", path, "--length", "175", "--speed", "14")
+    done = trialid_("inspect", log, *options)
+    assert done.exit_code == 0, done.output
+    (trial,) = pipeline_file.load(path).trials
+    assert trial.speed == pytest.approx(14.0 * 1852.0 / 3600.0, rel=1e-3)
+
+
+def test_what_is_said_cannot_steer_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    console.say("a name \x1b]0;title\x07 of a file")
+    said = capsys.readouterr().out
+    assert not {"\x1b", "\x07"} & {*said}
+    assert "of a file" in said

@@ -9,6 +9,8 @@ from xml.etree import ElementTree
 import pytest
 from test_bad_input import PIPELINE, Table, record, trialid_
 
+from trialid.own_files import LIST
+
 ROOT = Path(__file__).parent.parent
 HOSTILE = "<script>alert(1)</script>"
 
@@ -65,7 +67,8 @@ def test_nothing_but_the_page_tables_and_figures_is_written(place: Path) -> None
     written("plain")
     now = {p.name for p in (place / "plain").iterdir()}
     assert now == {*kept, "tables", "figures"}
-    assert all((place / "plain" / name).read_bytes() == each for name, each in kept.items())
+    same = {name: (place / "plain" / name).read_bytes() for name in kept}
+    assert same | {LIST: b""} == kept | {LIST: b""}, "but for the list of our files"
     tables = {p.name for p in (place / "plain" / "tables").iterdir()}
     for name in ("parameters", "history", "validation", "logs", "error"):
         assert {f"{name}.csv", f"{name}.md", f"{name}.tex"} <= tables
@@ -76,19 +79,25 @@ def test_nothing_but_the_page_tables_and_figures_is_written(place: Path) -> None
 def test_it_goes_where_it_is_asked_to(place: Path) -> None:
     before = sorted(p.name for p in (place / "plain").iterdir())
     written("plain", "--out", "paper")
-    assert {p.name for p in (place / "paper").iterdir()} == {"report.html", "tables", "figures"}
+    assert {p.name for p in (place / "paper").iterdir()} == {
+        "report.html",
+        "tables",
+        "figures",
+        LIST,
+    }
     assert sorted(p.name for p in (place / "plain").iterdir()) == before
 
 
 def test_two_runs_side_by_side(place: Path) -> None:
     assert written("plain", "marked").startswith("Report: comparison/compare.html\n")
     folder = place / "comparison"
-    assert {p.name for p in folder.iterdir()} == {"compare.html", "tables", "plain", "marked"}
+    assert {p.name for p in folder.iterdir()} == {"compare.html", "tables", "plain", "marked", LIST}
     text = (folder / "compare.html").read_text(encoding="utf-8")
     for words in ("plain", "marked", "Parameters by run", "differ", "Ndelta", "free Nv"):
         assert words in text
     head, *rows = (folder / "tables" / "parameters.csv").read_text("utf-8").splitlines()
-    assert head.startswith("parameter,unit,plain,+- (plain),marked,+- (marked)")
+    own = "{0},+- ({0}),likely from ({0}),likely to ({0})"
+    assert head.startswith(f"parameter,unit,{own.format('plain')},{own.format('marked')}")
     assert {row.split(",")[0] for row in rows} == {"Nr", "Ndelta", "Nv"}
     own = (place / "plain" / "report.html").read_bytes()
     assert (folder / "plain" / "report.html").read_bytes() == own

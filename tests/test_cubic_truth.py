@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 from cubic_truth import ROOT, SHIPS
 
-from trialid import auto, recipe
-from trialid.report import wording
-from trialid.report.page import page
+from trialid import pipeline_file
+from trialid.report.pages.page import page
+from trialid.report.words import doubt
 from trialid.ship.particulars import read_ship
+from trialid.workflow import grow
 
-pytestmark = pytest.mark.study
+pytestmark = pytest.mark.study(turn="each")
 
 MODULI = """"sway_drag_vav", "sway_drag_var", "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rar",
   "roll_drag_vav", "roll_drag_var","""
@@ -33,7 +34,10 @@ CASES = {
         },
     ),
 }  # fmt: skip
-OF_THE_WRONG_CLASS = {"Yvav", "Nvav", "Nrar", "Nvvv", "Kvvv", "Kvvr", "Kvrr", "Krrr"}
+OF_THE_WRONG_CLASS = {
+    *("Yvav", "Yvar", "Nvav", "Nvar", "Nrar", "Kvav", "Kvar"),
+    *("Nvvv", "Kvvv", "Kvvr", "Kvrr", "Krrr"),
+}
 """What the truth has otherwise or with other values: only a fit's own numbers stand for them."""
 
 
@@ -51,7 +55,7 @@ def done(request, tmp_path_factory):
     cubic_truth.write_logs(folder, coloured, seed)
     made = []
     print(f"\n{request.param}")
-    for stage in auto.stages(recipe.load(folder / "cubic.toml"), lambda words, share: None):
+    for stage in grow.stages(pipeline_file.load(folder / "cubic.toml"), lambda words, share: None):
         made.append(stage)
         _tell(stage)
     return made
@@ -59,21 +63,19 @@ def done(request, tmp_path_factory):
 
 def _tell(stage):
     result = stage.run.result
-    fit, split = result["fit"], result["split"]
-    parts = "/".join(
-        "-" if split[part] is None else f"{split[part]:.2%}" for part in ("noise", "undermodelling")
-    )
+    fit, split = result.fit, result.split
+    parts = "/".join("-" if p is None else f"{p:.2%}" for p in (split.noise, split.undermodelling))
     print(
-        f"{stage.added}, {'kept' if stage.kept else 'not kept'}: {fit['eps_rmsn']:.2%}, check "
-        f"{fit['eps_rmsn_check']:.2%} (sensors {cubic_truth.noise_share(result):.2%}), noise/model "
-        f"{parts}; {result['verdict']['kind']} {result['verdict']['effect']}"
+        f"{stage.added}, {'kept' if stage.kept else 'not kept'}: {fit.eps_rmsn:.2%}, check "
+        f"{fit.eps_rmsn_check:.2%} (sensors {cubic_truth.noise_share(result):.2%}), noise/model "
+        f"{parts}; {result.verdict.kind} {result.verdict.effect}"
     )
 
 
 def beyond_noise(stage):
     """What is left of the error on the check trial when the sensors' noise is taken off."""
     result = stage.run.result
-    whole = result["fit"]["eps_rmsn_check"] ** 2 - cubic_truth.noise_share(result) ** 2
+    whole = result.fit.eps_rmsn_check**2 - cubic_truth.noise_share(result) ** 2
     return float(np.sqrt(max(whole, 0.0)))
 
 
@@ -85,36 +87,41 @@ def test_the_check_error_comes_down_to_the_noise(done):
     """
     last = done[-1]
     print(f"beyond the noise: {beyond_noise(done[0]):.2%} to {beyond_noise(last):.2%}")
-    assert last.run.result["fit"]["eps_rmsn_check"] < 1.2 * cubic_truth.noise_share(last.run.result)
+    assert last.run.result.fit.eps_rmsn_check < 1.2 * cubic_truth.noise_share(last.run.result)
     assert beyond_noise(last) < 0.5 * beyond_noise(done[0])
-    assert done[0].run.result["verdict"]["effect"] == "rudder_slipstream"
-    assert last.run.result["verdict"]["kind"] in {"nothing missing", "cannot tell"}
+    assert done[0].run.result.verdict.effect == "rudder_slipstream"
+    assert last.run.result.verdict.kind in {"nothing missing", "cannot tell"}
 
 
-def test_the_report_says_what_is_not_to_be_believed(done):
-    """All that stands for a term of another class is on the list, where it is not zero."""
+def test_ranges_hold_the_linear_truth(done):
+    """GM and Kp, up to ten of their standard errors off, and most of the others.
+
+    Terms of another class have no truth to be held; the linear ones are those of the S-175 on her
+    straight course. Several are missing at once here and the ranges know of one: not all is held.
+    The report says what is not to be believed.
+    """
     last = done[-1].run
-    rows = last.result["accuracy"]["parameters"]
-    said = wording.doubtful(rows)
-    print(said)
-    doubted = set(said.partition(": ")[2].partition(";")[0].split(", "))
-    wrong = {r["name"] for r in rows if r["name"] in OF_THE_WRONG_CLASS and r["value"] != 0.0}
-    assert wrong
-    assert wrong <= doubted
-    html = page(last.result, last.series)
-    assert said in html
+    truth = read_ship(SHIPS / "s175q.toml").coefficients
+    rows = [r for r in last.result.physical if r.name in truth.keys() - OF_THE_WRONG_CLASS]
+    held = {r.name: r.likely[0] <= truth[r.name] <= r.likely[1] for r in rows}
+    off = {r.name: round((r.value - truth[r.name]) / r.standard_error, 1) for r in rows}
+    print(f"in standard errors: {off}; outside: {[n for n, inside in held.items() if not inside]}")
+    assert held["GM"]
+    assert held["Kp"]
+    assert sum(held.values()) >= 0.75 * len(held)
+    assert doubt.doubtful(last.result.physical) in page(last.result, last.series)
 
 
 def test_what_is_believed_is_right_to_half_its_value(done):
     """Against the S-175 linearised on its straight course, rudder and propeller in it."""
-    rows = done[-1].run.result["accuracy"]["parameters"]
+    rows = done[-1].run.result.accuracy.parameters
     truth = read_ship(SHIPS / "s175q.toml").coefficients
     believed = [
         r for r in rows
-        if r["kind"] == "physical" and not wording.doubtful([r]) and r["name"] in truth
-        and r["name"] not in OF_THE_WRONG_CLASS
+        if r.kind == "physical" and not doubt.doubtful([r]) and r.name in truth
+        and r.name not in OF_THE_WRONG_CLASS
     ]  # fmt: skip
-    print({r["name"]: round(r["value"] / truth[r["name"]], 3) for r in believed})
-    assert {"GM", "Kdelta"} <= {r["name"] for r in believed}
+    print({r.name: round(r.value / truth[r.name], 3) for r in believed})
+    assert {"GM", "Kdelta"} <= {r.name for r in believed}
     for row in believed:
-        assert abs(row["value"] / truth[row["name"]] - 1.0) < 0.5, row["name"]
+        assert abs(row.value / truth[row.name] - 1.0) < 0.5, row.name

@@ -9,11 +9,11 @@ import pytest
 from click.testing import CliRunner
 
 import trialid
-from trialid import effects, recipe
-from trialid.cli import commands
+from trialid.cli.main import commands
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
+GUIDE = ROOT / "trialid" / "guide"
 CHANGELOG = ROOT / "CHANGELOG.md"
 
 RUN = "trialid run pipelines/hidden_effect.toml"
@@ -32,9 +32,15 @@ def readme() -> str:
     return README.read_text(encoding="utf-8")
 
 
-def blocks(language: str) -> list[str]:
-    """Fenced blocks of the README in one language."""
-    return re.findall(rf"^```{language}\n(.*?)^```$", readme(), flags=re.DOTALL | re.MULTILINE)
+def guide() -> str:
+    """Every page of the guide, one after another."""
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(GUIDE.glob("*.md")))
+
+
+def blocks(language: str, text: str | None = None) -> list[str]:
+    """Fenced blocks in one language, of the README if no text is given."""
+    text = readme() if text is None else text
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.DOTALL | re.MULTILINE)
 
 
 def files() -> list[Path]:
@@ -54,19 +60,20 @@ def _ignored(path: Path) -> bool:
 
 
 @pytest.mark.parametrize("name", sorted(commands.commands))
-def test_every_command_has_help_and_is_in_the_readme(name: str) -> None:
+def test_every_command_has_help_and_is_in_the_manual(name: str) -> None:
     command = commands.commands[name]
     assert (command.help or "").strip()
     for option in command.params:
         assert getattr(option, "help", None) or option.param_type_name == "argument", option.name
     shown = CliRunner().invoke(commands, [name, "--help"], prog_name="trialid")
     assert shown.exit_code == 0
-    assert f"trialid {name}" in readme()
+    assert f"trialid {name}" in readme() + guide()
 
 
-def test_the_readme_names_no_command_that_is_not_there() -> None:
+def test_the_manual_names_no_command_that_is_not_there() -> None:
     """A bare name in a list of plans may be of one that is not there yet."""
-    code = "\n".join([*blocks("sh"), *re.findall(r"`(trialid [a-z]+ [^`]*)`", readme())])
+    text = readme() + guide()
+    code = "\n".join([*blocks("sh", text), *re.findall(r"`(trialid [a-z]+ [^`]*)`", text)])
     named = set(re.findall(r"(?:^|[\s/])trialid ([a-z]+)", code))
     assert named - set(commands.commands) == set()
 
@@ -108,31 +115,6 @@ def test_headings_the_readme_links_to_are_there() -> None:
     titles = re.findall(r"^#+ (.*)$", readme(), flags=re.MULTILINE)
     anchors = {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
     assert set(re.findall(r"\]\(#([^)]+)\)", readme())) <= anchors
-
-
-def test_the_readmes_pipelines_are_read(tmp_path: Path) -> None:
-    """Every key in them is a key, every unit a unit."""
-    for text in blocks("toml"):
-        table = tomllib.loads(text)
-        for name in _named_files(table):
-            (tmp_path / name).touch()
-        (tmp_path / "readme.toml").write_text(text, encoding="utf-8")
-        read = recipe.load(tmp_path / "readme.toml")
-        unknown = [name for name in read.model.effects if name not in effects.CATALOGUE]
-        assert not unknown or read.model.effects_from
-
-
-def _named_files(table: dict[str, object]) -> list[str]:
-    text = repr(table)
-    return re.findall(r"'([\w.-]+\.(?:toml|mcap|csv|py))'", text)
-
-
-def test_the_readmes_effects_are_effects(tmp_path: Path) -> None:
-    for place, text in enumerate(blocks("python")):
-        if "@effect" in text:
-            path = tmp_path / f"block_{place}.py"
-            path.write_text(text, encoding="utf-8")
-            assert effects.from_file(path)
 
 
 def test_the_changelog_tells_of_this_version() -> None:

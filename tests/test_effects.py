@@ -12,9 +12,10 @@ from dual import independent, slope
 from typical import draw
 
 from trialid.effects import CATALOGUE, FILES
-from trialid.quantities import PARTICULARS, QUANTITIES, SIGNALS
+from trialid.names.quantities import PARTICULARS, QUANTITIES, SIGNALS
 from trialid.ship.effect import FORMS, Effect, Force
-from trialid.ship.model import STATES, ShipModel, derivatives
+from trialid.ship.model import STATES, ShipModel
+from trialid.ship.motion import derivatives
 from trialid.ship.particulars import read_ship
 from trialid.ship.prime import prime_parameter, prime_signal
 from trialid.simulation.graph import Graph, Node, gradient, order

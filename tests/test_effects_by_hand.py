@@ -8,7 +8,8 @@ import pytest
 
 from trialid.effects import CATALOGUE
 from trialid.maths import Number
-from trialid.ship.model import STATES, ShipModel, derivatives, readings
+from trialid.ship.model import STATES, ShipModel
+from trialid.ship.motion import derivatives, readings
 from trialid.ship.particulars import read_ship
 
 SHIP = read_ship(Path(__file__).parent.parent / "sample_data" / "ships" / "s175q.toml")

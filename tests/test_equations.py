@@ -43,6 +43,6 @@ def test_a_file_reads_in_the_order_of_the_paper(file: str) -> None:
 def test_neighbours_live_together() -> None:
     """Eq. 8 to 14 are the accuracy, Eq. 15 and 16 the stability, Eq. 1 the rigid body."""
     home = {n: f for f, numbers in CLAIMS.items() for n in numbers}
-    assert {home[n] for n in range(8, 15)} == {"accuracy.py"}
+    assert {home[n] for n in range(8, 15)} == {"accuracy/equations.py"}
     assert home[15] == home[16] == "ship/stability.py"
     assert home[1] == "ship/rigid_body.py"

@@ -16,11 +16,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from valid_result import assert_valid
 
 import trialid
-from trialid.errors import RecipeError
-from trialid.pipeline import run, write
-from trialid.recipe import load
+from trialid import own_files
+from trialid.errors import PipelineError
+from trialid.pipeline_file import load
+from trialid.workflow.run import run
+from trialid.workflow.write_run import write
 
 ROOT = Path(__file__).parent.parent
 PIPELINES = sorted(
@@ -290,6 +293,7 @@ def test_the_check_of_the_schema_finds_what_is_wrong(value: Any, shape: Shape) -
 
 def test_the_result_conforms_to_the_schema(finished: Finished) -> None:
     assert list(problems(finished.result, RESULT)) == []
+    assert_valid(dict(finished.result))
 
 
 def test_numbers_are_possible(finished: Finished) -> None:
@@ -346,6 +350,7 @@ def test_parts_of_the_result_agree(finished: Finished) -> None:
 
 def test_the_folder_is_whole(finished: Finished) -> None:
     names = {
+        own_files.LIST,
         "pipeline.toml",
         "predicted.mcap",
         "report.html",
@@ -530,5 +535,7 @@ def test_a_quiet_stretch_outside_its_trial_is_refused(tmp_path: Path) -> None:
     text = text.replace('"../sample_data', f'"{(ROOT / "sample_data").as_posix()}')
     wrong = tmp_path / "quiet.toml"
     wrong.write_text(text + '\nquiet = [{ trial = "zigzag-10", window = [0.0, 5000.0] }]\n')
-    with pytest.raises(RecipeError, match=r"diagnose.quiet\[0\].window: \[0, 5000\] s is outside"):
+    with pytest.raises(
+        PipelineError, match=r"diagnose.quiet\[0\].window: \[0, 5000\] s is outside"
+    ):
         run(load(wrong))

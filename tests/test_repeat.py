@@ -9,7 +9,8 @@ import pytest
 from test_bad_input import PIPELINE, Table, record, trialid_
 
 from trialid.errors import TrialidError
-from trialid.repeat import again, compare, earlier, told
+from trialid.result.schema import Result
+from trialid.workflow.repeat import again, compare, comparison_words, earlier
 
 ROOT = Path(__file__).parent.parent
 
@@ -137,7 +138,9 @@ def test_a_run_needs_a_pipeline() -> None:
 def test_a_last_digit_is_the_same_number_and_is_told() -> None:
     found = compare({"fit": {"V": 1.0}}, {"fit": {"V": 1.0 + 1e-9}})
     assert found.same
-    assert told(found, {}, {}).startswith("same numbers to 1e-06: 1 of 1 differ")
+    assert comparison_words(found, Result(), Result()).startswith(
+        "same numbers to 1e-06: 1 of 1 differ"
+    )
 
 
 def test_another_length_or_word_is_no_same_run() -> None:
@@ -153,8 +156,8 @@ def test_a_number_that_became_unknown_is_told() -> None:
 
 def test_other_versions_are_named() -> None:
     found = compare({"fit": {"V": 1.0}}, {"fit": {"V": 2.0}})
-    words = told(found, {"version": "0.1", "versions": {"numpy": "2.0"}},
-                 {"version": "0.1", "versions": {"numpy": "2.1"}})  # fmt: skip
+    words = comparison_words(found, Result(version="0.1", versions={"numpy": "2.0"}),
+                 Result(version="0.1", versions={"numpy": "2.1"}))  # fmt: skip
     assert words.endswith("other versions: numpy 2.0 then, 2.1 now")
 
 

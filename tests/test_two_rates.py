@@ -10,7 +10,8 @@ import pytest
 from scipy.signal import lfilter
 from test_bad_input import trialid_
 
-from trialid import auto, recipe
+from trialid import pipeline_file
+from trialid.workflow import grow
 
 PIPELINE = Path(__file__).parent / "two_rates.toml"
 FINE = 0.01  # s
@@ -73,34 +74,34 @@ def pipeline(folder, **changes):
 
 def found(path):
     """Every stage of the loop, with its history printed."""
-    done = list(auto.stages(recipe.load(path), lambda words, share: None))
+    done = list(grow.stages(pipeline_file.load(path), lambda words, share: None))
     for stage in done:
-        fit, named = stage.run.result["fit"], stage.run.result["verdict"]
+        fit, named = stage.run.result.fit, stage.run.result.verdict
         print(
-            f"{stage.added}: {fit['eps_rmsn']:.2%}, held out {fit['eps_rmsn_check']:.2%}, "
-            f"then {named['kind']} {named['effect']} {named['family']}"
+            f"{stage.added}: {fit.eps_rmsn:.2%}, held out {fit.eps_rmsn_check:.2%}, "
+            f"then {named.kind} {named.effect} {named.family}"
         )
     return done
 
 
 def values(stage):
-    return {p["name"]: p["value"] for p in stage.run.result["accuracy"]["parameters"]}
+    return {p.name: p.value for p in stage.run.result.accuracy.parameters}
 
 
 def refitted(stage, effect):
-    row = next(m for m in stage.run.result["missing"] if m["effect"] == effect)
-    return row["eps_rmsn_refitted"]
+    row = next(m for m in stage.run.result.missing if m.effect == effect)
+    return row.eps_rmsn_refitted
 
 
 def test_two_poles_are_named_and_preferred_to_one(tmp_path):
     write_logs(tmp_path, poles=(4.5, 5.0))
     done = found(pipeline(tmp_path))
     first, last = done[0], done[-1]
-    assert first.run.result["verdict"]["kind"] == "missing"
-    assert first.run.result["verdict"]["effect"] == "lag_twice_r"
+    assert first.run.result.verdict.kind == "missing"
+    assert first.run.result.verdict.effect == "lag_twice_r"
     assert refitted(first, "lag_twice_r") < 0.5 * refitted(first, "lag_r")
     assert [s.added for s in done[1:] if s.kept] == ["lag_twice_r", "delay_r"]
-    assert last.run.result["verdict"]["kind"] == "nothing missing"
+    assert last.run.result.verdict.kind == "nothing missing"
     value = values(last)
     print(value)
     assert value["T_rr"] == pytest.approx(4.75, abs=0.05)
@@ -112,7 +113,7 @@ def test_two_poles_are_named_and_preferred_to_one(tmp_path):
 def test_one_pole_is_named_where_there_is_one(tmp_path):
     write_logs(tmp_path, poles=(5.0,), delay=0.0)
     first, *_, last = found(pipeline(tmp_path))
-    assert first.run.result["verdict"]["effect"] == "lag_r"
+    assert first.run.result.verdict.effect == "lag_r"
     assert refitted(first, "lag_r") < 0.5 * refitted(first, "lag_twice_r")
     assert values(last)["T_r"] == pytest.approx(5.0, abs=0.1)
 
@@ -121,8 +122,8 @@ def test_nothing_is_named_where_the_sensors_agree(tmp_path):
     """What resampling two clocks leaves, 0.2 % of the signal, may be called more than noise."""
     write_logs(tmp_path, poles=(), delay=0.0, bias=0.0)
     (only,) = found(pipeline(tmp_path))
-    assert only.run.result["verdict"]["kind"] != "missing"
-    assert only.run.result["fit"]["eps_rmsn"] < 0.005
+    assert only.run.result.verdict.kind != "missing"
+    assert only.run.result.fit.eps_rmsn < 0.005
 
 
 def test_it_runs_by_the_command_too(tmp_path, monkeypatch):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.quantities import QUANTITIES
+from trialid.names.quantities import QUANTITIES
 
 KNOWN = {
     "u": (5.0, 9.0), "n": (5.0, 9.0), "U": (5.0, 9.0), "U0": (7.0, 8.0), "L": (170.0, 180.0),

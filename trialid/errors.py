@@ -3,12 +3,24 @@
 import difflib
 from collections.abc import Iterable, Sequence
 from typing import Final
+from unicodedata import category
 
 LISTED: Final = 30
 """Names that an error lists before it only counts them."""
 
 LONGEST = 200
 """Letters of a library's message that are passed on."""
+
+
+PLAIN: Final = frozenset("\n\t")
+SPACING: Final = ("Zs",)
+"""Spaces, which Python counts as not printable: thin ones stand before percent signs."""
+
+LONGEST_WORD: Final = 300
+"""Letters of a path or a name that a message quotes; a longer one is not read to its end."""
+
+LONGEST_MESSAGE: Final = 1500
+"""Letters of a whole message: ten lines of a wide terminal."""
 
 
 class TrialidError(Exception):
@@ -18,7 +30,7 @@ class TrialidError(Exception):
     """
 
     def __init__(self, message: str) -> None:
-        super().__init__(printable(_folded(message)))
+        super().__init__(shorten(printable(_folded(message))))
 
 
 class LogError(TrialidError):
@@ -37,11 +49,15 @@ class EffectError(TrialidError):
     """An effect's declaration is incomplete or asks for something unknown."""
 
 
+class PluginError(TrialidError):
+    """An installed package adds what cannot be loaded, or what is there already."""
+
+
 class ShipError(TrialidError):
     """A ship file is incomplete or physically impossible."""
 
 
-class RecipeError(TrialidError):
+class PipelineError(TrialidError):
     """A pipeline file has a wrong key, a wrong value or a contradiction."""
 
 
@@ -68,10 +84,36 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def said(error: Exception) -> str:
+def shorten(text: str) -> str:
+    """A message that fits a screen: the middle is left out of what no reader needs whole.
+
+    >>> shorten(f"{'a' * 5000}: no such file") == f"{'a' * 240}...{'a' * 57}: no such file"
+    True
+    """
+    words = [word if len(word) <= LONGEST_WORD else _ends(word, 60) for word in text.split(" ")]
+    return _ends(" ".join(words), LONGEST_MESSAGE // 3, LONGEST_MESSAGE)
+
+
+def _ends(text: str, last: int, most: int = LONGEST_WORD) -> str:
+    """The text, its beginning and end alone where it is longer than so many letters."""
+    return text if len(text) <= most else f"{text[: most - last]}...{text[len(text) - last + 2 :]}"
+
+
+def harmless(text: str) -> str:
+    r"""A text of several lines with what could steer a terminal escaped; spaces of any width stay.
+
+    >>> harmless("a\x1b[31m\nb\t\u202ec"), harmless("3\u2009%") == "3\u2009%"
+    ('a\\x1b[31m\nb\t\\u202ec', True)
+    """
+    if all(c.isprintable() or c in PLAIN for c in text):
+        return text
+    return "".join(c if c in PLAIN or category(c) in SPACING else printable(c) for c in text)
+
+
+def reason_of(error: Exception) -> str:
     r"""What a library says of a file, for a message of ours: on one line, and not too long of it.
 
-    >>> said(ValueError("bad byte \x0f,\n  at 7")), len(said(ValueError("a" * 5000)))
+    >>> reason_of(ValueError("bad byte \x0f,\n  at 7")), len(reason_of(ValueError("a" * 5000)))
     ('bad byte \\x0f, at 7', 200)
     """
     return printable(_folded(str(error)))[:LONGEST]
@@ -93,15 +135,15 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, names, n=3, cutoff=0.6)
     if close:
         return "did you mean " + " or ".join(repr(c) for c in close) + "?"
-    return "known: " + listed(names)
+    return "known: " + list_names(names)
 
 
-def listed(names: Sequence[str]) -> str:
+def list_names(names: Sequence[str]) -> str:
     """Names as words of an error, no more than a line or two of them.
 
-    >>> listed(["delta", "phi"])
+    >>> list_names(["delta", "phi"])
     'delta, phi'
-    >>> listed([f"column {i}" for i in range(85)]).partition(", column 29")[2]
+    >>> list_names([f"column {i}" for i in range(85)]).partition(", column 29")[2]
     ' and 55 more'
     """
     more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""

@@ -1,14 +1,16 @@
 """A trial: one manoeuvre, every signal in SI on one clock; the only thing the identifier sees."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Vector = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from trialid.arrays import Mask, Vector
+from trialid.signal_arrays import columns_of, in_si
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -70,3 +72,54 @@ class Trial:
     def duration(self) -> float:
         """From the first to the last sample [s]."""
         return (self.samples - 1) * self.period
+
+    @classmethod
+    def from_arrays(
+        cls,
+        name: str,
+        t: Sequence[float] | Vector,
+        signals: Mapping[str, Sequence[float] | Vector],
+        *,
+        units: Mapping[str, str],
+        positive: Mapping[str, Literal["port", "starboard"]] | None = None,
+        use: Literal["fit", "check"] = "fit",
+    ) -> "Trial":
+        """A trial from arrays on one uniform clock.
+
+        Parameters
+        ----------
+        t
+            Time [s]; (N,), uniform to a hundredth of its step.
+        signals
+            Quantity name to values; (N,) each. NaN is what was not measured.
+        units
+            Quantity name to the unit its values are in: `deg`, `deg/s`, `kn`.
+        positive
+            The side a quantity counts positive; of a rudder it has to be said, others are positive
+            to starboard where nothing is said.
+
+        Raises
+        ------
+        TrialidError
+            The clock is not uniform, a name or a unit is not known, a rudder's side is not said.
+        """
+        period, values, valid = in_si(name, t, signals, units, positive or {})
+        return cls(name, use, period, values, valid)
+
+    @classmethod
+    def from_frame(
+        cls,
+        name: str,
+        frame: "pd.DataFrame",
+        *,
+        units: Mapping[str, str],
+        positive: Mapping[str, Literal["port", "starboard"]] | None = None,
+        use: Literal["fit", "check"] = "fit",
+    ) -> "Trial":
+        """A trial from a table: a column for each signal named in `units`.
+
+        Time is a column `t` [s], else the index, in seconds or as dates. The rest as
+        `from_arrays`.
+        """
+        t, signals = columns_of(frame, units)
+        return cls.from_arrays(name, t, signals, units=units, positive=positive, use=use)

@@ -19,7 +19,7 @@ from s175q import (
     zigzag,
 )
 
-from trialid.accuracy import Subject, assess
+from trialid.accuracy.parameter_table import Subject, assess
 from trialid.alignment import LogClock, SignalSource, align
 from trialid.identification.fit import identify
 from trialid.identification.output_error import stretches

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from trialid.alignment.clocks import Series
-from trialid.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS
 
 DATA = Path(__file__).parents[3] / "shared/data"
 HSVA = sorted((DATA / "kvlcc2_hsva_zigzag").glob("*.dat"))

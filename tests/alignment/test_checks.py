@@ -6,7 +6,7 @@ from made_recordings import channel, recording
 from made_trials import record
 from real_channels import BUSES, DATA, DECAY, HSVA, bus_series, decay_series, hsva_series, series
 
-from trialid.alignment import SignalSource, align, checks, twins
+from trialid.alignment import SignalSource, align, checks, duplicate_channels
 from trialid.errors import AlignmentError
 
 UNITS = {"u": "m/s", "r": "rad/s", "p": "rad/s"}
@@ -74,7 +74,7 @@ def test_no_healthy_record_is_refused():
     assert false_alarms(range(28)) == ([], [])
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=0)
 def test_no_healthy_record_of_many_is_refused():
     assert false_alarms(range(28, 420)) == ([], [])
 
@@ -211,9 +211,9 @@ def test_two_channels_of_one_quantity(zigzag):
     one = zigzag["r"]
     rng = np.random.default_rng(3)
     same = series("r", one.t, one.y + 0.1 * np.std(one.y) * rng.normal(size=len(one.y)))
-    assert twins.disagreements({"r/1": one, "r/2": same, "psi/1": zigzag["psi"]}) == ()
+    assert duplicate_channels.disagreements({"r/1": one, "r/2": same, "psi/1": zigzag["psi"]}) == ()
     late = series("r", one.t + 2 * 10**9, 0.6 * one.y + np.std(one.y))
-    (found,) = twins.disagreements({"r/1": one, "r/2": late})
+    (found,) = duplicate_channels.disagreements({"r/1": one, "r/2": late})
     assert found.about == ("r/1", "r/2")
     assert found.severity == "remark"
     assert found.evidence["lag"] == pytest.approx(2.0, abs=0.2)
@@ -245,8 +245,8 @@ def _of_format(name, t, y):
 def test_channels_without_a_known_quantity_or_unit_are_not_compared():
     t = np.arange(0, 300, 0.1)
     bare = channel("x", t, np.sin(t))
-    assert twins.series_of(bare) is None
-    assert twins.series_of(_of_format("r", t, np.sin(t))) is not None
+    assert duplicate_channels.series_of(bare) is None
+    assert duplicate_channels.series_of(_of_format("r", t, np.sin(t))) is not None
 
 
 class TestReal:
@@ -286,7 +286,7 @@ class TestReal:
             assert not errors(checks.of_series(rest | mine))
 
     def test_the_two_compasses_of_one_boat(self):
-        found = twins.disagreements(_named(bus_series(_bus("furuno-130842.raw"))))
+        found = duplicate_channels.disagreements(_named(bus_series(_bus("furuno-130842.raw"))))
         roll, turn = found
         assert roll.about == ("phi/27", "phi/52")
         assert np.rad2deg(roll.evidence["offset"]) == pytest.approx(7.4, abs=0.1)
@@ -296,7 +296,7 @@ class TestReal:
 
     def test_two_rates_of_turn_of_a_yacht_and_her_rudder_to_port(self):
         channels = bus_series(_bus("00090013.candump.log"))
-        found = {one.about: one for one in twins.disagreements(_named(channels))}
+        found = {one.about: one for one in duplicate_channels.disagreements(_named(channels))}
         assert set(found) == {("phi/11", "phi/128"), ("r/11", "r/128")}
         assert found["r/11", "r/128"].evidence["gain_high"] < 0.9  # the damped one
         mine = {"r": channels["r", 128], "delta": channels["delta", 5]}
@@ -315,4 +315,4 @@ def _named(channels):
 def test_a_log_cut_short_leaves_one_channel_with_hardly_a_sample():
     t = np.arange(0, 40, 0.1)
     long = series("r", t, 0.01 * np.sin(0.3 * t))
-    assert twins.disagreements({"a": long, "b": series("r", t[:1], np.zeros(1))}) == ()
+    assert duplicate_channels.disagreements({"a": long, "b": series("r", t[:1], np.zeros(1))}) == ()

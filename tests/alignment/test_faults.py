@@ -160,7 +160,7 @@ def false_ones(seeds):
     for seed in seeds:
         made = record(seed)
         log = recording(*(channel(q, t, y) for q, (t, y) in made.channels.items()))
-        series = [clocks.ordered(_series(log, q)) for q in made.channels]
+        series = [clocks.in_time_order(_series(log, q)) for q in made.channels]
         samples += sum(len(one.y) for one in series)
         found += [(made.story, words) for words in _faults(series)]
     print(f"{samples} healthy values, {len(found)} remarks: {found}")
@@ -177,7 +177,7 @@ def _series(log, quantity):
 def _faults(series):
     words = []
     for i, one in enumerate(series):
-        words += faults.masked(one, Grid(int(one.t[0]), 0.5, 100), (), 0.0, "t")[1]
+        words += faults.mask_faults(one, Grid(int(one.t[0]), 0.5, 100), (), 0.0, "t")[1]
         stuck = faults.frozen(series, i, Grid(int(one.t[0]), 0.5, 100))
         words += [f"{one.quantity.name} {stuck.words}"] if stuck else []
     return words
@@ -187,7 +187,7 @@ def test_healthy_simulated_records_keep_every_value():
     assert not false_ones(range(42))
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=4)
 def test_many_healthy_simulated_records_keep_every_value():
     assert not false_ones(range(42, 420))
 
@@ -200,8 +200,8 @@ def planted(seeds, find, plant):
         t, y = record(seed).channels[find]
         k = rng.choice(np.arange(5, len(y) - 5), max(1, len(y) // 500), replace=False)
         log = recording(channel(find, t, plant(y, k, rng)))
-        one = clocks.ordered(_series(log, find))
-        left, _ = faults.masked(one, Grid(int(one.t[0]), 0.5, 100), (), 0.0, "t")
+        one = clocks.in_time_order(_series(log, find))
+        left, _ = faults.mask_faults(one, Grid(int(one.t[0]), 0.5, 100), (), 0.0, "t")
         out = ~np.isfinite(left.y)
         hit, wrong, total = hit + out[k].sum(), wrong + out.sum() - out[k].sum(), total + len(k)
     print(f"{find}: {hit / total:.1%} of {total} found, {wrong} others masked")
@@ -242,4 +242,4 @@ def test_planted_zeros_of_the_speed_are_found():
 def test_real_records_keep_every_value(path):
     read = hsva_series if path in HSVA else decay_series if path == DECAY else bus_series
     every = read(path)
-    assert not _faults([clocks.ordered(one) for one in every.values()])
+    assert not _faults([clocks.in_time_order(one) for one in every.values()])

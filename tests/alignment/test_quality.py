@@ -87,3 +87,12 @@ def test_signals_by_different_clocks():
         "different clocks, the delay between them is not known: r by header stamp; p by log"
         in align("t", "fit", [log], sources, 0.5).remarks
     )
+
+
+def test_what_rounding_adds_is_told_as_a_share_of_the_motion():
+    """Against the rounding itself: whole tenths of a motion of one, seen without a filter."""
+    t = np.arange(0, 200, 0.5)
+    y = np.round(5.0 * swing(t)) / 5.0
+    (said,) = (word for word in remarks_on(t, y) if "an error of" in word)
+    share = float(said.partition("an error of ")[2].partition("%")[0]) / 100.0
+    assert share == pytest.approx(np.std(y - swing(t)) / np.std(y), rel=0.1)

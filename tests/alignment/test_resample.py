@@ -6,7 +6,7 @@ from made_recordings import channel, recording
 
 from trialid.alignment import SignalSource, align, resample
 from trialid.alignment.clocks import Grid, Series
-from trialid.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS
 
 PERIOD = 0.5
 START = 1_700_000_000_000_000_000
@@ -232,3 +232,25 @@ def test_a_single_sample_between_two_gaps():
         value, valid = resample.onto(series("r", t, motion(t)), grid(79), smooth=smooth)
         assert np.isfinite(value).all()
         assert valid[80] == (not smooth)
+
+
+def test_a_rudder_moves_in_ramps_and_never_beyond_its_samples():
+    """Sampled once a second, with corners between; half a second later it is half way."""
+    t = np.arange(0.0, 40.0)
+    ramp = np.clip((t - 10.0) * 0.04, 0.0, 0.2)
+    (y, valid), (turning, _) = (
+        resample.onto(series(name, t, ramp), grid(39.0), smooth=False) for name in ("delta", "r")
+    )
+    lines = np.clip((grid(39.0).t - 10.0) * 0.04, 0.0, 0.2)
+    np.testing.assert_allclose(y, lines, atol=1e-12)
+    assert valid.all()
+    assert np.abs(turning - lines).max() > 1e-3  # a motion has no corners
+
+
+def test_half_of_the_filter_is_not_believed_at_either_end_of_a_stretch():
+    """Five periods of half a second at both ends of the record and on both sides of its gap."""
+    t = np.delete(np.arange(0.0, 100.0, 0.1), np.s_[400:600])
+    _, valid = resample.onto(series("r", t, motion(t)), grid(99.5), smooth=True)
+    at = grid(99.5).t
+    expected = ((at >= 2.5) & (at <= 37.4)) | ((at >= 62.5) & (at <= 97.4))
+    np.testing.assert_array_equal(valid, expected)

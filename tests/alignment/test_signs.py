@@ -160,3 +160,15 @@ def test_real_zigzags_with_the_rudder_to_port(path):
     align("t", "fit", [log], [SignalSource("delta", "delta", "deg", "port"), *more], 0.25)
     with pytest.raises(AlignmentError, match='write positive = "port" for delta'):
         align("t", "fit", [log], [SignalSource("delta", "delta", "deg", "starboard"), *more], 0.25)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_wrong_side_is_found_in_a_rough_sea(seed):
+    """The sea turns her as much as the rudder does: two thirds of a correlation are left."""
+    t, delta, r, _ = ship("random", seed, waves=4e-3, sensor=4e-3)
+    log = log_of(t, delta=delta, r=r)
+    trial = align("t", "fit", [log], sources(), 0.5)
+    (remark,) = (one for one in trial.remarks if one.startswith("delta and dr/dt: correlation "))
+    assert 0.4 < float(remark.split()[-1]) < 0.97
+    with pytest.raises(AlignmentError, match="delta looks inverted"):
+        align("t", "fit", [log], sources("port"), 0.5)

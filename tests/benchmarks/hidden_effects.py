@@ -22,7 +22,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Final
 
 from hidden_scenarios import SCENARIOS, TYPICAL
@@ -40,20 +39,21 @@ from hidden_truth import (
     without,
 )
 
-from trialid import pipeline
-from trialid.diagnosis.completeness import completeness
-from trialid.diagnosis.missing_effect import Refit, Verdict, decide, refit
-from trialid.diagnosis.noise import split
-from trialid.diagnosis.score import Candidate, rank
+from trialid.diagnosis.diagnose import DiagnoseSettings, worth_a_name
+from trialid.diagnosis.noise.noise_bound import held_against
+from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.search.completeness import completeness
+from trialid.diagnosis.search.score import Candidate, rank
+from trialid.diagnosis.verdict import Refit, Verdict, decide, refit_best
 from trialid.effects import CATALOGUE
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
-from trialid.identification.pose import Settings
-from trialid.recipe.form import DiagnoseRecipe
+from trialid.identification.problem import Settings
 from trialid.ship.effect import Force
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.trial import Trial
+from trialid.workflow import fit_model
 
 SEEDS: Final = 20
 SHORT_SEEDS: Final = 4
@@ -73,7 +73,7 @@ CORE: Final = (
 )  # fmt: skip
 """Twenty-five effects from every part of the ship, and what must not be named."""
 
-DEFAULTS: Final = SimpleNamespace(diagnose=DiagnoseRecipe())
+DEFAULTS: Final = DiagnoseSettings()
 """A pipeline that says nothing in [diagnose]."""
 
 SHORT_NOISES: Final = ("white", "process")
@@ -110,19 +110,20 @@ class Stopwatch:
 def diagnosed(
     trials: Sequence[Trial], model: ShipModel, settings: Settings, watch: Stopwatch
 ) -> Diagnosis:
-    """From trials to a verdict as `trialid.pipeline.run` goes, with its own functions."""
-    asked = DEFAULTS.diagnose
+    """From trials to a verdict as `trialid.workflow.run.run` goes, with its own functions."""
+    asked = DEFAULTS
     with watch("fit"):
-        fit = pipeline.fitted(tuple(trials), model, settings, lambda words, share: None)
+        fit = fit_model.fit_with_progress(tuple(trials), model, settings, lambda words, share: None)
     with watch("rank"):
         ranking, augmented = rank(fit, CATALOGUE, asked.family_cos, asked.level)
     with watch("split"):
-        parts, _ = split(fit, augmented, {})
+        parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        worth = pipeline.worth_refitting(DEFAULTS, ranking)
-        refits = refit(fit, trials, worth, lambda words: None)
+        worth = worth_a_name(ranking, DEFAULTS)
+        refits = refit_best(fit, trials, worth, asked.refit, asked.level, lambda words: None)
     with watch("decide"):
         whole = completeness(fit, augmented)
+        parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)
         verdict = decide(fit, ranking, refits, parts, whole, asked.level)
         named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
     return Diagnosis(fit, ranking, refits, named, verdict)
@@ -162,8 +163,8 @@ def run(task: Task) -> Row:
             trials = record(scenario, noise, trial_set, seed, rudder=True)
             true = without(scenario)
             values = {n: true.value(n) for n in done.fit.settings.free}
-            plain = plainness(done.fit, trials, restored(scenario, true), values)
-            row = row.also(plain=plain)
+            plain, fall = plainness(done.fit, trials, restored(scenario, true), values)
+            row = row.also(plain=plain, fall=fall)
     return judged(row, scenario, done).also(seconds=watch.seconds)
 
 

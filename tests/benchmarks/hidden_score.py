@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.identification.fit import Fit, identify
-from trialid.identification.output_error import measured
+from trialid.identification.output_error import output_matrix
 from trialid.ship.model import ShipModel
 from trialid.trial import Trial
 
@@ -24,8 +24,10 @@ MEMORY: Final = 40.0
 
 def plainness(
     fit: Fit, trials: Sequence[Trial], truth: ShipModel, values: Mapping[str, float]
-) -> float:
-    """Twice the log-likelihood ratio of the true model to the fitted one.
+) -> tuple[float, float]:
+    """Twice the log-likelihood ratio of the true model to the fitted one, and what it takes off.
+
+    The second is the share of the squared error that goes with the truth.
 
     Parameters
     ----------
@@ -48,7 +50,7 @@ def plainness(
         whitener = np.concatenate([[1.0], -a])
         noise = after @ whitener
         total += (np.sum((before @ whitener) ** 2) - np.sum(noise**2)) / np.var(noise)
-    return float(total)
+    return float(total), float(1.0 - (known.eps_rmsn / fit.eps_rmsn) ** 2)
 
 
 def _residuals(fit: Fit, output: int) -> list[Vector]:
@@ -56,7 +58,7 @@ def _residuals(fit: Fit, output: int) -> list[Vector]:
     return [
         np.where(
             s.compared[:, output],
-            (measured(s.trial, fit.problem.outputs) - s.response.y)[:, output],
+            (output_matrix(s.trial, fit.problem.outputs) - s.response.y)[:, output],
             np.nan,
         )
         for s in fit.scores

@@ -12,6 +12,10 @@ import numpy as np
 DETECTABLE: Final = 30.0
 """Likelihood ratio of what is hidden from which on it has to be named."""
 
+NOTICED: Final = 0.03
+"""Share of the squared error that what is hidden is the cause of: a twice that of what is worth a
+name, for it is known to the diagnosis within a half only. Less is significant and small."""
+
 NEAR: Final = 0.2
 """Relative difference up to which a predicted and an achieved fall of the error agree."""
 
@@ -23,7 +27,8 @@ STAGES: Final = ("simulate", "fit", "rank", "split", "refit", "decide", "truth")
 class Row:
     """One run: what was hidden, what was said, and whether that is right.
 
-    `plain` says how plainly what is hidden stands in the record (`hidden_score`); `score`, `p`,
+    `plain` says how plainly what is hidden stands in the record and `fall` which share of the
+    squared error goes with it (`hidden_score`); `score`, `p`,
     `rank` and `visibility` are the diagnosis's own figures of it.
     eps_RMSn: `eps` of the fit, `eps_true` as predicted with what is hidden, `eps_predicted` as
     predicted with what is named, `eps_after` as the refit with that came out; `eps_check` of the
@@ -42,6 +47,7 @@ class Row:
     right: bool = False
     physical: bool = False
     plain: float | None = None
+    fall: float | None = None
     score: float | None = None
     p: float | None = None
     rank: int | None = None
@@ -62,9 +68,13 @@ class Row:
 
     @property
     def detectable(self) -> bool:
-        """Whether what is hidden stands out of the noise: by its score, or else by the truth."""
-        seen = self.plain if self.score is None else self.score
-        return seen is not None and seen > DETECTABLE
+        """Whether what is hidden stands out of the noise and would be noticed, by the truth."""
+        return self.plain is not None and self.plain > DETECTABLE and self.noticed
+
+    @property
+    def noticed(self) -> bool:
+        """Whether the error falls by what is worth a name when what is hidden is put back."""
+        return self.fall is None or self.fall >= NOTICED
 
     @property
     def named(self) -> bool:

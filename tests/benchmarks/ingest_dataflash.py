@@ -12,7 +12,7 @@ import numpy as np
 import write_dataflash as w
 from ingest_timing import Row, SizedLogs, fastest
 
-from trialid.ingest import dataflash_log
+from trialid.ingest.mavlink import dataflash_log
 
 RATES = {"IMU": (w.IMU, 200), "ATT": (w.ATT, 50), "AHR2": (w.AHR2, 25), "STER": (w.STER, 50),
          "RCOU": (w.RCOU, 20)}  # fmt: skip

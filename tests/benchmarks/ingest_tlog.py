@@ -11,8 +11,8 @@ import write_tlog as w
 from ingest_timing import Row, SizedLogs, fastest
 from pymavlink.dialects.v20 import all as dialect
 
-from trialid.ingest import tlog_log
-from trialid.ingest.mavlink_crc import checksums
+from trialid.ingest.mavlink import tlog_log
+from trialid.ingest.mavlink.mavlink_crc import checksums
 
 WANTED = ("servo/1/1/1:deflection", "ATTITUDE/1/1:roll", "ATTITUDE/1/1:yawspeed")
 ATTITUDE, SERVO_OUTPUT = 30, 36

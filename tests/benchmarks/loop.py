@@ -16,11 +16,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final, TypeVar
 
-from trialid import assembly, pipeline, recipe
-from trialid.diagnosis.completeness import completeness
-from trialid.diagnosis.score import rank
+from trialid import pipeline_file
+from trialid.diagnosis.search.completeness import completeness
+from trialid.diagnosis.search.score import rank
 from trialid.identification.fit import identify
 from trialid.threads import one_thread
+from trialid.workflow import build_model, read_trials
 
 T = TypeVar("T")
 ROOT: Final = Path(__file__).resolve().parents[2]
@@ -41,10 +42,10 @@ def least(function: Callable[[], T]) -> tuple[float, T]:
 @one_thread
 def ranking() -> float:
     """Print what follows a fit of three 20-minute trials, and give it in fits."""
-    asked = recipe.load(ROOT / "pipelines" / "hidden_effect.toml")
-    trials = pipeline.align_trials(asked, lambda words, share: None)
-    catalogue = assembly.available(asked)
-    model, settings = assembly.build_model(asked, catalogue), assembly.settings_of(asked)
+    asked = pipeline_file.load(ROOT / "pipelines" / "hidden_effect.toml")
+    trials = read_trials.align_trials(asked, lambda words, share: None)
+    catalogue = build_model.available(asked)
+    model, settings = build_model.build_model(asked, catalogue), build_model.settings_of(asked)
     fitting, fit = least(lambda: identify(trials, model, settings))
     ranked, (candidates, augmented) = least(lambda: rank(fit, catalogue))
     compared, _ = least(lambda: completeness(fit, augmented))

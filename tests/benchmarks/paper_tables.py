@@ -21,11 +21,11 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "design"))
 from s175q import MODEL, OUTPUTS, REFERENCE, TEN, zigzag
 from waters import NOISE, ROLL, VESSEL, D
 
-from trialid.accuracy import spoken
+from trialid.accuracy.weak import coefficient_label
 from trialid.design import manoeuvres, signals
 from trialid.design.helm import carry_out, vessel
 from trialid.design.rating import Rating, goal, rate
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -90,7 +90,7 @@ def square(period: float, angle: float = 10.0) -> Trial:
     gear = vessel(MODEL, VESSEL.period, VESSEL.constants, 2.5 * D)
     t = np.arange(2401) * VESSEL.period
     side = np.sign(np.cos(2.0 * np.pi * (t + VESSEL.period / 2.0) / period))
-    return carry_out(gear, manoeuvres.written(angle * D * side), 0.0, 1200.0).trial
+    return carry_out(gear, manoeuvres.order_list(angle * D * side), 0.0, 1200.0).trial
 
 
 def largest_difference(rating: Rating, row: dict[str, Any]) -> float:
@@ -112,7 +112,7 @@ def two_sines(high_period: float, ratios: Sequence[float]) -> list[list[float]]:
         omega = 2.0 * np.pi / np.array([600.0, high_period])
         wave = signals.multisine(t, 1.0, [ratio, 1.0], omega, [0.0, 0.0])
         order = 10.0 * D * wave / np.abs(wave).max()
-        found = rate(asked, [carry_out(VESSEL, manoeuvres.written(order), 0.0, 1200.0).trial])
+        found = rate(asked, [carry_out(VESSEL, manoeuvres.order_list(order), 0.0, 1200.0).trial])
         rows.append([ratio, found.S_min, found.R, *(found.of(n).S_imin for n in FOUR)])
     return rows
 
@@ -136,7 +136,7 @@ def beside(
         for r, c in zip(ratings, columns, strict=True)
     ]
     printed = [f"{p / factor:.2g}" for p in paper]
-    return [spoken(name).replace("|", r"\|"), *cells, " ".join(printed)]
+    return [coefficient_label(name).replace("|", r"\|"), *cells, " ".join(printed)]
 
 
 def report() -> str:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from trialid.errors import RecipeError
-from trialid.recipe.design import fitted_values, load_design
+from trialid.errors import PipelineError
+from trialid.pipeline_file.design_file import fitted_values, load_design
 
 ROOT = Path(__file__).parents[2]
 GOOD = """
@@ -105,7 +105,7 @@ def test_a_good_file(file):
 def test_a_mistake_is_told_in_one_line_with_its_key(file, old, new, key, words):
     assert old in GOOD
     path = file(GOOD.replace(old, new, 1))
-    with pytest.raises(RecipeError) as caught:
+    with pytest.raises(PipelineError) as caught:
         load_design(path)
     said = str(caught.value)
     assert re.search(words, said), said
@@ -115,7 +115,7 @@ def test_a_mistake_is_told_in_one_line_with_its_key(file, old, new, key, words):
 
 def test_a_name_given_twice(file):
     again = '[[test]]\nname = "zig-zag"\nkind = "turning_circle"\nduration = 9.0\nset.angle = 9.0\n'
-    with pytest.raises(RecipeError, match=r"test\[1\]\.name: 'zig-zag' is already the name"):
+    with pytest.raises(PipelineError, match=r"test\[1\]\.name: 'zig-zag' is already the name"):
         load_design(file(GOOD + again))
 
 
@@ -134,7 +134,7 @@ def test_the_pipeline_lends_ship_model_and_identify(tmp_path):
 def test_values_of_a_finished_run(file, tmp_path):
     path = file('run = "out"\n' + GOOD)
     recipe = load_design(path)
-    with pytest.raises(RecipeError, match=r"run: .*is no result of a run; give the folder"):
+    with pytest.raises(PipelineError, match=r"run: .*is no result of a run; give the folder"):
         fitted_values(recipe)
     (tmp_path / "out").mkdir()
     rows = [{"name": "Nr", "value": -0.002, "kind": "physical"},

@@ -1,16 +1,18 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from s175q import MODEL, OUTPUTS, SHAFT, with_noise, zigzag
 from waters import NOISE, SPEED, D
 
-from trialid.accuracy import Subject, assess
+from trialid.accuracy.parameter_table import Subject, assess
 from trialid.design import following, measures, observed
 from trialid.design.helm import carry_out
 from trialid.design.manoeuvres import zigzag as ordered
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.output_error import stretches
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 
 FREE = ("Nv", "Nr", "Ndelta", "Yv", "Ydelta")
 ROUGH = Settings(FREE, OUTPUTS, nuisance=("initial_state",))
@@ -97,3 +99,48 @@ def test_a_steady_turn_has_no_overshoot():
     )
     fit = identify([passage.trial], MODEL, Settings(("Nr",), OUTPUTS))
     assert observed.overshoots(fit) == ()
+
+
+def test_the_trial_that_narrows_a_range_does_so_when_it_is_sailed(fit):
+    """About the share foretold, by the errors of two fits with the effect in the model.
+
+    Nr beside a missing cubic yaw damping, known beforehand to twice its typical size: ten degrees
+    tell hardly which of the two it is.
+    """
+    effect = CATALOGUE["yaw_cubic_rrr"]
+    noise = {c: NOISE[c].sigma for c in OUTPUTS}
+    found = following.narrowing_trial(fit, "Nr", effect, noise)
+    assert found.share < 0.6
+    said = f" would narrow that most, to about {found.share:.0%}."
+    assert found.sentence.lower() == found.test + said
+    ready = following.vessel_of(fit)
+    sailed = {test.name: trial for test, trial in following._feasible(fit, ready)}
+    size = abs(effect.parameters["Nrrr"].start)
+    wider = replace(ROUGH, free=(*FREE, "Nrrr"), priors={"Nrrr": (0.0, 2.0 * size)})
+    rng, errors = np.random.default_rng(5), {}
+    for name in (None, found.test, "zig-zag 5/5"):
+        trials = list(fit.problem.trials)
+        if name:
+            blurred = (NOISE[c].sigma * rng.standard_normal(sailed[name].samples) for c in OUTPUTS)
+            trials.append(with_noise(sailed[name], *blurred))
+        again = identify(trials, fit.model + effect, wider, near={**fit.estimates, "Nrrr": 0.0})
+        errors[name] = row_error(again, "Nr")
+    assert errors[found.test] / errors[None] == pytest.approx(found.share, rel=0.05)
+    assert errors[found.test] < errors["zig-zag 5/5"]
+
+
+def row_error(fit, name):
+    """Standard error of a parameter by the white formula, priors counted."""
+    subjects = [
+        Subject(x.name, x.kind, x.unit, float(a), x.size, x.prior and x.prior[1])
+        for x, a in zip(fit.problem.unknowns, fit.theta, strict=True)
+    ]
+    known = {"noise": 0.1, "undermodelling": 0.0, "level": fit.level}
+    rows = assess(subjects, fit.psi, fit.residual, stretches(fit.problem), **known).parameters
+    return next(r.white_error for r in rows if r.name == name)
+
+
+def test_an_effect_that_is_not_linear_at_its_null_is_not_foretold(fit):
+    noise = {c: NOISE[c].sigma for c in OUTPUTS}
+    assert following.narrowing_trial(fit, "Nr", CATALOGUE["rudder_backlash"], noise) is None
+    assert following.narrowing_trial(fit, "GM", CATALOGUE["yaw_cubic_rrr"], noise) is None

@@ -12,10 +12,11 @@ import pytest
 from test_plan import HEAD, STAIRS, ZIGZAG
 
 from trialid.design import signals
-from trialid.hand_over import quoted, write
-from trialid.plan import plan
-from trialid.recipe import load
-from trialid.recipe.design import load_design
+from trialid.own_files import LIST
+from trialid.pipeline_file import load
+from trialid.pipeline_file.design_file import load_design
+from trialid.workflow.design_folder import quote, write
+from trialid.workflow.design_run import plan
 
 ROOT = Path(__file__).parents[2]
 ODD = "<script>alert('a & b \N{SHIP}')</script>\n[[trial]]"
@@ -63,7 +64,7 @@ def read(page):
 
 def test_every_file_is_there_and_says_the_same(handed):
     _, folder, data = handed(HEAD, WRITTEN, ZIGZAG, STAIRS)
-    names = {f.name for f in folder.iterdir()}
+    names = {f.name for f in folder.iterdir() if f.name != LIST}
     assert names == {
         "design.json", "bridge.html", "zig-zag.csv", "zig-zag.toml", "stairs.csv", "stairs.toml",
     }  # fmt: skip
@@ -93,7 +94,7 @@ def test_the_pipeline_loads_once_log_and_channels_are_named(handed):
     (folder / "log-of-zig-zag.mcap").write_bytes(b"")
     path.write_text(text.replace("NAME IT", "channel"), encoding="utf-8")
     recipe = load(path)
-    asked = done.recipe
+    asked = done.pipeline
     assert recipe.ship.resolve() == asked.ship.resolve()
     assert recipe.model.effects == asked.model.effects
     assert recipe.model.states == asked.model.states
@@ -119,22 +120,22 @@ def test_what_is_identified_and_given_by_hand_comes_along(handed):
         (folder / f"log-of-{log}.mcap").write_bytes(b"")
     path.write_text(path.read_text().replace("NAME IT", "channel"), encoding="utf-8")
     recipe = load(path)
-    assert recipe.identify == done.recipe.identify
-    assert recipe.model.values == done.recipe.model.values
+    assert recipe.identify == done.pipeline.identify
+    assert recipe.model.values == done.pipeline.model.values
     assert [t.name for t in recipe.trials] == ["zig-zag", "stairs"]
     assert "n" in recipe.trials[1].signals
 
 
 def test_names_are_text_wherever_they_stand(handed):
-    parts = [HEAD.replace('"small"', quoted(ODD)), WRITTEN,
-             ZIGZAG.replace('"zig-zag"', quoted(ODD)),
-             STAIRS.replace('"stairs"', quoted('"quoted" \\ name'))]  # fmt: skip
+    parts = [HEAD.replace('"small"', quote(ODD)), WRITTEN,
+             ZIGZAG.replace('"zig-zag"', quote(ODD)),
+             STAIRS.replace('"stairs"', quote('"quoted" \\ name'))]  # fmt: skip
     _, folder, _ = handed(*parts)
     tags, text = read(folder / "bridge.html")
     assert "script" not in tags
     assert text.count(ODD) >= 2  # the plan's and the test's
     assert "<script>" not in (folder / "bridge.html").read_text(encoding="utf-8")
-    plain_names = {re.sub(r"\.[a-z]+$", "", f.name) for f in folder.iterdir()}
+    plain_names = {re.sub(r"\.[a-z]+$", "", f.name) for f in folder.iterdir() if f.name != LIST}
     assert all(re.fullmatch(r"[a-z0-9-]+", name) for name in plain_names)
     path = folder / "script-alert-a-b-script-trial.toml"
     (folder / "log-of-script-alert-a-b-script-trial.mcap").write_bytes(b"")
@@ -145,7 +146,7 @@ def test_names_are_text_wherever_they_stand(handed):
 def test_names_that_become_the_same_file_do_not_overwrite_each_other(handed):
     twin = ZIGZAG.replace('"zig-zag"', '"zig zag"').replace("angle = 10.0", "angle = 20.0")
     _, folder, _ = handed(HEAD, ZIGZAG, twin)
-    names = {f.name for f in folder.iterdir()}
+    names = {f.name for f in folder.iterdir() if f.name != LIST}
     assert {"zig-zag.csv", "zig-zag-2.csv", "zig-zag.toml", "zig-zag-2.toml"} <= names
     assert '"zig-zag"' in (folder / "zig-zag.toml").read_text()
     assert '"zig zag"' in (folder / "zig-zag-2.toml").read_text()
@@ -166,7 +167,7 @@ def test_a_test_that_may_not_be_run_is_not_handed_over(handed):
     _, folder, data = handed(
         HEAD, "[limits]\nrudder = 9.0", ZIGZAG, STAIRS.replace("20.0]", "8.0]").replace("-20", "-8")
     )
-    names = {f.name for f in folder.iterdir()}
+    names = {f.name for f in folder.iterdir() if f.name != LIST}
     assert "stairs.csv" in names
     assert not names & {"zig-zag.csv", "zig-zag.toml"}
     _, text = read(folder / "bridge.html")

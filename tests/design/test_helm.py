@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from waters import VESSEL, D
 
-from trialid.design.helm import Follow, Hold, carry_out, ramped, sailed, track, vessel
+from trialid.design.helm import Follow, Hold, carry_out, ramp, sail, track, vessel
 from trialid.errors import DesignError
 from trialid.ship.model import ShipModel
 
@@ -68,7 +68,7 @@ def test_orders_written_down_in_advance_are_followed_to_the_end_of_the_trial():
 
     passage = carry_out(VESSEL, told(), 0.0, 100.0)
     np.testing.assert_array_equal(passage.trial.signals["delta_order"], orders[:201])
-    again = sailed(VESSEL, orders[:201])
+    again = sail(VESSEL, orders[:201])
     np.testing.assert_array_equal(again["r"], passage.trial.signals["r"])
 
 
@@ -115,7 +115,7 @@ def test_a_ship_that_cannot_turn_is_refused():
 
 def test_a_rudder_never_runs_past_its_order():
     orders = np.repeat([0.1, -0.2, 0.05, 0.0], 40)
-    followed = ramped(orders, 0.011)
+    followed = ramp(orders, 0.011)
     assert followed.max() <= 0.1
     assert followed.min() >= -0.2
     assert followed[-1] == 0.0

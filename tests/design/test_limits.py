@@ -46,3 +46,33 @@ def test_when_it_is_passed():
 def test_the_worst_comes_first():
     found = list(excesses(CIRCLE, Limits(rudder=19 * D, heel=1 * D), SPEED))
     assert [e.limit for e in found] == ["heel", "rudder"]
+
+
+def test_rolling_to_port_is_as_much_as_to_starboard():
+    """A turn the other way heels to the other side, and is broken at the same angle."""
+    other = carry_out(VESSEL, manoeuvres.turning_circle(-20 * D), 20.0, 900.0)
+    found = [excesses(p, Limits(heel=2 * D), SPEED)[0] for p in (CIRCLE, other)]
+    assert found[1].found == pytest.approx(found[0].found, rel=1e-6)
+    assert CIRCLE.trial.signals["phi"][-1] * other.trial.signals["phi"][-1] < 0.0
+
+
+def test_a_gear_that_runs_faster_than_it_may_is_seen():
+    """Five degrees a second of the vessel's own gear, in a turn of a single order."""
+    [found] = excesses(CIRCLE, Limits(rudder_rate=4 * D), SPEED)
+    assert found.limit == "rudder rate"
+    assert found.found == pytest.approx(5 * D, rel=1e-6)
+    assert excesses(CIRCLE, Limits(rudder_rate=5.1 * D), SPEED) == ()
+
+
+def test_room_astern_is_behind_where_she_began():
+    """A circle comes back beyond its beginning only where she has slowed down; here she has not."""
+    far = (1e5, 1e5)
+    reach = float(-CIRCLE.x.min())
+    assert [e.limit for e in excesses(CIRCLE, Limits(room=(*far, reach + 1.0)), SPEED)] == []
+    turned = carry_out(VESSEL, manoeuvres.zigzag(20 * D, 170 * D), 0.0, 900.0)
+    back = float(-turned.x.min())
+    assert back > 50.0
+    assert [e.limit for e in excesses(turned, Limits(room=(*far, back - 10.0)), SPEED)] == [
+        "room astern"
+    ]
+    assert excesses(turned, Limits(room=(*far, back + 10.0)), SPEED) == ()

@@ -64,3 +64,24 @@ def test_the_criteria_grow_with_the_ships_time():
         assert table["advance"].largest == 4.5 * length
         assert table["tactical diameter"].largest == 5.0 * length
         assert table["initial turning"].largest == 2.5 * length
+
+
+def test_the_overshoot_of_20_20_is_25_deg_at_most_for_any_ship():
+    """MSC.137(76), 5.3.3.3."""
+    for length, speed in ((50.0, 10.0), (350.0, 6.0)):
+        table = {c.name: c for c in measures.criteria(length, speed)}
+        assert table["first overshoot 20/20"].largest == 25.0
+        assert table["first overshoot 20/20"].unit == "deg"
+
+
+@pytest.mark.parametrize("place", [0.0, 0.3, 0.5])
+def test_a_heading_that_turns_back_between_two_samples(place):
+    """A parabola of 3 deg beyond the heading of the reversal, its top anywhere."""
+    k = np.arange(120.0)
+    psi = 3 * D * (1.0 - ((k - 60.0 - place) / 20.0) ** 2)
+    begin = 60 + place - 20.0  # where it is zero
+    order = np.where(k < begin, 10 * D, -10 * D)
+    trial = Trial("z", "fit", 0.5, {"psi": psi, "delta_order": order}, {})
+    at = int(np.ceil(begin))
+    [found] = measures.overshoots(Passage(trial, 0 * k, 0 * k, None))
+    assert found == pytest.approx(3 * D - psi[at], rel=1e-9)

@@ -9,9 +9,9 @@ import pytest
 
 from trialid.design.search import score
 from trialid.effects import CATALOGUE
-from trialid.errors import DesignError, RecipeError
-from trialid.plan import largest_error, plain, plan
-from trialid.recipe.design import load_design
+from trialid.errors import DesignError, PipelineError
+from trialid.pipeline_file.design_file import load_design
+from trialid.workflow.design_run import largest_error, plain, plan
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = sorted((ROOT / "pipelines").glob("design_*.toml"))
@@ -130,7 +130,7 @@ def test_a_test_that_moves_nothing_is_told_by_its_name(planned):
 
 
 def test_a_limit_of_a_motion_that_is_not_simulated_is_refused(planned):
-    with pytest.raises(RecipeError, match=r"design.toml: limits\.speed_loss: u is not simulated"):
+    with pytest.raises(PipelineError, match=r"design.toml: limits\.speed_loss: u is not simulated"):
         planned(HEAD, "[limits]\nspeed_loss = 0.3", ZIGZAG)
 
 
@@ -177,7 +177,7 @@ def test_effects_and_values_that_do_not_exist_are_told_with_their_key(planned):
         ("[full]\nvalues = { Nrr = 1.0 }", r"full\.values\.Nrr"),
         ('[separate]\neffects = ["bias_r", "steady_winds"]', r"separate\.effects\[1\]"),
     ):
-        with pytest.raises(RecipeError, match=rf"design.toml: {key}: .*; "):
+        with pytest.raises(PipelineError, match=rf"design.toml: {key}: .*; "):
             planned(HEAD, table, ZIGZAG)
 
 

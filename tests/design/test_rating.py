@@ -8,11 +8,11 @@ from waters import GOAL, NOISE, VESSEL, D
 
 from trialid.design import manoeuvres
 from trialid.design.helm import carry_out
-from trialid.design.rating import Noise, goal, rate, whitened
+from trialid.design.rating import Noise, goal, rate, whiten_sensitivities
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
 from trialid.identification.fit import identify
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 from trialid.ship.model import ShipModel
 
 THEIRS = {
@@ -121,7 +121,7 @@ def test_in_standard_deviations_of_the_noise():
     """Outputs weighed by their noise: the covariance is the inverse of A^T A."""
     alike = {c: Noise(float(s)) for c, s in zip(OUTPUTS, (0.01, 0.01), strict=True)}
     asked = goal(MODEL, Settings(("Nr", "Kp"), OUTPUTS), alike)
-    A, names = whitened(asked, [zigzag(10)])
+    A, names = whiten_sensitivities(asked, [zigzag(10)])
     assert names == ["Nr", "Kp"]
     errors = np.sqrt(np.diag(np.linalg.inv(A.T @ A)))
     rating = rate(asked, [zigzag(10)])
@@ -135,7 +135,7 @@ def test_noise_with_a_memory_is_made_white_first():
     white = goal(MODEL, Settings(("Nr", "Kp"), OUTPUTS), NOISE)
     errors, before = (
         np.sqrt(np.diag(np.linalg.inv(A.T @ A)))
-        for A, _ in (whitened(g, [zigzag(10)]) for g in (asked, white))
+        for A, _ in (whiten_sensitivities(g, [zigzag(10)]) for g in (asked, white))
     )
     rating = rate(asked, [zigzag(10)])
     assert np.all(errors <= [p.noise_error * (1 + 1e-9) for p in rating.parameters])
@@ -147,3 +147,33 @@ def test_an_output_without_noise_and_a_wish_that_is_not_free():
         goal(MODEL, GOAL.settings, {"r": NOISE["r"]})
     with pytest.raises(DesignError, match="'Kp' is wanted and not free"):
         goal(MODEL, GOAL.settings, NOISE, wanted=["Kp"])
+
+
+def test_twice_the_noise_is_an_ellipsoid_twice_as_long_in_each_of_its_axes():
+    free = ("Nv", "Nr", "Ndelta")
+    trial = zigzag(10)
+    levels = [{c: Noise(k * n.sigma) for c, n in NOISE.items()} for k in (1.0, 2.0)]
+    quiet, loud = (rate(goal(MODEL, Settings(free, OUTPUTS), noise), [trial]) for noise in levels)
+    assert loud.log_volume - quiet.log_volume == pytest.approx(3.0 * np.log(2.0))
+    assert loud.noise == pytest.approx(2.0 * quiet.noise)
+    errors = [np.log(p.noise_error) for p in quiet.parameters]
+    assert quiet.log_volume < sum(errors)  # as large only where nothing goes together
+
+
+def test_what_is_wanted_alone_is_seen_as_far_as_the_others_leave_it():
+    """Eq. 10 by Eq. 11: of a single parameter S_min and S_max are its S_imin."""
+    asked = goal(MODEL, Settings(("Nv", "Nr", "Ndelta", "Yv"), OUTPUTS), NOISE, ("Nr",))
+    found = rate(asked, [zigzag(10)])
+    row = found.of("Nr")
+    assert found.S_min == pytest.approx(row.S_imin)
+    assert found.S_max == pytest.approx(row.S_imin)
+    assert row.S_imin < 0.9 * row.S_i
+
+
+def test_the_error_to_expect_is_of_noise_and_of_what_the_model_lacks():
+    """As in a right triangle: neither knows of the other."""
+    truth = MODEL + CATALOGUE["yaw_cubic_rrr"]
+    trial = zigzag(10, truth.with_values({"Nrrr": -0.02}))
+    for row in rate(goal(MODEL, Settings(("Nv", "Nr"), OUTPUTS), NOISE), [trial]).parameters:
+        assert row.bias != 0.0
+        assert row.error**2 == pytest.approx(row.noise_error**2 + row.bias**2)

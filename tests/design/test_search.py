@@ -12,7 +12,7 @@ from trialid.design.limits import Limits
 from trialid.design.rating import goal
 from trialid.design.search import Search, Ship, natural_roll, optimise, outcome, score
 from trialid.errors import DesignError
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 
 THREE = ("Nv", "Nr", "Ndelta")
 SMALL = Ship(VESSEL, goal(MODEL, Settings(THREE, OUTPUTS), NOISE), ROLL, SPEED)

@@ -5,11 +5,12 @@ from waters import NOISE, ROLL, SPEED, VESSEL, D
 
 from trialid.design.kinds import Test, sail
 from trialid.design.limits import Limits
+from trialid.design.rating import whiten_sensitivities
 from trialid.design.search import Search
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals, separate
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 
 FIVE = ("Yv", "Ydelta", "Nv", "Nr", "Ndelta")
 STAIRS = Test(
@@ -109,3 +110,22 @@ def test_the_sentence_of_two_that_come_apart():
         "a and b come apart: |cos| 0.100 (so far 0.988), and the right one wins by 9 in the "
         "logarithm of the odds"
     )
+
+
+def test_odds_and_cosine_against_least_squares():
+    """The wrong effect fitted with all that is free: half the squares it leaves are the odds."""
+    rows, names = whiten_sensitivities(GEAR.goal, [TEN_TEN])
+    mine, rival = (np.isin(names, part) for part in (GEAR.first, GEAR.second))
+    found = likeness(GEAR, [TEN_TEN])
+    for odds, true, wrong in ((found.odds[0], mine, rival), (found.odds[1], rival, mine)):
+        start = {n: GEAR.goal.model.parameters[n].start for n in (*GEAR.first, *GEAR.second)}
+        signs = [np.sign(start[n]) for n, on in zip(names, true, strict=True) if on]
+        signal = rows[:, true] @ signs
+        others = rows[:, ~true] / np.linalg.norm(rows[:, ~true], axis=0)
+        left = signal - others @ np.linalg.lstsq(others, signal, rcond=1e-12)[0]
+        assert odds == pytest.approx(0.5 * float(left @ left), rel=1e-4)
+        base = rows[:, ~(true | wrong)] / np.linalg.norm(rows[:, ~(true | wrong)], axis=0)
+        alone = signal - base @ np.linalg.lstsq(base, signal, rcond=1e-12)[0]
+        # of one column each: what the rival leaves is the sine of the angle between the two
+        sine = float(np.sqrt((left @ left) / (alone @ alone)))
+        assert found.cosine == pytest.approx(np.sqrt(1.0 - sine**2), rel=1e-3)

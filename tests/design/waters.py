@@ -6,7 +6,7 @@ from s175q import GYRO, INCLINOMETER, MODEL, OUTPUTS, SHAFT, TEN
 from trialid.design.helm import vessel
 from trialid.design.rating import Noise, goal
 from trialid.design.search import Ship, natural_roll
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 
 D = np.deg2rad(1.0)
 SPEED = 7.33

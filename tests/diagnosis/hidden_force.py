@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
-from trialid.identification.pose import replace
+from trialid.identification.problem import replace
 from trialid.maths import sin
 from trialid.ship.effect import Force, effect
 from trialid.simulation.integrate import prepare, respond

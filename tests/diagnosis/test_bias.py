@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, white, with_noise, zigzag
 
-from trialid.diagnosis.bias import foresee_adding, foresee_dropping
+from trialid.diagnosis.search.bias import foresee_adding, foresee_dropping
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 
@@ -68,7 +68,7 @@ def test_an_effect_that_was_held_is_foreseen_to_go():
 
 def test_the_bias_is_none_where_the_effect_leaves_no_trace_in_the_parameters():
     """A column at a right angle to all others moves nothing; a copy of one takes all of it."""
-    from trialid.diagnosis.bias import _mimicked
+    from trialid.diagnosis.search.bias import _mimicked
 
     psi = np.eye(4)[:, :2]
     assert _mimicked(psi, np.array([[0.0], [0.0], [1.0], [0.0]])) == pytest.approx(0.0)

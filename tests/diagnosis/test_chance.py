@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from trialid.accuracy import Stretch
-from trialid.diagnosis.chance import against_chance, inflation
-from trialid.diagnosis.evidence import gather
-from trialid.diagnosis.variance import lag_window
+from trialid.diagnosis.noise.variance import lag_window
+from trialid.diagnosis.search.bootstrap import against_chance, inflation
+from trialid.diagnosis.search.projection import gather
+from trialid.trial_rows import Stretch
 
 SAMPLES, TRIALS = 1200, 3
 PARTS = tuple(
@@ -47,6 +47,7 @@ def least_p(rng, noise, hidden=0.0):
     return [c.p_value for c in found], evidence
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("noise", [white, red])
 def test_false_alarms_come_as_often_as_said(noise):
     """The least p of a catalogue of 34 is below 0.1 in a tenth of the records: 60 +- 3 s.e."""

@@ -6,14 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trialid import assembly, pipeline, recipe
-from trialid.accuracy import Stretch
-from trialid.diagnosis import coarse as module
-from trialid.diagnosis.coarse import coarse
-from trialid.diagnosis.noise import split
-from trialid.diagnosis.score import rank
+from trialid import pipeline_file
+from trialid.diagnosis.noise import thinning as module
+from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.noise.thinning import coarse
+from trialid.diagnosis.search.score import rank
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit
+from trialid.trial_rows import Stretch
+from trialid.workflow import build_model, fit_model, read_trials
 
 ROOT = Path(__file__).parents[2]
 
@@ -21,10 +22,10 @@ ROOT = Path(__file__).parents[2]
 @pytest.fixture(scope="module")
 def fit() -> Fit:
     """Three trials of 2399 samples, two a second, with a righting arm hidden in them."""
-    asked = recipe.load(ROOT / "pipelines" / "hidden_effect.toml")
+    asked = pipeline_file.load(ROOT / "pipelines" / "hidden_effect.toml")
     quiet = lambda words, share: None  # noqa: E731
-    trials = pipeline.align_trials(asked, quiet)
-    return pipeline.fit_of(asked, trials, assembly.available(asked), quiet)
+    trials = read_trials.align_trials(asked, quiet)
+    return fit_model.fit_of(asked, trials, build_model.available(asked), quiet)
 
 
 def test_rows_of_several_samples_keep_slow_squares_and_the_variance_of_noise() -> None:

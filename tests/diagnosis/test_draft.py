@@ -8,13 +8,13 @@ import pytest
 from click.testing import CliRunner
 from hidden_force import FIT, fit_of, rudder_in_heel
 
-from trialid.cli import commands
-from trialid.diagnosis.draft import draft, why_none
-from trialid.diagnosis.missing_force import missing_force
+from trialid.cli.main import commands
+from trialid.diagnosis.force.draft import draft, why_none
+from trialid.diagnosis.force.missing_force import missing_force
 from trialid.effects import from_file
 from trialid.identification.fit import identify
-from trialid.identification.pose import replace
-from trialid.report.force import force_series, read_force_csv, write_force_csv
+from trialid.identification.problem import replace
+from trialid.result.force_series import force_series, read_force_csv, write_force_csv
 
 ROOT = Path(__file__).parents[2]
 

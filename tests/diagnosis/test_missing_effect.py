@@ -1,16 +1,14 @@
 """A hidden effect is named, noise is not; twins stay a family."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 
-from trialid.diagnosis.augment import augment, candidates_for
-from trialid.diagnosis.completeness import completeness
-from trialid.diagnosis.missing_effect import _larger, confirmed, decide, refit, replace
-from trialid.diagnosis.noise import split
-from trialid.diagnosis.score import VISIBLE, rank
+from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.search.augment import augment, candidates_for
+from trialid.diagnosis.search.completeness import completeness
+from trialid.diagnosis.search.score import VISIBLE, rank
+from trialid.diagnosis.verdict import decide, likeliest_refit, refit, replace
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.maths import sqrt
@@ -35,7 +33,7 @@ def record(model, seed):
 def diagnosed(trials, model):
     fit = identify(trials, model, FIT)
     ranking, augmented = rank(fit, CATALOGUE)
-    standing = [c for c in ranking if c.allowed and c.p_value < 0.05][:3]
+    standing = [c for c in ranking if c.worth_a_name(0.05)][:3]
     refits = refit(fit, trials, standing, lambda words: None)
     parts, _ = split(fit, augmented, {})
     return (
@@ -51,7 +49,7 @@ def test_missing_roll_damping_is_named_and_the_error_falls():
     fit, ranking, refits, verdict = diagnosed(record(truth, 1), MODEL)
     assert verdict.kind == "missing"
     assert {"quadratic_roll_damping", "cubic_roll_damping"} & set(verdict.family)
-    named = confirmed(fit, refits, 0.05)
+    named = likeliest_refit(fit, refits, 0.05)
     assert named.fit.eps_rmsn < fit.eps_rmsn
     assert named.fit.eps_check < fit.eps_check
     assert ranking[0].eps_predicted == pytest.approx(named.fit.eps_rmsn, rel=0.1)
@@ -121,24 +119,3 @@ def test_an_effect_of_a_speed_record_wants_one_and_its_stand_in_does_not():
         found, why = candidates_for(without_u, replace(trial, signals=signals), CATALOGUE)
         assert able in found
         assert unable in why
-
-
-def tried(name, eps, check, p=0.001, allowed=True):
-    """A refit as far as its errors go."""
-    candidate = SimpleNamespace(effect=SimpleNamespace(name=name), p_value=p, allowed=allowed)
-    return SimpleNamespace(candidate=candidate, fit=SimpleNamespace(eps_rmsn=eps, eps_check=check))
-
-
-@pytest.mark.parametrize(("other", "found"), [
-    (tried("rudder_cubic", 0.117, 0.105), True),
-    (tried("rudder_cubic", 0.117, 0.105, p=0.2), False),  # chance would do it
-    (tried("rudder_cubic", 0.117, 0.105, allowed=False), False),  # no ship has such a value
-    (tried("rudder_cubic", 0.117, 0.140), False),  # held-out trials speak against it
-    (tried("rudder_cubic", 0.1385, 0.129), False),  # hardly more
-])  # fmt: skip
-def test_a_trifle_gives_way_to_what_lowers_the_error_far_more(other, found):
-    fit = SimpleNamespace(eps_rmsn=0.1386, eps_check=0.1294)
-    named = tried("lag_r", 0.1382, 0.1292)
-    assert (_larger(fit, named, [named, other], 0.05) is other) is found
-    worth = tried("lag_r", 0.130, 0.1292)  # 12 % of the squared error
-    assert _larger(fit, worth, [worth, other], 0.05) is None

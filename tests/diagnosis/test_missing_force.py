@@ -1,5 +1,7 @@
 """A hidden force is found in its equation, with its course and its shape; noise has none."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hidden_force import (
@@ -12,8 +14,9 @@ from hidden_force import (
 )
 from s175q import white, zigzag
 
-from trialid.diagnosis.linear_response import path, response
-from trialid.diagnosis.missing_force import missing_force
+from trialid.diagnosis.force.force_terms import Term
+from trialid.diagnosis.force.linear_response import path, response
+from trialid.diagnosis.force.missing_force import missing_force
 from trialid.identification.output_error import row_scale
 
 
@@ -66,6 +69,9 @@ def test_a_hidden_effect_is_found_with_its_shape():
     term = found.equation("N").shape.terms[0]
     assert term.term.words == "delta |phi|"
     assert term.coefficient == pytest.approx(-0.005, rel=0.2)
+    # of twice the log likelihood a coefficient gains no more than z squared
+    assert 0.1 * (term.coefficient / term.error) ** 2 < term.gain
+    assert term.gain < (term.coefficient / term.error) ** 2
     assert term.term.mirror == "odd"
     assert found.equation("N").shape.explains == pytest.approx(
         found.equation("N").explains, rel=0.25
@@ -78,7 +84,7 @@ def test_the_same_comes_out_again():
     assert found.sentence == missing_force(fit).sentence
 
 
-@pytest.mark.study
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     ("hidden", "row"),
     [("N", "N"), ("Y", "Y"), ("K", "K"), (odd_shape, "N"), (turning_in_heel, "N"),
@@ -106,7 +112,7 @@ def test_the_right_equation_is_named(hidden, row):
         assert np.mean(shares) > (0.8 if row == "K" else 0.9)  # roll noise is slow near resonance
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=4)
 def test_noise_alone_names_no_equation():
     """In at most 1 of 12 records, waves and white noise; of 40 it was none."""
     found = [
@@ -115,3 +121,34 @@ def test_noise_alone_names_no_equation():
     alarms = sum(f.possible != () for f in found)
     print("alarms", alarms, "least p", min(f.equations[0].p_value for f in found))
     assert alarms <= 1
+
+
+def test_factors_of_a_force_are_what_their_words_say():
+    """A ship 5 % above her approach speed, heeled to port, turning to starboard on course east."""
+    x = {
+        "u": np.array([7.7]),
+        "U0": np.array([7.333333]),
+        "phi": np.array([-0.1]),
+        "r": np.array([0.2]),
+        "psi": np.array([np.pi / 2]),
+    }
+    for factors, value in (
+        (("du",), 0.05),
+        (("r", "du"), 0.01),
+        (("phi", "aphi"), -0.01),
+        (("phi", "phi", "r"), 0.002),
+        (("sinpsi",), 1.0),
+        (("cospsi",), 0.0),
+        (("r", "aphi"), 0.02),
+    ):
+        assert Term(factors).of(x)[0] == pytest.approx(value, abs=1e-6), factors
+
+
+def test_a_ramp_of_force_is_followed_to_the_middle_of_each_step():
+    """A mass alone: a force that grows steadily has grown by half a step when a step is over."""
+    n, h = 50, 0.5
+    one = np.ones((n, 1, 1))
+    mass = SimpleNamespace(E=one, D=h * one, C=one, rows=("N",), delays=(0.0,), t=h * np.arange(n))
+    ramp = np.arange(n, dtype=float)[:, None] * h
+    speed = response(mass, "N", ramp)[:, 0, 0]
+    np.testing.assert_allclose(speed, 0.5 * (h * np.arange(n)) ** 2, atol=1e-9)

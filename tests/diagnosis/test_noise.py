@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, waves, white, with_noise, zigzag
 
-from trialid.diagnosis.augment import augment
-from trialid.diagnosis.noise import _period, split
+from trialid.diagnosis.noise.split import _period, split
+from trialid.diagnosis.search.augment import augment
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.trial import Trial

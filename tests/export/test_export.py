@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trialid import export, recipe
+from trialid import export, pipeline_file
 from trialid.alignment import SignalSource, align
 from trialid.errors import TrialidError
 from trialid.export.provenance import provenance
 from trialid.ingest import read
-from trialid.pipeline import align_trials
-from trialid.report import labels
+from trialid.names import labels
 from trialid.trial import Trial
+from trialid.workflow.read_trials import align_trials
 
 ROOT = Path(__file__).parents[2]
 PIPELINE = ROOT / "pipelines" / "hidden_effect.toml"
@@ -22,7 +22,7 @@ SUFFIXES = tuple(export.FORMATS)
 
 @pytest.fixture(scope="module")
 def aligned():
-    found = recipe.load(PIPELINE)
+    found = pipeline_file.load(PIPELINE)
     trials = align_trials(found, lambda words, share: None)
     return trials, provenance(found, trials)
 

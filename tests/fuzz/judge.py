@@ -28,9 +28,9 @@ from trialid.alignment import align
 from trialid.errors import TrialidError
 from trialid.ingest import read
 from trialid.ingest.adapter import Aids
+from trialid.inspection import inspect_log
 from trialid.recording import Channel, Recording
-from trialid.report.inspection import inspection, plain
-from trialid.survey import survey
+from trialid.report.terminal.log_contents import inspection, plain
 
 SURVEYED = 4
 """Every so many damaged logs one goes on to the survey and the alignment."""
@@ -216,12 +216,12 @@ def _of_recording(recording: Recording) -> Iterator[str]:
 
 def _look(seed: SeedLog, path: Path, aids: Aids, verdict: Verdict) -> None:
     """The survey as `inspect` shows it, and the trial as `align` writes it."""
-    from trialid.console import rendered
+    from trialid.cli.console import render
 
     try:
-        found = survey(path, aids)
+        found = inspect_log(path, aids)
         plain(found)
-        text = rendered(*inspection(found, everything=True), width=160)
+        text = render(*inspection(found, everything=True), width=160)
     except TrialidError as error:
         verdict.complaints += _of_message(str(error), path.parent)
     else:

@@ -8,14 +8,15 @@ import pytest
 import seed_logs  # it finds the writers
 from resealed import SEALS
 
-from trialid.alignment import LogClock, SignalSource, checks, clocks, signs, twins
+from trialid.alignment import LogClock, SignalSource, checks, clocks, duplicate_channels, signs
 from trialid.alignment.clocks import Series
 from trialid.alignment.log_clock import on_one_clock
 from trialid.errors import AlignmentError, LogError
-from trialid.ingest import read, template
-from trialid.quantities import SIGNALS
+from trialid.ingest import read
+from trialid.ingest.tables import template
+from trialid.inspection import channels, sketch
+from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
-from trialid.survey import channels, sketch
 
 T = np.arange(200, dtype=np.int64) * 100_000_000
 Y = np.sin(T / 1e9)
@@ -29,14 +30,14 @@ def series(t, y):
 
 def test_a_channel_without_a_value_beside_one_with_values():
     pair = {"a": series(T, Y), "b": series(T, np.full(len(T), np.nan))}
-    assert twins.disagreements(pair) == ()
-    assert twins.disagreements({"a": pair["b"], "b": pair["a"]}) == ()
+    assert duplicate_channels.disagreements(pair) == ()
+    assert duplicate_channels.disagreements({"a": pair["b"], "b": pair["a"]}) == ()
 
 
 def test_wild_stamps_make_no_clock_of_years():
     wild = series(WILD, np.append(Y, 0.0))
     assert checks.together({"phi": wild}) is None
-    assert twins.disagreements({"a": wild, "b": wild}) == ()
+    assert duplicate_channels.disagreements({"a": wild, "b": wild}) == ()
     one = sketch.sketch(WILD, np.append(Y, 0.0))
     assert sketch.together(one, one) is None
     assert checks.together({"phi": series(T, Y)}).samples >= len(T) - 1
@@ -100,7 +101,7 @@ def test_numbers_past_all_in_one_of_two_channels_of_a_quantity():
         name: Channel(name, T, y, "rad/s", quantity="r") for name, y in {"a": Y, "b": wild}.items()
     }
     chosen = SignalSource("r", "a", "rad/s")
-    assert twins.unchosen([chosen], [Recording(Path("log"), "mcap", "", pair)]) == ()
+    assert duplicate_channels.unchosen([chosen], [Recording(Path("log"), "mcap", "", pair)]) == ()
 
 
 def by_match(y):

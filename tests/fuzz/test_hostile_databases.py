@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from limits import bounded
 
-from trialid.ingest import can_sqlite, read
-from trialid.ingest.can_frames import Tally
+from trialid.ingest import read
+from trialid.ingest.can import sqlite
+from trialid.ingest.can.can_frames import Tally
 
 PAGE = 4096
 COUNT = 3000
@@ -148,7 +149,7 @@ def test_a_schema_without_end(tmp_path):
     leaf[cell:] = content[cell:PAGE]
     content = _looped(content + leaf, 1, len(content) // PAGE + 1)
     (tmp_path / "log").write_bytes(content)
-    found = bounded(partial(can_sqlite.of_sqlite, tmp_path / "log", None, Tally()))
+    found = bounded(partial(sqlite.of_sqlite, tmp_path / "log", None, Tally()))
     assert "SQLite cannot read it" in str(found)
 
 
@@ -186,5 +187,5 @@ def test_tables_made_to_do_harm(tmp_path, statement):
     connection.execute(f"INSERT INTO messages({names}) VALUES({', '.join(values)})")
     connection.commit()
     connection.close()
-    assert can_sqlite.is_sqlite(path.read_bytes()[:4096])
+    assert sqlite.is_sqlite(path.read_bytes()[:4096])
     assert "has no table of CAN frames" in str(bounded(partial(read, path)))

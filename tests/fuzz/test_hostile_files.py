@@ -16,9 +16,10 @@ import scipy.io
 from click.testing import CliRunner
 from limits import bounded
 
-from trialid import cli
+from trialid.cli import main
 from trialid.ingest import Aids, read
 from trialid.ingest.adapter import NO_AIDS
+from trialid.ingest.tables import excel_log
 
 MB = 1_000_000
 HEADS = {
@@ -87,7 +88,12 @@ def test_a_gzip_bomb_is_not_unpacked(tmp_path):
     with gzip.open(tmp_path / "log", "wb", 9) as file:
         for _ in range(300):
             file.write(bytes(MB))
-    refused(tmp_path / "log", "packed with gzip")
+    refused(tmp_path / "log", "none of the formats")
+    with gzip.open(tmp_path / "log", "wb", 9) as file:
+        file.write(b"t,u\n")
+        for _ in range(300):
+            file.write(b"0,0\n" * (MB // 4))
+    refused(tmp_path / "log", "which no log of its size does", megabytes=100)
 
 
 def _sheets(count, size):
@@ -173,7 +179,7 @@ def test_a_sentence_of_two_hundred_megabytes(tmp_path):
     _long_line(tmp_path / "log", "nmea", b"$")
 
 
-@pytest.mark.study
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("form", LINES)
 @pytest.mark.parametrize("filler", FILLERS.values(), ids=FILLERS)
 def test_a_line_of_two_hundred_megabytes_in_every_text(tmp_path, form, filler):
@@ -262,13 +268,96 @@ def test_entities_that_grow_are_not_expanded(tmp_path):
     reading(tmp_path / "log")
 
 
+SHEET = (
+    '<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>'
+    "{}</sheetData></worksheet>"
+)
+CELLS = "<row>" + "<c><v>1</v></c>" * 4 + "</row>"
+FAR = '<row r="1048576"><c r="{}1048576"><v>1</v></c></row>'
+SST = '<sst xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main">'
+STRINGS = '<sst count="{0}" uniqueCount="{0}"><si><t>a</t></si></sst>'
+ABORTING = {
+    "rows with a place, cells with none": {
+        "sheet1.xml": '<row r="1048576">' + "<c/>" * 16384 + "</row>"},
+    "a prefix": {"sheet1.xml": '<x:row r="1048576">' + "<x:c/>" * 16384 + "</x:row>"},
+    "no place at all": {"sheet1.xml": CELLS * 3_000_000},
+    "a corner": {"sheet1.xml": FAR.format("XFD")},
+    "another name": {"x1.xml": FAR.format("XFD")},
+    "strings": {"strings": STRINGS.format(4_000_000_000)},
+    "strings, 64 bits": {"strings": STRINGS.format(2**64 - 1)},
+    "many sheets": {f"s{i}.xml": FAR.format("A") for i in range(1, 5)},
+}  # fmt: skip
+
+
+def _aborting(path, parts):
+    """A workbook of the sheets of `parts`, in folders and under names as its relations say."""
+    sheets = {name: one for name, one in parts.items() if name != "strings"} or {
+        "sheet1.xml": CELLS
+    }
+    office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+    package = "http://schemas.openxmlformats.org/package/2006/relationships"
+    named = [(f"rId{i}", i, name) for i, name in enumerate(sheets, 1)]
+    book = "".join(f'<sheet name="S{i}" sheetId="{i}" r:id="{rid}"/>' for rid, i, _ in named)
+    links = "".join(
+        f'<Relationship Id="{rid}" Type="{office}/worksheet" Target="w/{name}"/>'
+        for rid, _, name in named
+    )
+    if "strings" in parts:
+        links += f'<Relationship Id="s" Type="{office}/sharedStrings" Target="sharedStrings.xml"/>'
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("[Content_Types].xml", "<Types/>")
+        archive.writestr("_rels/.rels", f'<Relationships xmlns="{package}"><Relationship Id="r" '
+                         f'Type="{office}/officeDocument" Target="xl/workbook.xml"/>'
+                         "</Relationships>")  # fmt: skip
+        archive.writestr("xl/workbook.xml", '<workbook xmlns="http://schemas.openxmlformats.org/'
+                         f'spreadsheetml/2006/main" xmlns:r="{office}"><sheets>{book}</sheets>'
+                         "</workbook>")  # fmt: skip
+        links = f'<Relationships xmlns="{package}">{links}</Relationships>'
+        archive.writestr("xl/_rels/workbook.xml.rels", links)
+        if "strings" in parts:
+            archive.writestr("xl/sharedStrings.xml", parts["strings"])
+        for name, rows in sheets.items():
+            archive.writestr(f"xl/w/{name}", SHEET.format(rows))
+    return path
+
+
+@pytest.mark.parametrize("parts", ABORTING.values(), ids=ABORTING)
+def test_a_workbook_that_asks_for_all_memory_is_counted_first(tmp_path, parts):
+    refused(_aborting(tmp_path / "log", parts), "log", "export it as CSV")
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(1, 1), (700, 30)])
+def test_cells_without_places_are_read(tmp_path, rows, columns):
+    """Some programs write none; the first cell is then A1."""
+    row = "<row>" + "<c><v>2</v></c>" * columns + "</row>"
+    path = _aborting(tmp_path / "log", {"a.xml": row * rows})
+    assert excel_log.sheets(path) == {"S1": [[2.0] * columns] * rows}
+
+
+@pytest.mark.parametrize("signal", ["SIGABRT", "SIGKILL", "SIGXCPU"])
+def test_a_reader_that_dies_is_a_line(tmp_path, signal, monkeypatch):
+    """Whatever passes the count: the reader is a process of its own."""
+    child = tmp_path / "child.py"
+    child.write_text(f"import os, signal\nos.kill(os.getpid(), signal.{signal})\n")
+    monkeypatch.setattr(excel_log.excel_sheets, "__file__", str(child))
+    refused(_with_sheet(tmp_path / "log", [["t", "u"], [0, 1]]), "more memory or time")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no limits of a process here")
+def test_a_long_text_that_many_cells_share(tmp_path, monkeypatch):
+    """A megabyte in twenty thousand cells: 20 GB, of which no part of the file speaks."""
+    cells = "".join(f'<row r="{i}"><c r="A{i}" t="s"><v>0</v></c></row>' for i in range(1, 20_000))
+    parts = {"strings": f"{SST}<si><t>{'a' * MB}</t></si></sst>", "a.xml": cells}
+    refused(_aborting(tmp_path / "log", parts), "more memory or time")
+
+
 # --- names --------------------------------------------------------------------------------------
 
 NAMES = ("u[red]x", "r<script>alert(1)</script>", "roll\x1b[31m", "a[bold", "r\u202er")
 
 
 def inspected(path, *options):
-    return CliRunner().invoke(cli.commands, ["inspect", str(path), *options], prog_name="trialid")
+    return CliRunner().invoke(main.commands, ["inspect", str(path), *options], prog_name="trialid")
 
 
 def _clean(text):

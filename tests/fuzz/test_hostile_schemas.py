@@ -10,7 +10,7 @@ from limits import bounded
 from mcap.writer import CompressionType, Writer
 
 from trialid.ingest import read
-from trialid.survey import Survey, survey
+from trialid.inspection import Inspection, inspect_log
 
 STAMP = 1_700_000_000_000_000_000
 COUNT = 20
@@ -37,7 +37,7 @@ def read_both(path, megabytes=400.0):
     """The channels; the healthy topic must be whole beside the harmful one."""
     channels = bounded(partial(read, path), megabytes).channels
     np.testing.assert_array_equal(channels["/good:y"].y, np.arange(COUNT))
-    assert isinstance(bounded(partial(survey, path), megabytes), Survey)
+    assert isinstance(bounded(partial(inspect_log, path), megabytes), Inspection)
     return {name: one for name, one in channels.items() if name != "/good:y"}
 
 
@@ -168,4 +168,4 @@ def test_nests_of_json_in_a_delta(tmp_path, payload):
     (tmp_path / "log").write_bytes(good + bad + good)
     channels = bounded(partial(read, tmp_path / "log")).channels
     assert {0.0, COUNT - 1.0} <= set(channels["steering.rudderAngle/a:value"].y)
-    assert isinstance(bounded(partial(survey, tmp_path / "log")), Survey)
+    assert isinstance(bounded(partial(inspect_log, tmp_path / "log")), Inspection)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, TEN, white, with_noise, zigzag
 
-from trialid.accuracy import normed_rms
+from trialid.accuracy.equations import normed_rms
 from trialid.identification.fit import identify
 from trialid.identification.output_error import hessian, linearise, loss, stretches
-from trialid.identification.pose import pose, replace
+from trialid.identification.problem import pose_problem, replace
 
 PLAIN = replace(SETTINGS, nuisance=())
-PROBLEM = pose([zigzag(10)], MODEL, PLAIN)
+PROBLEM = pose_problem([zigzag(10)], MODEL, PLAIN)
 
 
 def test_the_hessian_is_the_curvature_of_V_where_the_residual_is_zero():

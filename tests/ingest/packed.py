@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trialid.ingest.payload import Payloads
+from trialid.ingest.mcap.payload import Payloads
 
 
 def packed(payloads: list[bytes]) -> Payloads:

@@ -23,9 +23,10 @@ from written import Series
 
 from trialid import alignment
 from trialid.errors import LogError
-from trialid.ingest import can_alike, can_candump, read
+from trialid.ingest import read
 from trialid.ingest.adapter import NO_AIDS, Aids
-from trialid.ingest.can_frames import Tally
+from trialid.ingest.can import can_alike, candump
+from trialid.ingest.can.can_frames import Tally
 
 START = 1_700_000_000_123_456_000
 
@@ -118,7 +119,7 @@ def test_lines_read_side_by_side_are_what_they_are_field_by_field(tmp_path, monk
         monkeypatch.setattr(can_alike, "LAYOUTS", layouts)
         tally = Tally()
         try:
-            frames, clock = can_candump.frames(path, None, tally)
+            frames, clock = candump.frames(path, None, tally)
         except LogError as error:  # dates and seconds in one log
             found.append((str(error), tally))
             continue
@@ -232,7 +233,7 @@ def test_a_bus_that_is_not_nmea2000_asks_for_its_description(tmp_path):
 def test_a_log_larger_than_a_block(tmp_path, monkeypatch):
     path = log(tmp_path, write_can.candump_lines(sent(), "-ta"))
     whole = read(path)
-    monkeypatch.setattr("trialid.ingest.text_fields.BLOCK", 997)
+    monkeypatch.setattr("trialid.ingest.bytes.text_fields.BLOCK", 997)
     parts = read(path)
     assert parts.remarks == whole.remarks
     for name, channel in whole.channels.items():
@@ -240,10 +241,13 @@ def test_a_log_larger_than_a_block(tmp_path, monkeypatch):
         np.testing.assert_array_equal(parts.channels[name].y, channel.y)
 
 
-def test_a_packed_log_is_refused_in_one_line(tmp_path):
-    packed = log(tmp_path, gzip.compress(LINE.encode()))
-    with pytest.raises(LogError, match="is packed with gzip; unpack it"):
-        read(packed)
+def test_a_packed_log_is_the_same_log(tmp_path):
+    plain, packed = log(tmp_path, LINE.encode()), tmp_path / "packed"
+    packed.write_bytes(gzip.compress(LINE.encode()))
+    one, other = read(plain), read(packed)
+    assert list(one.channels) == list(other.channels)
+    assert other.path == packed
+    assert other.sha256 != one.sha256
 
 
 # Vector's and PEAK's text

@@ -128,7 +128,7 @@ def test_a_last_line_cut_short_is_left_out_and_said(tmp_path):
         ("t,time,u\n0,1,2\n", "several time columns among t, time, u"),
         ("t,u,u\n0,1,2\n", "column 'u' stands twice in the header; rename one"),
         ("t,u\n", "a header but no rows"),
-        ("t,u\n12:30:00,1\n", "line 2, column 't': '12:30:00' is no time; write seconds or ISO"),
+        ("t,u\n12:30,1\n", "line 2, column 't': '12:30' is no time; write seconds or ISO"),
         ("t,u\n0,1\n,2\n", "line 3, column 't': '' is no time in seconds"),
         (
             "timestamp,u\n1700000000000,1\n",

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from known_motion import SERIES, check_comes_back
 
 from trialid.errors import LogError
-from trialid.ingest import adapter_of, dataflash_log, dataflash_walk, read
+from trialid.ingest import adapter_of, read
+from trialid.ingest.mavlink import dataflash_log, dataflash_walk
 
 OPENING = w.description() + w.parameters(w.servo()) + w.packed(w.MSG, 3, "ArduRover V4.5.7")
 COUNT = 400

@@ -15,12 +15,12 @@ import pytest
 import s175q
 from s175q import EFFECTS, GYRO, INCLINOMETER, SHIP, zigzag
 
-from trialid.accuracy import Subject, assess
+from trialid.accuracy.parameter_table import Subject, assess
 from trialid.alignment import SignalSource, align
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.output_error import stretches
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
 from trialid.ingest import read
 from trialid.recording import Channel, Recording
 from trialid.ship.model import ShipModel

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trialid.ingest.linked_records import Stretch, linked
+from trialid.ingest.bytes.linked_records import Stretch, linked_starts
 
 
 def walked(starts, nexts, stretch):
@@ -39,7 +39,7 @@ def test_what_is_linked_is_what_a_walk_finds(share, closing):
         after = np.minimum(np.arange(len(starts)) + rng.integers(1, 4, len(starts)), len(starts))
         nexts = np.where(true, np.append(starts, end)[after], nexts)
         stretch = Stretch(int(rng.integers(-3, 3)), end, end - 3 if closing else None, 4)
-        found = linked(starts, nexts, stretch)
+        found = linked_starts(starts, nexts, stretch)
         walk = walked(starts.tolist(), nexts.tolist(), stretch)
         kept = set(np.flatnonzero(found.kept).tolist())
         assert (kept, found.holes, found.reached, found.resume) == walk

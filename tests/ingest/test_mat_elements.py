@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trialid.ingest import read
-from trialid.ingest.mat_arrays import of_version_5
-from trialid.ingest.mat_elements import Damaged, variable
+from trialid.ingest.tables.mat_arrays import of_version_5
+from trialid.ingest.tables.mat_elements import Damaged, variable
 
 KINDS = ("f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8")
 HEADER = b"MATLAB 5.0 MAT-file".ljust(124)

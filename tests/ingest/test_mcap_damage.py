@@ -10,7 +10,7 @@ from sample_writers import write_logs
 
 from trialid.errors import LogError
 from trialid.ingest import read
-from trialid.ingest.mcap_damage import between
+from trialid.ingest.mcap.mcap_damage import between
 
 START = 1_700_000_000_000_000_000
 COUNT = 600

@@ -13,12 +13,13 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType, Writer
 from sample_writers import write_logs
 
-from trialid import units
 from trialid.alignment import align
 from trialid.errors import LogError
-from trialid.ingest import mcap_batches, mcap_chunk, mcap_log, mcap_records, read
+from trialid.ingest import read
 from trialid.ingest.adapter import NO_AIDS
-from trialid.quantities import SIGNALS
+from trialid.ingest.mcap import mcap_batches, mcap_chunk, mcap_log, mcap_records
+from trialid.names import units
+from trialid.names.quantities import SIGNALS
 
 START = 1_700_000_000_000_000_000
 STEP = 20_000_000
@@ -136,13 +137,13 @@ def _summary(content):
 
 def test_the_index_is_used_where_it_fills_the_chunk(monkeypatch, tmp_path):
     path = mcap(tmp_path / "log", rudder, chunk_size=4000)
-    walked = mcap_chunk.walked
+    walked = mcap_chunk.walk_records
     spans = []
     monkeypatch.setattr(
-        mcap_chunk, "walked", lambda d, a, b: spans.append(b - a) or walked(d, a, b)
+        mcap_chunk, "walk_records", lambda d, a, b: spans.append(b - a) or walked(d, a, b)
     )
     read(path)
-    assert sum(spans) < 200  # the schema and the channel, not the messages
+    assert 0 < sum(spans) < 200  # the schema and the channel, not the messages
 
 
 def test_a_wrong_record_length_costs_the_chunk_it_hits(tmp_path):
@@ -221,9 +222,9 @@ def test_a_bomb_is_a_loss(tmp_path, compression, said):
         packed = lz4.frame.compress(zeros, store_size=False)
     path = bomb(tmp_path / "log", compression, said, packed)
     del zeros
-    start = time.perf_counter()
+    start = time.process_time()
     recording = read(path)
-    assert time.perf_counter() - start < 5
+    assert time.process_time() - start < 5
     np.testing.assert_array_equal(recording.channels["/rudder:data"].y, np.arange(COUNT))
     assert "damaged at byte" in recording.remarks[0]
 

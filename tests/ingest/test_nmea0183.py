@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from pynmeagps import NMEAMessage, NMEAReader
 from write_nmea0183 import checksum, iso, sentence
 
-from trialid.ingest import nmea0183_sentences, read
+from trialid.ingest import read
+from trialid.ingest.nmea0183 import nmea0183_sentences
 
 START = 1_700_000_000_000_000_000
 N = 200
@@ -198,10 +199,10 @@ def test_units_sides_and_words(tmp_path):
 
 
 def test_every_unit_can_be_converted():
-    from trialid import units
-    from trialid.ingest.nmea0183_layouts import LAYOUTS, TRANSDUCER_UNITS
+    from trialid.ingest.nmea0183.nmea0183_layouts import LAYOUTS, TRANSDUCER_UNITS
     from trialid.ingest.signalk_log import PATHS
-    from trialid.quantities import SIGNALS
+    from trialid.names import units
+    from trialid.names.quantities import SIGNALS
 
     fields = [f for layouts in LAYOUTS.values() for layout in layouts for f in layout.fields]
     pairs = [(f.unit, f.quantity) for f in fields] + [(u, q) for u, q, _ in PATHS.values()]

@@ -410,7 +410,7 @@ def test_blocks_do_not_show(tmp_path, monkeypatch):
     """A log read in small blocks is the same log."""
     path = log(tmp_path, "".join(with_iso(t, "", text) for t, text in stamped(400)))
     whole = read(path).channels["ROT/TI:rate"]
-    monkeypatch.setattr("trialid.ingest.nmea0183_recorded.BLOCK", 1000)
+    monkeypatch.setattr("trialid.ingest.nmea0183.nmea0183_recorded.BLOCK", 1000)
     parts = read(path).channels["ROT/TI:rate"]
     np.testing.assert_array_equal(parts.t, whole.t)
     np.testing.assert_array_equal(parts.y, whole.y)

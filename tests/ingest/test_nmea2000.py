@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from nmea2000.decoder import NMEA2000Decoder
 
-from trialid.ingest import nmea2000, nmea2000_frames
-from trialid.ingest.nmea2000_groups import LAYOUTS
+from trialid.ingest.nmea2000 import nmea2000_frames, nmea2000_messages
+from trialid.ingest.nmea2000.nmea2000_groups import LAYOUTS
 
 THEIRS = {
     (127237, "rudder_order"): "commandedRudderAngle",
@@ -57,7 +57,7 @@ S = 1_000_000_000
 def decode(messages, wanted=None, **more):
     """Channels of (second, group, source, payload) messages."""
     t, pgn, source, payloads = zip(*messages, strict=True)
-    return nmea2000.channels(
+    return nmea2000_messages.channels(
         np.array(t, np.int64) * S, np.array(pgn), np.array(source), payloads, "test", wanted, **more
     )
 
@@ -341,5 +341,5 @@ def test_any_frames_at_all(frames):
     pgns = (127237, 130578, 129029, 127245)
     if frames:
         whole = assembled([(0x08000000 | pgns[k] << 8, data) for k, data in frames])
-        nmea2000.channels(whole.t, whole.pgn, whole.source, whole.payloads, "test")
+        nmea2000_messages.channels(whole.t, whole.pgn, whole.source, whole.payloads, "test")
         assert whole.payloads.length.max(initial=0) <= nmea2000_frames.LONGEST

@@ -13,7 +13,7 @@ from mcap_ros2._dynamic import serialize_dynamic
 from mcap_ros2.decoder import DecoderFactory
 from packed import packed
 
-from trialid.ingest import payload_cdr
+from trialid.ingest.mcap import payload_cdr
 
 RULE = "=" * 80
 SCHEMA = f"""\

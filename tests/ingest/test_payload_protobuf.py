@@ -11,7 +11,7 @@ from mcap.records import Schema
 from mcap_protobuf.schema import build_file_descriptor_set
 from packed import packed
 
-from trialid.ingest import payload_protobuf, protobuf_layout
+from trialid.ingest.mcap import payload_protobuf, protobuf_layout
 
 KIND = FieldDescriptorProto
 SINGLE, REPEATED = FieldDescriptorProto.LABEL_OPTIONAL, FieldDescriptorProto.LABEL_REPEATED

@@ -52,7 +52,7 @@ def test_an_unknown_file_shows_its_first_bytes(tmp_path):
     path = tmp_path / "log.mcap"
     path.write_bytes(b"\x7fELF\x02\x01" + bytes(50))
     message = refused(path)
-    assert "is none of the formats that are read (MCAP, MAVLink," in message
+    assert "is none of the formats that are read (MCAP, MAVLink, ROS bags, ULog," in message
     assert "it begins b'\\x7fELF" in message
 
 

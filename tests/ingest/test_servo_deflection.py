@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from write_dataflash import pwm
 
-from trialid.ingest import servo_deflection
+from trialid.ingest.mavlink import servo_deflection
 
 NOW = np.zeros(1, np.int64)
 

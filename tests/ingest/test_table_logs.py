@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 from trialid import ingest
 from trialid.alignment import align
 from trialid.errors import LogError
-from trialid.ingest import Aids, excel_guard, packages, parquet_log, read, table_quick
+from trialid.ingest import Aids, packages, read
+from trialid.ingest.tables import excel_guard, parquet_log, table_quick
 
 RECORDS = Path(__file__).parents[3] / "shared/data/kvlcc2_hsva_zigzag"
 T = np.arange(0.0, 60.0, 0.1)
@@ -226,7 +227,7 @@ def test_one_stray_cell_at_the_far_end_of_a_sheet(tmp_path):
     book.active["A1"], book.active["XFD1048576"] = "t", 1
     book.save(tmp_path / "log.xlsx")
     message = refused(tmp_path / "log.xlsx")
-    assert "reaches to row 1048576, column 16384; no more than 20 million cells" in message
+    assert "reaches to row 1048576, column 16384, 17179869184 cells; no more than 2 mil" in message
 
 
 def test_a_formula_is_not_run(tmp_path):
@@ -341,7 +342,7 @@ def test_without_the_package_it_is_said_how_to_have_it(tmp_path, form, monkeypat
     assert f"needs the package {module}" in message
     assert message.endswith("run: pip install 'trialid[tables]'")
     with pytest.raises(LogError):
-        packages.needed(module, tmp_path, "this")
+        packages.require(module, tmp_path, "this")
 
 
 @forms

@@ -9,8 +9,9 @@ import scipy.io
 from test_table_logs import SERIES, forms, refused
 
 from trialid.errors import LogError
-from trialid.ingest import Aids, LogFile, draft_template, files_of, read, template
-from trialid.ingest.template_guess import guess
+from trialid.ingest import Aids, LogFile, draft_template, files_of, read
+from trialid.ingest.tables import template
+from trialid.ingest.tables.template_guess import guess
 
 START = 1_699_192_800  # 2023-11-05 14:00:00 UTC
 PLAIN = """
@@ -246,7 +247,7 @@ def test_the_zone_may_come_with_the_log_and_must_not_contradict(tmp_path):
     ("text", "message"),
     [
         ("t,u\n05/11/2023 14:00,1\n", "'05/11/2023 14:00' is no time that can be read in one way"),
-        ("t,u\n12:30:00,1\n", "'12:30:00' is no time; write seconds or ISO-8601 dates"),
+        ("t,u\n12:30,1\n", "'12:30' is no time; write seconds or ISO-8601 dates"),
         ("t,u\n45235.5,1\n45235.50001,2\n", "45235.5 may be seconds or days; state the unit"),
         ("t,u\n739195.5,1\n739195.50001,2\n", "739195.5 may be seconds or days; state the unit"),
         ("t;u\n0;1,5\n1;1.234\n", "line 3: '1.234' beside '1,5': a point may be the decimal mark"),

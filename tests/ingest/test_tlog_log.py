@@ -12,7 +12,8 @@ from known_motion import SERIES, check_comes_back
 from pymavlink.dialects.v20 import all as dialect
 
 from trialid.errors import LogError
-from trialid.ingest import adapter_of, read, tlog_log
+from trialid.ingest import adapter_of, read
+from trialid.ingest.mavlink import tlog_log
 
 START = 1_700_000_000_000_000
 """Receive time of the first frame [us]."""

@@ -8,6 +8,7 @@ import functools
 import time
 from collections.abc import Callable, Iterable, Mapping
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import Path
 
 import can
@@ -189,6 +190,7 @@ FORMATS: tuple[Format, ...] = (
     Format("asc", _python_can(".asc", 1e-3)),
     Format("blf", _python_can(".blf", 1e-3)),
     Format("trc", _python_can(".trc", 1e-3)),
+    *([Format("mf4", _python_can(".mf4", 1e-6))] if find_spec("asammdf") else []),
     Format("python-can csv", _python_can(".csv", 1e-6)),
     Format("python-can sqlite", _python_can(".db", 1e-6)),
     Format("canboat", _text(canboat_lines, 1e-3)),

@@ -2,21 +2,21 @@
 
 from pathlib import Path
 
-from trialid import auto
-from trialid.recipe import Recipe, load
+from trialid.pipeline_file import Pipeline, load
+from trialid.workflow import grow
 
 HERE = Path(__file__).parent
 DATA = HERE.parents[2] / "shared" / "data"
 
 
-def with_effects(recipe: Recipe, effects, free) -> Recipe:
+def with_effects(recipe: Pipeline, effects, free) -> Pipeline:
     """The pipeline with more effects, and their parameters free."""
     model = recipe.model.model_copy(update={"effects": (*recipe.model.effects, *effects)})
     identify = recipe.identify.model_copy(update={"free": (*recipe.identify.free, *free)})
     return recipe.model_copy(update={"model": model, "identify": identify})
 
 
-def with_candidates(recipe: Recipe, candidates, period=None) -> Recipe:
+def with_candidates(recipe: Pipeline, candidates, period=None) -> Pipeline:
     """The pipeline with a search for the missing effect, on a coarser clock if one is given."""
     changes = {"diagnose": recipe.diagnose.model_copy(update={"candidates": candidates})}
     if period is not None:
@@ -24,7 +24,7 @@ def with_candidates(recipe: Recipe, candidates, period=None) -> Recipe:
     return recipe.model_copy(update=changes)
 
 
-def stages(pipeline: Path, changes) -> list[auto.Stage]:
+def stages(pipeline: Path, changes) -> list[grow.Stage]:
     """What the loop does with a pipeline file whose words are changed; printed as it goes."""
     text = pipeline.read_text(encoding="utf-8")
     for old, new in changes.items():
@@ -32,13 +32,13 @@ def stages(pipeline: Path, changes) -> list[auto.Stage]:
         text = text.replace(old, new)
     pipeline.write_text(text, encoding="utf-8")
     done = []
-    for stage in auto.stages(load(pipeline), lambda words, share: None):
+    for stage in grow.stages(load(pipeline), lambda words, share: None):
         done.append(stage)
-        fit, verdict = stage.run.result["fit"], stage.run.result["verdict"]
-        check = fit["eps_rmsn_check"]
+        fit, verdict = stage.run.result.fit, stage.run.result.verdict
+        check = fit.eps_rmsn_check
         held_out = "" if check is None else f", held out {check:.2%}"
         kept = "" if stage.kept else " not kept:"
-        print(f"{stage.added}:{kept} {fit['eps_rmsn']:.2%}{held_out}; {verdict['sentence']}")
+        print(f"{stage.added}:{kept} {fit.eps_rmsn:.2%}{held_out}; {verdict.sentence}")
     return done
 
 

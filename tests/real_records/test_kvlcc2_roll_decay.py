@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from real_record import DATA, HERE, added, stages, with_candidates, with_effects
 
-from trialid import pipeline, recipe
+from trialid import pipeline_file
+from trialid.workflow.run import run as run_pipeline
 
 RECORD = DATA / "kvlcc2_roll_decay" / "model_test_21337.csv"
 pytestmark = [
@@ -31,29 +32,29 @@ I_XX = 115.74 + 20.03
 
 
 def decay(effects):
-    base = recipe.load(HERE / "kvlcc2_roll_decay.toml")
+    base = pipeline_file.load(HERE / "kvlcc2_roll_decay.toml")
     return with_effects(base, effects, [FREE[e] for e in effects])
 
 
 def rms(run):
     """Root mean square of the output error [deg]."""
-    fit = run.result["fit"]
-    return np.rad2deg(fit["eps_rmsn"] * fit["y_rms"]["phi"])
+    fit = run.result.fit
+    return np.rad2deg(fit.eps_rmsn * fit.y_rms["phi"])
 
 
 def fitted(run):
-    return {p["name"]: p["value"] for p in run.result["accuracy"]["parameters"]}
+    return {p.name: p.value for p in run.result.accuracy.parameters}
 
 
 @pytest.fixture(scope="module")
 def runs():
-    return {e: pipeline.run(decay(e)) for e in (LINEAR, DAMPING, ARM, BOTH)}
+    return {e: run_pipeline(decay(e)) for e in (LINEAR, DAMPING, ARM, BOTH)}
 
 
 @pytest.fixture(scope="module")
 def searches():
     return {
-        e: pipeline.run(with_candidates(decay(e), CANDIDATES, COARSE)) for e in (LINEAR, ARM, BOTH)
+        e: run_pipeline(with_candidates(decay(e), CANDIDATES, COARSE)) for e in (LINEAR, ARM, BOTH)
     }
 
 
@@ -62,7 +63,7 @@ def test_each_effect_takes_off_what_the_published_analysis_says(runs):
     found = [rms(run) for run in runs.values()]
     print(" ".join(f"{x:.4f}" for x in found))
     np.testing.assert_allclose(found, [0.136, 0.113, 0.074, 0.014], rtol=0.05)
-    assert all(run.result["fit"]["converged"] for run in runs.values())
+    assert all(run.result.fit.converged for run in runs.values())
 
 
 def test_the_fitted_numbers_are_the_published_ones(runs):
@@ -90,17 +91,17 @@ def test_the_righting_arm_is_nearly_that_of_a_wall_sided_ship(runs):
 
 
 def test_one_simulation_foretells_what_each_fit_finds(runs, searches):
-    found = {m["effect"]: m for m in searches[LINEAR].result["missing"]}
-    unit = rms(runs[LINEAR]) / runs[LINEAR].result["fit"]["eps_rmsn"]
+    found = {m.effect: m for m in searches[LINEAR].result.missing}
+    unit = rms(runs[LINEAR]) / runs[LINEAR].result.fit.eps_rmsn
     for effect, run in ((ARM, runs[ARM]), (DAMPING, runs[DAMPING])):
-        assert found[effect[0]]["eps_rmsn_predicted"] * unit == pytest.approx(rms(run), rel=0.05)
-    twin = found["cubic_roll_damping"]["eps_rmsn_predicted"]
-    assert twin == pytest.approx(found["quadratic_roll_damping"]["eps_rmsn_predicted"], rel=0.02)
-    assert found["delay_phi"]["eps_rmsn_predicted"] * unit > 0.98 * rms(runs[LINEAR])
+        assert found[effect[0]].eps_rmsn_predicted * unit == pytest.approx(rms(run), rel=0.05)
+    twin = found["cubic_roll_damping"].eps_rmsn_predicted
+    assert twin == pytest.approx(found["quadratic_roll_damping"].eps_rmsn_predicted, rel=0.02)
+    assert found["delay_phi"].eps_rmsn_predicted * unit > 0.98 * rms(runs[LINEAR])
 
 
 def test_the_righting_arm_is_named_first(searches):
-    assert searches[LINEAR].result["verdict"]["effect"] == "righting_arm_cubic"
+    assert searches[LINEAR].result.verdict.effect == "righting_arm_cubic"
 
 
 def test_then_the_damping_of_large_amplitudes_leads_and_nothing_else_is_named(searches):
@@ -110,18 +111,18 @@ def test_then_the_damping_of_large_amplitudes_leads_and_nothing_else_is_named(se
     """
     result = searches[ARM].result
     twins = {"quadratic_roll_damping", "cubic_roll_damping"}
-    best = sorted(result["missing"], key=lambda m: m["eps_rmsn_predicted"])[:2]
-    assert {m["effect"] for m in best} == twins
-    assert all(m["eps_rmsn_predicted"] < 0.2 * result["fit"]["eps_rmsn"] for m in best)
-    assert result["verdict"]["kind"] in {"missing", "cannot tell"}
-    assert set(result["verdict"]["family"]) <= twins
+    best = sorted(result.missing, key=lambda m: m.eps_rmsn_predicted)[:2]
+    assert {m.effect for m in best} == twins
+    assert all(m.eps_rmsn_predicted < 0.2 * result.fit.eps_rmsn for m in best)
+    assert result.verdict.kind in {"missing", "cannot tell"}
+    assert set(result.verdict.family) <= twins
 
 
 def test_with_both_nothing_is_named(searches):
     """0.014 deg may be more than noise, and then it is said; but no effect is named for it."""
-    verdict = searches[BOTH].result["verdict"]
-    assert verdict["kind"] in {"nothing missing", "not in catalogue"}
-    assert verdict["effect"] is None
+    verdict = searches[BOTH].result.verdict
+    assert verdict.kind in {"nothing missing", "not in catalogue"}
+    assert verdict.effect is None
 
 
 def test_the_loop_finds_the_arm_and_then_the_damping(tmp_path):
@@ -137,4 +138,4 @@ def test_the_loop_finds_the_arm_and_then_the_damping(tmp_path):
     assert arm == "righting_arm_cubic"
     assert damping in {"quadratic_roll_damping", "cubic_roll_damping"}
     np.testing.assert_allclose([rms(s.run) for s in done], [0.136, 0.0735, 0.0135], rtol=0.08)
-    assert done[-1].run.result["verdict"]["kind"] == "nothing missing"
+    assert done[-1].run.result.verdict.kind == "nothing missing"

@@ -11,8 +11,11 @@ import numpy as np
 import pytest
 from real_record import DATA, HERE, added, stages, with_candidates, with_effects
 
-from trialid import ingest, pipeline, recipe
+from trialid import ingest, pipeline_file
+from trialid.diagnosis.search import backward
 from trialid.effects import CATALOGUE
+from trialid.ship.effect import Force, Mass, Rate
+from trialid.workflow.run import run as run_pipeline
 
 RECORDS = DATA / "kvlcc2_hsva_zigzag"
 pytestmark = [
@@ -64,9 +67,9 @@ def run(linear, *effects):
     """The pipeline with effects, each written `effect: parameters`."""
     pairs = [effect.split(": ") for effect in effects]
     free = [p for _, names in pairs for p in names.split()]
-    done = pipeline.run(with_effects(linear, [name for name, _ in pairs], free)).result
-    fit = done["fit"]
-    print(f"{effects or 'linear'}: {fit['eps_rmsn']:.2%}, held out {fit['eps_rmsn_check']:.2%}")
+    done = run_pipeline(with_effects(linear, [name for name, _ in pairs], free)).result
+    fit = done.fit
+    print(f"{effects or 'linear'}: {fit.eps_rmsn:.2%}, held out {fit.eps_rmsn_check:.2%}")
     return done
 
 
@@ -79,14 +82,14 @@ def yaw_alone(linear):
 
 
 def with_recorded_speed(linear):
-    u = recipe.SignalSource(channel="u", unit="m/s")
+    u = pipeline_file.SignalSource(channel="u", unit="m/s")
     trials = tuple(t.model_copy(update={"signals": {**t.signals, "u": u}}) for t in linear.trials)
     return linear.model_copy(update={"trials": trials})
 
 
 @pytest.fixture(scope="module")
 def linear(folder):
-    return recipe.load(folder / PIPELINE)
+    return pipeline_file.load(folder / PIPELINE)
 
 
 @pytest.mark.parametrize("record", sorted(RECORDS.glob("*.dat")), ids=lambda path: path.stem[17:])
@@ -103,21 +106,21 @@ def test_what_the_columns_hold(record):
 
 def test_the_error_falls_with_nonlinear_yaw_damping(linear):
     """Ours: 22.4 % to 14.7, 14.6 and 13.7 %; held out 22.2 % to 14.7, 14.5 and 13.3 %."""
-    before = run(linear)["fit"]
+    before = run(linear).fit
     for effects in (
         ["yaw_drag_rar: Nrar"],
         ["yaw_cubic_rrr: Nrrr"],
         ["yaw_drag_rar: Nrar", "sway_drag_vav: Yvav"],
     ):
-        after = run(linear, *effects)["fit"]
-        assert after["eps_rmsn"] < 0.75 * before["eps_rmsn"]
-        assert after["eps_rmsn_check"] < 0.75 * before["eps_rmsn_check"]
+        after = run(linear, *effects).fit
+        assert after.eps_rmsn < 0.75 * before.eps_rmsn
+        assert after.eps_rmsn_check < 0.75 * before.eps_rmsn_check
 
 
 def test_the_fitted_derivatives_are_near_those_of_captive_tests(linear):
     """Of Yasukawa & Yoshimura (2015), with the nonlinear terms in the model."""
     done = run(linear, "yaw_drag_rar: Nrar", "sway_drag_vav: Yvav")
-    value = {p["name"]: p["value"] for p in done["accuracy"]["parameters"]}
+    value = {p.name: p.value for p in done.accuracy.parameters}
     print({n: round(value[n], 5) for n in ("Yv", "Nv", "Nr", "Ydelta", "Ndelta", "Nrar", "Yvav")})
     assert value["Nv"] == pytest.approx(-0.0089, rel=0.2)
     assert value["Nr"] == pytest.approx(-0.0032, rel=0.2)
@@ -127,57 +130,71 @@ def test_the_fitted_derivatives_are_near_those_of_captive_tests(linear):
 
 def test_scaling_by_the_recorded_speed_makes_it_worse(linear):
     """Ours: 7.9 % with the speed stated, 12.0 % with the speed read; held out 9.2 and 9.9 %."""
-    stated = run(yaw_alone(linear))["fit"]
-    read = run(yaw_alone(with_recorded_speed(linear)))["fit"]
-    assert stated["eps_rmsn"] < 0.8 * read["eps_rmsn"]
-    assert stated["eps_rmsn_check"] < read["eps_rmsn_check"]
+    stated = run(yaw_alone(linear)).fit
+    read = run(yaw_alone(with_recorded_speed(linear))).fit
+    assert stated.eps_rmsn < 0.8 * read.eps_rmsn
+    assert stated.eps_rmsn_check < read.eps_rmsn_check
 
 
 def test_nonlinear_yaw_damping_is_named_and_holds_on_the_other_runs(linear):
-    """Ours: C_D, 7.9 to 6.3 %, held out 9.2 to 6.7 %; Nrrr does 6.3 and 7.2 %."""
-    done = pipeline.run(with_candidates(yaw_alone(linear), "all")).result
-    print(done["verdict"]["sentence"])
-    assert done["verdict"]["kind"] == "missing"
-    assert set(done["verdict"]["family"]) <= YAW | BOTH
-    named = next(m for m in done["missing"] if m["effect"] == done["verdict"]["effect"])
-    assert named["eps_rmsn_refitted"] < 0.9 * done["fit"]["eps_rmsn"]
-    assert named["eps_rmsn_check"] < 0.9 * done["fit"]["eps_rmsn_check"]
+    """Ours: Nrrr, 7.9 to 6.3 %, held out 9.2 to 7.2 %; C_D does 6.3 and 6.7 %.
+
+    The blocks left out cannot tell it from the speed that a ship loses in a turn, which is so.
+    """
+    done = run_pipeline(with_candidates(yaw_alone(linear), "all")).result
+    print(done.verdict.sentence)
+    assert done.verdict.kind == "missing"
+    assert done.verdict.effect in YAW | BOTH
+    assert set(done.verdict.family) <= YAW | BOTH | {"surge_loss"}
+    named = next(m for m in done.missing if m.effect == done.verdict.effect)
+    assert named.eps_rmsn_refitted < 0.9 * done.fit.eps_rmsn
+    assert named.eps_rmsn_check < 0.9 * done.fit.eps_rmsn_check
 
 
 def test_it_is_named_in_sway_and_yaw_together(linear):
-    done = pipeline.run(with_candidates(linear, "all")).result
-    print(done["verdict"]["sentence"])
-    assert done["verdict"]["kind"] == "missing"
-    assert set(done["verdict"]["family"]) <= YAW | SWAY | BOTH
-    assert set(done["verdict"]["family"]) & (YAW | BOTH)
+    done = run_pipeline(with_candidates(linear, "all")).result
+    print(done.verdict.sentence)
+    assert done.verdict.kind == "missing"
+    assert done.verdict.effect in YAW | BOTH
+    slow = ("lag_", "delay_", "clock_", "bias_", "scale_")
+    assert [n for n in done.verdict.family if n.startswith(slow)] == []
 
 
-def test_the_loop_lowers_the_held_out_error_by_a_quarter_and_more(folder, tmp_path):
-    """Ours: cross-flow drag; 22.3 to 13.8 %, held out 20.4 to 12.9 %; what is left is said.
+def _forces(names):
+    """Whether all of them push the ship, none a sensor or a clock."""
+    return all({Force, Rate, Mass} & set(CATALOGUE[n].forms) for n in names)
 
-    Nothing that goes by the speed is added: the shaft turned at constant revolutions.
+
+def test_the_loop_more_than_halves_the_held_out_error(folder, tmp_path):
+    """Ours: 22.7 to 7.4 %, held out 21.2 to 8.2 %, by five effects; what is left is said.
+
+    The speed is stated, not read, so what it loses in a turn (`surge_loss`) is really missing. What
+    is named pushes the ship; a clock's drift of 2.6 % joins without a name.
     """
     copy = shutil.copytree(folder, tmp_path / "kvlcc2")
     done = stages(copy / PIPELINE, {'candidates = "none"': 'candidates = "all"'})
     first, *_ = names = added(done)
     assert first in YAW | SWAY | BOTH
     assert set(names) & (YAW | BOTH)
-    assert [n for n in names if "u" in CATALOGUE[n].signals] == []
-    before, after = (s.run.result["fit"]["eps_rmsn_check"] for s in (done[0], done[-1]))
-    assert after < 0.75 * before
-    if done[-1].run.result["split"]["interval"]["undermodelling"][0] > 0.0:
-        assert done[-1].run.result["verdict"]["kind"] != "nothing missing"
+    said = [s.run.result.verdict.effect for s in done if s.run.result.verdict.effect]
+    assert _forces(said)
+    assert _forces(backward.worth_naming(done[-1].worths))
+    held_out = [s.run.result.fit.eps_rmsn_check for s in done if s.kept]
+    assert held_out == sorted(held_out, reverse=True)
+    before, after = (s.run.result.fit.eps_rmsn_check for s in (done[0], done[-1]))
+    assert after < 0.5 * before
+    if done[-1].run.result.split.interval.undermodelling[0] > 0.0:
+        assert done[-1].run.result.verdict.kind != "nothing missing"
 
 
-def test_a_trifle_is_not_named_where_something_lowers_the_error_far_more(linear):
-    """After the drag, a lag of the gyro is likeliest: 13.86 to 13.82 %; a cubic rudder, 11.7 %."""
+def test_a_lag_is_not_named_where_a_force_takes_far_more_off(linear):
+    """After the drag, a lag of the gyro is likeliest by whitened residuals: 13.86 to 13.82 %."""
     drag = with_candidates(with_effects(linear, ["cross_flow_drag"], ["C_D"]), "all")
-    done = pipeline.run(drag).result
-    said = done["verdict"]["sentence"]
-    print(said)
-    if done["verdict"]["kind"] == "missing":  # whatever is named must be worth it
-        named = next(m for m in done["missing"] if m["effect"] == done["verdict"]["effect"])
-        assert named["eps_rmsn_refitted"] < 0.99 * done["fit"]["eps_rmsn"]
-    else:
-        assert done["verdict"]["kind"] == "cannot tell"
-        assert "rudder_cubic would bring it to 11." in said
+    done = run_pipeline(drag).result
+    print(done.verdict.sentence)
+    assert done.verdict.kind == "missing"
+    assert _forces(done.verdict.family)
+    named = next(m for m in done.missing if m.effect == done.verdict.effect)
+    assert named.eps_rmsn_refitted < 0.95 * done.fit.eps_rmsn
+    lag = next(m for m in done.missing if m.effect == "lag_r")
+    assert lag.left_out_ratio > 0.95 > named.left_out_ratio

@@ -7,7 +7,7 @@ import pytest
 from real_record import DATA
 
 from trialid.ingest import read
-from trialid.ingest.mavlink_meanings import unit
+from trialid.ingest.mavlink.mavlink_meanings import unit
 
 BIN, TLOG = DATA / "mavlink" / "small.BIN", DATA / "mavlink" / "small.tlog"
 LEFT_OUT = {"FMT", "FMTU", "UNIT", "MULT", "PARM", "FILE", "PARAM_VALUE", "PARAM_EXT_VALUE"}

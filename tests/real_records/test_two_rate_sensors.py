@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from real_record import DATA, HERE
 
-from trialid import auto, ingest, recipe
+from trialid import ingest, pipeline_file
+from trialid.workflow import grow
 
 RECORDS = DATA / "canboat_n2k"
 pytestmark = [
@@ -39,34 +40,34 @@ def stages(tmp_path_factory):
                        header=f"t,{sensor}", comments="")  # fmt: skip
     path = folder / "two_rates.toml"
     path.write_bytes((HERE.parent / "two_rates.toml").read_bytes())
-    done = list(auto.stages(recipe.load(path), lambda words, share: None))
+    done = list(grow.stages(pipeline_file.load(path), lambda words, share: None))
     for s in done:
-        fit, verdict = s.run.result["fit"], s.run.result["verdict"]
-        print(f"{s.added}: {fit['eps_rmsn']:.2%}, held out {fit['eps_rmsn_check']:.2%}; "
-              f"{verdict['kind']} {verdict['family']}")  # fmt: skip
+        fit, verdict = s.run.result.fit, s.run.result.verdict
+        print(f"{s.added}: {fit.eps_rmsn:.2%}, held out {fit.eps_rmsn_check:.2%}; "
+              f"{verdict.kind} {verdict.family}")  # fmt: skip
     return done
 
 
 def test_the_sensor_is_named_with_two_poles_rather_than_one(stages):
     """Ours: 38.0 % of the measured rate left; 6.0 % with one pole, 1.0 % with two."""
     first = stages[0].run.result
-    rows = {m["effect"]: m for m in first["missing"]}
-    one, two = rows["lag_r"]["eps_rmsn_refitted"], rows["lag_twice_r"]["eps_rmsn_refitted"]
-    print(f"{first['fit']['eps_rmsn']:.2%}; one pole {one:.2%}, two {two:.2%}")
-    assert (first["verdict"]["kind"], first["verdict"]["effect"]) == ("missing", "lag_twice_r")
-    assert two < 0.3 * one < 0.1 * first["fit"]["eps_rmsn"]
-    assert rows["lag_twice_r"]["eps_rmsn_check"] < 0.5 * rows["lag_r"]["eps_rmsn_check"]
+    rows = {m.effect: m for m in first.missing}
+    one, two = rows["lag_r"].eps_rmsn_refitted, rows["lag_twice_r"].eps_rmsn_refitted
+    print(f"{first.fit.eps_rmsn:.2%}; one pole {one:.2%}, two {two:.2%}")
+    assert (first.verdict.kind, first.verdict.effect) == ("missing", "lag_twice_r")
+    assert two < 0.3 * one < 0.1 * first.fit.eps_rmsn
+    assert rows["lag_twice_r"].eps_rmsn_check < 0.5 * rows["lag_r"].eps_rmsn_check
 
 
 def test_the_loop_ends_with_both_poles_and_a_delay(stages):
     """Ours: 4.65 s twice, 0.60 s, 0.04 deg/s; 0.20 % left, held out 9.1 to 0.6 %."""
     last = stages[-1].run.result
-    value = {p["name"]: p["value"] for p in last["accuracy"]["parameters"]}
-    print(value, last["verdict"]["sentence"])
+    value = {p.name: p.value for p in last.accuracy.parameters}
+    print(value, last.verdict.sentence)
     assert {s.added for s in stages[1:] if s.kept} >= {"lag_twice_r", "delay_r"}
     assert 4.5 < value["T_rr"] < 5.0
     assert 0.2 < value["tau_r"] < 1.0
     assert value["k_ref"] == pytest.approx(1.0, abs=0.02)
-    assert last["fit"]["eps_rmsn"] < 0.01
-    assert last["fit"]["eps_rmsn_check"] < 0.1 * stages[0].run.result["fit"]["eps_rmsn_check"]
-    assert last["verdict"]["kind"] == "nothing missing"
+    assert last.fit.eps_rmsn < 0.01
+    assert last.fit.eps_rmsn_check < 0.1 * stages[0].run.result.fit.eps_rmsn_check
+    assert last.verdict.kind == "nothing missing"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from s175q import AMPLITUDES, MODEL, REFERENCE, SETTINGS, TEN, zigzag
 
-from trialid.accuracy import (
+from trialid.accuracy.equations import (
     correlation_ratio,
     minimum_sensitivity,
     relative_sensitivities,
@@ -14,7 +14,7 @@ from trialid.accuracy import (
     sensitivity_range,
 )
 from trialid.identification.output_error import linearise
-from trialid.identification.pose import pose, replace
+from trialid.identification.problem import pose_problem, replace
 
 TABLE = "zig-zag amplitude, raw relative parameters, yRMS norm, outputs r+phi"
 THEIR_NAMES = {
@@ -25,7 +25,7 @@ THEIR_NAMES = {
 
 def ours(amplitude):
     """The sensitivity matrix A of the ten parameters at the true values."""
-    problem = pose([zigzag(amplitude)], MODEL, replace(SETTINGS, nuisance=()))
+    problem = pose_problem([zigzag(amplitude)], MODEL, replace(SETTINGS, nuisance=()))
     _, psi = linearise(problem, problem.start)
     return relative_sensitivities(psi, problem.start)
 

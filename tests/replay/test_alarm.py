@@ -4,12 +4,15 @@ import late_effect
 import numpy as np
 import pytest
 
-from trialid import recipe
-from trialid.assembly import available
-from trialid.diagnosis.noise import Split
-from trialid.pipeline import align_trial, align_trials, diagnose, fit_of
+from trialid import pipeline_file
+from trialid.diagnosis.diagnose import examine_fit
+from trialid.diagnosis.noise.split import Split
 from trialid.replay.alarm import Band, Monitor, bands
 from trialid.replay.playback import Playback
+from trialid.workflow.build_model import available
+from trialid.workflow.findings import diagnose_settings
+from trialid.workflow.fit_model import fit_of
+from trialid.workflow.read_trials import align_trial, align_trials
 
 HOUR = 3600.0
 
@@ -47,7 +50,7 @@ def test_noise_alone_raises_as_many_alarms_as_stated():
     assert 60 <= counted <= 150
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=2)
 def test_noise_alone_raises_one_alarm_a_day():
     """Ten days of slow noise by the stated rate of one in 24 hours."""
     counted = sum(alarms_of_noise(24.0, 60.0, seed) for seed in range(4))
@@ -87,10 +90,10 @@ def rudders():
 
 
 def replayed(folder, lost, onset, seed, rudders):
-    read = recipe.load(late_effect.write(folder, lost, onset, seed, rudders))
+    read = pipeline_file.load(late_effect.write(folder, lost, onset, seed, rudders))
     catalogue = available(read)
     fit = fit_of(read, align_trials(read, quietly), catalogue, quietly)
-    found, _, augmented = diagnose(read, fit, catalogue, quietly)
+    found, _, augmented = examine_fit(fit, diagnose_settings(read, catalogue), quietly)
     playback = Playback(fit, align_trial(read, read.trials[-1]), bands(fit, found.split, augmented))
     playback.go_to(playback.trial.samples)
     return playback
@@ -110,7 +113,7 @@ def test_an_effect_that_sets_in_halfway_is_found_within_ten_seconds(tmp_path, ru
     assert words.endswith("to port")  # the rudder is over to port since 550 s
 
 
-@pytest.mark.study
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("seed", range(1, 9))
 def test_every_sea_finds_it(tmp_path, rudders, seed):
     playback = replayed(tmp_path, 0.3, 600.0, seed, rudders)
@@ -124,8 +127,8 @@ def test_without_a_late_effect_there_is_no_alarm_and_unknown_noise_is_said(tmp_p
     assert playback.bands.separated
     assert playback.monitor.alarms == []
     fit = playback.fit
-    read = recipe.load(tmp_path / "late.toml")
-    augmented = diagnose(read, fit, available(read), quietly)[2]
+    read = pipeline_file.load(tmp_path / "late.toml")
+    augmented = examine_fit(fit, diagnose_settings(read, available(read)), quietly)[2]
     unknown = bands(fit, Split("not separable", "nothing holds"), augmented)
     assert not unknown.separated
     assert "could not be separated" in unknown.source

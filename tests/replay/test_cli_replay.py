@@ -14,12 +14,12 @@ from click.testing import CliRunner
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from trialid import cli
-from trialid.replay.keys import named
+from trialid.cli import main
+from trialid.replay.keys import key_names
 
 
 def trialid_(*arguments):
-    return CliRunner().invoke(cli.commands, [str(a) for a in arguments], prog_name="trialid")
+    return CliRunner().invoke(main.commands, [str(a) for a in arguments], prog_name="trialid")
 
 
 @pytest.fixture(scope="module")
@@ -124,7 +124,7 @@ def test_in_a_terminal_space_pauses_arrows_seek_and_q_ends(done):
     pid, place = os.forkpty()
     if pid == 0:
         os.environ |= {"TERM": "xterm", "COLUMNS": "120", "LINES": "40"}
-        code = "from trialid.cli import main; main()"
+        code = "from trialid.cli.main import main; main()"
         arguments = ["replay", pipeline, "--run", run, "--from", "100", "--speed", "2"]
         os.execv(sys.executable, [sys.executable, "-c", code, *map(str, arguments)])
     terminal = Terminal(place)
@@ -172,4 +172,4 @@ class Terminal:
 
 
 def test_keys_that_mean_nothing_are_passed_over():
-    assert named(b"\x1b[D\x1b[Bx  \x1b") == ["left", "space", "space"]
+    assert key_names(b"\x1b[D\x1b[Bx  \x1b") == ["left", "space", "space"]

@@ -4,16 +4,19 @@ import late_effect
 import numpy as np
 import pytest
 
-from trialid import recipe
-from trialid.assembly import available
+from trialid import pipeline_file
+from trialid.diagnosis.diagnose import examine_fit
 from trialid.errors import TrialidError
 from trialid.identification.fit import of_trial
-from trialid.pipeline import align_trial, align_trials, diagnose, fit_of
 from trialid.replay.alarm import bands
 from trialid.replay.follow import Follower
 from trialid.replay.playback import Playback
 from trialid.replay.session import Wishes, play
 from trialid.simulation.integrate import respond
+from trialid.workflow.build_model import available
+from trialid.workflow.findings import diagnose_settings
+from trialid.workflow.fit_model import fit_of
+from trialid.workflow.read_trials import align_trial, align_trials
 
 
 def quietly(words, share):
@@ -47,10 +50,10 @@ def pipeline(tmp_path_factory):
 @pytest.fixture(scope="module")
 def ready(pipeline):
     """Fit and bands from the finished logs."""
-    read = recipe.load(pipeline)
+    read = pipeline_file.load(pipeline)
     catalogue = available(read)
     fit = fit_of(read, align_trials(read, quietly), catalogue, quietly)
-    found, _, augmented = diagnose(read, fit, catalogue, quietly)
+    found, _, augmented = examine_fit(fit, diagnose_settings(read, catalogue), quietly)
     return read, fit, bands(fit, found.split, augmented)
 
 

@@ -15,7 +15,7 @@ class WallClock:
     wait = staticmethod(time.sleep)
 
 
-@pytest.mark.study
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("speed", [1.0, 10.0])
 def test_pace_within_one_per_cent_over_a_minute(speed):
     """By the clock on the wall, from the first sample to the last, and at every sample between."""

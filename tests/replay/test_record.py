@@ -10,14 +10,14 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 from s175q import MODEL, OUTPUTS, SETTINGS, white, with_noise, zigzag
 
-from trialid.diagnosis.whitening import colour_of
+from trialid.diagnosis.noise.whitening import colour_of
 from trialid.identification.fit import identify
 from trialid.identification.output_error import row_scale, stretches
 from trialid.replay.alarm import Band, Bands
 from trialid.replay.clock import Pace
 from trialid.replay.playback import Playback
 from trialid.replay.record import write
-from trialid.replay.view import bar, drawing
+from trialid.replay.view import bar, draw
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +117,7 @@ def test_the_picture_shows_time_signals_bar_and_alarms(playback):
 
     console = Console(width=140, force_terminal=False)
     with console.capture() as capture:
-        console.print(drawing(playback, Pace(10.0, 0.0, 0.0)))
+        console.print(draw(playback, Pace(10.0, 0.0, 0.0)))
     text = capture.get()
     assert "zigzag-20  899.5 of 1200.0 s  10 times" in text
     assert re.search(r"roll angle φ +-?[\d.]+ deg +-?[\d.]+ deg .*#.* [+-][\d.]+ sigma", text)
@@ -133,3 +133,10 @@ def test_seeking_back_keeps_what_was_found(playback):
     playback.go_to(at)
     assert np.array_equal(playback.stream.y, before[0], equal_nan=True)
     assert playback.monitor.alarms == before[1]
+
+
+def test_the_band_is_two_deviations_of_noise_to_either_side(topics, playback):
+    _, _, message = topics["/trialid/zigzag-20/band"][0]
+    for band, field in zip(playback.bands.of, ("yaw_rate_radps", "roll_rad"), strict=True):
+        assert getattr(message, f"{field}_upper") == pytest.approx(2.0 * band.sigma)
+        assert getattr(message, f"{field}_lower") == pytest.approx(-2.0 * band.sigma)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from trialid.report.series import OutputSeries, TrialSeries
+from trialid.result.series import OutputSeries, TrialSeries
 
 PERIOD = 0.1
 DEG = math.pi / 180
@@ -82,19 +82,19 @@ def _trial(index: int, name: str, use: str) -> dict[str, Any]:
 
 
 def _parameter(index: int, name: str, value: float, noise: float, model: float) -> dict[str, Any]:
-    s_imin = 0.094 / model
-    s_i = s_imin * (1.3 + 0.9 * index)
     return {
         "name": name,
         "value": value,
         "unit": "1",
-        "S_i": s_i,
-        "S_imin": s_imin,
-        "R_i": s_i / s_imin,
+        "S_i": 0.094 / model * (1.3 + 0.9 * index),
+        "S_imin": 0.094 / model,
+        "R_i": 1.3 + 0.9 * index,
         "relative_error": noise + model,
         "noise_error": noise,
         "undermodelling_error": model,
         "standard_error": abs(value) * noise,
+        "likely": [value + off * abs(value) * model for off in (-1.2, 0.8)],
+        "widened_by": "yaw_damping_cubic" if index % 2 else "",
         "kind": "physical",
     }
 

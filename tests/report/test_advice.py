@@ -4,17 +4,18 @@ import shlex
 import click
 import pytest
 
-from trialid.cli import commands as known_commands
-from trialid.report.advice import advice, moves, trust
-from trialid.report.shape import whole
-from trialid.report.wording import THIN
+from trialid.cli.main import commands as known_commands
+from trialid.names.wording import THIN
+from trialid.report.words.advice import advice, moves, trust
+from trialid.result.fit_rows import WeakRow
+from trialid.result.json_file import result_of
 
 
 def advised(result, **changed):
     run = copy.deepcopy(result)
     for key, value in changed.items():
         run[key] = run[key] | value if isinstance(value, dict) else value
-    return advice(whole(run))
+    return advice(result_of(run))
 
 
 def verdict(kind, effect=None, family=()):
@@ -92,27 +93,31 @@ def test_a_run_without_held_out_trials_is_told_to_hold_one_back(result):
 
 def test_loose_parameters_are_named_and_nuisances_are_not(result):
     run = copy.deepcopy(result)
-    run["accuracy"]["parameters"][-1]["relative_error"] = 9.0
+    run["accuracy"]["parameters"][-1]["likely"] = [-9.0, 9.0]  # a nuisance has none, whatever
     run["verdict"] = verdict("nothing missing")
-    words = " ".join(e.words for e in advice(whole(run)))
+    words = " ".join(e.words for e in advice(result_of(run)))
     assert "Not to be believed: Yp; it may be off" in words
     assert "bias" not in words
     assert "To part Kv from Yp" in words
 
 
 def test_nothing_known_gives_no_advice():
-    assert advice(whole({})) == ()
+    assert advice(result_of({})) == ()
 
 
 def test_moves_say_which_go_together_and_which_against():
-    words = moves({"moves": {"a": 0.2, "b": -0.1, "c": 0.3}}).replace(THIN, " ")
+    words = moves(WeakRow(moves={"a": 0.2, "b": -0.1, "c": 0.3})).replace(THIN, " ")
     assert words == "a by 20 %, b by 10 % and c by 30 % of their size, a, c up while b down, or " \
                     "the reverse"  # fmt: skip
-    assert moves({"moves": None}) == moves({"moves": {"a": 0.1}}) == ""
+    assert moves(WeakRow()) == moves(WeakRow(moves={"a": 0.1, "b": None})) == ""
+    assert moves(WeakRow(moves={"a": 0.1})) == ""
 
 
 def test_the_table_of_parameters_is_summed_up(result):
-    words = trust(whole(result)).replace(THIN, " ")
-    assert words.startswith("Best known is Ndelta, to 2.52 %. The model term goes with")
-    assert "9.44 % now and 2.37 % with yaw_damping_cubic" in words
-    assert trust(whole({})) == ""
+    words = trust(result_of(result)).replace(THIN, " ")
+    assert words == (
+        "Best known is Ndelta, to 2.9 %. Least known: Yp, by "
+        "the numbers held fixed (how sure those are: [uncertainty] in the ship file). "
+        "With yaw_damping_cubic in the model the ranges are others: add it first."
+    )
+    assert trust(result_of({})) == ""

@@ -1,11 +1,12 @@
 import pytest
 
-from trialid.report import bars
-from trialid.report.shape import whole
+from trialid.report.pictures import bars
+from trialid.result.fit_rows import ParameterRow
+from trialid.result.json_file import result_of
 
 
 def test_an_error_bar_is_divided_as_the_squares_are(result):
-    total, r, phi = bars.split_bars(whole(result))
+    total, r, phi = bars.split_bars(result_of(result))
     assert total.noise_share == pytest.approx(100 * (0.0841 / 0.1264) ** 2)
     assert total.whisker == pytest.approx((40.26, 48.58), abs=0.01)
     assert phi.length == 100
@@ -14,21 +15,42 @@ def test_an_error_bar_is_divided_as_the_squares_are(result):
 
 
 def test_an_error_not_told_apart_has_no_division():
-    run = whole({"fit": {"eps_rmsn": 0.1}, "split": {"noise": None, "why": "no quiet stretch"}})
+    run = result_of({"fit": {"eps_rmsn": 0.1}, "split": {"noise": None, "why": "no quiet stretch"}})
     (total,) = bars.split_bars(run)
     assert (total.noise_share, total.whisker, total.length) == (None, None, 100)
 
 
-def test_parameter_bars_stop_at_their_axis(result):
-    rows = [row for row in result["accuracy"]["parameters"] if row["kind"] == "physical"]
-    end, drawn = bars.parameter_bars(rows)
+def test_ranges_stop_at_the_ends_of_their_track(result):
+    rows = result_of(result).physical
+    end, drawn = bars.range_bars(rows)
     assert end == bars.WIDEST
-    assert all(bar.noise + bar.model <= 100 + 1e-9 for bar in drawn)
-    assert [row["name"] for row, bar in zip(rows, drawn, strict=True) if bar.beyond] == ["Yp"]
+    assert all(0.0 <= x <= 100.0 for bar in drawn for x in (*bar.likely, *bar.noise))
+    open_ended = {row.name: bar.beyond for row, bar in zip(rows, drawn, strict=True)}
+    assert {n: b for n, b in open_ended.items() if any(b)} == {"Yp": (True, True)}
+
+
+def test_a_range_lies_about_its_value_less_to_the_left(result):
+    """Of Yv, a negative number: from 9.72 % below to 6.48 % above; noise 0.82 % to each side."""
+    row = result_of(result).physical[0]
+    _, [bar] = bars.range_bars([row])
+    end = row.may_be_off
+    assert end == pytest.approx(1.2 * 0.081)
+    assert bar.likely == pytest.approx((0.0, 50.0 + 50.0 * 0.8 / 1.2))
+    assert bar.noise == pytest.approx(
+        (50.0 - 50.0 * 1.96 * 0.0042 / end, 50.0 + 50.0 * 1.96 * 0.0042 / end)
+    )
+
+
+def test_what_nobody_knows_has_no_range():
+    rows = [
+        ParameterRow(name="Nv", value=0.0, likely=(-1.0, 1.0)),
+        ParameterRow(name="Nr", value=1.0),
+    ]
+    assert bars.range_bars(rows) == (1.0, [None, None])
 
 
 def test_changes_share_one_scale(result):
-    rows = bars.changes(whole(result)["before_after"])
+    rows = bars.changes(result_of(result).before_after)
     assert [row.label for row in rows] == [
         "fitted trials",
         "held out",

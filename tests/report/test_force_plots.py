@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from trialid.report.force import ForceSeries
-from trialid.report.force_plots import BINS, HEIGHT, WIDTH, pictures
-from trialid.report.page import page
-from trialid.report.shape import whole
+from trialid.report.pages.page import page
+from trialid.report.pictures.force_plots import BINS, WIDTH, pictures
+from trialid.report.pictures.series_plot import HEIGHT
+from trialid.result.force_series import ForceSeries
+from trialid.result.json_file import result_of
 
 T = np.arange(0.0, 300.0, 0.5)
 PHI = 0.1 * np.sin(2.0 * np.pi * T / 40.0)
@@ -37,7 +38,7 @@ def forces():
 
 
 def test_force_over_time_lies_in_its_band_and_box(forces):
-    [picture] = pictures(whole({"missing_force": SAID}), forces)
+    [picture] = pictures(result_of({"missing_force": SAID}), forces)
     assert (picture.row, picture.top) == ("K", "3.4 MN m")
     [course] = picture.courses
     for points in (course.band, course.force, course.terms):
@@ -49,7 +50,7 @@ def test_force_over_time_lies_in_its_band_and_box(forces):
 
 
 def test_the_signal_that_is_followed_stands_first_and_what_rests_is_left_out(forces):
-    [picture] = pictures(whole({"missing_force": SAID}), forces)
+    [picture] = pictures(result_of({"missing_force": SAID}), forces)
     assert [(a.signal, a.followed) for a in picture.against] == [("φ", True), ("δ", False)]
     bins = picture.against[0].bins
     assert len(bins) == BINS
@@ -57,14 +58,14 @@ def test_the_signal_that_is_followed_stands_first_and_what_rests_is_left_out(for
 
 
 def test_the_page_shows_it_and_takes_no_markup(result, series, forces):
-    html = page({**result, "missing_force": SAID}, series, forces)
+    html = page(result_of({**result, "missing_force": SAID}), series, forces)
     assert 'id="missing-force"' in html
     assert "A roll moment K is missing &lt;here&gt;" in html
     assert "phi^3" in html
-    assert 'id="missing-force"' not in page(result, series)
+    assert 'id="missing-force"' not in page(result_of(result), series)
 
 
 def test_a_result_without_its_series_still_has_its_words(result, series):
-    html = page({**result, "missing_force": SAID}, series)
+    html = page(result_of({**result, "missing_force": SAID}), series)
     assert "roll moment K is missing" in html
     assert "<svg" not in html.split('id="missing-force"')[1].split("</section>")[0]

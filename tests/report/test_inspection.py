@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from trialid.report.inspection import inspection, plain, shown
-from trialid.survey import survey
-from trialid.survey.findings import Survey
+from trialid.inspection import inspect_log
+from trialid.inspection.inspected import Inspection
+from trialid.report.terminal.log_contents import inspection, plain, safe_text
 
 SAMPLES = Path(__file__).parents[2] / "sample_data" / "hidden_effect"
 
 
-def text(found: Survey, width=100, everything=False):
+def text(found: Inspection, width=100, everything=False):
     console = Console(width=width)
     with console.capture() as capture:
         for part in inspection(found, everything=everything):
@@ -25,7 +25,7 @@ def text(found: Survey, width=100, everything=False):
 
 @pytest.fixture(scope="module")
 def ros():
-    return survey(SAMPLES / "zigzag-20.mcap")
+    return inspect_log(SAMPLES / "zigzag-20.mcap")
 
 
 def test_recognised_channels_come_first_with_their_letters(ros):
@@ -57,7 +57,7 @@ def test_no_line_is_longer_than_the_terminal(ros, width):
 def test_hundreds_of_messages_are_counted(tmp_path):
     log = tmp_path / "a.csv"
     log.write_text("t," + ",".join(f"m{i}:a" for i in range(40)) + "\n" + "1" + ",2" * 40 + "\n")
-    found = text(survey(log))
+    found = text(inspect_log(log))
     assert "and 28 more messages; --all shows every channel" in found
     assert "m39" not in found
 
@@ -72,7 +72,7 @@ def test_names_steer_neither_terminal_nor_markup(ros):
     assert "rudder\\x1b]0;x\\x07 [/bold][red]" in said
     assert "\\x1b[2J" in said
     assert "[b]" in said
-    assert shown("a\nb\u202e") == "a\\nb\\u202e"
+    assert safe_text("a\nb\u202e") == "a\\nb\\u202e"
 
 
 def test_two_sources_are_set_side_by_side(tmp_path):
@@ -80,7 +80,7 @@ def test_two_sources_are_set_side_by_side(tmp_path):
     rows = np.column_stack([t, np.sin(0.2 * t), np.sin(0.2 * t) + 0.5])
     log = tmp_path / "a.csv"
     np.savetxt(log, rows, delimiter=",", header="t,rot[deg/s],yaw_rate[deg/s]", comments="")
-    words = " ".join(text(survey(log)).split())
+    words = " ".join(text(inspect_log(log)).split())
     assert "2 sources of yaw rate r: rot 2 Hz, yaw_rate 2 Hz" in words
     assert "yaw_rate against rot: +0.5 deg/s apart" in words
 
@@ -100,10 +100,10 @@ def test_plain_data_is_json_with_null_for_what_is_not_known(ros):
 def test_values_that_are_nowhere_are_null(tmp_path):
     log = tmp_path / "a.csv"
     log.write_text("t,rudder\n0,\n1,\n")
-    (channel,) = json.loads(json.dumps(plain(survey(log)), allow_nan=False))["channels"]
+    (channel,) = json.loads(json.dumps(plain(inspect_log(log)), allow_nan=False))["channels"]
     assert channel["range"] is None
     assert channel["missing"] == 1.0
-    assert "not  available" in text(survey(log))
+    assert "not  available" in text(inspect_log(log))
 
 
 def test_remarks_and_warnings_are_shown_up_to_a_number(ros):
@@ -117,13 +117,13 @@ def test_remarks_and_warnings_are_shown_up_to_a_number(ros):
 def test_angles_are_in_degrees_with_the_unit_of_the_log(tmp_path):
     log = tmp_path / "a.csv"
     log.write_text("t,roll[rad],rot[rad/s],stw[kn]\n0,-0.1,0,9\n1,0.1,0.01745,10\n")
-    lines = text(survey(log)).splitlines()
+    lines = text(inspect_log(log)).splitlines()
     (place,) = (i for i, line in enumerate(lines) if line.startswith("  roll"))
     assert lines[place].split()[-3:] == ["-5.73", "5.73", "deg"]
     assert lines[place + 1].split() == ["log", "rad"]
     assert any(line.split()[-3:] == ["0", "0.9998", "deg/s"] for line in lines)
     assert any(line.split()[-3:] == ["9", "10", "kn"] for line in lines)
-    ranges = {one["channel"]: one["range"] for one in plain(survey(log))["channels"]}
+    ranges = {one["channel"]: one["range"] for one in plain(inspect_log(log))["channels"]}
     assert ranges["roll"] == [-0.1, 0.1]  # in the log's own unit
 
 
@@ -157,7 +157,7 @@ def test_two_recorders_whose_clocks_differ_are_told_what_to_write(tmp_path):
         rows = np.column_stack([t + late, motion - motion.mean()])
         head = f"t,{name}[deg/s]"
         np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header=head, comments="")
-    words = " ".join(text(survey(tmp_path)).split())
+    words = " ".join(text(inspect_log(tmp_path)).split())
     assert "rot against gyro_z: 3 s earlier" in words
     assert 'the one that holds gyro_z: clock = { match = ["gyro_z", "rot"] }' in words
 
@@ -167,4 +167,4 @@ def test_units_that_the_log_does_not_state_are_asked_for(ros, tmp_path):
     assert "no unit is stated for /speed/stw:data, /steering/rudder:data: `unit` in the" in words
     log = tmp_path / "a.csv"
     log.write_text("t,rudder[deg],heading_deg\n0,1,2\n1,2,3\n")
-    assert "no unit is stated" not in text(survey(log))
+    assert "no unit is stated" not in text(inspect_log(log))

@@ -8,16 +8,17 @@ from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from trialid.quantities import SIGNALS
-from trialid.report import labels
-from trialid.report.overlay import write_mcap
-from trialid.report.tracks import CHUNK
+from trialid.export.tracks import CHUNK
+from trialid.names import labels
+from trialid.names.quantities import SIGNALS
+from trialid.report.files.overlay import write_mcap
+from trialid.result.json_file import plain, result_of
 
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory, result, series):
     path = tmp_path_factory.mktemp("overlay") / "predicted.mcap"
-    write_mcap(path, result, series)
+    write_mcap(path, result_of(result), series)
     return path
 
 
@@ -85,17 +86,19 @@ def test_manifest_and_result_travel_along(path, result):
     assert manifest.metadata["pipeline"] == result["pipeline"]
     assert manifest.metadata["sha256 ../logs/zigzag-10.mcap"] == "a" * 64
     assert (attachment.name, attachment.media_type) == ("result.json", "application/json")
-    assert json.loads(attachment.data) == result
+    travelled = json.loads(attachment.data)
+    assert travelled == json.loads(json.dumps(plain(result_of(result))))
+    assert travelled["fit"]["eps_rmsn"] == result["fit"]["eps_rmsn"]
 
 
 def test_the_same_run_gives_the_same_bytes(path, tmp_path, result, series):
-    write_mcap(tmp_path / "again.mcap", result, series)
+    write_mcap(tmp_path / "again.mcap", result_of(result), series)
     assert (tmp_path / "again.mcap").read_bytes() == path.read_bytes()
 
 
 def test_names_no_plot_tool_takes_are_replaced_and_kept_apart(tmp_path, series):
     odd = [replace(series[0], name=name) for name in ("a b", "a/b", "<script>")]
-    write_mcap(tmp_path / "odd.mcap", {}, odd)
+    write_mcap(tmp_path / "odd.mcap", result_of({}), odd)
     with (tmp_path / "odd.mcap").open("rb") as stream:
         channels = make_reader(stream).get_summary().channels.values()
     stems = {channel.topic.split("/")[2] for channel in channels}
@@ -105,7 +108,7 @@ def test_names_no_plot_tool_takes_are_replaced_and_kept_apart(tmp_path, series):
 def test_a_time_before_zero_is_refused_before_the_file_is_lost(tmp_path, series):
     early = replace(series[0], t=series[0].t - 1.0)
     with pytest.raises(ValueError, match="before its time zero"):
-        write_mcap(tmp_path / "early.mcap", {}, [early])
+        write_mcap(tmp_path / "early.mcap", result_of({}), [early])
 
 
 def test_every_signal_has_its_own_field_name():

@@ -1,33 +1,41 @@
+from dataclasses import replace
+
 import pytest
 
-from trialid.report.ranking import ranking, reason, remark
-from trialid.report.shape import whole
+from trialid.report.words.ranking import ranking, reason, remark
+from trialid.result.finding_rows import VerdictPart
+from trialid.result.json_file import result_of
 
 NOW = {"fit": {"eps_rmsn": 0.10, "eps_rmsn_check": 0.12}}
 
 
 def row(**known):
-    plain = {"effect": "an_effect", "eps_rmsn_predicted": 0.08, "eps_rmsn_refitted": 0.08}
-    run = whole(NOW | {"missing": [plain | {"verdict": "stands out"} | known]})
-    return run["missing"][0], run
+    plain = {
+        "rank": 1,
+        "effect": "an_effect",
+        "eps_rmsn_predicted": 0.08,
+        "eps_rmsn_refitted": 0.08,
+    }
+    run = result_of(NOW | {"missing": [plain | {"verdict": "stands out"} | known]})
+    return run.missing[0], run
 
 
 def test_every_candidate_stands_in_one_place(result):
-    run = whole(result)
+    run = result_of(result)
     ranked = ranking(run)
-    placed = [leader.row["effect"] for leader in ranked.leaders]
-    placed += [each["effect"] for each in ranked.others + ranked.hidden]
-    placed += [each["effect"] for each, _ in ranked.ruled_out]
-    assert sorted(placed) == sorted(each["effect"] for each in run["missing"])
-    assert placed[:3] == [each["effect"] for each in run["missing"][:3]]
+    placed = [leader.row.effect for leader in ranked.leaders]
+    placed += [each.effect for each in ranked.others + ranked.hidden]
+    placed += [each.effect for each, _ in ranked.ruled_out]
+    assert sorted(placed) == sorted(each.effect for each in run.missing)
+    assert placed[:3] == [each.effect for each in run.missing[:3]]
     assert ranked.not_tried == (("needs psi, which the record does not hold", ("steady_wind",)),)
 
 
 def test_where_none_was_fitted_the_first_that_stand_out_lead():
-    rows = [{"effect": str(k), "verdict": "stands out"} for k in range(5)]
-    ranked = ranking(whole({"missing": rows}))
-    assert [leader.row["effect"] for leader in ranked.leaders] == ["0", "1", "2"]
-    assert [each["effect"] for each in ranked.others] == ["3", "4"]
+    rows = [{"rank": k, "effect": str(k), "verdict": "stands out"} for k in range(5)]
+    ranked = ranking(result_of({"missing": rows}))
+    assert [leader.row.effect for leader in ranked.leaders] == ["0", "1", "2"]
+    assert [each.effect for each in ranked.others] == ["3", "4"]
 
 
 def test_bars_share_a_scale_and_drops_count_from_now():
@@ -43,14 +51,15 @@ def test_bars_share_a_scale_and_drops_count_from_now():
 
 def test_a_family_tells_how_alike_its_members_are():
     known, run = row(family=["an_effect", "other"], cosines={"other": 0.96})
-    run["verdict"] |= {"effect": "an_effect", "family": ["an_effect", "rival", "other"]}
+    verdict = VerdictPart(effect="an_effect", family=("an_effect", "rival", "other"))
+    run = replace(run, verdict=verdict)
     (leader,) = ranking(run).leaders
     assert [(a.effect, a.cosine) for a in leader.family] == [("other", 0.96), ("rival", None)]
     assert leader.family[0].differs == pytest.approx(0.28)
     assert not any(a.told_apart for a in leader.family)
-    run["verdict"]["family"] = ["an_effect"]
+    run = replace(run, verdict=replace(verdict, family=("an_effect",)))
     assert [a.told_apart for a in ranking(run).leaders[0].family] == [True]
-    assert known["family"] == ["an_effect", "other"]
+    assert known.family == ("an_effect", "other")
 
 
 @pytest.mark.parametrize(

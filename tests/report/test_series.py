@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trialid.errors import LogError
-from trialid.report.series import OutputSeries, read_csv, write_csv
+from trialid.result.series import OutputSeries, read_csv, write_csv
 
 
 def assert_same(ours, theirs):

@@ -6,8 +6,10 @@ import math
 import pytest
 from test_page import HOSTILE, Reader
 
-from trialid.report import run_tables, side_by_side
-from trialid.report.table import Figure
+from trialid.report.pages import side_by_side
+from trialid.report.tables import run_tables
+from trialid.report.tables.rounded_table import Figure
+from trialid.result.json_file import result_of
 
 
 @pytest.fixture
@@ -23,7 +25,7 @@ def other(result):
 
 
 def made(result, other):
-    runs = side_by_side.named({"a": result, "b": other})
+    runs = side_by_side.shown_runs({"a": result_of(result), "b": result_of(other)})
     return {table.name: table for table in side_by_side.tables(runs)}
 
 
@@ -53,14 +55,16 @@ def test_errors_verdicts_and_models_stand_side_by_side(result, other):
 
 def test_stacked_tables_hold_every_row_of_both(result, other):
     tables = made(result, other)
-    for each in run_tables.tables(result):
+    for each in run_tables.tables(result_of(result)):
         if each.name in side_by_side.STACKED:
             own = [row for row in tables[each.name].rows if row[0] == "a"]
             assert [row[1 : 1 + len(row)] for row in own] == list(each.rows)
 
 
 def test_the_page_is_well_formed_and_asks_the_network_for_nothing(result, other):
-    html = side_by_side.page(side_by_side.named({"a": result, "b": other}))
+    html = side_by_side.page(
+        side_by_side.shown_runs({"a": result_of(result), "b": result_of(other)})
+    )
     read = Reader(html)
     ids = [value for _, name, value in read.attributes if name == "id"]
     assert len(set(ids)) == len(ids)
@@ -76,7 +80,11 @@ def test_hostile_names_are_text(result, other):
     other["accuracy"]["parameters"][0]["name"] = HOSTILE
     other["model"]["effects"] = [HOSTILE]
     other["pipeline"] = HOSTILE
-    read = Reader(side_by_side.page(side_by_side.named({HOSTILE: result, "b": other})))
+    read = Reader(
+        side_by_side.page(
+            side_by_side.shown_runs({HOSTILE: result_of(result), "b": result_of(other)})
+        )
+    )
     assert "script" not in read.tags
     assert "img" not in read.tags
     assert read.text.count(HOSTILE) > 3
@@ -85,3 +93,15 @@ def test_hostile_names_are_text(result, other):
 def test_nothing_known_still_makes_tables(result):
     assert made({}, result)["verdicts"].rows[0][0] == "a"
     assert made({}, {})["verdicts"].rows[1][3] == "No verdict"
+
+
+@pytest.mark.parametrize(("errors", "word"), [(1.9, "no"), (2.0, "yes"), (2.9, "yes")])
+def test_values_differ_from_two_joint_errors_on(result, other, errors, word):
+    """At 95 % for one pair: 1.96 of the root of both squared."""
+    first, again = (run["accuracy"]["parameters"][0] for run in (result, other))
+    again["value"] = first["value"] + errors * math.hypot(
+        first["standard_error"], again["standard_error"]
+    )
+    row = made(result, other)["parameters"].rows[0]
+    assert row[-2].value == pytest.approx(errors)
+    assert row[-1] == word

@@ -3,13 +3,14 @@ import copy
 import pytest
 from rich.console import Console
 
-from trialid.report.summary import summary
+from trialid.report.terminal.summary import summary
+from trialid.result.json_file import result_of
 
 
 def lines(result):
     console = Console(width=100, color_system=None)
     with console.capture() as capture:
-        console.print(summary(result))
+        console.print(summary(result_of(result)))
     return capture.get().splitlines()
 
 
@@ -45,7 +46,7 @@ def test_what_a_reader_must_learn(result):
         "zigzag-15     ",
         "held out  12.0 %  16.3 %",
         "noise 8.41 % (8.02 to 8.81 %) and model 9.44 % (9.07 to 9.79 %)",
-        "Nr         1      -0.0022453  4.3e-06  4.00",
+        "Nr         1      -0.0022453  4.3e-06     -0.00234   -0.00218  4.44 %  3.89 %",
         "1 yaw_damping_cubic",
         "fails: 61.7 % of the squared yaw-rate error stands where",
         "The model lacks nonlinear yaw damping",
@@ -55,16 +56,25 @@ def test_what_a_reader_must_learn(result):
     assert lines(result)[-1].startswith("With yaw_damping_cubic")
 
 
+def test_an_angle_and_its_range_are_in_degrees(result):
+    run = copy.deepcopy(result)
+    row = run["accuracy"]["parameters"][0]
+    row |= {"name": "delta_0", "unit": "rad", "value": 0.1, "standard_error": 0.01}
+    row["likely"] = [0.05, 0.12]
+    (line,) = [each for each in lines(run) if each.lstrip().startswith("delta_0")]
+    assert line.split()[:6] == ["delta_0", "deg", "5.7296", "0.57", "2.86", "6.88"]
+
+
 def test_what_is_not_to_be_believed_is_said(result):
     run = copy.deepcopy(result)
     physical = [r for r in run["accuracy"]["parameters"] if r["kind"] != "nuisance"]
     for row in physical:
-        row["relative_error"] = 0.2
+        row["likely"] = [row["value"] - 0.2 * abs(row["value"]), row["value"]]
     assert "Not to be believed" not in "\n".join(lines(run))
-    physical[0]["relative_error"] = 0.51
+    physical[0]["likely"][0] = physical[0]["value"] - 0.51 * abs(physical[0]["value"])
     name = physical[0]["name"]
     assert f"Not to be believed: {name}; it may be off by more" in "\n".join(lines(run))
-    physical[1]["relative_error"] = physical[1]["standard_error"] = None
+    physical[1]["likely"] = physical[1]["standard_error"] = None
     assert f"{name}, {physical[1]['name']}; each may be off" in "\n".join(lines(run))
 
 
@@ -72,13 +82,13 @@ def test_many_parameters_show_the_least_certain(result):
     run = copy.deepcopy(result)
     rows = run["accuracy"]["parameters"][:10]
     run["accuracy"]["parameters"] = [
-        row | {"name": f"{row['name']}{k}", "relative_error": k / 100}
+        row | {"name": f"{row['name']}{k}", "value": 1.0, "likely": [1.0, 1.0 + k / 100]}
         for k, row in enumerate(rows + rows)
     ]
     text = "\n".join(lines(run))
     assert "T_E19" in text
     assert "Yv0 " not in text
-    assert "12 more" in text
+    assert "13 more" in text
 
 
 def test_brackets_in_names_are_text(result):
@@ -93,3 +103,16 @@ def test_nothing_known_is_said_in_words():
     assert "No verdict." in text
     assert "No effect is proposed." in text
     assert "None" not in text
+
+
+def test_the_band_is_said_with_what_it_held(result):
+    run = copy.deepcopy(result)
+    run["fit"]["band"] = {"r": 0.001, "phi": 0.02}
+    for trial, share in zip(run["trials"], (0.5, 0.5, 0.93, 0.961), strict=False):
+        trial["inside"] = {"r": share, "phi": share} if trial["use"] == "check" else {"r": 0.1}
+    said = next(line for line in lines(run) if line.startswith("95 % band"))
+    assert said.startswith(
+        "95 % band of a trial not fitted: r +-0.0573 deg/s, φ +-1.15 deg; of the"
+    )
+    assert "96 %" in "\n".join(lines(run))
+    assert "10 %" not in said  # how fitted trials keep to it says nothing

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from trialid.report.table import (
+from trialid.report.tables.rounded_table import (
     Figure,
     Table,
     as_csv,

@@ -1,18 +1,22 @@
 import math
+from dataclasses import asdict, fields, replace
 
 import pytest
 
-from trialid.report.where_pictures import FLOOR, LEFT, RIGHT, WIDTH, picture
+from trialid.errors import TrialidError
+from trialid.report.pictures.where_pictures import FLOOR, LEFT, RIGHT, WIDTH, picture
+from trialid.result.json_file import result_of, row_of
+from trialid.result.schema import FindingRow
 
 
 @pytest.fixture
 def bars(result):
-    return result["where"][0]["picture"]
+    return result_of(result).where[0].picture
 
 
 @pytest.fixture
 def spectrum(result):
-    return result["where"][1]["picture"]
+    return result_of(result).where[1].picture
 
 
 def test_bars_are_as_tall_as_their_squares_and_as_wide_as_their_bins(bars):
@@ -24,7 +28,7 @@ def test_bars_are_as_tall_as_their_squares_and_as_wide_as_their_bins(bars):
     widths = [box.width + 2.0 for box in squares]
     assert widths[1] / widths[0] == pytest.approx(1.5)
     assert sum(widths) == pytest.approx(WIDTH - LEFT - RIGHT)
-    assert [box.standing for box in squares] == bars["standing"]
+    assert tuple(box.standing for box in squares) == bars.standing
     assert "62 % of the squared error" in squares[2].title.replace("\u202f", " ")
 
 
@@ -38,8 +42,10 @@ def test_means_stand_above_the_zero_line_where_measured_exceeds_predicted(bars):
 
 def test_points_of_the_compass_fit_under_narrow_bins(bars):
     points = ["north", "north-east", "east", "south-east", "south", "south-west", "west"]
-    seven = {k: [v[0]] * 7 for k, v in bars.items() if isinstance(v, list) and v}
-    drawn = picture(bars | seven | {"names": points, "edges": list(range(8)), "unit": ""})
+    lists = {each.name: getattr(bars, each.name) for each in fields(bars)}
+    seven = {k: (v[0],) * 7 for k, v in lists.items() if isinstance(v, tuple) and v}
+    wide = {"names": tuple(points), "edges": tuple(range(8)), "unit": ""}
+    drawn = picture(replace(bars, **(seven | wide)))
     assert [tick.word for tick in drawn.ticks][:3] == ["north", "NE", "east"]
 
 
@@ -51,12 +57,30 @@ def test_what_follows_the_rudder_lies_inside_the_spectrum(spectrum):
     assert all(math.isfinite(x) for path in heights for x in path)
 
 
+NOTHING = {"frequency": [], "density": [], "coherent": [], "coherence": [], "threshold": 0.3}
+
+
 @pytest.mark.parametrize("given", [None, {}, {"form": "bars"}, {"form": "spectrum", "density": []},
-                                   {"form": "pie"}])  # fmt: skip
+                                   {"form": "pie"}, {"form": "spectrum", **NOTHING}])  # fmt: skip
 def test_a_picture_without_numbers_is_none(given):
-    assert picture(given) is None
+    """What is no whole picture is refused with its key; one that holds no number is not drawn."""
+    row = {"output": "r", "finding": "frequency", "picture": given}
+    if given is None or "threshold" in given:
+        assert picture(row_of(FindingRow, row).picture) is None
+    else:
+        with pytest.raises(TrialidError, match=r"^picture"):
+            row_of(FindingRow, row)
 
 
 def test_a_picture_of_which_anything_is_missing_is_none(bars):
-    for key in bars.keys() - {"mean", "error"}:
-        assert picture(bars | {key: None}) is None or key == "names", key
+    for each in fields(bars):
+        if isinstance(getattr(bars, each.name), tuple):
+            cut = replace(bars, **{each.name: getattr(bars, each.name)[:-1]})
+            assert picture(cut) is None or each.name == "names", each.name
+    for key in [each.name for each in fields(bars) if each.name not in ("mean", "error")]:
+        with pytest.raises(TrialidError, match=rf"^picture(\.bars\.{key})?: "):
+            row_of(
+                FindingRow, {"output": "r", "finding": "f", "picture": asdict(bars) | {key: None}}
+            )
+    for key in ("mean", "error"):
+        assert picture(replace(bars, **{key: None})) is None or key == "mean", key

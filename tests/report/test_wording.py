@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from trialid.report import wording
-from trialid.report.wording import DASH, MINUS, THIN
+from trialid.names import wording
+from trialid.names.wording import DASH, MINUS, THIN
 
 
 @pytest.mark.parametrize(
@@ -57,11 +57,19 @@ def test_a_value_has_the_digits_its_error_leaves():
 
 
 def test_angles_are_shown_in_degrees():
-    unit, factor = wording.shown("rad/s")
+    unit, factor = wording.shown_unit("rad/s")
     assert unit == "deg/s"
     assert math.pi * factor == pytest.approx(180)
-    assert wording.shown(None) == ("", 1.0)
+    assert wording.shown_unit(None) == ("", 1.0)
 
 
 def test_percent_signs_stay_with_their_numbers():
     assert wording.prose("from 12 % to 8.7 %") == f"from 12{THIN}% to 8.7{THIN}%"
+
+
+def test_angles_are_shown_in_degrees_of_360_to_a_turn():
+    for unit, shown in (("rad", "deg"), ("rad/s", "deg/s")):
+        name, factor = wording.shown_unit(unit)
+        assert name == shown
+        assert factor == pytest.approx(360.0 / (2.0 * math.pi))
+    assert wording.shown_unit("m/s") == ("m/s", 1.0)

@@ -7,16 +7,11 @@ import pytest
 
 from trialid.effects import CATALOGUE
 from trialid.errors import EffectError, ShipError
-from trialid.ship.model import (
-    MASS_PARAMETERS,
-    STATES,
-    Balance,
-    ShipModel,
-    check_mass,
-    derivatives,
-    motion,
-    solve,
-)
+from trialid.names.quantities import MASS_PARAMETERS
+from trialid.ship.mass_matrix import solve
+from trialid.ship.model import STATES, ShipModel
+from trialid.ship.motion import check_mass, derivatives, motion
+from trialid.ship.rigid_body import Balance
 from trialid.simulation.trace import trace
 
 

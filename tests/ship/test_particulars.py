@@ -1,12 +1,13 @@
 """A ship file is read, or refused in one clear line."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from trialid.errors import ShipError
-from trialid.ship.particulars import Ship, read_ship
+from trialid.ship.particulars import UNCERTAIN, Ship, read_ship
 
 SHIPS = Path(__file__).parents[2] / "sample_data" / "ships"
 
@@ -18,6 +19,15 @@ def test_the_sample_ships(file: str) -> None:
     assert ship.notes
     assert ship.rudder_positive == "starboard"
     assert ship.coefficients
+
+
+def test_what_a_file_says_nothing_of_is_uncertain_by_some_per_cent() -> None:
+    """No coefficient is exact unless somebody says so."""
+    ship = read_ship(SHIPS / "s175q.toml")
+    silent = replace(ship, uncertainty={})
+    assert 0.02 <= silent.share_off("Yv") <= 0.15
+    told = replace(ship, uncertainty={"default": 0.3, "Nr": 0.0})
+    assert (told.share_off("Yv"), told.share_off("Nr")) == (0.3, 0.0)
 
 
 def expect_refusal(read: Callable[[], Ship], says: str) -> None:
@@ -105,3 +115,28 @@ def test_coefficients_may_be_left_out(text: str, tmp_path: Path) -> None:
     file.write_text(text.split("[coefficients]", maxsplit=1)[0], encoding="utf-8")
     assert read_ship(file).coefficients == {}
     assert read_ship(file).coefficient_speed == 1.0
+
+
+def test_what_is_said_of_the_numbers_themselves(text: str, tmp_path: Path) -> None:
+    """Of one number, of all others, and where nothing is said."""
+    file = tmp_path / "ship.toml"
+    file.write_text(text, encoding="utf-8")
+    assert read_ship(file).share_off("Yv") == UNCERTAIN
+    file.write_text(text + "\n[uncertainty]\nYv = 0.15\nm = 0\ndefault = 0.02\n", encoding="utf-8")
+    ship = read_ship(file)
+    assert [ship.share_off(n) for n in ("Yv", "m", "Nv")] == [0.15, 0.0, 0.02]
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("Yvv = 0.1", r"\[uncertainty\] Yvv is no number of it; did you mean 'Yvav'"),
+        ("Yv = -0.1", r"\[uncertainty\] Yv = -0.1; expected a share of the number from 0 to 1"),
+        ("Yv = 15", r"\[uncertainty\] Yv = 15; expected a share of the number from 0 to 1"),
+        ('Yv = "15 %"', r"\[uncertainty\] Yv = '15 %' is not a number"),
+    ],
+)
+def test_a_wrong_uncertainty(line: str, says: str, text: str, tmp_path: Path) -> None:
+    file = tmp_path / "ship.toml"
+    file.write_text(f"{text}\n[uncertainty]\n{line}\n", encoding="utf-8")
+    expect_refusal(lambda: read_ship(file), says)

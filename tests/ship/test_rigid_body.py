@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trialid.quantities import MASS_PARAMETERS
+from trialid.names.quantities import MASS_PARAMETERS
 from trialid.ship.effect import Force
 from trialid.ship.rigid_body import rigid_body
 

@@ -162,6 +162,6 @@ def test_the_margin_changes_sign_with_the_eigenvalue(excess: float, linear: Ship
 
 
 def test_water_that_turns_with_the_hull_counts(s175q: ShipModel) -> None:
-    """As `trialid.result` calls it: coefficients by their names in the model."""
+    """As `trialid.result.build` calls it: coefficients by their names in the model."""
     values = {n: s175q.value(n) for n in ("Yv", "Yr", "Yurm", "Nv", "Nr", "m", "x_G")}
     assert stability(values).margin == pytest.approx(0.162, abs=0.0006)

@@ -9,7 +9,7 @@ import pytest
 from typical import wave
 
 from trialid.effects import CATALOGUE
-from trialid.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS
 from trialid.ship.model import STATES, ShipModel
 from trialid.ship.particulars import Ship, read_ship
 from trialid.trial import Trial

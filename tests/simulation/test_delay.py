@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trialid.ship.model import ShipModel
-from trialid.simulation.delay import REACH, delayed, margin
+from trialid.simulation.delay import REACH, delay_samples, margin
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
 
@@ -22,7 +22,7 @@ def inner(lag: float, samples: int) -> slice:
 @pytest.mark.parametrize("power", [0, 1, 2, 3])
 def test_cubics_are_exact_and_so_is_their_slope(power: int, lag: float) -> None:
     k = np.arange(40.0)
-    y, rate = delayed(((k - 20.0) / 10.0) ** power, lag)
+    y, rate = delay_samples(((k - 20.0) / 10.0) ** power, lag)
     at = (k - lag - 20.0) / 10.0
     here = inner(lag, 40)
     np.testing.assert_allclose(y[here], (at**power)[here], atol=1e-13)
@@ -32,7 +32,7 @@ def test_cubics_are_exact_and_so_is_their_slope(power: int, lag: float) -> None:
 
 def test_no_delay_is_the_signal_itself() -> None:
     y = np.random.default_rng(3).standard_normal(50)
-    np.testing.assert_array_equal(delayed(y, 0.0)[0], y)
+    np.testing.assert_array_equal(delay_samples(y, 0.0)[0], y)
 
 
 @pytest.mark.parametrize("lag", [-4.0, 2.0, 7.0])
@@ -40,7 +40,7 @@ def test_whole_samples_only_shift(lag: float) -> None:
     y = np.random.default_rng(4).standard_normal(60)
     here = inner(lag, 60)
     np.testing.assert_allclose(
-        delayed(y, lag)[0][here], np.roll(y, int(lag))[here], rtol=0, atol=1e-15
+        delay_samples(y, lag)[0][here], np.roll(y, int(lag))[here], rtol=0, atol=1e-15
     )
 
 
@@ -48,7 +48,7 @@ def test_whole_samples_only_shift(lag: float) -> None:
 def test_value_and_slope_do_not_jump_at_a_sample(lag: float) -> None:
     """On noise, where nothing but the formula makes it smooth."""
     y, step = np.random.default_rng(5).standard_normal(60), 1e-9
-    (a, da), (b, db) = delayed(y, lag - step), delayed(y, lag + step)
+    (a, da), (b, db) = delay_samples(y, lag - step), delay_samples(y, lag + step)
     np.testing.assert_allclose(a, b, atol=1e-7)
     np.testing.assert_allclose(da, db, atol=1e-6)
 
@@ -57,8 +57,8 @@ def test_value_and_slope_do_not_jump_at_a_sample(lag: float) -> None:
 def test_derivative_by_the_lag_is_that_of_the_formula(lag: float) -> None:
     """Against central differences on noise, at the ends too, and with more columns."""
     y, step = np.random.default_rng(6).standard_normal((60, 3)), 1e-5
-    difference = (delayed(y, lag + step)[0] - delayed(y, lag - step)[0]) / (2.0 * step)
-    np.testing.assert_allclose(delayed(y, lag)[1], difference, atol=1e-8)
+    difference = (delay_samples(y, lag + step)[0] - delay_samples(y, lag - step)[0]) / (2.0 * step)
+    np.testing.assert_allclose(delay_samples(y, lag)[1], difference, atol=1e-8)
 
 
 def test_the_margin_covers_what_the_ends_spoil() -> None:
@@ -68,7 +68,7 @@ def test_the_margin_covers_what_the_ends_spoil() -> None:
         spoilt = margin(-1.3, 1.3, 0.5)
         inside = slice(spoilt, 80 - spoilt)
         np.testing.assert_array_equal(
-            delayed(y, lag)[0][inside], delayed(longer, lag)[0][20:100][inside]
+            delay_samples(y, lag)[0][inside], delay_samples(longer, lag)[0][20:100][inside]
         )
 
 

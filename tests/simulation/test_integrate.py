@@ -9,7 +9,8 @@ from scipy.integrate import solve_ivp
 
 from trialid.effects import CATALOGUE
 from trialid.errors import EffectError, NotIdentifiable
-from trialid.ship.model import ShipModel, derivatives
+from trialid.ship.model import ShipModel
+from trialid.ship.motion import derivatives
 from trialid.ship.particulars import Ship
 from trialid.simulation.integrate import Departure, domain, guess, prepare, respond
 from trialid.trial import Trial

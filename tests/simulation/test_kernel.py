@@ -217,6 +217,21 @@ def test_a_damaged_cache_file_is_compiled_again(
     assert elsewhere(NUMBERS, tmp_path) == numbers
 
 
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no such modes here")
+@pytest.mark.parametrize("what", ["file", "folder"])
+def test_what_others_may_write_is_not_run(
+    what: str, tmp_path: Path, known_good: tuple[str, str, bytes]
+) -> None:
+    """Code of somebody else's under a checksum that fits: it is compiled again."""
+    numbers, name, code = known_good
+    path = tmp_path / name
+    path.write_bytes(code)
+    (path if what == "file" else tmp_path).chmod(0o777)
+    before = path.stat()
+    assert elsewhere(NUMBERS, tmp_path) == numbers
+    assert path.stat().st_mtime_ns != before.st_mtime_ns
+
+
 def test_a_folder_that_cannot_be_made_is_done_without(
     tmp_path: Path, known_good: tuple[str, str, bytes]
 ) -> None:

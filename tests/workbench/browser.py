@@ -11,7 +11,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from urllib.request import urlopen
 
 CHROMIUM = shutil.which("chromium")
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking"]
@@ -48,7 +47,8 @@ class Screen:
 
     def facts(self) -> dict[str, Any]:
         """The numbers behind what is shown."""
-        return json.loads(urlopen(f"{self.address}api/screen").read())["facts"]  # type: ignore[no-any-return]
+        place = self.address.partition("?")[0]
+        return json.loads(self.page.request.get(f"{place}api/screen").body())["facts"]  # type: ignore[no-any-return]
 
     def number(self, percent: str) -> None:
         """Wait until the error number reads so."""
@@ -76,7 +76,7 @@ def opened(address: str, pictures: Path, **kind: Any) -> Iterator[Screen]:
     with sync_playwright() as play:
         browser = play.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
         page = browser.new_context(**{"viewport": LAPTOP, **kind}).new_page()
-        page.set_default_timeout(30_000)
+        page.set_default_timeout(90_000)
         screen = Screen(page, address, pictures)
         page.on("pageerror", lambda error: screen.errors.append(str(error)))
         page.on("console", lambda said: _heard(screen, said))
@@ -86,7 +86,8 @@ def opened(address: str, pictures: Path, **kind: Any) -> Iterator[Screen]:
         yield screen
         browser.close()
         assert not screen.errors
-        assert all(url.startswith((address, "data:")) for url in asked)
+        place = address.partition("?")[0]
+        assert all(url.startswith((place, "data:")) for url in asked)
 
 
 def _heard(screen: Screen, said: Any) -> None:

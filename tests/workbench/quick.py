@@ -90,6 +90,7 @@ def mine(v, r, *, Nx=-0.001):
 
 def write(folder: Path, text: str = TEXT) -> Path:
     """Write the pipeline with its ship and log; its path."""
+    folder.mkdir(exist_ok=True)
     shutil.copy(SAMPLES / "ships" / "s175q.toml", folder)
     shutil.copy(SAMPLES / "hidden_effect" / "zigzag-15.csv", folder / "log.csv")
     path = folder / "quick.toml"
@@ -161,6 +162,8 @@ class Address:
     """Where a workbench answers."""
 
     port: int
+    cookie: str = ""
+    host: str = "127.0.0.1"
 
     def ask(
         self,
@@ -170,12 +173,13 @@ class Address:
         headers: dict[str, str] | None = None,
     ) -> Answer:
         """Send a request; a body that is not bytes is sent as JSON."""
-        link = http.client.HTTPConnection("127.0.0.1", self.port, timeout=LONGEST)
+        link = http.client.HTTPConnection(self.host, self.port, timeout=LONGEST)
         with contextlib.closing(link):
             if body is not None and not isinstance(body, bytes):
                 body = json.dumps(body).encode()
             kind = {} if body is None else {"Content-Type": "application/json"}
-            link.request(method, path, body, {**kind, **(headers or {})})
+            held = {"Cookie": self.cookie} if self.cookie else {}
+            link.request(method, path, body, {**held, **kind, **(headers or {})})
             answer = link.getresponse()
             return Answer(answer.status, answer.headers, answer.read())
 
@@ -240,6 +244,16 @@ def command(*words: str) -> subprocess.Popen[str]:
     )  # fmt: skip
 
 
+def greeted(said: str, port: int) -> Address:
+    """The printed address, its token changed for the cookie."""
+    found = re.search(r"http://(?:\[(\S+)\]|([^:/\s]+)):\d+(/\S*)", said)
+    assert found is not None, said
+    host = found[1] or found[2]
+    answer = Address(port, host=host).get(found[3])
+    assert answer.status == 303, (said, answer)
+    return Address(port, answer.headers["set-cookie"].partition(";")[0], host)
+
+
 @contextmanager
 def running(*words: str) -> Iterator[Running]:
     """The command once it answers; ended in any case."""
@@ -249,6 +263,6 @@ def running(*words: str) -> Iterator[Running]:
             said = process.stdout.readline()
             found = re.search(r":(\d+)/", said)
             assert found is not None, said + "".join(process.stderr or ())
-            yield Running(process, Address(int(found[1])), said)
+            yield Running(process, greeted(said, int(found[1])), said)
         finally:
             process.kill()

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,15 +11,18 @@ import quick
 from click.testing import CliRunner
 from quick import ADDED, OTHER, SPARE, diagnosed, edit, opened, settled, until
 
-from trialid import cli, history
-from trialid.errors import RecipeError, TrialidError
-from trialid.pipeline import run
-from trialid.recipe import load
+from trialid.cli import main
+from trialid.errors import PipelineError, TrialidError
+from trialid.pipeline_file import load
+from trialid.result.json_file import text_of
+from trialid.result.schema import Result
 from trialid.workbench import compute
 from trialid.workbench import desk as desk_module
 from trialid.workbench.desk import Desk
 from trialid.workbench.document import Outdated
 from trialid.workbench.shown import Shown
+from trialid.workflow import history
+from trialid.workflow.run import run
 
 
 @pytest.fixture(autouse=True)
@@ -74,18 +78,18 @@ def told(monkeypatch: pytest.MonkeyPatch) -> list[Shown]:
     return shown
 
 
-def result(desk: Desk) -> dict[str, Any]:
+def result(desk: Desk) -> Result:
     """The result shown, without what stands in it of the model before."""
     shown = desk.shown
     assert shown.run is not None
-    return {key: value for key, value in shown.run.result.items() if key != "change"}
+    return replace(shown.run.result, change=None)
 
 
 def steps(path: Path) -> list[tuple[str, str | None]]:
     """The history in the file."""
     rows, words = history.read(path)
     assert words == ""
-    return [(row["step"], row["added"] or row["dropped"]) for row in rows]
+    return [(row.step, row.added or row.dropped) for row in rows]
 
 
 def still_alone(path: Path) -> bool:
@@ -108,9 +112,9 @@ def test_what_is_known_is_shown_at_once(path: Path, told: list[Shown]) -> None:
         assert all(o.predicted.size == o.measured.size for s in measured.series for o in s.outputs)
         assert fitted.fit is not None
         assert whole.run is not None
-        assert whole.run.result["fit"]["eps_rmsn"] == fitted.fit.eps_rmsn
+        assert whole.run.result.fit.eps_rmsn == fitted.fit.eps_rmsn
         assert whole.before is None
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
     assert path.read_bytes() == text
     assert not history.place(path).exists()  # looking leaves no trace
     assert still_alone(path)
@@ -140,19 +144,19 @@ def test_add_and_drop_as_the_command_line_does(tmp_path: Path) -> None:
         for verb, effect in (("add", ADDED), ("drop", SPARE)):
             edit(desk, verb, effect=effect)
             version = desk.status.version
-            assert screen.read_bytes() == desk.shown.recipe.content or desk.status.working
+            assert screen.read_bytes() == desk.shown.pipeline.content or desk.status.working
             assert diagnosed(desk).version == version
             out = tmp_path / f"out-{verb}"
             words = [verb, str(line), effect, "--out", str(out), "--quiet"]
-            done = CliRunner().invoke(cli.commands, words)
+            done = CliRunner().invoke(main.commands, words)
             assert done.exit_code == 0, done.output
             shown = desk.shown.run
             assert shown is not None
             assert screen.read_bytes() == line.read_bytes()
-            assert dict(shown.result) == quick.json.loads((out / "result.json").read_text())
+            assert text_of(shown.result) == (out / "result.json").read_text()
             assert history.place(screen).read_bytes() == history.place(line).read_bytes()
-            assert result(desk) == dict(run(load(screen)).result)
-            assert desk.shown.recipe == load(screen)
+            assert result(desk) == run(load(screen)).result
+            assert desk.shown.pipeline == load(screen)
     assert still_alone(screen)
 
 
@@ -168,7 +172,7 @@ def test_undo_and_redo_show_again_what_was_known(path: Path, monkeypatch: Any) -
             results.append(result(desk))
         assert status.undo == "fix Nrar"
         monkeypatch.setattr(compute, "fit_of", _no_fit)
-        monkeypatch.setattr(compute, "fitted_after", _no_fit)
+        monkeypatch.setattr(compute, "fit_edited", _no_fit)
         monkeypatch.setattr(compute, "examine", _no_fit)
         for i in (2, 1, 0, 1, 2, 3):
             move = desk.undo if texts.index(path.read_bytes()) > i else desk.redo
@@ -178,12 +182,12 @@ def test_undo_and_redo_show_again_what_was_known(path: Path, monkeypatch: Any) -
             assert (status.undo is None, status.redo is None) == (i == 0, i == 3)
             again = result(desk)
             for key in ("fit", "accuracy", "split", "verdict", "missing"):
-                assert again[key] == results[i][key]
+                assert getattr(again, key) == getattr(results[i], key)
             model = desk.shown.model
             assert model is not None
-            for row in again["accuracy"]["parameters"]:
-                if row["name"] in model.parameters:
-                    assert model.value(row["name"]) == row["value"]
+            for row in again.accuracy.parameters:
+                if row.name in model.parameters:
+                    assert model.value(row.name) == row.value
     told_ = steps(path)
     assert told_[:4] == [("as written", None), ("added", ADDED), ("dropped", SPARE),
                          ("as written", None)]  # fmt: skip
@@ -200,7 +204,7 @@ def test_nothing_to_undo_is_refused(path: Path) -> None:
         status = diagnosed(desk)
         assert (status.undo, status.redo) == (None, None)
         for move in (desk.undo, desk.redo):
-            with pytest.raises(RecipeError, match="nothing to"):
+            with pytest.raises(PipelineError, match="nothing to"):
                 move(status.version)
         assert desk.status.working is None
 
@@ -224,8 +228,8 @@ def test_cancel_takes_the_edit_back_at_once(path: Path, gate: Gate, stage: str) 
         gate.open.set()
         diagnosed(desk)
         again = result(desk)
-        assert again["fit"] == shown["fit"]
-        assert again["history"] == shown["history"]
+        assert again.fit == shown.fit
+        assert again.history == shown.history
     assert path.read_bytes() == text
     assert not history.place(path).exists()
     assert still_alone(path)
@@ -262,7 +266,7 @@ def test_what_is_stopped_without_an_edit_is_said(path: Path, gate: Gate) -> None
         gate.open.set()
         desk.again()
         diagnosed(desk)
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 def test_a_second_edit_during_a_refit_keeps_both(path: Path, gate: Gate) -> None:
@@ -275,13 +279,13 @@ def test_a_second_edit_during_a_refit_keeps_both(path: Path, gate: Gate) -> None
         gate.open.set()
         status = diagnosed(desk)
         assert load(path).model.effects[-2:] == (ADDED, OTHER)
-        assert desk.shown.recipe == load(path)
-        assert result(desk) == dict(run(load(path)).result)
+        assert desk.shown.pipeline == load(path)
+        assert result(desk) == run(load(path)).result
         assert (status.undo, len(desk._document.done)) == (f"add {OTHER}", 2)
         desk.undo(status.version)
         assert load(path).model.effects[-1] == ADDED
         diagnosed(desk)
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 def test_cancel_of_the_second_edit_keeps_the_first(path: Path, gate: Gate) -> None:
@@ -295,7 +299,7 @@ def test_cancel_of_the_second_edit_keeps_the_first(path: Path, gate: Gate) -> No
         assert path.read_bytes() == one
         gate.open.set()
         assert diagnosed(desk).undo == f"add {ADDED}"
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 def test_an_edit_that_cannot_be_fitted_is_taken_back(path: Path) -> None:
@@ -334,8 +338,8 @@ def test_an_effect_of_ones_own_that_needs_better_starts(tmp_path: Path) -> None:
         assert status.version != put
         assert "  # start, by linearisation" in path.read_text(encoding="utf-8")
         assert abs(load(path).model.values["Nx"].value) < 1.0
-        assert desk.shown.recipe == load(path)
-        assert result(desk) == dict(run(load(path)).result)
+        assert desk.shown.pipeline == load(path)
+        assert result(desk) == run(load(path)).result
         desk.undo(status.version)
         assert path.read_text(encoding="utf-8") == text
         assert diagnosed(desk).version == first.version
@@ -378,9 +382,9 @@ def test_an_edit_made_elsewhere_is_taken_over(path: Path) -> None:
         path.write_bytes(text.replace(b', "Nrar"]', b"]"))
         until(lambda: desk.status.version != first.version, "the edit to be seen")
         status = diagnosed(desk)
-        assert desk.shown.recipe == load(path)
+        assert desk.shown.pipeline == load(path)
         assert desk.shown.before is not None
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
         assert status.undo == "the edit made outside"
         desk.undo(status.version)
         assert path.read_bytes() == text
@@ -400,7 +404,7 @@ def test_an_edit_made_elsewhere_ends_a_refit(path: Path, gate: Gate) -> None:
         gate.open.set()
         diagnosed(desk)
         assert path.read_bytes() == theirs
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 @pytest.mark.parametrize("broken", ["[model", "name = 3\n", None])
@@ -422,7 +426,7 @@ def test_a_broken_file_keeps_the_screen(path: Path, broken: str | None) -> None:
         path.write_text(text.replace('"Nrar"]', '"Nrar", "Kphi"]'), encoding="utf-8")
         until(lambda: desk.status.version != first.version, "the mended file to be seen")
         diagnosed(desk)
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 def test_a_file_mended_to_what_it_was(path: Path) -> None:
@@ -447,8 +451,8 @@ def test_an_effect_file_edited_broken_and_mended(tmp_path: Path) -> None:
         until(lambda: desk.status.serial > serial, "the effect file to be seen")
         diagnosed(desk)
         second = result(desk)
-        assert second == dict(run(load(path)).result)
-        assert second["fit"]["eps_rmsn"] != first["fit"]["eps_rmsn"]
+        assert second == run(load(path)).result
+        assert second.fit.eps_rmsn != first.fit.eps_rmsn
         mine.write_text("def\n", encoding="utf-8")
         status = until(lambda: (s := desk.status).trouble and s, "the trouble to be seen")
         assert status.trouble is not None
@@ -460,7 +464,7 @@ def test_an_effect_file_edited_broken_and_mended(tmp_path: Path) -> None:
         mine.write_text(quick.OWN, encoding="utf-8")
         until(lambda: desk.status.trouble is None, "the trouble to go")
         diagnosed(desk)
-        assert result(desk)["fit"] == first["fit"]
+        assert result(desk).fit == first.fit
 
 
 def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
@@ -482,15 +486,15 @@ def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
         mine.write_text(quick.OWN, encoding="utf-8")
         until(lambda: desk.status.trouble is None, "the trouble to go")
         diagnosed(desk)
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
         assert path.read_bytes() == text
 
 
 def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: Any) -> None:
     """Between the same two looks as an edit on the screen: it is seen all the same."""
     path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
-    looks = Looks(desk_module.watched, path)
-    monkeypatch.setattr(desk_module, "watched", looks.watched)
+    looks = Looks(desk_module.watch_list, path)
+    monkeypatch.setattr(desk_module, "watch_list", looks.watched)
     with opened(path) as desk:
         diagnosed(desk)
         looks.stop()
@@ -501,7 +505,7 @@ def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: An
         looks.go()
         until(lambda: desk.status.serial > serial, "the effect file to be seen")
         diagnosed(desk)
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 class Looks:
@@ -541,9 +545,9 @@ def test_a_file_edited_while_it_is_taken_over(path: Path, monkeypatch: Any) -> N
     with opened(path) as desk:
         diagnosed(desk)
         path.write_bytes(text.replace(b', "Nrar"]', b"]"))
-        until(lambda: desk._document.recipe.content == second, "the second edit to be seen")
+        until(lambda: desk._document.pipeline.content == second, "the second edit to be seen")
         diagnosed(desk)
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 def test_a_log_that_grew_is_not_shown_as_it_was(path: Path) -> None:
@@ -557,7 +561,7 @@ def test_a_log_that_grew_is_not_shown_as_it_was(path: Path) -> None:
         log.write_text("".join([lines[0], *lines[500:]]), encoding="utf-8")
         desk.undo(desk.status.version)
         diagnosed(desk)
-        assert result(desk) == dict(run(load(path)).result)
+        assert result(desk) == run(load(path)).result
 
 
 # --- the end ------------------------------------------------------------------------------------
@@ -581,7 +585,7 @@ def test_nothing_is_written_after_the_end(path: Path, gate: Gate) -> None:
             lambda: desk.redo(version),
             desk.again,
         ):
-            with pytest.raises(RecipeError, match="closed"):
+            with pytest.raises(PipelineError, match="closed"):
                 late()
         desk.cancel()
         assert desk.status.working is None
@@ -594,7 +598,7 @@ def test_a_bug_is_said_and_takes_the_edit_back(path: Path, monkeypatch: Any) -> 
     monkeypatch.setattr(threading, "excepthook", caught.append)
     with opened(path) as desk:
         diagnosed(desk)
-        monkeypatch.setattr(compute, "fitted_after", _no_fit)
+        monkeypatch.setattr(compute, "fit_edited", _no_fit)
         edit(desk, "add", effect=ADDED)
         status = settled(desk)
         assert status.trouble is not None
@@ -604,5 +608,5 @@ def test_a_bug_is_said_and_takes_the_edit_back(path: Path, monkeypatch: Any) -> 
 
 
 def test_no_pipeline_to_begin_with(tmp_path: Path) -> None:
-    with pytest.raises(RecipeError, match="no such pipeline"):
+    with pytest.raises(PipelineError, match="no such pipeline"):
         Desk(tmp_path / "no.toml")

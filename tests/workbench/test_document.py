@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 import quick
 
-from trialid.errors import RecipeError
-from trialid.recipe import Recipe, load, read
-from trialid.recipe.edit import set_fixed, set_value
+from trialid.errors import PipelineError
+from trialid.pipeline_file import Pipeline, load, read
+from trialid.pipeline_file.edit import fix_parameter, set_value
 from trialid.workbench.document import ELSEWHERE, Document, Outdated
 
 
@@ -20,14 +20,14 @@ def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     return made
 
 
-def fixed(document: Document, name: str) -> Recipe:
+def fixed(document: Document, name: str) -> Pipeline:
     """The pipeline with a parameter fixed."""
-    recipe = document.recipe
-    return read(set_fixed(recipe.text, name)[0].encode(), recipe.path)
+    recipe = document.pipeline
+    return read(fix_parameter(recipe.text, name)[0].encode(), recipe.path)
 
 
-def valued(document: Document, value: float) -> Recipe:
-    recipe = document.recipe
+def valued(document: Document, value: float) -> Pipeline:
+    recipe = document.pipeline
     return read(set_value(recipe.text, "GM", value).encode(), recipe.path)
 
 
@@ -42,17 +42,17 @@ def test_edits_undone_one_by_one_and_made_again(path: Path) -> None:
     for name in ("GM", "Nrar", "Yvav"):
         document.put(fixed(document, name), f"fix {name}")
         contents.append(path.read_bytes())
-        assert document.recipe == load(path)
+        assert document.pipeline == load(path)
     assert len(set(contents)) == 4
     for content, name in zip(contents[-2::-1], ("Yvav", "Nrar", "GM"), strict=True):
         assert document.undo().words == f"fix {name}"
-        assert path.read_bytes() == content == document.recipe.content
-    with pytest.raises(RecipeError, match="nothing to undo"):
+        assert path.read_bytes() == content == document.pipeline.content
+    with pytest.raises(PipelineError, match="nothing to undo"):
         document.undo()
     for content in contents[1:]:
         document.redo()
-        assert path.read_bytes() == content == document.recipe.content
-    with pytest.raises(RecipeError, match="nothing to do again"):
+        assert path.read_bytes() == content == document.pipeline.content
+    with pytest.raises(PipelineError, match="nothing to do again"):
         document.redo()
     assert only_file(path)
 
@@ -63,7 +63,7 @@ def test_an_edit_after_an_undo_leaves_nothing_to_do_again(path: Path) -> None:
     document.undo()
     document.put(fixed(document, "Nrar"), "fix Nrar")
     assert document.undone == ()
-    with pytest.raises(RecipeError, match="nothing to do again"):
+    with pytest.raises(PipelineError, match="nothing to do again"):
         document.redo()
 
 
@@ -92,7 +92,7 @@ def test_what_another_has_written_is_never_overwritten(path: Path, theirs: bytes
         lambda: document.put(fixed(document, "Nrar"), "fix Nrar"),
         lambda: document.amend(valued(document, 1.0)),
     ):
-        with pytest.raises(RecipeError, match="was changed meanwhile"):
+        with pytest.raises(PipelineError, match="was changed meanwhile"):
             write()
     assert not document.take_back(step)
     assert document.done == (step,)
@@ -119,7 +119,7 @@ def test_what_is_taken_back_was_never_there(path: Path) -> None:
     second = document.put(fixed(document, "GM"), "fix GM")
     assert not document.take_back(first)
     assert document.take_back(second)
-    assert path.read_bytes() == content == document.recipe.content
+    assert path.read_bytes() == content == document.pipeline.content
     assert (document.done, document.undone) == ((first,), ())
     assert only_file(path)
 
@@ -133,8 +133,8 @@ def test_what_cannot_be_put_back_stays(path: Path, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr("tempfile.mkstemp", full)
     assert not document.take_back(step)
-    assert path.read_bytes() == step.new == document.recipe.content
-    with pytest.raises(RecipeError, match="No space left on device"):
+    assert path.read_bytes() == step.new == document.pipeline.content
+    with pytest.raises(PipelineError, match="No space left on device"):
         document.undo()
     assert document.done == (step,)
 
@@ -145,8 +145,8 @@ def test_an_edit_made_elsewhere_is_one_to_undo(path: Path) -> None:
     old = path.read_bytes()
     path.write_bytes(old.replace(b"period = 1.0", b"period = 2.0"))
     assert document.reread()
-    assert document.recipe == load(path)
-    assert document.recipe.align.period == 2.0
+    assert document.pipeline == load(path)
+    assert document.pipeline.align.period == 2.0
     assert document.undo().words == ELSEWHERE
     assert path.read_bytes() == old
 
@@ -156,11 +156,11 @@ def test_a_broken_file_keeps_what_was_read_before(path: Path, broken: bytes | No
     document = Document(path)
     old = path.read_bytes()
     document.put(fixed(document, "GM"), "fix GM")
-    recipe, done, whole = document.recipe, document.done, path.read_bytes()
+    recipe, done, whole = document.pipeline, document.done, path.read_bytes()
     path.unlink() if broken is None else path.write_bytes(broken)
-    with pytest.raises(RecipeError, match="quick"):
+    with pytest.raises(PipelineError, match="quick"):
         document.reread()
-    assert document.recipe is recipe
+    assert document.pipeline is recipe
     assert document.done is done
     path.write_bytes(whole)
     assert not document.reread()
@@ -175,5 +175,5 @@ def test_a_linked_file_stays_one(path: Path) -> None:
     document = Document(link)
     document.put(fixed(document, "GM"), "fix GM")
     assert link.is_symlink()
-    assert path.read_bytes() == document.recipe.content
+    assert path.read_bytes() == document.pipeline.content
     assert path.stat().st_mode & 0o777 == 0o640

@@ -11,7 +11,7 @@ from trialid.workbench.server import ASSETS
 
 TOKEN = "a-token-of-which-nobody-knows"
 READ = ("/", "/api/status", "/api/screen", "/api/result", "/pipeline.toml", "/workbench.css",
-        "/api/events")  # fmt: skip
+        "/guide", "/guide/logs", "/api/events")  # fmt: skip
 ACTS = ("edit", "undo", "redo", "cancel", "again", "export")
 
 
@@ -72,7 +72,9 @@ def test_a_name_made_to_point_here_is_not_answered(own: Address, host: str) -> N
         refused(answer, 403)
 
 
-@pytest.mark.parametrize("host", ["127.0.0.1:{port}", "localhost:{port}", "LOCALHOST", "[::1]:1"])
+@pytest.mark.parametrize("host", [
+    "127.0.0.1:{port}", "localhost:{port}", "LOCALHOST", "[::1]:1", "127.0.0.2:{port}",
+])  # fmt: skip
 def test_its_own_names_are_answered(own: Address, host: str) -> None:
     answer = own.get("/api/status", Host=host.format(port=own.port))
     assert guarded(answer).status == 200
@@ -80,7 +82,7 @@ def test_its_own_names_are_answered(own: Address, host: str) -> None:
 
 @pytest.mark.parametrize("origin", [
     "http://evil.example", "https://127.0.0.1.evil.example", "null", "", "http://127.0.0.1:1",
-    "http://localhost:{port}", "file://",
+    "http://localhost:{port}", "file://", "http://[", "http://[::1", "http://]",
 ])  # fmt: skip
 def test_another_sites_page_is_not_answered(own: Address, origin: str) -> None:
     for answer in everywhere(own, Origin=origin.format(port=own.port)):
@@ -149,7 +151,9 @@ def test_with_a_wrong_token_nothing_is_answered(open_: Address, token: str) -> N
     head = f"GET /?token={written} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"
     answer = open_.raw(head.encode("latin-1"))
     assert answer.startswith((b"HTTP/1.1 401 ", b"HTTP/1.1 400 ")), answer
-    for cookie in (f"trialid={token}", f"other={TOKEN}", "trialid", ";;;=", f"trialid {TOKEN}"):
+    name = f"trialid-{open_.port}"
+    for cookie in (f"{name}={token}", f"other={TOKEN}", name, ";;;=", f"{name} {TOKEN}",
+                   f"trialid={TOKEN}", f"trialid-{open_.port + 1}={TOKEN}"):  # fmt: skip
         sent = open_.get("/api/status", Cookie=cookie.encode().decode("latin-1"))
         refused(sent, 401)
     for answer_ in everywhere(open_, Authorization=f"Bearer {TOKEN}"):
@@ -174,7 +178,7 @@ def test_the_token_once_and_then_a_cookie(open_: Address) -> None:
 
 
 def test_the_cookie_is_of_no_use_to_another_site(open_: Address) -> None:
-    held = {"Cookie": f"trialid={TOKEN}"}
+    held = {"Cookie": f"trialid-{open_.port}={TOKEN}"}
     for more in ({"Origin": "http://evil.example"}, {"Sec-Fetch-Site": "cross-site"}):
         for answer in everywhere(open_, **held, **more):
             refused(answer, 403)

@@ -13,8 +13,8 @@ import pytest
 import quick
 from quick import ADDED, OTHER, SPARE, Address
 
-from trialid import history
-from trialid.recipe import load
+from trialid.pipeline_file import load
+from trialid.workflow import history
 
 EFFECTS = (ADDED, OTHER, SPARE)
 
@@ -78,13 +78,13 @@ def works_again(path: Path, effects: Sequence[str]) -> None:
     """What is left is a pipeline to go on with, whatever lies beside it."""
     with quick.opened(path) as desk:
         quick.diagnosed(desk)
-        assert desk.shown.recipe.model.effects == effects
+        assert desk.shown.pipeline.model.effects == effects
         name = next(name for name in EFFECTS if name in desk.shown.catalogue)
         quick.edit(desk, "drop" if name in effects else "add", effect=name)
         quick.diagnosed(desk)
     steps, words = history.read(path)
     assert words == ""
-    assert steps[-1]["added" if name not in effects else "dropped"] == name
+    assert (steps[-1].dropped if name in effects else steps[-1].added) == name
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -92,7 +92,7 @@ def test_an_edit_answered_for_is_never_lost(tmp_path: Path, seed: int) -> None:
     killed(tmp_path, seed)
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=4)
 def test_twenty_workbenches_killed(tmp_path: Path) -> None:
     edits, open_ = [], 0
     for seed in range(20):

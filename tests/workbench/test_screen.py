@@ -1,5 +1,4 @@
 import base64
-import copy
 import json
 import math
 import re
@@ -13,12 +12,13 @@ from test_two_rates import PIPELINE as TWO_RATES
 from test_two_rates import write_logs
 from turn import ADDED, TRIED, WITH_CHECK, opened, turned, write_folder
 
-from trialid.assembly import available
-from trialid.recipe import load
-from trialid.report import page as report
-from trialid.report import wording
+from trialid.names import wording
+from trialid.pipeline_file import load
+from trialid.report.pages import page as report
+from trialid.result.json_file import plain, result_of
 from trialid.workbench import screen
 from trialid.workbench.shown import Shown
+from trialid.workflow.build_model import available
 
 HOSTILE = "<script>alert(1)</script>"
 VOID = {"br", "hr", "img", "input", "link", "meta", "wbr"}
@@ -73,9 +73,10 @@ def texts(shown):
 
 def with_result(shown, **changes):
     """The same screen of a result with some keys replaced."""
-    result = copy.deepcopy(shown.run.result)
+    result = plain(shown.run.result)
     for key, value in changes.items():
         result[key] = {**result[key], **value} if isinstance(result[key], dict) else value
+    result = result_of(result)
     return replace(shown, run=replace(shown.run, result=result))
 
 
@@ -110,9 +111,9 @@ def test_the_page_has_a_place_for_every_part_and_nothing_inline(turn):
     page = screen.page(turn.before)
     read = Reader(page)
     assert set(read.values("data-part")) == set(screen.parts(turn.before)) == set(screen.PARTS)
-    assert re.findall(r"<script[^>]*>(.*?)</script>", page, re.DOTALL) == [""] * 3
+    assert re.findall(r"<script[^>]*>(.*?)</script>", page, re.DOTALL) == [""] * 2
     assert not {"style", "onclick"} & {name for _, name, _ in read.attributes}
-    assert f"<title>{turn.before.recipe.name}" in page
+    assert f"<title>{turn.before.pipeline.name}" in page
 
 
 def test_every_field_and_button_says_what_it_is(turn):
@@ -144,15 +145,15 @@ def test_each_stage_shows_what_it_knows_and_no_more(turn):
 
 def test_facts_are_the_result_s(turn):
     result, facts = turn.after.run.result, screen.facts(turn.after)
-    assert facts["eps_rmsn"] == result["fit"]["eps_rmsn"]
-    assert facts["eps_rmsn_check"] == result["fit"]["eps_rmsn_check"]
-    assert facts["noise"] == result["split"]["noise"]
-    assert facts["undermodelling"] == result["split"]["undermodelling"]
-    assert facts["effects"] == result["model"]["effects"]
-    assert facts["free"] == result["model"]["free"]
+    assert facts["eps_rmsn"] == result.fit.eps_rmsn
+    assert facts["eps_rmsn_check"] == result.fit.eps_rmsn_check
+    assert facts["noise"] == result.split.noise
+    assert facts["undermodelling"] == result.split.undermodelling
+    assert facts["effects"] == list(result.model.effects)
+    assert facts["free"] == list(result.model.free)
     assert (facts["verdict"], facts["named"]) == (
-        result["verdict"]["kind"],
-        result["verdict"]["effect"],
+        result.verdict.kind,
+        result.verdict.effect,
     )
 
 
@@ -162,7 +163,7 @@ def test_what_belongs_to_the_model_before_says_so(turn):
         assert "model before" in fitting[part], part
         assert "model before" in fitted[part], part
         assert "model before" not in after[part], part
-    old, new = (wording.percent(each.run.result["fit"]["eps_rmsn"])
+    old, new = (wording.percent(each.run.result.fit.eps_rmsn)
                 for each in (turn.before, turn.after))  # fmt: skip
     assert f"{old} of the model before" in fitting["error"]
     assert f"{old} → {new}" in fitted["error"]
@@ -172,9 +173,9 @@ def test_what_belongs_to_the_model_before_says_so(turn):
 
 def test_estimates_before_the_fit_are_those_of_the_model_before(turn):
     def said(shown):
-        rows = shown.run.result["accuracy"]["parameters"]
-        row = next(row for row in rows if row["name"] == "Nr")
-        return f"{wording.by_error(row['value'], row['standard_error'])} ± "
+        rows = shown.run.result.accuracy.parameters
+        row = next(row for row in rows if row.name == "Nr")
+        return f"{wording.by_error(row.value, row.standard_error)} ± "
 
     fitting, fitted, after = (
         texts(each)["model"] for each in (turn.measured, turn.fitted, turn.after)
@@ -211,31 +212,29 @@ def test_the_step_that_is_computed_stands_below_those_that_are_known(turn):
 
 def test_numbers_are_written_as_in_the_report(turn):
     run, parts = turn.before.run.result, texts(turn.before)
-    for value in (run["fit"]["eps_rmsn"], run["fit"]["eps_rmsn_check"], run["split"]["noise"],
-                  run["split"]["undermodelling"]):  # fmt: skip
+    for value in (run.fit.eps_rmsn, run.fit.eps_rmsn_check, run.split.noise,
+                  run.split.undermodelling):  # fmt: skip
         assert wording.percent(value) in parts["error"]
-    for row in run["missing"]:
+    for row in run.missing:
         for key in ("eps_rmsn_predicted", "eps_rmsn_refitted", "eps_rmsn_check"):
-            assert wording.percent(row[key]) in parts["missing"]
-        assert wording.number(row["p_value"], 2) in parts["missing"]
-    for row in run["accuracy"]["parameters"]:
-        if row["kind"] == "physical":
-            value = wording.by_error(row["value"], row["standard_error"])
-            assert f"{value} ± {wording.number(row['standard_error'], 2)}" in parts["model"]
-            assert wording.percent(row["relative_error"]) in parts["model"]
-    for trial in run["trials"]:
-        for eps in trial["eps_rmsn"].values():
+            assert wording.percent(getattr(row, key)) in parts["missing"]
+        assert wording.number(row.p_value, 2) in parts["missing"]
+    for row in run.physical:
+        value, wide = wording.by_error(row.value, row.standard_error), np.ptp(row.likely) / 4
+        ends = " to ".join(wording.by_error(x, wide) for x in row.likely)
+        assert f"{value} ± {wording.number(row.standard_error, 2)}" in parts["model"]
+        assert f"likely {ends}" in parts["model"]
+    for trial in run.trials:
+        for eps in trial.eps_rmsn.values():
             assert wording.percent(eps) in parts["about"]
 
 
 def test_the_error_of_a_trial_is_that_of_all_its_outputs(turn):
     run, tabs = turn.before.run.result, texts(turn.before)["tabs"]
-    check = next(trial for trial in run["trials"] if trial["use"] == "check")
-    assert f"held out {wording.percent(run['fit']['eps_rmsn_check'])}" in tabs
-    sizes = check["eps_rmsn"].values()
-    assert math.sqrt(sum(e**2 for e in sizes) / len(sizes)) == pytest.approx(
-        run["fit"]["eps_rmsn_check"]
-    )
+    check = next(trial for trial in run.trials if trial.use == "check")
+    assert f"held out {wording.percent(run.fit.eps_rmsn_check)}" in tabs
+    sizes = check.eps_rmsn.values()
+    assert math.sqrt(sum(e**2 for e in sizes) / len(sizes)) == pytest.approx(run.fit.eps_rmsn_check)
 
 
 # --- the rows one acts on -----------------------------------------------------------------------
@@ -244,10 +243,10 @@ def test_the_error_of_a_trial_is_that_of_all_its_outputs(turn):
 def test_each_candidate_has_its_add_and_each_effect_its_drop(turn):
     parts = read(turn.before)
     assert {f"Add {name}" for name in TRIED} <= set(parts["missing"].values("aria-label"))
-    for name in turn.before.recipe.model.effects:
+    for name in turn.before.pipeline.model.effects:
         assert f"Drop {name}" in parts["model"].values("aria-label")
     offered = [v for t, n, v in parts["missing"].attributes if (t, n) == ("option", "value")]
-    assert set(offered) == set(turn.before.catalogue) - set(turn.before.recipe.model.effects)
+    assert set(offered) == set(turn.before.catalogue) - set(turn.before.pipeline.model.effects)
 
 
 def test_what_is_added_cannot_be_added_again_while_the_ranking_is_old(turn):
@@ -329,7 +328,7 @@ def test_sensors_alone(tmp_path):
     write_logs(tmp_path, [])
     shown = opened(pipeline)
     parts = texts(shown)
-    assert wording.percent(shown.run.result["fit"]["eps_rmsn"]) in parts["error"]
+    assert wording.percent(shown.run.result.fit.eps_rmsn) in parts["error"]
     assert "reference_rate" in parts["model"]
     assert "rigid body" not in parts["model"]
     assert screen.panels(shown, 0)["name"] == "figure of eight"
@@ -352,15 +351,16 @@ def test_hostile_names_in_a_pipeline_stay_text(tmp_path):
 
 def with_channel(shown, channel):
     """The same, the yaw rate read from another channel: no CSV may hold such a name."""
-    trial = shown.recipe.trials[0]
+    trial = shown.pipeline.trials[0]
     source = trial.signals["r"].model_copy(update={"channel": channel})
     trial = trial.model_copy(update={"signals": {**trial.signals, "r": source}})
-    return replace(shown, recipe=shown.recipe.model_copy(update={"trials": (trial,)}))
+    return replace(shown, pipeline=shown.pipeline.model_copy(update={"trials": (trial,)}))
 
 
 def test_hostile_effects_and_words_stay_text(turn):
     """Every word of the result that is no key of the screen's own is set to markup."""
-    own = {"kind", "output", "verdict", "step", "use", "form", "unit", "trial", "signal", "method"}
+    own = {"schema", "kind", "output", "verdict", "step", "use", "form", "unit", "trial", "signal",
+           "method"}  # fmt: skip
 
     def spoilt(value, key=""):
         match value:
@@ -373,11 +373,12 @@ def test_hostile_effects_and_words_stay_text(turn):
             case _:
                 return value
 
-    result = spoilt(turn.after.run.result) | {"not_tried": {HOSTILE: HOSTILE}}
-    result["trials"] = turn.after.run.result["trials"]
-    edited = turn.after.recipe.model.model_copy(update={"effects": (HOSTILE,)})
-    recipe = turn.after.recipe.model_copy(update={"model": edited})
-    shown = replace(turn.after, recipe=recipe, run=replace(turn.after.run, result=result))
+    own_trials = turn.after.run.result.trials
+    result = spoilt(plain(turn.after.run.result)) | {"not_tried": {HOSTILE: HOSTILE}}
+    result = replace(result_of(result), trials=own_trials)
+    edited = turn.after.pipeline.model.model_copy(update={"effects": (HOSTILE,)})
+    recipe = turn.after.pipeline.model_copy(update={"model": edited})
+    shown = replace(turn.after, pipeline=recipe, run=replace(turn.after.run, result=result))
     parts = read(shown)
     assert all("script" not in part.tags for part in parts.values())
     assert HOSTILE in parts["missing"].text

@@ -4,6 +4,7 @@ import contextlib
 import http.client
 import json
 import random
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,14 +13,16 @@ import pytest
 import quick
 from quick import ADDED, OTHER, Address, Answer, Desk, diagnosed
 
-from trialid.recipe import load
+from trialid.guide import TOPICS
+from trialid.pipeline_file import load
+from trialid.result.json_file import result_of, text_of
 
 LINE = 600
 
 
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Desk]:
-    with quick.opened(quick.write(tmp_path_factory.mktemp("server"))) as made:
+    with quick.opened(quick.write(tmp_path_factory.mktemp("server") / "alone")) as made:
         diagnosed(made)
         yield made
 
@@ -63,7 +66,8 @@ def test_status_screen_series_and_result(desk: Desk, address: Address) -> None:
     run = desk.shown.run
     assert run is not None
     result = address.get("/api/result").json
-    assert result == run.result
+    assert result == json.loads(text_of(run.result))
+    assert result_of(result) == run.result
     screen = address.get("/api/screen").json
     assert set(screen) == {"screen", "version", "parts", "facts"}
     assert (screen["screen"], screen["version"]) == (status["screen"], status["version"])
@@ -90,6 +94,30 @@ def test_the_page_and_its_downloads(desk: Desk, address: Address) -> None:
     copy = address.get("/pipeline.toml")
     assert copy.headers["content-disposition"] == told.format("pipeline.toml")
     assert copy.body == desk.path.read_bytes()
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_the_guide_is_served(address: Address, topic: str) -> None:
+    """As HTML that the policy of the page allows; the links of its Markdown lead on."""
+    answer = address.get(f"/guide/{topic}")
+    assert (answer.status, answer.headers["content-type"]) == (200, "text/html; charset=utf-8")
+    assert "default-src 'none'" in answer.headers["content-security-policy"]
+    text = answer.body.decode()
+    assert text.count("<h1>") == 1
+    for forbidden in ("style=", "<script", "<!--"):
+        assert forbidden not in text
+    for link in re.findall(r'href="(\w+\.md)"', text):
+        assert address.get(f"/guide/{link}").status == 200, link
+
+
+def test_the_guide_is_listed_and_linked(address: Address) -> None:
+    assert b'href="/guide"' in address.get("/").body
+    listed = address.get("/guide").body.decode()
+    assert all(f'href="/guide/{topic}"' in listed for topic in TOPICS)
+    wrong = address.get("/guide/verdict")
+    assert wrong.status == 404
+    assert "'verdicts'" in wrong.json["error"]
+    assert address.get("/guide/..%2f..%2fcli").status == 404
 
 
 def test_before_a_run_is_there(tmp_path: Path) -> None:

@@ -11,26 +11,26 @@ import pytest
 import quick
 
 from trialid.errors import TrialidError
-from trialid.recipe import Recipe, load, read
-from trialid.workbench.wishes import Granted, between, granted, understood
+from trialid.pipeline_file import Pipeline, load, read
+from trialid.workbench.wishes import Granted, between, grant, understood
 
 LINE = 400
 
 
 @pytest.fixture(scope="module")
-def recipe(tmp_path_factory: pytest.TempPathFactory) -> Recipe:
+def recipe(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
     return load(quick.write(tmp_path_factory.mktemp("wishes")))
 
 
-def ask(recipe: Recipe, do: str, **what: Any) -> Granted:
-    return granted(recipe, understood({"version": "", "do": do, **what}))
+def ask(recipe: Pipeline, do: str, **what: Any) -> Granted:
+    return grant(recipe, understood({"version": "", "do": do, **what}))
 
 
 def told(granted_: Granted) -> dict[str, Any]:
     return tomllib.loads(granted_.after.text)
 
 
-def test_every_wish_changes_what_it_says_and_nothing_else(recipe: Recipe) -> None:
+def test_every_wish_changes_what_it_says_and_nothing_else(recipe: Pipeline) -> None:
     data = tomllib.loads(recipe.text)
     added = ask(recipe, "add", effect=quick.ADDED)
     assert told(added)["model"]["effects"] == [*data["model"]["effects"], quick.ADDED]
@@ -62,7 +62,7 @@ def test_every_wish_changes_what_it_says_and_nothing_else(recipe: Recipe) -> Non
     assert (held.words, [t.use for t in held.after.trials]) == ("early held out", ["check", "fit"])
 
 
-def test_a_bound_may_be_on_one_side_alone(recipe: Recipe) -> None:
+def test_a_bound_may_be_on_one_side_alone(recipe: Pipeline) -> None:
     above = ask(recipe, "bounds", parameter="GM", low=0.1, high=None)
     assert dict(above.after.identify.bounds) == {"GM": (0.1, math.inf)}
     assert above.words == "bounds of GM 0.1 to inf"
@@ -104,9 +104,9 @@ def test_a_bound_may_be_on_one_side_alone(recipe: Recipe) -> None:
     ({}, ("edit: ",)),
     ({"do": "add", "effect": quick.ADDED, "version": None}, ("version: ",)),
 ])  # fmt: skip
-def test_what_cannot_be_is_one_line(recipe: Recipe, wish: Any, words: tuple[str, ...]) -> None:
+def test_what_cannot_be_is_one_line(recipe: Pipeline, wish: Any, words: tuple[str, ...]) -> None:
     with pytest.raises(TrialidError) as caught:
-        granted(recipe, understood({"version": "", **wish}))
+        grant(recipe, understood({"version": "", **wish}))
     said = str(caught.value)
     said.encode()
     assert "\n" not in said
@@ -120,7 +120,7 @@ def test_what_is_no_wish_is_refused(asked: object) -> None:
         understood(asked)
 
 
-def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Recipe) -> None:
+def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Pipeline) -> None:
     """Whatever is asked for, what comes back can be loaded, and holds no more than was asked."""
     chance = random.Random(1)
     good = ["GM", "Yv", "Ydelta", "early", "late", quick.ADDED, quick.SPARE, "fit", "check"]
@@ -136,7 +136,7 @@ def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Recipe) -> None:
         names = {"effect", "parameter", "trial", "use"}
         wish = {key: chance.choice(texts if key in names else numbers) for key in kinds[do]}
         try:
-            found = granted(recipe, understood({"version": "", "do": do, **wish}))
+            found = grant(recipe, understood({"version": "", "do": do, **wish}))
         except TrialidError as error:
             said = str(error)
             said.encode()
@@ -148,7 +148,7 @@ def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Recipe) -> None:
     assert done > 20
 
 
-def test_the_effect_by_which_two_pipelines_differ(recipe: Recipe) -> None:
+def test_the_effect_by_which_two_pipelines_differ(recipe: Pipeline) -> None:
     added = ask(recipe, "add", effect=quick.ADDED).after
     edit = between(recipe, added)
     assert edit is not None

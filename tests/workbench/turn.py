@@ -7,14 +7,16 @@ import pandas as pd
 import s175q
 from test_bad_input import CHECK, EFFECTS, PIPELINE, STATES
 
-from trialid import change
-from trialid.assembly import available, build_model
 from trialid.effects import CATALOGUE
-from trialid.pipeline import align_trials, examine, fit_of, time_series
-from trialid.recipe import load
-from trialid.report.series import OutputSeries
+from trialid.pipeline_file import load
+from trialid.result.series import OutputSeries
 from trialid.ship.model import ShipModel
 from trialid.workbench.shown import Shown
+from trialid.workflow import edit_model
+from trialid.workflow.build_model import available, build_model
+from trialid.workflow.fit_model import fit_of, time_series
+from trialid.workflow.read_trials import align_trials
+from trialid.workflow.run import examine
 
 ADDED = "yaw_drag_rar"
 TRIED = (ADDED, "yaw_drag_vav", "heel_yaw", "static_list")
@@ -82,18 +84,18 @@ def opened(path):
 def turned(path):
     """The effect added to a pipeline, stage by stage."""
     before = opened(path)
-    edit = change.adding(before.recipe, ADDED)
-    foreseen = change.foreseen_by(edit, before.fit)
-    edit, fit = change.fitted_after(edit, before.trials, foreseen, quiet)
+    edit = edit_model.add_to_pipeline(before.pipeline, ADDED)
+    foreseen = edit_model.foresee_edit(edit, before.fit)
+    edit, fit = edit_model.fit_edited(edit, before.trials, foreseen, quiet)
     run = examine(edit.after, before.trials, quiet, fit).outcome
-    result, _ = change.beside(edit, run.result, before.run.result, foreseen)
+    result, _ = edit_model.set_beside(edit, run.result, before.run.result, foreseen)
     model = build_model(edit.after, before.catalogue)
     measured = Shown(
         edit.after, before.catalogue, model, before.trials, before.series, before=before.run
     )
     fitted = replace(measured, fit=fit, model=fit.model, series=time_series(fit))
     return Turn(
-        reading=Shown(before.recipe, before.catalogue),
+        reading=Shown(before.pipeline, before.catalogue),
         opening=replace(before, series=_unpredicted(before.series), fit=None, run=None),
         before=before,
         measured=measured,

@@ -16,17 +16,17 @@ from trialid.alignment import (
     clock_health,
     clocks,
     dejitter,
+    duplicate_channels,
     faults,
     frames,
     log_clock,
     quality,
     resample,
     signs,
-    twins,
 )
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.log_clock import LogClock
-from trialid.alignment.sources import SignalSource, holding, seams
+from trialid.alignment.sources import SignalSource, log_with, seams
 from trialid.errors import AlignmentError
 from trialid.recording import Recording
 from trialid.trial import LogSource, Trial
@@ -80,12 +80,12 @@ def align(
     logged = [frames.series(s, recordings, w) for s, w in zip(sources, at, strict=True)]
     repairs = [_repaired(one) if repair else (one, ()) for one in logged]
     logged = [one for one, _ in repairs]
-    series = [clocks.ordered(one) for one in logged]
+    series = [clocks.in_time_order(one) for one in logged]
     for one, place in zip(series, at, strict=True):
         clocks.check(one, place)
     _check_epochs(series, sources, recordings, where)
     grid = clocks.common(series, period, window, where)
-    series, found = faults.without(series, sources, grid, keep or {}, at)
+    series, found = faults.mask_all(series, sources, grid, keep or {}, at)
     trial = _trial(name, use, recordings, series, grid, where)
     findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
     checks.refuse(findings, where)
@@ -99,14 +99,14 @@ def align(
         *quality.of_trial(series, grid, window),
         *signs.check(trial, {source.quantity: source for source in sources}, where),
         *(finding.sentence for finding in findings),
-        *(finding.sentence for finding in twins.unchosen(sources, recordings)),
+        *(finding.sentence for finding in duplicate_channels.unchosen(sources, recordings)),
     )
     return dataclasses.replace(trial, remarks=remarks)
 
 
 def _repaired(logged: Series) -> tuple[Series, tuple[str, ...]]:
     stepless, of_clock = clock_health.set_right(logged)
-    even, of_stamps = dejitter.repaired(stepless)
+    even, of_stamps = dejitter.repair_stamps(stepless)
     return even, (*of_clock, *of_stamps)
 
 
@@ -130,7 +130,7 @@ def _check_epochs(
     if not own or len(own) == len(series):
         return
     dated = next(i for i in range(len(series)) if i not in own)
-    of, other = (holding(sources[i], recordings) for i in (own[0], dated))
+    of, other = (log_with(sources[i], recordings) for i in (own[0], dated))
     if of == other:
         return  # one log of two clocks; that they do not overlap is said below
     raise AlignmentError(

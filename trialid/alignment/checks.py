@@ -13,15 +13,15 @@ from typing import Literal
 
 import numpy as np
 
-from trialid import units
 from trialid.alignment import relation, signs
-from trialid.alignment.clocks import EMPTIEST, FEWEST, Grid, Series, ordered
-from trialid.alignment.frames import RUDDERS
+from trialid.alignment.clocks import EMPTIEST, FEWEST, Grid, Series, in_time_order
 from trialid.alignment.relation import Relation
 from trialid.alignment.resample import onto
+from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError, UnitError
-from trialid.quantities import SIGNALS
-from trialid.trial import Mask, Trial, Vector
+from trialid.names import units
+from trialid.names.quantities import RUDDERS, SIGNALS
+from trialid.trial import Trial
 
 SLOPES = (("r", "psi"), ("p", "phi"))
 """Each is the slope of the other by definition."""
@@ -120,7 +120,7 @@ def together(series: Mapping[str, Series]) -> Trial | None:
 
     None where they do not overlap, and where nearly all of it would be between two samples.
     """
-    straight = {name: ordered(one) for name, one in series.items()}
+    straight = {name: in_time_order(one) for name, one in series.items()}
     able = {k: s for k, s in straight.items() if np.isfinite(s.y).sum() >= FEWEST}
     if not able:
         return None
@@ -198,19 +198,19 @@ def _small_faults(
     rate: str, angle: str, found: Relation, evidence: Mapping[str, float]
 ) -> Iterator[Finding]:
     low, high = found.gain
-    if told(found) and found.later and abs(found.lag) > LATE:
+    if is_clear(found) and found.later and abs(found.lag) > LATE:
         words = (
             f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
             f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
         )
         mend = f"delay = {found.lag:.2g}" if found.lag > 0 else None
         yield Finding("lag", "remark", (rate, angle), words, evidence, mend)
-    if told(found) and (low > FAIR or high < 1 / FAIR):
+    if is_clear(found) and (low > FAIR or high < 1 / FAIR):
         words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}"
         yield Finding("scale", "remark", (rate, angle), words, evidence)
 
 
-def told(found: Relation) -> bool:
+def is_clear(found: Relation) -> bool:
     """True when the record is clear about lag and gain: all of its parts say so."""
     parts = np.array(found.parts)
     alike = bool(np.all(parts * np.sign(found.correlation) > LOOSE))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Series
-from trialid.alignment.time_steps import lasting
+from trialid.alignment.time_steps import is_lasting
 
 Vector = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ def _steps(ahead: Vector) -> tuple[Vector, list[float]]:
     at = np.flatnonzero(np.abs(steps) > max(SET, CLEAR * noise))
     if len(at) > MOST:
         return np.zeros(len(ahead)), []
-    at = np.array([i for i in at if lasting(ahead, int(i) + 1, float(steps[i]))], np.int64)
+    at = np.array([i for i in at if is_lasting(ahead, int(i) + 1, float(steps[i]))], np.int64)
     edges = np.concatenate([[0], at + 1, [len(ahead)]])
     counts = np.diff(edges)
     levels = [ahead[a:b] for a, b in itertools.pairwise(edges)]

@@ -117,7 +117,7 @@ def refuse_few(signal: Signal, where: str) -> None:
         )
 
 
-def matched(here: Signal, there: Signal, about: int, within: float, where: str) -> Match:
+def match_clocks(here: Signal, there: Signal, about: int, within: float, where: str) -> Match:
     """How far the clock of `here` is ahead of `there`, beyond `about` [ns] and `within` [s].
 
     AlignmentError where it cannot be told.
@@ -298,13 +298,13 @@ def _refined(peak: _Peak, a: _Grid, b: _Grid, how: str, origin: int) -> Match:
     errors = np.sqrt(np.diag(inverse @ _spread(pulls) @ inverse.T))
     words = f"{how}, correlation {peak.strength:.2f} over {len(pulls) * a.dt:.0f} s"
     return Match(
-        float(ahead),
-        QUANTILE * float(errors[0]),
-        float(drift) if abs(drift) > SURE * errors[1] else 0.0,
-        QUANTILE * float(errors[1]),
-        origin + middle * 1e9,
-        clean,
-        words + (", of opposite sign" if gain < 0 else ""),
+        offset=float(ahead),
+        reach=QUANTILE * float(errors[0]),
+        drift=float(drift) if abs(drift) > SURE * errors[1] else 0.0,
+        drift_reach=QUANTILE * float(errors[1]),
+        middle=origin + middle * 1e9,
+        clean=clean,
+        how=words + (", of opposite sign" if gain < 0 else ""),
     )
 
 

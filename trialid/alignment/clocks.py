@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import AlignmentError
-from trialid.quantities import Quantity
+from trialid.names.quantities import Quantity
 
 FEWEST = 4
 """Samples below which nothing can be said about a signal."""
@@ -76,7 +76,7 @@ class Grid:
         return np.divide(t - self.start, 1e9, dtype=np.float64)
 
 
-def ordered(series: Series) -> Series:
+def in_time_order(series: Series) -> Series:
     """The same samples with stamps that only increase; of equal stamps the first logged stays."""
     order = np.argsort(series.t, kind="stable")
     t = series.t[order]

@@ -18,8 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Series, moment
-from trialid.alignment.sample_index import SINGLE, Count, Index, Vector, counted, pace, quantum
-from trialid.alignment.time_steps import breaks, unwrapped, wrap_words
+from trialid.alignment.sample_index import (
+    SINGLE,
+    Count,
+    Index,
+    Vector,
+    number_messages,
+    pace,
+    quantum,
+)
+from trialid.alignment.time_steps import breaks, unwrap_counter, wrap_words
 
 TABLE = 0.5
 """Share of values below which a channel is the slow one of a table, and its own pace is not that of
@@ -92,7 +100,7 @@ class Line:
     why_not: str = ""
 
 
-def repaired(series: Series) -> tuple[Series, tuple[str, ...]]:
+def repair_stamps(series: Series) -> tuple[Series, tuple[str, ...]]:
     """The series, in the order of the log, on repaired stamps, and remarks on what was done."""
     finite = np.isfinite(series.y)
     slow = finite.sum() < TABLE * len(finite)
@@ -138,7 +146,7 @@ def _run_on(t: Vector, y: Vector) -> tuple[Vector, list[float], NDArray[np.int64
     behind = int(np.sum(t < np.maximum.accumulate(t)))
     if again.sum() > behind / 2 and len(np.unique(y[again])) >= DISTINCT:
         return t, [], first
-    whole, turns = unwrapped(t)
+    whole, turns = unwrap_counter(t)
     return whole, turns, _first_delivery(whole, y) if turns else first
 
 
@@ -178,7 +186,7 @@ def _line(t: Vector, y: Vector) -> Line:
         return Line(t, float(np.median(np.diff(t))))
     if pace(t) <= 0.0:
         return Line(t, 0.0, why_not="the clock stood still")
-    count, plain = counted(t), _unbroken(t)
+    count, plain = number_messages(t), _unbroken(t)
     if count.misfit > CHANCE or count.jumps > min(MOST_JUMPS, IN_WINDOW / count.width):
         line = Line(t, 0.0) if count.bundled else _regressed(t, y, plain)
         return line if line.before else Line(t, 0.0, why_not=UNEVEN)
@@ -192,7 +200,9 @@ def _line(t: Vector, y: Vector) -> Line:
 def _unbroken(t: Vector) -> Count:
     """Every message as one sample: what is left to believe where jitter hides a whole period."""
     n = np.arange(len(t))
-    return Count(max(pace(t), TINY), n, n, "", 0.0, 0.0, 1)
+    return Count(
+        period=max(pace(t), TINY), n=n, marks=n, bundled="", misfit=0.0, jumps=0.0, width=1
+    )
 
 
 def _regressed(t: Vector, y: Vector, count: Count) -> Line:

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trialid import units
 from trialid.alignment.clocks import Grid, Series, check
-from trialid.alignment.frames import RUDDERS
-from trialid.alignment.limits import LIMITS
+from trialid.alignment.signal_limits import LIMITS
 from trialid.alignment.sources import SignalSource
+from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
-from trialid.trial import Mask, Vector
+from trialid.names import units
+from trialid.names.quantities import RUDDERS
 
 KINDS = ("range", "dropouts", "spikes", "saturation", "stuck")
 """What may be found; a signal's `keep` names those that are left as they are."""
@@ -69,7 +69,7 @@ class Fault:
     sure: bool
 
 
-def without(
+def mask_all(
     series: Sequence[Series],
     sources: Sequence[SignalSource],
     grid: Grid,
@@ -83,7 +83,7 @@ def without(
     left, remarks = [], []
     for one, source, place in zip(series, sources, places, strict=True):
         zero = 0.0 if source.offset == 0.0 else np.nan
-        kept, found = masked(one, grid, keep.get(source.quantity, ()), zero, place)
+        kept, found = mask_faults(one, grid, keep.get(source.quantity, ()), zero, place)
         left.append(kept)
         remarks += found
     for i, (one, place) in enumerate(zip(tuple(left), places, strict=True)):
@@ -96,7 +96,7 @@ def without(
     return left, remarks
 
 
-def masked(
+def mask_faults(
     series: Series, grid: Grid, keep: Collection[str], zero: float, where: str
 ) -> tuple[Series, list[str]]:
     """The series without the values that are surely none, and remarks on what was found.
@@ -163,7 +163,7 @@ def _range(series: Series, zero: float) -> Iterator[Fault]:
     if quantity.name == "psi":
         beyond, limit = _beyond_a_turn(series.y), replace(limit, high=2 * np.pi)
     if beyond.any():
-        size = limit.high * units.shown(quantity)
+        size = limit.high * units.shown_factor(quantity)
         words = f"beyond {size:.4g} {quantity.shown}"
         if limit.low == 0.0 and bool(np.all(series.y[beyond] < 0)):
             words = "below zero"
@@ -331,7 +331,7 @@ def _saturation(series: Series, zero: float) -> Iterator[Fault]:
             samples = np.zeros(len(series.y), np.bool_)
             for first, last in runs:
                 samples[s.at[first : last + 1]] = True
-            shown = extreme * units.shown(series.quantity)
+            shown = extreme * units.shown_factor(series.quantity)
             words = (
                 f"held at the limit {shown:.4g} {series.quantity.shown} in {len(runs)} flat tops"
             )

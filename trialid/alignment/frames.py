@@ -5,15 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid import units
 from trialid.alignment.clocks import Series
 from trialid.alignment.sources import SignalSource, find
 from trialid.errors import AlignmentError, UnitError, nearest
-from trialid.quantities import SIGNALS, Quantity
+from trialid.names import units
+from trialid.names.quantities import RUDDERS, SIGNALS, Quantity
 from trialid.recording import Channel, Recording
-
-RUDDERS = frozenset({"delta", "delta_order"})
-"""Half of the literature and many loggers count the rudder to port: its side is never guessed."""
 
 MARKER = 1e30
 """No measurement is as large: loggers write the largest number for what is not available."""
@@ -29,12 +26,12 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     channel = channel or find(source.channel, recordings, where)
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
     t = channel.t - round(source.delay * 1e9)
-    y = measured(channel.y)
+    y = sensor_values(channel.y)
     value = (source.gain * y + source.offset) * factor
     return Series(quantity, t, value, channel.clock, channel.received)
 
 
-def measured(y: Vector) -> Vector:
+def sensor_values(y: Vector) -> Vector:
     """The values that a sensor may have sent; NaN for codes of `not available` and damage."""
     return np.where(np.abs(y) < MARKER, y, np.nan)
 
@@ -108,7 +105,7 @@ def _angle(source: SignalSource, recordings: Sequence[Recording], where: str) ->
             f"{where}: the four fields of {source.channel!r} do not share their stamps; "
             "a quaternion needs all of them at once"
         )
-    x, y, z, w = (measured(part.y) for part in parts)
+    x, y, z, w = (sensor_values(part.y) for part in parts)
     square = x**2 + y**2 + z**2 + w**2
     angle = np.where(square > 0, _euler(source.as_, x, y, z, w), np.nan)
     first = parts[0]

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.alignment import clock_health, dejitter, frames
-from trialid.alignment.clock_match import Signal, matched, refuse_few
+from trialid.alignment.clock_match import Signal, match_clocks, refuse_few
 from trialid.alignment.clocks import CALENDAR_NS, Series, moment
 from trialid.alignment.sources import find
 from trialid.errors import AlignmentError
-from trialid.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
 
 Instant = float | datetime
@@ -193,7 +193,7 @@ def _by_match(
         refuse_few(signal, place)
     epochs = (here.t[0] > CALENDAR_NS) != (there.t[0] > CALENDAR_NS)
     about = int(here.t[0] - there.t[0]) if epochs else 0
-    found = matched(here, there, about, clock.within, place)
+    found = match_clocks(here, there, about, clock.within, place)
     offset = about / 1e9 + found.offset
     words = (
         f"its clock is {_ahead(offset)} ahead of the trial's, 95 % interval "
@@ -214,10 +214,10 @@ def _leap(offset: float) -> Iterator[str]:
 
 def _signal(channel: Channel, *, repair: bool) -> Signal:
     """A channel's values that are available, in the order of time, on repaired stamps."""
-    y = frames.measured(channel.y)
+    y = frames.sensor_values(channel.y)
     series = Series(SIGNALS["t"], channel.t, y, channel.clock, channel.received)
     if repair:
-        series, _ = dejitter.repaired(clock_health.set_right(series)[0])
+        series, _ = dejitter.repair_stamps(clock_health.set_right(series)[0])
     finite = np.isfinite(series.y)
     t, first = np.unique(series.t[finite], return_index=True)
     return Signal(channel.name, t, series.y[finite][first])

@@ -4,9 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from trialid import units
 from trialid.alignment.clocks import Grid, Series
-from trialid.alignment.frames import RUDDERS
 from trialid.alignment.resample import (
     CUT_OFF,
     HALF_LENGTH,
@@ -16,8 +14,10 @@ from trialid.alignment.resample import (
     longest_step,
     stretches,
 )
+from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
-from trialid.trial import Mask, Vector
+from trialid.names import units
+from trialid.names.quantities import RUDDERS
 
 JITTER = 0.2
 """Spread of the time between samples, as a share of it, that is worth a remark."""
@@ -79,7 +79,7 @@ def _coarse(series: Series, y: Vector) -> Iterator[str]:
     error = step / np.sqrt(12.0)
     if len(levels) < len(y) / 3 and error > COARSE * float(np.std(y)):
         quantity = series.quantity
-        size, share = step * units.shown(quantity), error / float(np.std(y))
+        size, share = step * units.shown_factor(quantity), error / float(np.std(y))
         yield (
             f"{quantity.name}: in steps of {size:.3g} {quantity.shown}, an error of {share:.1%} of "
             "its motion"

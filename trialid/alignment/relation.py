@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.trial import Mask, Vector
+from trialid.arrays import Mask, Vector
 
 FEWEST_STRETCHES = 20
 """Independent stretches the record must hold; fewer correlate by chance."""

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.curve import curve
-from trialid.alignment.frames import RUDDERS
+from trialid.names.quantities import RUDDERS
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]

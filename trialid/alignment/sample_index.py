@@ -89,7 +89,7 @@ class _Levels:
         return 4.0 * self.misfit + self.jumps
 
 
-def counted(t: Vector) -> Count:
+def number_messages(t: Vector) -> Count:
     """Number the messages of stamps [s] in the order of the log; (N,), at least a dozen."""
     marks, bundled = _marks(t)
     some = marks[_middle(marks)]
@@ -98,7 +98,15 @@ def counted(t: Vector) -> Count:
     side: Literal["left", "right"] = "left" if bundled == "last" else "right"
     own = np.searchsorted(marks, np.arange(len(t)), side=side) - (side == "right")
     n = np.arange(len(t)) + levels.k[np.clip(own, 0, len(marks) - 1)]
-    return Count(levels.period, n - n[0], marks, bundled, levels.misfit, levels.jumps, levels.width)
+    return Count(
+        period=levels.period,
+        n=n - n[0],
+        marks=marks,
+        bundled=bundled,
+        misfit=levels.misfit,
+        jumps=levels.jumps,
+        width=levels.width,
+    )
 
 
 def pace(t: Vector) -> float:

@@ -18,10 +18,11 @@ from itertools import takewhile
 import numpy as np
 
 from trialid.alignment import relation
-from trialid.alignment.frames import RUDDERS
 from trialid.alignment.sources import SignalSource
+from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
-from trialid.trial import Mask, Trial, Vector
+from trialid.names.quantities import RUDDERS
+from trialid.trial import Trial
 
 CONTRADICTION = -0.3
 """Correlation below which a sign is taken to be wrong."""

@@ -77,7 +77,7 @@ def find(channel: str, recordings: Sequence[Recording], where: str) -> Channel:
     return parts[0] if len(parts) == 1 else _joined(parts, where)
 
 
-def holding(source: SignalSource, recordings: Sequence[Recording]) -> str:
+def log_with(source: SignalSource, recordings: Sequence[Recording]) -> str:
     """Name of the first log that holds a signal's channel."""
     names = {source.channel, f"{source.channel}.w"}
     return next((r.path.name for r in recordings if names & r.channels.keys()), "a log")

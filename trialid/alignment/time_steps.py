@@ -37,7 +37,7 @@ MOST = 0.02
 """Share of stamps that may step back; more is no clock that was set."""
 
 
-def unwrapped(t: Vector) -> tuple[Vector, list[float]]:
+def unwrap_counter(t: Vector) -> tuple[Vector, list[float]]:
     """Stamps [s] of a counter that began again, made to run on, and the turns [s] it made."""
     turns = []
     period = pace(t)
@@ -68,10 +68,10 @@ def breaks(t: Vector) -> list[tuple[int, bool]]:
     if period <= 0 or np.mean(steps < 0) > DISORDER or back.sum() > MOST * len(t):
         return []
     at = np.flatnonzero(back | (steps > GAP * period))
-    return [(int(i) + 1, bool(back[i])) for i in at if lasting(x, int(i) + 1, float(steps[i]))]
+    return [(int(i) + 1, bool(back[i])) for i in at if is_lasting(x, int(i) + 1, float(steps[i]))]
 
 
-def lasting(x: Vector, at: int, step: float) -> bool:
+def is_lasting(x: Vector, at: int, step: float) -> bool:
     """True when the level on both sides of a step differs by as much as the step itself."""
     before, after = x[max(0, at - ABOUT) : at], x[at : at + ABOUT]
     return bool((np.median(after) - np.median(before)) / step > 0.5)

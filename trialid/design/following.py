@@ -4,25 +4,29 @@ A fitted model becomes a vessel by what its trials held: inputs that stayed abou
 at their medians, and the rudder is steered as fast as it was seen to move.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from trialid.accuracy import Accuracy
+from trialid.accuracy.likely import WIDE
+from trialid.accuracy.parameter_table import Accuracy
+from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
-from trialid.design.rating import Noise
+from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
 from trialid.design.standard import Measure, predict
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
+from trialid.identification.output_error import compared_mask, norms
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import inputs
-from trialid.trial import Vector
+from trialid.trial import Trial
 
 STEERED: Final = frozenset({"delta", "delta_order"})
 GEAR: Final = np.deg2rad(2.5)
@@ -30,6 +34,9 @@ GEAR: Final = np.deg2rad(2.5)
 DRAWS: Final = 24
 """Ships drawn for an interval: its width is then known to 15 %."""
 SEED: Final = 1
+
+WORTH_SAILING: Final = 0.9
+"""A test that leaves more than this share of a width is not proposed for it."""
 
 _D: Final = float(np.deg2rad(1.0))
 FEASIBLE: Final[Mapping[str, tuple[str, Mapping[str, float]]]] = {
@@ -92,25 +99,110 @@ def next_trial(
 def _proposed(
     fit: Fit, effects: tuple[Effect, Effect], noise: Mapping[str, float]
 ) -> Separation | None:
-    ready = vessel_of(fit)
     sensors = {c: Noise(s) for c, s in noise.items()}
-    speed = fit.model.ship.particulars["U0"]
-    roll = natural_roll(ready) if {"p", "phi"} <= {*fit.model.states} else 2.0 * np.pi / 15.0
-    pair = rivals(fit.model, fit.settings, sensors, effects, ready, roll, speed)
+    ready = vessel_of(fit)
+    pair = rivals(
+        model=fit.model,
+        settings=fit.settings,
+        noise=sensors,
+        effects=effects,
+        vessel=ready,
+        roll_frequency=_roll_frequency(fit, ready),
+        speed=fit.model.ship.particulars["U0"],
+    )
     so_far = fit.problem.trials
-    duration = max(t.duration for t in so_far)
     rated: list[tuple[float, Test, Likeness]] = []
-    for name, (kind, values) in FEASIBLE.items():
-        test = Test(kind, values, duration, 0.1 * duration, name=name)
-        [passage] = sail_all([test], ready, roll)
-        if excesses(passage, Limits(heel=0.6), speed):
-            continue
-        found = likeness(pair, [*so_far, passage.trial])
+    for test, trial in _feasible(fit, ready):
+        found = likeness(pair, [*so_far, trial])
         rated.append((found.cosine + max(0.0, ENOUGH - min(found.odds)) / ENOUGH, test, found))
     if not rated:
         return None
     _, test, after = min(rated, key=lambda r: r[0])
     return Separation(pair.names, (test,), likeness(pair, so_far), after, len(rated))
+
+
+def _roll_frequency(fit: Fit, ready: Vessel) -> float:
+    rolls = {"p", "phi"} <= {*fit.model.states}
+    return natural_roll(ready) if rolls else 2.0 * np.pi / 15.0
+
+
+def _feasible(fit: Fit, ready: Vessel) -> Iterator[tuple[Test, Trial]]:
+    """Standard tests as long as the longest trial, sailed; those she should not sail left out."""
+    duration = max(t.duration for t in fit.problem.trials)
+    roll, speed = _roll_frequency(fit, ready), fit.model.ship.particulars["U0"]
+    for name, (kind, values) in FEASIBLE.items():
+        test = Test(kind, values, duration, 0.1 * duration, name=name)
+        [passage] = sail_all([test], ready, roll)
+        if not excesses(passage, Limits(heel=0.6), speed):
+            yield test, passage.trial
+
+
+@dataclass(frozen=True)
+class Narrowing:
+    """The standard test that leaves a parameter least open if an effect may be missing.
+
+    `share` is what the effect and noise leave open with the test, as a share of that without; what
+    is held fixed has no part in it.
+    """
+
+    parameter: str
+    effect: str
+    test: str
+    share: float
+
+    @property
+    def sentence(self) -> str:
+        """What was found, in words."""
+        if self.share > WORTH_SAILING:
+            return f"No standard test would narrow that by more than {1.0 - WORTH_SAILING:.0%}."
+        test = self.test[:1].upper() + self.test[1:]
+        return f"{test} would narrow that most, to about {self.share:.0%}."
+
+
+def narrowing_trial(
+    fit: Fit, parameter: str, effect: Effect, noise: Mapping[str, float]
+) -> Narrowing | None:
+    """The feasible standard test after which an effect leaves a parameter least open.
+
+    None where the effect has nothing that is linear at its null, or nothing can be sailed. `noise`
+    is the standard deviation of each output [SI].
+    """
+    added = tuple(n for n, p in effect.parameters.items() if p.null == 0.0)
+    if effect.scanned or not added or parameter not in fit.settings.free:
+        return None
+    wider = replace(fit.settings, free=(*fit.settings.free, *added))
+    sensors = {c: Noise(s) for c, s in noise.items()}
+    try:
+        asked = goal((fit.model + effect).with_values(effect.nulls), wider, sensors)
+        so_far = _openness(asked, fit.problem.trials, parameter, added)
+        found = [
+            (_openness(asked, [*fit.problem.trials, trial], parameter, added), test.name)
+            for test, trial in _feasible(fit, vessel_of(fit))
+        ]
+    except TrialidError:
+        return None
+    least = min(found, default=None)
+    if least is None or not so_far > 0.0:
+        return None
+    return Narrowing(parameter, effect.name, least[1], least[0] / so_far)
+
+
+def _openness(asked: Goal, trials: Sequence[Trial], parameter: str, added: Sequence[str]) -> float:
+    """Standard deviation of a parameter in its sizes, the effect known to twice its typical one.
+
+    By the formula of a fit, which weighs outputs by what they move in all its trials and takes
+    what is left of them together.
+    """
+    outputs = asked.settings.outputs
+    compared = [compared_mask(t, asked.simulator) for t in trials]
+    sizes = norms(trials, compared, outputs, asked.settings.norm)
+    shares = [asked.noise[c].sigma / size for c, size in zip(outputs, sizes, strict=True)]
+    eps = float(np.sqrt(np.mean(np.square(shares))))
+    alike = {c: Noise(eps * float(size)) for c, size in zip(outputs, sizes, strict=True)}
+    A, names = whiten_sensitivities(replace(asked, noise=alike), trials)
+    known = np.diag([1.0 / WIDE if n in added else 0.0 for n in names])
+    inverse = np.linalg.pinv(np.concatenate([A, known]))
+    return float(np.linalg.norm(inverse[names.index(parameter)]))
 
 
 def standard_measures(

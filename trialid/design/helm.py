@@ -15,10 +15,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.arrays import Mask
 from trialid.errors import DesignError
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure, Simulator, prepare, respond
-from trialid.trial import Mask, Trial
+from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
 
@@ -130,7 +131,7 @@ def carry_out(
     told = next(instructions, None)
     while told is not None and at < samples:
         at = _obeyed(vessel, orders, at, told)
-        look = functools.partial(sailed, vessel, orders[: at + 1].copy())
+        look = functools.partial(sail, vessel, orders[: at + 1].copy())
         try:
             told = instructions.send(look)
         except StopIteration:
@@ -162,7 +163,7 @@ def _until(vessel: Vessel, orders: Vector, at: int, until: Callable[[Motion], Ma
     reach = round(LOOK_AHEAD / vessel.period)
     while True:
         end = min(at + reach, len(orders))
-        motion = sailed(vessel, orders[:end])
+        motion = sail(vessel, orders[:end])
         since = {name: values[at:] for name, values in motion.items()}
         happened = np.flatnonzero(until(since)[1:])  # the order acts from the next sample
         if len(happened) or end == len(orders):
@@ -170,7 +171,7 @@ def _until(vessel: Vessel, orders: Vector, at: int, until: Callable[[Motion], Ma
         reach *= 2
 
 
-def sailed(vessel: Vessel, orders: Vector) -> dict[str, Vector]:
+def sail(vessel: Vessel, orders: Vector) -> dict[str, Vector]:
     """Every signal under these orders; (n,) each, NaN after a departure."""
     return _sail(vessel, orders)[0]
 
@@ -179,7 +180,7 @@ def _sail(vessel: Vessel, orders: Vector) -> tuple[dict[str, Vector], Departure 
     given = {"delta_order": orders}
     model = vessel.model
     if GEAR_STATE not in model.all_states:
-        given["delta"] = ramped(orders, vessel.rudder_rate * vessel.period)
+        given["delta"] = ramp(orders, vessel.rudder_rate * vessel.period)
     given |= {c: np.full(len(orders), value) for c, value in vessel.constants.items()}
     blank = Trial("sailed", "fit", vessel.period, given, {})
     response = respond(vessel.simulator, blank, {}, {}, sensitivities=False)
@@ -187,10 +188,10 @@ def _sail(vessel: Vessel, orders: Vector) -> tuple[dict[str, Vector], Departure 
     return {"t": blank.t, **given, **states}, response.departure
 
 
-def ramped(orders: Vector, step: float) -> Vector:
+def ramp(orders: Vector, step: float) -> Vector:
     """A rudder that follows its orders by at most `step` a sample, from amidships; (n,).
 
-    >>> ramped(np.array([0.0, 3.0, 3.0, 3.0, -1.0]), 2.0).tolist()
+    >>> ramp(np.array([0.0, 3.0, 3.0, 3.0, -1.0]), 2.0).tolist()
     [0.0, 0.0, 2.0, 3.0, 3.0]
     """
     followed = np.empty(len(orders))

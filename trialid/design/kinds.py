@@ -162,7 +162,7 @@ def _multisine(v: Mapping[str, Value], w: Waters) -> Instructions:
     sizes, phases = _many(v["sizes"]), np.resize(_many(v["phases"]), len(omega))
     wave = signals.multisine(t, 1.0, np.resize(sizes, len(omega)), omega, phases)
     largest = float(np.abs(wave).max()) or 1.0
-    return manoeuvres.written(_one(v["angle"]) / largest * wave)
+    return manoeuvres.order_list(_one(v["angle"]) / largest * wave)
 
 
 def _binary(v: Mapping[str, Value], w: Waters) -> Instructions:
@@ -170,7 +170,13 @@ def _binary(v: Mapping[str, Value], w: Waters) -> Instructions:
     sizes, phases = (np.resize(_many(v[n]), len(numbers)) for n in ("sizes", "phases"))
     hold = max(1, round(_one(v["switching"]) / w.period))
     return manoeuvres.multi_frequency_binary(
-        _one(v["angle"]), numbers, sizes, phases, w.duration, w.period, hold
+        angle=_one(v["angle"]),
+        numbers=numbers,
+        sizes=sizes,
+        phases=phases,
+        duration=w.duration,
+        period=w.period,
+        hold=hold,
     )
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trialid.arrays import Vector
 from trialid.design.helm import Passage
-from trialid.trial import Vector
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def _found(passage: Passage, limits: Limits, speed: float) -> Iterator[Excess]:
         yield Excess("model", np.inf, 1.0, passage.departure.t, str(passage.departure))
     order = np.abs(signals["delta_order"])
     yield from _over("rudder", order, t, limits.rudder, degrees, "deg of rudder are ordered")
-    rate = np.maximum(rates_asked(signals["delta_order"], passage.trial.period), _runs(passage))
+    rate = np.maximum(needed_rates(signals["delta_order"], passage.trial.period), _runs(passage))
     yield from _over(
         "rudder rate", rate, t, limits.rudder_rate, degrees, "deg/s of rudder are asked for"
     )
@@ -92,12 +92,12 @@ def _found(passage: Passage, limits: Limits, speed: float) -> Iterator[Excess]:
         yield Excess("duration", float(t[-1]), limits.duration, limits.duration, words)
 
 
-def rates_asked(orders: Vector, period: float) -> Vector:
+def needed_rates(orders: Vector, period: float) -> Vector:
     """How fast a rudder must run to reach each order before the next one [rad/s]; (N,).
 
     The last order has all the time there is. At every sample the rate of the order it belongs to.
 
-    >>> rates_asked(np.array([0.0, 4.0, 4.0, -4.0, -4.0]), 0.5).tolist()
+    >>> needed_rates(np.array([0.0, 4.0, 4.0, -4.0, -4.0]), 0.5).tolist()
     [0.0, 4.0, 4.0, 0.0, 0.0]
     """
     rates = np.zeros(len(orders))

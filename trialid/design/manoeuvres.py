@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trialid.arrays import Mask, Vector
 from trialid.design import signals
 from trialid.design.helm import Follow, Hold, Instructions, Motion
-from trialid.trial import Mask, Vector
 
 Until = Callable[[Motion], Mask]
 
@@ -104,7 +104,7 @@ def step_sequence(orders: Sequence[float], lengths: Sequence[float]) -> Instruct
         yield Hold(order, length)
 
 
-def written(orders: Vector) -> Instructions:
+def order_list(orders: Vector) -> Instructions:
     """Orders written down in advance, one a sample."""
     yield Follow(orders)
 
@@ -120,7 +120,9 @@ def multi_frequency_binary(
     """
     t = np.asarray(np.arange(round(duration / period) + 1) * period)
     omega = 2.0 * np.pi * np.asarray(numbers) / duration
-    yield from written(signals.binary(signals.multisine(t, 1.0, sizes, omega, phases), angle, hold))
+    yield from order_list(
+        signals.binary(signals.multisine(t, 1.0, sizes, omega, phases), angle, hold)
+    )
 
 
 def _beyond(side: float, heading: float) -> Until:

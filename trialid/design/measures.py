@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from trialid.arrays import Vector
 from trialid.design.helm import Passage
 from trialid.errors import DesignError
-from trialid.trial import Vector
 
 QUARTER: Final = np.pi / 2.0
 

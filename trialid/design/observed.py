@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from trialid.arrays import Mask, Vector
 from trialid.identification.fit import Fit, Score
-from trialid.trial import Mask, Vector
 
 PLATEAU: Final = 0.7
 """Share of the largest rudder angle that both sides of a reversal must reach."""

@@ -11,16 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.accuracy import (
-    correlated,
+from trialid.accuracy.coloured import toeplitz_times
+from trialid.accuracy.equations import (
     correlation_ratio,
     minimum_sensitivity,
     relative_sensitivities,
     sensitivity,
     sensitivity_range,
-    triangle,
-    without_nuisance,
 )
+from trialid.accuracy.weak import without_nuisance
 from trialid.errors import DesignError, NotIdentifiable
 from trialid.identification.output_error import (
     Problem,
@@ -28,7 +27,8 @@ from trialid.identification.output_error import (
     row_scale,
     stretches,
 )
-from trialid.identification.pose import Settings, question, ready
+from trialid.identification.problem import Settings, question, ready
+from trialid.linear_algebra import triangle
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure, Simulator
 from trialid.trial import Trial
@@ -151,10 +151,19 @@ def goal(
             raise DesignError(f"{name!r} is wanted and not free; add it to the free parameters")
     simulator, shared, per_trial = ready(model, settings)
     names = tuple(wanted) or settings.free
-    return Goal(model, settings, noise, names, dict(scale or {}), simulator, shared, per_trial)
+    return Goal(
+        model=model,
+        settings=settings,
+        noise=noise,
+        wanted=names,
+        scale=dict(scale or {}),
+        simulator=simulator,
+        shared=shared,
+        per_trial=per_trial,
+    )
 
 
-def whitened(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
+def whiten_sensitivities(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
     """Sensitivities in standard deviations of white noise, a column for each unknown's size; names.
 
     (M, n_theta), (n_theta,). Noise with a memory is made white by the filter that forgets as it
@@ -228,7 +237,7 @@ def _remembered(rows: Vector, memory: float) -> Vector:
     if memory <= 0.0:
         return rows
     lags = np.arange(min(len(rows), int(20 * memory) + 2))
-    return correlated(rows, np.exp(-lags / memory))
+    return toeplitz_times(rows, np.exp(-lags / memory))
 
 
 def _rows(
@@ -249,12 +258,20 @@ def _rows(
         k = max(others, key=lambda j: abs(alike[i, j]), default=None)
         made.append(
             ParameterRating(
-                x.name, x.unit, x.start, x.size, float(S_i[i]), float(S_imin[i]), float(R_i[i]),
-                float(error[i]), float(shift[i]), float(bound[i]),
-                None if k is None else problem.unknowns[k].name,
-                0.0 if k is None else float(alike[i, k]),
+                name=x.name,
+                unit=x.unit,
+                value=x.start,
+                reference=x.size,
+                S_i=float(S_i[i]),
+                S_imin=float(S_imin[i]),
+                R_i=float(R_i[i]),
+                noise_error=float(error[i]),
+                bias=float(shift[i]),
+                bound=float(bound[i]),
+                partner=None if k is None else problem.unknowns[k].name,
+                likeness=0.0 if k is None else float(alike[i, k]),
             )
-        )  # fmt: skip
+        )
     return tuple(made)
 
 
@@ -270,6 +287,11 @@ def _rating(
     block = covariance[np.ix_(wanted, wanted)]
     sign, log_det = np.linalg.slogdet(block)
     return Rating(
-        rows, S_min, S_max, R, float(np.sqrt(np.mean(noise**2))), remainder,
-        float(log_det) / 2.0 if sign > 0 else float("inf"),
-    )  # fmt: skip
+        parameters=rows,
+        S_min=S_min,
+        S_max=S_max,
+        R=R,
+        noise=float(np.sqrt(np.mean(noise**2))),
+        undermodelling=remainder,
+        log_volume=float(log_det) / 2.0 if sign > 0 else float("inf"),
+    )

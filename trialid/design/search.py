@@ -146,13 +146,13 @@ def search_open(
     def tried(point: Vector) -> float:
         nonlocal count, best
         count += 1
-        found = score_of(decoded(programme, places, point))
+        found = score_of(decode(programme, places, point))
         best = min(best, found)
         progress(count, best)
         return found
 
     best_one = evolve(tried, len(places), search.candidates, search.seed)
-    return Found(decoded(programme, places, best_one.x), best_one.score, count)
+    return Found(decode(programme, places, best_one.x), best_one.score, count)
 
 
 def _scored(candidate: Sequence[Test], ship: Ship, limits: Limits, search: Search) -> float:
@@ -183,7 +183,7 @@ def _places(programme: Sequence[Test]) -> Places:
     return found
 
 
-def decoded(programme: Sequence[Test], places: Places, point: Vector) -> tuple[Test, ...]:
+def decode(programme: Sequence[Test], places: Places, point: Vector) -> tuple[Test, ...]:
     """The programme with its open numbers at a point of the unit cube."""
     made = list(programme)
     for (i, name, index, low, high), share in zip(places, point, strict=True):
@@ -211,10 +211,10 @@ def _impossible(programme: Sequence[Test], ships: Sequence[Ship], limits: Limits
     broken = [e for ship in ships for e in outcome(programme, ship, limits).excesses]
     if not broken:
         return "no candidate could be rated; the model to be fitted leaves its domain in all"
-    return not_kept(broken)
+    return binding_limit(broken)
 
 
-def not_kept(broken: Sequence[Excess]) -> str:
+def binding_limit(broken: Sequence[Excess]) -> str:
     """Why the best test that was found may not be run: the limit that binds, in words."""
     worst = max(broken, key=lambda e: e.share)
     return f"no test of this kind keeps the limits; {worst.limit} binds: {worst.sentence}"

@@ -11,17 +11,18 @@ from typing import Final
 
 import numpy as np
 
-from trialid.accuracy import triangle
+from trialid.arrays import Mask, Vector
 from trialid.design.helm import Vessel
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
-from trialid.design.rating import Goal, Noise, goal, whitened
-from trialid.design.search import BROKEN, Found, Search, not_kept, sail_all, search_open
+from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
+from trialid.design.search import BROKEN, Found, Search, binding_limit, sail_all, search_open
 from trialid.errors import DesignError
-from trialid.identification.pose import Settings
+from trialid.identification.problem import Settings
+from trialid.linear_algebra import triangle
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
-from trialid.trial import Mask, Trial, Vector
+from trialid.trial import Trial
 
 ENOUGH: Final = 6.0
 """Log-likelihood by which the right effect must be expected to win: odds of 400 to 1."""
@@ -103,14 +104,22 @@ def rivals(
     if shared:
         raise DesignError(f"the two effects share {min(shared)!r}; they cannot be compared")
     both = model + effects[0] + effects[1]
-    both = both.with_values({n: where for e in effects for n, where in looked_at(e).items()})
+    both = both.with_values({n: where for e in effects for n, where in expansion_point(e).items()})
     left = tuple(n for n in settings.free if n in model.parameters)
     asked = goal(both, replace(settings, free=(*left, *own[0], *own[1])), noise)
     names = (effects[0].name, effects[1].name)
-    return Rivals(names, vessel, asked, own[0], own[1], roll_frequency, speed)
+    return Rivals(
+        names=names,
+        vessel=vessel,
+        goal=asked,
+        first=own[0],
+        second=own[1],
+        roll_frequency=roll_frequency,
+        speed=speed,
+    )
 
 
-def looked_at(effect: Effect) -> dict[str, float]:
+def expansion_point(effect: Effect) -> dict[str, float]:
     """Where an effect's sensitivities are taken: at its null, or at its size where none acts."""
     return {
         n: p.start if p.null is None or p.scan else p.null for n, p in effect.parameters.items()
@@ -119,7 +128,7 @@ def looked_at(effect: Effect) -> dict[str, float]:
 
 def likeness(rivals: Rivals, trials: Sequence[Trial]) -> Likeness:
     """How alike the two look in these trials."""
-    rows, names = whitened(rivals.goal, trials)
+    rows, names = whiten_sensitivities(rivals.goal, trials)
     A = triangle(rows)  # as far as angles and lengths go, the same; a record long, a square high
     one, other = (np.isin(names, part) for part in (rivals.first, rivals.second))
     Q = _span(A[:, ~(one | other)])
@@ -195,7 +204,7 @@ def separate(
         passages = sail_all(found.programme, rivals.vessel, rivals.roll_frequency)
         likeness(rivals, [*so_far, *(p.trial for p in passages)])  # says so where nothing moves
         broken = [e for p in passages for e in excesses(p, limits, rivals.speed)]
-        raise DesignError(not_kept(broken))
+        raise DesignError(binding_limit(broken))
     passages = sail_all(found.programme, rivals.vessel, rivals.roll_frequency)
     after = likeness(rivals, [*so_far, *(p.trial for p in passages)])
     before = likeness(rivals, so_far) if so_far else None

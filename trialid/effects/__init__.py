@@ -4,6 +4,7 @@ from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
 
+from trialid import user_files
 from trialid.effects import (
     environment,
     heel,
@@ -17,8 +18,11 @@ from trialid.effects import (
     sensors,
     steering_gear,
 )  # fmt: skip
-from trialid.errors import EffectError, nearest
+from trialid.errors import EffectError, PluginError, nearest
+from trialid.plugins import plugins
 from trialid.ship.effect import Effect
+
+__all__ = ["CATALOGUE", "FILES", "find", "from_file"]
 
 FILES: tuple[ModuleType, ...] = (
     hull, heel, roll, rudder, steering_gear, propulsion, environment, outer, loading, sensors,
@@ -26,11 +30,31 @@ FILES: tuple[ModuleType, ...] = (
 )  # fmt: skip
 """In the order a person reads a ship: the hull first, the sensors last."""
 
-CATALOGUE: dict[str, Effect] = {e.name: e for file in FILES for e in file.EFFECTS}
+
+def _catalogue() -> dict[str, Effect]:
+    """Ours, then those of installed packages.
+
+    Raises
+    ------
+    PluginError
+        A package declares no effect, or one whose name is taken.
+    """
+    known = {e.name: e for file in FILES for e in file.EFFECTS}
+    for name, module in plugins("trialid.effects").items():
+        own = [x for x in vars(module).values() if isinstance(x, Effect)]
+        taken = [e.name for e in own if e.name in known]
+        if taken or not own:
+            why = f"its effect {taken[0]!r} is there already" if taken else "declares no effect"
+            raise PluginError(f"trialid.effects {name!r}: {why}; rename it, or uninstall it")
+        known |= {e.name: e for e in own}
+    return known
+
+
+CATALOGUE: dict[str, Effect] = _catalogue()
 
 FAULTS = (
     SyntaxError, NameError, ImportError, TypeError, AttributeError, ValueError, ArithmeticError,
-    LookupError, AssertionError, OSError, RuntimeError,
+    LookupError, AssertionError, OSError, RuntimeError, MemoryError,
 )  # fmt: skip
 """What somebody's own Python file may raise while it runs."""
 
@@ -58,7 +82,7 @@ def from_file(path: Path) -> dict[str, Effect]:
         The file cannot be read or run, or declares no effect.
     """
     try:
-        source = path.read_text(encoding="utf-8")
+        source = user_files.text(path)
     except OSError as error:
         raise EffectError(f"effects file {path}: cannot be read ({error.strerror})") from error
     except UnicodeDecodeError as error:

@@ -73,7 +73,7 @@ def _alike() -> Mapping[str, Any]:
     return _toml("confusable.toml")
 
 
-def measured(name: str) -> tuple[Seen, ...]:
+def trial_results(name: str) -> tuple[Seen, ...]:
     """What five kinds of trial showed of an effect; none where it was not measured."""
     found = _alike().items()
     return tuple(

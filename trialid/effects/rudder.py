@@ -131,7 +131,7 @@ def propeller_thrust(
     x_P=Parameter(-0.526, null=None),
 ):  # fmt: skip
     """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s)."""
-    race = _race(_inflow(u, v, r, L, w_P, tau_P, x_P), n, D_P, KT0, KT1)
+    race = _race(_inflow(u=u, v=v, r=r, L=L, w_P=w_P, tau_P=tau_P, x_P=x_P), n, D_P, KT0, KT1)
     return Force(X=(1.0 - t_P) * rho * D_P**2 * race)
 
 
@@ -154,7 +154,7 @@ def propeller_rudder(
     With the thrust X = (1 - t_P) rho n^2 D_P^4 K_T(J); u_R is the race, v_R the side flow that
     drift and turning leave at the rudder, f the slope of the normal force by aspect ratio.
     """
-    inflow = _inflow(u, v, r, L, w_P, tau_P, x_P)
+    inflow = _inflow(u=u, v=v, r=r, L=L, w_P=w_P, tau_P=tau_P, x_P=x_P)
     race = _race(inflow, n, D_P, KT0, KT1)
     thrust = rho * D_P**2 * race
     u_R = eps_R * sqrt(inflow * inflow + 8.0 * k_R * race / PI + STANDSTILL)

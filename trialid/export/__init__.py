@@ -4,13 +4,14 @@ Everything is in SI and says so; a sample that was not measured is empty or NaN,
 simulation would put there; and each file carries where it comes from.
 """
 
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from trialid import temporary
 from trialid.errors import TrialidError
-from trialid.export import mat_file, mcap_file, parquet_file, table
+from trialid.export import csv_file, mat_file, mcap_file, parquet_file
+from trialid.plugins import plugins
 from trialid.trial import Trial
 
 __all__ = ["FORMATS", "check_place", "provenance_beside", "write"]
@@ -18,10 +19,11 @@ __all__ = ["FORMATS", "check_place", "provenance_beside", "write"]
 Writer = Callable[[Path, Sequence[Trial], Mapping[str, Any]], None]
 
 FORMATS: Final[Mapping[str, Writer]] = {
-    ".csv": table.write_csv,
+    ".csv": csv_file.write_csv,
     ".parquet": parquet_file.write_parquet,
     ".mat": mat_file.write_mat,
     ".mcap": mcap_file.write_mcap,
+    **plugins("trialid.exporters"),
 }
 """What a file's suffix asks for."""
 
@@ -50,6 +52,7 @@ def check_place(path: Path, *, replace: bool) -> None:
             raise TrialidError(f"--out {path}: {file} is a folder; name a file")
         if file is not None and file.exists() and not replace:
             raise TrialidError(f"--out {path}: {file} exists; name another, or add --force")
+    temporary.check_writable(path.parent)
 
 
 def write(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) -> None:
@@ -62,12 +65,11 @@ def write(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) ->
     """
     beside = provenance_beside(path)
     try:
-        with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as folder:
-            ready = Path(folder, path.name)
+        with temporary.replace_whole(path) as ready:
             FORMATS[path.suffix.lower()](ready, trials, provenance)
             if beside is not None:
-                table.write_provenance(Path(folder, beside.name), provenance)
-                Path(folder, beside.name).replace(beside)
-            ready.replace(path)
+                near = ready.with_name(beside.name)
+                csv_file.write_provenance(near, provenance)
+                near.replace(beside)
     except OSError as error:
         raise TrialidError(f"--out {path}: {(error.strerror or str(error)).lower()}") from error

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from trialid.export.table import observed
-from trialid.report import labels
+from trialid.export.csv_file import masked_signals
+from trialid.names import labels
 from trialid.trial import Trial
 
 LONGEST = 63
@@ -28,7 +28,7 @@ def write_mat(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]
 
 
 def _struct(trial: Trial) -> dict[str, Any]:
-    columns = {labels.column(name): values for name, values in observed(trial).items()}
+    columns = {labels.column(name): values for name, values in masked_signals(trial).items()}
     remarks = np.array(trial.remarks, dtype=object)
     return {
         "name": trial.name,

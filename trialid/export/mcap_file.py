@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from trialid.alignment.clocks import CALENDAR_NS
-from trialid.export.table import observed
-from trialid.report import labels
-from trialid.report.tracks import About, Track, stems, write_tracks
+from trialid.export.csv_file import masked_signals
+from trialid.export.tracks import About, Track, stems, write_tracks
+from trialid.names import labels
 from trialid.trial import Trial
 
 
@@ -33,5 +33,5 @@ def write_mcap(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any
 
 def _track(trial: Trial, stem: str, start: int) -> Track:
     t = start + np.rint(trial.t * 1e9).astype(np.int64)
-    fields = {labels.message_field(name): values for name, values in observed(trial).items()}
+    fields = {labels.message_field(name): values for name, values in masked_signals(trial).items()}
     return Track(f"/trialid/{stem}/aligned", "trialid.Aligned", t, fields)

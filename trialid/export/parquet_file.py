@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from trialid.errors import TrialidError
-from trialid.export.table import observed, quantities
-from trialid.report import labels
+from trialid.export.csv_file import masked_signals, quantities
+from trialid.names import labels
 from trialid.trial import Trial
 
 
@@ -31,7 +31,7 @@ def write_parquet(path: Path, trials: Sequence[Trial], provenance: Mapping[str, 
     t = np.concatenate([trial.t for trial in trials])
     label = [trial.name for trial in trials for _ in range(trial.samples)]
     columns: dict[str, Any] = {"trial": pa.array(label, pa.string()).dictionary_encode(), "t_s": t}
-    measured = [observed(trial) for trial in trials]
+    measured = [masked_signals(trial) for trial in trials]
     for name in quantities(trials):
         parts = [
             own.get(name, np.full(trial.samples, np.nan))

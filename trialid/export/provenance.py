@@ -4,28 +4,28 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-import trialid
 from trialid.alignment.clocks import CALENDAR_NS, moment
-from trialid.recipe import Recipe, TrialRecipe
-from trialid.report import labels
+from trialid.names import labels
+from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.trial import Trial
+from trialid.version import VERSION
 
 SCHEMA: Final = "trialid-aligned/1"
 
 
-def provenance(recipe: Recipe, trials: Sequence[Trial]) -> dict[str, Any]:
+def provenance(pipeline: Pipeline, trials: Sequence[Trial]) -> dict[str, Any]:
     """Logs with their hashes, channels, remarks and masked samples of every trial."""
-    written = {one.name: one for one in recipe.trials}
+    written = {one.name: one for one in pipeline.trials}
     return {
         "schema": SCHEMA,
-        "version": trialid.__version__,
-        "pipeline": recipe.path.name,
-        "pipeline_sha256": hashlib.sha256(recipe.content).hexdigest(),
+        "version": VERSION,
+        "pipeline": pipeline.path.name,
+        "pipeline_sha256": hashlib.sha256(pipeline.content).hexdigest(),
         "trials": [_trial(trial, written[trial.name]) for trial in trials],
     }
 
 
-def _trial(trial: Trial, written: TrialRecipe) -> dict[str, Any]:
+def _trial(trial: Trial, written: TrialSection) -> dict[str, Any]:
     return {
         "name": trial.name,
         "use": trial.use,
@@ -39,7 +39,7 @@ def _trial(trial: Trial, written: TrialRecipe) -> dict[str, Any]:
     }
 
 
-def _signal(trial: Trial, name: str, written: TrialRecipe) -> Mapping[str, Any]:
+def _signal(trial: Trial, name: str, written: TrialSection) -> Mapping[str, Any]:
     """Its unit here, the samples that were not measured, and the pipeline's own words for it."""
     source = written.signals.get(name)
     stated = source.model_dump(by_alias=True, exclude_defaults=True) if source else None

@@ -1,1 +1,3 @@
-"""."""
+"""Eq. 2 to 7: the parameters with the smallest output error."""
+
+__all__: list[str] = []

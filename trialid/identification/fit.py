@@ -7,47 +7,33 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable, SimulationError
-from trialid.identification.gauss_newton import REASONS, Iteration, Minimum, minimise
+from trialid.identification.arrive import arrive
+from trialid.identification.gauss_newton import REASONS, Iteration
+from trialid.identification.one_search import End, Progress
 from trialid.identification.output_error import (
     Problem,
+    compared_mask,
     linearise,
     loss,
-    measured,
-    output_error,
     respond_all,
-    row_scale,
     scores,
-    where_compared,
 )
-from trialid.identification.pose import Settings, pose
+from trialid.identification.own_start import own_start
+from trialid.identification.problem import Settings, pose_problem
+from trialid.identification.weighing import level_of
 from trialid.ship.model import ShipModel
-from trialid.simulation.integrate import (
-    Departure,
-    Response,
-    guess,
-    initial,
-    respond,
-)
+from trialid.simulation.integrate import Departure, Response, respond
 from trialid.threads import one_thread
-from trialid.trial import Mask, Trial
+from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
-HUBER: Final = 1.345
-"""Residuals beyond this many standard deviations count by their size, not its square."""
+CONTRADICTS: Final = 3.0
+"""Standard deviations of a prior at which the record speaks against it."""
 
-TOLERANCE: Final = 1e-5
-"""Share of the residual left along the sensitivities: a thousandth of a standard error."""
-
-PASSES: Final = 12
-
-SETTLED: Final = 1e-6
-"""Typical sizes that a further pass may move any parameter when it is the last."""
-
-SAME_OPTIMUM: Final = 1e-6
-
-START_STEPS: Final = 3
-"""Steps to where a held-out trial starts: nearly linear, and quickly forgotten."""
+STEP_ERROR: Final = 0.05
+"""Share of the error that integration may make up before steps are made finer."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +65,13 @@ class Fit:
         The whole history, over all passes of the search that won.
     agreeing
         How many of the starts reached this optimum, of how many.
+    level
+        What one independent row of the residual is uncertain by; priors weigh by it.
+    told
+        What the search did beyond going down from the stated start, in words.
+    rival_GM
+        Metacentric heights [m], smallest first, that fit as well or hardly worse: the record does
+        not tell GM, whatever its standard error. Empty where it does, or was not doubted.
     """
 
     model: ShipModel
@@ -92,6 +85,9 @@ class Fit:
     reason: str
     converged: bool
     agreeing: tuple[int, int]
+    level: float = 0.0
+    told: tuple[str, ...] = ()
+    rival_GM: tuple[float, ...] = ()
 
     @property
     def V(self) -> float:
@@ -133,6 +129,34 @@ class Fit:
         """The fitted value of an unknown by its name."""
         return self.estimates[name]
 
+    @property
+    def weakly_identified(self) -> bool:
+        """Whether the search ended in a valley that this record hardly tells the floor of."""
+        return self.reason == "flat"
+
+    @property
+    def at_bounds(self) -> dict[str, float]:
+        """Unknowns that ended at a bound, and the bound in the unknown's unit.
+
+        Their value is the bound's, not the record's, and so may be those of their neighbours.
+        """
+        ended = zip(self.problem.unknowns, self.theta, strict=True)
+        return {x.name: float(a) for x, a in ended if a <= x.low or a >= x.high}
+
+    @property
+    def contradicted(self) -> dict[str, float]:
+        """Priors that the record speaks against: by how many standard deviations, with its sign.
+
+        Beyond three either the sensor is unlike others of its kind, or the model puts an error of
+        its own there.
+        """
+        unknowns, roll = self.problem.unknowns, self.problem.roll
+        ended = zip(unknowns, self.theta, strict=True)
+        off = {x.name: (float(a) - x.prior[0]) / x.prior[1] for x, a in ended if x.prior}
+        if roll is not None:
+            off |= {unknowns[i].name: z for i, z in roll.off(self.theta).items()}
+        return {name: z for name, z in off.items() if abs(z) > CONTRADICTS}
+
 
 def _pooled(scored: Sequence[Score]) -> dict[str, float]:
     """Root mean square of each output over all compared samples of these trials."""
@@ -144,9 +168,6 @@ def _pooled(scored: Sequence[Score]) -> dict[str, float]:
     return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
 
 
-Progress = Callable[[Iteration], None]
-
-
 @one_thread
 def identify(
     trials: Sequence[Trial],
@@ -154,10 +175,22 @@ def identify(
     settings: Settings,
     progress: Progress = lambda iteration: None,
     near: Mapping[str, float] | None = None,
+    finer: Callable[[int], None] = lambda substeps: None,
+    smaller: Fit | None = None,
 ) -> Fit:
     """Eq. 5: the parameters with the smallest output error over all trials marked `fit`.
 
-    `near` holds better starts by the unknown's name, from a fit of a neighbouring model.
+    Where the stated start does not arrive, others are tried: see `Fit.told`. Where the integration
+    would make up more than `STEP_ERROR` of the error, the search is done again with finer steps.
+
+    Parameters
+    ----------
+    near
+        Better starts by the unknown's name, from a fit of a neighbouring model.
+    finer
+        Told how many steps a sample has then.
+    smaller
+        The fit that this model grew from, on the same trials: the end is never worse than that.
 
     Raises
     ------
@@ -166,18 +199,53 @@ def identify(
     SimulationError
         No start can be simulated.
     """
-    problem = pose(trials, model, settings, near or {})
-    starts = _starts(problem, settings)
-    ends = [_search(problem, settings, start, progress) for start in starts]
-    best = min(ends, key=lambda end: end.minimum.V if end.minimum.iterations else np.inf)
-    if not best.minimum.iterations:
+    fit = _searched(trials, model, settings, progress, near or {}, smaller)
+    while _coarse(fit) and fit.settings.substeps < settings.most_substeps:
+        again = replace(fit.settings, substeps=2 * fit.settings.substeps)
+        finer(again.substeps)
+        fit = _searched(trials, model, again, progress, fit.estimates, smaller)
+    return fit
+
+
+def _coarse(fit: Fit) -> bool:
+    """Whether integration makes up a share of the error that can be seen."""
+    return max(step_halving(fit).values(), default=0.0) > STEP_ERROR * fit.eps_rmsn
+
+
+def _searched(
+    trials: Sequence[Trial],
+    model: ShipModel,
+    settings: Settings,
+    progress: Progress,
+    near: Mapping[str, float],
+    smaller: Fit | None,
+) -> Fit:
+    """The best end of all starts, with the steps as they are."""
+    problem = pose_problem(trials, model, settings, near)
+    embedded = None if smaller is None else _within(problem, smaller)
+    arrival = arrive(problem, settings, progress, embedded)
+    if not arrival.best.began:
         raise SimulationError(_why_no_start(problem))
-    same = [e.minimum.iterations and _same(e.minimum.V, best.minimum.V) for e in ends]
-    return _finish(model, problem, trials, settings, best, (sum(map(bool, same)), len(starts)))
+    fit = _finish(model, problem, trials, settings, arrival.best, (arrival.same, arrival.tried))
+    rivals = arrival.rival_GM or (() if smaller is None else smaller.rival_GM)
+    return replace(fit, told=arrival.told, rival_GM=rivals)
+
+
+def _within(problem: Problem, smaller: Fit) -> Vector | None:
+    """The optimum of a smaller model as a point of a larger one; None where it is none."""
+    known = smaller.estimates
+    point = []
+    for x in problem.unknowns:
+        parameter = problem.simulator.model.parameters.get(x.column)
+        absent = x.start if parameter is None else parameter.null
+        if x.name not in known and absent is None:
+            return None
+        point.append(known.get(x.name, absent))
+    return np.array(point, dtype=float)
 
 
 @one_thread
-def revived(
+def revive(
     trials: Sequence[Trial], model: ShipModel, settings: Settings, estimates: Mapping[str, float]
 ) -> Fit:
     """A fit whose search is over, from every unknown's value by name; it has no iterations.
@@ -189,109 +257,14 @@ def revived(
     SimulationError
         The model cannot be simulated with these values.
     """
-    problem = pose(trials, model, settings, estimates)
+    problem = pose_problem(trials, model, settings, estimates)
     missing = [x.name for x in problem.unknowns if x.name not in estimates]
     if missing:
         raise NotIdentifiable(f"there is no value for {', '.join(missing[:3])}")
     point = linearise(problem, problem.start)
     if isinstance(point, Departure):
         raise SimulationError(f"the model cannot be simulated with these values: {point}")
-    minimum = Minimum(problem.start, *point, (), "orthogonal", 0)
-    return _finish(model, problem, trials, settings, _End(minimum, ()), (1, 1))
-
-
-def _same(V: float, best: float) -> bool:
-    return best * (1.0 + SAME_OPTIMUM) + 1e-20 >= V
-
-
-def _starts(problem: Problem, settings: Settings) -> list[Vector]:
-    """The stated start, then random ones; (n_theta,) each."""
-    rng = np.random.default_rng(settings.seed)
-    physical = np.array([x.kind == "physical" for x in problem.unknowns])
-    starts = [problem.start]
-    for _ in range(settings.starts - 1):
-        factor = 1.0 + settings.spread * rng.uniform(-1.0, 1.0, len(physical))
-        starts.append(np.where(physical, problem.start * factor, problem.start))
-    return starts
-
-
-@dataclass(frozen=True)
-class _End:
-    """Where a search ended, with the history of all its passes."""
-
-    minimum: Minimum
-    path: tuple[Iteration, ...]
-
-
-def _search(problem: Problem, settings: Settings, start: Vector, progress: Progress) -> _End:
-    """Minimise; again with new weights while a robust loss or a prior asks for it.
-
-    A prior weighs in by the noise level of the record, and a robust loss by the residual, both of
-    which are known only after a fit: hence the passes, until nothing changes. The first pass takes
-    the error of the start for noise, so that a prior holds what the record alone would not.
-    """
-    once = settings.loss == "squares" and not any(x.prior for x in problem.unknowns)
-    weights, noise = None, 0.0 if once else _noise(problem, start)
-    path: tuple[Iteration, ...] = ()
-    for passed in range(1 if once else PASSES):
-        minimum = minimise(
-            _evaluator(problem, weights, noise),
-            start,
-            np.array([x.size for x in problem.unknowns]),
-            np.array([x.low for x in problem.unknowns]),
-            np.array([x.high for x in problem.unknowns]),
-            settings.max_iterations,
-            TOLERANCE,
-            progress,
-        )
-        path += minimum.iterations
-        moved = np.max(np.abs(minimum.theta - start) / [x.size for x in problem.unknowns])
-        if once or not minimum.iterations or (passed and moved < SETTLED):
-            break
-        start = minimum.theta
-        point = linearise(problem, start)
-        assert not isinstance(point, Departure)
-        weights = _huber(point[0]) if settings.loss == "huber" else None
-        noise = _noise(problem, start)
-    return _End(minimum, path)
-
-
-def _noise(problem: Problem, theta: Vector) -> float:
-    """Root mean square of a row of the residual, zero where nothing can be simulated."""
-    point = linearise(problem, theta)
-    if isinstance(point, Departure):
-        return 0.0
-    return float(np.linalg.norm(point[0])) / np.sqrt(len(point[0]) - len(theta))
-
-
-def _evaluator(
-    problem: Problem, weights: Vector | None, noise: float
-) -> Callable[[Vector], tuple[Vector, Vector] | None]:
-    """Residual and gradient with robust weights and with one row for each prior."""
-    held = [(i, x.prior) for i, x in enumerate(problem.unknowns) if x.prior and noise > 0.0]
-
-    def evaluate(theta: Vector) -> tuple[Vector, Vector] | None:
-        point = linearise(problem, theta)
-        if isinstance(point, Departure):
-            return None
-        residual, psi = point
-        if weights is not None:
-            residual, psi = residual * weights, psi * weights[:, None]
-        for i, (mean, deviation) in held:
-            row = np.zeros((1, len(theta)))
-            row[0, i] = noise / deviation
-            residual = np.append(residual, (mean - theta[i]) * noise / deviation)
-            psi = np.concatenate([psi, row])
-        return residual, psi
-
-    return evaluate
-
-
-def _huber(residual: Vector) -> Vector:
-    """Square roots of Huber's weights, by a scale that outliers do not move; (M,)."""
-    scale = 1.4826 * float(np.median(np.abs(residual)))
-    ratio = np.abs(residual) / max(HUBER * scale, 1e-300)
-    return np.asarray(1.0 / np.sqrt(np.maximum(ratio, 1.0)))
+    return _finish(model, problem, trials, settings, None, (1, 1))
 
 
 def _why_no_start(problem: Problem) -> str:
@@ -315,42 +288,50 @@ def _finish(
     problem: Problem,
     trials: Sequence[Trial],
     settings: Settings,
-    end: _End,
+    end: End | None,
     agreeing: tuple[int, int],
 ) -> Fit:
-    theta = end.minimum.theta
+    """The fit at the end of a search; at the start, without any search, where there is none."""
+    theta = problem.start if end is None else end.minimum.theta
     point = linearise(problem, theta)
     assert not isinstance(point, Departure)
+    level = level_of(problem, point[0])
     shared = {x.column: float(a) for x, a in zip(problem.unknowns, theta, strict=True)
               if x.trial is None}  # fmt: skip
     return Fit(
         model.with_values(shared), settings, problem, theta, *point,
-        tuple(_score(problem, theta, t) for t in trials), end.path, end.minimum.reason,
-        end.minimum.converged, agreeing,
+        tuple(_score(problem, theta, t, level) for t in trials),
+        () if end is None else end.path,
+        "orthogonal" if end is None else end.minimum.reason,
+        end is None or end.minimum.converged, agreeing, level,
     )  # fmt: skip
 
 
 def of_trial(
-    problem: Problem, theta: Vector, trial: Trial
+    problem: Problem, theta: Vector, trial: Trial, level: float | None = None
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Parameters and initial states with which a fit simulates one trial.
 
     A trial to check has no parameters of its own but where its motion starts, if the fit leaves
-    that free too: sensors keep the mean of the fitted ones.
+    that free too: sensors keep the mean of the fitted ones. `level` is the fit's, found where it
+    is not given.
     """
     if trial.use == "fit":
         place = [t.name for t in problem.trials].index(trial.name)
         values = problem.values(theta, place)
         return values, {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
     values = _mean_values(problem, theta)
-    compared = where_compared(trial, problem.simulator)
-    return values, _own_start(problem, trial, compared, values)
+    compared = compared_mask(trial, problem.simulator)
+    if level is None:
+        point = linearise(problem, theta)
+        level = 0.0 if isinstance(point, Departure) else level_of(problem, point[0])
+    return values, own_start(problem, trial, compared, values, level)
 
 
-def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
+def _score(problem: Problem, theta: Vector, trial: Trial, level: float) -> Score:
     """Simulate one trial with the fitted parameters."""
-    compared = where_compared(trial, problem.simulator)
-    values, start = of_trial(problem, theta, trial)
+    compared = compared_mask(trial, problem.simulator)
+    values, start = of_trial(problem, theta, trial, level)
     response = respond(problem.simulator, trial, values, start, sensitivities=False)
     if response.departure is None:
         eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
@@ -359,30 +340,6 @@ def _score(problem: Problem, theta: Vector, trial: Trial) -> Score:
         eps = dict.fromkeys(problem.outputs, np.inf)
     counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
     return Score(trial, response, compared, eps, counts)
-
-
-def _own_start(
-    problem: Problem, trial: Trial, compared: Mask, values: Mapping[str, float]
-) -> dict[str, float]:
-    """Where the motion of a trial to check starts; recorded samples alone would add their noise."""
-    simulator = problem.simulator
-    free = [s for s in simulator.model.states
-            if any(x.column == initial(s) for x in problem.unknowns)]  # fmt: skip
-    start = {s: guess(simulator.model, trial, s) for s in free}
-    if not free:
-        return start
-    columns = [simulator.columns.index(initial(s)) for s in free]
-    scale = np.broadcast_to(row_scale(problem), compared.shape)[compared]
-    for _ in range(START_STEPS):
-        response = respond(simulator, trial, values, start)
-        if response.departure is not None or response.S is None:
-            break
-        gap = output_error(measured(trial, problem.outputs), response.y)[compared] * scale
-        slopes = response.S[:, :, columns][compared] * scale[:, None]
-        sizes = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
-        step = np.linalg.lstsq(slopes / sizes, gap, rcond=1e-8)[0] / sizes
-        start = {s: start[s] + float(x) for s, x in zip(free, step, strict=True)}
-    return start
 
 
 def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.accuracy import triangle
+from trialid.linear_algebra import triangle
 
 Vector = NDArray[np.float64]
 Linearised = tuple[Vector, Vector]
@@ -30,6 +30,9 @@ LONGEST: Final = 10.0
 ROUNDING: Final = 1e-6
 """Orthogonality at which a search that cannot move any more has arrived."""
 
+PATIENCE: Final = 0.5
+"""Share of the iterations after which a search that has next to nothing left to win may end."""
+
 RANK: Final = 1e-12
 """Share of the largest singular value below which a direction is rounding."""
 
@@ -37,6 +40,7 @@ REASONS: Final = {
     "step": "no parameter moves any more",
     "orthogonal": "the residual is orthogonal to every sensitivity",
     "exact": "the residual is zero to rounding",
+    "flat": "what is left to win is far below a standard error",
     "stalled": "no step, however short, lowers the error",
     "iterations": "the number of iterations is used up",
     "start": "the model cannot be simulated at the start values",
@@ -45,7 +49,10 @@ REASONS: Final = {
 
 @dataclass(frozen=True)
 class Iteration:
-    """One accepted point: loss V = |residual|^2 / 2, and the relative step that led to it."""
+    """One accepted point: loss V = |residual|^2 / 2, and the relative step that led to it.
+
+    V is of the record's rows alone; where priors have rows beside them, it may rise a little.
+    """
 
     V: float
     step: float
@@ -69,7 +76,7 @@ class Minimum:
     @property
     def converged(self) -> bool:
         """Whether the search ended at a minimum."""
-        return self.reason in {"step", "orthogonal", "exact"}
+        return self.reason in {"step", "orthogonal", "exact", "flat"}
 
     @property
     def V(self) -> float:
@@ -86,6 +93,9 @@ def minimise(
     max_iterations: int = 50,
     tolerance: float = ORTHOGONAL,
     progress: Callable[[Iteration], None] = lambda iteration: None,
+    again: Callable[[Vector, Linearised], Linearised] = lambda theta, point: point,
+    worth: Callable[[], float] = lambda: 0.0,
+    rows: int | None = None,
 ) -> Minimum:
     """Find the parameters with the smallest sum of squared residuals.
 
@@ -98,6 +108,13 @@ def minimise(
     tolerance
         Share of the residual that may still lie along the sensitivities at the end; its square is
         the relative fall of V that a further step could bring.
+    again
+        Weighs the rows of an accepted point anew, where weights depend on where one stands.
+    worth
+        Standard errors of white rows, all parameters together, below which a search that is slow
+        may end.
+    rows
+        How many rows come from a record, before those of priors; all where it is not said.
     """
     low = np.full(len(start), -np.inf) if low is None else low
     high = np.full(len(start), np.inf) if high is None else high
@@ -106,10 +123,13 @@ def minimise(
     if here is None or not _finite(here):
         empty = np.zeros(0)
         return Minimum(theta, empty, np.zeros((0, len(start))), (), "start", 1)
-    search = _Search(evaluate, scale, low, high, theta, here, tolerance)
-    for _ in range(max_iterations):
+    search = _Search(evaluate, scale, low, high, theta, here, tolerance, again, rows)
+    for count in range(max_iterations):
         reason = search.advance()
         progress(search.path[-1])
+        won = search.left * np.sqrt(len(search.here[0])) < worth()
+        if won and (reason == "stalled" or (count >= PATIENCE * max_iterations and not reason)):
+            reason = "flat"
         if reason:
             return search.minimum(reason)
     return search.minimum("iterations")
@@ -133,19 +153,25 @@ class _Search:
         theta: Vector,
         here: Linearised,
         tolerance: float,
+        again: Callable[[Vector, Linearised], Linearised],
+        rows: int | None,
     ) -> None:
         self.evaluate, self.low, self.high, self.tolerance = evaluate, low, high, tolerance
         self.size = np.where(scale > 0.0, scale, 1.0)
-        self.theta, self.here = theta, here
-        self.fold = Fold.of(*here)
+        self.theta, self.here, self.again = theta, here, again
+        self.fold, self.left = Fold.of(*here), np.inf
         self.damping, self.growth = FIRST_DAMPING, 2.0
         self.norms = np.zeros(len(theta))
         self.count = 1
-        self.path = [Iteration(self._loss(here), 0.0, self.damping)]
+        self.rows = slice(rows)
+        self.path = [Iteration(self._of_record(here), 0.0, self.damping)]
 
     @staticmethod
     def _loss(point: Linearised) -> float:
         return 0.5 * float(point[0] @ point[0])
+
+    def _of_record(self, point: Linearised) -> float:
+        return 0.5 * float(point[0][self.rows] @ point[0][self.rows])
 
     def minimum(self, reason: str) -> Minimum:
         return Minimum(self.theta, *self.here, tuple(self.path), reason, self.count)
@@ -161,7 +187,8 @@ class _Search:
         self.norms = np.maximum(self.norms, np.linalg.norm(self.fold.R, axis=0))
         weights = np.where(self.norms > 0.0, self.norms, 1.0)
         directions = _Directions(self.fold, moving, weights)
-        if directions.orthogonality < self.tolerance:
+        self.left = directions.orthogonality
+        if self.left < self.tolerance:
             return "orthogonal"
         while self.damping < HOPELESS:
             step = np.zeros(len(self.theta))
@@ -204,7 +231,10 @@ class _Search:
         ratio = actual / predicted if predicted > 0.0 else 0.0
         self.damping *= max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
         self.growth = 2.0
-        self.path.append(Iteration(self._loss(point), self._relative(taken), self.damping))
+        weighed = self.again(there, point)
+        if weighed is not point:
+            point, fold = weighed, Fold.of(*weighed)
+        self.path.append(Iteration(self._of_record(point), self._relative(taken), self.damping))
         self.theta, self.here, self.fold = there, point, fold
         return True
 

@@ -12,11 +12,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.accuracy import Kind, Stretch, normed_rms
+from trialid.accuracy.equations import normed_rms
+from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable
+from trialid.identification.roll_range import RollRange
 from trialid.simulation.delay import margin
-from trialid.simulation.integrate import Departure, Response, Simulator, recorded, respond
-from trialid.trial import Mask, Trial
+from trialid.simulation.integrate import Departure, Response, Simulator, record_for, respond
+from trialid.trial import Trial
+from trialid.trial_rows import Kind, Stretch
 
 Vector = NDArray[np.float64]
 Norm = Literal["mean", "zero"]
@@ -42,6 +45,12 @@ class Unknown:
     prior: tuple[float, float] | None = None
 
 
+def ranges(unknowns: Sequence[Unknown]) -> tuple[Vector, Vector, Vector]:
+    """Typical size, lower and upper bound of each; (n_theta,) each."""
+    size, low, high = ([getattr(x, k) for x in unknowns] for k in ("size", "low", "high"))
+    return np.array(size), np.array(low), np.array(high)
+
+
 @dataclass(frozen=True)
 class Problem:
     """Trials, a simulator and the unknowns: everything a residual is made of.
@@ -54,6 +63,8 @@ class Problem:
         Norm of each output [SI] and its weight; (n_y,).
     every
         How many samples make one row of the residual: 1 but where a long record is examined.
+    roll
+        What is known of any ship's roll, where her GM is free.
     """
 
     simulator: Simulator
@@ -63,6 +74,7 @@ class Problem:
     y_rms: Vector
     weights: Vector
     every: int = 1
+    roll: RollRange | None = None
 
     @property
     def start(self) -> Vector:
@@ -83,7 +95,7 @@ class Problem:
         }
 
 
-def measured(trial: Trial, outputs: Sequence[str]) -> Vector:
+def output_matrix(trial: Trial, outputs: Sequence[str]) -> Vector:
     """Recorded outputs; (N, n_y)."""
     return np.column_stack([trial.signals[c] for c in outputs])
 
@@ -176,11 +188,11 @@ def stretches(problem: Problem) -> tuple[Stretch, ...]:
     return tuple(made)
 
 
-def where_compared(trial: Trial, simulator: Simulator) -> Mask:
+def compared_mask(trial: Trial, simulator: Simulator) -> Mask:
     """Where an output and every input were measured, away from ends a delay may spoil; (N, n_y)."""
     inputs = np.ones(trial.samples, dtype=bool)
     for name in simulator.equations.inputs:
-        source = recorded(trial, name)
+        source = record_for(trial, name)
         if source is not None and source in trial.valid:
             inputs &= trial.valid[source]
     columns = []
@@ -239,7 +251,7 @@ def scores(
     trial: Trial, response: Response, compared: Mask, outputs: Sequence[str], y_rms: Vector
 ) -> Mapping[str, float]:
     """eps_RMSn of each output in one trial, by the norm of the fit."""
-    eps = output_error(measured(trial, outputs), response.y)
+    eps = output_error(output_matrix(trial, outputs), response.y)
     return {
         c: normed_rms(eps[compared[:, i], i], y_rms[i])
         for i, c in enumerate(outputs)

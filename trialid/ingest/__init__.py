@@ -6,21 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import (
-    can_log,
-    canboat_log,
-    csv_log,
-    dataflash_log,
-    excel_log,
-    mat_log,
-    mcap_log,
-    nmea0183_log,
-    parquet_log,
-    signalk_log,
-    tlog_log,
-)
-from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked
-from trialid.ingest.template_draft import draft as draft_template
+from trialid.ingest import gzipped, signalk_log, ulog_log
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted
+from trialid.ingest.can import can_log, canboat_log
+from trialid.ingest.mavlink import dataflash_log, tlog_log
+from trialid.ingest.mcap import mcap_log
+from trialid.ingest.nmea0183 import nmea0183_log
+from trialid.ingest.ros import bag_log, db3_log
+from trialid.ingest.tables import csv_log, excel_log, mat_log, parquet_log, template_draft
+from trialid.plugins import plugins
 from trialid.recording import Recording
 
 __all__ = [
@@ -36,21 +30,27 @@ __all__ = [
 
 ADAPTERS: tuple[Adapter, ...] = (
     mcap_log.ADAPTER,
+    db3_log.ADAPTER,
+    bag_log.ADAPTER,
     dataflash_log.ADAPTER,
     tlog_log.ADAPTER,
     *can_log.ADAPTERS,
     *canboat_log.ADAPTERS,
     nmea0183_log.ADAPTER,
     signalk_log.ADAPTER,
+    ulog_log.ADAPTER,
     excel_log.ADAPTER,
     parquet_log.ADAPTER,
     mat_log.ADAPTER,
     csv_log.ADAPTER,
+    *plugins("trialid.adapters").values(),
 )
 
-FORMATS = "MCAP, MAVLink, CAN and NMEA 2000, NMEA 0183, Signal K, CSV, Excel, Parquet, MATLAB"
+FORMATS = (
+    "MCAP, MAVLink, ROS bags, ULog, CAN and NMEA 2000, NMEA 0183, Signal K, CSV, Excel, "
+    "Parquet, MATLAB"
+)
 """What messages call all of them."""
-GZIP = b"\x1f\x8b"
 HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""
 
@@ -63,13 +63,14 @@ class LogFile:
     aids: Aids = NO_AIDS
 
 
-def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
+def read(path: str | Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read a log of any known format; `wanted` are channel names or their beginnings, None all.
 
     Raises LogError when there is no such file, when not exactly one adapter recognises it, when
     that adapter cannot read it, and when it can make no use of an aid.
     """
-    return adapter_of(path, aids).read(path, wanted, aids)
+    place = Path(path)
+    return adapter_of(place, aids).read(place, wanted, aids)
 
 
 def read_together(logs: Sequence[LogFile], wanted: Wanted = None) -> tuple[Recording, ...]:
@@ -81,7 +82,7 @@ def read_together(logs: Sequence[LogFile], wanted: Wanted = None) -> tuple[Recor
     files = [LogFile(path, log.aids) for log in logs for path in files_of(log)]
     recordings = tuple(read(file.path, wanted, file.aids) for file in files)
     names = [name for recording in recordings for name in recording.channels]
-    missing = [want for want in wanted or () if not any(asked(name, [want]) for name in names)]
+    missing = [want for want in wanted or () if not any(is_wanted(name, [want]) for name in names)]
     return tuple(read(file.path, None, file.aids) for file in files) if missing else recordings
 
 
@@ -96,7 +97,7 @@ def files_of(log: LogFile) -> tuple[Path, ...]:
     logs = tuple(
         child
         for child in files
-        if not _is_aid(child, log.aids) and _able(child, _head(child), log.aids)
+        if not _is_aid(child, log.aids) and _able(child, _inside(child), log.aids)
     )
     if not logs:
         names = _some([child.name for child in files])
@@ -109,11 +110,11 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
     head = _head(path)
     if not head:
         raise LogError(f"{path}: is empty (0 bytes); the recorder wrote nothing, copy it again")
-    if head.startswith(GZIP):
-        raise LogError(f"{path}: is packed with gzip; unpack it (gunzip) and give what was in it")
+    packed = gzipped.is_packed(head)
+    head = gzipped.head(path, HEAD) if packed else head
     able = _able(path, head, aids)
     if len(able) == 1:
-        return able[0]
+        return gzipped.unpack_beside(able[0]) if packed else able[0]
     if able:
         names = ", ".join(adapter.name for adapter in able)
         verdict = f"more than one adapter recognises it (of {names})"
@@ -164,6 +165,25 @@ def _head(path: Path) -> bytes:
             return file.read(HEAD)
     except OSError as error:
         raise LogError(f"{path}: cannot be opened, {error.strerror}; check its rights") from error
+
+
+def _inside(path: Path) -> bytes:
+    """The first bytes of a log, packed or not; none of one that cannot be unpacked."""
+    head = _head(path)
+    if not gzipped.is_packed(head):
+        return head
+    try:
+        return gzipped.head(path, HEAD)
+    except LogError:
+        return b""
+
+
+def draft_template(path: Path) -> str:
+    """A first template of a table, packed or not; LogError for what is no table."""
+    if not gzipped.is_packed(_head(path)):
+        return template_draft.draft(path)
+    with gzipped.unpack_bytes(path) as (there, _):
+        return template_draft.draft(there)
 
 
 def _beside(path: Path) -> str:

@@ -84,12 +84,12 @@ class Adapter:
     by_template: Callable[[bytes], bool] | None = None
 
 
-def asked(channel: str, wanted: Wanted) -> bool:
+def is_wanted(channel: str, wanted: Wanted) -> bool:
     """True when a channel of this name is wanted.
 
-    >>> asked("/imu:orientation.x", ["/imu:orientation", "/rudder:data"])
+    >>> is_wanted("/imu:orientation.x", ["/imu:orientation", "/rudder:data"])
     True
-    >>> asked("/gnss:speed", ["/imu:orientation"]), asked("/gnss:speed", None)
+    >>> is_wanted("/gnss:speed", ["/imu:orientation"]), is_wanted("/gnss:speed", None)
     (False, True)
     """
     return wanted is None or channel.startswith(tuple(wanted))

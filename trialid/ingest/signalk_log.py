@@ -17,8 +17,9 @@ from typing import Any, Literal
 import numpy as np
 
 from trialid.errors import LogError
-from trialid.ingest import nmea0183_recorded, nmea2000
-from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, asked, sha256
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted, sha256
+from trialid.ingest.nmea0183 import nmea0183_recorded
+from trialid.ingest.nmea2000 import nmea2000_messages
 from trialid.recording import Channel, Recording
 
 LINE = re.compile(rb"\d{12,14};[A-Za-z];")
@@ -158,7 +159,7 @@ def _message(t: int, payload: bytes, messages: Messages) -> None:
     if len(octets) != length or source > 255 or any(len(octet) != 2 for octet in octets):
         messages.damaged += 1
         return
-    if pgn in nmea2000.NEEDED:
+    if pgn in nmea2000_messages.NEEDED:
         messages.t.append(t)
         messages.pgn.append(pgn)
         messages.source.append(source)
@@ -168,7 +169,7 @@ def _message(t: int, payload: bytes, messages: Messages) -> None:
 def _of_bus(messages: Messages, wanted: Wanted) -> tuple[dict[str, Channel], list[str]]:
     if not messages.t:
         return {}, []
-    return nmea2000.channels(
+    return nmea2000_messages.channels(
         np.array(messages.t, np.int64),
         np.array(messages.pgn, np.int64),
         np.array(messages.source, np.int64),
@@ -211,9 +212,19 @@ def _value(t: int, path: str, source: str, value: Any, wanted: Wanted, deltas: D
     if isinstance(value, dict):
         for name, part in value.items():
             if not isinstance(part, dict):
-                _sample(t, path, source, name, part, wanted, deltas)
+                _sample(
+                    t=t,
+                    path=path,
+                    source=source,
+                    name=name,
+                    value=part,
+                    wanted=wanted,
+                    deltas=deltas,
+                )
     else:
-        _sample(t, path, source, "value", value, wanted, deltas)
+        _sample(
+            t=t, path=path, source=source, name="value", value=value, wanted=wanted, deltas=deltas
+        )
 
 
 def _sample(
@@ -223,7 +234,7 @@ def _sample(
     if isinstance(value, bool) or not (value is None or isinstance(value, int | float)):
         return
     channel = "/".join(part for part in (path, source) if part) + f":{name}"
-    if asked(channel, wanted):
+    if is_wanted(channel, wanted):
         try:
             number = float("nan") if value is None else float(value)
         except OverflowError:
@@ -241,7 +252,16 @@ def _of_deltas(deltas: Deltas) -> dict[str, Channel]:
         t, y = np.array(deltas.t[name], np.int64), np.array(deltas.y[name], np.float64)
         if np.isfinite(y).any():
             words = f"Signal K path {path.replace(':', ', ')}"
-            found[name] = Channel(name, t, y, unit, STAMPS, words, quantity, side)
+            found[name] = Channel(
+                name=name,
+                t=t,
+                y=y,
+                unit=unit,
+                clock=STAMPS,
+                description=words,
+                quantity=quantity,
+                positive=side,
+            )
     return found
 
 

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from trialid.diagnosis.augment import Augmented
-from trialid.diagnosis.noise import Split
-from trialid.diagnosis.whitening import Colour, colour_of
+from trialid.arrays import Mask
+from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.whitening import Colour, colour_of
+from trialid.diagnosis.search.augment import Augmented
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale, stretches
-from trialid.trial import Mask
 
 Vector = NDArray[np.float64]
 

@@ -50,7 +50,7 @@ def due(pace: Pace, position: float) -> float:
     return pace.since + (position - pace.position) / pace.speed
 
 
-def toggled(pace: Pace, now: float, position: float) -> Pace:
+def toggle(pace: Pace, now: float, position: float) -> Pace:
     """Paused if it was running, else running on from where it stands."""
     return replace(pace, position=position, since=now, running=not pace.running)
 

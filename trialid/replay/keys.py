@@ -13,10 +13,10 @@ NAMES: Final = {b" ": "space", b"q": "q", b"\x1b[C": "right", b"\x1b[D": "left"}
 Keys = Callable[[], list[str]]
 
 
-def named(sent: bytes) -> list[str]:
+def key_names(sent: bytes) -> list[str]:
     r"""The keys in what a terminal sent; others are passed over.
 
-    >>> named(b" x\x1b[C\x1b[Aq")
+    >>> key_names(b" x\x1b[C\x1b[Aq")
     ['space', 'right', 'q']
     """
     found = []
@@ -47,7 +47,7 @@ def keyboard() -> Iterator[Keys]:
     before = termios.tcgetattr(place)
     try:
         tty.setcbreak(place)
-        yield lambda: named(_pending(place))
+        yield lambda: key_names(_pending(place))
     finally:
         termios.tcsetattr(place, termios.TCSADRAIN, before)
 

@@ -6,11 +6,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.diagnosis.leftover.doing import doing
-from trialid.diagnosis.leftover.record import Leftover
-from trialid.diagnosis.residual import Residual
+from trialid.diagnosis.noise.residual import Residual
+from trialid.diagnosis.where.doing import ship_activity
+from trialid.diagnosis.where.leftover import Leftover
 from trialid.identification.fit import Fit, of_trial
-from trialid.identification.output_error import measured, output_error, where_compared
+from trialid.identification.output_error import compared_mask, output_error, output_matrix
 from trialid.replay.alarm import Alarm, Bands, Monitor
 from trialid.replay.stream import Stream
 from trialid.threads import one_thread
@@ -49,8 +49,8 @@ class Playback:
         self.fit, self.trial, self.bands, self.growing = fit, trial, bands, growing
         self.stream = Stream(fit.problem.simulator, trial, *of_trial(fit.problem, fit.theta, trial))
         self.monitor = Monitor(bands.of, trial.period, trial.samples)
-        self.measured = measured(trial, fit.problem.outputs)
-        self.compared = where_compared(trial, fit.problem.simulator)
+        self.measured = output_matrix(trial, fit.problem.outputs)
+        self.compared = compared_mask(trial, fit.problem.simulator)
         self.at = self.furthest = 0
         self.revised = 0.0
         self._said: dict[tuple[str, float, int], str] = {}
@@ -99,7 +99,7 @@ class Playback:
         """What the ship was doing in the last ten seconds before a sample."""
         n = max(min(samples, self.stream.at), 1)
         first = max(n - round(LOOK_BACK / self.trial.period), 0)
-        return doing(self._so_far(n), slice(first, n))
+        return ship_activity(self._so_far(n), slice(first, n))
 
     def events(self, start: float = 0.0) -> list[Event]:
         """Alarms and their ends from a time [s] on, as far as the record was played."""

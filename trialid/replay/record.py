@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trialid import temporary
+from trialid.export.lines import INFO, WARNING, Line
+from trialid.export.tracks import About, Track, stems, write_tracks
+from trialid.names import labels
 from trialid.replay.playback import Playback
-from trialid.report import labels
-from trialid.report.lines import INFO, WARNING, Line
-from trialid.report.overlay import tracks_of
-from trialid.report.series import OutputSeries, TrialSeries
-from trialid.report.tracks import About, Track, stems, write_tracks
+from trialid.report.files.overlay import tracks_of
+from trialid.result.series import OutputSeries, TrialSeries
 
 if TYPE_CHECKING:
     import jinja2
@@ -58,6 +59,11 @@ def series(playback: Playback, start: int = 0) -> TrialSeries:
     )  # fmt: skip
 
 
+def layout_paths(path: Path) -> list[Path]:
+    """Where the layouts of a recording go."""
+    return [path.with_suffix(suffix) for suffix in LAYOUTS]
+
+
 def write(path: Path, playback: Playback, version: str, start: float = 0.0) -> list[Path]:
     """The recording of what was played from a time [s] on, and its layouts; the files.
 
@@ -71,17 +77,18 @@ def write(path: Path, playback: Playback, version: str, start: float = 0.0) -> l
     about = About(f"trialid {version}", _manifest(playback, version), "replay.json",
                   {"band": playback.bands.source,
                    "sigma": {b.output: b.sigma for b in playback.bands.of}})  # fmt: skip
-    with path.open("wb") as stream:
+    with temporary.replace_whole(path) as ready, ready.open("wb") as stream:
         write_tracks(stream, tracks, about, lines)
-    beside = [path.with_suffix(suffix) for suffix in LAYOUTS]
-    for place, template in zip(beside, LAYOUTS.values(), strict=True):
+    layouts = layout_paths(path)
+    for place, template in zip(layouts, LAYOUTS.values(), strict=True):
         text = (
             _environment()
             .get_template(template)
             .render(panels=panels(playback), events=topic + "events")
         )
-        place.write_text(text, encoding="utf-8")
-    return [path, *beside]
+        with temporary.replace_whole(place) as ready:
+            ready.write_text(text, encoding="utf-8")
+    return [path, *layouts]
 
 
 def panels(playback: Playback) -> list[Panel]:
@@ -92,7 +99,7 @@ def panels(playback: Playback) -> list[Panel]:
         edges = [(w, Curve(topic + "band", f"{field}_{w}")) for w in ("upper", "lower")]
         made.append(
             Panel(
-                labels.labelled(band.output),
+                labels.label(band.output),
                 labels.quantity(band.output).unit,
                 tuple((w, Curve(topic + w, field)) for w in ("measured", "predicted")),
                 (("residual", Curve(topic + "residual", field)), *edges),

@@ -110,7 +110,7 @@ def _pressed(pace: Pace, key: str, now: float, playback: Playback) -> Pace:
     """The pace after a key; it goes on from the sample that is shown."""
     here = min(clock.at(pace, now), _position(playback))
     if key == "space":
-        return clock.toggled(pace, now, here)
+        return clock.toggle(pace, now, here)
     if key in {"left", "right"}:
         step = SEEK if key == "right" else -SEEK
         end = max(playback.available - 1, 0) * playback.trial.period

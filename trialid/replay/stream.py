@@ -22,7 +22,7 @@ from trialid.simulation.integrate import (
     arguments,
     departure,
     late_by,
-    sensed,
+    sensor_outputs,
 )
 from trialid.trial import Trial
 
@@ -104,7 +104,7 @@ class Stream:
     def _read(self, to: int, known: int) -> None:
         """Outputs of the samples before `to`, from states before `known`."""
         first = max(self.at - self.back, 0)
-        y, _ = sensed(
+        y, _ = sensor_outputs(
             self.simulator, self.trial.period, self._X[first:known], None, self._u[first:known],
             self._theta,
         )  # fmt: skip

@@ -5,9 +5,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
+from trialid.errors import harmless
+from trialid.names import labels
 from trialid.replay.clock import Pace
 from trialid.replay.playback import Playback
-from trialid.report import labels
 
 if TYPE_CHECKING:
     from rich.console import Console, Group
@@ -39,12 +40,12 @@ def live(console: "Console") -> Iterator[Show]:
             nonlocal drawn
             if now - drawn >= REFRESH:
                 drawn = now
-                picture.update(drawing(playback, pace), refresh=True)
+                picture.update(draw(playback, pace), refresh=True)
 
         yield show
 
 
-def drawing(playback: Playback, pace: Pace) -> "Group":
+def draw(playback: Playback, pace: Pace) -> "Group":
     """The picture of a moment."""
     from rich.console import Group
     from rich.table import Table
@@ -59,12 +60,13 @@ def drawing(playback: Playback, pace: Pace) -> "Group":
         ratio = float(residual[c]) / band.sigma if band.sigma else math.nan
         seen = float(playback.measured[place, c]) if playback.compared[place, c] else math.nan
         table.add_row(
-            labels.labelled(band.output), _shown(band.output, seen),
+            labels.label(band.output), _shown(band.output, seen),
             _shown(band.output, float(playback.stream.y[place, c])), bar(ratio), _deviations(ratio),
         )  # fmt: skip
     events = [e for e in playback.events() if e.t <= place * playback.trial.period][-LAST:]
-    lines = [Text(f"{e.t:8.1f} s  {e.words}", style="red" if e.warning else "") for e in events]
-    return Group(Text(_heading(playback, pace, place)), table, *(lines or [Text("no alarm")]))
+    told = [(f"{e.t:8.1f} s  {harmless(e.words)}", "red" if e.warning else "") for e in events]
+    lines = [Text(words, style) for words, style in told] or [Text("no alarm")]
+    return Group(Text(harmless(_heading(playback, pace, place))), table, *lines)
 
 
 def bar(ratio: float) -> str:
@@ -92,7 +94,7 @@ def _heading(playback: Playback, pace: Pace, place: int) -> str:
 
 
 def _shown(name: str, value: float) -> str:
-    return labels.shown(name, None if math.isnan(value) else value)
+    return labels.shown_text(name, None if math.isnan(value) else value)
 
 
 def _deviations(ratio: float) -> str:

@@ -3,3 +3,5 @@
 Everything here is made from the mapping of `result.json` and the time series, nothing else, so
 that a finished run folder is enough to make it again.
 """
+
+__all__: list[str] = []

@@ -1,1 +1,3 @@
-"""."""
+"""The ship model: particulars, masses, effects, motion."""
+
+__all__: list[str] = []

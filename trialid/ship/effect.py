@@ -12,7 +12,13 @@ import numpy as np
 
 from trialid.errors import EffectError, nearest
 from trialid.maths import Number
-from trialid.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, QUANTITIES, SIGNALS
+from trialid.names.quantities import (
+    ACCELERATIONS,
+    MASS_PARAMETERS,
+    PARTICULARS,
+    QUANTITIES,
+    SIGNALS,
+)
 
 System = Literal["prime", "SI"]
 
@@ -227,7 +233,16 @@ def effect(
         _check_states(name, own, made)
         _check_readings(name, signals, forms)
         _check_scan(name, parameters)
-        return Effect(name, function, signals, parameters, own, forms, made, source)
+        return Effect(
+            name=name,
+            function=function,
+            signals=signals,
+            parameters=parameters,
+            states=own,
+            forms=forms,
+            system=made,
+            source=source,
+        )
 
     return declare
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from trialid.errors import EffectError, ShipError
 from trialid.maths import Number
-from trialid.quantities import PARTICULARS, QUANTITIES
+from trialid.names.quantities import PARTICULARS, QUANTITIES
 from trialid.ship.effect import Effect, Force, Steered
 from trialid.ship.particulars import Ship
 

@@ -47,7 +47,7 @@ def _hermite(
     return weights
 
 
-def delayed(y: Vector, lag: float | Vector) -> tuple[Vector, Vector]:
+def delay_samples(y: Vector, lag: float | Vector) -> tuple[Vector, Vector]:
     """The samples y(k - lag) and their derivative by the lag [1/sample]; like y, (N, ...).
 
     The lag is one number, or one for each sample where a clock drifts; (N,). Beyond the ends the
@@ -58,8 +58,8 @@ def delayed(y: Vector, lag: float | Vector) -> tuple[Vector, Vector]:
     return _weighed(y, whole, value), _weighed(y, whole, -slope)
 
 
-def shifted(y: Vector, lag: float | Vector) -> Vector:
-    """The first of `delayed` alone: what a delay makes of sensitivities; like y, (N, ...)."""
+def shift(y: Vector, lag: float | Vector) -> Vector:
+    """The first of `delay_samples` alone: what a delay makes of sensitivities; like y, (N, ...)."""
     whole = np.ceil(lag).astype(int)
     return _weighed(y, whole, taps(whole - lag)[0])
 
@@ -80,13 +80,13 @@ def _weighed(y: Vector, whole: Whole, weights: Vector) -> Vector:
     return total
 
 
-def lagged(y: Vector, tau: float, period: float) -> tuple[Vector, Vector]:
+def lag_samples(y: Vector, tau: float, period: float) -> tuple[Vector, Vector]:
     """What a first-order low-pass makes of samples, and its derivative by tau; like y, (N, ...).
 
     tau dz/dt = y - z, exact for a signal that is straight between samples, at rest when it starts.
     At tau = 0 it is the signal itself, and the derivative the backward difference.
 
-    >>> z, slope = lagged(np.array([0.0, 1.0, 1.0]), 0.0, 1.0)
+    >>> z, slope = lag_samples(np.array([0.0, 1.0, 1.0]), 0.0, 1.0)
     >>> z, slope
     (array([0., 1., 1.]), array([ 0., -1.,  0.]))
     """

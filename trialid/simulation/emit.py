@@ -197,7 +197,9 @@ class _Writer:
             if self.sens
             else {}
         )
-        return _Frame(state, slope, total, half, sixth, third, step)
+        return _Frame(
+            state=state, slope=slope, total=total, half=half, sixth=sixth, third=third, step=step
+        )
 
     def _samples(self, frame: _Frame) -> None:
         t = self.text

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import EffectError, NotIdentifiable, nearest
-from trialid.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS
 from trialid.ship.effect import Delayed, Effect, Steered
 from trialid.ship.model import ShipModel, late, slope
 from trialid.simulation import kernel
-from trialid.simulation.delay import delayed, lagged, shifted
+from trialid.simulation.delay import delay_samples, lag_samples, shift
 from trialid.simulation.graph import Node, gradient
 from trialid.simulation.kernel import Kernel
 from trialid.simulation.reference import Reference, evaluator
@@ -152,10 +152,10 @@ def respond(
     theta, x0, u, limit = arguments(simulator, trial, values, start)
     if not sensitivities:
         X, left = run.simulate(theta, x0, u, limit, h, simulator.substeps)
-        y, _ = sensed(simulator, h, X, None, u, theta)
+        y, _ = sensor_outputs(simulator, h, X, None, u, theta)
         return Response(X, y, None, departure(simulator, X, left, h, limit))
     X, S, left = run.sensitivities(theta, x0, u, limit, h, simulator.substeps)
-    y, dy = sensed(simulator, h, X, S, u, theta)
+    y, dy = sensor_outputs(simulator, h, X, S, u, theta)
     return Response(X, y, dy, departure(simulator, X, left, h, limit))
 
 
@@ -186,7 +186,7 @@ IDEAL: Final = {"delta": "delta_order"}
 """What an input follows exactly where it is not recorded itself: a perfect steering gear."""
 
 
-def recorded(trial: Trial, name: str) -> str | None:
+def record_for(trial: Trial, name: str) -> str | None:
     """The record that serves as this input: its own, or that of what it follows."""
     for candidate in (name, IDEAL.get(name, name)):
         if candidate in trial.signals:
@@ -210,7 +210,7 @@ def inputs(simulator: Simulator, trial: Trial, known: Mapping[str, float]) -> Ve
     model = simulator.model
     columns = {n: _input(model, trial, n) for n in simulator.equations.inputs if n in SIGNALS}
     for name, tau in late_by(model, known).items():
-        columns[name], by_lag = delayed(columns[name], tau / trial.period)
+        columns[name], by_lag = delay_samples(columns[name], tau / trial.period)
         columns[late(name)] = np.full(trial.samples, tau)
         columns[slope(name)] = by_lag / trial.period
     made = [columns[n] for n in simulator.equations.inputs]
@@ -232,7 +232,7 @@ def late_by(model: ShipModel, known: Mapping[str, float]) -> dict[str, float]:
 def _input(model: ShipModel, trial: Trial, name: str) -> Vector:
     if name == "t":
         return trial.t
-    source = recorded(trial, name)
+    source = record_for(trial, name)
     if source is not None:
         return trial.signals[source]
     if name == "u":
@@ -311,7 +311,7 @@ def _zero(node: Node) -> bool:
     return node.is_constant(0.0)
 
 
-def sensed(
+def sensor_outputs(
     simulator: Simulator, period: float, X: Vector, S: Vector | None, u: Vector, theta: Vector
 ) -> tuple[Vector, Vector | None]:
     """Outputs as a sensor records them, from states; (N, n_y), (N, n_y, n_columns)."""
@@ -346,16 +346,16 @@ def _late(
     for c, output in enumerate(simulator.outputs):
         for lag in read.lags[output]:
             [tau] = lag.value(symbols)
-            y[:, c], by_tau = lagged(y[:, c], float(tau), period)
+            y[:, c], by_tau = lag_samples(y[:, c], float(tau), period)
             if dy is not None:
-                dy[:, c] = lagged(dy[:, c], float(tau), period)[0]
+                dy[:, c] = lag_samples(dy[:, c], float(tau), period)[0]
                 _add_slopes(dy[:, c], lag, by_tau, symbols)
         if read.delay[output].absent:
             continue
         [tau] = read.delay[output].value(symbols)
-        y[:, c], by_lag = delayed(y[:, c], tau / period)
+        y[:, c], by_lag = delay_samples(y[:, c], tau / period)
         if dy is not None:
-            dy[:, c] = shifted(dy[:, c], tau / period)
+            dy[:, c] = shift(dy[:, c], tau / period)
             _add_slopes(dy[:, c], read.delay[output], by_lag / period, symbols)
     return y, dy
 

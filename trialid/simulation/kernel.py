@@ -109,13 +109,26 @@ def _keep(path: Path, content: bytes) -> None:
 
 
 def _kept(path: Path) -> bytes | None:
-    """Machine code from a file of the cache, None where there is none or it is damaged."""
+    """Machine code from a file of the cache, None where there is none or it is damaged.
+
+    What somebody else may have written is not run: its checksum says nothing of who made it.
+    """
     try:
+        if not (_ours_alone(path) and _ours_alone(path.parent)):
+            return None
         content = path.read_bytes()
     except OSError:
         return None
     checksum, code = content[:CHECKSUM], content[CHECKSUM:]
     return code if code and hashlib.sha256(code).digest() == checksum else None
+
+
+def _ours_alone(path: Path) -> bool:
+    """Whether a file or folder is this user's, and nobody else may write it."""
+    if not hasattr(os, "getuid"):
+        return True  # Windows: the home folder is the user's
+    found = path.stat()
+    return found.st_uid == os.getuid() and not found.st_mode & 0o022
 
 
 def _function(text: str, name: str, pointers: int) -> Callable[..., int]:

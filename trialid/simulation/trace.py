@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from trialid.errors import EffectError
-from trialid.ship.model import Motion, Readings, ShipModel, motion, readings, solve
+from trialid.ship.mass_matrix import solve
+from trialid.ship.model import ShipModel
+from trialid.ship.motion import Motion, Readings, motion, readings
 from trialid.simulation.graph import SYMBOL, Graph, Node, gradient, lift, order
 
 BLOCK: Final = 8

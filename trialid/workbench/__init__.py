@@ -3,3 +3,5 @@
 The pipeline file is the one truth: every edit on the screen is an edit of it, by the same code as
 the command line's, and an edit made elsewhere appears on the screen.
 """
+
+__all__: list[str] = []

@@ -11,20 +11,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from trialid import history
-from trialid.assembly import available
-from trialid.change import Edit
-from trialid.errors import EffectError, LogError, RecipeError, TrialidError
-from trialid.history import Step as HistoryStep
-from trialid.pipeline import Outcome
-from trialid.recipe import Recipe
+from trialid.errors import EffectError, LogError, PipelineError, TrialidError
+from trialid.pipeline_file import Pipeline
+from trialid.result.change_rows import StepRow
 from trialid.workbench.compute import Seat, Task, work_out
 from trialid.workbench.document import Document, Step
 from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Place, Shown, Trouble, Working
 from trialid.workbench.status import Counts, Status, status_of
-from trialid.workbench.watch import Files, resting, watched
-from trialid.workbench.wishes import Granted, between, granted, understood
+from trialid.workbench.watch import Files, source_states, watch_list
+from trialid.workbench.wishes import Granted, between, grant, understood
+from trialid.workflow import history
+from trialid.workflow.build_model import available
+from trialid.workflow.edit_model import Edit
+from trialid.workflow.outcome import Outcome
 
 KEPT: Final = 12
 """How many models stay at hand for undo, their series included."""
@@ -54,7 +54,7 @@ class Job:
 class Desk:
     """A pipeline file at work.
 
-    Raises RecipeError when the file is no pipeline to begin with.
+    Raises PipelineError when the file is no pipeline to begin with.
     """
 
     path: Path
@@ -66,15 +66,15 @@ class Desk:
 
     def __post_init__(self) -> None:
         self._document = Document(self.path)
-        recipe = self._document.recipe
-        self._shown = Shown(recipe, available(recipe))
+        pipeline = self._document.pipeline
+        self._shown = Shown(pipeline, available(pipeline))
         self._working: Working | None = None
         self._trouble: Trouble | None = None
         self._outside: Trouble | None = None
         self._job: Job | None = None
         self._counts = Counts()
-        self._begin(Task(recipe, "opening"), None)
-        known = {path: one for path, one in watched(recipe).items() if path != self.path}
+        self._begin(Task(pipeline, "opening"), None)
+        known = {path: one for path, one in watch_list(pipeline).items() if path != self.path}
         threading.Thread(target=self._watch, args=(known,), daemon=True).start()
 
     @property
@@ -108,7 +108,7 @@ class Desk:
         wish = understood(asked)
         with self._open():
             self._document.check(wish.version)
-            found = granted(self._document.recipe, wish)
+            found = grant(self._document.pipeline, wish)
             step = self._document.put(found.after, found.words)
             self._changed(found, step)
 
@@ -125,7 +125,7 @@ class Desk:
         with self._open():
             self._document.reread()
             self._trouble = None
-            self._begin(Task(self._document.recipe, "fit again", None, self._shown), None)
+            self._begin(Task(self._document.pipeline, "fit again", None, self._shown), None)
 
     def cancel(self) -> None:
         """Stop computing, and take the edit back that it was for."""
@@ -151,15 +151,15 @@ class Desk:
         """The lock, unless it is closed: nothing is written then."""
         with self._lock:
             if self.closed:
-                raise RecipeError("the workbench is closed; nothing was done")
+                raise PipelineError("the workbench is closed; nothing was done")
             yield
 
     def _stepped(self, version: str, move: Callable[[], Step], words: str) -> None:
         with self._open():
             self._document.check(version)
-            old = self._document.recipe
+            old = self._document.pipeline
             step = move()
-            after = self._document.recipe
+            after = self._document.pipeline
             self._changed(Granted(after, words.format(step.words), between(old, after)), None)
 
     def _changed(self, found: Granted, step: Step | None) -> None:
@@ -173,14 +173,14 @@ class Desk:
         )
         self._begin(task, step)
 
-    def _known(self, recipe: Recipe) -> Outcome | None:
+    def _known(self, pipeline: Pipeline) -> Outcome | None:
         """What was found for this very model on these very files."""
-        return self._kept.get(_name(recipe, resting(recipe)))
+        return self._kept.get(_name(pipeline, source_states(pipeline)))
 
     def _begin(self, task: Task, step: Step | None) -> None:
         if self._job is not None:
             self._let_go(self._job)
-        self._job = Job(task, step, resting(task.recipe))
+        self._job = Job(task, step, source_states(task.pipeline))
         self._working = Working(task.why, "waiting", None)
         self._count()
         threading.Thread(target=self._compute, args=(self._job,), daemon=True).start()
@@ -195,7 +195,9 @@ class Desk:
             except TrialidError as error:
                 self._failed(job, error)
             except BaseException as error:
-                self._failed(job, RecipeError(f"a bug in trialid: {type(error).__name__}: {error}"))
+                self._failed(
+                    job, PipelineError(f"a bug in trialid: {type(error).__name__}: {error}")
+                )
                 raise
             else:
                 self._finished(job)
@@ -226,15 +228,15 @@ class Desk:
         """The model before a job's edit again; whether the file could be put back."""
         taken = job.step is not None and self._document.take_back(job.step)
         if taken:
-            recipe = self._document.recipe
-            self._begin(Task(recipe, why, None, self._shown, self._known(recipe)), None)
+            pipeline = self._document.pipeline
+            self._begin(Task(pipeline, why, None, self._shown, self._known(pipeline)), None)
         return taken
 
     def _watch(self, known: Files) -> None:
         """Look at the files until the end; a change counts when it has stood for one look."""
         stood: Files = {}
         while not self._ended.wait(POLL):
-            now = watched(self._document.recipe)
+            now = watch_list(self._document.pipeline)
             if now == stood and now != known:
                 self._look({path for path in now if now[path] != known.get(path, now[path])})
                 known = now
@@ -250,7 +252,7 @@ class Desk:
                 if self._document.reread():
                     self._changed_elsewhere(f"{self.path.name} was edited elsewhere")
                 elif changed - {self.path} or (trouble and trouble.where == "effects"):
-                    available(self._document.recipe)
+                    available(self._document.pipeline)
                     self._changed_elsewhere("an effect file or the ship was edited")
             except TrialidError as error:
                 self._outside = Trouble(_place_of(error), str(error))
@@ -259,7 +261,7 @@ class Desk:
 
     def _changed_elsewhere(self, why: str) -> None:
         self._trouble = None
-        self._begin(Task(self._document.recipe, why, None, self._shown), None)
+        self._begin(Task(self._document.pipeline, why, None, self._shown), None)
 
     def _count(self, screen: bool = False, series: bool = False) -> None:
         self._counts = self._counts.grown(screen, series)
@@ -283,7 +285,7 @@ class _Seat(Seat):
         with desk._lock:
             self._check()
             if shown.run is not None:
-                kept = {**desk._kept, _name(shown.recipe, self.job.files): shown.run}
+                kept = {**desk._kept, _name(shown.pipeline, self.job.files): shown.run}
                 desk._kept = dict(list(kept.items())[-KEPT:])
             series = shown.series is not desk._shown.series
             desk._shown = shown
@@ -296,10 +298,10 @@ class _Seat(Seat):
                 self.job.step = self.desk._document.amend(edit.after)
                 self.desk._count()
 
-    def record(self, steps: tuple[HistoryStep, ...]) -> None:
+    def record(self, steps: tuple[StepRow, ...]) -> None:
         with self.desk._lock:
             self._check()
-            with history.appended(self.job.task.recipe.path, steps):
+            with history.append_steps(self.job.task.pipeline.path, steps):
                 pass
 
     def _check(self) -> None:
@@ -307,9 +309,9 @@ class _Seat(Seat):
             raise _LetGo
 
 
-def _name(recipe: Recipe, files: Files) -> str:
+def _name(pipeline: Pipeline, files: Files) -> str:
     """What one model is told from another by: its pipeline, and the files it rests on."""
-    return repr((recipe.content, files))
+    return repr((pipeline.content, files))
 
 
 def _place_of(error: TrialidError) -> Place:
@@ -318,4 +320,4 @@ def _place_of(error: TrialidError) -> Place:
         return "effects"
     if isinstance(error, LogError):
         return "logs"
-    return "pipeline" if isinstance(error, RecipeError) else "fit"
+    return "pipeline" if isinstance(error, PipelineError) else "fit"

@@ -8,14 +8,14 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from trialid.errors import RecipeError
-from trialid.recipe import Recipe, content_of, load, read
-from trialid.recipe.rewrite import rewriting
+from trialid.errors import PipelineError
+from trialid.pipeline_file import Pipeline, content_of, load, read
+from trialid.pipeline_file.rewrite import rewriting
 
 ELSEWHERE = "the edit made outside"
 
 
-class Outdated(RecipeError):
+class Outdated(PipelineError):
     """An edit of a file that holds something else by now."""
 
 
@@ -35,19 +35,19 @@ class Document:
     """
 
     def __init__(self, path: Path) -> None:
-        self.recipe: Recipe = load(path)
+        self.pipeline: Pipeline = load(path)
         self.undone: tuple[Step, ...] = ()
         self.done: tuple[Step, ...] = ()
 
     @property
     def path(self) -> Path:
         """Where it is."""
-        return self.recipe.path
+        return self.pipeline.path
 
     @property
     def version(self) -> str:
         """What tells one content from another."""
-        return hashlib.sha256(self.recipe.content).hexdigest()
+        return hashlib.sha256(self.pipeline.content).hexdigest()
 
     def check(self, version: str) -> None:
         """Refuse an edit that was asked for in view of another content.
@@ -57,7 +57,7 @@ class Document:
         Outdated
             It is not the one here, or the file has changed since it was read.
         """
-        if version != self.version or self.on_disk() != self.recipe.content:
+        if version != self.version or self.on_disk() != self.pipeline.content:
             raise Outdated(
                 f"{self.path.name} was changed meanwhile, in another window or by an editor; "
                 "nothing was done: look at it as it is now, and do it again if you still want it"
@@ -67,23 +67,23 @@ class Document:
         """What the file holds now; None where there is none to be read."""
         try:
             return content_of(self.path)
-        except RecipeError:
+        except PipelineError:
             return None
 
-    def put(self, after: Recipe, words: str) -> Step:
+    def put(self, after: Pipeline, words: str) -> Step:
         """Write an edit that can be undone.
 
         Raises
         ------
-        RecipeError
+        PipelineError
             It cannot be written; the file is as it was.
         """
-        step = Step(words, self.recipe.content, after.content)
+        step = Step(words, self.pipeline.content, after.content)
         self._write(after)
         self.done, self.undone = (*self.done, step), ()
         return step
 
-    def amend(self, after: Recipe) -> Step:
+    def amend(self, after: Pipeline) -> Step:
         """Write more of the last edit: the two are undone together."""
         last = self.done[-1]
         step = Step(last.words, last.old, after.content)
@@ -100,7 +100,7 @@ class Document:
             return False
         try:
             self._write(read(step.old, self.path))
-        except RecipeError:
+        except PipelineError:
             return False
         self.done = self.done[:-1]
         return True
@@ -110,11 +110,11 @@ class Document:
 
         Raises
         ------
-        RecipeError
+        PipelineError
             There is nothing to undo, or it cannot be written.
         """
         if not self.done:
-            raise RecipeError("there is nothing to undo")
+            raise PipelineError("there is nothing to undo")
         step = self.done[-1]
         self._write(read(step.old, self.path))
         self.done, self.undone = self.done[:-1], (*self.undone, step)
@@ -125,11 +125,11 @@ class Document:
 
         Raises
         ------
-        RecipeError
+        PipelineError
             There is none, or it cannot be written.
         """
         if not self.undone:
-            raise RecipeError("there is nothing to do again")
+            raise PipelineError("there is nothing to do again")
         step = self.undone[-1]
         self._write(read(step.new, self.path))
         self.done, self.undone = (*self.done, step), self.undone[:-1]
@@ -140,19 +140,19 @@ class Document:
 
         Raises
         ------
-        RecipeError
+        PipelineError
             It is no pipeline (yet); what was read before stays.
         """
         found = content_of(self.path)
-        if found == self.recipe.content:
+        if found == self.pipeline.content:
             return False
         after = read(found, self.path)
-        step = Step(ELSEWHERE, self.recipe.content, found)
-        self.recipe = after
+        step = Step(ELSEWHERE, self.pipeline.content, found)
+        self.pipeline = after
         self.done, self.undone = (*self.done, step), ()
         return True
 
-    def _write(self, after: Recipe) -> None:
-        with rewriting(self.path, self.recipe.content, after.content) as stroke:
+    def _write(self, after: Pipeline) -> None:
+        with rewriting(self.path, self.pipeline.content, after.content) as stroke:
             stroke()
-        self.recipe = after
+        self.pipeline = after

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from trialid.pipeline import Outcome
+from trialid.result.change_rows import Pair
+from trialid.result.schema import Result
 from trialid.workbench.shown import Shown
+from trialid.workflow.outcome import Outcome
 
 
 @dataclass(frozen=True)
@@ -33,18 +34,20 @@ def _now(shown: Shown) -> tuple[float | None, float | None]:
 
 
 def _of_run(run: Outcome) -> tuple[float | None, float | None]:
-    return run.result["fit"]["eps_rmsn"], run.result["fit"]["eps_rmsn_check"]
+    return run.result.fit.eps_rmsn, run.result.fit.eps_rmsn_check
 
 
 def _old(shown: Shown) -> tuple[float | None, float | None]:
     """Of the model before, or of the one that a change kept in the result began with."""
-    if shown.before is not None and shown.before.recipe.content != shown.recipe.content:
+    if shown.before is not None and shown.before.pipeline.content != shown.pipeline.content:
         return _of_run(shown.before)
-    pair = (shown.run.result.get("change") if shown.run else None) or {}
-    return _first(pair.get("eps_rmsn")), _first(pair.get("eps_rmsn_check"))
+    change = shown.run.result.change if shown.run else None
+    if change is None:
+        return None, None
+    return _first(change.eps_rmsn), _first(change.eps_rmsn_check)
 
 
-def _first(pair: list[float | None] | None) -> float | None:
+def _first(pair: Pair | None) -> float | None:
     return pair[0] if pair else None
 
 
@@ -52,18 +55,18 @@ def _finite(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
-def by_output(shown: Shown, trial: str, run: Mapping[str, Any]) -> dict[str, float | None]:
+def by_output(shown: Shown, trial: str, run: Result) -> dict[str, float | None]:
     """A trial's error by output; `run` is that of the model before where no fit is known yet."""
     if shown.run is None and shown.fit is not None:
         found = [s for s in shown.fit.scores if s.trial.name == trial]
         return {output: _finite(eps) for s in found for output, eps in s.eps_rmsn.items()}
-    return next((dict(row["eps_rmsn"]) for row in run["trials"] if row["name"] == trial), {})
+    return next((dict(row.eps_rmsn) for row in run.trials if row.name == trial), {})
 
 
-def pooled(errors: Mapping[str, float | None]) -> float | None:
+def pool_errors(errors: Mapping[str, float | None]) -> float | None:
     """The error of all outputs of a trial, each counting alike.
 
-    >>> pooled({"r": 0.3, "phi": 0.4}), pooled({})
+    >>> pool_errors({"r": 0.3, "phi": 0.4}), pool_errors({})
     (0.3535533905932738, None)
     """
     known = [eps for eps in errors.values() if eps is not None]

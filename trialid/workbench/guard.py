@@ -1,10 +1,14 @@
-"""Who may talk to the workbench: this machine's own pages, or whoever holds the token.
+"""Who may talk to the workbench: whoever holds the token, from the workbench's own page.
+
+The token stands in the address that the command prints: on this machine alone, too, there are
+other users. It is changed for a cookie, one for each port, as browsers hold them for all ports.
 
 A page of another site can send requests to this machine, and a name can be made to point to it;
 both are told by headers that no page can forge.
 """
 
 import hmac
+import ipaddress
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,8 +24,6 @@ COOKIE: Final = "trialid"
 LARGEST: Final = 65536
 """Bytes a request may carry: an edit is a few hundred."""
 
-LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
-
 HEADERS: Final[Mapping[str, str]] = {
     "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; "
     "connect-src 'self'; img-src 'self' data:; base-uri 'none'; form-action 'none'; "
@@ -36,10 +38,14 @@ HEADERS: Final[Mapping[str, str]] = {
 
 @dataclass(frozen=True)
 class Guard:
-    """Lets through what comes from the workbench's own page; `token` None on loopback."""
+    """Lets through what comes from the workbench's own page and knows the token, if there is one.
+
+    `local` where it listens on this machine alone: it is then asked for by its own names only.
+    """
 
     app: ASGIApp
     token: str | None
+    local: bool
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request, or refuse it."""
@@ -55,7 +61,7 @@ class Guard:
     def _refusal(self, scope: Scope) -> Response | None:
         headers = Headers(scope=scope)
         host = headers.get("host", "")
-        if self.token is None and _hostname(host) not in LOOPBACK:
+        if self.local and not of_this_machine(_hostname(host)):
             return _no(403, "this workbench answers on this machine only, by its own address")
         if _foreign(headers, host):
             return _no(403, "a request from another page is not answered")
@@ -66,7 +72,7 @@ class Guard:
         return None
 
     def _known(self, scope: Scope, headers: Headers) -> bool:
-        given = cookie_parser(headers.get("cookie", "")).get(COOKIE, "")
+        given = cookie_parser(headers.get("cookie", "")).get(cookie(scope), "")
         return hmac.compare_digest(given.encode(), str(self.token).encode())
 
     def _greeted(self, scope: Scope) -> Response:
@@ -75,14 +81,14 @@ class Guard:
         if not hmac.compare_digest(given.encode(), str(self.token).encode()):
             return _no(401, "open the whole address that trialid printed, with its token")
         answer = RedirectResponse("/", status_code=303)
-        answer.set_cookie(COOKIE, given, httponly=True, samesite="strict")
+        answer.set_cookie(cookie(scope), given, httponly=True, samesite="strict")
         return answer
 
 
 def _foreign(headers: Headers, host: str) -> bool:
     """Whether another site's page sent it."""
     origin = headers.get("origin")
-    if origin is not None and urlsplit(origin).netloc != host:
+    if origin is not None and _place(origin) != host:
         return True
     return headers.get("sec-fetch-site", "none") not in ("same-origin", "none")
 
@@ -96,6 +102,31 @@ def _refused_body(headers: Headers) -> Response | None:
     if not known or int(length) > LARGEST:
         return _no(413, f"send at most {LARGEST} bytes, and say how many")
     return None
+
+
+def _place(origin: str) -> str:
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:  # as of `http://[`
+        return ""
+
+
+def cookie(scope: Scope) -> str:
+    """The name of the cookie: of this port."""
+    server = scope.get("server") or ("", 0)
+    return f"{COOKIE}-{server[1]}"
+
+
+def of_this_machine(host: str) -> bool:
+    """Whether a host is the machine itself, by any of its addresses.
+
+    >>> of_this_machine("127.0.0.2"), of_this_machine("localhost"), of_this_machine("0.0.0.0")
+    (True, True, False)
+    """
+    try:
+        return host == "localhost" or ipaddress.ip_address(host.partition("%")[0]).is_loopback
+    except ValueError:
+        return False
 
 
 def _hostname(host: str) -> str:

@@ -1,14 +1,14 @@
 """The model as rows: every effect, its parameters, and what the pipeline says of them."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Any
 
 from trialid.errors import EffectError
-from trialid.quantities import MASS_PARAMETERS
-from trialid.report import bars
-from trialid.report.bars import ParameterBar
+from trialid.names.quantities import MASS_PARAMETERS
+from trialid.report.pictures import bars
+from trialid.report.pictures.bars import RangeBar
+from trialid.result import fit_rows
 from trialid.ship.effect import Effect, Parameter
 from trialid.ship.model import ShipModel
 from trialid.workbench.shown import Shown
@@ -18,7 +18,7 @@ from trialid.workbench.shown import Shown
 class ParameterRow:
     """A parameter in its own unit; None or empty where nothing is known or written.
 
-    `error` is the standard error; `relative`, `noise`, `model` are those of Eq. 14. `low`, `high`
+    `error` is the standard error, `likely` the likely range. `low`, `high`
     and `given` are what the pipeline says, as it may be edited; `limits` the physical range;
     `own` the value without the pipeline's, and `source` where the present one is from. `stale`
     says that value and errors are those of the model before.
@@ -29,10 +29,9 @@ class ParameterRow:
     free: bool
     value: float | None
     error: float | None = None
-    relative: float | None = None
-    noise: float | None = None
-    model: float | None = None
-    bar: ParameterBar | None = None
+    likely: tuple[float, float] | None = None
+    may_be_off: float | None = None
+    bar: RangeBar | None = None
     low: str = ""
     high: str = ""
     limits: tuple[str, str] = ("", "")
@@ -56,7 +55,7 @@ class EffectRow:
 
 def effects(shown: Shown) -> tuple[EffectRow, ...]:
     """Every effect of the pipeline's model, in its order."""
-    return tuple(_effect(name, shown) for name in shown.recipe.model.effects)
+    return tuple(_effect(name, shown) for name in shown.pipeline.model.effects)
 
 
 def _effect(name: str, shown: Shown) -> EffectRow:
@@ -73,7 +72,7 @@ def parameters(effect: Effect, shown: Shown) -> tuple[ParameterRow, ...]:
 
 def masses(shown: Shown) -> tuple[ParameterRow, ...]:
     """The rigid body's and the added masses; none where nothing moves or no model is built yet."""
-    if shown.model is None or not shown.recipe.model.states:
+    if shown.model is None or not shown.pipeline.model.states:
         return ()
     known = shown.model.parameters
     return _rows({name: known[name] for name in MASS_PARAMETERS}, shown)
@@ -82,7 +81,7 @@ def masses(shown: Shown) -> tuple[ParameterRow, ...]:
 def _rows(found: Mapping[str, Parameter], shown: Shown) -> tuple[ParameterRow, ...]:
     estimated = _estimated(shown)
     lengths = _bars(estimated.values())
-    free = shown.recipe.identify.free
+    free = shown.pipeline.identify.free
     return tuple(
         _free(name, p, shown, estimated.get(name), lengths.get(name))
         if name in free
@@ -91,40 +90,38 @@ def _rows(found: Mapping[str, Parameter], shown: Shown) -> tuple[ParameterRow, .
     )
 
 
-def _estimated(shown: Shown) -> dict[str, Mapping[str, Any]]:
+def _estimated(shown: Shown) -> dict[str, fit_rows.ParameterRow]:
     """What is known of the estimates; until there is a fit it is that of the model before."""
     known = shown.before if shown.run is None and shown.fit is None else shown.run
-    rows = known.result["accuracy"]["parameters"] if known else ()
-    return {row["name"]: row for row in rows if row["kind"] != "nuisance"}
+    return {row.name: row for row in known.result.physical} if known else {}
 
 
-def _bars(rows: Iterable[Mapping[str, Any]]) -> dict[str, ParameterBar]:
-    """The two terms of Eq. 14 of each parameter, on one axis."""
-    known = [row for row in rows if row["relative_error"] is not None]
-    _, lengths = bars.parameter_bars(known)
-    return {row["name"]: bar for row, bar in zip(known, lengths, strict=True)}
+def _bars(rows: Collection[fit_rows.ParameterRow]) -> dict[str, RangeBar | None]:
+    """The likely ranges, on one axis."""
+    _, drawn = bars.range_bars(list(rows))
+    return {row.name: bar for row, bar in zip(rows, drawn, strict=True)}
 
 
 def _free(
     name: str,
     p: Parameter,
     shown: Shown,
-    row: Mapping[str, Any] | None,
-    bar: ParameterBar | None,
+    row: fit_rows.ParameterRow | None,
+    bar: RangeBar | None,
 ) -> ParameterRow:
-    said = shown.recipe.identify
+    said = shown.pipeline.identify
     low, high = said.bounds.get(name, (-inf, inf))
     prior = said.priors.get(name)
     made = ParameterRow(
-        name, p.unit, True, _estimate(name, shown), bar=bar, low=written(low), high=written(high),
-        limits=(written(p.low), written(p.high)),
+        name, p.unit, True, _estimate(name, shown), bar=bar, low=as_typed(low), high=as_typed(high),
+        limits=(as_typed(p.low), as_typed(p.high)),
         prior=None if prior is None else (prior.mean, prior.std),
     )  # fmt: skip
     if row is None:
         return made
     return replace(
-        made, value=row["value"], error=row["standard_error"], relative=row["relative_error"],
-        noise=row["noise_error"], model=row["undermodelling_error"], stale=shown.run is None,
+        made, value=row.value, error=row.standard_error, likely=row.likely,
+        may_be_off=row.may_be_off, stale=shown.run is None,
     )  # fmt: skip
 
 
@@ -134,7 +131,7 @@ def _estimate(name: str, shown: Shown) -> float | None:
 
 def _held(name: str, p: Parameter, shown: Shown) -> ParameterRow:
     """A parameter that is not sought: the pipeline's value, the ship file's, or none."""
-    given = shown.recipe.model.values.get(name)
+    given = shown.pipeline.model.values.get(name)
     model = shown.model
     value = _value(model, name)
     if value is None and given is not None and given.unit is None:
@@ -143,7 +140,7 @@ def _held(name: str, p: Parameter, shown: Shown) -> ParameterRow:
     source = "given here" if given else "" if value is None else "from the ship file"
     if value == 0.0 and model is not None and model.stated(name) is None:
         source = "acts on nothing that is simulated"
-    shown_value = "" if given is None or value is None else written(value)
+    shown_value = "" if given is None or value is None else as_typed(value)
     return ParameterRow(name, p.unit, False, value, given=shown_value, own=own, source=source)
 
 
@@ -159,10 +156,10 @@ def _value(model: ShipModel | None, name: str) -> float | None:
         return None
 
 
-def written(value: float) -> str:
+def as_typed(value: float) -> str:
     """A number as one types it; an open end is empty.
 
-    >>> written(-0.0125), written(inf)
+    >>> as_typed(-0.0125), as_typed(inf)
     ('-0.0125', '')
     """
     return "" if abs(value) == inf else f"{value:.12g}"

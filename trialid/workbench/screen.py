@@ -4,22 +4,26 @@ Numbers are written by the report's own filters, so that screen, report and term
 digits. What is known only of the model before the last change is marked as such.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trialid.pipeline import Outcome, signals_of
-from trialid.report import advice, bars, labels, ranking
-from trialid.report import page as report
-from trialid.report.panels import encoded, trial_panels
-from trialid.report.series import TrialSeries
-from trialid.report.shape import whole
-from trialid.result import finite
+from trialid.names import labels
+from trialid.report.pages import page as report
+from trialid.report.pictures import bars
+from trialid.report.pictures.panels import encode_floats, trial_panels
+from trialid.report.words import advice, ranking
+from trialid.result.finding_rows import FindingRow
+from trialid.result.json_file import finite
+from trialid.result.schema import Result
+from trialid.result.series import TrialSeries
 from trialid.workbench import error_number, model_rows, step_rows
 from trialid.workbench.shown import Shown
+from trialid.workflow.origin import signals_of
+from trialid.workflow.outcome import Outcome
 
 if TYPE_CHECKING:
     import jinja2
@@ -44,7 +48,7 @@ def environment() -> "jinja2.Environment":
 
 def page(shown: Shown) -> str:
     """The page, empty but for its title: its script asks for the parts."""
-    return environment().get_template("index.html.j2").render(title=shown.recipe.name)
+    return environment().get_template("index.html.j2").render(title=shown.pipeline.name)
 
 
 def parts(shown: Shown) -> dict[str, str]:
@@ -56,18 +60,17 @@ def parts(shown: Shown) -> dict[str, str]:
 def facts(shown: Shown) -> Plain:
     """Plain numbers of the model shown; None where not known yet, never those of another model."""
     run = shown.run.result if shown.run else None
-    verdict = run["verdict"] if run else {}
     found = error_number.of(shown)
     return finite(
         {
             "eps_rmsn": found.eps,
             "eps_rmsn_check": found.check,
-            "noise": run["split"]["noise"] if run else None,
-            "undermodelling": run["split"]["undermodelling"] if run else None,
-            "effects": list(shown.recipe.model.effects),
-            "free": list(shown.recipe.identify.free),
-            "verdict": verdict.get("kind"),
-            "named": verdict.get("effect"),
+            "noise": run.split.noise if run else None,
+            "undermodelling": run.split.undermodelling if run else None,
+            "effects": list(shown.pipeline.model.effects),
+            "free": list(shown.pipeline.identify.free),
+            "verdict": run.verdict.kind if run else None,
+            "named": run.verdict.effect if run else None,
         }
     )
 
@@ -79,7 +82,7 @@ def panels(shown: Shown, index: int) -> Plain:
     earlier = _before(shown, trial)
     for panel, name in zip(_outputs(drawn), (o.name for o in trial.outputs), strict=True):
         if name in earlier:
-            panel["before"] = encoded(earlier[name] * labels.shown_factor(name))
+            panel["before"] = encode_floats(earlier[name] * labels.shown_factor(name))
     return drawn
 
 
@@ -89,19 +92,19 @@ def _outputs(drawn: Plain) -> list[Plain]:
 
 def _before(shown: Shown, trial: TrialSeries) -> dict[str, np.ndarray[Any, Any]]:
     """What the model before predicts of a trial, by output; on another clock it is of no use."""
-    if not changed(shown) or shown.before is None:
+    if not is_changed(shown) or shown.before is None:
         return {}
     same = [s for s in shown.before.series if s.name == trial.name and np.array_equal(s.t, trial.t)]
     return {o.name: o.predicted for s in same for o in s.outputs}
 
 
-def changed(shown: Shown) -> bool:
+def is_changed(shown: Shown) -> bool:
     """Whether there is a model before, and it is another one."""
-    return shown.before is not None and shown.before.recipe.content != shown.recipe.content
+    return shown.before is not None and shown.before.pipeline.content != shown.pipeline.content
 
 
-def _told(run: Outcome | None) -> Plain:
-    return whole(run.result if run else {})
+def _told(run: Outcome | None) -> Result:
+    return run.result if run else Result()
 
 
 def _context(shown: Shown) -> Plain:
@@ -110,7 +113,7 @@ def _context(shown: Shown) -> Plain:
     run = _told(known)
     return {
         "shown": shown,
-        "recipe": shown.recipe,
+        "pipeline": shown.pipeline,
         "stage": shown.stage,
         "known": known is not None,
         "stale": shown.run is None,
@@ -119,25 +122,25 @@ def _context(shown: Shown) -> Plain:
         "split": replace(bars.split_bars(run)[0], length=100.0),
         "trials": list(_trials(shown, run)),
         "steps": step_rows.steps(shown, run),
-        "heading": report.VERDICTS.get(run["verdict"]["kind"], "No verdict"),
+        "heading": report.VERDICTS.get(run.verdict.kind or "", "No verdict"),
         "advised": _advised(run),
         "ranked": ranking.ranking(run),
         "effects": model_rows.effects(shown),
         "masses": model_rows.masses(shown),
-        "nuisance": [p for p in run["accuracy"]["parameters"] if p["kind"] == "nuisance"],
-        "addable": sorted(set(shown.catalogue) - set(shown.recipe.model.effects)),
+        "nuisance": run.nuisance,
+        "addable": sorted(set(shown.catalogue) - set(shown.pipeline.model.effects)),
         "equations": {name: effect.equation for name, effect in shown.catalogue.items()},
     }
 
 
-def _advised(run: Plain) -> list[advice.Advice]:
+def _advised(run: Result) -> list[advice.Advice]:
     """What to do next, without what a button of the screen does."""
     return [each for each in advice.advice(run) if not each.command.startswith("trialid add ")]
 
 
-def _trials(shown: Shown, run: Plain) -> Iterator[Plain]:
+def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
     """Each trial in the order of its curves: name, use, error, remarks, signals, findings."""
-    written = {trial.name: trial for trial in shown.recipe.trials}
+    written = {trial.name: trial for trial in shown.pipeline.trials}
     names = [s.name for s in shown.series] or [*written]
     for place, name in enumerate(names):
         errors = error_number.by_output(shown, name, run)
@@ -146,20 +149,20 @@ def _trials(shown: Shown, run: Plain) -> Iterator[Plain]:
             "name": name,
             "use": written[name].use if name in written else "fit",
             "errors": errors,
-            "error": error_number.pooled(errors),
+            "error": error_number.pool_errors(errors),
             "remarks": _remarks(shown, name),
-            "signals": [row for row in signals_of(shown.recipe) if row["trial"] == name],
-            "findings": _findings(run["where"], name),
+            "signals": [row for row in signals_of(shown.pipeline) if row.trial == name],
+            "findings": _findings(run.where, name),
         }
 
 
-def _remarks(shown: Shown, name: str) -> list[str]:
-    rows = shown.run.result["trials"] if shown.run else ()
-    said = next((row["remarks"] for row in rows if row["name"] == name), None)
+def _remarks(shown: Shown, name: str) -> Sequence[str]:
+    rows = shown.run.result.trials if shown.run else ()
+    said = next((row.remarks for row in rows if row.name == name), None)
     return said or [words for t in shown.trials if t.name == name for words in t.remarks]
 
 
-def _findings(where: list[Mapping[str, Any]], name: str) -> list[Mapping[str, Any]]:
+def _findings(where: Sequence[FindingRow], name: str) -> list[FindingRow]:
     """Findings of a trial, its own first; those of all trials together belong to each."""
-    own = [finding for finding in where if finding["trial"] == name]
-    return own + [finding for finding in where if finding["trial"] is None]
+    own = [finding for finding in where if finding.trial == name]
+    return own + [finding for finding in where if finding.trial is None]

@@ -17,19 +17,26 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from trialid.errors import RecipeError, TrialidError
-from trialid.report.page import page
-from trialid.workbench import screen
+from trialid.errors import PipelineError, TrialidError
+from trialid.report import script
+from trialid.report.pages.page import page
+from trialid.result.json_file import plain
+from trialid.workbench import guide_page, screen
 from trialid.workbench.desk import Desk
 from trialid.workbench.document import Outdated
-from trialid.workbench.guard import Guard
-from trialid.workbench.hand_out import copied, written
+from trialid.workbench.guard import Guard, of_this_machine
+from trialid.workbench.hand_out import copy_pipeline, write_folder
+
+SCRIPTS: Final = tuple(
+    ["workbench", "state", "complaints", "parts", "trials", "status", "edits", "keys"]
+)
+"""The modules of the page's own script."""
 
 ASSETS: Final[Mapping[str, tuple[str, str]]] = {
     "workbench.css": ("trialid.workbench", "static/workbench.css"),
-    "workbench.js": ("trialid.workbench", "static/workbench.js"),
+    **{f"{name}.js": ("trialid.workbench", f"static/{name}.js") for name in SCRIPTS},
     "page.css": ("trialid.report", "page.css"),
-    "plots.js": ("trialid.report", "plots.js"),
+    **{name: ("trialid.report", name) for name in script.MODULES if name != "page.js"},
     "uplot.css": ("trialid.report", "uplot/uPlot.min.css"),
     "uplot.js": ("trialid.report", "uplot/uPlot.iife.min.js"),
 }
@@ -42,13 +49,15 @@ BEAT: Final = 15.0
 """Without news for so long [s] a listening page is told that the workbench is there."""
 
 
-def application(desk: Desk, token: str | None = None) -> Guard:
-    """The workbench as an ASGI application."""
+def application(desk: Desk, token: str | None = None, *, local: bool = False) -> Guard:
+    """The workbench as an ASGI application; without a token for this machine's names only."""
     routes = [
         Route("/", _page),
         *(Route(f"/{name}", _asset) for name in ASSETS),
         Route("/report.html", _report),
         Route("/pipeline.toml", _pipeline),
+        Route("/guide", _guide),
+        Route("/guide/{topic}", _guide),
         Route("/api/events", _events),
         Route("/api/status", _status),
         Route("/api/screen", _screen),
@@ -59,7 +68,7 @@ def application(desk: Desk, token: str | None = None) -> Guard:
     app = Starlette(routes=routes, exception_handlers={TrialidError: _refused})
     app.router.redirect_slashes = False
     app.state.desk = desk
-    return Guard(app, token)
+    return Guard(app, token, local or token is None)
 
 
 class _Server(uvicorn.Server):
@@ -75,10 +84,10 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def serve(desk: Desk, listening: socket.socket, token: str | None = None) -> None:
+def serve(desk: Desk, listening: socket.socket, token: str) -> None:
     """Answer until Ctrl-C."""
     config = uvicorn.Config(
-        application(desk, token),
+        application(desk, token, local=of_this_machine(listening.getsockname()[0])),
         log_level="warning",
         lifespan="off",
         timeout_graceful_shutdown=1,
@@ -165,7 +174,7 @@ def _result(request: Request) -> Response:
     run = _desk(request).shown.run
     if run is None:
         return JSONResponse({"error": "not known yet"}, status_code=404)
-    return JSONResponse(run.result)
+    return JSONResponse(plain(run.result))
 
 
 def _report(request: Request) -> Response:
@@ -176,8 +185,17 @@ def _report(request: Request) -> Response:
 
 
 def _pipeline(request: Request) -> Response:
-    recipe = _desk(request).shown.recipe
-    return _download(recipe.text, "pipeline.toml", "application/toml")
+    pipeline = _desk(request).shown.pipeline
+    return _download(pipeline.text, "pipeline.toml", "application/toml")
+
+
+def _guide(request: Request) -> Response:
+    """A page of the manual; links between pages end in .md, as in its files."""
+    topic = request.path_params.get("topic")
+    try:
+        return Response(guide_page.html_page(topic), media_type="text/html")
+    except TrialidError as error:
+        return JSONResponse({"error": str(error)}, status_code=404)
 
 
 def _download(text: str, name: str, kind: str) -> Response:
@@ -232,8 +250,8 @@ def _export(desk: Desk, asked: dict[str, Any]) -> dict[str, Any]:
     shown = desk.shown
     name = asked.get("name")
     if name is not None:
-        return {"files": [copied(shown.recipe, _text(asked, "name"))]}
-    return {"files": written(shown)}
+        return {"files": [copy_pipeline(shown.pipeline, _text(asked, "name"))]}
+    return {"files": write_folder(shown)}
 
 
 ACTS: Final[Mapping[str, Act]] = {
@@ -245,7 +263,7 @@ ACTS: Final[Mapping[str, Act]] = {
 def _text(asked: Mapping[str, Any], key: str) -> str:
     found = asked.get(key)
     if not isinstance(found, str):
-        raise RecipeError(f"{key}: expected text")
+        raise PipelineError(f"{key}: expected text")
     return found
 
 

@@ -2,10 +2,11 @@
 
 from trialid import ingest
 from trialid.ingest import LogFile
-from trialid.pipeline import Progress, align_trial
-from trialid.recipe import Recipe, TrialRecipe
+from trialid.pipeline_file import Pipeline, TrialSection
+from trialid.progress import Progress
 from trialid.trial import Trial
-from trialid.workbench.watch import seen
+from trialid.workbench.watch import file_state
+from trialid.workflow.read_trials import align_trial
 
 
 class Shelf:
@@ -14,19 +15,19 @@ class Shelf:
     def __init__(self) -> None:
         self._kept: dict[str, Trial] = {}
 
-    def trials(self, recipe: Recipe, progress: Progress) -> tuple[Trial, ...]:
+    def trials(self, pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
         """The pipeline's trials; those that are kept are not read again."""
         done = {}
-        for i, trial in enumerate(recipe.trials):
-            key = _key(recipe, trial)
-            progress(f"reading {trial.name}", 0.3 * i / len(recipe.trials))
-            done[key] = self._kept.get(key) or align_trial(recipe, trial)
+        for i, trial in enumerate(pipeline.trials):
+            key = _key(pipeline, trial)
+            progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
+            done[key] = self._kept.get(key) or align_trial(pipeline, trial)
         self._kept = done
         return tuple(done.values())
 
 
-def _key(recipe: Recipe, trial: TrialRecipe) -> str:
+def _key(pipeline: Pipeline, trial: TrialSection) -> str:
     """All that the aligned signals rest on."""
     logs = [file for log in trial.logs for file in ingest.files_of(LogFile(log.path))]
     aids = [aid for log in trial.logs for aid in (log.template, log.dbc) if aid is not None]
-    return repr((trial, recipe.align, [(file, seen(file)) for file in (*logs, *aids)]))
+    return repr((trial, pipeline.align, [(file, file_state(file)) for file in (*logs, *aids)]))

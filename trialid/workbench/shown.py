@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from trialid.identification.fit import Fit
-from trialid.pipeline import Outcome
-from trialid.recipe import Recipe
-from trialid.report.series import TrialSeries
+from trialid.pipeline_file import Pipeline
+from trialid.result.series import TrialSeries
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.trial import Trial
+from trialid.workflow.outcome import Outcome
 
 Place = Literal["pipeline", "effects", "logs", "fit"]
 """Where a mistake was made."""
@@ -39,7 +39,7 @@ class Shown:
 
     Attributes
     ----------
-    recipe
+    pipeline
         The pipeline as its file has it.
     catalogue
         Every effect that can be added, the user's own among them.
@@ -58,7 +58,7 @@ class Shown:
         Everything about the model before the last change, to be shown beside, or greyed meanwhile.
     """
 
-    recipe: Recipe
+    pipeline: Pipeline
     catalogue: Mapping[str, Effect]
     model: ShipModel | None = None
     trials: tuple[Trial, ...] = ()

@@ -45,13 +45,13 @@ def status_of(
 ) -> Status:
     """Where things are."""
     return Status(
-        counts.serial,
-        document.version,
-        shown.stage,
-        working,
-        trouble,
-        document.done[-1].words if document.done else None,
-        document.undone[-1].words if document.undone else None,
-        counts.screen,
-        counts.series,
+        serial=counts.serial,
+        version=document.version,
+        stage=shown.stage,
+        working=working,
+        trouble=trouble,
+        undo=document.done[-1].words if document.done else None,
+        redo=document.undone[-1].words if document.undone else None,
+        screen=counts.screen,
+        series=counts.series,
     )

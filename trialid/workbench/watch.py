@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from trialid.recipe import Recipe, sources
+from trialid.pipeline_file import Pipeline, sources
 
 Seen = tuple[int, int, int] | None
 Files = dict[Path, Seen]
 
 
-def seen(path: Path) -> Seen:
+def file_state(path: Path) -> Seen:
     """What tells one state of a file from another, None where there is none."""
     try:
         found = path.stat()
@@ -17,16 +17,16 @@ def seen(path: Path) -> Seen:
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def watched(recipe: Recipe) -> Files:
+def watch_list(pipeline: Pipeline) -> Files:
     """The pipeline, the user's own effects and the ship, as they are now."""
-    ship = () if recipe.ship is None else (recipe.ship,)
-    return {path: seen(path) for path in (recipe.path, *recipe.model.effects_from, *ship)}
+    ship = () if pipeline.ship is None else (pipeline.ship,)
+    return {path: file_state(path) for path in (pipeline.path, *pipeline.model.effects_from, *ship)}
 
 
-def resting(recipe: Recipe) -> Files:
+def source_states(pipeline: Pipeline) -> Files:
     """What a model rests on besides its pipeline, as it is now: logs, ship, the user's effects."""
     found: Files = {}
-    for place in sources(recipe)[1:]:
+    for place in sources(pipeline)[1:]:
         inside = sorted(place.glob("*")) if place.is_dir() else []
-        found |= {path: seen(path) for path in (place, *inside)}
+        found |= {path: file_state(path) for path in (place, *inside)}
     return found

@@ -15,11 +15,11 @@ from pydantic import (
     field_validator,
 )
 
-from trialid.assembly import available, build_model, check_bounds, settings_of
-from trialid.change import Edit, adding, dropping
-from trialid.errors import RecipeError, TrialidError, nearest
-from trialid.recipe import Recipe, read
-from trialid.recipe.edit import set_bounds, set_fixed, set_free, set_use, set_value
+from trialid.errors import PipelineError, TrialidError, nearest
+from trialid.pipeline_file import Pipeline, read
+from trialid.pipeline_file.edit import fix_parameter, set_bounds, set_free, set_use, set_value
+from trialid.workflow.build_model import available, build_model, check_bounds, settings_of
+from trialid.workflow.edit_model import Edit, add_to_pipeline, drop_from_pipeline
 
 
 class Wish(BaseModel):
@@ -93,7 +93,7 @@ _ADAPTER: Final[TypeAdapter[Any]] = TypeAdapter(AnyWish)
 class Granted:
     """A pipeline as wished for, the wish in words, and the edit where an effect comes or goes."""
 
-    after: Recipe
+    after: Pipeline
     words: str
     edit: Edit | None = None
 
@@ -103,7 +103,7 @@ def understood(asked: object) -> Any:
 
     Raises
     ------
-    RecipeError
+    PipelineError
         It is none, in one line.
     """
     try:
@@ -112,10 +112,10 @@ def understood(asked: object) -> Any:
         first = error.errors()[0]
         place = ".".join(str(step) for step in first["loc"][1:]) or "edit"
         words = f"{place}: {first['msg']}".encode("utf-8", "backslashreplace").decode()
-        raise RecipeError(words) from error
+        raise PipelineError(words) from error
 
 
-def granted(recipe: Recipe, wish: Any) -> Granted:
+def grant(pipeline: Pipeline, wish: Any) -> Granted:
     """The pipeline as wished for, checked as far as can be without fitting it.
 
     Raises
@@ -123,15 +123,15 @@ def granted(recipe: Recipe, wish: Any) -> Granted:
     TrialidError
         In one line: what cannot be, and why.
     """
-    found = _GRANTS[type(wish)](recipe, wish)
-    if found.after.content == recipe.content:
-        raise RecipeError(f"{found.words}: it is so already")
+    found = _GRANTS[type(wish)](pipeline, wish)
+    if found.after.content == pipeline.content:
+        raise PipelineError(f"{found.words}: it is so already")
     model = build_model(found.after, available(found.after))
     check_bounds(found.after, model, settings_of(found.after))
     return found
 
 
-def between(old: Recipe, new: Recipe) -> Edit | None:
+def between(old: Pipeline, new: Pipeline) -> Edit | None:
     """The edit that one effect came or went by; None where two pipelines differ otherwise."""
     had, has = old.model.effects, new.model.effects
     came = [n for n in has if n not in had]
@@ -139,61 +139,61 @@ def between(old: Recipe, new: Recipe) -> Edit | None:
     if len(came) + len(went) != 1:
         return None
     try:
-        edit = adding(old, came[0]) if came else dropping(old, went[0])
+        edit = add_to_pipeline(old, came[0]) if came else drop_from_pipeline(old, went[0])
     except TrialidError:  # it was written by hand, or an effect file is broken by now
         return None
     return replace(edit, after=new)
 
 
-def _add(recipe: Recipe, wish: Add) -> Granted:
-    edit = adding(recipe, wish.effect)
+def _add(pipeline: Pipeline, wish: Add) -> Granted:
+    edit = add_to_pipeline(pipeline, wish.effect)
     return Granted(edit.after, f"add {wish.effect}", edit)
 
 
-def _drop(recipe: Recipe, wish: Drop) -> Granted:
-    edit = dropping(recipe, wish.effect)
+def _drop(pipeline: Pipeline, wish: Drop) -> Granted:
+    edit = drop_from_pipeline(pipeline, wish.effect)
     return Granted(edit.after, f"drop {wish.effect}", edit)
 
 
-def _free(recipe: Recipe, wish: Free) -> Granted:
+def _free(pipeline: Pipeline, wish: Free) -> Granted:
     name = wish.parameter
-    if wish.free == (name in recipe.identify.free):
-        raise RecipeError(f"{name} is {'free' if wish.free else 'fixed'} already")
+    if wish.free == (name in pipeline.identify.free):
+        raise PipelineError(f"{name} is {'free' if wish.free else 'fixed'} already")
     if wish.free:
-        return _edited(recipe, f"free {name}", lambda text: set_free(text, name))
-    return _edited(recipe, f"fix {name}", lambda text: set_fixed(text, name)[0])
+        return _edited(pipeline, f"free {name}", lambda text: set_free(text, name))
+    return _edited(pipeline, f"fix {name}", lambda text: fix_parameter(text, name)[0])
 
 
-def _bounds(recipe: Recipe, wish: Bounds) -> Granted:
+def _bounds(pipeline: Pipeline, wish: Bounds) -> Granted:
     name, low, high = wish.parameter, wish.low, wish.high
     if low is None and high is None:
-        return _edited(recipe, f"no bounds of {name}", lambda text: set_bounds(text, name, None))
+        return _edited(pipeline, f"no bounds of {name}", lambda text: set_bounds(text, name, None))
     between = (-math.inf if low is None else low, math.inf if high is None else high)
     words = f"bounds of {name} {between[0]:g} to {between[1]:g}"
-    return _edited(recipe, words, lambda text: set_bounds(text, name, between))
+    return _edited(pipeline, words, lambda text: set_bounds(text, name, between))
 
 
-def _value(recipe: Recipe, wish: Value) -> Granted:
+def _value(pipeline: Pipeline, wish: Value) -> Granted:
     name, value = wish.parameter, wish.value
     words = f"no value of {name}" if value is None else f"{name} = {value:g}"
-    return _edited(recipe, words, lambda text: set_value(text, name, value))
+    return _edited(pipeline, words, lambda text: set_value(text, name, value))
 
 
-def _use(recipe: Recipe, wish: Use) -> Granted:
-    names = [trial.name for trial in recipe.trials]
+def _use(pipeline: Pipeline, wish: Use) -> Granted:
+    names = [trial.name for trial in pipeline.trials]
     if wish.trial not in names:
-        raise RecipeError(f"there is no trial {wish.trial!r}; {nearest(wish.trial, names)}")
+        raise PipelineError(f"there is no trial {wish.trial!r}; {nearest(wish.trial, names)}")
     index = names.index(wish.trial)
-    if recipe.trials[index].use == wish.use:
-        raise RecipeError(f"{wish.trial} is {_DONE[wish.use]} already")
+    if pipeline.trials[index].use == wish.use:
+        raise PipelineError(f"{wish.trial} is {_DONE[wish.use]} already")
     words = f"{wish.trial} {_DONE[wish.use]}"
-    return _edited(recipe, words, lambda text: set_use(text, index, wish.use))
+    return _edited(pipeline, words, lambda text: set_use(text, index, wish.use))
 
 
-def _edited(recipe: Recipe, words: str, change: Callable[[str], str]) -> Granted:
-    return Granted(read(change(recipe.text).encode("utf-8"), recipe.path), words)
+def _edited(pipeline: Pipeline, words: str, change: Callable[[str], str]) -> Granted:
+    return Granted(read(change(pipeline.text).encode("utf-8"), pipeline.path), words)
 
 
-_GRANTS: Final[dict[type, Callable[[Recipe, Any], Granted]]] = {
+_GRANTS: Final[dict[type, Callable[[Pipeline, Any], Granted]]] = {
     Add: _add, Drop: _drop, Free: _free, Bounds: _bounds, Value: _value, Use: _use,
 }  # fmt: skip

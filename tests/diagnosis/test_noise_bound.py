@@ -1,0 +1,92 @@
+"""A split of the error within what other fits leave, and refused where routes contradict."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from trialid.diagnosis.noise.noise_bound import held_against
+from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED, Split
+from trialid.diagnosis.search.completeness import Completeness
+
+OUTPUTS = ("r", "phi")
+
+
+def fit(eps, effects=(), converged=True):
+    """A fit as far as its errors go."""
+    return SimpleNamespace(
+        eps_rmsn=eps, eps_by_output=dict.fromkeys(OUTPUTS, eps), converged=converged,
+        model=SimpleNamespace(effects=[SimpleNamespace(name=n) for n in effects]),
+    )  # fmt: skip
+
+
+def route(method, noise, interval, total=0.10):
+    """A route's split of an error of 10 %."""
+    low, high = interval
+    rest = [max(total**2 - x**2, 0.0) ** 0.5 for x in (noise, high, low)]
+    by_output = dict.fromkeys(OUTPUTS, (noise, rest[0]))
+    return Split(method, "", noise, rest[0], interval, (rest[1], rest[2]), by_output)
+
+
+QUIET = route("quiet stretch", 0.08, (0.07, 0.09))
+NOTHING_MORE, A_FORCE = Completeness(5.0, 8.0), Completeness(5.0, 90.0)
+
+
+def test_no_more_noise_than_another_model_leaves():
+    """8 % of noise, at least 7: with an effect more 7.5 % is left in all."""
+    base = fit(0.10, ("a",))
+    held = held_against(QUIET, (QUIET,), base, [fit(0.075, ("a", "b")), fit(0.09, ("a", "c"))])
+    assert held.method == "quiet stretch"
+    assert held.noise == pytest.approx(0.075)
+    assert held.noise_interval == (0.07, 0.075)
+    assert held.noise**2 + held.undermodelling**2 == pytest.approx(0.10**2)
+    low, high = held.undermodelling_interval
+    assert low == QUIET.undermodelling_interval[0]
+    assert low <= held.undermodelling <= high
+    for noise, model in held.by_output.values():
+        assert noise == pytest.approx(0.075)
+        assert noise**2 + model**2 == pytest.approx(0.10**2)
+
+
+def test_a_route_that_no_interval_saves_is_refused_with_both_figures():
+    held = held_against(QUIET, (QUIET,), fit(0.10, ("a",)), [fit(0.065, ("a", "b"))])
+    assert not held.available
+    assert "8.00% (7.00% to 9.00%)" in held.why
+    assert "with b in the model only 6.50% is left" in held.why
+
+
+@pytest.mark.parametrize("other", [
+    fit(0.03, ("b",), converged=False),  # a search that stopped somewhere says nothing
+    fit(0.12, ("b",)),  # a worse one neither
+    fit(0.095, ("b",)),  # and this one leaves room
+])  # fmt: skip
+def test_other_fits_change_nothing_else(other):
+    assert held_against(QUIET, (QUIET,), fit(0.10), [other]).noise == QUIET.noise
+
+
+@pytest.mark.parametrize(("other", "whole", "contradicts"), [
+    (route("repeated manoeuvre", 0.05, (0.04, 0.06)), None, True),
+    (route("repeated manoeuvre", 0.095, (0.092, 0.098)), None, True),
+    (route("repeated manoeuvre", 0.065, (0.055, 0.075)), None, False),
+    # noise is what does not depend on the input, at most
+    (route(INPUT_DRIVEN, 0.06, (0.055, 0.065)), A_FORCE, True),
+    # and less where the catalogue does not hold what depends on it; then a force shows
+    (route(INPUT_DRIVEN, 0.098, (0.095, 0.10)), A_FORCE, False),
+    (route(INPUT_DRIVEN, 0.098, (0.095, 0.10)), NOTHING_MORE, True),
+    # a sensor's own figure is the least that noise is
+    (route(STATED, 0.05, (0.05, 0.05)), None, False),
+    (route(STATED, 0.095, (0.095, 0.095)), None, True),
+])  # fmt: skip
+def test_routes_are_held_against_each_other(other, whole, contradicts):
+    held = held_against(QUIET, (QUIET, other), fit(0.10), (), whole)
+    assert held.available is not contradicts
+    if contradicts:
+        assert f"{QUIET.noise:.2%}" in held.why
+        assert f"{other.noise:.2%}" in held.why
+        assert other.method in held.why
+    turned = held_against(other, (other, QUIET), fit(0.10), (), whole)
+    assert turned.available is not contradicts
+
+
+def test_what_is_no_split_stays_none():
+    none = Split("not separable", "no route holds")
+    assert held_against(none, (none,), fit(0.10), [fit(0.01)]) is none

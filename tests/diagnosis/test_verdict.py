@@ -1,0 +1,136 @@
+"""Which of several refits is named, on made-up fits: the gates, each from both sides."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.search.carry_over import Carried, as_good, lead_in_errors
+from trialid.diagnosis.search.completeness import Completeness, _Search
+from trialid.diagnosis.verdict import Refit, best_of, decide, rivals
+
+BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
+
+
+def fit(eps, check=None, converged=True):
+    return SimpleNamespace(eps_rmsn=eps, eps_check=check, converged=converged)
+
+
+def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=()):
+    """A refit that carries over so far; `wobble` makes its blocks disagree."""
+    after = tuple(ratio * x * (1.0 + wobble * (-1) ** i) for i, x in enumerate(BEFORE))
+    carried = Carried(BEFORE, after)
+    candidate = SimpleNamespace(
+        effect=SimpleNamespace(name=name, parameters=tuple("abcdef"[:parameters])),
+        shown=lambda level: True,
+        carried=carried,
+        family=(name, *family),
+        allowed=True,
+        p_value=0.001,
+        price=carried.price(parameters),
+    )
+    return Refit(candidate, fit(eps, check), carried)
+
+
+def split(noise, total=0.10):
+    model = float(np.sqrt(total**2 - noise**2))
+    return Split(
+        "quiet stretch", "", noise, model, (0.9 * noise, 1.1 * noise), (0.9 * model, model)
+    )
+
+
+@pytest.mark.parametrize(
+    ("eps", "kind"),
+    [
+        (0.10 * np.sqrt(0.80), "missing"),
+        (0.10 * np.sqrt(0.89), "missing"),  # 0.11 of 0.84 that are not noise
+        (0.10 * np.sqrt(0.92), "not in catalogue"),
+    ],
+)
+def test_what_is_named_explains_an_eighth_of_what_is_not_noise(eps, kind):
+    """An error of 10 % with 4 % of noise in it: 84 % of its square are the model's."""
+    named = refit("a", 0.7, eps)
+    found = decide(fit(0.10), (), [named], split(0.04), None, 0.05)
+    assert found.kind == kind
+    assert found.effect == ("a" if kind == "missing" else None)
+    alone = decide(fit(0.10), (), [named], Split("not separable", "no route"), None, 0.05)
+    assert alone.kind == "missing"  # of an unknown share nothing is asked
+
+
+@pytest.mark.parametrize(
+    ("ratio", "kind"), [(0.95, "cannot tell"), (0.92, "cannot tell"), (0.90, "missing")]
+)
+def test_beside_effects_that_were_added_a_name_costs_a_tenth(ratio, kind):
+    named = refit("a", ratio, 0.08)
+    found = [
+        decide(fit(0.10), (), [named], split(0.04), None, 0.05, grown=g) for g in (True, False)
+    ]
+    assert [f.kind for f in found] == [kind, "missing"]
+
+
+def test_of_two_that_leave_as_much_the_one_of_fewer_parameters_is_taken():
+    """One per cent of the squared error for each further one."""
+    simple, many = refit("simple", 0.800, 0.08), refit("many", 0.790, 0.08, parameters=3)
+    assert best_of([simple, many]) is simple
+    assert best_of([refit("more", 0.770, 0.08, parameters=3), simple]).candidate.effect.name == (
+        "more"
+    )
+
+
+def test_what_held_out_trials_lose_by_is_not_named():
+    named = refit("a", 0.7, 0.08, check=0.21)
+    assert decide(fit(0.10, 0.20), (), [named], split(0.04), None, 0.05).kind == "cannot tell"
+    lost = refit("a", 0.7, 0.08, check=np.inf)
+    assert decide(fit(0.10, 0.20), (), [lost], split(0.04), None, 0.05).kind == "cannot tell"
+    better = refit("a", 0.7, 0.08, check=0.19)
+    assert decide(fit(0.10, 0.20), (), [better], split(0.04), None, 0.05).kind == "missing"
+
+
+def test_rivals_explain_more_than_half_and_differ_by_no_more_than_chance():
+    named = refit("named", 0.50, 0.07, family=("twin",))
+    close = refit("close", 0.55, 0.07, wobble=0.3)  # its blocks disagree by more than it lags
+    clear = refit("clear", 0.55, 0.07)
+    weak = refit("weak", 0.75, 0.09, wobble=0.9)  # less than half of the fall
+    every = [named, close, clear, weak]
+    found = rivals(named, [r.candidate for r in every], every)
+    assert found == ("close", "twin")
+
+
+@pytest.mark.parametrize(("gap", "good"), [(1.5, True), (2.4, True), (2.7, False)])
+def test_two_lists_differ_by_student_s_97_5_per_cent(gap, good):
+    """Six blocks: 2.57 standard errors."""
+    one = np.array(BEFORE)
+    spread = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+    spread *= np.sqrt(6.0) / np.std(spread, ddof=1)
+    other = one + 1e-3 * (gap + spread)
+    assert lead_in_errors(one, other) == pytest.approx(gap)
+    assert bool(as_good(one, other)) is good
+
+
+@pytest.mark.parametrize(
+    ("catalogue", "any_shape", "gap"),
+    [
+        (5.0, 34.0, False),
+        (5.0, 36.0, True),
+        (300.0, 395.0, False),
+        (300.0, 405.0, True),
+    ],
+)
+def test_a_gap_is_of_thirty_and_of_a_quarter(catalogue, any_shape, gap):
+    assert Completeness(catalogue, any_shape).gap is gap
+
+
+def test_each_step_of_a_selection_pays_for_its_coefficient_and_for_the_search():
+    """Independent columns, scores z: z^2 - ln N - 2 ln J for each of J that is worth it."""
+    z = np.array([9.0, 7.0, 2.0, 6.5])
+    rows = 1000
+    search = _Search(np.eye(4), z, rows, 1.0)
+    effects, forces = [(0,), (2,)], [(1,), (3,)]
+    price = np.log(rows) + 2.0 * np.log(2.0)
+    alone = z[0] ** 2 - price  # the other is not worth its price
+    assert search.gain(effects, []) == pytest.approx(alone)
+    both = alone + z[1] ** 2 + z[3] ** 2 - 2.0 * price
+    assert search.gain(effects, forces) == pytest.approx(both)
+    inflated = _Search(np.eye(4), z, rows, 2.0)
+    assert inflated.gain([(0,)], []) == pytest.approx(z[0] ** 2 / 2.0 - np.log(rows))

@@ -1,0 +1,90 @@
+"""Studies in turn: all of them within five commits, none by another word."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import turns
+
+CI = Path(__file__).parents[2] / ".ci"
+INI = f"""\
+[pytest]
+pythonpath = {CI}
+addopts = -p no:cacheprovider
+markers = study: long
+"""
+TESTS = """\
+import pytest
+
+def test_plain(): pass
+
+@pytest.mark.study
+def test_short(): pass
+
+@pytest.mark.study(turn=0)
+def test_first(): pass
+
+@pytest.mark.study(turn=3)
+def test_fourth(): pass
+
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize(("a", "b"), [(k, -k) for k in range(7)])
+def test_case(a, b): pass
+"""
+
+
+def ran(folder: Path, turn: str, *options: str) -> set[str]:
+    """The tests that run of a folder with studies."""
+    (folder / "pytest.ini").write_text(INI)
+    (folder / "test_all.py").write_text(TESTS)
+    (folder / "conftest.py").write_text("from turns import pytest_collection_modifyitems\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-v", *options],
+        cwd=folder,
+        env={**os.environ, turns.VARIABLE: turn, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    passed = (line for line in done.stdout.splitlines() if " PASSED" in line)
+    return {line.partition("::")[2].partition(" ")[0] for line in passed}
+
+
+def test_the_long_studies_run_when_it_is_their_turn_and_the_rest_each_time(tmp_path: Path) -> None:
+    cases = [f"test_case[{k}-{-k}]" for k in range(7)]
+    each_time = {"test_plain", "test_short"}
+    assert ran(tmp_path, "") == each_time | {"test_first", "test_fourth", *cases}
+    assert ran(tmp_path, "0") == each_time | {"test_first", cases[0], cases[5]}
+    assert ran(tmp_path, "1") == each_time | {cases[1], cases[6]}
+    assert ran(tmp_path, "3", "-m", "study") == {"test_short", "test_fourth", cases[3]}
+
+
+def test_these_tests_are_drawn_so(pytestconfig: pytest.Config) -> None:
+    hooks = pytestconfig.pluginmanager.hook.pytest_collection_modifyitems.get_hookimpls()
+    assert turns.pytest_collection_modifyitems in [each.function for each in hooks]
+
+
+def test_each_study_comes_up_within_five_commits() -> None:
+    for own in (None, *range(turns.TURNS)):
+        times = sum(turns.comes_up(own, commit % turns.TURNS) for commit in range(355, 360))
+        assert times == (turns.TURNS if own is None else 1)
+
+
+def test_the_turn_is_the_number_of_commits() -> None:
+    assert [turns.asked("turn", lambda n=n: n) for n in range(350, 356)] == [0, 1, 2, 3, 4, 0]
+    assert turns.asked("", lambda: pytest.fail("not asked for")) is None
+    assert turns.asked("3", lambda: pytest.fail("not asked for")) == 3
+    for word in ("5", "-1", "all", "Turn"):
+        with pytest.raises(pytest.UsageError, match=word):
+            turns.asked(word, lambda: 0)
+
+
+def test_a_turn_that_never_comes_is_refused() -> None:
+    assert turns.of_study(None) is None
+    assert turns.of_study(pytest.mark.study.mark) is None
+    assert turns.of_study(pytest.mark.study(turn=4).mark) == 4
+    assert [turns.of_study(pytest.mark.study(turn="each").mark, k) for k in (0, 4, 5)] == [0, 4, 0]
+    with pytest.raises(pytest.UsageError, match="turn=5"):
+        turns.of_study(pytest.mark.study(turn=5).mark)

@@ -1,0 +1,182 @@
+"""A fit that carries no verdict says so with its first reason, and a sound one says nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import MODEL, white, with_noise, zigzag
+
+from trialid.identification.adequacy import SLOWEST_TIMES, UNEXPLAINED, remarks, why_no_fit
+from trialid.identification.fit import identify
+from trialid.identification.problem import Settings
+from trialid.identification.time_scales import slowest_motion
+from trialid.trial import Trial
+
+FEW = ("Nv", "Nr", "Ndelta", "Kdelta", "Kp")
+SETTINGS = Settings(FEW, ("r", "phi"), nuisance=("initial_state",))
+
+
+def noisy(trial, seed):
+    return with_noise(trial, *white(np.random.default_rng(seed), trial.samples))
+
+
+def cut(trial, seconds, begin=0.0):
+    a, b = round(begin / trial.period), round((begin + seconds) / trial.period)
+    signals = {n: y[a:b].copy() for n, y in trial.signals.items()}
+    return Trial(trial.name, trial.use, trial.period, signals,
+                 {n: np.ones(b - a, dtype=bool) for n in signals})  # fmt: skip
+
+
+def with_signals(trial, **changed):
+    return replace(trial, signals={**trial.signals, **changed})
+
+
+@pytest.fixture(scope="module")
+def sound():
+    held = noisy(zigzag(5, use="check"), 2)
+    return identify([noisy(zigzag(10), 1), held], MODEL, SETTINGS)
+
+
+def test_a_sound_fit_is_not_objected_to(sound):
+    assert why_no_fit(sound) is None
+    assert remarks(sound) == ()
+
+
+def test_a_zigzag_of_two_degrees_is_a_manoeuvre():
+    assert why_no_fit(identify([noisy(zigzag(2), 3)], MODEL, SETTINGS)) is None
+
+
+def test_a_rudder_that_keeps_a_course_is_no_manoeuvre():
+    small = zigzag(10)
+    small = with_signals(small, delta=small.signals["delta"] * 0.04)
+    found = why_no_fit(identify([noisy(small, 4)], MODEL, SETTINGS))
+    assert "never manoeuvres: the rudder moves by 0.8 deg" in found.reason
+    assert "zig-zag" in found.advice
+
+
+def test_a_ship_that_lies_still_while_the_helm_is_tried_never_moves():
+    trial = zigzag(10)
+    still = with_noise(
+        with_signals(trial, r=np.zeros(trial.samples), phi=np.zeros(trial.samples)),
+        *white(np.random.default_rng(5), trial.samples),
+    )
+    assert "never moves: r and phi" in why_no_fit(identify([still], MODEL, SETTINGS)).reason
+
+
+def test_a_motion_that_is_not_the_rudders_is_not_explained():
+    """A slow wander of the heading under a rudder that has nothing to do with it."""
+    trial = zigzag(10)
+    wander = 0.01 * np.sin(0.013 * trial.t + 1.0) * np.cos(0.0041 * trial.t)
+    moved = with_noise(
+        with_signals(trial, r=wander, phi=3.0 * wander),
+        *white(np.random.default_rng(6), trial.samples),
+    )
+    fit = identify([moved], MODEL, SETTINGS)
+    found = why_no_fit(replace(fit, converged=True))
+    assert "explains too little" in found.reason
+    assert "% of r" in found.reason
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.6, False), (1.6, True)])
+def test_half_of_the_variance_is_the_line(sound, share, refused):
+    """The same fit with another error laid over it, a little below and above the line."""
+    [fitted, _] = sound.scores
+    y = np.column_stack([fitted.trial.signals[c] for c in ("r", "phi")])
+    spread = np.std(y, axis=0) * np.sqrt(UNEXPLAINED * share)
+    wave = np.sqrt(2.0) * np.sin(0.05 * fitted.trial.t)[:, None] * spread
+    worse = replace(fitted.response, y=fitted.response.y + wave)
+    fit = replace(sound, scores=(replace(fitted, response=worse),))
+    assert (why_no_fit(fit) is not None) == refused
+
+
+def test_a_record_that_ends_before_she_has_settled_is_too_short():
+    model = MODEL
+    whole = noisy(zigzag(10), 7)
+    settings = replace(SETTINGS, free=("Ndelta", "Kdelta"))
+    slow = slowest_motion(identify([whole], model, settings)).seconds
+    for factor, refused in ((0.9, True), (1.2, False)):
+        piece = cut(whole, factor * SLOWEST_TIMES * slow, begin=60.0)
+        fit = replace(identify([piece], model, settings), converged=True)
+        found = why_no_fit(fit)
+        assert ("too short" in str(found)) == refused, (factor, found)
+
+
+def test_the_slowest_motion_is_that_of_the_equations():
+    """Yaw alone, by hand: (I_zz - Nrdot) dr/dt = Nr r, in prime units of L / U."""
+    effects = tuple(e for e in MODEL.effects if e.name in ("linear_hull", "linear_rudder"))
+    yaw = replace(MODEL, states=("r",), effects=effects, values={"Nr": -0.004})
+    trial = zigzag(10)
+    trial = with_signals(trial, u=np.full(trial.samples, 7.33), v=np.zeros(trial.samples))
+    fit = identify([trial], yaw, Settings(("Ndelta",), ("r",), nuisance=("initial_state",)))
+    by_hand = (0.000456 + 0.000419) / 0.004 * 175.0 / 7.33
+    assert slowest_motion(fit).seconds == pytest.approx(by_hand, rel=0.01)
+
+
+def test_a_search_that_stopped_early_is_no_fit():
+    trial = noisy(zigzag(10), 8)
+    model = MODEL.with_values({"Nr": -0.02, "Nv": -0.02})
+    fit = identify([trial], model, replace(SETTINGS, max_iterations=1))
+    found = why_no_fit(fit)
+    assert not fit.converged
+    assert "did not converge" in found.reason
+    assert f"{fit.eps_rmsn:.1%}" in found.reason
+
+
+def test_a_held_out_trial_that_diverges_is_named(sound):
+    """The fitted ship with a righting moment the wrong way round capsizes there."""
+    from trialid.identification.fit import _score
+
+    theta = sound.theta.copy()
+    theta[FEW.index("Kp")] = 0.01
+    lost = _score(sound.problem, theta, sound.scores[1].trial, sound.level)
+    assert lost.response.departure is not None
+    found = why_no_fit(replace(sound, scores=(sound.scores[0], lost)))
+    assert "held-out trial 'zigzag-5' diverges" in found.reason
+
+
+def test_a_held_out_trial_with_its_rudder_the_wrong_way_is_foretold_worse_than_by_nothing(sound):
+    trial = noisy(zigzag(5, use="check"), 9)
+    wrong = with_signals(trial, delta=-trial.signals["delta"])
+    fit = identify([sound.scores[0].trial, wrong], MODEL, SETTINGS)
+    assert "foretold worse than by no model" in why_no_fit(fit).reason
+
+
+def test_every_reason_is_one_finite_line(sound):
+    lost = replace(sound, converged=False, reason="iterations")
+    for words in (str(why_no_fit(lost)), *remarks(lost)):
+        assert "\n" not in words
+        assert "nan" not in words
+        assert "inf" not in words.split()
+
+
+def test_a_bound_is_remarked_as_the_bounds_value():
+    settings = replace(SETTINGS, bounds={"Kp": (-0.000006, 0.0)})
+    fit = identify([noisy(zigzag(10), 10)], MODEL.with_values({"Kp": -0.000005}), settings)
+    assert set(fit.at_bounds) == {"Kp"}
+    assert any("Kp ended at its bound -6e-06" in line for line in remarks(fit))
+
+
+def test_a_delay_unlike_others_comes_back_and_is_remarked():
+    """Four standard deviations of what is likely: the record overrules, and it is said."""
+    trial = noisy(zigzag(10), 10)
+    late = with_signals(trial, phi=np.interp(trial.t - 2.0, trial.t, trial.signals["phi"]))
+    fit = identify([late], MODEL, replace(SETTINGS, nuisance=("initial_state", "delay")))
+    assert fit.value("tau_phi [zigzag-10]") == pytest.approx(2.0, abs=0.1)
+    assert set(fit.contradicted) == {"tau_phi [zigzag-10]"}
+    assert any("tau_phi [zigzag-10] = " in line and "above" in line for line in remarks(fit))
+
+
+def test_another_ships_file_is_noticed():
+    """The container ship's zig-zags as if a ship of a third of her length had sailed them."""
+    ship = MODEL.ship
+    particulars = {**ship.particulars, "L": 60.0, "nabla": 21222.0 * (60.0 / 175.0) ** 3}
+    short = replace(MODEL, ship=replace(ship, particulars=particulars, name="another"))
+    settings = replace(SETTINGS, free=("Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM"))
+    trials = [noisy(zigzag(10), 11), noisy(zigzag(20), 12)]
+    wrong = replace(identify(trials, short, settings), converged=True)
+    found = why_no_fit(wrong)
+    assert "ship's file is not of this ship" in found.reason
+    assert why_no_fit(identify(trials, MODEL, settings)) is None
+    says_so = replace(short.ship, source="PLACEHOLDER: of another length")
+    begun = identify(trials, replace(short, ship=says_so), settings)
+    assert "ship's file" not in str(why_no_fit(replace(begun, converged=True)))

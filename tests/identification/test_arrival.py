@@ -1,0 +1,150 @@
+"""A search that arrives: from far starts, deterministically, and honest where it cannot."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from s175q import MODEL, waves, white, with_noise, zigzag
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from search import begun
+from search_ships import draw
+
+from trialid.effects import CATALOGUE
+from trialid.identification.adequacy import remarks
+from trialid.identification.arrive import best_of
+from trialid.identification.fit import identify
+from trialid.identification.one_search import search
+from trialid.identification.problem import Settings, pose_problem
+from trialid.identification.record_starts import of_roll, record_starts
+
+FREE = ("Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
+EVERY = ("initial_state", "bias", "rudder_offset", "delay")
+SETTINGS = Settings(FREE, ("r", "phi"), nuisance=EVERY)
+FAR = {"Nr": -0.006, "Ndelta": 0.0008, "Kv": 0.0001, "Kr": 0.0, "Kdelta": 0.0004, "Kp": -0.0001}
+
+
+def noisy(amplitude, seed, kind=white, scale=1.0):
+    trial = zigzag(amplitude)
+    r, phi = kind(np.random.default_rng(seed), trial.samples)
+    return with_noise(trial, r, scale * phi)
+
+
+@pytest.fixture(scope="module")
+def trials():
+    return [noisy(10, 1, waves), noisy(20, 2, waves)]
+
+
+@pytest.fixture(scope="module")
+def arrived(trials):
+    return identify(trials, MODEL, SETTINGS)
+
+
+def test_from_a_good_start_one_search_is_enough(arrived):
+    assert arrived.converged
+    assert arrived.told == ()
+    assert arrived.agreeing == (1, 1)
+    assert arrived.rival_GM == ()
+    assert arrived.value("GM") == pytest.approx(0.3, rel=0.05)
+
+
+@pytest.mark.parametrize("GM", [0.05, 0.15, 1.0, 5.0])
+def test_from_any_metacentric_height_the_same_optimum_is_reached(trials, arrived, GM):
+    fit = identify(trials, MODEL.with_values({**FAR, "GM": GM}), SETTINGS)
+    assert fit.converged
+    assert fit.eps_rmsn == pytest.approx(arrived.eps_rmsn, rel=1e-4)
+    assert fit.value("GM") == pytest.approx(arrived.value("GM"), rel=0.01)
+    assert fit.rival_GM == ()
+    if GM != 0.15:
+        assert "starts by the record itself" in fit.told[0]
+
+
+def test_one_search_alone_would_have_stayed_elsewhere():
+    """A drawn model of 3 m, from a placeholder: what the starts by the record are for."""
+    drawn = draw(1009)
+    model = begun(drawn)
+    problem = pose_problem(drawn.trials, model, SETTINGS)
+    alone = search(problem, SETTINGS, problem.start, max_iterations=150)
+    assert alone.minimum.converged
+    fit = identify(drawn.trials, model, SETTINGS)
+    assert fit.converged
+    assert fit.V < 0.8 * alone.V
+    assert fit.value("GM") == pytest.approx(drawn.GM, rel=0.05)
+    assert "one of them went further" in fit.told[0]
+
+
+def test_a_search_is_repeated_to_the_last_bit(trials):
+    far = MODEL.with_values({**FAR, "GM": 1.0})
+    one, two = identify(trials, far, SETTINGS), identify(trials, far, SETTINGS)
+    assert np.array_equal(one.theta, two.theta)
+    assert one.told == two.told
+
+
+def test_the_record_itself_tells_gm_within_a_step_of_the_grid(trials):
+    """From an absurd start, before any search of everything."""
+    problem = pose_problem(trials, MODEL.with_values({**FAR, "GM": 5.0}), SETTINGS)
+    starts = record_starts(problem)
+    GM = starts[0][problem.roll.GM]
+    print([f"{s[problem.roll.GM]:.3g}" for s in starts])
+    assert 0.3 / 1.42 < GM < 0.3 * 1.42
+    assert len(starts) == 3
+
+
+def test_what_is_of_roll_is_told_by_its_letters():
+    problem = pose_problem([noisy(10, 3)], MODEL, SETTINGS)
+    names = {x.column for x, rolls in zip(problem.unknowns, of_roll(problem), strict=True) if rolls}
+    assert names == {"Kv", "Kr", "Kdelta", "Kp", "GM", "b_phi", "tau_phi", "p(0)", "phi(0)"}
+
+
+@pytest.mark.parametrize("seed", [1016, 1022])
+def test_a_metacentric_height_that_is_wrong_is_not_called_known(seed):
+    """Models of 6 and 2 m that hardly roll: 1.8 and 0.6 times the truth, and it is said."""
+    drawn = draw(seed)
+    fit = identify(drawn.trials, begun(drawn), SETTINGS)
+    assert abs(np.log(fit.value("GM") / drawn.GM)) > np.log(1.5)
+    assert fit.rival_GM[-1] >= 1.5 * fit.rival_GM[0] * 0.999
+    assert fit.rival_GM == tuple(sorted(fit.rival_GM))
+    assert any("does not tell GM" in line for line in remarks(fit))
+
+
+# --- a larger model -------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def smaller(trials):
+    gone = replace(MODEL, effects=tuple(e for e in MODEL.effects if e.name != "yaw_drag_rar"))
+    return identify(trials, gone, SETTINGS)
+
+
+@pytest.mark.parametrize("start", [-0.2, -0.0014, 0.0])
+def test_a_larger_model_is_never_worse_than_the_one_it_grew_from(trials, smaller, start):
+    larger = smaller.model + CATALOGUE["yaw_drag_rar"]
+    settings = replace(SETTINGS, free=(*FREE, "Nrar"))
+    near = {**smaller.estimates, "Nrar": start}
+    begun = larger.with_values({"Nrar": start})
+    fit = identify(trials, begun, settings, near=near, smaller=smaller)
+    assert fit.V < smaller.V
+    assert fit.value("Nrar") == pytest.approx(-0.0014, rel=0.3)
+
+
+def test_a_larger_model_that_went_astray_begins_again_from_the_smaller_one(trials, smaller):
+    """From an absurd start only one step is allowed: that alone is worse, with its origin not."""
+    larger = (smaller.model + CATALOGUE["yaw_drag_rar"]).with_values({"Nrar": -0.2})
+    settings = replace(SETTINGS, free=(*FREE, "Nrar"), max_iterations=1)
+    near = {**smaller.estimates, "Nrar": -0.2}
+    problem = pose_problem(trials, larger, settings, near)
+    assert search(problem, settings, problem.start).V > 2.0 * smaller.V
+    fit = identify(trials, larger, settings, near=near, smaller=smaller)
+    assert fit.V <= smaller.V
+    assert "where the smaller model had ended" in fit.told[0]
+
+
+def test_the_best_end_is_chosen_at_one_colour_and_needs_no_order(trials):
+    problem = pose_problem(trials, MODEL, SETTINGS)
+    short = search(problem, SETTINGS, problem.start * 1.2, max_iterations=2)
+    whole = search(problem, SETTINGS, problem.start)
+    assert best_of([short, whole]) is whole
+    assert best_of([whole, short]) is whole

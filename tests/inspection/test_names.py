@@ -1,0 +1,117 @@
+"""What a channel's name says, and what it must not be taken for."""
+
+import pytest
+
+from trialid.inspection import channel_names
+
+RECORDERS = {
+    "harbour/@v0/s175q/pubsub/rudder_angle_deg/steering_gear:value": "delta",
+    "harbour/@v0/s175q/pubsub/yaw_rate_degps/gyro:value": "r",
+    "gyro_z": "r",
+    "Fahrt durchs Wasser": "u",
+    "FdW": "u",
+    "Krängungswinkel": "phi",
+    "/imu:angular_velocity.z": "r",
+    "/imu:angular_velocity.x": "p",
+    "ATTITUDE/1/1:yawspeed": "r",
+    "ROT/HE:rate": "r",
+    "rudderAngle": "delta",
+    "RudderOrder": "delta_order",
+    "Ruderlage": "delta",
+    "commanded rudder": "delta_order",
+    "shaft_rpm_port": "n_p",
+    "Shaft Speed Stbd": "n_s",
+    "heel": "phi",
+    "HDT": "psi",
+    "u": "u",
+    "AWA": "gamma_aw",
+    "/vessel/state:heading": "psi",
+    "/pitch_roll:roll": "phi",
+    "psi_hat": "psi",
+    "Kurs": "psi",
+    "Wellendrehzahl": "n",
+    "rpm_left": "n_p",
+    "phi_measured": "phi",
+    "delta_meas": "delta",
+}
+
+WITH_UNITS = {
+    ("u_velo", "m/s"): "u",
+    ("vm_velo", "m/s"): "v",
+    ("r_angvelo", "rad/s"): "r",
+    ("n_prop", "rps"): "n",
+    ("n_prop", "rev/s"): "n",
+    ("surge", "m/s"): "u",
+    ("sway", "kn"): "v",
+    ("surge", "m"): None,
+    ("surge", None): None,
+    ("v_meas", "V"): None,
+    ("v_meas", None): None,
+    ("n_prop", "N"): None,
+    ("Ruderlage", "°"): "delta",
+    ("Wendegeschwindigkeit", "°/min"): "r",
+    ("Drehzahl", "U/min"): "n",
+    ("Drehzahl", "1/min"): "n",
+    ("Fahrt", "kn"): None,
+    ("Kurs über Grund", "°"): None,
+}
+
+OTHERS = (
+    "heading_error", "desired_yaw_rate", "roll_std", "/imu:orientation_covariance[3]", "x", "U10",
+    "engine_rpm", "rudder_temperature", "heading_status", "yaw_rate_setpoint", "/imu:linear.z",
+    "heading_deviation", "max_roll", "t", "", "ATT:DesYaw", "GPS_RAW_INT/1/1:hdg_acc",
+    "NAV_CONTROLLER_OUTPUT/1/1:nav_roll", "MANUAL_CONTROL/255/190:r", "/joy:u",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "quantity"), RECORDERS.items())
+def test_names_of_recorders(name, quantity):
+    assert channel_names.quantity(name, None) == quantity
+
+
+@pytest.mark.parametrize(("name", "unit"), WITH_UNITS)
+def test_letters_with_words_behind_them_mean_something_by_their_unit(name, unit):
+    assert channel_names.quantity(name, unit) == WITH_UNITS[name, unit]
+
+
+def test_a_speed_that_does_not_say_of_what():
+    assert channel_names.of_some_speed("Fahrt", "kn")
+    assert channel_names.of_some_speed("speed_kn", "kn")
+    assert not channel_names.of_some_speed("Fahrt", None)
+    assert not channel_names.of_some_speed("Fahrt", "deg")
+    assert not channel_names.of_some_speed("wind speed", "kn")
+    assert channel_names.over_ground("Fahrt über Grund", "kn")
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_what_only_sounds_like_a_motion_is_none(name):
+    assert channel_names.quantity(name, None) is None
+
+
+def test_a_name_of_two_quantities_is_none():
+    assert channel_names.quantity("roll_heading", None) is None
+
+
+def test_a_field_says_more_than_its_topic():
+    assert channel_names.quantity("/heading:rate_of_turn", None) == "r"
+    assert channel_names.quantity("/heading:roll", None) == "phi"
+
+
+def test_a_unit_of_something_else_refutes_the_name():
+    assert channel_names.quantity("rudder", "m/s") is None
+    assert channel_names.quantity("rudder", "percent") is None
+    assert channel_names.quantity("rudder", "degree") == "delta"
+    assert channel_names.quantity("rudder", "no such unit") is None
+
+
+def test_speed_over_ground_is_no_speed_through_the_water():
+    assert channel_names.over_ground("RMC/GP:speed_over_ground", "kn")
+    assert channel_names.quantity("RMC/GP:speed_over_ground", "kn") is None
+    assert not channel_names.over_ground("speed_through_water", "kn")
+
+
+def test_every_phrase_leads_to_its_quantity():
+    """No phrase is hidden by another one."""
+    for quantity, text in channel_names.PHRASES.items():
+        for phrase in text.split(", "):
+            assert channel_names.quantity(phrase.replace(" ", "_"), None) == quantity, phrase

@@ -1,0 +1,140 @@
+"""Models averaged: the algebra against closed forms, its words, and the ranges of a fit."""
+
+import numpy as np
+import pytest
+
+from trialid.accuracy.likely import COARSE, Rival, Rows, average
+
+RNG = np.random.default_rng(11)
+N = 400
+PSI = RNG.standard_normal((N, 2)) / np.sqrt(N)
+HIDDEN = RNG.standard_normal((N, 1)) / np.sqrt(N) + 0.8 * PSI[:, :1]
+OTHER = RNG.standard_normal((N, 1)) / np.sqrt(N)
+
+
+def rows(
+    residual, *, S=None, held=None, deviations=(), slopes=(0.0, 0.0), gaps=(0.0, 0.0), level=0.01
+):
+    none = np.zeros((N, 0))
+    return Rows(
+        residual=residual,
+        psi=PSI,
+        priors=np.column_stack([slopes, gaps]),
+        held=none if held is None else held,
+        deviations=np.array(deviations, dtype=float),
+        S=none if S is None else S,
+        level=level,
+    )
+
+
+def fitted(y):
+    """Least squares by both columns: estimates and what is left."""
+    theta = np.linalg.lstsq(PSI, y, rcond=None)[0]
+    return theta, y - PSI @ theta
+
+
+def test_with_nothing_else_a_range_is_that_of_noise():
+    found = average(rows(0.01 * RNG.standard_normal(N)), ())
+    assert not found.shifts.any()
+    assert not found.variances.any()
+    assert found.range(0, 2.0, 0.1) == pytest.approx((2.0 - 0.196, 2.0 + 0.196))
+    assert found.range(0, 2.0, np.nan) is None
+
+
+def test_a_hidden_effect_moves_the_range_to_the_truth():
+    """With y = 1.0 psi_1 - 0.5 psi_2 + 0.3 hidden: without it psi_1 comes out 0.24 too large."""
+    truth = np.array([1.0, -0.5])
+    theta, left = fitted(PSI @ truth + 0.3 * HIDDEN[:, 0])
+    assert theta[0] - truth[0] == pytest.approx(0.24, abs=0.03)
+    both = np.column_stack([HIDDEN, OTHER])
+    rivals = (Rival("hidden", (0,), (2.0,)), Rival("other", (1,), (2.0,)))
+    found = average(rows(left, S=both, level=1e-3), rivals)
+    assert found.shifts[0] == pytest.approx(truth - theta, rel=1e-3)
+    low, high = found.range(0, theta[0], 1e-3)
+    assert low < truth[0] < theta[0] < high  # what the model says as it is belongs to the range
+    assert high - theta[0] == pytest.approx(1.96e-3, rel=0.01)
+    assert found.widest[0] == "hidden"
+
+
+def test_it_is_ridge_regression_where_one_rival_stands_alone():
+    """Against the normal equations of all columns at once, the rival's size known to +-0.5."""
+    _, left = fitted(0.4 * HIDDEN[:, 0] + 0.01 * RNG.standard_normal(N))
+    level, deviation = 1e-3, 0.5
+    every = np.vstack([np.column_stack([PSI, HIDDEN]), [0.0, 0.0, level / deviation]])
+    answer = np.linalg.lstsq(every, np.append(left, 0.0), rcond=None)[0]
+    covariance = level**2 * np.linalg.inv(every.T @ every)
+    found = average(rows(left, S=HIDDEN, level=level), (Rival("hidden", (0,), (deviation,)),))
+    alone = level**2 * np.linalg.inv(PSI.T @ PSI)
+    assert found.shifts == pytest.approx(np.tile(answer[:2], (len(COARSE), 1)), rel=1e-9)
+    expected = np.diag(covariance)[:2] - np.diag(alone)
+    assert found.variances == pytest.approx(np.tile(expected, (len(COARSE), 1)), rel=1e-9)
+
+
+def test_what_is_held_fixed_and_never_seen_widens_by_all_that_it_may_be_off():
+    held = (PSI @ [0.7, -0.2])[:, None]  # exactly what the fitted parameters can mimic
+    found = average(rows(0.01 * RNG.standard_normal(N), held=held, deviations=(0.3,)), ())
+    assert np.sqrt(found.variances[0]) == pytest.approx([0.21, 0.06])
+    assert found.shifts == pytest.approx(np.zeros((2, 2)), abs=1e-9)
+    assert found.widest == ("", "")
+
+
+def test_what_is_exact_widens_nothing():
+    held = (PSI @ [0.7, -0.2])[:, None]
+    found = average(rows(0.01 * RNG.standard_normal(N), held=held, deviations=(0.0,)), ())
+    assert not found.variances.any()
+
+
+def test_a_prior_holds_its_parameter():
+    """The same missing effect moves a parameter less that is known beforehand."""
+    _, left = fitted(0.3 * HIDDEN[:, 0])
+    rival = (Rival("hidden", (0,), (2.0,)),)
+    loose = average(rows(left, S=HIDDEN), rival).shifts[0, 0]
+    tight = average(rows(left, S=HIDDEN, slopes=(3.0, 0.0)), rival).shifts[0, 0]
+    assert loose < 0.0
+    assert abs(tight) < 0.5 * abs(loose)
+
+
+def test_a_rival_that_explains_nothing_gets_hardly_any_weight():
+    """At Schwarz's price for one of 400 independent rows, by the coarser odds: 1 in 2.6."""
+    _, left = fitted(0.01 * RNG.standard_normal(N) / np.sqrt(N))
+    size = np.linalg.norm(left)  # so that all rows count as one each
+    unseen = Rival("other", (0,), (1e-6,))
+    found = average(rows(left, S=PSI[:, :1], level=size / np.sqrt(N)), (unseen,))
+    odds = np.exp(-0.5 * np.log(N) / np.array(COARSE))
+    weight = odds / (1.0 + odds)
+    assert 1e12 * found.variances[:, 0] == pytest.approx(weight, rel=1e-6)
+
+
+@pytest.mark.parametrize("size", [0.04, 0.05, 0.06])
+def test_models_that_stand_about_alike_are_mixed(size):
+    """Mean and variance of two normal distributions, weighed by what each leaves and its price."""
+    level, deviation = 0.02, 0.5
+    noise = level * np.random.default_rng(1).standard_normal(N)
+    _, left = fitted(size * HIDDEN[:, 0] + noise)
+    every = np.vstack([np.column_stack([PSI, HIDDEN]), [0.0, 0.0, level / deviation]])
+    rest = np.append(left, 0.0)
+    answer = np.linalg.lstsq(every, rest, rcond=None)[0]
+    fall = (left @ left - np.sum((rest - every @ answer) ** 2)) / level**2
+    price = np.log(left @ left / level**2)
+    weight = 1.0 / (1.0 + np.exp(0.5 * (price - fall) / np.array(COARSE)))[:, None]
+    own = np.diag(level**2 * np.linalg.inv(every.T @ every))[:2]
+    own = own - np.diag(level**2 * np.linalg.inv(PSI.T @ PSI))
+    found = average(rows(left, S=HIDDEN, level=level), (Rival("hidden", (0,), (deviation,)),))
+    assert found.shifts == pytest.approx(weight * answer[:2], rel=1e-6)
+    spread = weight * own + weight * (1.0 - weight) * answer[:2] ** 2
+    assert found.variances == pytest.approx(spread, rel=1e-6)
+    assert np.all((weight > 0.02) & (weight < 0.98))
+
+
+def test_at_a_fit_that_its_prior_pulls_nothing_is_shifted_by_the_pull_alone():
+    """Ridge regression with a prior off the truth, and a rival: against all unknowns at once."""
+    slope, aim, deviation, level = 0.8, 1.0, 0.5, 1e-3
+    y = PSI @ [0.3, -0.5] + 0.4 * HIDDEN[:, 0]
+    pulled = np.vstack([PSI, [slope, 0.0]])
+    theta = np.linalg.lstsq(pulled, np.append(y, slope * aim), rcond=None)[0]
+    gap = slope * (aim - theta[0])
+    both = np.vstack([np.column_stack([PSI, HIDDEN]), [slope, 0, 0], [0, 0, level / deviation]])
+    whole = np.linalg.lstsq(both, np.concatenate([y, [slope * aim, 0.0]]), rcond=None)[0]
+    given = rows(y - PSI @ theta, S=HIDDEN, slopes=(slope, 0.0), gaps=(gap, 0.0), level=level)
+    found = average(given, (Rival("hidden", (0,), (deviation,)),))
+    assert found.shifts == pytest.approx(np.tile(whole[:2] - theta, (len(COARSE), 1)), rel=1e-9)

@@ -1,0 +1,70 @@
+"""The shipped example, whose truth is known: every range holds it, before the effect and after."""
+
+from pathlib import Path
+
+import pytest
+
+import trialid as ti
+from trialid.report.words import doubt
+from trialid.ship.particulars import read_ship
+
+ROOT = Path(__file__).parents[2]
+TRUTH = read_ship(ROOT / "sample_data/ships/s175q.toml").coefficients
+HARDENING = 3.2
+"""GM3 of the true righting arm [m]."""
+
+
+@pytest.fixture(scope="module")
+def before():
+    return ti.run(ROOT / "pipelines" / "hidden_effect.toml")
+
+
+@pytest.fixture(scope="module")
+def after(before):
+    return before.add("righting_arm_cubic")
+
+
+@pytest.fixture(params=["before", "after"])
+def parameters(request):
+    """Physical parameters of the run without the effect, or with it."""
+    return request.getfixturevalue(request.param).result.physical
+
+
+def test_every_range_holds_the_truth(parameters):
+    known = TRUTH | {"GM3": HARDENING}
+    outside = [p.name for p in parameters if not p.likely[0] <= known[p.name] <= p.likely[1]]
+    assert len(parameters) >= 11
+    assert outside == []
+
+
+def test_standard_errors_alone_do_not(before):
+    """GM is 21 of its standard errors off: what the ranges are for."""
+    off = {p.name: abs(p.value - TRUTH[p.name]) / p.standard_error for p in before.result.physical}
+    assert off["GM"] > 20.0
+
+
+def test_a_range_is_no_bound_for_everything(parameters):
+    """Ranges that held the truth by being endless would say nothing: half are within a quarter."""
+    widths = sorted(p.may_be_off for p in parameters)
+    assert widths[len(widths) // 2] < 0.25
+
+
+def test_what_is_believed_is_right_to_half_its_value(parameters):
+    known = TRUTH | {"GM3": HARDENING}
+    believed = [p for p in parameters if not doubt.doubtful([p])]
+    assert believed
+    assert all(abs(p.value / known[p.name] - 1.0) < 0.5 for p in believed)
+
+
+def test_the_missing_effect_is_what_widens(before):
+    """The righting arm, or one of the family that this record cannot tell it from."""
+    widened = {p.name: p.widened_by for p in before.result.physical}
+    assert widened["GM"] in {before.verdict.effect, *before.verdict.family}
+
+
+def test_the_models_part_of_eq_14_is_a_bound(before):
+    """It takes the upper end of what the model's part of the error may be, not the middle."""
+    most = before.result.split.interval.undermodelling[1]
+    assert most > 1.1 * before.result.split.undermodelling
+    for p in before.result.physical:
+        assert p.undermodelling_error * p.S_imin == pytest.approx(most, rel=1e-9)

@@ -1,0 +1,106 @@
+"""Bands of predictions on real records: what is measured in held-out trials lies inside."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from real_record import DATA, HERE
+from test_carried_over import ESSO, PIPELINE, SHIP
+from test_kvlcc2_zigzag import PIPELINE as ZIGZAG
+from test_kvlcc2_zigzag import RECORDS, columns, in_ship
+
+from trialid.diagnosis.prediction_band import prediction_band
+from trialid.pipeline_file import load
+from trialid.workflow.build_model import available
+from trialid.workflow.fit_model import fit_of
+from trialid.workflow.read_trials import align_trials
+
+pytestmark = [
+    pytest.mark.study(turn=2),
+    pytest.mark.real_data,
+    pytest.mark.skipif(not DATA.is_dir(), reason=f"no real records {DATA}"),
+]
+CHOICES = 6
+"""Which trials are held out: so many choices of each kind of record."""
+
+
+def inside(path):
+    """Share of each held-out trial's samples in the band of the fit of the others, by output."""
+    pipeline = load(path)
+    trials = align_trials(pipeline, lambda words, share: None)
+    fit = fit_of(pipeline, trials, available(pipeline), lambda words, share: None)
+    band = prediction_band(fit)
+    found = []
+    for score in (s for s in fit.scores if s.trial.use == "check"):
+        for c, name in enumerate(fit.problem.outputs):
+            kept = score.compared[:, c]
+            off = np.abs(score.trial.signals[name] - score.response.y[:, c])[kept]
+            found.append(float(np.mean(off <= band[name])))
+    return found
+
+
+def told(what, shares):
+    """The mean over trials, with an interval from draws of whole trials; printed."""
+    rng, shares = np.random.default_rng(1), np.asarray(shares)
+    drawn = shares[rng.integers(len(shares), size=(2000, len(shares)))].mean(axis=1)
+    low, high = np.quantile(drawn, (0.025, 0.975))
+    of = f"({low:.0%}-{high:.0%}) of {len(shares)} series, worst {shares.min():.0%}"
+    print(f"{what}: {shares.mean():.1%} {of}")
+    return float(low), float(high)
+
+
+def assert_calibrated(what, shares):
+    """90 to 97 % is asked for: the interval of what was counted reaches into that."""
+    low, high = told(what, shares)
+    assert low <= 0.97
+    assert high >= 0.90
+    assert np.mean(shares) > 0.85
+
+
+def trial(name, use):
+    check = 'use = "check"\n' if use else ""
+    return f'[[trial]]\nname = "{name}"\nlogs = ["{name}.csv"]\n{check}'
+
+
+@pytest.mark.skipif(not ESSO.is_dir(), reason="no records of the Esso Osaka")
+def test_zigzags_on_a_pond_in_wind(tmp_path):
+    """A linear model that leaves a third of the motion: a band that is honest is wide."""
+    (tmp_path / "ship.toml").write_text(SHIP, encoding="utf-8")
+    for record in sorted(ESSO.glob("zigzag*.csv")):
+        lines = [x for x in record.read_text(encoding="utf-8").splitlines() if x.strip(",")]
+        name = record.stem.split("_", 2)[-1]
+        (tmp_path / f"{name}.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    names = sorted(p.stem for p in tmp_path.glob("*.csv"))
+    pairs = list(combinations(names, 2))
+    shares = []
+    for held in pairs[:: len(pairs) // CHOICES]:
+        rows = "".join(trial(n, n in held) for n in names)
+        path = tmp_path / "pond.toml"
+        path.write_text(f'name = "pond"\nship = "ship.toml"\n{rows}{PIPELINE}', encoding="utf-8")
+        shares += inside(path)
+    assert_calibrated("Esso Osaka", shares)
+
+
+@pytest.mark.skipif(not RECORDS.is_dir(), reason="no records of the KVLCC2")
+def test_zigzags_in_a_basin(tmp_path):
+    """From 5 to 30 degrees, any four fitted by a linear model: some are foretold from far off."""
+    for record in RECORDS.glob("*.dat"):
+        c = columns(record)
+        table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
+        text = "t_s,u,v,r,delta"
+        np.savetxt(tmp_path / f"{record.stem}.csv", table, "%.9g", ",", header=text, comments="")
+    ship = HERE / "kvlcc2_hsva.toml"
+    text = (HERE / ZIGZAG).read_text(encoding="utf-8").replace(ship.name, ship.as_posix())
+    head, _, rest = text.partition("[[trial]]")
+    tail = "[signals]" + rest.partition("[signals]")[2]
+    names, rng, shares = (
+        sorted(p.stem for p in tmp_path.glob("*.csv")),
+        np.random.default_rng(0),
+        [],
+    )
+    for _ in range(CHOICES):
+        held = set(rng.permutation(names)[4:])
+        rows = "".join(trial(n, n in held) + "speed = 1.18\n" for n in names)
+        (tmp_path / "basin.toml").write_text(head + rows + tail, encoding="utf-8")
+        shares += inside(tmp_path / "basin.toml")
+    assert_calibrated("KVLCC2", shares)

@@ -1,0 +1,133 @@
+"""A new user's own first logs, begun as `inspect --init` begins them: sound, or said not to be."""
+
+import numpy as np
+import pytest
+from real_record import DATA, HERE
+
+from trialid import pipeline_file
+from trialid.identification.adequacy import remarks, why_no_fit
+from trialid.ingest import Aids
+from trialid.inspection import inspect_log
+from trialid.workflow import build_model, run
+from trialid.workflow.first_pipeline import starter
+
+LOGS = DATA / "newcomer"
+pytestmark = [
+    pytest.mark.real_data,
+    pytest.mark.skipif(not LOGS.is_dir(), reason=f"no records in {LOGS}"),
+]
+
+FERRY = """\
+reviewed = true
+separator = ","
+decimal = "."
+encoding = "utf-8"
+skip = 0
+header_rows = 1
+units_row = false
+header = ["time_utc", "rudder_port_deg", "rudder_stbd_deg", "heading_deg", "rot_deg_min", "roll_deg", "sog_kn", "lat", "lon"]
+
+[time]
+columns = ["time_utc"]
+kind = "datetime"
+
+[columns]
+"time_utc" = {}
+"rudder_port_deg" = {}
+"rudder_stbd_deg" = {}
+"heading_deg" = {}
+"rot_deg_min" = {}
+"roll_deg" = {}
+"sog_kn" = {}
+"lat" = {}
+"lon" = {}
+"""  # noqa: E501 - one line of the file
+
+COASTER = """\
+reviewed = true
+separator = ";"
+decimal = ","
+encoding = "cp1252"
+skip = 2
+header_rows = 1
+units_row = false
+header = ["Datum", "Uhrzeit", "Ruderlage [°]", "Wendegeschwindigkeit [°/min]", "Kurs [°]", "Fahrt [kn]", "Krängung [°]"]
+
+[time]
+columns = ["Datum", "Uhrzeit"]
+kind = "datetime"
+format = "%d.%m.%Y %H:%M:%S"
+
+[columns]
+"Datum" = {}
+"Uhrzeit" = {}
+"Ruderlage [°]" = {}
+"Wendegeschwindigkeit [°/min]" = {}
+"Kurs [°]" = {}
+"Fahrt [kn]" = {}
+"Krängung [°]" = {}
+"""  # noqa: E501 - one line of the file
+
+TRUE_GM = {"ferry": 0.81, "coaster": 0.50}
+"""[m] What the placeholder's inertia makes of roll periods of 11 and 9 s."""
+
+CASES = {
+    "ferry": ("ferry", ("twin10", "twin20", "twin15")),
+    "ferry of two": ("ferry", ("twin10", "twin15")),
+    "ferry alone": ("ferry", ("twin20",)),
+    "coaster": ("coaster", ("z10", "z20", "z15")),
+    "coaster of two": ("coaster", ("z10", "z20")),
+    "coaster alone": ("coaster", ("z20",)),
+}
+
+
+def begun(folder, case, ship=None):
+    """The pipeline that `trialid inspect LOG... --init` writes, the template reviewed."""
+    kind, names = CASES[case]
+    template = folder / "template.toml"
+    template.write_text(FERRY if kind == "ferry" else COASTER, encoding="utf-8")
+    length, speed = (96.0, None) if kind == "ferry" else (62.0, 11 * 1852 / 3600)
+    surveys = [inspect_log(LOGS / f"{name}.csv", Aids(template=template)) for name in names]
+    made = starter(surveys, folder / "p.toml", ship, None if ship else length, speed)
+    for path, text in made.files.items():
+        path.write_text(text, encoding="utf-8")
+    return folder / "p.toml"
+
+
+def fitted(path):
+    read = pipeline_file.load(path)
+    trials = run.align_trials(read, lambda words, share: None)
+    fit = run.fit_of(read, trials, build_model.available(read), lambda words, share: None)
+    print(f"{fit.eps_rmsn:.2%}, held out {fit.eps_check}, {fit.told}, {remarks(fit)}")
+    return fit
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_as_begun_the_fit_is_sound_and_no_sensor_is_absurd(case, tmp_path):
+    """Ours: 18.9, 10.0, 22.2, 27.9, 19.1, 22.5 %; GM 0.86, 0.82, 0.86, 0.50, 0.53 and 0.48 m."""
+    fit = fitted(begun(tmp_path, case))
+    assert fit.converged
+    assert why_no_fit(fit) is None
+    assert fit.eps_check is None or np.isfinite(fit.eps_check)
+    limits = {"p(0)": 0.1, "tau_r": 1.0, "tau_phi": 1.0, "delta_0": np.deg2rad(2.0), "b_phi": 0.02}
+    for x, value in zip(fit.problem.unknowns, fit.theta, strict=True):
+        assert abs(value) < limits.get(x.column, np.inf), x.name
+    right = abs(np.log(fit.value("GM") / TRUE_GM[CASES[case][0]])) < np.log(1.5)
+    assert right or fit.rival_GM
+
+
+@pytest.mark.parametrize("seconds", [(60, 86), (120, 146)])
+def test_a_record_of_26_s_is_too_short(seconds, tmp_path):
+    path = begun(tmp_path, "coaster alone")
+    lines = path.read_text(encoding="utf-8").splitlines()
+    cut = [f"window = [{seconds[0]}.0, {seconds[1]}.0]" if "# window" in x else x for x in lines]
+    path.write_text("\n".join(cut), encoding="utf-8")
+    found = why_no_fit(fitted(path))
+    assert "too short: 26 s" in found.reason
+
+
+@pytest.mark.parametrize(("case", "ship"), [("coaster", "s175q"), ("ferry", "naval")])
+def test_another_ships_file_is_said_to_be_wrong(case, ship, tmp_path):
+    file = HERE.parents[1] / "sample_data" / "ships" / f"{ship}.toml"
+    found = why_no_fit(fitted(begun(tmp_path, case, ship=file)))
+    assert "the ship's file is not of this ship" in found.reason

@@ -1,0 +1,287 @@
+"""`trialid run --auto`: what is missing is added until the evidence ends."""
+
+import json
+import math
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from test_bad_input import trialid_
+
+from trialid.diagnosis import verdict
+from trialid.diagnosis.search.backward import Worth, worth_naming
+from trialid.diagnosis.search.carry_over import Carried
+from trialid.errors import SimulationError
+from trialid.pipeline_file import load
+from trialid.workflow import grow
+from trialid.workflow.edit_model import Edit
+
+ROOT = Path(__file__).parent.parent
+ADDED = "righting_arm_cubic"
+
+
+@pytest.fixture
+def hidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the shipped pipeline, in the current folder."""
+    text = (ROOT / "pipelines" / "hidden_effect.toml").read_text(encoding="utf-8")
+    text = text.replace('"../sample_data', f'"{(ROOT / "sample_data").as_posix()}')
+    (tmp_path / "hidden.toml").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return Path("hidden.toml")
+
+
+def test_the_hidden_effect_is_added_and_the_verdict_is_nothing_missing(hidden: Path) -> None:
+    text = hidden.read_bytes()
+    outcome = trialid_("run", str(hidden), "--auto")
+    assert (outcome.exit_code, outcome.stderr) == (0, "")
+    head, first, then, end, what, left, *_ = outcome.stdout.splitlines()
+    assert head.split() == ["step", "fitted", "held", "out", "noise", "model", "verdict"]
+    assert first.startswith("as written   ")
+    assert first.endswith("missing")
+    assert then.startswith(f"+ {ADDED} ")
+    assert then.endswith("nothing missing")
+    assert end == "Added no more: the verdict is `nothing missing`."
+    assert what == f"What was missing, the dearest to leave out first: {ADDED}."
+    assert left == f"hidden.toml is as it was; --write puts {ADDED} into it."
+    assert hidden.read_bytes() == text
+    assert sorted(p.name for p in Path().iterdir()) == ["hidden.toml", "runs"]
+    result = json.loads(Path("runs/hidden/result.json").read_text(encoding="utf-8"))
+    assert result["verdict"]["kind"] == "nothing missing"
+    assert result["model"]["effects"][-1] == ADDED
+    assert [(row["step"], row["added"]) for row in result["history"]] == [
+        ("as written", None), ("added", ADDED),
+    ]  # fmt: skip
+    errors = [row["eps_rmsn"] for row in result["history"]]
+    assert errors[1] < 0.75 * errors[0]
+
+
+def test_what_was_added_is_written_when_asked_and_a_run_then_gives_the_same(hidden: Path) -> None:
+    text = hidden.read_text(encoding="utf-8")
+    outcome = trialid_("run", str(hidden), "--auto", "--write", "--json")
+    assert (outcome.exit_code, outcome.stderr) == (0, "")
+    result = json.loads(outcome.stdout)
+    written = hidden.read_text(encoding="utf-8")
+    assert load(hidden).model.effects[-1] == ADDED
+    assert [line for line in text.splitlines() if "#" in line and line not in written] == []
+    lines = Path("hidden.history.jsonl").read_text(encoding="utf-8").splitlines()
+    assert [json.loads(line) for line in lines] == result["history"]
+    again = trialid_("run", str(hidden), "--json")
+    (grown,) = result.pop("grown")  # what leaving it out again costs is the loop's to know
+    assert (grown["effect"], grown["named"], grown["left_out_with_it"]) == (ADDED, True, [])
+    assert grown["costs"] > 1.5
+    assert json.loads(again.stdout) == result | {"grown": []}
+    # and once more finds nothing to add, and writes nothing
+    once_more = trialid_("run", str(hidden), "--auto", "--write")
+    assert "Added no more" in once_more.stdout
+    assert hidden.read_text(encoding="utf-8") == written
+    assert len(Path("hidden.history.jsonl").read_text(encoding="utf-8").splitlines()) == 2
+
+
+# --- where it goes and stops, in made-up worlds ---------------------------------------------------
+
+World = Mapping[str, tuple[float, float | None]]
+"""Effects in the model, letter by letter, to the error of the fitted and of the held-out trials."""
+
+ERRORS = np.array([0.9, 1.1, 1.0, 0.95, 1.05, 1.0])
+"""How unlike the blocks of time are."""
+
+
+def fit_in(world: World, effects: str) -> Any:
+    """A fit as far as its errors go; what the world does not hold cannot be fitted."""
+    if effects not in world:
+        raise SimulationError(f"lost with {effects} at t = 3 s")
+    eps, check = world[effects]
+    return SimpleNamespace(effects=effects, eps_rmsn=eps, eps_check=check, converged=True,
+                           model=SimpleNamespace(values={}))  # fmt: skip
+
+
+def with_(effects: str, more: str) -> str:
+    return "".join(sorted(effects + more))
+
+
+def own_errors(fit: Any) -> tuple[float, ...]:
+    return tuple(fit.eps_rmsn**2 * ERRORS)
+
+
+def candidate(name: str) -> Any:
+    return SimpleNamespace(
+        effect=SimpleNamespace(name=name, parameters=(name,)), family=(name,),
+        shown=lambda level: True, carried=SimpleNamespace(seen=1.0),
+    )  # fmt: skip
+
+
+def found_in(world: World, fit: Any, grown: bool) -> Any:
+    """What a run would find: every refit there is, and the verdict on them."""
+    refits = []
+    for name in sorted(set("".join(world)) - set(fit.effects)):
+        with suppress(SimulationError):
+            new = fit_in(world, with_(fit.effects, name))
+            carried = Carried(own_errors(fit), own_errors(new))
+            refits.append(verdict.Refit(candidate(name), new, carried))
+    named = verdict.likeliest_refit(fit, refits, 0.05)
+    effect = named.candidate.effect.name if named else None
+    kind = "missing" if named else "nothing missing"
+    return SimpleNamespace(
+        before=SimpleNamespace(fit=fit), refits=tuple(refits),
+        ranking=tuple(r.candidate for r in refits),
+        verdict=SimpleNamespace(kind=kind, effect=effect),
+    )  # fmt: skip
+
+
+def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
+    """The stages of the loop in a world, from the model without any effect."""
+
+    def recipe(effects: str) -> Any:
+        return SimpleNamespace(effects=effects, diagnose=SimpleNamespace(level=0.05))
+
+    def examine(asked: Any, *_: Any, grown: bool = False) -> Any:
+        fit = next((x for x in _ if hasattr(x, "eps_rmsn")), None) or fit_in(world, asked.effects)
+        return SimpleNamespace(pipeline=asked, findings=found_in(world, fit, grown))
+
+    def edit(step: str, asked: Any, name: str, effects: str) -> Any:
+        effect = SimpleNamespace(name=name, parameters={name: None})
+        return Edit(step, effect, asked, recipe(effects))  # type: ignore[arg-type]
+
+    def worths(fit: Any, trials: Any, own: Any, kin: Any = None) -> tuple[Worth, ...]:
+        made = []
+        for effect in own:
+            rest = fit.effects.replace(effect.name, "")
+            less = fit_in(world, rest) if rest in world else None
+            before = own_errors(less) if less else tuple(100.0 * np.array(own_errors(fit)))
+            carried = Carried(before, own_errors(fit))
+            made.append(Worth(effect.name, (effect.name,), less, carried))
+        return tuple(sorted(made, key=lambda w: -w.costs))
+
+    stubs = {
+        "align_trials": lambda *_: (), "available": lambda *_: {}, "examine": examine,
+        "add_to_pipeline": lambda r, n: edit("added", r, n, with_(r.effects, n)),
+        "drop_from_pipeline": lambda r, n: edit("dropped", r, n, r.effects.replace(n, "")),
+        "started_at": lambda *_: None, "fit_of": lambda r, *_: fit_in(world, r.effects),
+        "own_errors": own_errors, "worths": worths,
+    }  # fmt: skip
+    for name, stub in stubs.items():
+        monkeypatch.setattr(grow, name, stub)
+    return list(grow.stages(recipe(""), lambda words, share: None))
+
+
+def steps(done: list[grow.Stage]) -> list[str]:
+    """What was added, dropped, or tried and not kept."""
+    return [
+        f"-{s.dropped}" if s.dropped else f"+{s.added}" if s.kept else f"!{s.added}"
+        for s in done[1:]
+    ]
+
+
+def test_it_goes_on_while_something_carries_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    done = loop(monkeypatch, {"": (0.10, None), "a": (0.08, None), "ab": (0.06, None)})
+    assert steps(done) == ["+a", "+b"]
+    assert [bool(s.end) for s in done] == [False, False, True]
+    assert done[-1].end == "the verdict is `nothing missing`"
+    assert grow.survivors(done) == ("a", "b")
+
+
+def test_what_only_stood_in_for_another_is_dropped_and_not_tried_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    world = {
+        "": (0.10, 0.2), "x": (0.07, 0.16), "a": (0.08, 0.17), "b": (0.085, 0.18),
+        "ax": (0.060, 0.15), "bx": (0.065, 0.155), "ab": (0.040, 0.1), "abx": (0.0399, 0.1),
+    }  # fmt: skip
+    done = loop(monkeypatch, world)
+    assert steps(done) == ["+x", "+a", "+b", "-x"]
+    assert grow.survivors(done) == ("a", "b")
+    assert done[-1].pipeline.effects == "ab"
+    assert worth_naming(done[-1].worths) == ("a", "b")  # the dearest to leave out first
+
+
+def test_what_held_out_trials_would_miss_is_not_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = {
+        "": (0.10, 0.2), "x": (0.07, 0.16), "a": (0.08, 0.17), "ax": (0.0399, 0.1),
+        "ab": (0.04, 0.11), "abx": (0.0390, 0.09),
+    }  # fmt: skip
+    assert steps(loop(monkeypatch, world)) == ["+x", "+a", "+b"]
+
+
+@pytest.mark.parametrize("worse", [0.2001, math.inf, math.nan])
+def test_what_raises_the_held_out_error_is_never_kept(
+    monkeypatch: pytest.MonkeyPatch, worse: float
+) -> None:
+    """However far the fitted error falls; the next best that does not is taken in its place."""
+    done = loop(monkeypatch, {"": (0.10, 0.2), "a": (0.01, worse)})
+    assert steps(done) == []
+    done = loop(monkeypatch, {"": (0.10, 0.2), "a": (0.01, worse), "b": (0.09, 0.19)})
+    assert steps(done) == ["+b"]
+    held_out = [s.run.findings.before.fit.eps_check for s in done]
+    assert held_out == sorted(held_out, reverse=True)
+
+
+def test_what_cannot_be_fitted_from_the_file_is_told_and_the_next_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    world = {"": (0.10, None), "a": (0.05, None), "b": (0.06, None)}
+    broken = dict(world)
+
+    def fit_of(recipe: Any, *_: Any) -> Any:
+        if recipe.effects == "a":
+            raise SimulationError("lost at t = 3 s")
+        return fit_in(broken, recipe.effects)
+
+    loop(monkeypatch, world)  # sets the stubs
+    monkeypatch.setattr(grow, "fit_of", fit_of)
+    recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
+    done = list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
+    assert steps(done) == ["!a", "+b"]
+    del world["b"]
+    done = list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
+    assert (done[-1].kept, done[-1].end) == (False, "with a: lost at t = 3 s")
+
+
+def test_it_ends_at_twelve(monkeypatch: pytest.MonkeyPatch) -> None:
+    letters = "abcdefghijklmnop"
+    sets = (letters[:n] for n in range(len(letters) + 1))
+    full = {s: (0.1 * 0.8 ** len(s), None) for s in sets}
+    done = loop(monkeypatch, full | {
+        letters[:n].replace(x, ""): (0.2 * 0.8**n, None)
+        for n in range(1, len(letters)) for x in letters[: n - 1]
+    })  # fmt: skip
+    assert steps(done) == [f"+{x}" for x in letters[: grow.MOST]]
+    assert "the most" in done[-1].end
+
+
+def test_what_cannot_be_told_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    (only,) = loop(monkeypatch, {"": (0.1, None), "a": (0.0999, None)})
+    assert only.end == "the verdict is `nothing missing`"
+    assert only.kept
+
+
+def test_what_the_file_without_it_foretells_worse_is_not_dropped(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Begun where its file begins, the model without it ends elsewhere: the effect stays."""
+    world = {
+        "": (0.10, 0.2),
+        "x": (0.07, 0.16),
+        "a": (0.08, 0.17),
+        "b": (0.085, 0.18),
+        "ax": (0.060, 0.15),
+        "bx": (0.065, 0.155),
+        "ab": (0.040, 0.1),
+        "abx": (0.0399, 0.1),
+    }
+    assert steps(loop(monkeypatch, world)) == ["+x", "+a", "+b", "-x"]
+    usual = grow.examine
+
+    def examine(asked: Any, *more: Any, **words: Any) -> Any:
+        run = usual(asked, *more, **words)
+        if asked.effects == "ab":
+            run.findings.before.fit.eps_check = 0.5
+        return run
+
+    monkeypatch.setattr(grow, "examine", examine)
+    recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
+    done = list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
+    assert steps(done) == ["+x", "+a", "+b"]

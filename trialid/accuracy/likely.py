@@ -1,0 +1,187 @@
+"""Where each parameter is likely to lie although something is missing: models averaged.
+
+A standard error is right where the model is right. Where an effect is missing, the fitted
+parameters stand in for it. To first order, with A the columns of what is fitted, S those of
+something that may be missing and beta its size, the parameters move by
+
+    dtheta = -(A^T A)^-1 A^T S beta
+
+and what the record says of beta follows from its visible trace, S less what A reaches, with a wide
+prior of its typical size. Each thing that may be missing makes a model; they are averaged by how
+well they stand: Hoeting et al. (1999), Bayesian model averaging: a tutorial, Statistical Science
+14. Numbers that were held fixed are part of every model, each uncertain by what its source says.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+
+WIDE: Final = 2.0
+"""Standard deviation of what may be missing, in its typical sizes."""
+
+COARSE: Final = (1.5, 6.0)
+"""By how much the logarithm of the odds is divided: none of the models is the true one, and what is
+missing may be outside the catalogue (Miller & Dunson 2019, Robust Bayesian inference via
+coarsening, JASA 114). How much nobody knows, so that a range embraces what both say. On 650
+simulated records with random effects hidden (seeds 100 to 250) ranges held 91 to 98 % of the truths
+by kind of record; with 1 and 4 a point or two fewer; with 2 and 8 as many, a tenth wider."""
+
+CONFIDENCE: Final = 1.96
+
+
+def share_off(value: float | None, likely: tuple[float, float] | None) -> float | None:
+    """How far a likely range goes from its value, as a share of it; None where unknown.
+
+    >>> share_off(-2.0, (-3.0, -1.5)), share_off(0.0, (-1.0, 1.0))
+    (0.5, None)
+    """
+    if likely is None or not value:
+        return None
+    return max(abs(end - value) for end in likely) / abs(value)
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Something that may be missing: its columns, and the standard deviation of each size."""
+
+    name: str
+    columns: tuple[int, ...]
+    deviations: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rows:
+    """Normed stacked rows at a fit.
+
+    Attributes
+    ----------
+    residual, psi
+        (M,) and the columns of what is fitted (M, n_theta).
+    priors
+        Slope and gap of the row that each parameter's prior is, zero without; (n_theta, 2).
+    held, deviations
+        Columns of what was held fixed (M, n_h) and how uncertain each is (n_h,).
+    S
+        Columns of what may be missing; (M, n_S).
+    level
+        What one independent row is uncertain by.
+    """
+
+    residual: Vector
+    psi: Vector
+    priors: Vector
+    held: Vector
+    deviations: Vector
+    S: Vector
+    level: float
+
+
+@dataclass(frozen=True)
+class Averaged:
+    """By how much each parameter is likely to be off, beside noise.
+
+    Attributes
+    ----------
+    shifts, variances
+        Expected move and its variance for each coarseness, in the parameter's unit;
+        (len(COARSE), n_theta).
+    widest
+        What widens each most: a rival's name, or nothing where it is what was held fixed.
+    """
+
+    shifts: Vector
+    variances: Vector
+    widest: tuple[str, ...]
+
+    def range(self, place: int, value: float, error: float) -> tuple[float, float] | None:
+        """The 95 % range of a parameter of this value and standard error; None where unknown.
+
+        It embraces what each coarseness says, and what the model says as it is.
+        """
+        half = CONFIDENCE * np.sqrt(error**2 + np.append(self.variances[:, place], 0.0))
+        middle = value + np.append(self.shifts[:, place], 0.0)
+        low, high = float(np.min(middle - half)), float(np.max(middle + half))
+        return (low, high) if np.isfinite(high - low) else None
+
+
+def average(rows: Rows, rivals: Sequence[Rival]) -> Averaged:
+    """The parameters' moves over all rivals and the model as it is, by how well each stands."""
+    reduced = _reduce(rows)
+    models = [_model(reduced, Rival("", (), ())), *(_model(reduced, r) for r in rivals)]
+    cost = np.array([m.cost for m in models])
+    weights = np.exp(-0.5 * (cost - cost.min()) / np.array(COARSE)[:, None])
+    weights /= weights.sum(axis=1, keepdims=True)
+    moves, own = np.array([m.shift for m in models]), np.array([m.variance for m in models])
+    shifts = weights @ moves
+    about = (moves - shifts[:, None]) ** 2
+    variances = np.einsum("cm,cmi->ci", weights, own + about)
+    # what is held fixed widens every model alike: a rival is named for what it adds
+    added = np.maximum(own - own[0] + (moves - moves[0]) ** 2, 0.0)
+    parts = weights.sum(axis=0)[:, None] * added
+    parts[0] = len(COARSE) * own[0]
+    names = ("", *(r.name for r in rivals))
+    return Averaged(shifts, variances, tuple(names[i] for i in parts.argmax(axis=0)))
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    """Sums of products with the fitted parameters taken out; the residual first, then the held.
+
+    `moves` is what the parameters do per unit of each column; (n_theta, 1 + n_h + n_S).
+    """
+
+    gram: Vector
+    moves: Vector
+    deviations: Vector
+    variance: float
+    independent: float
+
+
+def _reduce(rows: Rows) -> _Reduced:
+    slopes, gaps = rows.priors.T
+    sizes = np.sqrt(np.sum(rows.psi**2, axis=0) + slopes**2)
+    sizes = np.where(sizes > 0.0, sizes, 1.0)
+    known = np.concatenate([rows.psi, np.diag(slopes)]) / sizes
+    left = np.column_stack([rows.residual, rows.held, rows.S])
+    beside = np.zeros((len(gaps), left.shape[1]))
+    beside[:, 0] = gaps
+    inverse = np.linalg.pinv(known, rcond=1e-10)
+    answer = inverse[:, : len(left)] @ left + inverse[:, len(left) :] @ beside
+    left -= known[: len(left)] @ answer
+    beside -= known[len(left) :] @ answer
+    gram = left.T @ left + beside.T @ beside
+    variance = max(rows.level**2, 1e-30)
+    squares = float(rows.residual @ rows.residual)
+    return _Reduced(
+        gram, answer / sizes[:, None], rows.deviations, variance, max(squares / variance, 1.0)
+    )
+
+
+@dataclass(frozen=True)
+class _Model:
+    """One model of what is missing: -2 log of its standing, the parameters' move and variance."""
+
+    cost: float
+    shift: Vector
+    variance: Vector
+
+
+def _model(known: _Reduced, rival: Rival) -> _Model:
+    """What the record says if this is missing, and all that was held fixed is uncertain."""
+    held = len(known.deviations)
+    places = [*range(1, held + 1), *(1 + held + c for c in rival.columns)]
+    sizes = np.append(known.deviations, rival.deviations)
+    gram = known.gram[np.ix_(places, places)] * np.outer(sizes, sizes) / known.variance
+    moment = known.gram[places, 0] * sizes / known.variance
+    covariance = np.linalg.inv(gram + np.eye(len(places)))
+    expected = covariance @ moment
+    moves = known.moves[:, places] * sizes
+    return _Model(
+        cost=len(rival.columns) * float(np.log(known.independent)) - float(moment @ expected),
+        shift=-moves @ expected,
+        variance=np.einsum("ij,jk,ik->i", moves, covariance, moves),
+    )

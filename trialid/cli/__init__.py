@@ -1,0 +1,3 @@
+"""The command `trialid`: one file a command."""
+
+__all__: list[str] = []

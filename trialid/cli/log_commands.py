@@ -1,0 +1,234 @@
+"""The commands about logs alone: what is in them, and their aligned series."""
+
+import json
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from trialid import temporary
+from trialid.cli.console import file_width, note, progress_bar, render, say
+from trialid.errors import TrialidError
+
+if TYPE_CHECKING:
+    from trialid.inspection import Inspection
+
+KNOT: Final = 1852.0 / 3600.0
+
+FILE: Final = click.Path(path_type=Path)
+
+
+def _options(*options: Callable[..., Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Many options as one decorator, in the order of the help."""
+
+    def of(command: Callable[..., None]) -> Callable[..., None]:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return of
+
+
+@click.command()
+@_options(
+    click.argument("logs", nargs=-1, required=True, type=FILE, metavar="LOG..."),
+    click.option("--all", "everything", is_flag=True, help="Show every channel, not only those "
+                 "that look like a ship's motion."),
+    click.option("--init", "pipeline", type=FILE, metavar="PIPELINE.toml",
+                 help="Write a pipeline to begin with: a trial each log, the last of several held "
+                 "out."),
+    click.option("--ship", type=FILE, metavar="SHIP.toml", help="With --init: the ship's file."),
+    click.option("--length", type=click.FloatRange(min=0, min_open=True), metavar="METRES",
+                 help="With --init and no --ship: write a placeholder ship of this length."),
+    click.option("--speed", type=click.FloatRange(min=0, min_open=True), metavar="KNOTS",
+                 help="With --init: the approach speed, where no log tells it."),
+    click.option("--template", type=FILE, metavar="FILE",
+                 help="Write a draft of the template that says how the table LOG is laid out."),
+    click.option("--with-template", "layout", type=FILE, metavar="FILE",
+                 help="Read tables as this template says."),
+    click.option("--dbc", type=FILE, help="What the frames of a CAN bus mean."),
+    click.option("--zone", help="Time zone of stamps that state none, like Europe/Oslo."),
+    click.option("--json", "as_json", is_flag=True, help="Print plain data, and nothing else."),
+)  # fmt: skip
+def inspect(
+    logs: tuple[Path, ...], everything: bool, pipeline: Path | None, ship: Path | None,
+    length: float | None, speed: float | None, template: Path | None, layout: Path | None,
+    dbc: Path | None, zone: str | None, as_json: bool,
+) -> None:  # fmt: skip
+    """Show what is in each LOG, a file or a folder of files: channels, rates, gaps, clocks.
+
+    Channels that look like a ship's motion come first, with how that is known. What cannot be
+    known from the log alone, as the side a rudder counts positive, is said, with the evidence.
+    """
+    if template is not None:
+        _draft_template(logs, template)
+        return
+    _check_new_pipeline(pipeline, ship, length, speed)
+    surveys = _surveys(logs, layout, dbc, zone)
+    if as_json:
+        _print_plain(surveys)
+    else:
+        _print_tables(surveys, everything)
+    if pipeline is not None:
+        _begin(surveys, pipeline, ship, length, speed)
+
+
+@click.command()
+@_options(
+    click.argument("pipeline", type=FILE),
+    click.option("--out", type=FILE, required=True, metavar="FILE",
+                 help="Where to; the suffix says the format: .csv, .parquet, .mat or .mcap."),
+    click.option("--trial", "only", multiple=True, metavar="NAME",
+                 help="Only this trial; may be given again."),
+    click.option("--force", is_flag=True, help="Replace FILE."),
+    click.option("--quiet", is_flag=True, help="No progress and no summary."),
+)  # fmt: skip
+def align(pipeline: Path, out: Path, only: tuple[str, ...], force: bool, quiet: bool) -> None:
+    """Write the aligned series of PIPELINE, a TOML file, for other programs; nothing is fitted.
+
+    All in SI with the unit in each name, on one clock for each trial; what was not measured is
+    empty or NaN. Channels, remarks and hashes of the logs are inside, of CSV in FILE.json.
+    """
+    from trialid import export
+    from trialid.pipeline_file import load
+
+    export.check_place(out, replace=force)
+    asked = load(pipeline)
+    _check_names(only, [trial.name for trial in asked.trials], pipeline)
+    from trialid.export.provenance import provenance
+    from trialid.workflow.read_trials import align_trials
+
+    wanted = asked.model_copy(
+        update={"trials": tuple(t for t in asked.trials if not only or t.name in only)}
+    )
+    with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
+        trials = align_trials(wanted, progress)
+        export.write(out, trials, provenance(wanted, trials))
+    for trial in () if quiet else trials:
+        names = ", ".join(trial.signals)
+        say(f"{trial.name}: {trial.samples} samples, {trial.period:g} s apart: {names}")
+    if not quiet:
+        say(f"Written: {out}")
+
+
+def _check_names(asked: Sequence[str], known: Sequence[str], pipeline: Path) -> None:
+    from trialid.errors import nearest
+
+    for name in asked:
+        if name not in known:
+            raise TrialidError(f"{pipeline}: no trial {name!r}; {nearest(name, known)}")
+
+
+def _surveys(
+    logs: Sequence[Path], template: Path | None, dbc: Path | None, zone: str | None
+) -> list["Inspection"]:
+    from trialid.ingest import Aids
+    from trialid.ingest.times.local_time import known_zone
+    from trialid.inspection import inspect_log
+
+    for file in (template, dbc):
+        if file is not None and not file.is_file():
+            raise TrialidError(f"{file}: no such file")
+    if zone is not None:
+        try:
+            known_zone(zone)
+        except ValueError as error:
+            raise TrialidError(f"--zone: {error}") from error
+    aids = Aids(template, dbc, zone)
+    with progress_bar(shown=sys.stderr.isatty()) as progress:
+        found = []
+        for place, path in enumerate(logs):
+            progress(f"reading {path.name}", place / len(logs))
+            found.append(inspect_log(path, aids))
+    return found
+
+
+def _print_plain(surveys: Sequence["Inspection"]) -> None:
+    """One log: its survey; several: a list of them."""
+    from trialid.report.terminal.log_contents import plain
+
+    data = [plain(one) for one in surveys]
+    say(json.dumps(data[0] if len(data) == 1 else data, indent=2, allow_nan=False))
+
+
+def _print_tables(surveys: Sequence["Inspection"], everything: bool) -> None:
+    from trialid.report.terminal.log_contents import inspection
+
+    for place, one in enumerate(surveys):
+        gap = ("",) if place else ()
+        say(render(*gap, *inspection(one, everything=everything), width=file_width()))
+
+
+def _check_new_pipeline(
+    pipeline: Path | None, ship: Path | None, length: float | None, speed: float | None
+) -> None:
+    """Refuse, before the logs are read, what cannot be written."""
+    given = {"--ship": ship, "--length": length, "--speed": speed}
+    if pipeline is None:
+        extra = next((name for name, value in given.items() if value is not None), None)
+        if extra is not None:
+            raise click.UsageError(f"{extra} goes with --init")
+        return
+    if ship is not None and length is not None:
+        raise click.UsageError("--length is for a placeholder; the file of --ship has the length")
+    if pipeline.suffix != ".toml":
+        raise TrialidError(f"--init {pipeline}: a pipeline file ends in .toml")
+    if not pipeline.parent.is_dir():
+        raise TrialidError(
+            f"--init {pipeline}: there is no folder {pipeline.parent}; make it first"
+        )
+    temporary.check_writable(pipeline.parent, "--init")
+    from trialid.workflow.first_pipeline.placeholder_ship import placeholder_path
+
+    for file in (pipeline, *([placeholder_path(pipeline)] if ship is None else [])):
+        if file.exists():
+            raise TrialidError(f"--init {pipeline}: {file} exists; name another pipeline")
+
+
+def _begin(
+    surveys: Sequence["Inspection"], pipeline: Path, ship: Path | None, length: float | None,
+    speed: float | None,
+) -> None:  # fmt: skip
+    """Write the starter, and say what is left to do, on stderr."""
+    from trialid.workflow.first_pipeline import starter
+
+    stated = None if speed is None else speed * KNOT
+    begun = starter(surveys, pipeline, ship, length, stated)
+    _write_new(begun.files)
+    for path in begun.files:
+        note(f"Written: {path}")
+    for words in begun.to_fill:
+        note(f"To fill in: {words}")
+    if not begun.to_fill:
+        from trialid.pipeline_file import load
+
+        load(pipeline)
+        note(f"Read its comments, then: trialid run {pipeline}")
+
+
+def _write_new(files: Mapping[Path, str]) -> None:
+    """Write new files, and replace none."""
+    for path, text in files.items():
+        try:
+            temporary.write_new(path, text)
+        except OSError as error:
+            raise TrialidError(f"{path}: {(error.strerror or str(error)).lower()}") from error
+
+
+def _draft_template(logs: Sequence[Path], template: Path) -> None:
+    """Write what a table's layout seems to be, for the user to review."""
+    from trialid import ingest
+
+    if len(logs) != 1:
+        raise click.UsageError("--template drafts the layout of one table; name one LOG")
+    draft: Callable[[Path], str] | None = getattr(ingest, "draft_template", None)
+    if draft is None:
+        raise TrialidError("--template: this version drafts no templates")
+    if template.exists():
+        raise TrialidError(f"--template {template}: exists; name another file")
+    temporary.check_writable(template.parent, "--template")
+    _write_new({template: draft(logs[0])})
+    note(f"Written: {template}")
+    note(f"Review it, then: trialid inspect {logs[0]} --with-template {template}")

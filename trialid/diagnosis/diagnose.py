@@ -1,0 +1,174 @@
+"""All that is found out about a fitted model: its error, its accuracy, and what is missing."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from trialid.accuracy.likely import Averaged
+from trialid.accuracy.parameter_table import Accuracy
+from trialid.diagnosis.force.missing_force import MissingForce, missing_force
+from trialid.diagnosis.may_be_off import may_be_off
+from trialid.diagnosis.noise.noise_bound import held_against
+from trialid.diagnosis.noise.split import Split, split
+from trialid.diagnosis.prediction_band import prediction_band
+from trialid.diagnosis.search.augment import Augmented
+from trialid.diagnosis.search.completeness import Completeness, completeness
+from trialid.diagnosis.search.score import Candidate, rank
+from trialid.diagnosis.trust import accuracy_of
+from trialid.diagnosis.verdict import Refit, Verdict, decide, refit_best
+from trialid.diagnosis.where.misfit import Where, where
+from trialid.effects import CATALOGUE
+from trialid.identification.adequacy import Inadequate, why_no_fit
+from trialid.identification.fit import Fit
+from trialid.progress import Progress, silent
+from trialid.ship.effect import Effect
+from trialid.threads import one_thread
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiagnoseSettings:
+    """How to diagnose; see the pipeline's `[diagnose]`.
+
+    Attributes
+    ----------
+    candidates
+        Effects to try, by name.
+    noise
+        Stated sensor figures by output [SI].
+    quiet
+        Stretches declared to be without excitation [s], by trial.
+    """
+
+    candidates: Mapping[str, Effect] = field(default_factory=lambda: CATALOGUE)
+    family_cos: float = 0.95
+    level: float = 0.05
+    refit: int = 4
+    noise: Mapping[str, float] = field(default_factory=dict)
+    quiet: Mapping[str, list[tuple[float, float]]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """One fit with what its error is made of and how far its parameters can be trusted."""
+
+    fit: Fit
+    split: Split
+    routes: tuple[Split, ...]
+    averaged: Averaged
+
+    @cached_property
+    def accuracy(self) -> Accuracy:
+        """Eq. 8 to 14 and likely ranges of every unknown."""
+        return accuracy_of(self.fit, self.split, self.averaged)
+
+    @cached_property
+    def band(self) -> dict[str, float]:
+        """Half-width of the 95 % band of a trial that was not fitted, by output [SI]."""
+        return prediction_band(self.fit)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Diagnosis:
+    """All that was found out about a fit.
+
+    `after` is the confirmed refit, diagnosed in its turn; None where no effect was named. `force`
+    is None where nobody asked and the verdict is another.
+    """
+
+    before: Diagnosed
+    ranking: tuple[Candidate, ...]
+    left_out: Mapping[str, str]
+    refits: tuple[Refit, ...]
+    verdict: Verdict
+    where: Where
+    after: Diagnosed | None = None
+    force: MissingForce | None = None
+
+
+@one_thread
+def diagnose(
+    fit: Fit,
+    settings: DiagnoseSettings | None = None,
+    progress: Progress = silent,
+    *,
+    force: bool = False,
+    grown: bool = False,
+) -> Diagnosis:
+    """What the error is made of, where it is, what is missing, and the model with it.
+
+    With `force` the missing force is sought whatever the verdict, beside a named effect; `grown`
+    says that effects were added to the model before.
+    """
+    asked = settings or DiagnoseSettings()
+    trials = [s.trial for s in fit.scores]
+    before, ranking, augmented = examine_fit(fit, asked, progress)
+    if (failed := why_no_fit(fit)) is not None:
+        return _no_fit(fit, before, augmented, failed)
+    worth = worth_a_name(ranking, asked)
+    refits = tuple(
+        refit_best(fit, trials, worth, asked.refit, asked.level, lambda words: progress(words, 0.7))
+    )
+    whole = _whole(fit, augmented)
+    fits = [r.fit for r in refits]
+    before = _bounded(before, fits, whole)
+    parts = before.split
+    verdict = decide(fit, ranking, refits, parts, whole, level=asked.level, grown=grown)
+    named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
+    after = _bounded(examine_fit(named.fit, asked, progress)[0], fits) if named else None
+    wanted = force or verdict.kind == "not in catalogue"
+    sought = _force(named.fit if named else fit, asked.level, progress) if wanted else None
+    return Diagnosis(
+        before=before,
+        ranking=ranking,
+        left_out=augmented.left_out,
+        refits=refits,
+        verdict=verdict,
+        where=where(fit),
+        after=after,
+        force=sought,
+    )
+
+
+def _whole(fit: Fit, augmented: Augmented) -> Completeness | None:
+    """Whether forces of any simple shape explain more; among sensors alone no force is missing."""
+    return completeness(fit, augmented) if fit.model.states else Completeness(0.0, 0.0)
+
+
+def _force(fit: Fit, level: float, progress: Progress) -> MissingForce | None:
+    """The missing force of a fit, None where nothing is simulated that it could push."""
+    if not fit.model.states:
+        return None
+    progress("looking for the missing force", 0.9)
+    return missing_force(fit, level)
+
+
+def _no_fit(fit: Fit, before: Diagnosed, augmented: Augmented, failed: Inadequate) -> Diagnosis:
+    """Nothing is concluded from a fit that carries no verdict: no ranking, no names."""
+    return Diagnosis(
+        before=before,
+        ranking=(),
+        left_out=augmented.left_out,
+        refits=(),
+        verdict=Verdict("no fit", None, (), f"no fit: {failed}"),
+        where=where(fit),
+    )
+
+
+def examine_fit(
+    fit: Fit, asked: DiagnoseSettings, progress: Progress
+) -> tuple[Diagnosed, tuple[Candidate, ...], Augmented]:
+    """The split, the accuracy that follows from it, and the ranking that both rest on."""
+    progress("looking for what is missing", 0.65)
+    ranking, augmented = rank(fit, asked.candidates, asked.family_cos, asked.level)
+    best, routes = split(fit, augmented, asked.noise, asked.quiet)
+    return Diagnosed(fit, best, routes, may_be_off(fit, augmented)), ranking, augmented
+
+
+def _bounded(done: Diagnosed, fits: Sequence[Fit], whole: Completeness | None = None) -> Diagnosed:
+    """The same with no more noise than any of these fits leaves, and no split routes deny."""
+    return replace(done, split=held_against(done.split, done.routes, done.fit, fits, whole))
+
+
+def worth_a_name(ranking: Sequence[Candidate], asked: DiagnoseSettings) -> tuple[Candidate, ...]:
+    """The candidates that are worth a name, the best first."""
+    return tuple(c for c in ranking if c.worth_a_name(asked.level))

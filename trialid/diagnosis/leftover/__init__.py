@@ -1,1 +1,0 @@
-"""What a fit leaves over, cut in slices: by time, amplitude, side, heading, speed, frequency."""

@@ -1,0 +1,37 @@
+"""By how much every parameter of a fit may be off, by all that its model may lack or hold wrong."""
+
+from typing import Final
+
+import numpy as np
+
+from trialid.accuracy.likely import WIDE, Averaged, Rival, Rows, average
+from trialid.diagnosis.search.augment import Augmented, Trace
+from trialid.diagnosis.search.carry_over import prior_rows
+from trialid.identification.fit import Fit
+
+SMALLEST: Final = 1e-12
+"""Typical size of a parameter whose effect calls nothing typical."""
+
+
+def may_be_off(fit: Fit, augmented: Augmented) -> Averaged:
+    """The parameters' moves, averaged over the catalogue and the model as it is."""
+    ship = fit.problem.simulator.model
+    deviations = [abs(ship.value(n)) * ship.ship.share_off(n) for n in augmented.held]
+    rows = Rows(
+        residual=augmented.residual,
+        psi=augmented.psi,
+        priors=prior_rows(fit),
+        held=augmented.H,
+        deviations=np.array(deviations),
+        S=augmented.S,
+        level=fit.level,
+    )
+    return average(rows, [_rival(t) for t in augmented.traces])
+
+
+def _rival(trace: Trace) -> Rival:
+    """An effect that may be missing, at its typical size; where values were tried, at that one."""
+    if trace.tried:
+        return Rival(trace.effect.name, trace.columns, (1.0,) * len(trace.columns))
+    typical = (abs(trace.effect.parameters[n].start) or SMALLEST for n in trace.parameters)
+    return Rival(trace.effect.name, trace.columns, tuple(WIDE * size for size in typical))

@@ -1,0 +1,112 @@
+"""What a split of the error must bear: other models of the same rows, and the other routes.
+
+A route rests on an assumption: that the quiet stretch was as noisy as the manoeuvre, that the
+model errs alike in every period. Where the assumption fails, the split is wrong by any factor, and
+its interval says nothing of it. But noise can never be more than what some fitted model leaves on
+the same rows, nor more than what of the residual does not depend on the input; and two routes that
+exclude each other leave nothing to state.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED, Split
+from trialid.diagnosis.search.completeness import Completeness
+from trialid.identification.fit import Fit
+
+
+def held_against(
+    chosen: Split,
+    routes: Sequence[Split],
+    fit: Fit,
+    others: Sequence[Fit] = (),
+    whole: Completeness | None = None,
+) -> Split:
+    """The split, within what other fits of the same rows leave; refused where routes contradict.
+
+    Parameters
+    ----------
+    others
+        Models with more in them, fitted to the same rows.
+    whole
+        Whether forces of any shape explain what the catalogue does not.
+    """
+    if not chosen.available:
+        return chosen
+    why = _contradiction(chosen, [r for r in routes if r.available and r is not chosen], whole)
+    if why:
+        return Split("not separable", why)
+    able = [f for f in others if f.converged and f.eps_rmsn < fit.eps_rmsn]
+    if not able:
+        return chosen
+    least = min(able, key=lambda f: f.eps_rmsn)
+    return _bounded(chosen, fit, least)
+
+
+def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
+    """No more noise than the closest fit leaves, output by output."""
+    assert chosen.noise is not None
+    assert chosen.noise_interval is not None
+    assert chosen.undermodelling_interval is not None
+    low, high = chosen.noise_interval
+    total, left = fit.eps_rmsn, least.eps_rmsn
+    if low > left:
+        known = {e.name for e in fit.model.effects}
+        added = " and ".join(e.name for e in least.model.effects if e.name not in known)
+        said = f"{_said(chosen)}, yet with {added} in the model only {left:.2%} is left in all"
+        return Split("not separable", said)
+    by_output = {
+        c: (min(x, least.eps_by_output[c]), fit.eps_by_output[c])
+        for c, (x, _) in (chosen.by_output or {}).items()
+    }
+    noise = min(chosen.noise, left)
+    if by_output:
+        noise = min(noise, float(np.sqrt(np.mean([x**2 for x, _ in by_output.values()]))))
+    floor, top = chosen.undermodelling_interval
+    model = _rest(total, noise)
+    return replace(
+        chosen,
+        noise=noise,
+        undermodelling=model,
+        noise_interval=(low, min(high, left)),
+        undermodelling_interval=(floor, max(top, model)),  # by chance alone a fit leaves less, too
+        by_output={c: (x, _rest(eps, x)) for c, (x, eps) in by_output.items()} or None,
+    )
+
+
+def _rest(total: float, part: float) -> float:
+    return float(np.sqrt(max(total**2 - part**2, 0.0)))
+
+
+def _contradiction(chosen: Split, others: Sequence[Split], whole: Completeness | None) -> str:
+    """What speaks against a route, in words with both figures; empty where nothing does."""
+    for other in others:
+        if _excludes(chosen, other, whole):
+            return f"routes contradict each other: {_said(chosen)}; {_said(other)}"
+    return ""
+
+
+def _excludes(one: Split, other: Split, whole: Completeness | None) -> bool:
+    """Whether two routes cannot both be right.
+
+    What depends on the input is model: the rest is the most that noise can be. It may be model too
+    where the catalogue does not hold what is missing, and then a force of some shape shows. A
+    sensor's own figure is the least that noise can be.
+    """
+    (low, high), (floor, top) = one.noise_interval or (0, 0), other.noise_interval or (0, 0)
+    if STATED in (one.method, other.method):
+        return (high < floor) if other.method == STATED else (top < low)
+    if other.method == INPUT_DRIVEN:
+        unexplained = whole is not None and not whole.gap
+        return low > top or (high < floor and unexplained)
+    if one.method == INPUT_DRIVEN:
+        return _excludes(other, one, whole)
+    return low > top or high < floor
+
+
+def _said(route: Split) -> str:
+    """A route and its noise with the interval."""
+    low, high = route.noise_interval or (0.0, 0.0)
+    return f"{route.method}: noise {route.noise:.2%} ({low:.2%} to {high:.2%})"

@@ -1,0 +1,375 @@
+"""How much of the error is noise and how much is the model's: the two parts of Eq. 14.
+
+The paper names eps^x (noise) and eps^m (under-modelling) and gives no pipeline. Five routes, in the
+order in which they are trusted; the first that holds is used and named:
+
+a. the same manoeuvre was run twice: what differs between the runs is noise;
+b. the test is periodic: scatter about the mean period is noise;
+c. a stretch without excitation: nothing is there for the model to miss, so its error is noise;
+d. what an input-driven basis predicts of the residual out of sample is model, the rest noise;
+e. a stated sensor figure.
+
+First differences are not a route: on wave noise they find about a tenth of the variance.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.arrays import Mask
+from trialid.diagnosis.noise.residual import (
+    OutputNoise,
+    Residual,
+    about_mean,
+    pool_variance,
+    residuals,
+    rudder,
+    slowness,
+)
+from trialid.diagnosis.noise.variance import hac
+from trialid.diagnosis.search.augment import Augmented
+from trialid.identification.fit import Fit
+from trialid.trial_rows import Stretch
+
+Vector = NDArray[np.float64]
+Interval = tuple[float, float]
+
+CONFIDENCE: Final = 1.96
+TIGHT: Final = 0.35
+"""A noise estimate whose 95 % interval is wider than this share either way is no estimate."""
+
+SAME_RUDDER: Final = 0.02
+"""Mean square difference over variance below which two rudder records are the same."""
+
+QUIET_SECONDS: Final = 60.0
+QUIET_RUDDER: Final = np.deg2rad(0.5)
+QUIET_RESPONSE: Final = 0.1
+"""A stretch is quiet when the model itself moves less than this share of y_RMS in it."""
+
+SEEN: Final = 0.02
+"""A candidate that keeps less than this share of its sensitivity is part of the fit already."""
+
+DISTINCT: Final = 0.05
+"""Directions with singular values below this share of the largest are copies of others."""
+
+
+INPUT_DRIVEN: Final = "dependence on the input"
+STATED: Final = "stated sensor figure"
+
+
+@dataclass(frozen=True)
+class Split:
+    """What the error is made of, by one route; numbers None where the route does not hold.
+
+    `noise` and `undermodelling` are normed as eps_RMSn, their squares add up to its square.
+    """
+
+    method: str
+    why: str
+    noise: float | None = None
+    undermodelling: float | None = None
+    noise_interval: Interval | None = None
+    undermodelling_interval: Interval | None = None
+    by_output: Mapping[str, tuple[float, float]] | None = None
+
+    @property
+    def available(self) -> bool:
+        """Whether the route holds on this record."""
+        return self.noise is not None
+
+
+def split(
+    fit: Fit,
+    augmented: Augmented,
+    stated: Mapping[str, float],
+    quiet: Mapping[str, Sequence[Interval]] | None = None,
+) -> tuple[Split, tuple[Split, ...]]:
+    """The most trusted split of the error, and all five routes.
+
+    Parameters
+    ----------
+    augmented
+        Sensitivities to effects the model lacks.
+    stated
+        Sensor noise by output [SI].
+    quiet
+        Stretches [s] by trial name that the user declares to be without excitation.
+    """
+    routes = (
+        _repeated(fit),
+        _periodic(fit),
+        _quiet(fit, quiet or {}),
+        _input_driven(fit, augmented),
+        _stated(fit, stated),
+    )
+    for route in routes:
+        if route.available:
+            return route, routes
+    why = "; ".join(f"{r.method}: {r.why}" for r in routes)
+    return Split("not separable", why), routes
+
+
+def _repeated(fit: Fit) -> Split:
+    """Route a: pairs of trials with the same rudder record."""
+    method = "repeated manoeuvre"
+    found = residuals(fit, ("fit", "check"))
+    pairs = [
+        (one, other)
+        for i, one in enumerate(found)
+        for other in found[i + 1 :]
+        if _same_rudder(rudder(one.trial), rudder(other.trial))
+    ]
+    if not pairs:
+        return Split(method, "no two trials have the same rudder record")
+    pieces = [_differences(one, other) for one, other in pairs]
+    names = " and ".join(repr(r.trial.name) for r in pairs[0])
+    return _from_pieces(fit, method, pieces, f"what differs between {names}")
+
+
+def _same_rudder(one: Vector | None, other: Vector | None) -> bool:
+    if one is None or other is None or min(len(one), len(other)) < 0.8 * max(len(one), len(other)):
+        return False
+    n = min(len(one), len(other))
+    spread = float(np.var(one[:n]))
+    return spread > 0.0 and float(np.mean((one[:n] - other[:n]) ** 2)) < SAME_RUDDER * spread
+
+
+def _differences(one: Residual, other: Residual) -> tuple[Vector, Mask]:
+    """Half-difference scaled to one run's noise: the model's own error cancels; (N, n_y)."""
+    n = min(len(one.eps), len(other.eps))
+    both = one.compared[:n] & other.compared[:n]
+    return np.where(both, (one.eps[:n] - other.eps[:n]) / np.sqrt(2.0), 0.0), both
+
+
+def _periodic(fit: Fit) -> Split:
+    """Route b: periods of one trial's rudder against each other."""
+    method = "periods of a periodic test"
+    pieces, words = [], []
+    for r in residuals(fit):
+        angle = rudder(r.trial)
+        found = None if angle is None else _period(angle)
+        if found is not None:
+            start, lag = found
+            late = Residual(r.trial, r.eps[start + lag :], r.compared[start + lag :], r.predicted)
+            early = Residual(r.trial, r.eps[start:-lag], r.compared[start:-lag], r.predicted)
+            pieces.append(_differences(late, early))
+            words.append(f"{lag * r.trial.period:.0f} s in {r.trial.name!r}")
+    if not pieces:
+        return Split(method, "no rudder record repeats itself")
+    return _from_pieces(fit, method, pieces, "scatter between periods of " + ", ".join(words))
+
+
+def _period(rudder: Vector) -> tuple[int, int] | None:
+    """Start and length [samples] of a rudder record that repeats at least once after its start."""
+    moving = np.flatnonzero(np.abs(rudder - rudder[0]) > QUIET_RUDDER)
+    if len(moving) == 0:
+        return None
+    start = int(moving[0])
+    active = rudder[start:] - rudder[start:].mean()
+    gap = _gaps(active) / float(np.mean(active**2))
+    apart = np.flatnonzero(gap > 1.0)
+    if len(apart) == 0:
+        return None
+    # a rudder is like itself a moment before; it repeats where it has been unlike in between
+    alike = gap < SAME_RUDDER
+    alike[: apart[0]] = False
+    if not alike.any():
+        return None
+    first = int(np.argmax(alike))
+    end = first + int(np.argmin(np.append(alike[first:], False)))
+    return start, first + int(np.argmin(gap[first:end]))
+
+
+def _gaps(x: Vector) -> Vector:
+    """Mean square of what a record differs by from itself so many samples later, up to half."""
+    n = len(x)
+    lags = np.arange(n // 2 + 1)
+    spectrum = np.fft.rfft(x, 1 << (2 * n - 1).bit_length())
+    products = np.fft.irfft(np.abs(spectrum) ** 2)[: len(lags)]
+    before = np.concatenate([[0.0], np.cumsum(x**2)])
+    squares = (before[n] - before[lags]) + before[n - lags]
+    return np.asarray((squares - 2.0 * products) / (n - lags))
+
+
+def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:
+    """Route c: stretches in which the rudder rests and the model stands still."""
+    method = "quiet stretch"
+    pieces, words = [], []
+    for r in residuals(fit, ("fit", "check")):
+        spans = declared.get(r.trial.name) or _still(r)
+        for start, stop in spans:
+            a, b = round(start / r.trial.period), round(stop / r.trial.period)
+            eps, mask = r.eps[a:b], r.compared[a:b]
+            if mask.any():
+                pieces.append((about_mean(eps, mask), mask))
+                words.append(f"{start:.0f}-{stop:.0f} s of {r.trial.name!r}")
+    if not pieces:
+        return Split(method, f"no stretch of {QUIET_SECONDS:.0f} s with the rudder at rest")
+    return _from_pieces(fit, method, pieces, "residual in " + ", ".join(words))
+
+
+def _still(r: Residual) -> list[Interval]:
+    """Longest stretch with rudder and prediction at rest, if it is long enough."""
+    angle = rudder(r.trial)
+    if angle is None:
+        return []
+    best: list[Interval] = []
+    n, needed = len(angle), round(QUIET_SECONDS / r.trial.period)
+    start = 0
+    while start + needed <= n:
+        stop = _rest(angle, r.predicted, start)
+        if stop - start >= needed and (not best or stop - start > _samples(best[0], r)):
+            best = [(start * r.trial.period, stop * r.trial.period)]
+        start = max(stop, start + needed // 4)
+    return best
+
+
+def _samples(span: Interval, r: Residual) -> int:
+    return round((span[1] - span[0]) / r.trial.period)
+
+
+def _rest(rudder: Vector, predicted: Vector, start: int) -> int:
+    """Where rest that begins at `start` ends."""
+    low, high = np.minimum.accumulate(rudder[start:]), np.maximum.accumulate(rudder[start:])
+    moved = (
+        np.maximum.accumulate(predicted[start:], axis=0)
+        - np.minimum.accumulate(predicted[start:], axis=0)
+    ).max(axis=1)
+    broken = np.flatnonzero((high - low > QUIET_RUDDER) | (moved > QUIET_RESPONSE))
+    return start + int(broken[0]) if len(broken) else len(rudder)
+
+
+def _stated(fit: Fit, stated: Mapping[str, float]) -> Split:
+    """Route e: the user's own figures."""
+    method = STATED
+    missing = [c for c in fit.problem.outputs if c not in stated]
+    if missing:
+        return Split(method, f"no figure in [diagnose] noise for {', '.join(missing)}")
+    found = [
+        OutputNoise((stated[c] / y) ** 2, 0.0)
+        for c, y in zip(fit.problem.outputs, fit.problem.y_rms, strict=True)
+    ]
+    return _finish(fit, method, "as stated in [diagnose] noise", found)
+
+
+def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], why: str) -> Split:
+    """A split from pieces of pure noise; (n, n_y) each."""
+    every = residuals(fit)
+    found = [
+        pool_variance(
+            [p[:, c] for p, _ in pieces],
+            [m[:, c] for _, m in pieces],
+            slowness([r.eps[:, c] for r in every], [r.compared[:, c] for r in every]),
+        )
+        for c in range(len(fit.problem.outputs))
+    ]
+    for c, noise in zip(fit.problem.outputs, found, strict=True):
+        if noise is None:
+            return Split(method, f"{why}: nothing compared in {c}")
+    return _finish(fit, method, why, [n for n in found if n is not None])
+
+
+def _finish(fit: Fit, method: str, why: str, found: Sequence[OutputNoise]) -> Split:
+    """Noise and model part with intervals; refused where the noise is hardly known."""
+    total, spread = _total(fit)
+    noise2 = float(np.mean([n.variance for n in found]))
+    deviation = float(np.sqrt(np.sum([n.deviation**2 for n in found])) / len(found))
+    if CONFIDENCE * deviation > 2.0 * TIGHT * noise2:
+        share = 0.5 * CONFIDENCE * deviation / noise2
+        return Split(method, f"{why}: too short, the noise is known to +-{share:.0%} only")
+    by_output = {}
+    for (c, eps), n in zip(fit.eps_by_output.items(), found, strict=True):
+        x2 = min(n.variance, eps**2)
+        by_output[c] = (float(np.sqrt(x2)), float(np.sqrt(eps**2 - x2)))
+    x2 = float(np.mean([x**2 for x, _ in by_output.values()]))
+    gap = CONFIDENCE * float(np.hypot(deviation, spread))
+    model2 = (total**2 - noise2 - gap, total**2 - noise2 + gap)
+    return Split(
+        method=method,
+        why=why,
+        noise=float(np.sqrt(x2)),
+        undermodelling=float(np.sqrt(max(total**2 - x2, 0.0))),
+        noise_interval=_roots(noise2 - CONFIDENCE * deviation, noise2 + CONFIDENCE * deviation),
+        undermodelling_interval=_roots(*model2),
+        by_output=by_output,
+    )
+
+
+def _roots(low: float, high: float) -> Interval:
+    return float(np.sqrt(max(low, 0.0))), float(np.sqrt(max(high, 0.0)))
+
+
+def _total(fit: Fit) -> tuple[float, float]:
+    """eps_RMSn, and the standard error that noise gives its square."""
+    found = residuals(fit)
+    spread = []
+    for c in range(len(fit.problem.outputs)):
+        known = pool_variance([r.eps[:, c] for r in found], [r.compared[:, c] for r in found])
+        spread.append(0.0 if known is None else known.deviation)
+    return fit.eps_rmsn, float(np.sqrt(np.sum(np.square(spread))) / len(spread))
+
+
+def _input_driven(fit: Fit, augmented: Augmented) -> Split:
+    """Route d: what candidate effects explain of the residual, less what they explain of noise.
+
+    Coefficients come from the whitened residual; their covariance says how much of the explained
+    mean square they would explain of pure noise, and that much is taken off. What is left is what
+    the same coefficients would explain of another record with the same input: out of sample.
+    """
+    method = INPUT_DRIVEN
+    if not augmented.traces:
+        return Split(method, "no candidate effect that acts linearly on the outputs")
+    raw, white, parts = (
+        augmented.evidence.raw, augmented.evidence.white, augmented.evidence.parts,
+    )  # fmt: skip
+    T = _visible_directions(raw.S, augmented.S, white.S)
+    Z = white.S @ T
+    if len(Z) < 20 * Z.shape[1]:
+        return Split(method, f"too short: {len(Z)} compared values for {Z.shape[1]} directions")
+    beta = np.asarray(np.linalg.lstsq(Z, white.residual, rcond=None)[0])
+    inverse = np.linalg.inv(Z.T @ Z)
+    left = white.residual - Z @ beta
+    covariance = inverse @ hac(Z * left[:, None], parts) @ inverse
+    found = [
+        _unexplained(fit, c, raw.S @ T, beta, covariance, augmented.stretches)
+        for c in range(len(fit.problem.outputs))
+    ]
+    why = f"what {Z.shape[1]} directions of candidate effects explain beyond chance is model"
+    return _finish(fit, method, why, found)
+
+
+def _visible_directions(raw: Vector, whole: Vector, white: Vector) -> Vector:
+    """Combinations of candidates that stand clear of each other and of the fit; (n_S, q)."""
+    sizes = np.linalg.norm(whole, axis=0)
+    seen = np.linalg.norm(raw, axis=0) > SEEN * sizes
+    scale = np.where(seen, np.linalg.norm(white, axis=0), 1.0)
+    columns = np.where(seen, white / np.where(scale > 0.0, scale, 1.0), 0.0)
+    _, s, Vt = np.linalg.svd(np.linalg.qr(columns, mode="r"))
+    kept = s > DISTINCT * s[0]
+    return np.asarray(Vt[kept].T / np.where(scale > 0.0, scale, 1.0)[:, None])
+
+
+def _unexplained(
+    fit: Fit,
+    output: int,
+    Z: Vector,
+    beta: Vector,
+    covariance: Vector,
+    parts: Sequence[Stretch],
+) -> OutputNoise:
+    """Noise of one output: its mean square less what the coefficients explain beyond chance."""
+    rows = np.concatenate([np.arange(s.rows.start, s.rows.stop) for s in parts
+                           if s.output == output])  # fmt: skip
+    scale = fit.problem.weights[output] / np.sqrt(len(fit.problem.outputs))
+    part = Z[rows] / scale
+    explained = float(np.sum((part @ beta) ** 2))
+    gram = part.T @ part
+    chance = gram @ covariance
+    model2 = max(explained - float(np.trace(chance)), 0.0)
+    noise2 = max(fit.eps_by_output[fit.problem.outputs[output]] ** 2 - model2, 1e-30)
+    spread2 = 2.0 * float(np.sum(chance * chance.T)) + 4.0 * float(beta @ gram @ covariance @ gram
+                                                                   @ beta)  # fmt: skip
+    return OutputNoise(noise2, float(np.sqrt(spread2)))

@@ -1,0 +1,274 @@
+"""Traces of effects the model does not have: sensitivities at their null, or differences."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.diagnosis.noise.thinning import coarse
+from trialid.diagnosis.search.projection import Evidence, gather
+from trialid.diagnosis.search.scan import secants
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import Problem, Unknown, linearise, stretches
+from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS
+from trialid.ship.effect import Effect, Steered
+from trialid.ship.model import STATES, ShipModel
+from trialid.simulation.integrate import Departure, Simulator, prepare, record_for, signals_of
+from trialid.trial import Trial
+from trialid.trial_rows import Stretch
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One way an effect can show: by its parameters near their null, or at one value tried.
+
+    Attributes
+    ----------
+    columns
+        Where it stands in `Augmented.S`.
+    parameters
+        What the columns are by; empty where a value was tried.
+    tried
+        The values tried; empty where the effect is linear at its null.
+    """
+
+    effect: Effect
+    columns: tuple[int, ...]
+    parameters: tuple[str, ...] = ()
+    tried: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Augmented:
+    """Residual, base and candidate columns, normed and stacked alike.
+
+    Attributes
+    ----------
+    traces
+        What the columns of `S` are.
+    held, H
+        Coefficients of the model that were held fixed, and their columns.
+    """
+
+    traces: tuple[Trace, ...]
+    residual: Vector
+    psi: Vector
+    S: Vector
+    stretches: tuple[Stretch, ...]
+    left_out: Mapping[str, str]
+    held: tuple[str, ...]
+    H: Vector
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """Every effect with a trace."""
+        return tuple({t.effect.name: t.effect for t in self.traces}.values())
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """The same rows less what the fitted parameters reach, raw and white."""
+        groups = [t.columns for t in self.traces]
+        return gather(self.residual, self.psi, self.S, self.stretches, groups)
+
+
+def candidates_for(
+    model: ShipModel, trial: Trial, catalogue: Mapping[str, Effect]
+) -> tuple[dict[str, Effect], dict[str, str]]:
+    """Effects that can be tried on this model and record, and why the others cannot."""
+    able: dict[str, Effect] = {}
+    left_out: dict[str, str] = {}
+    present = {e.name for e in model.effects}
+    for name, effect in catalogue.items():
+        if name in present:
+            continue
+        reason = _why_not(model, trial, effect, able)
+        if reason:
+            left_out[name] = reason
+        else:
+            able[name] = effect
+    return able, left_out
+
+
+def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, Effect]) -> str:
+    if not effect.scanned and not linear_parameters(effect):
+        return "nothing in it can be zero"
+    known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
+    known |= set(ACCELERATIONS)
+    asked = dict.fromkeys((*signals_of(effect), *filter(None, effect.states.values())))
+    lacking = [s for s in asked if s not in known and not record_for(trial, s)]
+    if lacking:
+        where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
+        return f"needs {', '.join(dict.fromkeys(lacking))}, which the {where} does not hold"
+    doubled = sorted(set(effect.states) & {*model.all_states, *trial.signals})
+    if doubled:
+        held = "simulated" if doubled[0] in model.all_states else "recorded"
+        return f"gives {doubled[0]}, which is {held} already"
+    others = [e for e in able.values() if not e.scanned]
+    taken = {*model.parameters, *(p for e in others for p in e.parameters)}
+    clash = sorted(taken & set(effect.parameters))
+    if clash:
+        return f"parameter {clash[0]!r} is already there"
+    return _steers_wrongly(model, trial, effect)
+
+
+def _steers_wrongly(model: ShipModel, trial: Trial, effect: Effect) -> str:
+    """Why an effect cannot change a motion that is an input: it needs a record, or is instead."""
+    for s in sorted({*effect.acts_on(Steered)} & set(STATES)):
+        if s in model.states:
+            return f"acts on the record of {s}, which is simulated"
+        if _varies(trial, s) is bool(effect.states):
+            return f"stands in for a record of {s}" if effect.states else f"needs a record of {s}"
+    return ""
+
+
+def _varies(trial: Trial, signal: str) -> bool:
+    """Whether a motion is recorded: a stated approach speed is one number all along."""
+    return bool(np.ptp(trial.signals.get(signal, np.zeros(1))) > 0.0)
+
+
+def linear_parameters(effect: Effect) -> tuple[str, ...]:
+    """The parameters by which it is scored: those at which zero means that it is absent."""
+    return () if effect.scanned else tuple(n for n, p in effect.parameters.items() if p.null == 0.0)
+
+
+def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
+    """Traces of every candidate.
+
+    A candidate that cannot be simulated, or acts on nothing that is an output, is left out with
+    the reason.
+    """
+    fit = coarse(fit)
+    problem = fit.problem
+    base = _fitted_model(fit)
+    able, left_out = candidates_for(base, problem.trials[0], catalogue)
+    able, silent = _with_trace(able, problem.outputs)
+    linear = [e for e in able.values() if not e.scanned]
+    point = _linear(fit, base, linear)
+    if isinstance(point, Departure):
+        linear, lost = _apart(fit, base, linear)
+        left_out |= lost
+        point = _linear(fit, base, linear)
+        assert not isinstance(point, Departure)
+    residual, psi, S, H = point
+    names = [p for e in linear for p in linear_parameters(e)]
+    traces = [
+        Trace(e, tuple(names.index(p) for p in linear_parameters(e)), linear_parameters(e))
+        for e in linear
+    ]
+    tried_, columns = _scanned(fit, base, [e for e in able.values() if e.tried], len(names))
+    return Augmented(
+        traces=(*traces, *tried_),
+        residual=residual,
+        psi=psi,
+        S=np.column_stack([S, *columns]),
+        stretches=stretches(problem),
+        left_out=left_out | silent,
+        held=fixed_coefficients(fit),
+        H=H,
+    )
+
+
+def fixed_coefficients(fit: Fit) -> tuple[str, ...]:
+    """Masses and coefficients of the simulated model that nobody seeks and that are not zero."""
+    model = fit.problem.simulator.model
+    sought = {x.column for x in fit.problem.unknowns}
+    named = [n for e in model.effects if not e.scanned for n in e.parameters]
+    return tuple(n for n in (*MASS_PARAMETERS, *named) if n not in sought and model.stated(n))
+
+
+def _fitted_model(fit: Fit) -> ShipModel:
+    """The model as it was simulated, nuisance effects included, with its fitted values."""
+    shared = {x.column: float(a) for x, a in zip(fit.problem.unknowns, fit.theta, strict=True)
+              if x.trial is None}  # fmt: skip
+    return fit.problem.simulator.model.with_values(shared)
+
+
+def _apart(
+    fit: Fit, base: ShipModel, effects: Sequence[Effect]
+) -> tuple[list[Effect], dict[str, str]]:
+    """Effects that can be simulated along the record, tried one by one, and why the others not."""
+    kept, lost = list[Effect](), dict[str, str]()
+    for effect in effects:
+        point = _linear(fit, base, [effect])
+        if isinstance(point, Departure):
+            lost[effect.name] = f"is no number along the record: {point}"
+        else:
+            kept.append(effect)
+    return kept, lost
+
+
+def _linear(
+    fit: Fit, base: ShipModel, effects: Sequence[Effect]
+) -> tuple[Vector, Vector, Vector, Vector] | Departure:
+    """Residual, columns of what is fitted, of effects at their null, and of what is held fixed.
+
+    All from one simulation a trial.
+    """
+    problem = fit.problem
+    model = base
+    for effect in effects:
+        model = model + effect
+    columns = tuple(p for e in effects for p in linear_parameters(e))
+    model = model.with_values({n: x for e in effects for n, x in e.nulls.items()})
+    held = fixed_coefficients(fit)
+    free = (*problem.simulator.equations.free, *columns, *held)
+    substeps = problem.simulator.substeps
+    simulator = prepare(model, free, problem.outputs, fit.settings.engine, substeps)
+    values = [*np.zeros(len(columns)), *(base.value(n) for n in held)]
+    point = linearise(widened_problem(problem, simulator, (*columns, *held)),
+                      np.append(fit.theta, values))  # fmt: skip
+    if isinstance(point, Departure):
+        return point
+    residual, psi = point
+    first, last = len(fit.theta), len(fit.theta) + len(columns)
+    return residual, psi[:, :first], psi[:, first:last], psi[:, last:]
+
+
+def _scanned(
+    fit: Fit, base: ShipModel, effects: Sequence[Effect], first: int
+) -> tuple[list[Trace], list[Vector]]:
+    """Effects at each of the values to try."""
+    traces, columns = list[Trace](), list[Vector]()
+    for effect in effects:
+        for values, column in secants(fit, base, effect):
+            if column.any():
+                traces.append(Trace(effect, (first + len(columns),), (), values))
+                columns.append(column)
+    return traces, columns
+
+
+def widened_problem(problem: Problem, simulator: Simulator, columns: Sequence[str]) -> Problem:
+    """The problem with further parameters of the model as shared unknowns, simulated by another."""
+    extra = tuple(
+        Unknown(
+            name=n,
+            column=n,
+            trial=None,
+            start=0.0,
+            size=1.0,
+            low=-np.inf,
+            high=np.inf,
+            unit="1",
+            kind="physical",
+        )
+        for n in columns
+    )
+    return replace(problem, simulator=simulator, unknowns=(*problem.unknowns, *extra))
+
+
+def _with_trace(
+    able: Mapping[str, Effect], outputs: Sequence[str]
+) -> tuple[dict[str, Effect], dict[str, str]]:
+    """Leave out sensors of signals that are not outputs."""
+    kept, silent = {}, {}
+    for name, effect in able.items():
+        unseen = [s for s in effect.measures if s in STATES and s not in outputs]
+        if unseen:
+            silent[name] = f"{unseen[0]} is not an output"
+        else:
+            kept[name] = effect
+    return kept, silent

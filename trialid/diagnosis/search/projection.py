@@ -1,0 +1,125 @@
+"""The residual and every candidate's trace, less what the fitted parameters reach; raw and white.
+
+The colour of the noise has to come from the residual, which holds the missing effect. So the
+candidate that explains most of the residual is taken out first: what is left is noise to a better
+approximation, and with nothing missing one candidate of a hundred takes hardly anything.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.diagnosis.noise.whitening import Colour, colour_of, memory, whiten_columns
+from trialid.diagnosis.search.bootstrap import inflation
+from trialid.trial_rows import Stretch
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Projected:
+    """Residual and candidate columns with everything the base columns reach taken out.
+
+    Attributes
+    ----------
+    Q
+        Orthonormal columns of what the base reaches.
+    gram, moment
+        S^T S and S^T residual.
+    """
+
+    residual: Vector
+    S: Vector
+    Q: Vector
+    gram: Vector
+    moment: Vector
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The same rows as they are and with the noise's colour taken out.
+
+    Attributes
+    ----------
+    white
+        In units of the noise: a row of noise has variance 1.
+    parts
+        Which rows of `white` are which output of which trial.
+    inflation
+        By how much rows that are not quite independent make chance greater.
+    """
+
+    raw: Projected
+    white: Projected
+    parts: tuple[Stretch, ...]
+    colour: Colour
+    inflation: float
+
+
+def project(residual: Vector, psi: Vector, S: Vector) -> Projected:
+    """Take out of the residual and the candidates what the base columns reach."""
+    norms = np.linalg.norm(psi, axis=0)
+    Q, _ = np.linalg.qr(psi[:, norms > 0.0] / norms[norms > 0.0])
+    e, S = residual - Q @ (Q.T @ residual), S - Q @ (Q.T @ S)
+    return Projected(e, S, Q, S.T @ S, S.T @ e)
+
+
+def gather(
+    residual: Vector,
+    psi: Vector,
+    S: Vector,
+    stretches: Sequence[Stretch],
+    groups: Sequence[tuple[int, ...]],
+    noise: Vector | None = None,
+) -> Evidence:
+    """Everything the tests need, from normed stacked rows.
+
+    Parameters
+    ----------
+    groups
+        Columns of `S` that belong to one candidate.
+    noise
+        What is taken for noise where it is known better than from the candidates; (M,).
+    """
+    raw = project(residual, psi, S)
+    best, _ = likeliest(raw, groups, stretches)
+    colour = colour_of(residual_after(raw, best) if noise is None else noise, stretches)
+    rows, parts = whiten_columns(np.column_stack([residual, psi, S]), stretches, colour)
+    n = psi.shape[1]
+    white = project(rows[:, 0], rows[:, 1 : n + 1], rows[:, n + 1 :])
+    chance = inflation(residual_after(white, best), white.S, parts) if len(white.S.T) else 1.0
+    return Evidence(raw, white, parts, colour, chance)
+
+
+def likeliest(
+    raw: Projected, groups: Sequence[tuple[int, ...]], stretches: Sequence[Stretch]
+) -> tuple[tuple[int, ...], float]:
+    """The candidate that explains most of the residual at Schwarz's price, or none, and its cost.
+
+    As many rows count as one as an autoregression of these records looks back.
+    """
+    samples = len(raw.residual) / memory(stretches)
+    total = float(raw.residual @ raw.residual)
+    best, least = tuple[int, ...](), 0.0
+    for group in groups:
+        _, fall = least_squares_fall(raw, group)
+        cost = samples * np.log(max(1.0 - fall / total, 1e-12)) + len(group) * np.log(samples)
+        if cost < least:
+            best, least = group, float(cost)
+    return best, least
+
+
+def residual_after(rows: Projected, group: Sequence[int]) -> Vector:
+    """The residual less what a candidate explains; (M,)."""
+    return np.asarray(rows.residual - rows.S[:, group] @ least_squares_fall(rows, group)[0])
+
+
+def least_squares_fall(rows: Projected, group: Sequence[int]) -> tuple[Vector, float]:
+    """Coefficients of a candidate's columns, and the fall of the sum of squares; (q,)."""
+    gram, moment = rows.gram[np.ix_(group, group)], rows.moment[list(group)]
+    sizes = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    inverse = np.linalg.pinv(gram / np.outer(sizes, sizes), rcond=1e-10, hermitian=True)
+    beta = inverse @ (moment / sizes)
+    return np.asarray(beta / sizes), float(moment / sizes @ beta)

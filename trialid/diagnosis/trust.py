@@ -1,0 +1,39 @@
+"""How far each unknown of a fit can be trusted."""
+
+from typing import Final
+
+from trialid.accuracy.likely import Averaged
+from trialid.accuracy.parameter_table import Accuracy, Subject, assess, with_ranges
+from trialid.diagnosis.noise.split import Split
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import stretches
+
+NEAR_ZERO: Final = 0.05
+"""An estimate below this share of its typical size is scaled by the latter."""
+
+
+def accuracy_of(fit: Fit, parts: Split, averaged: Averaged) -> Accuracy:
+    """Eq. 8 to 14 for every unknown of a fit, and where it is likely to lie whatever is missing.
+
+    Eq. 14 is a bound, so it takes the upper end of what may be the model's part of the error.
+    """
+    model = parts.undermodelling_interval
+    subjects = []
+    for unknown, value in zip(fit.problem.unknowns, fit.theta, strict=True):
+        near_zero = abs(value) < NEAR_ZERO * unknown.size
+        typical = unknown.kind == "nuisance" or near_zero
+        reference = unknown.size if typical else float(value)
+        known = unknown.prior[1] if unknown.prior else None
+        subjects.append(
+            Subject(unknown.name, unknown.kind, unknown.unit, float(value), reference, known)
+        )
+    made = assess(
+        subjects=subjects,
+        psi=fit.psi,
+        residual=fit.residual,
+        stretches=stretches(fit.problem),
+        noise=parts.noise,
+        undermodelling=parts.undermodelling if model is None else model[1],
+        level=fit.level,
+    )
+    return with_ranges(made, averaged)

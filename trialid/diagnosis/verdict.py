@@ -1,0 +1,324 @@
+"""From scores to a verdict: refit the best candidates, confirm them, and say what is missing."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.search.carry_over import EACH, FAINT, FALL, Carried, as_good, own_errors
+from trialid.diagnosis.search.completeness import Completeness
+from trialid.diagnosis.search.score import Candidate
+from trialid.errors import TrialidError
+from trialid.identification.fit import Fit, identify
+from trialid.identification.problem import Settings
+from trialid.ship.effect import Effect
+from trialid.trial import Trial
+
+RIVAL: Final = 0.5
+"""Share of the named effect's fall, as a logarithm, below which another explains too little to be
+taken for it."""
+
+NAMED: Final = 1.10
+"""Ratio of squared errors that a further effect must be worth to be named beside the first: below
+it, of what was added to ships of another hull, half were corrections of a shape."""
+
+HELD_OUT: Final = "the held-out error rises"
+"""An objection in its words."""
+
+SHARE: Final = 0.12
+"""Share of what is not noise that the best effect must explain: the best of the catalogue explains
+0.04 of what it does not hold, and 0.21 or more of what it holds."""
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A candidate added to the model and fitted; what carries over about the fits' own optima."""
+
+    candidate: Candidate
+    fit: Fit
+    carried: Carried
+
+    @property
+    def cost(self) -> float:
+        """What refits are ordered by, the least first: what is left, and 1 % a parameter."""
+        return self.carried.log_ratio + EACH * (len(self.candidate.effect.parameters) - 1)
+
+
+Progress = Callable[[str], None]
+
+
+def refit(
+    fit: Fit, trials: Sequence[Trial], candidates: Sequence[Candidate], progress: Progress
+) -> list[Refit]:
+    """Each candidate added and fitted from its expected value; those that fail are left out."""
+    done = []
+    before = own_errors(fit) if candidates else ()
+    for candidate in candidates:
+        progress(f"trying {candidate.effect.name}")
+        start = {n: _inside(candidate.effect, n, x) for n, x in candidate.expected.items()}
+        settings = _settings_with(fit.settings, candidate.effect)
+        try:
+            model = (fit.model + candidate.effect).with_values(start)
+            near = fit.estimates | start
+            fitted = identify(trials, model, settings, near=near, smaller=fit)
+        except TrialidError:  # it cannot be fitted on this record: it is not the missing one
+            continue
+        after = Carried(before, own_errors(fitted), candidate.carried.seen)
+        done.append(Refit(candidate, fitted, after))
+    return done
+
+
+def refit_best(
+    fit: Fit,
+    trials: Sequence[Trial],
+    candidates: Sequence[Candidate],
+    most: int,
+    level: float,
+    progress: Progress,
+) -> list[Refit]:
+    """The first few candidates fitted; as many of other families where none stands every check.
+
+    Twins stand side by side in the ranking, and what speaks against one speaks against all.
+    """
+    done = refit(fit, trials, candidates[:most], progress)
+    if likeliest_refit(fit, done, level) is None:
+        known = {n for c in candidates[:most] for n in (c.effect.name, *c.family)}
+        others = [c for c in candidates[most:] if c.effect.name not in known]
+        done += refit(fit, trials, others[:most], progress)
+    return done
+
+
+def _inside(effect: Effect, name: str, value: float) -> float:
+    p = effect.parameters[name]
+    return float(np.clip(value, p.low, p.high))
+
+
+def _settings_with(settings: Settings, effect: Effect) -> Settings:
+    new = tuple(p for p in effect.parameters if p not in settings.free)
+    return replace(settings, free=(*settings.free, *new))
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the record says is missing, in one of four kinds, with the sentence a person reads."""
+
+    kind: str
+    effect: str | None
+    family: tuple[str, ...]
+    sentence: str
+
+
+def decide(
+    fit: Fit,
+    ranking: Sequence[Candidate],
+    refits: Sequence[Refit],
+    parts: Split,
+    whole: Completeness | None,
+    level: float,
+    grown: bool = False,
+) -> Verdict:
+    """From scores and refits to a verdict: missing, nothing missing, not in catalogue, cannot tell.
+
+    An effect is named only if its score stands out over the whole catalogue, its refitted value
+    is physical, held-out trials do not speak against it, and no force of another shape explains
+    far more. In a model that has `grown` by effects already it must be worth a tenth.
+    """
+    named = likeliest_refit(fit, refits, level)
+    if whole is not None and (whole.outdoes(named.carried) if named else whole.gap):
+        return Verdict("not in catalogue", None, (), _gap(named, whole))
+    if named is None and (against := _contradicted(fit, refits, level)) is not None:
+        return Verdict("cannot tell", None, (), _against(fit, against))
+    if grown and named is not None and named.carried.ratio > 1.0 / NAMED:
+        return Verdict("cannot tell", None, (), _correction(named))
+    if named is not None and (share := _explained(fit, named, parts)) < SHARE:
+        return Verdict("not in catalogue", None, (), _little(named, share, parts))
+    if named is not None:
+        return _missing(fit, named, rivals(named, ranking, refits))
+    small = [c for c in ranking if c.shown(level) and not c.carried.falls]
+    return _unnamed(parts, whole, small)
+
+
+def _unnamed(parts: Split, whole: Completeness | None, shown: Sequence[Candidate]) -> Verdict:
+    """What to say where no effect is worth a name."""
+    said = _unnamed_plainly(parts, whole)
+    return replace(said, sentence=f"{said.sentence}{_small(shown)}")
+
+
+def _small(shown: Sequence[Candidate]) -> str:
+    """What is significant although nobody would notice it."""
+    if not shown:
+        return ""
+    first = min(shown, key=lambda c: c.price)
+    return (
+        f"; {first.effect.name} is significant and small (p = {first.p_value:.2g}): where it was "
+        f"not fitted it changes the squared error by {first.carried.ratio - 1.0:+.1%}"
+    )
+
+
+def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
+    if parts.undermodelling_interval is None:
+        return Verdict("cannot tell", None, (), _no_split(parts))
+    low, high = parts.undermodelling_interval
+    if low > 0.0 and whole is not None and whole.any_shape <= 0.0:
+        return Verdict(
+            "cannot tell", None, (),
+            f"an error of {low:.1%} to {high:.1%} is more than the noise ({parts.method}), but no "
+            "effect and no force of a simple shape shows in it: rougher weather looks the same",
+        )  # fmt: skip
+    if low > 0.0:
+        return Verdict(
+            "not in catalogue", None, (),
+            f"the model leaves an error of {low:.1%} to {high:.1%} that is not noise "
+            f"({parts.method}), and no effect of the catalogue explains it",
+        )  # fmt: skip
+    return Verdict(
+        "nothing missing", None, (),
+        f"no effect stands out against the noise; a model error of up to {high:.1%} would not "
+        f"be seen ({parts.method})",
+    )  # fmt: skip
+
+
+def _gap(named: Refit | None, whole: Completeness) -> str:
+    closest = f"; the closest is {named.candidate.effect.name}" if named else ""
+    share = max(whole.catalogue, 0.0) / whole.any_shape
+    return (
+        "something is missing that the catalogue does not hold: its effects gain "
+        f"{share:.0%} of what a force of a simple shape would{closest}"
+    )
+
+
+def _contradicted(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
+    """The best effect that stands every check but that held-out trials become worse."""
+    return best_of([r for r in refits if objection(fit, r, level) == HELD_OUT and _falls(fit, r)])
+
+
+def _against(fit: Fit, found: Refit) -> str:
+    lost = found.fit.eps_check is None or not np.isfinite(found.fit.eps_check)
+    how = "are lost" if lost else f"go from {fit.eps_check:.2%} to {found.fit.eps_check:.2%}"
+    return (
+        f"{found.candidate.effect.name} lowers the squared error where it was not fitted by "
+        f"{1.0 - found.carried.ratio:.0%}, but with it the held-out trials {how}: the trials "
+        "contradict each other about it"
+    )
+
+
+def _correction(named: Refit) -> str:
+    return (
+        f"{named.candidate.effect.name} would take another {1.0 - named.carried.ratio:.1%} off the "
+        "squared error where it was not fitted: beside the effects that were added this is a "
+        "correction of their shape, and has no name"
+    )
+
+
+def _explained(fit: Fit, named: Refit, parts: Split) -> float:
+    """Share of what is not noise that goes with an effect; 1 where noise is not known."""
+    if parts.noise is None:
+        return 1.0
+    rest = 1.0 - min(parts.noise / fit.eps_rmsn, 1.0) ** 2
+    return _fall(fit, named) / rest if rest > 0.0 else 1.0
+
+
+def _fall(fit: Fit, refit: Refit) -> float:
+    """Share of the squared error that goes with an effect."""
+    return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
+
+
+def _little(named: Refit, share: float, parts: Split) -> str:
+    return (
+        f"something is missing that the catalogue does not hold: its best effect, "
+        f"{named.candidate.effect.name}, explains {share:.0%} of what is not noise ({parts.method})"
+    )
+
+
+def _no_split(parts: Split) -> str:
+    return (
+        "no effect stands out, but noise and model error cannot be separated on this record: "
+        + parts.why
+    )
+
+
+def likeliest_refit(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
+    """Of the refits that stand every check the one whose fall carries over best."""
+    return best_of([r for r in refits if not objection(fit, r, level)])
+
+
+def best_of(refits: Sequence[Refit]) -> Refit | None:
+    """The refit that leaves least on blocks left out, sensors, clocks and forces alike.
+
+    One of which the parameters leave next to nothing gives way to any that is as good.
+    """
+    if not refits:
+        return None
+    least = min(refits, key=lambda r: r.cost)
+    close = [r for r in refits if as_good(least.carried.after, r.carried.after)]
+    return min([least, *close], key=lambda r: (r.carried.seen < FAINT, r.cost))
+
+
+def objection(fit: Fit, refit: Refit, level: float) -> str:
+    """What speaks against an effect once it is fitted, empty where nothing does."""
+    if not refit.candidate.shown(level):
+        return "chance would do it, or no ship has such a value"
+    if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
+        return "the search does not arrive"
+    if worse_held_out(fit, refit.fit):
+        return HELD_OUT
+    return "" if _falls(fit, refit) else "the error hardly falls"
+
+
+def _falls(fit: Fit, refit: Refit) -> bool:
+    """Whether the error falls by what is worth a name, where it was fitted and where not."""
+    return refit.carried.falls and 1.0 - _fall(fit, refit) < FALL
+
+
+def worse_held_out(before: Fit, after: Fit) -> bool:
+    """Whether held-out trials, where there are any, become worse or are lost."""
+    old, new = before.eps_check, after.eps_check
+    if old is None or new is None:
+        return False
+    return not np.isfinite(new) or new > old
+
+
+def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) -> tuple[str, ...]:
+    """Effects that this record cannot tell from the named one: alike in trace, or as good.
+
+    As good is what leaves no more of the blocks left out than chance would, and explains more than
+    half of what the named one does.
+    """
+    fitted = {r.candidate.effect.name: r for r in refits}
+    close, apart = list[str](), set[str]()
+    for c in ranking:
+        name = c.effect.name
+        if c is named.candidate:
+            continue
+        refit = fitted.get(name)
+        mine, its = (
+            (named.carried, refit.carried) if refit else (named.candidate.carried, c.carried)
+        )
+        if _as_good(mine, its):
+            close += [name] if c.allowed else []
+        elif refit:
+            apart.add(name)
+    alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
+    return (*close, *alike)
+
+
+def _as_good(mine: Carried, its: Carried) -> bool:
+    """Whether another effect carries over as well as far as these blocks can tell."""
+    if not 0.0 < its.ratio < mine.ratio**RIVAL:
+        return False
+    return as_good(mine.after, its.after)
+
+
+def _missing(fit: Fit, named: Refit, others: tuple[str, ...]) -> Verdict:
+    candidate = named.candidate
+    alike = f"; this record cannot tell it from {', '.join(others)}" if others else ""
+    held = ""
+    if fit.eps_check is not None and named.fit.eps_check is not None:
+        held = f", on held-out trials from {fit.eps_check:.2%} to {named.fit.eps_check:.2%}"
+    return Verdict(
+        "missing", candidate.effect.name, (candidate.effect.name, *others),
+        f"{candidate.effect.name} is missing: with it the error falls from {fit.eps_rmsn:.2%} to "
+        f"{named.fit.eps_rmsn:.2%}{held} (p = {candidate.p_value:.2g} over the catalogue){alike}",
+    )  # fmt: skip

@@ -1,0 +1,224 @@
+"""Whether a fit can carry a verdict at all, and if not, the first reason and what to do.
+
+A search that failed, a ship that never manoeuvred or a model that explains next to nothing still
+leave a residual, and tests on it still name effects. None of those names means anything.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trialid.identification.explained import of_use, over_noise, unexplained_share
+from trialid.identification.file_of_ship import is_another_ship, unlike_file
+from trialid.identification.fit import Fit, Score
+from trialid.identification.gauss_newton import REASONS
+from trialid.identification.time_scales import slowest_motion
+from trialid.simulation.integrate import record_for
+
+RUDDER_RANGE: Final = 0.035
+"""[rad] From the 5th to the 95th percentile, 2 deg: less keeps a course, and is no manoeuvre; a
+zig-zag of 2 deg has 4. Half lets a helm pass that corrects by a degree, twice turns that zig-zag
+away, which does identify a ship."""
+
+ABOVE_NOISE: Final = 2.0
+"""Standard deviation of an output over its white noise above which it tells of a motion. Noise
+alone has 1 within a few per cent; four times would refuse roll that still tells of damping."""
+
+UNEXPLAINED: Final = 0.5
+"""Share of an output's variance that a model may leave: with more, most of what moved is something
+else, and the largest of it is not one effect beside a good model. Twice lets anything pass; half
+turns away a plain model of a real ship in wind (54 % of the amplitude, 29 % of the variance)."""
+
+SLOWEST_TIMES: Final = 4.0
+"""Time scales of the slowest motion that one trial must hold: a lag has settled to 2 % by then, an
+oscillation has swung twice. Half of it lets a lag be fitted that was seen to 14 %, twice turns
+free-running models away that sailed 20 lengths."""
+
+STEERING: Final = ("delta", "delta_order")
+OTHER_HANDS: Final = frozenset({"n_p", "n_s", "X_ext", "Y_ext", "K_ext", "N_ext"})
+TURNING: Final = frozenset({"r", "psi", "v"})
+
+
+@dataclass(frozen=True)
+class Inadequate:
+    """Why a fit carries no verdict, with its numbers, and what to do next; in words."""
+
+    reason: str
+    advice: str
+
+    def __str__(self) -> str:
+        """Both on one line."""
+        return f"{self.reason}; {self.advice}"
+
+
+def why_no_fit(fit: Fit) -> Inadequate | None:
+    """The first reason why nothing should be concluded from a fit, None where it is sound.
+
+    What the record cannot tell comes before what the search did with it: a boat at the dock also
+    fails to converge, but more iterations are no help there.
+    """
+    if not fit.model.states:  # sensors against each other: nothing manoeuvres
+        return _no_number(fit) or _search_failed(fit)
+    checks = (
+        _no_manoeuvre, _at_noise_level, _too_short, _no_number, _search_failed,
+        _sensor_at_bound, _little_explained, _another_ship, _held_out_lost, _held_out_unexplained,
+    )  # fmt: skip
+    return next((found for check in checks if (found := check(fit))), None)
+
+
+def remarks(fit: Fit) -> tuple[str, ...]:
+    """What to read beside the parameters of a fit, sound or not; a line each."""
+    bounds = [
+        f"{n} ended at its bound {x:.4g}: that is the bound's value, not the record's"
+        for n, x in fit.at_bounds.items()
+    ]
+    against = [
+        f"{n} = {fit.value(n):.4g} is {abs(z):.1f} standard deviations "
+        f"{'above' if z > 0.0 else 'below'} what is likely for it"
+        for n, z in fit.contradicted.items()
+    ]
+    weak = ["the search was slow to the end: some parameters can hardly be told apart"]
+    rivals = " or ".join(f"{GM:.3g}" for GM in fit.rival_GM)
+    roll = (
+        [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]
+        if fit.rival_GM
+        else []
+    )
+    return (*bounds, *against, *roll, *(weak if fit.weakly_identified else []))
+
+
+def _no_manoeuvre(fit: Fit) -> Inadequate | None:
+    """The rudder is never used, where nothing else could turn the ship."""
+    inputs = {*fit.problem.simulator.equations.inputs}
+    steered = [n for n in STEERING if n in inputs]
+    if not steered or not TURNING & {*fit.problem.outputs} or inputs & OTHER_HANDS:
+        return None
+    moved = max(_range(s, n) for s in of_use(fit, "fit") for n in steered)
+    if moved > RUDDER_RANGE:
+        return None
+    return Inadequate(
+        f"she never manoeuvres: the rudder moves by {np.rad2deg(moved):.2g} deg, and a manoeuvre "
+        f"takes more than {np.rad2deg(RUDDER_RANGE):.2g} deg",
+        "fit a zig-zag or a turn, or check which channel is the rudder and in what unit",
+    )
+
+
+def _range(score: Score, name: str) -> float:
+    source = record_for(score.trial, name)
+    assert source is not None  # a trial without it has been refused
+    low, high = np.quantile(score.trial.signals[source], (0.05, 0.95))
+    return float(high - low)
+
+
+def _at_noise_level(fit: Fit) -> Inadequate | None:
+    """No output moves more than its sensor's noise."""
+    if any(ratio > ABOVE_NOISE for ratio in over_noise(fit, of_use(fit, "fit")).values()):
+        return None
+    return Inadequate(
+        f"she never moves: {' and '.join(fit.problem.outputs)} stay within {ABOVE_NOISE:g} times "
+        "the noise of their sensors",
+        "fit a record of a manoeuvre under way, or check the channels",
+    )
+
+
+def _too_short(fit: Fit) -> Inadequate | None:
+    """No trial lasts long enough to see the slowest motion settle."""
+    slow = slowest_motion(fit)
+    longest = max(s.trial.duration for s in of_use(fit, "fit"))
+    if slow is None or longest >= SLOWEST_TIMES * slow.seconds:
+        return None
+    return Inadequate(
+        f"the record is too short: {longest:.3g} s, where {slow.words} takes "
+        f"{slow.seconds:.3g} s and must be seen {SLOWEST_TIMES:g} times over",
+        f"record at least {np.ceil(SLOWEST_TIMES * slow.seconds):.0f} s in one go",
+    )
+
+
+def _no_number(fit: Fit) -> Inadequate | None:
+    if np.isfinite(fit.theta).all() and np.isfinite(fit.eps_rmsn):
+        return None
+    return Inadequate(
+        "the fit is no number", "give other starts in [model.values], or a shorter [align] period"
+    )
+
+
+def _search_failed(fit: Fit) -> Inadequate | None:
+    if fit.converged:
+        return None
+    steps = max(len(fit.iterations) - 1, 0)
+    bounds = f", {', '.join(fit.at_bounds)} at a bound" if fit.at_bounds else ""
+    return Inadequate(
+        f"the search did not converge: {REASONS[fit.reason]} ({steps} steps, error "
+        f"{fit.eps_rmsn:.1%}{bounds})",
+        "free fewer parameters, or start nearer the ship in [model.values] or in her file",
+    )
+
+
+def _sensor_at_bound(fit: Fit) -> Inadequate | None:
+    """A bias, a delay or a rudder's zero ran to its bound: it stands for something else."""
+    nuisance = {x.name for x in fit.problem.unknowns if x.kind == "nuisance" and x.prior}
+    held = [n for n in fit.at_bounds if n in nuisance]
+    if not held:
+        return None
+    bounds = ", ".join(f"{n} = {fit.at_bounds[n]:.3g}" for n in held)
+    return Inadequate(
+        f"what no sensor does had to be assumed: {bounds}, the end of what is possible",
+        "look at that signal's clock, sign and unit, and whether the model is one of this ship",
+    )
+
+
+def _little_explained(fit: Fit) -> Inadequate | None:
+    """No output that moves is explained by more than half."""
+    scores = of_use(fit, "fit")
+    left, seen = unexplained_share(fit, scores), over_noise(fit, scores)
+    kept = {c: x for c, x in left.items() if seen[c] > ABOVE_NOISE}
+    if min(kept.values(), default=0.0) <= UNEXPLAINED:
+        return None
+    return Inadequate(
+        f"the model explains too little: {_listed(kept)} of what moves is left, where "
+        "a constant would leave 100 %",
+        "check the ship's file, the signs and the units, and whether something else moved her",
+    )
+
+
+def _another_ship(fit: Fit) -> Inadequate | None:
+    """Most coefficients that the ship's file gives are clearly others."""
+    if not is_another_ship(fit):
+        return None
+    unlike, compared = unlike_file(fit)
+    listed = ", ".join(f"{n} {x:.2g}" for n, x in list(unlike.items())[:4])
+    return Inadequate(
+        f"the ship's file is not of this ship: {len(unlike)} of {compared} fitted coefficients are "
+        f"less than half or more than twice the file's ({listed} times)",
+        "name her own file, check speed and units, or begin with `trialid inspect --init --length`",
+    )
+
+
+def _held_out_lost(fit: Fit) -> Inadequate | None:
+    """The fitted ship leaves her model's domain in a trial that was held out."""
+    for score in of_use(fit, "check"):
+        if score.response.departure is not None:
+            return Inadequate(
+                f"held-out trial {score.trial.name!r} diverges: {score.response.departure}",
+                "look at its record and at the parameters at bounds, or fit that trial too",
+            )
+    return None
+
+
+def _held_out_unexplained(fit: Fit) -> Inadequate | None:
+    """A held-out trial that moves is foretold worse than its own mean would."""
+    for score in of_use(fit, "check"):
+        left, seen = unexplained_share(fit, [score]), over_noise(fit, [score])
+        kept = {c: x for c, x in left.items() if seen[c] > ABOVE_NOISE}
+        if min(kept.values(), default=0.0) > 1.0:
+            return Inadequate(
+                f"held-out trial {score.trial.name!r} is foretold worse than by no model at all: "
+                f"{_listed(kept)} of what moves is left",
+                "compare its signs, units and speed with those of the fitted trials",
+            )
+    return None
+
+
+def _listed(shares: dict[str, float]) -> str:
+    return " and ".join(f"{np.sqrt(x):.0%} of {c}" for c, x in shares.items())

@@ -1,0 +1,133 @@
+"""What is known of a nuisance before any record is seen: weakly, from sensors and from the start.
+
+Biases, the rudder's zero, delays and initial states are nearly one direction of a short record:
+left alone they run off together, to an initial roll rate of 15 rad/s or a delay of 3 s, and take
+the ship's own coefficients with them. Each is therefore held about what a sensor of its kind, or
+the first moments of the record, make likely; a record that sees it clearly is not held back.
+"""
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import guess
+from trialid.trial import Trial
+
+Vector = NDArray[np.float64]
+Known = tuple[float, float]
+"""Mean and standard deviation."""
+
+OFFSETS: Final = {"b_phi": 0.035, "b_psi": 0.05, "delta_0": 0.02}
+"""[rad] How far a roll sensor is mounted, a compass deviates and a rudder's zero lies off: 2 deg,
+3 deg and 1.1 deg, the size that a builder's adjustment leaves. Half or twice: see the tests."""
+
+GYRO: Final = 0.001
+"""[rad/s] Offset that a rate gyro keeps, 0.06 deg/s."""
+
+SHARE: Final = 0.05
+"""Offset of a rate or a speed as a share of what is measured."""
+
+DELAY: Final = 0.5
+"""[s] Filters and bus of a motion sensor."""
+
+DRIFT: Final = 0.05
+"""Sideways speed of a ship on a straight course, over her speed."""
+
+SWING: Final = 0.5
+"""Sideways speed over r L in a turn: a ship turns about a point a half length before midships."""
+
+LIMIT: Final = 10.0
+"""Standard deviations beyond which no initial state is looked for."""
+
+FIRST: Final = 0.5
+"""Ship lengths sailed in which the start of a motion is read off the record."""
+
+
+def nuisance_prior(
+    model: ShipModel, trial: Trial, column: str, size: float, null: float = 0.0
+) -> Known:
+    """Mean and standard deviation of a nuisance of one trial, in its own unit.
+
+    Parameters
+    ----------
+    column
+        Its name: `b_phi`, `tau_r`, `delta_0`, or `phi(0)` for an initial state.
+    size, null
+        Its typical size, and what it is where nothing is wrong.
+    """
+    if column.endswith("(0)"):
+        return _initial(model, trial, column[:-3])
+    if column.startswith("tau_"):
+        return null, max(DELAY, trial.period)
+    return null, _offset(model, trial, column, size)
+
+
+def limits(known: Known) -> tuple[float, float]:
+    """Bounds of an initial state."""
+    mean, deviation = known
+    return mean - LIMIT * deviation, mean + LIMIT * deviation
+
+
+def speed(model: ShipModel, trial: Trial) -> float:
+    """How fast she goes [m/s]; for a ship at rest a Froude number of 0.1, so that scales exist."""
+    L, g = (model.ship.particulars[n] for n in ("L", "g"))
+    u = trial.signals.get("u")
+    known = model.ship.particulars["U0"] if u is None else float(np.median(np.abs(u)))
+    return max(known, 0.1 * float(np.sqrt(g * L)))
+
+
+def _offset(model: ShipModel, trial: Trial, column: str, size: float) -> float:
+    if column in OFFSETS:
+        return OFFSETS[column]
+    turning = speed(model, trial) / model.ship.particulars["L"]
+    of = column.removeprefix("b_")
+    if of in ("r", "p"):
+        return max(GYRO, 0.01 * turning, SHARE * _moved(trial, of))
+    if of in ("u", "v"):
+        return max(size, SHARE * speed(model, trial))
+    return 3.0 * size
+
+
+def _initial(model: ShipModel, trial: Trial, state: str) -> Known:
+    if state in trial.signals:
+        return _as_recorded(model, trial, state)
+    U, L = speed(model, trial), model.ship.particulars["L"]
+    start = guess(model, trial, state)
+    if state == "v":
+        r = _as_recorded(model, trial, "r")[0] if "r" in trial.signals else 0.0
+        return start, float(np.hypot(DRIFT * U, SWING * abs(r) * L))
+    rolled = 2.0 * np.pi / _shortest_roll(L)
+    known: Mapping[str, float] = {
+        "u": 0.1 * U,
+        "p": (_moved(trial, "phi") if "phi" in trial.signals else 0.05) * rolled + 1e-4,
+        "r": 0.05 * U / L,
+    }
+    return start, known.get(state, 0.1)
+
+
+def _as_recorded(model: ShipModel, trial: Trial, state: str) -> Known:
+    """The first samples, to within their noise and how much moves in half a length sailed.
+
+    The median of five, so that one struck sample is no start; a tenth of all motion is let for
+    what the model makes of the first moments.
+    """
+    y = trial.signals[state][trial.valid[state]]
+    y = y if len(y) else trial.signals[state]
+    U, L = speed(model, trial), model.ship.particulars["L"]
+    first = y[: max(5, round(FIRST * L / U / trial.period))]
+    noise = float(np.std(np.diff(y, 3))) / np.sqrt(20.0) if len(y) > 8 else 0.0
+    floor = 1e-3 * {"u": U, "v": U, "p": U / L, "r": U / L}.get(state, 1.0)
+    deviation = np.hypot(np.std(first), 3.0 * noise) + 0.1 * float(np.std(y)) + floor
+    return float(np.median(y[:5])), float(deviation)
+
+
+def _moved(trial: Trial, name: str) -> float:
+    return float(np.std(trial.signals[name])) if name in trial.signals else 0.0
+
+
+def _shortest_roll(length: float) -> float:
+    """Period of a stiff ship of this length [s]: 8 s for 175 m, by Froude's law."""
+    return 0.6 * float(np.sqrt(length))

@@ -1,0 +1,162 @@
+"""One search from one start: least squares, robust or not, with what is known beforehand."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.identification.gauss_newton import Iteration, Minimum, minimise
+from trialid.identification.output_error import Problem, linearise, ranges
+from trialid.identification.problem import Settings
+from trialid.identification.weighing import Weighing, colour_of
+from trialid.simulation.integrate import Departure
+
+Vector = NDArray[np.float64]
+Progress = Callable[[Iteration], None]
+
+HUBER: Final = 1.345
+"""Residuals beyond this many standard deviations count by their size, not its square."""
+
+TOLERANCE: Final = 1e-5
+"""Share of the residual left along the sensitivities: a thousandth of a standard error."""
+
+WORTH: Final = 0.02
+"""Standard errors, all parameters together, that a slow search need not win any more: they are of
+the record's weakest directions, and no printed digit depends on them."""
+
+PASSES: Final = 12
+
+OTHER_COLOUR: Final = 0.3
+"""Change of the colour's logarithm at which priors weighed wrongly: their pull is off by a sixth of
+what it is worth. Half of it searches more often for less than a tenth of a prior's pull."""
+
+LOOKS_AGAIN: Final = 2
+"""Passes for the colour alone."""
+
+SETTLED: Final = 1e-6
+"""Typical sizes that a further pass may move any parameter when it is the last."""
+
+
+@dataclass(frozen=True)
+class End:
+    """Where a search ended, with the history of all its passes.
+
+    Attributes
+    ----------
+    residual
+        Of the record alone, weighted where the loss is robust; (M,), empty where nothing could
+        be simulated.
+    colour
+        How many rows say the same there: see `colour_of`.
+    pulls
+        Sum of squares of all priors, in their standard deviations.
+    """
+
+    minimum: Minimum
+    path: tuple[Iteration, ...]
+    residual: Vector
+    colour: float
+    pulls: float
+
+    @property
+    def began(self) -> bool:
+        """Whether the start could be simulated."""
+        return bool(self.minimum.iterations)
+
+    @property
+    def V(self) -> float:
+        """Half the sum of squares of the record's rows, inf where nothing could be simulated."""
+        return 0.5 * float(self.residual @ self.residual) if self.began else np.inf
+
+    def cost(self, colour: float) -> float:
+        """What a search makes small: N log(2 V) and the pull of the priors, N = rows / colour."""
+        if not self.began:
+            return np.inf
+        return len(self.residual) / colour * float(np.log(max(2.0 * self.V, 1e-300))) + self.pulls
+
+
+def search(
+    problem: Problem,
+    settings: Settings,
+    start: Vector,
+    progress: Progress = lambda iteration: None,
+    max_iterations: int | None = None,
+) -> End:
+    """Minimise; again with new weights while a robust loss or the residual's colour asks for it."""
+    robust = settings.loss == "huber"
+    weights: Vector | None = None
+    colour: float | None = None
+    path: tuple[Iteration, ...] = ()
+    for passed in range(PASSES):
+        weighing = Weighing(problem, weights, colour)
+        minimum = _minimise(weighing, settings, start, progress, max_iterations)
+        path += minimum.iterations
+        moved = np.max(np.abs(minimum.theta - start) / [x.size for x in problem.unknowns])
+        if not minimum.iterations or (passed and moved < SETTLED):
+            break
+        residual = minimum.residual[: weighing.rows]
+        colour = colour_of(residual, weighing.parts)
+        stale = weighing.knows and abs(np.log(colour / weighing.colour)) > OTHER_COLOUR
+        if not robust and not (stale and passed < LOOKS_AGAIN):
+            break
+        start = minimum.theta
+        weights = huber(_plain(problem, start)) if robust else None
+    return _end(weighing, minimum, path)
+
+
+def _minimise(
+    weighing: Weighing,
+    settings: Settings,
+    start: Vector,
+    progress: Progress,
+    max_iterations: int | None,
+) -> Minimum:
+    size, low, high = ranges(weighing.problem.unknowns)
+    return minimise(
+        evaluate=weighing,
+        start=start,
+        scale=size,
+        low=low,
+        high=high,
+        max_iterations=settings.max_iterations if max_iterations is None else max_iterations,
+        tolerance=TOLERANCE,
+        progress=progress,
+        again=weighing.again,
+        worth=lambda: WORTH * float(np.sqrt(weighing.colour)),
+        rows=weighing.rows,
+    )
+
+
+def _plain(problem: Problem, theta: Vector) -> Vector:
+    """Residual of the record without weights; (M,)."""
+    point = linearise(problem, theta)
+    assert not isinstance(point, Departure)
+    return point[0]
+
+
+def _end(weighing: Weighing, minimum: Minimum, path: tuple[Iteration, ...]) -> End:
+    residual = minimum.residual[: weighing.rows]
+    if not len(residual):
+        return End(minimum, path, residual, 1.0, 0.0)
+    colour = weighing.colour if weighing.knows else colour_of(residual, weighing.parts)
+    return End(minimum, path, residual, colour, weighing.pulls(minimum.theta))
+
+
+def huber(residual: Vector) -> Vector:
+    """Square roots of Huber's weights, by a scale that outliers do not move; (M,)."""
+    scale = 1.4826 * float(np.median(np.abs(residual)))
+    ratio = np.abs(residual) / max(HUBER * scale, 1e-300)
+    return np.asarray(1.0 / np.sqrt(np.maximum(ratio, 1.0)))
+
+
+def random_starts(problem: Problem, count: int, spread: float, seed: int) -> list[Vector]:
+    """So many starts about the stated one, its physical parameters moved; (n_theta,) each."""
+    rng = np.random.default_rng(seed)
+    physical = np.array([x.kind == "physical" for x in problem.unknowns])
+    starts = []
+    for _ in range(count):
+        factor = 1.0 + spread * rng.uniform(-1.0, 1.0, len(physical))
+        starts.append(np.where(physical, problem.start * factor, problem.start))
+    return starts

@@ -1,0 +1,94 @@
+"""Where the motion of a trial that is not fitted starts: searched, but never from nowhere."""
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.arrays import Mask
+from trialid.identification.gauss_newton import minimise
+from trialid.identification.nuisance_priors import limits, nuisance_prior
+from trialid.identification.output_error import Problem, output_error, output_matrix, row_scale
+from trialid.identification.problem import STATE_SIZE
+from trialid.simulation.integrate import guess, initial, respond
+from trialid.trial import Trial
+
+Vector = NDArray[np.float64]
+
+START_STEPS: Final = 6
+"""Steps to where a held-out trial starts: nearly linear, and quickly forgotten."""
+
+NEAR_ENOUGH: Final = 1e-3
+"""Share of the residual that may be left along the initial states."""
+
+
+def own_start(
+    problem: Problem, trial: Trial, compared: Mask, values: Mapping[str, float], level: float
+) -> dict[str, float]:
+    """Initial states of a held-out trial; recorded samples alone would add their noise.
+
+    They are free where the fit leaves them free, and held by what the trial's first moments make
+    likely: a stiff roll whose start is free can otherwise leave the model's domain at once.
+
+    Parameters
+    ----------
+    compared
+        Where an output was measured; (N, n_y).
+    level
+        What one independent row of the fit is uncertain by: see `Weighing`.
+    """
+    model = problem.simulator.model
+    free = [s for s in model.states if any(x.column == initial(s) for x in problem.unknowns)]
+    start = {s: guess(model, trial, s) for s in free}
+    if not free or not compared.any():
+        return start
+    known = {s: nuisance_prior(model, trial, initial(s), STATE_SIZE[s]) for s in free}
+    evaluate = _Rows(problem, trial, compared, values, known, level)
+    bounds = np.array([limits(known[s]) for s in free])
+    sizes = np.array([known[s][1] for s in free])
+    recorded = np.clip(np.array([start[s] for s in free]), bounds[:, 0], bounds[:, 1])
+    for begin in (recorded, evaluate.means):
+        end = minimise(
+            evaluate=evaluate,
+            start=begin,
+            scale=sizes,
+            low=bounds[:, 0],
+            high=bounds[:, 1],
+            max_iterations=START_STEPS,
+            tolerance=NEAR_ENOUGH,
+        )
+        if end.iterations:
+            return dict(zip(free, map(float, end.theta), strict=True))
+    return start
+
+
+class _Rows:
+    """Residual of one trial and its gradient by the initial states, with rows of priors."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        trial: Trial,
+        compared: Mask,
+        values: Mapping[str, float],
+        known: Mapping[str, tuple[float, float]],
+        level: float,
+    ) -> None:
+        self.problem, self.trial, self.compared, self.values = problem, trial, compared, values
+        self.states = list(known)
+        self.means = np.array([mean for mean, _ in known.values()])
+        self.weigh = level / np.array([deviation for _, deviation in known.values()])
+        self.columns = [problem.simulator.columns.index(initial(s)) for s in known]
+        self.scale = np.broadcast_to(row_scale(problem), compared.shape)[compared]
+
+    def __call__(self, x0: Vector) -> tuple[Vector, Vector] | None:
+        start = dict(zip(self.states, map(float, x0), strict=True))
+        response = respond(self.problem.simulator, self.trial, self.values, start)
+        if response.departure is not None or response.S is None:
+            return None
+        y = output_matrix(self.trial, self.problem.outputs)
+        gap = output_error(y, response.y)[self.compared] * self.scale
+        slopes = response.S[:, :, self.columns][self.compared] * self.scale[:, None]
+        priors = (self.means - x0) * self.weigh
+        return np.append(gap, priors), np.concatenate([slopes, np.diag(self.weigh)])

@@ -1,0 +1,315 @@
+"""What is unknown in a fit and where it starts: trials, a model and settings to a problem."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.effects import CATALOGUE
+from trialid.errors import NotIdentifiable, nearest
+from trialid.identification.nuisance_priors import limits, nuisance_prior, speed
+from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask, norms
+from trialid.identification.roll_range import RollRange, roll_range
+from trialid.names.quantities import MASS_PARAMETERS
+from trialid.ship.effect import Effect, Force, Parameter, Rate
+from trialid.ship.model import ShipModel
+from trialid.ship.motion import check_mass
+from trialid.simulation.at_rest import check_at_rest
+from trialid.simulation.graph import SYMBOL, order
+from trialid.simulation.integrate import (
+    Engine,
+    Simulator,
+    guess,
+    initial,
+    inputs,
+    prepare,
+    record_for,
+)
+from trialid.trial import Trial
+from trialid.trial_rows import Kind
+
+Vector = NDArray[np.float64]
+Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
+
+STATE_SIZE: Final = {"u": 0.1, "v": 0.1, "p": 0.002, "r": 0.0005, "phi": 0.01, "psi": 0.01}
+"""Typical error of a start guessed from the record [SI]: the scale of an initial state."""
+
+STILL_RUDDER: Final = 0.002
+"""[rad rms] A rudder that moves less than this excites nothing; its sensor's noise is less."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to identify; see the pipeline's `[identify]`.
+
+    `priors` are (mean, standard deviation) in the parameter's own unit; `bounds` (low, high).
+    Steps a sample begin with `substeps` and go up to `most_substeps` where they matter.
+    With `hold_nuisance` what each trial has for itself is held weakly about what is likely, and
+    so are GM and the roll damping about those of other ships.
+    """
+
+    free: tuple[str, ...]
+    outputs: tuple[str, ...]
+    nuisance: tuple[Nuisance, ...] = ()
+    weights: Mapping[str, float] = field(default_factory=dict)
+    loss: Literal["squares", "huber"] = "squares"
+    priors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    starts: int = 1
+    spread: float = 0.3
+    seed: int = 0
+    max_iterations: int = 50
+    norm: Norm = "mean"
+    substeps: int = 1
+    most_substeps: int = 16
+    engine: Engine = "compiled"
+    hold_nuisance: bool = True
+
+
+def pose_problem(
+    trials: Sequence[Trial],
+    model: ShipModel,
+    settings: Settings,
+    near: Mapping[str, float] = MappingProxyType({}),
+) -> Problem:
+    """What is unknown, and what a residual is made of.
+
+    Raises
+    ------
+    NotIdentifiable, EffectError, ShipError
+        The trials or the model cannot carry the question; one line says why.
+    """
+    fitted = tuple(t for t in trials if t.use == "fit")
+    _check_outputs(trials, settings)
+    simulator, shared, per_trial = ready(model, settings)
+    _check_ready(simulator, trials)
+    problem = question(simulator, fitted, settings, shared, per_trial, near)
+    _check_excitation(problem)
+    return problem
+
+
+def ready(
+    model: ShipModel, settings: Settings
+) -> tuple[Simulator, tuple[str, ...], tuple[str, ...]]:
+    """A simulator of what is free; the free names trials share, and those each has for itself."""
+    full, per_trial = with_nuisance(model, settings)
+    shared = tuple(n for n in settings.free if n not in per_trial)
+    free = (*shared, *per_trial)
+    started = with_starts(full, free, settings)
+    simulator = prepare(started, free, settings.outputs, settings.engine, settings.substeps)
+    return simulator, shared, per_trial
+
+
+def question(
+    simulator: Simulator,
+    trials: Sequence[Trial],
+    settings: Settings,
+    shared: Sequence[str],
+    per_trial: Sequence[str],
+    near: Mapping[str, float] = MappingProxyType({}),
+) -> Problem:
+    """The problem of these trials for a simulator that is ready, unchecked.
+
+    Parameters
+    ----------
+    shared, per_trial
+        Free parameters that all trials share, and those that each trial has for itself.
+    near
+        Starts by the name of the unknown.
+    """
+    unknowns = (*(_shared(simulator, n, settings) for n in shared),
+                *_nuisances(simulator, trials, per_trial, settings))  # fmt: skip
+    unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
+    compared = tuple(compared_mask(t, simulator) for t in trials)
+    y_rms = norms(trials, compared, settings.outputs, settings.norm)
+    weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
+    weights = weights / np.sqrt(np.mean(weights**2))
+    roll = _roll(simulator.model, trials[0], unknowns) if settings.hold_nuisance else None
+    return Problem(simulator, tuple(trials), unknowns, compared, y_rms, weights, roll=roll)
+
+
+def _roll(model: ShipModel, trial: Trial, unknowns: Sequence[Unknown]) -> RollRange | None:
+    places = {x.name: i for i, x in enumerate(unknowns) if x.trial is None and x.prior is None}
+    return roll_range(model, speed(model, trial), places)
+
+
+def _check_ready(simulator: Simulator, trials: Sequence[Trial]) -> None:
+    """Refuse a model that cannot be simulated in these trials."""
+    _check_simulated(simulator)
+    check_at_rest(simulator.model)
+    check_mass(simulator.model, {n: simulator.model.value(n) for n in MASS_PARAMETERS})
+    for trial in trials:
+        inputs(simulator, trial, simulator.fixed)
+
+
+def _check_outputs(trials: Sequence[Trial], settings: Settings) -> None:
+    for trial in trials:
+        for c in settings.outputs:
+            if c not in trial.signals:
+                raise NotIdentifiable(
+                    f"trial {trial.name!r} has no signal {c!r}, which is an output to fit; "
+                    f"map it in [trial.signals] ({nearest(c, trial.signals)})"
+                )
+
+
+def _check_simulated(simulator: Simulator) -> None:
+    """Refuse an output that no simulated motion reaches: an input has nothing to fit."""
+    states = simulator.equations.states
+    for name, node in simulator.equations.outputs.items():
+        moved_by = {*states, f"{name}_ref"}
+        if not any(n.op == SYMBOL and n.value in moved_by for n in order([node])):
+            raise NotIdentifiable(
+                f"output {name!r} is not simulated, it is an input; take it out of [identify] "
+                f"outputs, or choose from what is simulated: {', '.join(states)}"
+            )
+
+
+def with_nuisance(model: ShipModel, settings: Settings) -> tuple[ShipModel, tuple[str, ...]]:
+    """The model with the effects that nuisance parameters act through, and their names."""
+    wanted: list[Effect] = []
+    if "bias" in settings.nuisance:
+        wanted += [CATALOGUE[f"bias_{c}"] for c in settings.outputs if f"bias_{c}" in CATALOGUE]
+    if "delay" in settings.nuisance:
+        wanted += [CATALOGUE[f"delay_{c}"] for c in settings.outputs if f"delay_{c}" in CATALOGUE]
+    if "rudder_offset" in settings.nuisance:
+        wanted += [CATALOGUE["rudder_offset"]]
+    present = {e.name for e in model.effects}
+    added = [e for e in wanted if e.name not in present]
+    for effect in added:
+        model = model + effect
+    return model, tuple(p for e in added for p in e.parameters)
+
+
+def with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> ShipModel:
+    """Typical values for free parameters nobody states, so that the search has a start."""
+    missing = {}
+    for name in free:
+        if name not in model.parameters:
+            known = nearest(name, model.parameters)
+            raise NotIdentifiable(f"free parameter {name!r} is in no effect of the model; {known}")
+        if name in settings.priors and model.stated(name) is None:
+            missing[name] = settings.priors[name][0]
+        elif model.stated(name) is None:
+            parameter = model.parameters[name]
+            absent = parameter.null if is_sensor(model, name) else None
+            missing[name] = parameter.start if absent is None else absent
+    return model.with_values(missing) if missing else model
+
+
+def is_sensor(model: ShipModel, name: str) -> bool:
+    """Whether a parameter belongs to a sensor or an offset, not to the ship."""
+    for effect in model.effects:
+        if name in effect.parameters:
+            return not (Force in effect.forms or Rate in effect.forms)
+    return False
+
+
+def _shared(simulator: Simulator, name: str, settings: Settings) -> Unknown:
+    parameter = simulator.model.parameters[name]
+    low, high = settings.bounds.get(name, (parameter.low, parameter.high))
+    start = simulator.model.value(name)
+    size = abs(start) if start else abs(parameter.start)
+    beside = is_sensor(simulator.model, name) and simulator.model.states
+    kind: Kind = "nuisance" if beside else "physical"  # where nothing moves, sensors are the matter
+    prior = settings.priors.get(name)
+    return Unknown(
+        name=name,
+        column=name,
+        trial=None,
+        start=start,
+        size=size,
+        low=low,
+        high=high,
+        unit=parameter.unit,
+        kind=kind,
+        prior=prior,
+    )
+
+
+def _nuisances(
+    simulator: Simulator, trials: Sequence[Trial], names: Sequence[str], settings: Settings
+) -> list[Unknown]:
+    model = simulator.model
+    made = []
+    for i, trial in enumerate(trials):
+        for name in names:
+            p: Parameter = model.parameters[name]
+            label = f"{name} [{trial.name}]"
+            null, size = p.start if p.null is None else p.null, abs(p.start)
+            held = settings.hold_nuisance
+            prior = nuisance_prior(model, trial, name, size, null) if held else None
+            made.append(
+                Unknown(
+                    name=label,
+                    column=name,
+                    trial=i,
+                    start=null,
+                    size=size,
+                    low=p.low,
+                    high=p.high,
+                    unit=p.unit,
+                    kind="nuisance",
+                    prior=prior,
+                )
+            )
+        if "initial_state" in settings.nuisance:
+            made += [_initial(model, trial, i, s, settings) for s in model.states]
+    return made
+
+
+def _initial(model: ShipModel, trial: Trial, index: int, state: str, settings: Settings) -> Unknown:
+    start, size = guess(model, trial, state), STATE_SIZE[state]
+    unit = {"u": "m/s", "v": "m/s", "p": "rad/s", "r": "rad/s"}.get(state, "rad")
+    label = f"{initial(state)} [{trial.name}]"
+    prior, low, high = None, -np.inf, np.inf
+    if settings.hold_nuisance:
+        prior = nuisance_prior(model, trial, initial(state), size)
+        low, high = limits(prior)
+    start = float(np.clip(start, low, high))
+    return Unknown(
+        name=label,
+        column=initial(state),
+        trial=index,
+        start=start,
+        size=size,
+        low=low,
+        high=high,
+        unit=unit,
+        kind="nuisance",
+        prior=prior,
+    )
+
+
+def _record(trial: Trial, name: str) -> Vector:
+    source = record_for(trial, name)
+    assert source is not None  # a trial without it has been refused
+    return trial.signals[source]
+
+
+def _check_excitation(problem: Problem) -> None:
+    """Refuse records that cannot carry the question.
+
+    Raises
+    ------
+    NotIdentifiable
+        The rudder does not move, or there are fewer values than unknowns.
+    """
+    count = sum(int(m.sum()) for m in problem.compared)
+    if count <= len(problem.unknowns):
+        raise NotIdentifiable(
+            f"{count} compared values for {len(problem.unknowns)} unknowns; free fewer "
+            "parameters, or use a longer record or a shorter [align] period"
+        )
+    for name in ("delta", "delta_order"):
+        if name in problem.simulator.equations.inputs:
+            moves = max(float(np.std(_record(t, name))) for t in problem.trials)
+            if moves < STILL_RUDDER:
+                listed = ", ".join(repr(t.name) for t in problem.trials)
+                raise NotIdentifiable(
+                    f"the rudder ({name}) moves by only {np.rad2deg(moves):.2f} deg rms in trial "
+                    f"{listed}: nothing excites the ship and no parameter can be found; use a "
+                    "trial with a manoeuvre, or check the channel"
+                )

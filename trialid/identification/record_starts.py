@@ -1,0 +1,168 @@
+"""Starts that the record itself gives: yaw alone first, then roll on a grid of its two numbers.
+
+From a placeholder ship a search of everything at once has to find the period of a resonance while
+the motion that drives it is still wrong. Yaw is found first, by itself. Then each metacentric
+height of a grid, with light or heavy damping, leaves all else of the roll linear: one linear solve
+tells how well the record's own period and decrement agree, and the best few are followed.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.identification.gauss_newton import minimise
+from trialid.identification.output_error import Problem, ranges
+from trialid.identification.weighing import Weighing
+
+Vector = NDArray[np.float64]
+Rows = NDArray[np.int_]
+
+GM_OVER_L: Final = tuple(np.geomspace(0.001, 0.045, 12))
+"""A factor of 1.4 from one to the next, 1.2 in the roll period."""
+
+RATIOS: Final = (0.03, 0.15)
+FOLLOWED: Final = 3
+"""Points of the grid that are searched from, ..."""
+
+MOST_FOLLOWED: Final = 6
+"""... or so many where the grid hardly chooses, ..."""
+
+ALIKE: Final = 0.1
+"""... which is where the squared error is by such a share above the least: one linear solve leaves
+yaw and damping as they were. Half of it left two of 60 drawn ships in another valley, ..."""
+
+APART: Final = 1.5
+"""... all of them with GM apart by this factor."""
+
+YAW_STEPS: Final = 40
+YAW_NEAR: Final = 1e-3
+ROLLING: Final = ("phi", "p")
+
+
+def record_starts(problem: Problem) -> list[Vector]:
+    """Starts by the record, the most promising first; (n_theta,) each, perhaps none.
+
+    Deterministic. Where roll is not simulated, or its GM is not free, there is one at most: yaw
+    found without the roll.
+    """
+    rolls, turns = rows_of(problem, ROLLING), rows_of(problem, _others(problem))
+    if not len(rolls) or not len(turns):
+        theta = problem.start
+    else:
+        theta = _descend(problem, problem.start, turns, ~of_roll(problem))
+    if problem.roll is None or not len(rolls):
+        return [theta] if len(rolls) and len(turns) else []
+    return _best_of_grid(problem, theta, rolls)
+
+
+def of_roll(problem: Problem) -> NDArray[np.bool_]:
+    """Which unknowns act on roll alone, by the letters of SNAME; (n_theta,)."""
+    own = {f"{kind}_{c}" for kind in ("b", "tau", "T", "e") for c in ROLLING}
+    own |= {f"{c}(0)" for c in ROLLING}
+    return np.array([x.column in own or x.column.startswith(("K", "GM")) for x in problem.unknowns])
+
+
+def _linear(problem: Problem) -> NDArray[np.bool_]:
+    """Unknowns in which the roll is linear: moments that do not depend on it, and sensors."""
+    own = {"b_phi", "b_p", "phi(0)", "p(0)"}
+    return np.array(
+        [
+            x.column in own or (x.column.startswith("K") and "p" not in x.column)
+            for x in problem.unknowns
+        ]
+    )
+
+
+def _others(problem: Problem) -> tuple[str, ...]:
+    return tuple(c for c in problem.outputs if c not in ROLLING)
+
+
+def rows_of(problem: Problem, outputs: Sequence[str]) -> Rows:
+    """Rows of the residual that are of these outputs."""
+    parts = [
+        np.arange(p.rows.start, p.rows.stop)
+        for p in Weighing(problem).parts
+        if problem.outputs[p.output] in outputs
+    ]
+    return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
+
+
+class Part:
+    """Some unknowns against some rows, priors kept; all other unknowns stay where they are."""
+
+    def __init__(
+        self, problem: Problem, theta: Vector, rows: Rows, moving: NDArray[np.bool_]
+    ) -> None:
+        self.weighing, self.theta, self.rows, self.moving = Weighing(problem), theta, rows, moving
+
+    def __call__(self, part: Vector) -> tuple[Vector, Vector] | None:
+        """Rows and gradient at values of the moving unknowns, None where there is no motion."""
+        theta = self.theta.copy()
+        theta[self.moving] = part
+        point = self.weighing(theta)
+        return None if point is None else self._of(point)
+
+    def _of(self, point: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
+        priors = np.arange(self.weighing.rows, len(point[0]))
+        kept = np.concatenate([self.rows, priors])
+        return point[0][kept], point[1][np.ix_(kept, np.flatnonzero(self.moving))]
+
+
+def _descend(problem: Problem, theta: Vector, rows: Rows, moving: NDArray[np.bool_]) -> Vector:
+    """The best of some unknowns for some rows, the others held; theta where none can be had."""
+    chosen = [x for x, moves in zip(problem.unknowns, moving, strict=True) if moves]
+    evaluate = Part(problem, theta, rows, moving)
+    end = minimise(evaluate, theta[moving], *ranges(chosen), YAW_STEPS, YAW_NEAR)
+    found = theta.copy()
+    found[moving] = end.theta
+    return found
+
+
+def _best_of_grid(problem: Problem, theta: Vector, rows: Rows) -> list[Vector]:
+    """Points of the grid with all else of the roll by one linear solve, the best that differ."""
+    roll = problem.roll
+    assert roll is not None
+    weighing, linear = Weighing(problem), _linear(problem)
+    if (here := weighing(theta)) is not None:
+        weighing.again(theta, here)
+    found = []
+    for start in _grid(problem, theta):
+        point = weighing(start)
+        if point is None:
+            continue
+        kept = np.concatenate([rows, np.arange(weighing.rows, len(point[0]))])
+        residual, psi = point[0][kept], point[1][np.ix_(kept, np.flatnonzero(linear))]
+        sizes = np.maximum(np.linalg.norm(psi, axis=0), 1e-300)
+        step = np.linalg.lstsq(psi / sizes, residual, rcond=1e-9)[0] / sizes
+        start[linear] += step
+        found.append((float(np.sum((residual - psi @ step) ** 2)), float(start[roll.GM]), start))
+    return _followed(sorted(found, key=lambda f: f[0]))
+
+
+def _followed(found: Sequence[tuple[float, float, Vector]]) -> list[Vector]:
+    """The best points that are apart; (squared error, GM, start) each, best first."""
+    chosen: list[tuple[float, Vector]] = []
+    for squares, GM, start in found:
+        apart = all(abs(np.log(GM / other)) > np.log(APART) for other, _ in chosen)
+        most = MOST_FOLLOWED if squares < (1.0 + ALIKE) * found[0][0] else FOLLOWED
+        if apart and len(chosen) < most:
+            chosen.append((GM, start))
+    return [start for _, start in chosen]
+
+
+def _grid(problem: Problem, theta: Vector) -> list[Vector]:
+    roll = problem.roll
+    assert roll is not None
+    low, high = problem.unknowns[roll.GM].low, problem.unknowns[roll.GM].high
+    starts = []
+    for GM in (roll.length * share for share in GM_OVER_L):
+        for ratio in RATIOS if roll.Kp is not None else RATIOS[:1]:
+            start = theta.copy()
+            start[roll.GM] = GM
+            if roll.Kp is not None:
+                start[roll.Kp] = roll.damping(GM, ratio)
+            if low < GM < high:
+                starts.append(start)
+    return starts

@@ -1,0 +1,91 @@
+"""What any ship's roll is like: a metacentric height over L and a damping ratio, loosely.
+
+Where a record hardly rolls, righting moment and damping run off together, to a GM of 70 m for a
+ferry: the simulated heel then follows the turn without any dynamics, and nothing in the record
+objects. Both are therefore held on a logarithmic scale, within a factor of three at one standard
+deviation, which a record that does roll overrules.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.ship.model import ShipModel
+from trialid.ship.prime import mass_scale
+
+Vector = NDArray[np.float64]
+
+GM_OVER_L: Final = 0.008
+DAMPING_RATIO: Final = 0.06
+"""Middle of what ships have: GM of 0.2 to 3 % of L, a damping ratio of 0.02 to 0.2 under way."""
+
+FACTOR: Final = float(np.log(3.0))
+"""One standard deviation. A factor of 1.7 would pull multihulls, of 9 would hold nothing."""
+
+LEAST: Final = 1e-6
+"""Share of L below which GM counts as this: the logarithm needs a positive number."""
+
+
+@dataclass(frozen=True)
+class RollRange:
+    """Rows of a search for GM and the roll damping.
+
+    Attributes
+    ----------
+    GM, Kp
+        Where they stand in theta; Kp None where it is not free.
+    length
+        Of the ship [m].
+    critical
+        Kp of critical damping at a GM of 1 m, negative; in proportion to sqrt(GM).
+    """
+
+    GM: int
+    Kp: int | None
+    length: float
+    critical: float
+
+    def damping(self, GM: float, ratio: float) -> float:
+        """Kp of a damping ratio at a GM [m]."""
+        return ratio * self.critical * float(np.sqrt(GM))
+
+    def off(self, theta: Vector) -> dict[int, float]:
+        """Standard deviations from the middle, by the place of GM and Kp in theta."""
+        GM = max(float(theta[self.GM]), LEAST * self.length)
+        found = {self.GM: float(np.log(GM / (GM_OVER_L * self.length))) / FACTOR}
+        if self.Kp is not None:
+            ratio = max(float(theta[self.Kp]) / self.damping(GM, 1.0), 1e-6)
+            found[self.Kp] = float(np.log(ratio / DAMPING_RATIO)) / FACTOR
+        return found
+
+    def rows(self, theta: Vector) -> tuple[Vector, Vector]:
+        """Residual and gradient of the rows, in standard deviations; (k,), (k, n_theta)."""
+        off = self.off(theta)
+        slopes = np.zeros((len(off), len(theta)))
+        GM = max(float(theta[self.GM]), LEAST * self.length)
+        slopes[0, self.GM] = 1.0 / (GM * FACTOR)
+        if self.Kp is not None:
+            Kp = min(float(theta[self.Kp]), 1e-6 * self.damping(GM, 1.0))
+            slopes[1, self.Kp] = 1.0 / (Kp * FACTOR)
+            slopes[1, self.GM] = -0.5 / (GM * FACTOR)
+        return -np.array(list(off.values())), slopes
+
+
+def roll_range(model: ShipModel, U: float, places: dict[str, int]) -> RollRange | None:
+    """The rows of a model that rolls, None where its GM is not free.
+
+    Parameters
+    ----------
+    U
+        How fast she goes [m/s].
+    places
+        Free parameters without a prior of their own, and where they stand in theta.
+    """
+    if "GM" not in places or not {"p", "phi"} <= {*model.states}:
+        return None
+    L, rho, g, nabla = (model.ship.particulars[n] for n in ("L", "rho", "g", "nabla"))
+    inertia = mass_scale("I_xx", L, rho) * (model.value("I_xx") - model.value("Kpdot"))
+    critical = -2.0 * float(np.sqrt(rho * g * nabla * inertia)) / (0.5 * rho * L**4 * U)
+    return RollRange(places["GM"], places.get("Kp"), L, critical)

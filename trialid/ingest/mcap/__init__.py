@@ -1,0 +1,3 @@
+"""MCAP logs: ROS 2, protobuf and JSON messages."""
+
+__all__: list[str] = []

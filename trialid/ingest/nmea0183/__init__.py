@@ -1,0 +1,3 @@
+"""Logs of NMEA 0183 sentences."""
+
+__all__: list[str] = []

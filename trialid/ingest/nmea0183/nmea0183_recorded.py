@@ -1,0 +1,297 @@
+"""Blocks of a recorded NMEA 0183 stream to channels: sentences, stamps and what was lost.
+
+The time of a sentence is, in this order: the tag block's, where it counts milliseconds or the line
+has no stamp; the stamp the recorder wrote before it; the times of ZDA or RMC, interpolated.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.errors import LogError
+from trialid.ingest.adapter import Wanted
+from trialid.ingest.nmea0183 import nmea0183_channels, nmea0183_clock, nmea0183_stamps
+from trialid.ingest.nmea0183.nmea0183_sentences import (
+    Mask,
+    Places,
+    Sentences,
+    has_checksums,
+    sentences,
+)
+from trialid.ingest.nmea0183.nmea0183_stamps import LOCAL, NONE, SECOND, TIME_OF_DAY
+from trialid.ingest.times import local_time
+from trialid.recording import Channel
+
+Ints = NDArray[np.int64]
+Connections = Callable[[Sentences], Iterable[tuple[Places, str]]]
+"""Sentences by the connection they came over: rows and name."""
+
+BLOCK = 4 << 20
+OUT_OF_STEP = 50_000_000
+"""A stamp this much [ns] outside of its two neighbours, which agree, is a damaged one."""
+UNSAFE = re.compile(r"[^\w.+#-]+")
+MOST = 0.5
+
+
+@dataclass
+class Stream:
+    """What is gathered from a stream, block after block."""
+
+    found: nmea0183_channels.Found = field(default_factory=dict)
+    tagged: list[Ints] = field(default_factory=list)
+    tag_coarse: list[Mask] = field(default_factory=list)
+    stamped: list[Ints] = field(default_factory=list)
+    kind: list[NDArray[np.int8]] = field(default_factory=list)
+    coarse: list[Mask] = field(default_factory=list)
+    ticks: dict[str, list[nmea0183_clock.Ticks]] = field(default_factory=dict)
+    total: int = 0
+    wrong: int = 0
+    foreign: int = 0
+    bare: int = 0
+    useful: int = 0
+
+
+@dataclass(frozen=True)
+class Timed:
+    """Times of all sentences [ns], when they were received if that is another time, and words."""
+
+    t: Ints
+    received: Ints | None
+    clock: str
+    remarks: tuple[str, ...]
+
+
+def blocks(path: Path) -> Iterator[bytes]:
+    """The file in blocks of whole lines."""
+    rest = b""
+    with path.open("rb") as file:
+        while chunk := file.read(BLOCK):
+            block = rest + chunk
+            end = block.rfind(b"\n") + 1
+            if not end and len(block) < 2 * BLOCK:
+                rest = block
+                continue
+            yield block[: end or len(block)]
+            rest = block[end or len(block) :]
+    if rest:
+        yield rest
+
+
+def channels(
+    path: Path,
+    parts: Callable[[], Iterable[bytes]],
+    wanted: Wanted,
+    zone: str | None,
+    connections: Connections | None = None,
+) -> tuple[dict[str, Channel], list[str]]:
+    """Channels of a stream, and remarks.
+
+    Parameters
+    ----------
+    path
+        What errors name.
+    parts
+        Gives the blocks, each time from the beginning.
+    zone
+        Zone of stamps that state none; UTC if it is None.
+
+    Raises LogError when no sentence is sound, and when nothing says at what time they were sent.
+    """
+    checked = any(has_checksums(_array(part)) for part in parts())
+    stream = Stream()
+    for part in parts():
+        _take(stream, _array(part), checked, wanted, connections)
+    if not stream.total:
+        raise LogError(
+            f"{path}: not one sound NMEA 0183 sentence ({stream.wrong} with a wrong checksum, "
+            f"{stream.bare} without one); take another copy of the log"
+        )
+    if not stream.useful:
+        return {}, ["no sentence in it tells of the motion of the ship (AIS and satellites only?)"]
+    timed = _timed(path, stream, zone)
+    found, remarks = nmea0183_channels.channels(
+        stream.found, timed.t, timed.received, timed.clock, wanted, NONE
+    )
+    return found, [*_losses(stream, checked), *timed.remarks, *remarks]
+
+
+def _array(part: bytes) -> NDArray[np.uint8]:
+    return np.frombuffer(part, np.uint8)
+
+
+def _take(
+    stream: Stream,
+    data: NDArray[np.uint8],
+    checked: bool,
+    wanted: Wanted,
+    connections: Connections | None,
+) -> None:
+    block = sentences(data, checked)
+    tags, before = nmea0183_stamps.of_tags(data, block.before)
+    t, kind, coarse = nmea0183_stamps.of_prefixes(data, before)
+    damaged = tags.there & ~tags.sound
+    _inherit(block, t, kind)
+    sources = list(tags.sources)
+    if connections is not None:
+        sources += connections(block)
+    for rows, sentence, talker in nmea0183_channels.addresses(block):
+        stream.useful += len(rows)
+        sound = rows[~damaged[rows]]
+        if sentence in nmea0183_clock.CLOCKS:
+            tick = nmea0183_clock.ticks(block, sound, sentence, stream.total)
+            stream.ticks.setdefault(talker + sentence, []).append(tick)
+        if not nmea0183_channels.wants(sentence, wanted) or sentence == "ZDA":
+            continue
+        for connection, part in _by_connection(sound, sources, len(t)):
+            nmea0183_channels.gather(
+                block=block,
+                rows=part,
+                sentence=sentence,
+                talker=talker,
+                connection=connection,
+                offset=stream.total,
+                found=stream.found,
+            )
+    stream.tagged.append(tags.t)
+    stream.tag_coarse.append(tags.seconds_only)
+    stream.stamped.append(t)
+    stream.kind.append(kind)
+    stream.coarse.append(coarse)
+    stream.total += len(t)
+    stream.wrong += block.wrong + int(damaged.sum())
+    stream.foreign += block.foreign
+    stream.bare += block.bare
+
+
+def _inherit(block: Sentences, t: Ints, kind: NDArray[np.int8]) -> None:
+    """A sentence behind another on one line, with nothing between them, has its stamp."""
+    rows = np.arange(len(t))
+    origin = np.maximum.accumulate(np.where(block.joined, 0, rows)) if len(t) else rows
+    t[:], kind[:] = t[origin], kind[origin]
+
+
+def _by_connection(
+    rows: Places, sources: list[tuple[Places, str]], total: int
+) -> Iterator[tuple[str, Places]]:
+    if not sources:
+        yield "", rows
+        return
+    number = np.zeros(total, np.intp)
+    names = [""]
+    for part, text in sources:
+        name = UNSAFE.sub("_", text).strip("_")
+        if name not in names:
+            names.append(name)
+        number[part] = names.index(name)
+    for one in np.unique(number[rows]):
+        yield names[one], rows[number[rows] == one]
+
+
+def _timed(path: Path, stream: Stream, zone: str | None) -> Timed:
+    tagged, stamped = np.concatenate(stream.tagged), np.concatenate(stream.stamped)
+    coarse = np.concatenate(stream.tag_coarse)
+    has_tags, has_stamps = _mostly(tagged != NONE), _mostly(stamped != NONE)
+    fine = has_tags and not _mostly(coarse[tagged != NONE])
+    lines = _of_lines(stream, stamped, zone) if has_stamps else None
+    if has_tags and (fine or lines is None):
+        words = "tag block time" + ("" if fine else ", whole seconds")
+        received = None if lines is None or "no date" in lines.clock else lines.t
+        return Timed(tagged, received, words, _untimed(tagged))
+    if lines is not None:
+        return lines
+    ticks = {name: nmea0183_clock.join_ticks(parts) for name, parts in stream.ticks.items()}
+    clock = nmea0183_clock.clock(stream.total, ticks)
+    if clock is None:
+        raise LogError(
+            f"{path}: no time in the log: its lines have no stamps and there is no ZDA or RMC that "
+            "states one; record it with stamps on the lines, or with the GPS on the same stream"
+        )
+    return Timed(clock.t, None, clock.words, (*clock.remarks, *_untimed(clock.t)))
+
+
+def _mostly(there: Mask) -> bool:
+    return len(there) > 0 and bool(there.mean() >= MOST)
+
+
+def _of_lines(stream: Stream, stamped: Ints, zone: str | None) -> Timed:
+    """The recorder's stamps: of the kind most lines have, without those that are damaged."""
+    kinds = np.concatenate(stream.kind)
+    kind = int(np.argmax(np.bincount(kinds[stamped != NONE])))
+    rows = np.flatnonzero((kinds == kind) & (stamped != NONE))
+    times = stamped[rows]
+    if kind == LOCAL and zone is not None:
+        times = local_time.utc(times, zone)
+    if kind == TIME_OF_DAY:
+        times = nmea0183_clock.unwrap_midnights(times)
+    odd = out_of_step(times)
+    t = np.full(len(stamped), NONE)
+    t[rows[~odd]] = times[~odd]
+    words = {
+        LOCAL: f"line stamps, zone {zone}" if zone else "line stamps, no zone stated: taken as UTC",
+        TIME_OF_DAY: "line stamps, time of day, no date",
+    }.get(kind, "line stamps")
+    remarks = list(_untimed(t))
+    if _mostly(np.concatenate(stream.coarse)[rows]):
+        remarks.append("the stamps on the lines are whole seconds")
+    return Timed(t, None, words, tuple(remarks))
+
+
+def out_of_step(t: Ints) -> Mask:
+    """Stamps that those around them, which agree, do not enclose; (N,).
+
+    Nothing protects the text before a sentence. Asked are the two neighbours, and the medians of
+    three on either side. Given up as well is a stamp far from both sides, and at the ends, where
+    neighbours are missing, one far from the next.
+    """
+    if len(t) < 3:
+        return np.zeros(len(t), np.bool_)
+    edged = np.concatenate([t[[0, 0, 0]], t, t[[-1, -1, -1]]])
+    before, after = _median_of_3(edged[:-4]), _median_of_3(edged[4:])
+    odd = _outside(edged[2:-4], t, edged[4:-2]) | _outside(before, t, after)
+    alone = np.minimum(np.abs(t - before), np.abs(t - after))
+    odd |= alone > 10 * SECOND + 2 * np.abs(after - before)
+    kept = np.flatnonzero(~odd)
+    if len(kept) > 1:
+        far = 10 * SECOND + 10 * int(np.median(np.abs(np.diff(t[kept]))))
+        first, last = t[kept[1]] - t[kept[0]], t[kept[-1]] - t[kept[-2]]
+        odd[kept[0]] |= not -OUT_OF_STEP <= first <= far
+        odd[kept[-1]] |= not -OUT_OF_STEP <= last <= far
+    return odd
+
+
+def _outside(before: Ints, here: Ints, after: Ints) -> Mask:
+    out = (here < before - OUT_OF_STEP) | (here > after + OUT_OF_STEP)
+    return out & (before <= after + OUT_OF_STEP)
+
+
+def _median_of_3(t: Ints) -> Ints:
+    """Medians of each three in a row; (N - 2,)."""
+    a, b, c = t[:-2], t[1:-1], t[2:]
+    return np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c))
+
+
+def _untimed(t: Ints) -> tuple[str, ...]:
+    none = int((t == NONE).sum())
+    return (f"{none} of {len(t)} sentences without a usable time left out",) if none else ()
+
+
+def _losses(stream: Stream, checked: bool) -> list[str]:
+    remarks = []
+    if not checked:
+        remarks.append(
+            "no sentence of this log has a checksum: damage and half lines cannot be told from "
+            "data; have the recorder keep the checksums"
+        )
+    lost = stream.wrong + stream.foreign + stream.bare
+    whole = stream.total + lost
+    foreign = f", {stream.foreign} with characters no sentence holds" if stream.foreign else ""
+    if lost:
+        remarks.append(
+            f"recovered {stream.total} of about {whole} sentences: {stream.wrong} with a wrong "
+            f"checksum{foreign} and {stream.bare} cut or without one left out"
+        )
+    return remarks

@@ -1,0 +1,110 @@
+"""CSV logs: a header row, a time column, one column a channel; any other text by a template.
+
+A column is `name`, `name[unit]` or `name (unit)`, or a second row gives the units; titles may stand
+above the header. Separator: comma, semicolon or tab; with the last two the decimals may stand
+behind a comma. The time column is called `t`, `time_utc`, `elapsed_s`, `Uhrzeit` or the like and
+holds seconds from any origin, another stated unit of time, dates, or times of day. Whatever could
+be read in two ways is refused: a template says which.
+"""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
+from trialid.ingest.tables import table_header, table_text, template
+from trialid.ingest.tables.table import head as head_of
+from trialid.ingest.tables.table_channels import recording
+from trialid.ingest.tables.table_layout import UTF_16, Layout, decode_text, of_template
+from trialid.ingest.tables.table_names import is_time
+from trialid.ingest.tables.table_tidy import tidy
+from trialid.recording import Recording
+
+SEPARATORS = ",;\t"
+TOP = 65_536
+"""Bytes in which the first two lines are looked for."""
+NO_TEXT = re.compile(rb"[\x00-\x08\x0e-\x1a]")
+
+
+def recognises(head: bytes) -> bool:
+    """A first line of names, or one below titles; a single line names a time."""
+    lines = _text(head).splitlines(keepends=True)
+    if not lines:
+        return False
+    if _header(lines) is not None:
+        return True
+    first = _fields(lines[0], _separator(lines[0]))
+    if not lines[0].endswith(("\n", "\r")) and len(first) > 2:
+        first.pop()  # of a header longer than the head, cut anywhere
+        return table_header.names(first) > 1
+    if table_header.names(first) < 2:
+        return False
+    told = [line for line in lines[1:] if line.strip()]
+    timed = any(is_time(head_of(text).name) for text in first)
+    return timed or any(_is_row(line, lines[0]) for line in told[:2])
+
+
+def _is_row(line: str, above: str) -> bool:
+    """Whether a line has a value among fields of the header's separator."""
+    fields = _fields(line, _separator(above))
+    return len(fields) > 1 and any(table_header.is_data([one]) for one in fields)
+
+
+def is_text(head: bytes) -> bool:
+    """True for a text of any kind, which a template may lay out."""
+    return bool(_text(head).strip())
+
+
+def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
+    """Read the wanted columns; LogError names the line and column of what cannot be read."""
+    if aids.template is None:
+        table = tidy(table_text.load(path, _layout(path)))
+        return recording(table, ADAPTER.name, wanted, aids)
+    told = template.load(aids.template)
+    table = table_text.load(path, of_template(told), told)
+    return recording(table, ADAPTER.name, wanted, aids, told)
+
+
+def _text(head: bytes) -> str:
+    """The beginning as text, empty when it is none."""
+    if head.startswith(UTF_16):
+        return head[: len(head) // 2 * 2].decode("utf-16", "replace")
+    if NO_TEXT.search(head):
+        return ""
+    return decode_text(head.removeprefix(b"\xef\xbb\xbf"))
+
+
+def _separator(line: str) -> str:
+    return max(SEPARATORS, key=line.count)
+
+
+def _fields(line: str, separator: str) -> list[str]:
+    return [field.strip(' "') for field in line.strip("\r\n").split(separator)]
+
+
+def _header(lines: Sequence[str]) -> tuple[str, int, bool] | None:
+    """Separator, line of the header, and whether units follow, where the lines leave no doubt."""
+    for separator in sorted(SEPARATORS, key=lambda one: -sum(line.count(one) for line in lines)):
+        rows = [_fields(line, separator) for line in lines]
+        if (found := table_header.row_of(rows)) is not None:
+            return separator, *found
+    return None
+
+
+def _layout(path: Path) -> Layout:
+    with path.open("rb") as file:
+        lines = _text(file.read(TOP)).splitlines()[: table_header.DEEPEST + 8]
+    found = _header(lines)
+    if found is not None:
+        separator, skip, units_row = found
+        return Layout(separator, skip=skip, units_row=units_row)
+    separator = _separator(lines[0]) if lines else ","
+    units_row = len(lines) > 1 and table_header.are_units(
+        lines[0].split(separator), lines[1].split(separator)
+    )
+    return Layout(separator, units_row=units_row)
+
+
+ADAPTER = Adapter(
+    "csv", recognises, read, frozenset({"template", "zone"}), general=True, by_template=is_text
+)

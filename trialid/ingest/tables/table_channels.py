@@ -1,0 +1,95 @@
+"""A table's columns as channels on the clock the table states."""
+
+import dataclasses
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+
+from trialid.errors import LogError, UnitError
+from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
+from trialid.ingest.tables import table_clock
+from trialid.ingest.tables.table import Head, Table, check_width, numbers
+from trialid.ingest.tables.template import Template
+from trialid.names import units
+from trialid.names.quantities import SIGNALS
+from trialid.recording import Channel, Recording
+
+LONGEST_UNIT = 16
+"""Characters; what is longer is a remark and no unit to look up."""
+
+
+def recording(
+    table: Table, adapter: str, wanted: Wanted, aids: Aids, template: Template | None = None
+) -> Recording:
+    """The wanted columns as channels; LogError names the place of what cannot be read."""
+    renamed = table if template is None else _by_template(table, template)
+    _once(renamed)
+    spec = None if template is None else template.time
+    clock = table_clock.clock(renamed, spec, aids.zone)
+    remarks = [*table.remarks, *clock.remarks]
+    channels: dict[str, Channel] = {}
+    named = _quantities(renamed.heads)
+    for i, one in enumerate(renamed.heads):
+        if i in clock.columns or not is_wanted(one.name, wanted):
+            continue
+        y = numbers(renamed, i)
+        if y is None:
+            remarks.append(f"column {one.name!r} holds text, left out")
+        else:
+            quantity = named.get(one.name)
+            channels[one.name] = Channel(
+                one.name, clock.t, y, one.unit, clock.words, quantity=quantity
+            )
+    return Recording(table.path, adapter, sha256(table.path), channels, tuple(remarks))
+
+
+def _by_template(table: Table, template: Template) -> Table:
+    heads = tuple(_as_told(one, template) for one in table.heads)
+    return dataclasses.replace(table, heads=heads)
+
+
+def _as_told(one: Head, template: Template) -> Head:
+    told = template.columns.get(one.text)
+    if told is None:
+        return one
+    return Head(one.text, told.rename or one.name, told.unit or one.unit)
+
+
+def _once(table: Table) -> None:
+    check_width(table.path, len(table.heads))
+    counts = Counter(one.name for one in table.heads)
+    twice = next((name for name, count in counts.items() if count > 1), None)
+    if twice is not None:
+        raise LogError(
+            f"{table.path}: column {twice!r} stands twice in the header; rename one, here or by a "
+            "template"
+        )
+
+
+def _quantities(heads: tuple[Head, ...]) -> Mapping[str, str]:
+    """Which quantity of the dictionary a column is, where its name says so and no other's does."""
+    found = [(one.name, quantity) for one in heads for quantity in _quantity(one)]
+    counts = Counter(quantity for _, quantity in found)
+    return {name: quantity for name, quantity in found if counts[quantity] == 1}
+
+
+def _quantity(one: Head) -> Iterator[str]:
+    """A name of one letter may mean anything: only with a unit that fits."""
+    bare = one.name.rpartition(".")[2]
+    alias = re.sub(r"\W+", "_", bare.lower())
+    for name, quantity in SIGNALS.items():
+        known = bare == name or alias in quantity.aliases
+        if name != "t" and known and _fits(one.unit, quantity.unit, surely=len(bare) == 1):
+            yield name
+
+
+def _fits(unit: str | None, si: str, surely: bool) -> bool:
+    if unit is None:
+        return not surely
+    if len(unit) > LONGEST_UNIT or re.search(r"\d\d", unit):
+        return False
+    try:
+        units.factor(unit, si)
+    except UnitError:
+        return False
+    return True

@@ -1,0 +1,145 @@
+"""Which column of a table is its clock, and how it is written, where no template says so."""
+
+import dataclasses
+import re
+from collections.abc import Sequence
+from datetime import time, timedelta
+from typing import Any
+
+import numpy as np
+
+from trialid.errors import LogError, list_names
+from trialid.ingest.tables import table_stamps
+from trialid.ingest.tables.table import Head, Table
+from trialid.ingest.tables.table_names import is_date, is_time
+from trialid.ingest.tables.table_time import (
+    TIME_NAMES,
+    TOLD,
+    Clock,
+    bare,
+    clock_by_template,
+    date_clock,
+    in_seconds,
+    join_columns,
+    no_zone,
+    of_day,
+)
+from trialid.ingest.tables.template import Time
+
+UNNAMED = ("", "Unnamed: 0", "column 1", "column A", "__index_level_0__")
+"""What stands above the rows' own labels in a table that pandas saved."""
+FEWEST = 3
+"""Rows that two clocks are compared in at least."""
+SECOND_NS = 10**9
+YEAR_NS = 366 * 86_400 * SECOND_NS
+
+
+def clock(table: Table, spec: Time | None, zone: str | None) -> Clock:
+    """The table's clock as the template has it, else as the table leaves no doubt of.
+
+    Several columns that tell the same time are one clock; several that do not are refused.
+
+    Raises LogError for what is no time, and for what may be read in two ways.
+    """
+    return _alone(table, zone) if spec is None else clock_by_template(table, spec, zone)
+
+
+def columns_of_time(heads: Sequence[Head]) -> tuple[int, ...]:
+    """The columns that are a time or a date by their names, else those that label the rows."""
+    named = [i for i, head in enumerate(heads) if is_time(bare(head)) or is_date(bare(head))]
+    return tuple(named or [i for i, head in enumerate(heads) if head.name in UNNAMED])
+
+
+def _alone(table: Table, zone: str | None) -> Clock:
+    times = [i for i, head in enumerate(table.heads) if is_time(bare(head))]
+    dates = [i for i, head in enumerate(table.heads) if is_date(bare(head))]
+    if not times and len(dates) == 1 and _is_dated(table, dates):
+        return _plain(table, dates[0], zone)
+    if len(times) == 1 and dates:
+        return _apart(table, dates, times[0], zone)
+    if len(times) == 1:
+        return _plain(table, times[0], zone)
+    unnamed = [i for i, head in enumerate(table.heads) if head.name in UNNAMED]
+    if not times and len(unnamed) == 1 and _is_dated(table, unnamed):
+        return _plain(table, unnamed[0], zone)
+    same = _same_time(table, times, zone) if len(times) > 1 and not dates else None
+    if same is not None:
+        return same
+    what = "several time columns" if times else "no time column"
+    names = list_names([head.name for head in table.heads])
+    raise LogError(
+        f"{table.path}: {what} among {names}; name exactly one of them "
+        + " or ".join(f"{name!r}" for name in TIME_NAMES)
+        + f", {TOLD}"
+    )
+
+
+def _apart(table: Table, dates: Sequence[int], clock_at: int, zone: str | None) -> Clock:
+    """Date and time in columns of their own, or a time that has its date in itself."""
+    if _is_dated(table, [clock_at]):
+        return _plain(table, clock_at, zone)
+    columns = (dates[0], clock_at)
+    if len(dates) == 1 and _is_dated(table, columns):
+        return date_clock(table, columns, _spec(table, columns), zone)
+    raise LogError(
+        f"{table.path}: date and time stand in separate columns, {table.heads[dates[0]].name!r} "
+        f"and {table.heads[clock_at].name!r}; write one column of ISO-8601 dates, {TOLD}"
+    )
+
+
+def _is_dated(table: Table, columns: Sequence[int]) -> bool:
+    """Whether these columns together are dates that can be read in one way."""
+    if len(columns) == 1 and table.columns[columns[0]].dtype.kind == "M":
+        return True
+    if any(table.columns[i].dtype.kind not in "OM" for i in columns):
+        return False
+    texts = join_columns(table, columns, None)
+    if not texts or not table_stamps.has_a_date(texts[0]):
+        return False
+    found = table_stamps.as_iso(texts)
+    return found is not None and any(len(text) > len("2026-06-03") for text in found)
+
+
+def _same_time(table: Table, columns: Sequence[int], zone: str | None) -> Clock | None:
+    """One of several columns that tell the same time, dated and fine ones first; None else."""
+    found = []
+    for column in columns:
+        try:
+            found.append(_plain(table, column, zone if _is_dated(table, [column]) else None))
+        except LogError:
+            continue
+    if not found or len(found[0].t) < FEWEST:
+        return None
+    best = max(found, key=lambda one: (abs(one.t[0]) > YEAR_NS, len(np.unique(one.t))))
+    step = np.median(np.diff(best.t))
+    since = best.t - best.t[0]
+    if any(np.abs(one.t - one.t[0] - since).max() > max(step, SECOND_NS) for one in found):
+        return None
+    others = [table.heads[one.columns[0]].name for one in found if one is not best]
+    said = f"{list_names(others)} tell the same time and are left out" if others else ""
+    left_out = tuple(c for one in found for c in one.columns if one is not best)
+    remarks = (*best.remarks, said) if said else best.remarks
+    return dataclasses.replace(best, columns=(*best.columns, *left_out), remarks=remarks)
+
+
+def _spec(table: Table, columns: Sequence[int]) -> Time:
+    return Time(columns=tuple(table.heads[column].text for column in columns))
+
+
+def _plain(table: Table, column: int, zone: str | None) -> Clock:
+    """Seconds, another stated unit of time, dates, or times of day."""
+    values = table.columns[column]
+    shown = str(values[0]).strip()
+    if values.dtype.kind == "M" or re.match(r"\d{4}-\d\d", shown) or _is_dated(table, [column]):
+        return date_clock(table, (column,), _spec(table, [column]), zone)
+    no_zone(table, zone)
+    if values.dtype.kind == "O" and _is_clock(values[0]):
+        return of_day(table, column, _spec(table, [column]))
+    return in_seconds(table, column, None)
+
+
+def _is_clock(value: Any) -> bool:
+    """Whether a cell is a time of day: with its seconds, or it may be minutes and seconds."""
+    if isinstance(value, time | timedelta):
+        return True
+    return table_stamps.CLOCK.fullmatch(str(value).strip()) is not None

@@ -1,0 +1,66 @@
+"""What recorders and people call the time and the date of a row, in the languages of ships."""
+
+import re
+
+TIMES = frozenset(
+    (
+        "t", "time", "timestamp", "time_stamp", "stamp", "datetime", "date_time", "utc", "epoch",
+        "unix_time", "elapsed", "elapsed_time", "time_elapsed", "seconds", "zeit", "uhrzeit",
+        "zeitstempel", "datum_zeit", "datum_uhrzeit", "tid", "tidspunkt", "tijd", "tiempo", "hora",
+        "heure", "horodatage",
+    )
+)  # fmt: skip
+DATES = frozenset(("date", "datum", "dato", "fecha"))
+UNITS = {
+    "s": "s", "sec": "s", "secs": "s", "seconds": "s", "ms": "ms", "msec": "ms", "us": "us",
+    "usec": "us", "ns": "ns", "nsec": "ns", "min": "min",
+}  # fmt: skip
+"""Last word of a name, to the unit of time it states."""
+UNIVERSAL = frozenset(("utc", "gmt"))
+
+
+def _words(name: str) -> list[str]:
+    return [word for word in re.split(r"[\W_]+", name.lower()) if word]
+
+
+def is_time(name: str) -> bool:
+    """Whether a column of this name is a time: `time_utc`, `t_s`, `Uhrzeit`.
+
+    >>> [is_time(name) for name in ("time_utc", "DateTime", "t_ms", "utc", "z", "time_constant")]
+    [True, True, True, True, False, False]
+    """
+    words = _words(name)
+    if not words:
+        return False
+    bare = [word for word in words if word not in UNIVERSAL]
+    plain = "_".join(bare) or "utc"
+    cut = "_".join(bare[:-1]) if len(bare) > 1 and bare[-1] in UNITS else plain
+    return plain in TIMES or cut in TIMES
+
+
+def is_date(name: str) -> bool:
+    """Whether a column of this name is the date alone.
+
+    >>> is_date("Datum"), is_date("date_utc"), is_date("data")
+    (True, True, False)
+    """
+    return "_".join(word for word in _words(name) if word not in UNIVERSAL) in DATES
+
+
+def unit_of_time(name: str) -> str | None:
+    """The unit that a time column's name ends with.
+
+    >>> unit_of_time("time_ms"), unit_of_time("elapsed_s"), unit_of_time("t")
+    ('ms', 's', None)
+    """
+    words = _words(name)
+    return UNITS.get(words[-1]) if len(words) > 1 else None
+
+
+def is_universal(name: str, unit: str | None) -> bool:
+    """Whether a header says that its dates are of UTC: `time_utc`, `DateTime (UTC)`.
+
+    >>> is_universal("time_utc", None), is_universal("DateTime", "UTC"), is_universal("t", "s")
+    (True, True, False)
+    """
+    return bool(UNIVERSAL.intersection(_words(name))) or (unit or "").lower() in UNIVERSAL

@@ -1,0 +1,88 @@
+"""Dates as people and programs write them, to ISO-8601; only where one reading is possible.
+
+`2025/04/11 12:08:20.316091061` begins with the year, `03.06.2026 09:12:00` is written with dots
+where the day comes first, `05-Nov-2023 14:00:00` names its month. With slashes and a year at the
+end the day may come first or the month: the column tells, if a number in it is above 12.
+"""
+
+import re
+from collections.abc import Sequence
+
+DATED = re.compile(
+    r"(?P<first>\d{1,4})(?P<mark>[./-])(?P<second>\d{1,2}|[A-Za-z]{3})(?P=mark)(?P<third>\d{1,4})"
+    r"(?:[T,\s]\s*(?P<hour>\d{1,2}):(?P<minute>\d\d)(?::(?P<second_of>\d\d)"
+    r"(?:[.,](?P<part>\d{1,9}))?)?\s*(?P<half>[AaPp][Mm])?)?"
+    r"\s*(?P<zone>Z|UTC|GMT|[+-]\d\d:?\d\d)?"
+)
+MONTHS = {
+    name: number
+    for number, name in enumerate(
+        ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"), 1
+    )
+}
+LOOKS_DATED = re.compile(r"\d{4}[./-]\d{1,2}[./-]\d|\d{1,2}[./-](\d{1,2}|[A-Za-z]{3})[./-]\d{4}")
+CLOCK = re.compile(r"\d{1,2}:\d\d:\d\d([.,]\d+)?")
+"""A time of day that can be none of minutes and seconds."""
+
+
+def has_a_date(text: str) -> bool:
+    """Whether a text begins like a date with a year of four digits."""
+    return LOOKS_DATED.match(text) is not None
+
+
+def as_iso(texts: Sequence[str]) -> list[str] | None:
+    """The texts as ISO-8601 dates; None where one is none, or where two readings are possible.
+
+    >>> as_iso(["2025/04/11 12:08:20.316091061"])
+    ['2025-04-11T12:08:20.316091061']
+    >>> as_iso(["03.06.2026 09:12:00"]), as_iso(["03/06/2026 09:12:00"])
+    (['2026-06-03T09:12:00'], None)
+    >>> as_iso(["03/06/2026 09:12:00", "03/13/2026 09:12:00"])
+    ['2026-03-06T09:12:00', '2026-03-13T09:12:00']
+    """
+    found = [DATED.fullmatch(text) for text in texts]
+    dates = [one for one in found if one is not None]
+    if len(dates) < len(texts) or not dates:
+        return None
+    order = _order(dates)
+    if order is None or any(_order_of(one, order) is None for one in dates):
+        return None
+    return [_iso(one, order) for one in dates]
+
+
+def _order(dates: Sequence[re.Match[str]]) -> str | None:
+    """Which of year, month and day comes first, in all of them."""
+    first = dates[0]
+    if any(one["mark"] != first["mark"] for one in dates):
+        return None
+    if len(first["first"]) == 4:
+        return "ymd"
+    if first["mark"] == "." or first["second"].isalpha():
+        return "dmy"
+    day_first = any(int(one["first"]) > 12 for one in dates)
+    month_first = any(one["second"].isdigit() and int(one["second"]) > 12 for one in dates)
+    if day_first == month_first:
+        return None
+    return "dmy" if day_first else "mdy"
+
+
+def _order_of(one: re.Match[str], order: str) -> str | None:
+    """The order, if this date can be of it: a year has four digits, a month a name or a number."""
+    year, others = (one["first"], one["third"]) if order == "ymd" else (one["third"], one["first"])
+    named = one["second"].isalpha() and one["second"].lower() not in MONTHS
+    return order if len(year) == 4 and len(others) <= 2 and not named else None
+
+
+def _iso(one: re.Match[str], order: str) -> str:
+    place = dict(zip(order, (one["first"], one["second"], one["third"]), strict=True))
+    month = MONTHS.get(place["m"].lower(), place["m"])
+    date = f"{place['y']}-{int(month):02d}-{int(place['d']):02d}"
+    if one["hour"] is None:
+        return date
+    hour = int(one["hour"])
+    if one["half"]:
+        hour = hour % 12 + 12 * (one["half"].lower() == "pm")
+    part = f".{one['part']}" if one["part"] else ""
+    zone = one["zone"] or ""
+    clock = f"{hour:02d}:{one['minute']}:{one['second_of'] or '00'}{part}"
+    return f"{date}T{clock}{'Z' if zone in ('UTC', 'GMT') else zone}"

@@ -1,0 +1,278 @@
+"""Delimited text to columns: a quick way for tables without fault, a careful one for the others.
+
+The quick way is pandas' reader, which pads short rows and cannot say where a field is. Whatever it
+finds odd is therefore read again by the careful way, which knows the line of every field.
+"""
+
+import csv
+import dataclasses
+import io
+import itertools
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.errors import LogError, list_names
+from trialid.ingest.tables import table_quick
+from trialid.ingest.tables.table import Head, Table, check_width, head, reader_of_numbers
+from trialid.ingest.tables.table_layout import (
+    SPACES,
+    Layout,
+    Top,
+    decimal,
+    decode_text,
+    encode_text,
+    unify_text,
+)
+from trialid.ingest.tables.table_quick import is_number
+from trialid.ingest.tables.table_tidy import cut
+from trialid.ingest.tables.template import Template, check_header, distinct
+
+MOST_BYTES = 2_000_000_000
+"""Of a table as text, which is read whole."""
+LONGEST_LINE = 2_000_000
+"""Bytes of a line, more than the columns of any table."""
+JOINT = "\x1f"
+"""What takes the place of a separator of several characters."""
+
+
+def load(path: Path, layout: Layout, template: Template | None = None) -> Table:
+    """The columns of a text; LogError for rows that are not of the header's length."""
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise LogError(
+            f"{path}: {size / 1e9:.0f} GB of text; tables of up to {MOST_BYTES / 1e9:.0f} GB are "
+            "read: split it, or save it as Parquet"
+        )
+    raw, encoding = unify_text(path.read_bytes(), layout.encoding)
+    _check_lines(path, raw)
+    layout = dataclasses.replace(layout, encoding=encoding)
+    if len(layout.separator) > 1:
+        raw = raw.replace(encode_text(layout.separator, layout), JOINT.encode())
+        layout = dataclasses.replace(layout, separator=JOINT)
+    top = _top(path, raw, layout, template)
+    check_width(path, len(top.heads))
+    raw, remarks = _ended(path, raw, top, layout)
+    if re.compile(rb"\S").search(raw, top.offset) is None:
+        raise LogError(f"{path}: a header but no rows; check that the log was exported")
+    columns = table_quick.columns(path, raw, top, layout)
+    if columns is None:
+        return _careful(path, raw, top, layout, remarks)
+    number = reader_of_numbers(decimal(raw, top, layout), layout.thousands, layout.missing)
+    return Table(path, top.heads, columns, _line(top.lines), number, tuple(remarks))
+
+
+def _top(path: Path, raw: bytes, layout: Layout, template: Template | None) -> Top:
+    lines = _Lines(raw, encode_text(layout.comment or "", layout))
+    for _ in range(layout.skip):
+        next(lines, None)
+    reader = csv.reader(
+        (decode_text(line, layout.encoding) for line, _ in lines.each()), **_dialect(layout)
+    )
+    try:
+        rows = [next(reader, []) for _ in range(layout.header_rows)]
+        stated = next(reader, []) if layout.units_row else []
+        for _ in range(layout.skip_after):
+            next(reader, [])
+    except csv.Error as error:
+        raise LogError(f"{path}, the header: {error}; look for a stray quote") from error
+    texts = _header(rows) if layout.header_rows else list(template.header if template else ())
+    texts = list(distinct(texts)) if template is not None else texts
+    if template is not None:
+        check_header(path, texts, template)
+    unit = [_bare_unit(text) for text in stated] + [""] * len(texts)
+    heads = tuple(head(text, one) for text, one in zip(texts, unit, strict=False))
+    _agree(path, heads, unit)
+    return Top(heads, lines.offset, lines.number)
+
+
+def _check_lines(path: Path, raw: bytes) -> None:
+    """LogError for a line that is longer than the columns of any table."""
+    at = 0
+    while len(raw) - at > LONGEST_LINE:
+        end = raw.rfind(b"\n", at, at + LONGEST_LINE)
+        if end < 0:
+            line = raw.count(b"\n", 0, at) + 1
+            raise LogError(
+                f"{path}, line {line}: more than {LONGEST_LINE / 1e6:.0f} MB without an end of "
+                "line; it is no table, or damaged: mend or delete the line"
+            )
+        at = end + 1
+
+
+class _Lines:
+    """Lines of a text one by one, without comments; knows how far it has come."""
+
+    def __init__(self, raw: bytes, comment: bytes) -> None:
+        self.raw = raw
+        self.comment = comment
+        self.offset = 0
+        self.number = 0
+
+    def __next__(self) -> tuple[bytes, int]:
+        while self.offset < len(self.raw):
+            end = self.raw.find(b"\n", self.offset)
+            end = len(self.raw) if end < 0 else end + 1
+            line = self.raw[self.offset : end]
+            self.offset, self.number = end, self.number + 1
+            if not (self.comment and line.lstrip().startswith(self.comment)):
+                return line, self.number
+        raise StopIteration
+
+    def each(self) -> Iterator[tuple[bytes, int]]:
+        """All lines that are left."""
+        while self.offset < len(self.raw):
+            try:
+                yield next(self)
+            except StopIteration:
+                return
+
+
+def _dialect(layout: Layout) -> dict[str, Any]:
+    blanks = layout.separator == SPACES
+    return {"delimiter": layout.separator, "skipinitialspace": blanks}
+
+
+def _header(rows: list[list[str]]) -> list[str]:
+    """Header texts; of several rows those that stand above each other, joined."""
+    stacked = itertools.zip_longest(*rows, fillvalue="")
+    return [" ".join(part.strip() for part in parts if part.strip()) for parts in stacked]
+
+
+def _bare_unit(text: str) -> str:
+    text = text.strip()
+    found = re.fullmatch(r"[\[(](.*)[\])]", text)
+    text = found[1].strip() if found else text
+    return "" if text == "-" else text
+
+
+def _agree(path: Path, heads: tuple[Head, ...], stated: list[str]) -> None:
+    for one, unit in zip(heads, stated, strict=False):
+        if unit and one.unit != unit:
+            raise LogError(
+                f"{path}: column {one.name!r}: the header says {one.unit!r} and the row of units "
+                f"{unit!r}; say which by a template"
+            )
+
+
+def _ended(path: Path, raw: bytes, top: Top, layout: Layout) -> tuple[bytes, list[str]]:
+    """The text down to where the table ends, without a last line that was cut short."""
+    if layout.end is not None:
+        at = _end(raw, top.offset, encode_text(layout.end, layout))
+        if at is None:
+            raise LogError(
+                f"{path}: no line begins with {layout.end!r}, where the template has the table "
+                "end; it is another export, or cut short"
+            )
+        raw = raw[:at]
+    last = raw[raw.rfind(b"\n") + 1 :]
+    fields = _fields(decode_text(last), layout, len(top.heads)) if last.strip() else len(top.heads)
+    if fields >= len(top.heads) or len(raw) - len(last) < top.offset:
+        return raw, []
+    kept = raw[: len(raw) - len(last)]
+    # Careful with quotes: a field may go on over several lines.
+    if raw.find(b'"', top.offset) >= 0:
+        return raw, []
+    line = kept.count(b"\n") + 1
+    return kept, [f"line {line}, the last, is cut short and left out"]
+
+
+def _end(raw: bytes, start: int, text: bytes) -> int | None:
+    """Where the first line starts that begins with the text, after blanks and quotes."""
+    at = raw.find(text, start)
+    while at >= 0:
+        line = max(raw.rfind(b"\n", start, at) + 1, start)
+        if not raw[line:at].strip(b' \t"'):
+            return line
+        at = raw.find(text, at + 1)
+    return None
+
+
+def _fields(line: str, layout: Layout, most: int) -> int:
+    """How many fields a line has; it is not counted on beyond `most`."""
+    separator = None if layout.separator == SPACES else layout.separator
+    return len(line.split(separator, most))
+
+
+def _line(before: int) -> Callable[[int], str]:
+    return lambda row: f"line {before + row + 1}"
+
+
+def _careful(path: Path, raw: bytes, top: Top, layout: Layout, remarks: list[str]) -> Table:
+    rows, lines, blank = _rows(path, raw, top, layout)
+    rows = list(cut(rows, len(top.heads)))
+    if blank:
+        remarks = [*remarks, f"{blank} rows without any value, left out"]
+    names = [one.name for one in top.heads]
+    if rows and len(rows[-1]) < len(names) and not raw.endswith((b"\n", b"\r")):
+        rows.pop()
+        remarks = [*remarks, f"line {lines.pop()}, the last, is cut short and left out"]
+    if not rows:
+        raise LogError(f"{path}: a header but no rows; check that the log was exported")
+    for line, row in zip(lines, rows, strict=True):
+        if len(row) != len(names):
+            raise LogError(
+                f"{path}, line {line}: {len(row)} fields where the header has {len(names)}"
+                f" ({list_names(names)}); mend or delete the line, or, where the table is laid out "
+                "otherwise, draft a template (trialid inspect LOG --template FILE)"
+            )
+    mark = decimal(raw, top, layout)
+    columns = tuple(np.array(column, dtype=object) for column in zip(*rows, strict=True))
+    number = reader_of_numbers(mark, layout.thousands, layout.missing)
+    if layout.decimal is None and mark == ",":
+        number = _either(path, columns, lines, number)
+    return Table(path, top.heads, columns, lambda row: f"line {lines[row]}", number, tuple(remarks))
+
+
+def _rows(
+    path: Path, raw: bytes, top: Top, layout: Layout
+) -> tuple[list[list[str]], list[int], int]:
+    """Rows that are not empty, the line each ended at, and how many hold separators alone."""
+    comment = layout.comment
+    text = decode_text(raw[top.offset :], layout.encoding)
+    numbers: list[int] = []
+
+    def kept() -> Iterator[str]:
+        for number, line in enumerate(io.StringIO(text, newline=""), top.lines + 1):
+            if not (comment and line.lstrip().startswith(comment)):
+                numbers.append(number)
+                yield line.strip() if layout.separator == SPACES else line
+
+    reader = csv.reader(kept(), **_dialect(layout))
+    rows, lines, blank = [], [], 0
+    try:
+        for row in reader:
+            if any(row):
+                rows.append(row)
+                lines.append(numbers[-1])
+            else:
+                blank += len(row) > 1
+    except csv.Error as error:
+        line = numbers[-1] if numbers else top.lines
+        raise LogError(f"{path}, line {line}: {error}; look for a stray quote") from error
+    return rows, lines, blank
+
+
+def _either(
+    path: Path, columns: tuple[NDArray[Any], ...], lines: list[int], number: Callable[[Any], float]
+) -> Callable[[Any], float]:
+    """Numbers with a comma; LogError when others have a point, which may mark thousands."""
+    point = reader_of_numbers(".", None, frozenset())
+    commas = points = None
+    for column in columns:
+        for row, text in enumerate(column):
+            if "," in text and is_number(text, number):
+                commas = text
+            elif points is None and "." in text and is_number(text, point):
+                points = (row, text)
+    if commas is not None and points is not None:
+        row, text = points
+        raise LogError(
+            f"{path}, line {lines[row]}: {text!r} beside {commas!r}: a point may be the decimal "
+            "mark or part the thousands; say which by a template"
+        )
+    return number if points is None else point

@@ -1,0 +1,94 @@
+"""What is in a log: every channel, how healthy its clock is, and which quantity it looks like.
+
+`inspect_log` reads logs of any size, in parts that fit into memory, and keeps no samples.
+"""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from trialid.alignment.clocks import CALENDAR_NS
+from trialid.errors import LogError
+from trialid.ingest import LogFile, adapter_of, files_of
+from trialid.ingest.adapter import NO_AIDS, Aids
+from trialid.inspection import channels, relations
+from trialid.inspection.inspected import ChannelInspection, Inspection, LogFileInspection
+
+__all__ = ["Inspection", "survey"]
+
+A_YEAR_NS = 366 * 86400 * 10**9
+
+
+def inspect_log(path: Path, aids: Aids = NO_AIDS) -> Inspection:
+    """What a log, or a folder of logs that follow one another, holds.
+
+    Raises
+    ------
+    LogError
+        There is no such log, it cannot be read, or it holds no number at all.
+    """
+    parts: dict[str, list[ChannelInspection]] = {}
+    files = []
+    for file in files_of(LogFile(path, aids)):
+        found, log = _file(file, aids)
+        files.append(log)
+        for one in found:
+            parts.setdefault(one.key, []).append(one)
+    if not parts:
+        remarks = "; ".join(remark for file in files for remark in file.remarks)
+        raise LogError(f"{path}: holds no channel of numbers; {remarks or 'take another log'}")
+    together = {key: channels.merge_channels(pieces) for key, pieces in parts.items()}
+    known = relations.recognise(together)
+    return Inspection(path, tuple(files), known, tuple(_warnings(list(known.values()))), aids)
+
+
+def _file(path: Path, aids: Aids) -> tuple[list[ChannelInspection], LogFileInspection]:
+    """One file, in as many readings as its adapter wants."""
+    adapter = adapter_of(path, aids)
+    found: dict[str, ChannelInspection] = {}
+    remarks: dict[str, None] = {}
+    digest = ""
+    for wanted in adapter.batches(path, aids):
+        recording = adapter.read(path, wanted, aids)
+        digest = recording.sha256
+        remarks |= dict.fromkeys(recording.remarks)
+        found |= {one.key: one for one in channels.of_recording(recording)}
+    return list(found.values()), LogFileInspection(path, adapter.name, digest, tuple(remarks))
+
+
+def _warnings(all_of_them: Sequence[ChannelInspection]) -> Iterator[str]:
+    """What a person should know before using any channel."""
+    yield from _wild_stamps(all_of_them)
+    useful = [one for one in all_of_them if one.guess is not None]
+    yield from dict.fromkeys(words for one in useful for words in _of_clock(one))
+    if not useful:
+        yield "no channel looks like a ship's motion; map channels by hand in a pipeline"
+
+
+def _of_clock(one: ChannelInspection) -> Iterator[str]:
+    """Warnings about a channel's stamps, which are those of its whole message."""
+    name, clock, late = one.message or "the table", one.clock, one.clock.received
+    if clock.steps_back:
+        yield (
+            f"{name}: time steps back {clock.steps_back} times, by up to "
+            f"{clock.furthest_back:.3g} s"
+        )
+    if late is not None and abs(late.drift) * (one.end - one.start) / 1e9 > 0.1:
+        yield f"{name}: its clock drifts by {late.drift * 1e6:.3g} ppm against the recorder's"
+    if one.rate and clock.jitter * one.rate > 0.5:
+        yield (
+            f"{name}: stamps are uneven, {clock.jitter:.3g} s rms in a period of "
+            f"{1 / one.rate:.3g} s; times of receipt rather than of measurement?"
+        )
+
+
+def _wild_stamps(all_of_them: Sequence[ChannelInspection]) -> Iterator[str]:
+    start = min(one.start for one in all_of_them)
+    end = max(one.end for one in all_of_them)
+    dated = sum(one.start > CALENDAR_NS for one in all_of_them)
+    if 0 < dated < len(all_of_them):
+        yield (
+            f"{dated} of {len(all_of_them)} channels are dated, the others count from another "
+            "start: two clocks"
+        )
+    elif end - start > A_YEAR_NS:
+        yield "the stamps span more than a year; one of them is wild"

@@ -1,0 +1,214 @@
+"""Which quantity a channel is by what it is called, and the unit its name ends with.
+
+A name is cut into words; the longest phrase of the dictionary found in it decides. A name that
+could be two quantities, that speaks of a limit or an error, or whose unit does not fit is none.
+"""
+
+import functools
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from trialid.inspection.usual_units import to_si
+from trialid.names.quantities import SIGNALS
+
+PHRASES: Final = {
+    "delta": "rudder, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
+    "ruderwinkel, rorvinkel, roerhoek",
+    "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
+    "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
+    "drehrate, wendegeschwindigkeit, drehgeschwindigkeit, gierrate, "
+    "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, gyro z",
+    "p": "roll rate, rollrate, rollgeschwindigkeit, roll speed, rollspeed, roll velocity, "
+    "angular velocity x, gyro x",
+    "phi": "roll, roll angle, heel, heel angle, rollwinkel, kraengung, krängung, "
+    "kraengungswinkel, krängungswinkel, krengning, slagside",
+    "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
+    "kompasskurs, kreiselkurs",
+    "u": "stw, speed through water, speed water, water speed, surge speed, surge velocity, "
+    "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w",
+    "v": "sway speed, sway velocity",
+    "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
+    "drehzahl, wellendrehzahl, propellerdrehzahl",
+    "V_aw": "aws, apparent wind speed, wind speed apparent",
+    "gamma_aw": "awa, apparent wind angle, wind angle apparent",
+    "h": "depth, water depth, depth below keel, depth below transducer",
+}
+"""What recorders call a quantity."""
+
+ALONE: Final = {
+    "u": "u", "v": "v", "p": "p", "r": "r", "phi": "phi", "psi": "psi", "delta": "delta",
+    "n": "n", "h": "h", "delta_c": "delta_order", "delta_order": "delta_order",
+}  # fmt: skip
+"""Letters that mean a quantity only where they are the whole name of a column."""
+
+QUALIFIERS: Final = frozenset(
+    (
+        "hat", "est", "estimated", "meas", "measured", "obs", "observed", "filt", "filtered",
+        "velo", "vel", "velocity", "angvelo", "angvel", "mid", "gyro", "imu", "prop", "propeller",
+        "shaft",
+    )
+)  # fmt: skip
+"""Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
+
+LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v"}
+"""What such words may follow; a letter alone, `surge` and `sway` only with a unit that fits."""
+
+NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
+"""Letters that mean the same without a unit too."""
+
+OVER_GROUND: Final = frozenset(
+    {
+        ("sog",), ("speed", "over", "ground"), ("speed", "ground"), ("fahrt", "über", "grund"),
+        ("fahrt", "ueber", "grund"), ("füg",), ("fueg",),
+    }
+)  # fmt: skip
+SPEEDS: Final = frozenset(("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad"))
+"""Names of a speed that leave open whether through the water or over ground."""
+GROUND: Final = frozenset(("ground", "grund", "cog"))
+
+ORDERED: Final = frozenset(
+    (
+        "order", "ordered", "command", "commanded", "cmd", "demand", "demanded", "desired",
+        "setpoint", "target", "set",
+    )
+)  # fmt: skip
+"""Words that make a rudder its order, and any other quantity a wish instead of a motion."""
+
+NO_MEASUREMENT: Final = frozenset(
+    (
+        "covariance", "cov", "variance", "var", "std", "sigma", "stddev", "error", "err", "status",
+        "state", "mode", "quality", "valid", "min", "max", "limit", "limits", "rms", "residual",
+        "predicted", "acceleration", "accel", "bias", "temperature", "voltage", "deviation",
+        "variation", "instance", "id", "seq", "sequence", "engine", "offset", "count", "sid",
+        "wave", "des", "acc", "nav", "manual", "accuracy", "raw", "trim",
+    )
+)  # fmt: skip
+"""Words that make a field something else; in a topic they say nothing: `/state:heading`."""
+
+UNITS_IN_NAMES: Final = {
+    "deg": "deg", "degree": "deg", "degrees": "deg", "rad": "rad", "degps": "deg/s",
+    "radps": "rad/s", "dps": "deg/s", "degs": "deg/s", "degpm": "deg/min", "kn": "kn", "kt": "kn",
+    "kts": "kn", "knots": "kn", "mps": "m/s", "rpm": "rpm", "rps": "rps",
+    "deg s": "deg/s", "rad s": "rad/s", "m s": "m/s", "deg min": "deg/min",
+}  # fmt: skip
+
+_WORD: Final = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
+SIDES: Final = {
+    "port": "n_p", "left": "n_p", "bb": "n_p", "starboard": "n_s", "stbd": "n_s", "stb": "n_s",
+    "right": "n_s",
+}  # fmt: skip
+
+
+def words(name: str) -> tuple[str, ...]:
+    """A name in lower-case words.
+
+    >>> words("/imu:angular_velocity.z"), words("rudderAngle_deg")
+    (('imu', 'angular', 'velocity', 'z'), ('rudder', 'angle', 'deg'))
+    """
+    return tuple(word.lower() for word in _WORD.findall(name))
+
+
+def quantity(name: str, unit: str | None) -> str | None:
+    """The quantity a channel is by its name; None where that cannot be told.
+
+    >>> quantity("/steering/rudder:data", "rad"), quantity("yaw_rate_degps", None)
+    ('delta', 'r')
+    >>> quantity("rudder", "m/s"), quantity("heading_error", "deg"), quantity("x", None)
+    (None, None, None)
+    """
+    if (letter := ALONE.get(name)) is not None:
+        return letter if _fits(letter, unit) else None
+    told = words(name)
+    if NO_MEASUREMENT.intersection(words(name.rpartition(":")[2])):
+        return None
+    found = _qualified(name, unit) or _called(name)
+    if found == "psi" and GROUND.intersection(told):
+        return None  # a course over ground
+    if ORDERED.intersection(told):
+        found = "delta_order" if found in ("delta", "delta_order") else None
+    if found == "n":
+        found = next((SIDES[word] for word in told if word in SIDES), "n")
+    return found if found is not None and _fits(found, unit) else None
+
+
+def _qualified(name: str, unit: str | None) -> str | None:
+    """The quantity of a letter with words behind it that leave its meaning."""
+    letter, *more = words(name.rpartition(":")[2]) or ("",)
+    stated = unit is not None
+    for count in (2, 1):
+        if " ".join(more[-count:]) in UNITS_IN_NAMES:
+            more = more[:-count]
+    found = LETTERS.get(letter)
+    if found is None or not QUALIFIERS.issuperset(more):
+        return None
+    known = letter in NAMED or (stated and _fits(found, unit))
+    return found if known and (more or letter in ("surge", "sway")) else None
+
+
+def of_some_speed(name: str, unit: str | None) -> bool:
+    """Whether a channel is a speed of which the name does not say relative to what: `Fahrt`."""
+    told = tuple(word for word in words(name) if word not in UNITS_IN_NAMES)
+    return len(told) == 1 and told[0] in SPEEDS and unit is not None and _fits("u", unit)
+
+
+def over_ground(name: str, unit: str | None) -> bool:
+    """Whether a channel is the speed over ground, which no model knows but which is a start."""
+    if NO_MEASUREMENT.intersection(words(name.rpartition(":")[2])) or not _fits("u", unit):
+        return False
+    return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
+
+
+def unit_in_name(name: str) -> str | None:
+    """The unit a channel's name ends with: `roll_deg`, `speed_mps`.
+
+    >>> unit_in_name("yaw_rate_radps"), unit_in_name("rudder")
+    ('rad/s', None)
+    """
+    field = words(name.rpartition(":")[2])
+    if field[:2] == ("angular", "velocity"):
+        return "rad/s"  # as ROS messages have it, which state no unit
+    for count in (2, 1):
+        if len(field) > count and (unit := UNITS_IN_NAMES.get(" ".join(field[-count:]))):
+            return unit
+    return None
+
+
+def _called(name: str) -> str | None:
+    """What the field is called, or, where that says nothing, the whole name."""
+    field = words(name.rpartition(":")[2])
+    return _longest(field) or (None if _several(field) else _longest(words(name)))
+
+
+def _longest(told: Sequence[str]) -> str | None:
+    """The quantity of the longest phrase in some words; None where two are as long."""
+    best = _best(told)
+    return best.pop() if len(best) == 1 else None
+
+
+def _several(told: Sequence[str]) -> bool:
+    return len(_best(told)) > 1
+
+
+def _best(told: Sequence[str]) -> set[str]:
+    found = [(len(phrase), q) for q, phrase in _phrases() if _holds(told, phrase)]
+    size = max((length for length, _ in found), default=0)
+    best = {q for length, q in found if length == size}
+    return best - {"n"} if best & {"n_p", "n_s"} else best  # one of two shafts is a shaft
+
+
+@functools.cache
+def _phrases() -> tuple[tuple[str, tuple[str, ...]], ...]:
+    ours = [(q, tuple(one.split())) for q, text in PHRASES.items() for one in text.split(", ")]
+    known = [(q, tuple(a.split("_"))) for q, signal in SIGNALS.items() for a in signal.aliases]
+    return (*ours, *known)
+
+
+def _holds(told: Sequence[str], phrase: Sequence[str]) -> bool:
+    """Whether the words of a phrase stand in a name, one after another."""
+    starts = range(len(told) - len(phrase) + 1)
+    return any(tuple(told[i : i + len(phrase)]) == tuple(phrase) for i in starts)
+
+
+def _fits(name: str, unit: str | None) -> bool:
+    return unit is None or to_si(unit, SIGNALS[name].unit) is not None

@@ -1,0 +1,129 @@
+"""Which quantity an unnamed channel is by how it moves, and to which side a rudder is positive.
+
+A rate of turn is the slope of the heading, a roll rate the slope of the roll angle: a relation with
+a number in it, which the unit must give. Nothing else is as sharp, so nothing else is used.
+"""
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+
+from trialid.alignment import signs
+from trialid.arrays import Mask
+from trialid.inspection.inspected import ChannelInspection, Guess
+from trialid.inspection.sketch import Vector, together
+from trialid.inspection.usual_units import USUAL, to_si
+
+SLOPES: Final = {"r": "psi", "p": "phi"}
+"""A rate and the angle it is the slope of."""
+
+SURE: Final = 0.95
+"""Correlation from which a channel without a telling name is taken to be the rate of an angle."""
+
+TURNS: Final = {"deg": 360.0, "rad": 2 * np.pi}
+
+MOST_UNNAMED: Final = 60
+"""More unnamed channels than this are a log of something else; they are not tried one by one."""
+
+RATES: Final = ("rad/s", "deg/s", "deg/min")
+
+
+def recognise(channels: Mapping[str, ChannelInspection]) -> dict[str, ChannelInspection]:
+    """The channels, with a guess for those that only their motion tells."""
+    found = dict(channels)
+    unnamed = [c for c in channels.values() if _unnamed(c)]
+    if len(unnamed) > MOST_UNNAMED:
+        return found
+    for rate, angle in SLOPES.items():
+        for reference in _named(channels, angle)[:1]:
+            for channel in unnamed:
+                strength = abs(slope_agreement(channel, reference))
+                if strength > SURE and unit_of_rate(channel, reference):
+                    words = f"by its relation to {angle} (correlation {strength:.2f})"
+                    guess = Guess(rate, "relation", words)
+                    found[channel.key] = dataclasses.replace(channel, guess=guess)
+    return found
+
+
+def _unnamed(channel: ChannelInspection) -> bool:
+    able = (channel.unit or channel.unit_in_name or RATES[0]) in RATES
+    return able and channel.guess is None and not channel.constant and len(channel.sketch.t) > 40
+
+
+def _named(channels: Mapping[str, ChannelInspection], quantity: str) -> list[ChannelInspection]:
+    return [c for c in channels.values() if c.guess and c.guess.quantity == quantity]
+
+
+def slope_agreement(rate: ChannelInspection, angle: ChannelInspection) -> float:
+    """Correlation of a rate with the change of an angle; 0 where they have too little in common."""
+    common = together(rate.sketch, angle.sketch)
+    if common is None:
+        return 0.0
+    _, (y, x), whole = common
+    return signs.agreement(y, x, whole)[0]
+
+
+@dataclass(frozen=True)
+class Side:
+    """Which side a rudder counts as positive, measured by a rate of turn.
+
+    `strength` is their correlation as logged, `by` what of the rate it is with; `if_to` the side
+    the rate is taken to be positive to.
+    """
+
+    side: Literal["starboard", "port"]
+    strength: float
+    if_to: Literal["starboard", "port"]
+    by: str
+
+
+def side(
+    rudder: ChannelInspection, rate: ChannelInspection, if_to: str | None = None
+) -> Side | None:
+    """The side of a rudder against a rate of turn, or a heading; None where it is not clear.
+
+    The rate is positive to `if_to`; None: by its format's convention, starboard where it has none.
+    """
+    found = _turning(rudder, rate)
+    if found is None or not found.sign:
+        return None
+    towards = if_to or (rate.guess.positive if rate.guess else None) or "starboard"
+    to: Literal["starboard", "port"] = "port" if towards == "port" else "starboard"
+    other: Literal["starboard", "port"] = "starboard" if to == "port" else "port"
+    return Side(to if found.sign > 0 else other, found.correlation, to, found.words)
+
+
+def _turning(rudder: ChannelInspection, turning: ChannelInspection) -> signs.Turning | None:
+    """How the ship answers a rudder; None where the two have too little in common."""
+    common = together(rudder.sketch, turning.sketch)
+    if common is None:
+        return None
+    period, (delta, r), whole = common
+    if turning.guess is not None and turning.guess.quantity == "psi":
+        r = np.gradient(r)
+    return signs.answer_of(delta, r, whole, period)
+
+
+def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | None:
+    """The unit of a rate that its angle, whose unit is known, leaves open; None where none fits."""
+    common = together(rate.sketch, angle.sketch)
+    size = to_si(angle.unit or angle.unit_in_name or "", "rad")
+    if common is None or size is None:
+        return None
+    period, (y, x), whole = common
+    factor = abs(_factor(y, x * size, period, whole))
+    fitting = [unit for unit in RATES if 0.8 < factor / USUAL[unit][1] < 1.25]
+    stated = rate.unit or rate.unit_in_name
+    return next((unit for unit in fitting if stated in (None, unit)), None)
+
+
+def _factor(rate: Vector, angle: Vector, period: float, whole: Mask) -> float:
+    """What to multiply a rate by to have the slope of the angle [rad/s], by least squares."""
+    change = np.diff(angle) / period
+    mean = (rate[1:] + rate[:-1]) / 2
+    both = whole[1:] & whole[:-1]
+    power = float(mean[both] @ mean[both])
+    return float(mean[both] @ change[both]) / power if power else 0.0

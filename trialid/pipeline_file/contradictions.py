@@ -1,0 +1,152 @@
+"""What no single key of a pipeline file shows: contradictions, repetitions, unknown quantities."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from trialid.errors import UnitError, nearest
+from trialid.names import units
+from trialid.names.quantities import SIGNALS, Quantity
+from trialid.pipeline_file.complaints import Problem, dotted_key
+from trialid.pipeline_file.form import ClockSection, Pipeline, SignalSource, TrialSection
+
+RUDDERS: Final = frozenset({"delta", "delta_order"})
+"""Signals whose sign no convention settles: indicators and SNAME have it opposite."""
+
+
+def contradictions(pipeline: Pipeline) -> Iterator[Problem]:
+    """Everything wrong that no single key shows."""
+    yield from _ship_problems(pipeline)
+    yield from _trial_problems(pipeline)
+    yield from _signal_problems(pipeline.signals, "signals")
+    for place, trial in enumerate(pipeline.trials):
+        yield from _signal_problems(trial.signals, "trial", place, "signals")
+        yield from _clock_problems(trial, place)
+    yield from _output_problems(pipeline)
+    yield from _repetitions(pipeline)
+    yield from _quiet_problems(pipeline)
+
+
+def _ship_problems(pipeline: Pipeline) -> Iterator[Problem]:
+    if pipeline.ship is None and pipeline.model.states:
+        states = ", ".join(pipeline.model.states)
+        yield (
+            "ship",
+            (
+                f"missing; {states} can be simulated for a ship only: name her file, or write "
+                "states = [] to compare sensors"
+            ),
+        )
+
+
+def _trial_problems(pipeline: Pipeline) -> Iterator[Problem]:
+    first: dict[str, int] = {}
+    for place, trial in enumerate(pipeline.trials):
+        if first.setdefault(trial.name, place) != place:
+            at = dotted_key("trial", first[trial.name])
+            yield dotted_key("trial", place, "name"), f"{trial.name!r} is already the name of {at}"
+    if all(trial.use == "check" for trial in pipeline.trials):
+        yield "trial", 'no trial to fit; at least one must have use = "fit"'
+
+
+def _clock_problems(trial: TrialSection, place: int) -> Iterator[Problem]:
+    for number, log in enumerate(trial.logs):
+        if log.clock is not None and (trouble := _clock_trouble(log.clock)):
+            yield dotted_key("trial", place, "logs", number, "clock"), trouble
+    if all(log.clock is not None for log in trial.logs):
+        yield (
+            dotted_key("trial", place, "logs"),
+            "every log has a clock of its own; leave the one that keeps the trial's clock without",
+        )
+
+
+def _clock_trouble(clock: ClockSection) -> str:
+    ways = [key for key in ("offset", "events", "match") if getattr(clock, key) is not None]
+    if len(ways) != 1:
+        found = " and ".join(ways) or "none"
+        return f"write one of offset, events, match; found {found}"
+    for key, of in (("drift", "offset"), ("within", "match")):
+        if getattr(clock, key) is not None and of not in ways:
+            return f"{key} goes with {of}, and {ways[0]} is given; leave {key} out"
+    if clock.events == ():
+        return "events is empty; write at least one, [[seconds here, seconds there]]"
+    return ""
+
+
+def _signal_problems(signals: Mapping[str, SignalSource], *steps: str | int) -> Iterator[Problem]:
+    for name, source in signals.items():
+        if name not in SIGNALS:
+            yield dotted_key(*steps, name), f"unknown quantity; {_nearest_signal(name)}"
+            continue
+        if trouble := _side_trouble(SIGNALS[name], source.positive):
+            yield dotted_key(*steps, name, "positive"), trouble
+        if trouble := _unit_trouble(SIGNALS[name], source.unit):
+            yield dotted_key(*steps, name, "unit"), trouble
+
+
+def _nearest_signal(name: str) -> str:
+    """Words for an unknown signal; a name that logs use leads to ours.
+
+    >>> _nearest_signal("heading")
+    "did you mean 'psi'?"
+    """
+    for own, signal in SIGNALS.items():
+        if name.lower() in signal.aliases:
+            return f"did you mean {own!r}?"
+    return nearest(name, SIGNALS)
+
+
+def _side_trouble(quantity: Quantity, positive: str | None) -> str:
+    if quantity.mirror == 1 and positive is not None:
+        return f"{quantity.name!r} has no port or starboard ({quantity.meaning}); leave it out"
+    if quantity.name in RUDDERS and positive is None:
+        return (
+            'missing; write the side the ship turns to when it is positive: "starboard" or "port"'
+        )
+    return ""
+
+
+def _unit_trouble(quantity: Quantity, unit: str | None) -> str:
+    try:
+        units.factor(unit or quantity.unit, quantity.unit)
+    except UnitError as error:
+        return str(error)
+    return ""
+
+
+def _output_problems(pipeline: Pipeline) -> Iterator[Problem]:
+    outputs = pipeline.identify.outputs
+    for place, name in enumerate(outputs):
+        if name not in SIGNALS:
+            key = dotted_key("identify", "outputs", place)
+            yield key, f"unknown quantity {name!r}; {_nearest_signal(name)}"
+    for section, table in (
+        (("identify", "weights"), pipeline.identify.weights),
+        (("diagnose", "noise"), pipeline.diagnose.noise),
+    ):
+        for name in table:
+            if name not in outputs:
+                hint = nearest(name, outputs)
+                yield dotted_key(*section, name), f"not one of identify.outputs; {hint}"
+
+
+def _repetitions(pipeline: Pipeline) -> Iterator[Problem]:
+    lists: dict[str, Iterable[object]] = {
+        "model.states": pipeline.model.states,
+        "model.effects": pipeline.model.effects,
+        "identify.free": pipeline.identify.free,
+        "identify.outputs": pipeline.identify.outputs,
+        "identify.nuisance": pipeline.identify.nuisance,
+    }
+    for key, entries in lists.items():
+        for entry, times in Counter(entries).items():
+            if times > 1:
+                yield key, f"{str(entry)!r} stands there {times} times; once is enough"
+
+
+def _quiet_problems(pipeline: Pipeline) -> Iterator[Problem]:
+    names = [trial.name for trial in pipeline.trials]
+    for place, stretch in enumerate(pipeline.diagnose.quiet):
+        if stretch.trial not in names:
+            key = dotted_key("diagnose", "quiet", place, "trial")
+            yield key, f"no trial {stretch.trial!r}; {nearest(stretch.trial, names)}"

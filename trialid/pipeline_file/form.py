@@ -1,0 +1,390 @@
+"""What a pipeline file may hold: frozen sections, every key and value checked where it stands."""
+
+from collections.abc import Mapping
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal, NamedTuple, cast
+
+from pydantic import (
+    AfterValidator,
+    AllowInfNan,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    PrivateAttr,
+    Strict,
+    ValidationInfo,
+)
+
+from trialid.errors import nearest
+from trialid.ingest.times.local_time import known_zone
+from trialid.names import units
+
+LISTED_AT_MOST: Final = 8
+"""How many file names an error lists before it only counts them."""
+
+
+class Origin(NamedTuple):
+    """The file a pipeline stands in, and all that it holds."""
+
+    path: Path
+    content: bytes
+
+
+def _existing(path: Path, info: ValidationInfo) -> Path:
+    found = cast(Origin, info.context).path.parent / path
+    if found.is_file():
+        return found
+    if found.is_dir():
+        raise ValueError(f"{str(path)!r} is a folder; name the file in it")
+    raise ValueError(f"no file {str(path)!r} (looked for {found}; {neighbours(found)})")
+
+
+def _existing_log(path: Path, info: ValidationInfo) -> Path:
+    found = cast(Origin, info.context).path.parent / path
+    return found if found.is_dir() else _existing(path, info)
+
+
+def neighbours(path: Path) -> str:
+    """Words about the files of the same kind beside a missing one."""
+    if not path.parent.is_dir():
+        return f"there is no folder {path.parent}"
+    names = [other.name for other in path.parent.iterdir() if other.suffix == path.suffix]
+    hint = nearest(path.name, names)
+    if not names:
+        return f"no {path.suffix or 'such'} file there"
+    if len(names) > LISTED_AT_MOST and not hint.startswith("did you mean"):
+        return f"{len(names)} {path.suffix} files there, none of a similar name"
+    return hint
+
+
+def _python(path: Path) -> Path:
+    if path.suffix != ".py":
+        raise ValueError(f"{str(path)!r} is not a .py file; effects are written in Python")
+    return path
+
+
+def _rising(interval: tuple[float, float]) -> tuple[float, float]:
+    low, high = interval
+    if not low < high:
+        raise ValueError(f"[{low:g}, {high:g}] runs backwards; write [low, high]")
+    return interval
+
+
+def _unit_text(unit: str) -> str:
+    if unit == "?":
+        raise ValueError("is still open; write the unit, like deg/s, m/s or kn")
+    if units.TEXT.fullmatch(unit) is None:
+        raise ValueError(f"{unit!r} is not a unit; write it like deg/s, m/s or kg*m^2")
+    return unit
+
+
+def with_value(given: Any) -> Any:
+    """A bare number as a value without a unit."""
+    return given if isinstance(given, dict) else {"value": given}
+
+
+def _with_path(given: Any) -> Any:
+    return {"path": given} if isinstance(given, str) else given
+
+
+def _not_zero(number: float) -> float:
+    if number == 0.0:
+        raise ValueError("a gain of zero leaves nothing of the signal")
+    return number
+
+
+def _countable(period: float) -> float:
+    if period < 1e-12:
+        raise ValueError(f"{period:g} s are less than any clock tells apart")
+    return period
+
+
+def _candidates(given: Any) -> Literal["all", "none"] | tuple[str, ...]:
+    if given in ("all", "none"):
+        return given
+    if isinstance(given, list) and all(isinstance(name, str) for name in given):
+        return tuple(given)
+    hint = nearest(str(given), ("all", "none"))
+    raise ValueError(f'must be "all", "none" or a list of effects, got {given!r} ({hint})')
+
+
+# Strict, because a pipeline that writes "0.5" or true for a number has a slip worth showing.
+Number = Annotated[float, Strict()]
+Positive = Annotated[Number, Field(gt=0)]
+NotNegative = Annotated[Number, Field(ge=0)]
+Count = Annotated[int, Strict(), Field(ge=1)]
+Rounds = Annotated[Count, Field(le=10_000)]
+"""Of searches, steps or shares of a sample; ten thousand of any take hours."""
+Seconds = Annotated[Number, Field(ge=-1e10, le=1e10)]
+"""Three hundred years either way: a clock that was never set lies fifty off."""
+Delay = Annotated[Number, Field(ge=-3600.0, le=3600.0)]
+"""An hour: no sensor is later, and a clock that is has an offset."""
+Period = Annotated[Positive, Field(le=1e6), AfterValidator(_countable)]
+"""So that samples can be counted; whether there are too many or too few is said with the record."""
+Factor = Annotated[Number, Field(ge=-1e15, le=1e15)]
+"""Of counts of any width to a unit; beyond, the square of a value overflows in a sum."""
+Whole = Annotated[int, Strict(), Field(ge=0)]
+Unit = Annotated[str, AfterValidator(_unit_text)]
+Names = tuple[str, ...]
+SomeNames = Annotated[Names, Field(min_length=1)]
+ReadFile = Annotated[Path, AfterValidator(_existing)]
+ReadLog = Annotated[Path, AfterValidator(_existing_log)]
+Zone = Annotated[str, AfterValidator(known_zone)]
+PythonFile = Annotated[ReadFile, AfterValidator(_python)]
+Instant = Number | datetime
+NotEmpty = Annotated[str, Field(min_length=1)]
+Window = Annotated[tuple[Seconds, Seconds], AfterValidator(_rising)]
+Limit = Annotated[Number, AllowInfNan(True)]
+Bounds = Annotated[tuple[Limit, Limit], AfterValidator(_rising)]
+Fault = Literal["range", "dropouts", "spikes", "saturation", "stuck"]
+Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
+
+
+class Section(BaseModel):
+    """A table of the pipeline file: frozen, finite numbers, no key it does not know.
+
+    The line under a key says what it means: the guide's page of keys is made of them.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
+    )
+
+
+class SignalSource(Section):
+    """Which channel of the logs is a quantity.
+
+    The signal is `gain` times the logged number, plus `offset`, in the channel's unit: a servo's
+    share of full deflection, a rudder indicator that reads two degrees at midships.
+    """
+
+    channel: str
+    """The channel's name, as `trialid inspect` lists it."""
+    unit: Unit | None = None
+    """Unit of the logged numbers, like `deg/s`; left out: the one the log states."""
+    gain: Annotated[Factor, AfterValidator(_not_zero)] = 1.0
+    """What the logged number is multiplied by, in the channel's unit."""
+    offset: Factor = 0.0
+    """What is added after that, in the channel's unit."""
+    positive: Literal["starboard", "port"] | None = None
+    """The side the channel counts positive; left out: as the guide's nomenclature; a rudder's is
+    never left out."""
+    angle: Literal["roll", "pitch", "yaw"] | None = Field(default=None, alias="as")
+    """The angle to take out of an orientation quaternion."""
+    delay: Delay = 0.0
+    """How much later than the ship the channel shows it [s]."""
+    keep: tuple[Fault, ...] = ()
+    """Kinds of values that are not masked though they look like no measurement."""
+
+
+class ClockSection(Section):
+    """How a log's clock lies to the trial's; the logs without this table keep the trial's clock.
+
+    One of `offset`, `events` and `match`.
+    """
+
+    offset: Seconds | None = None
+    """How far the clock is ahead at the log's first stamp [s]."""
+    drift: Annotated[Number, Field(gt=-1e6, le=1e6)] | None = None
+    """With `offset`: how much too fast it runs [ppm]."""
+    events: tuple[tuple[Instant, Instant], ...] | None = None
+    """Pairs of instants of one event, here and on the trial's clock: seconds from the log's first
+    stamp or dates (UTC unless they say); two or more give the drift."""
+    match: tuple[str, str] | None = None
+    """A channel of this log and one of another that hold the same motion, or one its rate; the
+    shift is measured with its interval, or refused."""
+    within: Annotated[Positive, Field(le=1e10)] | None = None
+    """With `match`: how far apart the clocks can be [s]; 60 unless given."""
+
+
+class LogSection(Section):
+    """A log file, or a folder of them that is read as one; a bare path is short for `path`."""
+
+    path: ReadLog
+    """The file or folder, from the pipeline's own folder."""
+    template: ReadFile | None = None
+    """File that lays out a table which does not say it itself."""
+    dbc: ReadFile | None = None
+    """File that says what the frames of a CAN bus mean that is not NMEA 2000."""
+    zone: Zone | None = None
+    """Time zone of stamps that state none, an IANA name like `Europe/Oslo`."""
+    clock: ClockSection | None = None
+    """How the log's clock lies to that of the other logs."""
+
+
+Log = Annotated[LogSection, BeforeValidator(_with_path)]
+
+
+class TrialSection(Section):
+    """One manoeuvre: its logs, what it is for, and its signals with the shared ones filled in."""
+
+    name: NotEmpty
+    """What the trial is called; each name once."""
+    logs: Annotated[tuple[Log, ...], Field(min_length=1)]
+    """Its log files or folders; several are merged on time."""
+    use: Literal["fit", "check"] = "fit"
+    """Whether the model is fitted to it, or it is held out: simulated and scored, never fitted."""
+    window: Window | None = None
+    """What is cut out of the logs, `[from, to]` [s]; left out: all of it."""
+    speed: NotNegative | None = None
+    """Approach speed where no log has `u` [m/s]."""
+    signals: Mapping[str, SignalSource] = {}
+    """Which channel is which quantity."""
+
+
+class AlignSection(Section):
+    """The common clock."""
+
+    period: Period = 0.5
+    """Time between samples [s]."""
+    clocks: Literal["repair", "as logged"] = "repair"
+    """`"repair"` puts the stamps of evenly paced sensors on a line through their count of samples,
+    so that latency, bundles and whole seconds do not shake them; `"as logged"` takes every stamp
+    as it is."""
+
+
+class GivenValue(Section):
+    """A number given by hand, with a unit or in the usual one; a bare number is its `value`."""
+
+    value: Number
+    """The number."""
+    unit: Unit | None = None
+    """Its unit; left out: the parameter's own, or that of reports."""
+
+
+class ModelSection(Section):
+    """What is simulated, by which effects, with which values given by hand."""
+
+    states: Names
+    """Motions that are simulated; every other signal an effect needs is read from the record."""
+    effects: Names
+    """What the model is made of, by the names `trialid effects` lists."""
+    effects_from: tuple[PythonFile, ...] = ()
+    """Python files with effects of your own."""
+    values: Mapping[str, Annotated[GivenValue, BeforeValidator(with_value)]] = {}
+    """Parameter values in place of the ship file's or the effect's own: held, or where a free one
+    starts."""
+
+
+class Prior(Section):
+    """What is known of a parameter beforehand, in the parameter's own unit."""
+
+    mean: Number
+    """The value known beforehand."""
+    std: Positive
+    """Its standard deviation."""
+
+
+class IdentifySection(Section):
+    """What is estimated, against which outputs, and how the search goes."""
+
+    free: SomeNames
+    """Parameters that are estimated; all others keep their values."""
+    outputs: SomeNames
+    """Signals the simulation is held against."""
+    nuisance: tuple[Nuisance, ...] = ("initial_state",)
+    """What is estimated for each trial apart and is not the ship."""
+    weights: Mapping[str, Positive] = {}
+    """Weight of an output in the error, by its name; 1 where not given."""
+    loss: Literal["squares", "huber"] = "squares"
+    """What is made small: squares, or `"huber"` where the log has outliers."""
+    priors: Mapping[str, Prior] = {}
+    """What is known of a parameter beforehand, by its name."""
+    bounds: Mapping[str, Bounds] = {}
+    """`[low, high]` a parameter may not leave, by its name, in its own unit; `inf` is allowed."""
+    starts: Rounds = 1
+    """Searches from different first values; the run says how many agree."""
+    spread: Positive = 0.3
+    """How far those first values lie about the given ones, as a share of them."""
+    seed: Whole = 0
+    """Seed of their draw."""
+    max_iterations: Rounds = 50
+    """Steps after which a search gives up."""
+    norm: Literal["mean", "zero"] = "mean"
+    """Whether y_RMS of Eq. 8 is taken about the channel's own mean or about zero."""
+    substeps: Rounds = 1
+    """Simulation steps in one sample to begin with; a run takes more where they are too long."""
+    engine: Literal["compiled", "numpy"] = "compiled"
+    """What simulates: compiled kernels, or their slow twin in NumPy."""
+
+
+class QuietStretch(Section):
+    """A stretch of a trial declared to be without excitation."""
+
+    trial: str
+    """The trial's name."""
+    window: Window
+    """`[from, to]` in it [s]."""
+
+
+class DiagnoseSection(Section):
+    """The search for the missing effect."""
+
+    candidates: Annotated[Literal["all", "none"] | Names, PlainValidator(_candidates)] = "all"
+    """Effects that may be missing: all of the catalogue, none, or a list of names."""
+    noise: Mapping[str, Positive] = {}
+    """Stated sensor figure by output, standard deviation in the unit reports show (deg/s, deg)."""
+    refit: Whole = 4
+    """How many of the best candidates are fitted."""
+    family_cos: Annotated[Number, Field(gt=0, le=1)] = 0.9
+    """Cosine of their traces from which on two effects count as one family."""
+    level: Annotated[Number, Field(gt=0, lt=1)] = 0.05
+    """Significance level: how often chance may do as well as what is named."""
+    quiet: tuple[QuietStretch, ...] = ()
+    """Stretches declared to be without excitation: what is left over there is noise."""
+
+
+class Written(Section):
+    """What a file of the user's describes, and the file itself."""
+
+    _origin: Origin = PrivateAttr()
+
+    def model_post_init(self, context: Origin) -> None:
+        """Keep where it was read from, which `where` needs and no key may set."""
+        self._origin = context
+
+    @property
+    def path(self) -> Path:
+        """The file, as the caller named it."""
+        return self._origin.path
+
+    @property
+    def content(self) -> bytes:
+        """What was read; the file may hold something else by now."""
+        return self._origin.content
+
+    @property
+    def text(self) -> str:
+        """What was read, as text with its own line ends."""
+        return self.content.decode("utf-8")
+
+
+class Described(Written):
+    """A ship, her model and what is to be estimated: what every file asks for."""
+
+    name: str
+    """What reports call it; left out: the file's own name."""
+    ship: ReadFile | None = None
+    """The ship's file; left out with `states = []`: sensors alone are compared."""
+    model: ModelSection
+    """What is simulated, and by which effects."""
+    identify: IdentifySection
+    """What is estimated, and against which outputs."""
+
+
+class Pipeline(Described):
+    """A pipeline file, complete: defaults filled in, paths resolved from the file's folder."""
+
+    trials: Annotated[tuple[TrialSection, ...], Field(alias="trial", min_length=1)]
+    """The manoeuvres, a table `[[trial]]` each; at least one is fitted."""
+    signals: Mapping[str, SignalSource] = {}
+    """Signals that all trials share; a trial's own come first."""
+    align: AlignSection = AlignSection()
+    """The clock all signals are brought to."""
+    diagnose: DiagnoseSection = DiagnoseSection()
+    """How the missing effect is sought."""
+    imo: bool = False
+    """Whether the standard measures of MSC.137(76) are predicted too."""

@@ -1,0 +1,3 @@
+"""Figures of a page."""
+
+__all__: list[str] = []

@@ -1,0 +1,3 @@
+"""Tables, as pages, CSV, Markdown and LaTeX have them."""
+
+__all__: list[str] = []

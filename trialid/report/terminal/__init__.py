@@ -1,0 +1,3 @@
+"""What the terminal shows."""
+
+__all__: list[str] = []

@@ -1,0 +1,57 @@
+"""The steps of a model as rows of a terminal: what was done, and the error with its parts."""
+
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+from trialid.report.terminal.terminal import percent
+from trialid.result.change_rows import StepRow
+
+SHOWN: Final = 8
+"""Steps shown of a long history: the last ones."""
+
+_NAME: Final = 26
+
+
+def heading() -> str:
+    """What stands over the rows."""
+    return _line("step", ("fitted", "held out", "noise", "model"), "verdict")
+
+
+def line(step: StepRow) -> str:
+    """One step.
+
+    >>> line(StepRow(step="added", added="static_list", eps_rmsn=0.05, eps_rmsn_check=0.06,
+    ...              noise=0.04, undermodelling=0.03, verdict="nothing missing"))
+    '+ static_list               5.00 %    6.00 %  4.00 %  3.00 %  nothing missing'
+    """
+    errors = (step.eps_rmsn, step.eps_rmsn_check, step.noise, step.undermodelling)
+    return _line(short_words(step), [percent(e) for e in errors], step.verdict or "")
+
+
+def rows(history: Sequence[StepRow]) -> Iterable[str]:
+    """The last steps of a history, those apart that were only tried."""
+    steps = [step for step in history if step.step != "proposed"]
+    yield heading()
+    if len(steps) > SHOWN:
+        yield f"... {len(steps) - SHOWN} earlier steps"
+    yield from (line(step) for step in steps[-SHOWN:])
+
+
+def short_words(step: StepRow) -> str:
+    """What was done, in few characters.
+
+    >>> short_words(StepRow(step="dropped", dropped="static_list"))
+    '- static_list'
+    """
+    match step.step:
+        case "added" | "proposed":
+            return f"+ {step.added}"
+        case "dropped":
+            return f"- {step.dropped}"
+        case other:
+            return str(other or "as written")
+
+
+def _line(name: str, numbers: Sequence[str], words: str) -> str:
+    cells = "".join(f"{n:>{width}}" for n, width in zip(numbers, (8, 10, 8, 8), strict=True))
+    return f"{name:<{_NAME}}{cells}  {words}".rstrip()

@@ -1,0 +1,3 @@
+"""Sentences that pages and terminal share."""
+
+__all__: list[str] = []

@@ -1,0 +1,230 @@
+"""What to do next, by the verdict: commands that exist, trials and lines the record calls for."""
+
+import shlex
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from trialid.names import wording
+from trialid.report.words import doubt
+from trialid.result.fit_rows import ParameterRow, WeakRow
+from trialid.result.schema import Result
+
+RIVALS: Final = 2
+"""Other members of the family whose command is written out."""
+
+OPENS: Final = {
+    "repeated manoeuvre": "run one manoeuvre twice, with the same rudder orders",
+    "periods of a periodic test": "run a test in which the rudder repeats itself several times",
+    "quiet stretch": "record a minute or more of steady course, rudder at rest, in the same sea",
+    "stated sensor figure": "state how much each sensor scatters, as noise under [diagnose]",
+}
+"""What would open a route to the noise that this record does not have."""
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One thing to do: what and why, and the command or the line of the pipeline file for it."""
+
+    words: str
+    command: str = ""
+
+
+def advice(run: Result) -> tuple[Advice, ...]:
+    """What to do next, most urgent first."""
+    kind = run.verdict.kind
+    by_kind = {
+        "missing": _missing,
+        "nothing missing": _nothing,
+        "not in catalogue": _outside,
+        "cannot tell": _unclear,
+        "no fit": _no_fit,
+    }
+    found = [*_unfinished(run), *_planned(run)]
+    if kind in by_kind:
+        found += by_kind[kind](run)
+    return (*found, *_unchecked(run), *_loose(run))
+
+
+def command(run: Result, verb: str, *words: str) -> str:
+    """A command of trialid on this run's pipeline.
+
+    >>> command(Result(file="my trial.toml"), "add", "static_list")
+    "trialid add 'my trial.toml' static_list"
+    """
+    file = run.file or "PIPELINE"
+    return shlex.join(["trialid", verb, file, *words])
+
+
+def _unfinished(run: Result) -> Iterable[Advice]:
+    if run.fit.converged is False and run.verdict.kind != "no fit":
+        yield Advice(
+            "The fit did not converge: rely on nothing here before it does. Start the search from "
+            "several places, under [identify]:",
+            "starts = 5",
+        )
+
+
+def _no_fit(run: Result) -> Iterable[Advice]:
+    said = (run.verdict.sentence or "").removeprefix("no fit: ").rpartition("; ")[2]
+    yield Advice(
+        f"Rely on no number of this run. {said[:1].upper()}{said[1:]}."
+        if said
+        else "Rely on no number of this run."
+    )
+
+
+def _planned(run: Result) -> Iterable[Advice]:
+    following = run.verdict.next_trial
+    if following and following.sentence:
+        yield Advice(f"Run this trial next: {following.sentence.rstrip('.')}.")
+
+
+def _missing(run: Result) -> Iterable[Advice]:
+    effect = run.verdict.effect
+    if not effect:
+        return
+    yield Advice(
+        "Put the effect into the pipeline and fit again; the report then shows before and after. "
+        "What is added, trialid drop takes out again.",
+        command(run, "add", effect),
+    )
+    yield Advice(
+        "Read what it stands for, and whether your ship can have it:",
+        shlex.join(["trialid", "effects", effect]),
+    )
+    others = [name for name in run.verdict.family if name != effect]
+    for name in others[:RIVALS]:
+        yield Advice(
+            f"This record cannot tell it from {name}. If that is the likelier one on this ship:",
+            command(run, "add", name),
+        )
+    yield Advice(
+        "Or let it add effect after effect until none is named; the file stays as it is:",
+        shlex.join(["trialid", "run", "--auto", run.file or "PIPELINE"]),
+    )
+
+
+def _nothing(run: Result) -> Iterable[Advice]:
+    ends = run.split.ends("undermodelling")
+    limit = f" A model error of up to {wording.percent(ends[1])} would not be seen." if ends else ""
+    yield Advice(
+        "No effect is to be added on the strength of this record."
+        + limit
+        + " Use the model within "
+        "the rudder angles, speeds and heel that the trials cover."
+    )
+
+
+def _outside(run: Result) -> Iterable[Advice]:
+    first = next((row.sentence for row in run.where if row.sentence), None)
+    if first is not None:
+        yield Advice(f"Look where the model fails first: {first.rstrip('.')}.")
+    yield Advice(
+        "Have the force that is missing written down as an effect in a Python file, and edit it:",
+        shlex.join(["trialid", "run", "--draft", "my_effect.py", run.file or "PIPELINE"]),
+    )
+    yield Advice(
+        "Name that file, or one you wrote yourself, under [model]; its effects are then tried "
+        "beside the catalogue:",
+        'effects_from = ["my_effect.py"]',
+    )
+
+
+def _unclear(run: Result) -> Iterable[Advice]:
+    if run.split.noise is not None:
+        yield Advice(
+            "The record itself leaves it open. What settles it is a trial in which the effect does "
+            "something that the free parameters cannot do as well, or parameters known from a "
+            "model test, held fixed or given as priors."
+        )
+        return
+    closed = {row.method for row in run.split.routes if not row.available}
+    ways = [words for method, words in OPENS.items() if method in closed]
+    if ways:
+        yield Advice(
+            "Noise and model error cannot be told apart. Any one of these opens a way: "
+            + "; ".join(ways) + "."
+        )  # fmt: skip
+
+
+def _unchecked(run: Result) -> Iterable[Advice]:
+    trials = run.trials
+    if not trials or any(trial.use == "check" for trial in trials):
+        return
+    words = "No trial was held out, so nothing here was tested on data that the fit had not seen. "
+    if len(trials) > 1:
+        words += "Hold one back, in its [[trial]]:"
+    else:
+        words += "Add a second trial to the pipeline and hold it back, in its [[trial]]:"
+    yield Advice(words, 'use = "check"')
+
+
+def _loose(run: Result) -> Iterable[Advice]:
+    said = doubt.doubtful(run.accuracy.parameters)
+    if said and run.verdict.kind in ("nothing missing", "cannot tell"):
+        yield Advice(
+            f"{said} Do not use such a parameter by itself; together they still predict what the "
+            "trials show."
+        )
+    for weak in run.accuracy.weak:
+        if len(weak.parameters) > 1:
+            yield Advice(
+                f"To part {' from '.join(map(str, weak.parameters[:2]))}: a trial in which they "
+                "act differently, such as another rudder angle or another rhythm of the rudder; "
+                "more of the same shrinks only the noise."
+            )
+
+
+def trust(run: Result) -> str:
+    """What the accuracy table comes to, beside those not to be believed."""
+    known = [(r.may_be_off, r.name) for r in run.physical if r.may_be_off is not None]
+    if not known:
+        return ""
+    least, name = min(known)
+    words = f"Best known is {name}, to {wording.percent(least, 2)}. {widest_range(run)}"
+    if run.verdict.effect and run.before_after:
+        words += f" With {run.verdict.effect} in the model the ranges are others: add it first."
+    return words
+
+
+def widest_range(run: Result) -> str:
+    """Which likely range is the widest, what makes it so, and the trial that would narrow it."""
+    return f"{widest(run.physical)} {run.accuracy.narrowed_by or ''}".strip()
+
+
+def widest(parameters: Sequence[ParameterRow]) -> str:
+    """Which likely range is the widest beside its value, and what widens it.
+
+    >>> widest([ParameterRow(name="Kp", value=-2.0, likely=(-3.0, -1.5), widened_by="static_list")])
+    'Least known: Kp, as static_list may be missing.'
+    """
+    known = [(r.may_be_off, r) for r in parameters if r.may_be_off is not None]
+    if not known:
+        return ""
+    _, row = max(known, key=lambda pair: pair[0])
+    why = "by the numbers held fixed (how sure those are: [uncertainty] in the ship file)"
+    if row.widened_by:
+        why = f"as {row.widened_by} may be missing"
+    return f"Least known: {row.name}, {why}."
+
+
+def moves(weak: WeakRow) -> str:
+    """How far a weak direction's parameters go together unseen, in words.
+
+    >>> moves(WeakRow(moves={"Nr": 0.108, "Nv": 0.157})).replace(wording.THIN, " ")
+    'Nr by 11 % and Nv by 16 % of their size, both up or both down'
+    """
+    found = {name: move for name, move in weak.moves.items() if move is not None}
+    if len(found) < 2:
+        return ""
+    sizes = [f"{name} by {wording.percent(abs(move), 2)}" for name, move in found.items()]
+    listed = ", ".join(sizes[:-1]) + " and " + sizes[-1]
+    signs = {move > 0.0 for move in found.values()}
+    if len(signs) == 1:
+        word = "both up or both down" if len(found) == 2 else "all up or all down"
+    else:
+        up = [name for name, move in found.items() if move > 0.0]
+        down = [name for name, move in found.items() if move <= 0.0]
+        word = f"{', '.join(up)} up while {', '.join(down)} down, or the reverse"
+    return f"{listed} of their size, {word}"

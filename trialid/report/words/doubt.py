@@ -1,0 +1,44 @@
+"""Which parameters are not to be believed, in words."""
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+from trialid.result.fit_rows import ParameterRow
+
+HALF: Final = 0.5
+"""A parameter that may be off by more than this share of its value is not to be believed."""
+
+NAMED: Final = 10
+"""Doubtful parameters a sentence names before it only counts them."""
+
+
+def doubtful(parameters: Sequence[ParameterRow]) -> str:
+    """Which of the physical parameters are not to be believed, in a sentence; none, no words.
+
+    By the likely range, where there is one, else by noise alone.
+
+    >>> rows = [ParameterRow(name=n, value=2.0, likely=(low, 2.5))
+    ...         for n, low in (("Yv", 1.2), ("Nr", 0.9))]
+    >>> doubtful(rows)
+    'Not to be believed: Nr; it may be off by more than half of its value.'
+    >>> doubtful(rows[:1])
+    ''
+    """
+    rows = [row for row in parameters if row.kind != "nuisance"]
+    names = [row.name for row in rows if not _share(row) <= HALF]
+    if not names:
+        return ""
+    told = any(row.likely for row in rows)
+    by = "" if told else " (by noise alone; what may be missing is not known)"
+    left = len(names) - NAMED
+    listed = ", ".join(names[:NAMED]) + (f" and {left} more" if left > 0 else "")
+    each = "it may be off by more than half of its value"
+    each = each if len(names) == 1 else each.replace("it", "each", 1)
+    return f"Not to be believed: {listed}; {each}{by}."
+
+
+def _share(row: ParameterRow) -> float:
+    """How far a parameter may be off, as a share of its value; not a number where nobody knows."""
+    off = row.off_by_noise if row.likely is None else row.may_be_off
+    return math.nan if off is None else off

@@ -1,0 +1,231 @@
+"""Rows of `result.json` about trials, model, fit, the error's parts and accuracy."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from trialid.accuracy.likely import CONFIDENCE, share_off
+
+Interval = tuple[float, float]
+
+
+Part = Literal["noise", "undermodelling"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogRow:
+    """One log of a trial."""
+
+    path: str
+    sha256: str
+    adapter: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrialRow:
+    """One trial; `eps_rmsn` by output, None where its simulation was lost.
+
+    `inside` is the share of samples within the band of `FitPart`, by output.
+    """
+
+    name: str
+    use: Literal["fit", "check"]
+    logs: tuple[LogRow, ...] = ()
+    samples: int | None = None
+    period: float | None = None
+    duration: float | None = None
+    remarks: tuple[str, ...] = ()
+    eps_rmsn: Mapping[str, float | None] = field(default_factory=dict)
+    inside: Mapping[str, float | None] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelPart:
+    """What was fitted."""
+
+    ship: str | None = None
+    rudder_positive: str = "starboard"
+    states: tuple[str, ...] = ()
+    effects: tuple[str, ...] = ()
+    free: tuple[str, ...] = ()
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    nuisance: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class IterationRow:
+    """One step of the search: Eq. 4, its root as an error, and the damping's share of the step."""
+
+    V: float
+    eps_rmsn: float
+    step: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class StartsPart:
+    """How many starts reached this optimum, of how many."""
+
+    agreeing: int
+    of: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitPart:
+    """How the search ended; errors are shares of the measured RMS.
+
+    `band` is the half-width about the prediction of a trial that was not fitted that holds 95 % of
+    what is measured, by output [SI]; empty where fewer than two trials were fitted.
+    """
+
+    eps_rmsn: float | None = None
+    eps_rmsn_by_output: Mapping[str, float | None] = field(default_factory=dict)
+    eps_rmsn_check: float | None = None
+    eps_rmsn_check_by_output: Mapping[str, float | None] | None = None
+    V: float | None = None
+    iterations: tuple[IterationRow, ...] = ()
+    converged: bool | None = None
+    reason: str | None = None
+    starts: StartsPart | None = None
+    samples: int | None = None
+    step_halving: Mapping[str, float] | None = None
+    substeps: int | None = None
+    weighting: str | None = None
+    y_rms: Mapping[str, float] = field(default_factory=dict)
+    band: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class IntervalPart:
+    """95 % intervals of the two parts of an error."""
+
+    noise: Interval | None = None
+    undermodelling: Interval | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartsRow:
+    """One output's error: its noise and its model part."""
+
+    noise: float | None = None
+    undermodelling: float | None = None
+
+    def ends(self, part: Part) -> Interval | None:
+        """One output's parts have no intervals of their own."""
+        return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RouteRow:
+    """One way of telling noise from model error, and what it gave."""
+
+    noise: float | None = None
+    undermodelling: float | None = None
+    method: str | None = None
+    why: str | None = None
+    interval: IntervalPart | None = None
+    available: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class SplitPart:
+    """What the error is made of, by the route that is trusted most of those that hold."""
+
+    noise: float | None = None
+    undermodelling: float | None = None
+    method: str | None = None
+    why: str | None = None
+    interval: IntervalPart | None = None
+    by_output: Mapping[str, PartsRow] | None = None
+    routes: tuple[RouteRow, ...] = ()
+
+    def ends(self, part: Part) -> Interval | None:
+        """The 95 % interval of a part, where it has one."""
+        if self.interval is None:
+            return None
+        return self.interval.noise if part == "noise" else self.interval.undermodelling
+
+    def of(self, output: str) -> PartsRow:
+        """The parts of one output's error, unknown where they were not told apart."""
+        return (self.by_output or {}).get(output, PartsRow())
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParameterRow:
+    """One unknown; the parts of Eq. 14 and their sum are relative, other errors in `unit`.
+
+    `likely` is where it lies at 95 % whatever is missing, in `unit`; `widened_by` the effect that
+    widens this most, empty where that is what was held fixed.
+    """
+
+    name: str
+    value: float | None = None
+    unit: str = "1"
+    S_i: float | None = None
+    S_imin: float | None = None
+    R_i: float | None = None
+    relative_error: float | None = None
+    noise_error: float | None = None
+    undermodelling_error: float | None = None
+    standard_error: float | None = None
+    white_error: float | None = None
+    n_effective: float | None = None
+    likely: Interval | None = None
+    widened_by: str | None = None
+    kind: Literal["physical", "nuisance"] = "physical"
+
+    @property
+    def may_be_off(self) -> float | None:
+        """How far the likely range goes from the value, as a share of it; None where unknown."""
+        return share_off(self.value, self.likely)
+
+    @property
+    def off_by_noise(self) -> float | None:
+        """How far noise alone may put the value, 95 times of 100, as a share of it."""
+        if self.standard_error is None or not self.value:
+            return None
+        return CONFIDENCE * abs(self.standard_error / self.value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class WeakRow:
+    """A direction of parameter space that the record hardly sees."""
+
+    sentence: str | None = None
+    parameters: tuple[str, ...] = ()
+    relative_error: float | None = None
+    moves: Mapping[str, float | None] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeversPart:
+    """Eq. 15 and 16, primed."""
+
+    L_r: float | None = None
+    L_v: float | None = None
+    margin: float | None = None
+    standard_error: float | None = None
+    stable: bool | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StabilityPart(LeversPart):
+    """Directional stability, and the same with heel."""
+
+    roll_coupled: LeversPart | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AccuracyPart:
+    """Eq. 8 to 14; `narrowed_by` says which trial would narrow the widest likely range."""
+
+    S_min: float | None = None
+    S_max: float | None = None
+    R: float | None = None
+    n_effective: float | None = None
+    weighting: str | None = None
+    scaling: str | None = None
+    parameters: tuple[ParameterRow, ...] = ()
+    weak: tuple[WeakRow, ...] = ()
+    narrowed_by: str | None = None
+    stability: StabilityPart | None = None

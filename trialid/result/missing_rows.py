@@ -1,0 +1,106 @@
+"""Candidates and the verdict as rows of a result."""
+
+from trialid.design.separation import Separation
+from trialid.diagnosis.diagnose import Diagnosis
+from trialid.diagnosis.search.score import VISIBLE, Candidate
+from trialid.diagnosis.verdict import Verdict
+from trialid.identification.fit import Fit
+from trialid.result.finding_rows import (
+    CandidateParameterRow,
+    CandidateRow,
+    NextTrialPart,
+    VerdictPart,
+)
+
+
+def missing_rows(found: Diagnosis) -> tuple[CandidateRow, ...]:
+    """Every candidate by rank, the named one first."""
+    refitted = {r.candidate.effect.name: r.fit for r in found.refits}
+    # the named one first: what was foreseen by linearisation gives way to what was fitted
+    ordered = sorted(found.ranking, key=lambda c: c.effect.name != found.verdict.effect)
+    return tuple(
+        _candidate(i + 1, c, refitted.get(c.effect.name), found) for i, c in enumerate(ordered)
+    )
+
+
+def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Diagnosis) -> CandidateRow:
+    return CandidateRow(
+        rank=rank,
+        effect=c.effect.name,
+        equation=c.effect.equation,
+        family=tuple(c.family),
+        cosines=dict(c.cosines),
+        parameters={n: _expected(c, n, refit) for n in c.expected},
+        eps_rmsn_predicted=c.eps_predicted,
+        eps_rmsn_refitted=refit.eps_rmsn if refit else None,
+        eps_rmsn_check=refit.eps_check if refit else None,
+        score=c.score,
+        p_value=c.p_value,
+        visibility=c.visibility,
+        left_out_ratio=c.carried.ratio,
+        better_in=c.carried.better,
+        blocks=c.carried.blocks,
+        sign_kept=c.carried.steady,
+        verdict=_standing(c, found),
+        sentence=_sentence(c, refit, found),
+    )
+
+
+def _expected(c: Candidate, name: str, refit: Fit | None) -> CandidateParameterRow:
+    """A parameter of a candidate, with the ends of its physical range; None where open."""
+    parameter = c.effect.parameters[name]
+    return CandidateParameterRow(
+        expected=c.expected[name] if c.visibility > VISIBLE else None,
+        refitted=refit.estimates[name] if refit else None,
+        unit=parameter.unit,
+        low=parameter.low,
+        high=parameter.high,
+    )
+
+
+def _standing(c: Candidate, found: Diagnosis) -> str:
+    if c.effect.name == found.verdict.effect:
+        return "missing"
+    if c.effect.name in found.verdict.family:
+        return "same family"
+    if c.visibility <= VISIBLE:
+        return "not visible"
+    if not c.allowed:
+        return "unphysical"
+    if c.worth_a_name(0.05):
+        return "stands out"
+    return "significant and small" if c.shown(0.05) else "no evidence"
+
+
+def _sentence(c: Candidate, refit: Fit | None, found: Diagnosis) -> str:
+    eps = found.before.fit.eps_rmsn
+    if c.visibility <= VISIBLE:
+        return f"{c.effect.name} leaves no trace here that the free parameters could not leave too"
+    said = f"would bring the error from {eps:.2%} to {c.eps_predicted:.2%} (p = {c.p_value:.2g})"
+    if refit is not None:
+        said += f"; fitted, it brings it to {refit.eps_rmsn:.2%}"
+    return f"{c.effect.name} {said}"
+
+
+def verdict_part(v: Verdict, proposal: Separation | None) -> VerdictPart:
+    """The verdict, and the trial that would tell rivals apart."""
+    return VerdictPart(
+        kind=v.kind,
+        effect=v.effect,
+        family=tuple(v.family),
+        sentence=v.sentence,
+        next_trial=None if proposal is None else _next_trial(proposal),
+    )
+
+
+def _next_trial(proposal: Separation) -> NextTrialPart:
+    """The trial that would tell rivals apart, or that none of those any crew can run does."""
+    name = proposal.programme[0].name
+    told = f"{name}: {proposal.sentence}" if proposal.after.separate else proposal.sentence
+    return NextTrialPart(
+        sentence=told,
+        test=name if proposal.after.separate else None,
+        effects=tuple(proposal.names),
+        cosine=proposal.after.cosine,
+        cosine_before=None if proposal.before is None else proposal.before.cosine,
+    )

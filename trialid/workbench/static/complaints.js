@@ -1,0 +1,58 @@
+/* What went wrong: about an edit, beside its control where that is still there and seen; all else under the bar. */
+
+import { byId, keyed, state } from "./state.js";
+
+const LOST = "No connection to trialid. Is it still running in its terminal?";
+
+export function complain() {
+  const trouble = state.status && state.status.trouble;
+  const told = complaint(trouble);
+  const row = told && told.key && rowOf(told.key);
+  banner(trouble && !taken(trouble) ? trouble.words : told && !row ? told.words : state.lost ? LOST : "");
+  const shown = [...document.querySelectorAll(".complaint")];
+  if (row && shown.length === 1 && shown[0].parentElement === row && shown[0].textContent === told.words) return;
+  shown.forEach((each) => each.remove());
+  if (row) complainIn(row, told.words, shown.length === 0);
+}
+
+/* About an edit: refused, or taken back since it could not be fitted. */
+function complaint(trouble) {
+  if (state.refused) return state.refused;
+  return trouble && taken(trouble) ? { key: state.edited, words: trouble.words } : null;
+}
+
+/* Whether it is about an edit, which was taken back, and not about a file as somebody left it. */
+const taken = (trouble) => trouble.where === "fit" || trouble.words.endsWith("taken back");
+
+function rowOf(key) {
+  const control = keyed(key);
+  const row = control && control.closest("[data-row]");
+  return row && row.checkVisibility() ? row : null;
+}
+
+function complainIn(row, words, fresh) {
+  const told = complaintOf(words);
+  row.append(told);
+  if (fresh) told.scrollIntoView({ block: "nearest" });
+}
+
+function complaintOf(words) {
+  const told = document.createElement("p");
+  told.className = "complaint";
+  told.setAttribute("role", "alert");
+  told.textContent = words;
+  return told;
+}
+
+function banner(words) {
+  const place = byId("banner");
+  if (place.textContent !== words) place.textContent = words;
+  place.hidden = !words;
+}
+
+/* What an input holds is refused here already, without asking the server. */
+export function refuse(input, words) {
+  input.setAttribute("aria-invalid", "true");
+  state.refused = { key: input.dataset.key, words };
+  complain();
+}

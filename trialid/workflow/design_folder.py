@@ -1,0 +1,127 @@
+"""The files of a design: its data, the page for the bridge, the orders, a pipeline for the log."""
+
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from trialid import own_files
+from trialid.pipeline_file.design_file import DesignFile
+from trialid.report.files import design_data
+from trialid.report.pages import bridge
+from trialid.report.pages.bridge import file_name
+from trialid.workflow import design_run as plans
+from trialid.workflow.design_run import Plan, Rated
+
+LOG = "log-of-{}.mcap"
+"""Where the pipeline that is handed over looks for the log: the name is the crew's to give."""
+
+
+def write(plan: Plan, folder: Path) -> dict[str, Any]:
+    """Write everything into a folder; the plain data of the design."""
+    data = plans.plain(plan)
+    with own_files.replacing(folder) as work:
+        for name, text in _texts(plan, data, folder).items():
+            (work / name).write_text(text, encoding="utf-8")
+    return data
+
+
+def _texts(plan: Plan, data: Mapping[str, Any], folder: Path) -> dict[str, str]:
+    """Every file by its name."""
+    texts = {"design.json": json.dumps(data, indent=2, allow_nan=False) + "\n"}
+    sheets = []
+    taken: set[str] = set()
+    for rated, told in zip(plan.rated, data["tests"], strict=True):
+        if rated.outcome.excesses:
+            continue
+        stems = [file_name(test["name"], taken) for test in told["programme"]]
+        for test, stem, passage in zip(
+            told["programme"], stems, rated.outcome.passages, strict=True
+        ):
+            sheets.append(bridge.sheet(test, passage, plan.limits))
+            texts[f"{stem}.csv"] = bridge.order_csv(passage)
+        own = stems[0] if len(stems) == 1 else file_name(rated.name, taken)
+        texts[f"{own}.toml"] = _pipeline(plan.pipeline, folder, rated, stems)
+    texts["bridge.html"] = bridge.page(data, sheets, bridge.aborts(plan.limits))
+    return texts
+
+
+def _pipeline(pipeline: DesignFile, folder: Path, rated: Rated, stems: Sequence[str]) -> str:
+    """A pipeline for the log that will come back: only the channels are left to be named."""
+    lines = [
+        f"# The pipeline for {quote(rated.name)}: name the log and its channels, then:",
+        "# trialid run THIS FILE; `trialid inspect LOG` lists what channels there are.",
+        f"name = {quote(rated.name)}",
+    ]
+    if pipeline.ship is not None:
+        lines.append(f"ship = {quote(_from(folder, pipeline.ship))}")
+    for test, stem in zip(rated.programme, stems, strict=True):
+        lines += [
+            "",
+            "[[trial]]",
+            f"name = {quote(test.name)}",
+            f"logs = {toml([LOG.format(stem)])}",
+        ]
+    lines += ["", "[signals]"]
+    wanted = ["delta", *pipeline.identify.outputs, *pipeline.at_sea.constant]
+    for signal in dict.fromkeys([*wanted, "u"]):
+        side = ', positive = "starboard"' if signal == "delta" else ""
+        unit = design_data.shown_unit(signal)
+        lines.append(f'{signal} = {{ channel = "NAME IT", unit = "{unit}"{side} }}')
+    lines += [
+        "",
+        "[align]",
+        f"period = {pipeline.at_sea.period:g}",
+        "",
+        *_sections(pipeline, folder),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _sections(pipeline: DesignFile, folder: Path) -> list[str]:
+    """Model and identify, as the design has them."""
+    model = pipeline.model.model_dump(exclude_defaults=True)
+    if pipeline.model.effects_from:
+        model["effects_from"] = [_from(folder, f) for f in pipeline.model.effects_from]
+    if pipeline.model.values:
+        given = {n: v.model_dump(exclude_defaults=True) for n, v in pipeline.model.values.items()}
+        model["values"] = given
+    identify = pipeline.identify
+    asked = identify.model_dump(exclude_defaults=True) | {"nuisance": identify.nuisance}
+    lines = [f"{key} = {toml(value)}" for key, value in model.items()]
+    return ["[model]", *lines, "", "[identify]", *(f"{k} = {toml(v)}" for k, v in asked.items())]
+
+
+def _from(folder: Path, file: Path) -> str:
+    return os.path.relpath(file.resolve(), folder.resolve())
+
+
+def toml(value: Any) -> str:
+    """A value as TOML writes it, on one line.
+
+    >>> toml({"Nr": (-0.01, float("inf")), "odd name": ["a", True]})
+    '{ Nr = [-0.01, inf], "odd name" = ["a", true] }'
+    """
+    if isinstance(value, Mapping):
+        entries = (f"{_key(k)} = {toml(v)}" for k, v in value.items())
+        return "{ " + ", ".join(entries) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(toml, value)) + "]"
+    if isinstance(value, str):
+        return quote(value)
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quote(name)
+
+
+def quote(text: str) -> str:
+    r"""A TOML string on one line: what JSON writes, but with no pairs of surrogates.
+
+    >>> print(quote('a "b"\n'))
+    "a \"b\"\n"
+    """
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

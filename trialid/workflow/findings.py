@@ -1,0 +1,95 @@
+"""All that a run finds out: the diagnosis, the next trial, standard measures."""
+
+from collections.abc import Mapping
+
+from trialid.design import following, observed
+from trialid.design.following import Narrowing
+from trialid.design.observed import Overshoot
+from trialid.design.separation import Separation
+from trialid.design.standard import Measure
+from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
+from trialid.diagnosis.verdict import Verdict
+from trialid.identification.fit import Fit
+from trialid.pipeline_file import Pipeline
+from trialid.progress import Progress
+from trialid.result.build import Findings
+from trialid.ship.effect import Effect
+from trialid.workflow.build_model import candidates, declared_quiet, stated_noise
+
+
+def diagnose_settings(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> DiagnoseSettings:
+    """The pipeline's `[diagnose]` as the diagnosis takes it.
+
+    Raises
+    ------
+    PipelineError
+        A listed effect does not exist.
+    """
+    asked = pipeline.diagnose
+    return DiagnoseSettings(
+        candidates=candidates(pipeline, catalogue),
+        family_cos=asked.family_cos,
+        level=asked.level,
+        refit=asked.refit,
+        noise=stated_noise(pipeline),
+        quiet=declared_quiet(pipeline),
+    )
+
+
+def find_out(
+    pipeline: Pipeline,
+    fit: Fit,
+    catalogue: Mapping[str, Effect],
+    progress: Progress,
+    *,
+    force: bool,
+    grown: bool,
+) -> Findings:
+    """The diagnosis of a pipeline's fit, and what follows from it."""
+    found = diagnose(
+        fit, diagnose_settings(pipeline, catalogue), progress, force=force, grown=grown
+    )
+    measures, overshoots = _imo(pipeline, found.before)
+    progress("looking for the trial to sail next", 0.95)
+    return Findings(
+        **vars(found),
+        name=pipeline.name,
+        pipeline=pipeline.path.name,
+        proposal=proposal(fit, found.verdict, catalogue),
+        narrowing=narrowing_trial(found, catalogue),
+        measures=measures,
+        overshoots=overshoots,
+    )
+
+
+def proposal(fit: Fit, verdict: Verdict, catalogue: Mapping[str, Effect]) -> Separation | None:
+    """The trial that would tell apart what this record cannot."""
+    pair = following.by_name(catalogue, verdict.family)
+    return None if pair is None else following.next_trial(fit, pair, _noise(fit))
+
+
+def _noise(fit: Fit) -> dict[str, float]:
+    """What is left of each output [SI]."""
+    sizes = dict(zip(fit.problem.outputs, fit.problem.y_rms, strict=True))
+    return {c: eps * float(sizes[c]) for c, eps in fit.eps_by_output.items()}
+
+
+def narrowing_trial(found: Diagnosis, catalogue: Mapping[str, Effect]) -> Narrowing | None:
+    """The trial that would narrow the widest likely range, where an effect makes it so."""
+    fit, rows = found.before.fit, found.before.accuracy.physical
+    rows = tuple(r for r in rows if r.may_be_off is not None)
+    if found.verdict.kind == "no fit" or not rows:
+        return None
+    worst = max(rows, key=lambda r: r.may_be_off or 0.0)
+    effect = catalogue.get(worst.widened_by or "")
+    if effect is None:
+        return None
+    return following.narrowing_trial(fit, worst.name, effect, _noise(fit))
+
+
+def _imo(pipeline: Pipeline, done: Diagnosed) -> tuple[tuple[Measure, ...], tuple[Overshoot, ...]]:
+    """IMO's measures of the fitted ship, where the pipeline asks for them."""
+    if not pipeline.imo:
+        return (), ()
+    measures = following.standard_measures(done.fit, done.accuracy, done.split.undermodelling)
+    return measures, observed.overshoots(done.fit)

@@ -1,0 +1,248 @@
+"""Which channel a starter pipeline takes for each signal, how it is read, and why."""
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trialid.errors import LogError
+from trialid.inspection import channel_names
+from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.relations import side, slope_agreement, unit_of_rate
+from trialid.names import units
+from trialid.names.quantities import SIGNALS
+
+OPEN: Final = "?"
+"""Stands where only the user knows; the pipeline does not run until it is replaced."""
+
+RUDDERS: Final = ("delta", "delta_order")
+SURE: Final = 0.9
+"""Correlation from which a rate of turn and a heading tell each other's side."""
+ASK_UNIT: Final = "FILL IN the unit, the log states none"
+RATES: Final = ("rad/s", "deg/s", "deg/min")
+TURNING: Final = (0.05, 2.5)
+"""Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
+further apart than this range is wide."""
+NEAR: Final = 0.25
+"""A speed in the right unit is as near as this to the stated one, as a share of it."""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One line of `[trial.signals]`, and its comment; a value may be `OPEN`."""
+
+    quantity: str
+    source: ChannelInspection
+    unit: str | None
+    positive: str | None
+    why: str
+    others: tuple[ChannelInspection, ...]
+
+    @property
+    def open(self) -> bool:
+        """Whether something is left for the user to fill in."""
+        return OPEN in (self.unit, self.positive)
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """One trial: its log and signals, and its speed [m/s] with the words for where it is from."""
+
+    survey: Inspection
+    path: Path
+    signals: tuple[Signal, ...]
+    speed: float | None
+    speed_words: str
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Quantities that the log holds."""
+        return frozenset(one.quantity for one in self.signals)
+
+    @property
+    def states_speed(self) -> bool:
+        """Whether no channel is the speed, so that the pipeline must state it."""
+        return "u" not in self.quantities
+
+
+def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
+    """What to take from a log; `speed` [m/s] is the user's own word for the approach speed.
+
+    Raises
+    ------
+    LogError
+        It holds no rudder, or no motion; the message names the channels to map by hand.
+    """
+    live = {name: _live(survey, name) for name in SIGNALS}
+    rudder = next((name for name in RUDDERS if live[name]), None)
+    motions = [name for name in ("r", "psi", "phi") if live[name]]
+    if rudder is None or not {"r", "psi"} & {*motions}:
+        missing = "rudder or rudder order" if rudder is None else "yaw rate or heading"
+        raise LogError(
+            f"{survey.path}: no moving {missing} is recognised among its {len(survey.channels)} "
+            "channels, so no pipeline can be begun; see `trialid inspect --all`, and map the "
+            "channels by hand"
+        )
+    r = _rate(live) if live["r"] else None
+    signals = [_rudder(rudder, live, r)]
+    signals += [r] if r else [_plain("psi", live, "no yaw rate is logged")]
+    signals += [_plain("phi", live, "")] if live["phi"] else []
+    known, words = _speed(survey, live, speed)
+    if live["u"]:
+        signals.append(_through_water(live, speed))
+    return Chosen(survey, survey.path, tuple(signals), known, words)
+
+
+Live = dict[str, tuple[ChannelInspection, ...]]
+
+
+def _live(survey: Inspection, quantity: str) -> tuple[ChannelInspection, ...]:
+    """Sources that move, and of which at least half is there."""
+    return tuple(c for c in survey.sources(quantity) if not c.constant and c.missing < 0.5)
+
+
+def _plain(quantity: str, live: Live, why: str) -> Signal:
+    source, *others = live[quantity]
+    unit, doubt = _unit(source, quantity)
+    words = ", ".join(word for word in (source.guess.words if source.guess else "", why) if word)
+    return Signal(quantity, source, unit, None, words + doubt, tuple(others))
+
+
+def _rate(live: Live) -> Signal:
+    """The yaw rate; a heading settles its side and, where the log states none, its unit."""
+    plain = _plain("r", live, "")
+    heading = next((h for h in live["psi"] if not h.constant), None)
+    found = slope_agreement(plain.source, heading) if heading else 0.0
+    unit, words = plain.unit, plain.why
+    if heading and unit == OPEN and (measured := unit_of_rate(plain.source, heading)):
+        unit, words = measured, f"by its name; unit by the slope of {heading.key}"
+    by_convention = plain.source.guess.positive if plain.source.guess else None
+    positive = "port" if by_convention == "port" else None
+    if heading and abs(found) > SURE:
+        upside_down = heading.guess is not None and heading.guess.positive == "port"
+        positive = "port" if (found < 0) != upside_down else None
+        words += f"; side by the slope of {heading.key} (correlation {found:+.2f})"
+    return Signal("r", plain.source, unit, positive, words, plain.others)
+
+
+def _rudder(name: str, live: Live, rate: Signal | None) -> Signal:
+    """The rudder or its order, its side measured where the motion tells it."""
+    plain = _plain(name, live, "")
+    witness = rate.source if rate else live["psi"][0]
+    towards = (rate.positive or "starboard") if rate else None
+    found = side(plain.source, witness, towards)
+    convention = plain.source.guess.positive if plain.source.guess else None
+    if found is not None:
+        words = (
+            f"side measured: correlation with {found.by}, of {witness.key}, {found.strength:+.2f}"
+        )
+        if convention is not None and convention != found.side:
+            words += f", though the format says {convention}"
+        return _with_side(plain, found.side, words)
+    if convention is not None:
+        words = "CAREFUL: side by the format's convention, the motion does not confirm it"
+        return _with_side(plain, convention, words)
+    words = "FILL IN starboard or port: the side the ship turns to when it is positive"
+    return _with_side(plain, OPEN, words)
+
+
+def _with_side(plain: Signal, positive: str, words: str) -> Signal:
+    return dataclasses.replace(plain, positive=positive, why=f"{plain.why}; {words}")
+
+
+def _through_water(live: Live, speed: float | None) -> Signal:
+    """The speed through the water; where the log states no unit, the user's speed settles it."""
+    plain = _plain("u", live, "")
+    if plain.unit != OPEN or speed is None:
+        return plain
+    middle = float(np.median(plain.source.sketch.y))
+    fitting = [u for u in ("m/s", "kn", "km/h") if _near(middle * units.factor(u, "m/s"), speed)]
+    if len(fitting) != 1:
+        return plain
+    words = f"by its name; unit by the stated speed of {speed:.3g} m/s"
+    return Signal("u", plain.source, fitting[0], None, words, plain.others)
+
+
+def _near(speed: float, stated: float) -> bool:
+    return abs(speed - stated) <= NEAR * stated
+
+
+def _speed(survey: Inspection, live: Live, stated: float | None) -> tuple[float | None, str]:
+    """The approach speed [m/s], None where nothing tells it, and where it is from."""
+    if stated is not None:
+        return stated, "as stated"
+    through = [(c, "speed through the water") for c in live["u"]]
+    ground = [(c, "speed over ground") for c in _over_ground(survey)]
+    unsaid = [(c, "a speed, through water or over ground unsaid") for c in _some_speed(survey)]
+    for source, words in (*through, *ground, *unsaid):
+        unit = source.unit or source.unit_in_name
+        if unit is not None:
+            middle = abs(float(np.median(source.sketch.y))) * units.factor(unit, "m/s")
+            return middle, f"median of {source.key}, {words}"
+    return None, ""
+
+
+def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
+    for one in survey.channels.values():
+        unit = one.unit or one.unit_in_name
+        if unit and not one.constant and channel_names.over_ground(one.name, unit):
+            yield one
+
+
+def _some_speed(survey: Inspection) -> Iterator[ChannelInspection]:
+    for one in survey.channels.values():
+        unit = one.unit or one.unit_in_name
+        if not one.constant and channel_names.of_some_speed(one.name, unit):
+            yield one
+
+
+def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
+    """The unit to write, and words of doubt; None for an angle of a quaternion."""
+    if source.angle is not None:
+        return None, ""
+    if source.unit is not None:
+        return source.unit, ""
+    if source.unit_in_name is not None:
+        return source.unit_in_name, "; unit by its name"
+    largest = max(abs(source.low), abs(source.high))
+    if quantity in RUDDERS:
+        return _unit_of_angle(largest, "deg" if largest > 1.6 else "rad")
+    if quantity in ("psi", "phi") and largest > 6.5:
+        return _unit_of_angle(largest, "deg")
+    return OPEN, f"; {ASK_UNIT}"
+
+
+def _unit_of_angle(largest: float, unit: str) -> tuple[str, str]:
+    return unit, f"; no unit is stated, but up to {largest:.3g} can only be {unit}"
+
+
+def size_unit(trial: Chosen, length: float, speed: float) -> Chosen:
+    """The same with the unit of a yaw rate by its size, where nothing else tells it.
+
+    A ship in a manoeuvre turns with r L / U between 0.05 and 2.5, her own length [m] and speed
+    [m/s]: faster she would spin about herself, slower is no manoeuvre. Units lie further apart.
+    """
+    signals = tuple(_sized(one, length / speed) for one in trial.signals)
+    return dataclasses.replace(trial, signals=signals)
+
+
+def _sized(signal: Signal, seconds: float) -> Signal:
+    if signal.quantity != "r" or signal.unit != OPEN:
+        return signal
+    largest = float(np.quantile(np.abs(signal.source.sketch.y), 0.99))
+    sizes = {u: largest * units.factor(u, "rad/s") * seconds for u in RATES}
+    fitting = [u for u, size in sizes.items() if TURNING[0] < size < TURNING[1]]
+    if len(fitting) != 1:
+        return signal
+    told = ", ".join(f"{size:.2g} in {u}" for u, size in sizes.items())
+    words = f"unit by its size: r L / U would be {told}"
+    why = signal.why.replace(ASK_UNIT, words)
+    return dataclasses.replace(signal, unit=fitting[0], why=why)
+
+
+def shared_signals(trials: Sequence[Chosen]) -> frozenset[str]:
+    """Quantities that every log holds."""
+    return frozenset.intersection(*(one.quantities for one in trials))

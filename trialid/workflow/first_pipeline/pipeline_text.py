@@ -1,0 +1,202 @@
+"""The text of a starter pipeline: a comment for each choice, the other choices commented out."""
+
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from trialid.errors import printable
+from trialid.inspection.inspected import ChannelInspection
+from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+
+HEAD: Final = """\
+# Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
+#     trialid run {name}
+# It begins with the simplest model. What is missing in it the run says; `trialid add` puts it in.
+"""
+
+MOST_OTHERS: Final = 6
+"""Other sources of a signal that are written down."""
+
+PERIODS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
+ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
+"""All of the roll: a rudder's heeling moment held at a placeholder's would drag GM along."""
+
+STEPS_A_LENGTH: Final = 40
+"""Samples while the ship moves by her own length: she does little in a fortieth of that."""
+
+
+def pipeline_text(
+    path: Path, ship: Path, length: float, speed: float, trials: Sequence[Chosen]
+) -> str:
+    """The pipeline that is to stand at `path`, for a ship of this length [m] and speed [m/s]."""
+    several = len(trials) > 1
+    head = HEAD.format(s="s" if several else "", not_s="" if several else "s", name=path.name)
+    lines = [
+        head + f"name = {_text(path.stem)}",
+        f"ship = {_text(_relative(ship, path))}",
+    ]
+    names = _names(trials)
+    for place, (name, trial) in enumerate(zip(names, trials, strict=True)):
+        held_out = several and place == len(trials) - 1
+        lines += ["", *_trial(path, name, trial, held_out=held_out)]
+    lines += ["", *_align(trials, length, speed), "", *_model(trials)]
+    return "\n".join(lines) + "\n"
+
+
+def _trial(path: Path, name: str, trial: Chosen, *, held_out: bool) -> Iterator[str]:
+    yield "[[trial]]"
+    yield f"name = {_text(name)}"
+    yield f"logs = [{_log(trial, path)}]"
+    if held_out:
+        yield 'use = "check"  # the last log is held out: simulated and scored, never fitted'
+    if trial.states_speed and trial.speed is not None:
+        yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
+    yield f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
+    for remark in _remarks(trial):
+        yield f"# {comment(remark)}"
+    yield "[trial.signals]"
+    width = max(len(one.quantity) for one in trial.signals)
+    for signal in trial.signals:
+        yield f"# {signal.quantity}: {comment(signal.why)}"
+        yield f"{signal.quantity:<{width}} = {{ {_source(signal, signal.source)} }}"
+        for other in signal.others[:MOST_OTHERS]:
+            words = f"# or {signal.quantity} = {{ {_source(signal, other)} }}"
+            yield f"{words}  # {_facts(other)}"
+        if len(signal.others) > MOST_OTHERS:
+            yield f"# and {len(signal.others) - MOST_OTHERS} more sources: `trialid inspect`"
+
+
+def _log(trial: Chosen, path: Path) -> str:
+    """The log as the pipeline names it, with what the user adds to it."""
+    aids = trial.survey.aids
+    keys = {"path": _relative(trial.path, path)}
+    keys |= {
+        name: _relative(file, path)
+        for name, file in (("template", aids.template), ("dbc", aids.dbc))
+        if file is not None
+    }
+    if aids.zone is not None:
+        keys["zone"] = aids.zone
+    if len(keys) == 1:
+        return _text(keys["path"])
+    return f"{{ {', '.join(f'{key} = {_text(value)}' for key, value in keys.items())} }}"
+
+
+def _remarks(trial: Chosen) -> Iterator[str]:
+    yield from trial.survey.warnings[:3]
+    yield from (remark for file in trial.survey.files[:1] for remark in file.remarks[:3])
+
+
+def _facts(one: ChannelInspection) -> str:
+    gaps = f", {one.gaps.count} gaps" if one.gaps.count else ""
+    return f"{one.rate:.3g} Hz{gaps}"
+
+
+def _source(signal: Signal, one: ChannelInspection) -> str:
+    """The keys of one signal; of another source than the chosen one, its own unit."""
+    own = one is signal.source
+    unit = signal.unit if own else one.unit or one.unit_in_name or signal.unit
+    positive = signal.positive if own else (one.guess and one.guess.positive) or signal.positive
+    if signal.quantity not in RUDDERS and positive == "starboard":
+        positive = None  # as the dictionary has it
+    keys: Mapping[str, str | None] = {
+        "channel": one.name,
+        "as": one.angle,
+        "unit": None if one.angle else unit,
+        "positive": positive,
+    }
+    return ", ".join(f"{key} = {_text(value)}" for key, value in keys.items() if value)
+
+
+def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:
+    chosen = period(trials, length, speed)
+    slowest = min(
+        (s.source for t in trials for s in t.signals if s.quantity != "u"), key=lambda c: c.rate
+    )
+    yield "[align]"
+    yield (
+        f"period = {chosen:g}  # s; the slowest signal, {comment(slowest.key)}, has "
+        f"{slowest.rate:.3g} Hz; her own length takes the ship {length / max(speed, 1e-3):.3g} s"
+    )
+
+
+def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
+    """Time between samples [s]: as the slowest signal has it, but no longer than the ship allows.
+
+    Nor shorter than she needs: a simulation at 100 Hz tells no more of a ship, and takes longer.
+    """
+    rates = [s.source.rate for t in trials for s in t.signals if s.quantity != "u"]
+    slow = 1.0 / min(rates)
+    quick = min(0.5, length / max(speed, 0.1) / STEPS_A_LENGTH)
+    return max((p for p in PERIODS if p <= max(slow, quick) * 1.05), default=PERIODS[0])
+
+
+def _model(trials: Sequence[Chosen]) -> Iterator[str]:
+    known = frozenset.intersection(*(one.quantities for one in trials))
+    outputs = ["r" if "r" in known else "psi", *(["phi"] if "phi" in known else [])]
+    rolls, order_only = "phi" in known, "delta" not in known
+    states = ["v", *(["p"] if rolls else []), "r", *(["phi"] if rolls else [])]
+    states += ["psi"] if "psi" in outputs else []
+    effects = ["linear_hull", "linear_rudder", *(["linear_roll"] if rolls else [])]
+    yield "[model]"
+    yield f"states = {_list(states)}  # what is simulated; the speed is read from the log"
+    if order_only:
+        yield "# only the order is logged: the rudder follows it with a lag, T_delta"
+        effects.insert(0, "rudder_servo")
+    yield f"effects = {_list(effects)}  # `trialid effects` lists what there is"
+    if order_only:
+        yield "values = { T_delta = 1.0 }  # s, typical; put it into free once the rest fits"
+    free = ["Nv", "Nr", "Ndelta", *(ROLL if rolls else [])]
+    yield ""
+    yield "[identify]"
+    yield "# Masses and the sway coefficients stay as the ship file has them: the yaw alone does"
+    yield "# not tell them apart. Free them where the speed v is recorded."
+    yield f"free = {_list(free)}"
+    yield f"outputs = {_list(outputs)}"
+    yield (
+        'nuisance = ["initial_state", "bias", "rudder_offset", "delay"]  # of each trial, '
+        "estimated too"
+    )
+
+
+def _names(trials: Sequence[Chosen]) -> list[str]:
+    """A name a trial, from its file; two files of one name are numbered."""
+    names: list[str] = []
+    for trial in trials:
+        stem = comment(trial.path.stem) or "trial"
+        name, count = stem, 1
+        while name in names:
+            count += 1
+            name = f"{stem}-{count}"
+        names.append(name)
+    return names
+
+
+def _relative(path: Path, pipeline: Path) -> str:
+    """A path as the pipeline's folder sees it."""
+    folder = pipeline.resolve().parent
+    return Path(os.path.relpath(path.resolve(), folder)).as_posix()
+
+
+def _list(entries: Sequence[str]) -> str:
+    return f"[{', '.join(_text(entry) for entry in entries)}]"
+
+
+def _text(text: str) -> str:
+    r"""A text as TOML has it.
+
+    >>> _text('say "x"'), _text("bell\x07")
+    ('"say \\"x\\""', '"bell\\u0007"')
+    """
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def comment(text: str) -> str:
+    r"""Text of a log as a comment may hold it: on one line, nothing that steers a terminal.
+
+    >>> comment("rud\nder")
+    'rud\\nder'
+    """
+    return printable(text)

@@ -1,0 +1,82 @@
+"""The fit of a pipeline's model."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from trialid.identification.fit import Fit, identify
+from trialid.identification.gauss_newton import Iteration
+from trialid.identification.problem import Settings
+from trialid.pipeline_file import Pipeline
+from trialid.progress import Progress
+from trialid.result.series import OutputSeries, TrialSeries
+from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
+from trialid.trial import Trial
+from trialid.workflow.build_model import (
+    build_model,
+    check_bounds,
+    check_moving,
+    settings_of,
+)
+
+
+def fit_of(
+    pipeline: Pipeline,
+    trials: tuple[Trial, ...],
+    catalogue: Mapping[str, Effect],
+    progress: Progress,
+) -> Fit:
+    """The fit of the pipeline's model.
+
+    Raises
+    ------
+    TrialidError
+        The model or the record does not allow one.
+    """
+    model = build_model(pipeline, catalogue)
+    settings = settings_of(pipeline)
+    check_bounds(pipeline, model, settings)
+    check_moving(pipeline, model, trials)
+    progress("fitting", 0.3)
+    return fit_with_progress(trials, model, settings, progress)
+
+
+def fit_with_progress(
+    trials: tuple[Trial, ...], model: ShipModel, settings: Settings, progress: Progress
+) -> Fit:
+    """The fit, telling how far it is."""
+
+    def finer(substeps: int) -> None:
+        progress(f"fitting again with {substeps} steps a sample", None)
+
+    return identify(trials, model, settings, _fit_progress(progress), finer=finer)
+
+
+def _fit_progress(progress: Progress) -> Callable[[Iteration], None]:
+    count = 0
+
+    def tell(iteration: Iteration) -> None:
+        nonlocal count
+        count += 1
+        share = 0.3 + 0.3 * count / (count + 10.0)
+        progress(f"fitting: iteration {count}, error {np.sqrt(2.0 * iteration.V):.2%}", share)
+
+    return tell
+
+
+def time_series(fit: Fit) -> tuple[TrialSeries, ...]:
+    """Measured and predicted of every trial, for the report."""
+    outputs = fit.problem.outputs
+    names = fit.problem.simulator.equations.inputs
+    return tuple(
+        TrialSeries(
+            s.trial.name, s.trial.use, s.trial.t,
+            {n: s.trial.signals[n] for n in names if n in s.trial.signals},
+            tuple(
+                OutputSeries(c, s.trial.signals[c], s.response.y[:, i], s.compared[:, i])
+                for i, c in enumerate(outputs)
+            ),
+        )
+        for s in fit.scores
+    )  # fmt: skip

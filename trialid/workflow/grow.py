@@ -1,0 +1,247 @@
+"""The loop that adds what is missing until nothing is: fit, diagnose, decide, add, and again.
+
+Forward by the refit whose fall carries over best to blocks left out; then backward, each effect
+that was added left out in turn, and what no longer pays is dropped for good. It stops where the
+evidence ends, and never keeps what raised the error of held-out trials. Names are given at the end,
+to what survives: what leaving it out costs says how much it is worth. Nothing is written here.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
+from trialid.diagnosis.search.carry_over import Carried, own_errors
+from trialid.diagnosis.verdict import Refit, best_of, objection, worse_held_out
+from trialid.errors import TrialidError
+from trialid.identification.fit import Fit
+from trialid.pipeline_file import Pipeline
+from trialid.progress import Progress
+from trialid.result.change_rows import GrownRow, StepRow
+from trialid.ship.effect import Effect
+from trialid.trial import Trial
+from trialid.workflow import history
+from trialid.workflow.build_model import available
+from trialid.workflow.edit_model import (
+    Edit,
+    add_to_pipeline,
+    drop_from_pipeline,
+    proposed_steps,
+    started_at,
+)
+from trialid.workflow.fit_model import fit_of
+from trialid.workflow.outcome import Run
+from trialid.workflow.read_trials import align_trials
+from trialid.workflow.run import examine
+
+NAMELESS: Final = ("missing", "not in catalogue", "cannot tell")
+"""Verdicts on which a model goes on growing: what carries over joins it, with a name or without."""
+
+MOST: Final = 12
+"""Effects it adds on its own; who needs more has another trouble."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One step of the loop.
+
+    `run` is the model with `added` in it, or without `dropped` (both None: the model as written),
+    unless it was not `kept`; then it is the model before. `end` says why the loop ends here, empty
+    where it goes on. `worths` are those of the effects that were added, the dearest first.
+    """
+
+    pipeline: Pipeline
+    run: Run
+    added: str | None
+    kept: bool
+    end: str
+    dropped: str | None = None
+    worths: tuple[Worth, ...] = ()
+
+
+@dataclass
+class _Path:
+    """What the loop remembers: effects it added, what it will not try again, and families."""
+
+    trials: tuple[Trial, ...]
+    progress: Progress
+    own: list[Effect] = field(default_factory=list)
+    gone: set[str] = field(default_factory=set)
+    kin: dict[str, frozenset[str]] = field(default_factory=dict)
+    added: int = 0
+
+    def seen(self, run: Run) -> None:
+        """Remember which effects this record does not separate."""
+        for c in run.findings.ranking:
+            self.kin[c.effect.name] = self.kin.get(c.effect.name, frozenset()) | {*c.family}
+
+    def next_up(self, run: Run) -> Refit | None:
+        """The effect to add: what is named, and in later steps whatever stands every check."""
+        verdict, level = run.findings.verdict, run.pipeline.diagnose.level
+        if verdict.kind not in NAMELESS if self.own else verdict.effect is None:
+            return None
+        fit = run.findings.before.fit
+        able = [r for r in run.findings.refits if r.candidate.effect.name not in self.gone]
+        return best_of([r for r in able if not objection(fit, r, level)])
+
+    def end(self, run: Run) -> str:
+        """Why nothing more is to be added, empty where something is."""
+        verdict = run.findings.verdict
+        if self.next_up(run) is None:
+            tried = verdict.effect in self.gone
+            return f"{verdict.effect} was tried" if tried else f"the verdict is `{verdict.kind}`"
+        return f"{MOST} effects were added, the most it adds on its own" * (self.added >= MOST)
+
+
+def stages(pipeline: Pipeline, progress: Progress) -> Iterator[Stage]:
+    """The model as written, then one stage for each effect that is added or dropped.
+
+    Raises
+    ------
+    TrialidError
+        The model as written cannot be fitted.
+    """
+    trials = align_trials(pipeline, progress)
+    path = _Path(trials, progress)
+    run = examine(pipeline, trials, progress)
+    path.seen(run)
+    stage = Stage(pipeline, run, None, True, path.end(run))
+    yield stage
+    while not stage.end:
+        stage = _forward(path, stage)
+        yield stage
+        while stage.kept and (less := _backward(path, stage)) is not None:
+            stage = less
+            yield stage
+
+
+def _forward(path: _Path, stage: Stage) -> Stage:
+    """The stage with the next effect in the model, or why that is not kept."""
+    up = path.next_up(stage.run)
+    assert up is not None
+    name, before = up.candidate.effect.name, stage.run.findings.before.fit
+    path.gone.add(name)
+    path.added += 1
+    trouble = ""
+    try:
+        for edit in _ways(add_to_pipeline(stage.pipeline, name), up.fit):
+            fit = fit_of(edit.after, path.trials, available(edit.after), path.progress)
+            trouble = _trouble(before, up, fit, stage.pipeline.diagnose.level)
+            if not trouble:
+                run = examine(edit.after, path.trials, path.progress, fit, grown=True)
+                break
+    except TrialidError as error:
+        return _not_kept(path, stage, name, f"with {name}: {error}")
+    if trouble:
+        return _not_kept(path, stage, name, f"{trouble} with {name}")
+    path.own.append(edit.effect)
+    return _told(path, edit, run, added=name)
+
+
+def _ways(edit: Edit, found: Fit) -> Iterator[Edit]:
+    """The file with the effect at its typical values, and begun where the refit ended.
+
+    The file has to give the fit again, so it is the file that is fitted.
+    """
+    yield edit
+    near = started_at(edit, found.model.values)
+    if near is not None:
+        yield near
+
+
+def _trouble(before: Fit, up: Refit, fit: Fit, level: float) -> str:
+    """What speaks against the effect as it is fitted from the file, empty where nothing does."""
+    carried = Carried(own_errors(before), own_errors(fit), up.candidate.carried.seen)
+    return objection(before, Refit(up.candidate, fit, carried), level)
+
+
+def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:
+    """The model before once more; the loop goes on where something else stands every check."""
+    end = "" if path.next_up(stage.run) is not None else why
+    return replace(stage, added=name, dropped=None, kept=False, end=end)
+
+
+def _told(
+    path: _Path, edit: Edit, run: Run, added: str | None, dropped: str | None = None
+) -> Stage:
+    """The stage of a changed model, with what each effect in it is worth."""
+    path.seen(run)
+    fit = run.findings.before.fit
+    path.progress("leaving out what was added", None)
+    each = worths(fit, path.trials, path.own, path.kin)
+    return Stage(
+        pipeline=edit.after,
+        run=run,
+        added=added,
+        kept=True,
+        end=path.end(run),
+        dropped=dropped,
+        worths=each,
+    )
+
+
+def _backward(path: _Path, stage: Stage) -> Stage | None:
+    """The stage without what no longer pays, None where all of it does; twins cover each other."""
+    if len(path.own) < 2:
+        return None
+    fit = stage.run.findings.before.fit
+    idle = to_drop(fit, worths(fit, path.trials, path.own))
+    if idle is None:
+        return None
+    try:
+        edit = drop_from_pipeline(stage.pipeline, idle.effect)
+        run = examine(edit.after, path.trials, path.progress, grown=True)
+    except TrialidError:  # the file's own starts lead nowhere: the model stays as it is
+        return None
+    less = run.findings.before.fit
+    if not less.converged or worse_held_out(fit, less):
+        return None
+    path.own = [e for e in path.own if e.name != idle.effect]
+    return _told(path, edit, run, None, idle.effect)
+
+
+def survivors(done: Sequence[Stage]) -> tuple[str, ...]:
+    """The effects that were added and are still there, in the order in which they came."""
+    kept = [s for s in done if s.kept]
+    gone = {s.dropped for s in kept}
+    return tuple(s.added for s in kept if s.added is not None and s.added not in gone)
+
+
+def conclude(done: Sequence[Stage]) -> tuple[Run, tuple[StepRow, ...]]:
+    """The last model's run with the history of all stages, and the steps the file lacks.
+
+    A model that is as written leaves no step behind.
+    """
+    first, last = done[0], done[-1]
+    before, _ = history.read(first.pipeline.path)
+    rows = [stage_row(s, s.run.result.present) for s in done[1:] if s.kept]
+    told = (*history.continue_steps(before, first.run.result.present), *rows)
+    result = replace(
+        last.run.result,
+        history=(*told, *proposed_steps(last.run.result)),
+        grown=grown_rows(last.worths),
+    )
+    return replace(last.run, result=result), told[len(before) :] if rows else ()
+
+
+def stage_row(stage: Stage, present: StepRow) -> StepRow:
+    """A stage as a step of the history: how its model came about."""
+    if stage.added:
+        return replace(present, step="added", added=stage.added, dropped=None)
+    if stage.dropped:
+        return replace(present, step="dropped", added=None, dropped=stage.dropped)
+    return replace(present, step="as written", added=None, dropped=None)
+
+
+def grown_rows(found: Sequence[Worth]) -> tuple[GrownRow, ...]:
+    """What each effect that was added is worth, the dearest first, and which of them are named."""
+    names = worth_naming(found)
+    return tuple(
+        GrownRow(
+            effect=w.effect,
+            left_out_with_it=tuple(n for n in w.together if n != w.effect),
+            costs=w.costs,
+            named=w.effect in names,
+        )
+        for w in found
+    )

@@ -1,0 +1,136 @@
+"""The workflow in a notebook or a script: from a pipeline file, or from arrays without any file."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trialid.diagnosis.diagnose import DiagnoseSettings
+from trialid.effects import CATALOGUE
+from trialid.errors import NotIdentifiable, nearest
+from trialid.identification import fit as search
+from trialid.identification.fit import Fit, of_trial
+from trialid.identification.problem import Nuisance, Settings
+from trialid.pipeline_file import load
+from trialid.progress import Progress, silent
+from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import prepare, respond
+from trialid.trial import Trial
+from trialid.workflow.notebook.fit_run import FitRun, diagnosed_run
+from trialid.workflow.notebook.pipeline_run import PipelineRun, pipeline_run
+from trialid.workflow.run import run as run_pipeline
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def run(pipeline: str | Path, progress: Progress = silent) -> PipelineRun:
+    """Fit the model of a pipeline file to its logs and say what it is worth; nothing is written.
+
+    The numbers are those of `trialid run`, digit for digit.
+
+    Raises
+    ------
+    TrialidError
+        The input is wrong; one line says what, where and what to do.
+    """
+    return pipeline_run(run_pipeline(load(Path(pipeline)), progress))
+
+
+def identify(
+    trials: Sequence[Trial],
+    model: ShipModel,
+    *,
+    free: Sequence[str],
+    outputs: Sequence[str],
+    nuisance: Sequence[Nuisance] = ("initial_state", "bias", "rudder_offset"),
+    **settings: Any,
+) -> Fit:
+    """Fit the free parameters to every trial marked `fit`, with all safeguards.
+
+    Parameters
+    ----------
+    free
+        Parameters of the model's effects to fit.
+    outputs
+        Signals to compare: `r`, `phi`, ...
+    nuisance
+        What each trial has for itself.
+    settings
+        The rest of a pipeline's `[identify]`: `priors` and `bounds` (name to a pair), `weights`,
+        `loss`, `starts`, `seed`, `max_iterations`.
+
+    Raises
+    ------
+    TrialidError
+        The model or the record does not allow a fit; one line says why.
+    """
+    known = [name for name in Settings.__dataclass_fields__ if name not in ("free", "outputs")]
+    for name in settings:
+        if name not in known:
+            raise NotIdentifiable(f"identify has no setting {name!r}; {nearest(name, known)}")
+    asked = Settings(free=tuple(free), outputs=tuple(outputs), nuisance=tuple(nuisance), **settings)
+    return search.identify(tuple(trials), model, asked)
+
+
+def diagnose(
+    fit: Fit,
+    *,
+    candidates: Mapping[str, Effect] | None = None,
+    name: str = "fit",
+    **settings: Any,
+) -> FitRun:
+    """What a fit's error is made of, how far its parameters can be trusted, and what is missing.
+
+    Parameters
+    ----------
+    candidates
+        Effects to try, by name; the catalogue where nothing is said.
+    name
+        What the run is called in tables and reports.
+    settings
+        The rest of a pipeline's `[diagnose]`: `level`, `refit`, `family_cos`, `noise` [SI].
+    """
+    tried = CATALOGUE if candidates is None else candidates
+    return diagnosed_run(fit, DiagnoseSettings(candidates=tried, **settings), name)
+
+
+def simulate(
+    model: ShipModel | Fit,
+    trial: Trial,
+    outputs: Sequence[str] = ("r", "phi"),
+    start: Mapping[str, float] | None = None,
+) -> "pd.DataFrame":
+    """The motion a model makes of a trial's inputs.
+
+    Parameters
+    ----------
+    model
+        A ship model, or a fit: then with the trial's own nuisances, and the outputs of the fit.
+    outputs
+        States or what sensors make of them.
+    start
+        Initial states that are not to be taken from the record [SI].
+
+    Returns
+    -------
+    DataFrame
+        Index `t` [s], a column for each output [SI].
+    """
+    import pandas as pd
+
+    values: Mapping[str, float] = {}
+    begun = dict(start or {})
+    if isinstance(model, Fit):
+        simulator, outputs = model.problem.simulator, model.problem.outputs
+        values, own = of_trial(model.problem, model.theta, trial)
+        begun = {**own, **begun}
+    else:
+        simulator = prepare(model, (), outputs)
+    response = respond(simulator, trial, values, begun, sensitivities=False)
+    if response.departure is not None:
+        raise NotIdentifiable(f"the model leaves its domain: {response.departure}")
+    index = pd.Index(trial.t, name="t")
+    return pd.DataFrame(np.asarray(response.y), index=index, columns=list(outputs))

@@ -1,0 +1,113 @@
+"""What a run shows of itself in a notebook: tables as DataFrames, the card, the pictures."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Final
+
+from trialid.identification.fit import Fit
+from trialid.result.build import Findings
+from trialid.result.finding_rows import VerdictPart
+from trialid.result.schema import Result
+from trialid.result.series import TrialSeries
+from trialid.trial import Trial
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from trialid.report.pictures.series_plot import Plot
+
+
+class RunView:
+    """The tables and pictures of a finished run; they read its result, findings and series."""
+
+    findings: Findings
+    result: Result
+    series: tuple[TrialSeries, ...]
+
+    @property
+    def fit(self) -> Fit:
+        """The fit of the model as it is."""
+        return self.findings.before.fit
+
+    @property
+    def trials(self) -> tuple[Trial, ...]:
+        """The aligned trials, those to fit first."""
+        return tuple(score.trial for score in self.fit.scores)
+
+    @property
+    def verdict(self) -> VerdictPart:
+        """What is missing, in one word and in one sentence."""
+        return self.result.verdict
+
+    @property
+    def error(self) -> float:
+        """Error of all outputs over all trials to fit, as a share of the measured RMS."""
+        return self.fit.eps_rmsn
+
+    @property
+    def parameters(self) -> "pd.DataFrame":
+        """The ship's parameters; the columns of `accuracy` in result.json, the name as index."""
+        return _frame(self.result.physical, "name")
+
+    @property
+    def ranking(self) -> "pd.DataFrame":
+        """Every effect that was tried, the likeliest first; the columns of `missing`."""
+        return _frame(self.result.missing, "rank")
+
+    @property
+    def history(self) -> "pd.DataFrame":
+        """The steps of the model; the columns of `history`."""
+        return _frame(self.result.history, None)
+
+    def compare(self, other: "RunView") -> "pd.DataFrame":
+        """Another run and this one side by side: errors, parameters and how far they lie apart.
+
+        Columns `other`, `this`, and `apart` in joint standard errors (None for errors).
+        """
+        import pandas as pd
+
+        from trialid.report.pages.side_by_side import joint_distance
+
+        rows: dict[str, tuple[Any, Any, float | None]] = {}
+        for name, of in _ERRORS.items():
+            rows[name] = (of(other.result), of(self.result), None)
+        old = {row.name: row for row in other.result.physical}
+        new = {row.name: row for row in self.result.physical}
+        for name in dict.fromkeys([*old, *new]):
+            both = [rows_by.get(name) for rows_by in (old, new)]
+            values = [(r.value, r.standard_error) if r else (None, None) for r in both]
+            rows[name] = (values[0][0], values[1][0], joint_distance(values))
+        return pd.DataFrame.from_dict(rows, orient="index", columns=["other", "this", "apart"])
+
+    def plot(self, output: str) -> "Plot":
+        """Measured and predicted of an output in every trial, with the residual.
+
+        Raises
+        ------
+        TrialidError
+            The output is not compared in this run.
+        """
+        from trialid.report.pictures.series_plot import plot
+
+        return plot(self.series, output)
+
+    def _repr_html_(self) -> str:
+        from trialid.report.pages.card import card
+
+        return card(self.result)
+
+
+_ERRORS: Final[Mapping[str, Callable[[Result], float | None]]] = {
+    "error, fitted": lambda result: result.fit.eps_rmsn,
+    "error, held out": lambda result: result.fit.eps_rmsn_check,
+    "noise part": lambda result: result.split.noise,
+    "model part": lambda result: result.split.undermodelling,
+}
+
+
+def _frame(rows: tuple[Any, ...], index: str | None) -> "pd.DataFrame":
+    """Rows of a result as a table."""
+    import pandas as pd
+
+    frame = pd.DataFrame([asdict(row) for row in rows])
+    return frame.set_index(index) if index and len(frame) else frame

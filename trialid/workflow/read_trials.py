@@ -1,0 +1,58 @@
+"""Trials of a pipeline: logs read and brought onto one clock."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from trialid import ingest
+from trialid.alignment import LogClock, SignalSource, align
+from trialid.ingest import Aids, LogFile
+from trialid.pipeline_file import Pipeline, TrialSection
+from trialid.pipeline_file.form import ClockSection
+from trialid.progress import Progress
+from trialid.trial import Trial
+from trialid.workflow.origin import as_written
+
+
+def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
+    """Logs of every trial, read and brought onto one clock."""
+    done = []
+    for i, trial in enumerate(pipeline.trials):
+        progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
+        done.append(align_trial(pipeline, trial))
+    return tuple(done)
+
+
+def align_trial(pipeline: Pipeline, trial: TrialSection) -> Trial:
+    """Logs of one trial, read and brought onto one clock."""
+    sources = [
+        SignalSource(q, s.channel, s.unit, s.positive, s.angle, s.delay, s.gain, s.offset)
+        for q, s in trial.signals.items()
+    ]
+    logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
+    clocks = [_log_clock(g.clock) for g in trial.logs]
+    matched = [name for clock in clocks if clock and clock.match for name in clock.match]
+    recordings = ingest.read_together(logs, [s.channel for s in sources] + matched)
+    recordings = tuple(replace(r, path=as_written(pipeline, r.path)) for r in recordings)
+    made = align(
+        trial.name, trial.use, recordings, sources, pipeline.align.period, trial.window,
+        repair=pipeline.align.clocks == "repair",
+        log_clocks=[c for g, c in zip(logs, clocks, strict=True) for _ in ingest.files_of(g)],
+        keep={q: s.keep for q, s in trial.signals.items() if s.keep},
+    )  # fmt: skip
+    if trial.speed is None:
+        return made
+    if "u" in made.signals:
+        remark = f"the stated speed {trial.speed:g} m/s is not used: u is recorded"
+        return replace(made, remarks=(*made.remarks, remark))
+    signals = {**made.signals, "u": np.full(made.samples, trial.speed)}
+    valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
+    remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
+    return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+
+
+def _log_clock(clock: ClockSection | None) -> LogClock | None:
+    if clock is None:
+        return None
+    within = {} if clock.within is None else {"within": clock.within}
+    return LogClock(clock.offset, clock.drift or 0.0, clock.events or (), clock.match, **within)

@@ -1,0 +1,57 @@
+"""A run's folder: report, result, series, a recording for plot tools, the pipeline."""
+
+import hashlib
+import json
+import os
+from pathlib import Path
+
+from trialid import own_files
+from trialid.report.files.overlay import write_mcap
+from trialid.report.pages.page import write_page
+from trialid.result.force_series import force_series, write_force_csv
+from trialid.result.json_file import text_of
+from trialid.result.series import write_csv
+from trialid.workflow.outcome import Outcome, Run
+from trialid.workflow.run_folder import FILES, ORIGIN
+
+
+def write(done: Run | Outcome, folder: Path) -> None:
+    """The run's folder: report, result, series, a recording that opens in plot tools, the pipeline.
+
+    Everything is written aside and moved in place at the end, each file at one stroke; what is not
+    ours in the folder stays.
+
+    Raises
+    ------
+    TrialidError
+        A file that is not ours stands in the way; the folder is as it was.
+    """
+    with own_files.replacing(folder, older=FILES) as work:
+        _write_files(done, work)
+        _write_origin(done, work, folder)
+
+
+def _write_files(done: Run | Outcome, folder: Path) -> None:
+    (folder / "result.json").write_text(text_of(done.result), encoding="utf-8")
+    write_csv(folder / "series.csv", done.series)
+    write_mcap(folder / "predicted.mcap", done.result, done.series)
+    forces = force_series(done.force) if done.force is not None else ()
+    if forces:
+        write_force_csv(folder / "missing_force.csv", forces)
+    write_page(folder / "report.html", done.result, done.series, forces)
+    (folder / "pipeline.toml").write_bytes(done.pipeline.content)
+
+
+def _write_origin(done: Run | Outcome, work: Path, folder: Path) -> None:
+    """`run.json`: what `trialid run --repeat` needs to find the logs again from the folder."""
+    pipeline = done.pipeline
+    origin = {
+        "schema": ORIGIN,
+        "version": done.result.version,
+        "pipeline": Path(os.path.relpath(pipeline.path.resolve(), folder.resolve())).as_posix(),
+        "sha256": hashlib.sha256(pipeline.content).hexdigest(),
+        "seed": pipeline.identify.seed,
+        "force": done.force is not None,
+    }
+    text = json.dumps(origin, indent=1) + "\n"
+    (work / "run.json").write_text(text, encoding="utf-8")
