@@ -37,7 +37,9 @@ def test_with_nothing_else_a_range_is_that_of_noise():
     found = average(rows(0.01 * RNG.standard_normal(N)), ())
     assert not found.shifts.any()
     assert not found.variances.any()
-    assert found.range(0, 2.0, 0.1) == pytest.approx((2.0 - 0.196, 2.0 + 0.196))
+    assert found.range(0, 2.0, 0.1) == pytest.approx((2.0 - 0.196, 2.0 + 0.196), rel=1e-4)
+    wide = 0.1 * 2.571  # Student's table, five degrees of freedom
+    assert found.range(0, 2.0, 0.1, 5.0) == pytest.approx((2.0 - wide, 2.0 + wide), rel=1e-4)
     assert found.range(0, 2.0, np.nan) is None
 
 
@@ -76,6 +78,16 @@ def test_what_is_held_fixed_and_never_seen_widens_by_all_that_it_may_be_off():
     assert np.sqrt(found.variances[0]) == pytest.approx([0.21, 0.06])
     assert found.shifts == pytest.approx(np.zeros((2, 2)), abs=1e-9)
     assert found.widest == ("", "")
+
+
+def test_what_may_be_missing_makes_the_whole_better_known():
+    """Half of the variance from an error of four degrees of freedom makes sixteen in all."""
+    held = (PSI @ [0.7, -0.2])[:, None]
+    found = average(rows(0.01 * RNG.standard_normal(N), held=held, deviations=(0.3,)), ())
+    low, high = found.range(0, 2.0, 0.21, 4.0)
+    assert high - low == pytest.approx(2.0 * 2.120 * np.hypot(0.21, 0.21), rel=1e-3)
+    low, high = found.range(0, 2.0, 0.021, 4.0)
+    assert high - low == pytest.approx(2.0 * 1.96 * np.hypot(0.21, 0.021), rel=1e-3)
 
 
 def test_what_is_exact_widens_nothing():

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trialid.accuracy.coloured import (
+    Coloured,
     coloured_covariance,
     row_variance,
     white_covariance,
@@ -30,8 +31,10 @@ from trialid.trial_rows import Kind, Stretch
 class ParameterAccuracy:
     """One row of the accuracy table; errors absolute unless called relative.
 
-    `likely` is where the parameter lies at 95 % whatever is missing, None where nobody can say;
-    `widened_by` what makes it wider than noise does, empty where that is what was held fixed.
+    `freedom` are the degrees of freedom of the standard error: noise as slow as the manoeuvre tells
+    little of itself. `likely` is where the parameter lies at 95 % whatever is missing, None where
+    nobody can say; `widened_by` what makes it wider than noise does, empty where that is what was
+    held fixed.
     """
 
     name: str
@@ -47,6 +50,7 @@ class ParameterAccuracy:
     standard_error: float
     white_error: float
     n_effective: float
+    freedom: float = np.inf
     likely: tuple[float, float] | None = None
     widened_by: str | None = None
 
@@ -121,13 +125,14 @@ def assess(
     A = relative_sensitivities(psi, reference)
     deviation = float(np.sqrt(row_variance(A, residual)))
     held = _held(subjects, level or deviation)
-    covariance = coloured_covariance(A, residual, stretches, held, level or deviation)
+    coloured = coloured_covariance(A, residual, stretches, held, level or deviation)
+    covariance = coloured.covariance
     white = white_covariance(A, residual, _held(subjects, deviation))
     # the pseudo-inverse would give an error of zero to what neither record nor prior knows
     hidden = minimum_sensitivity(with_priors(A, held)) <= 0.0
     covariance[hidden, :] = covariance[:, hidden] = np.nan
     white[hidden, :] = white[:, hidden] = np.nan
-    rows = _rows(subjects, A, white, covariance, noise, undermodelling)
+    rows = _rows(subjects, A, white, coloured, noise, undermodelling)
     physical = np.array([s.kind == "physical" for s in subjects])
     clean = without_nuisance(A, physical)
     S_min, S_max, ratio = sensitivity_range(clean)
@@ -161,14 +166,14 @@ def _rows(
     subjects: Sequence[Subject],
     A: Vector,
     white: Vector,
-    covariance: Vector,
+    found: Coloured,
     noise: float | None,
     undermodelling: float | None,
 ) -> tuple[ParameterAccuracy, ...]:
     R = triangle(A)  # R^T R = A^T A, and that is all that Eq. 10 to 13 look at
     S_i, S_imin, R_i = sensitivity(R), minimum_sensitivity(R), correlation_ratio(R)
     plain = np.sqrt(np.diag(white))
-    coloured = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    coloured = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
         n_effective = len(A) * (plain / coloured) ** 2
     x, m = relative_error(noise or 0.0, undermodelling or 0.0, S_imin, n_effective)
@@ -187,6 +192,7 @@ def _rows(
             standard_error=float(coloured[i] * abs(s.reference)),
             white_error=float(plain[i] * abs(s.reference)),
             n_effective=float(n_effective[i]),
+            freedom=float(found.freedom[i]),
         )
         for i, s in enumerate(subjects)
     )
@@ -202,7 +208,7 @@ def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> Param
     """The row with its likely range; what belongs to a trial or a sensor has none."""
     if row.kind != "physical":
         return row
-    likely = averaged.range(place, row.value, row.standard_error)
+    likely = averaged.range(place, row.value, row.standard_error, row.freedom)
     return replace(row, likely=likely, widened_by=averaged.widest[place])
 
 

@@ -63,6 +63,7 @@ def _parameter(p: ParameterAccuracy) -> ParameterRow:
         standard_error=p.standard_error,
         white_error=p.white_error,
         n_effective=p.n_effective,
+        freedom=p.freedom,
         likely=p.likely,
         widened_by=p.widened_by,
         kind=p.kind,

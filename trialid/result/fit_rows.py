@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 from typing import Literal
 
-from trialid.accuracy.likely import CONFIDENCE, share_off
+from trialid.accuracy.likely import share_off, student
 
 Interval = tuple[float, float]
 
@@ -154,8 +155,9 @@ class SplitPart:
 class ParameterRow:
     """One unknown; the parts of Eq. 14 and their sum are relative, other errors in `unit`.
 
-    `likely` is where it lies at 95 % whatever is missing, in `unit`; `widened_by` the effect that
-    widens this most, empty where that is what was held fixed.
+    `freedom` are the degrees of freedom of `standard_error`. `likely` is where the value lies at
+    95 % whatever is missing, in `unit`; `widened_by` the effect that widens this most, empty where
+    that is what was held fixed.
     """
 
     name: str
@@ -170,6 +172,7 @@ class ParameterRow:
     standard_error: float | None = None
     white_error: float | None = None
     n_effective: float | None = None
+    freedom: float | None = None
     likely: Interval | None = None
     widened_by: str | None = None
     kind: Literal["physical", "nuisance"] = "physical"
@@ -184,7 +187,8 @@ class ParameterRow:
         """How far noise alone may put the value, 95 times of 100, as a share of it."""
         if self.standard_error is None or not self.value:
             return None
-        return CONFIDENCE * abs(self.standard_error / self.value)
+        wide = float(student(inf if self.freedom is None else self.freedom))
+        return wide * abs(self.standard_error / self.value)
 
 
 @dataclass(frozen=True, kw_only=True)
