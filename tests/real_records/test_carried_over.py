@@ -16,7 +16,6 @@ from test_kvlcc2_zigzag import columns, in_ship
 from trialid import pipeline_file
 from trialid.diagnosis.search.backward import worth_naming
 from trialid.effects import CATALOGUE
-from trialid.ship.effect import Force, Mass, Rate
 from trialid.workflow import run
 
 ESSO = DATA / "esso_osaka"
@@ -26,11 +25,6 @@ pytestmark = [
     pytest.mark.skipif(not ESSO.is_dir(), reason=f"no real records {ESSO}"),
 ]  # fmt: skip
 WIND = {"apparent_wind", "apparent_wind_yaw", "steady_wind"}
-
-
-def pushes_the_ship(name):
-    """Whether it is a force, a motion of the ship or of her rudder, not a sensor or a clock."""
-    return bool({Force, Rate, Mass} & set(CATALOGUE[name].forms))
 
 
 def of_a_clock(name):
@@ -208,7 +202,7 @@ def test_a_force_is_named_whatever_is_held_out(basin):
         errors = held_out(done)
         ended.append(errors[-1] / errors[0])
         assert errors == sorted(errors, reverse=True)
-        assert pushes_the_ship(done[0].run.result.verdict.effect)
+        assert CATALOGUE[done[0].run.result.verdict.effect].of_the_ship
         assert not any(map(of_a_clock, names_said(done)))
     print(f"held-out error at the end over that at the beginning: {np.round(ended, 2)}")
     assert np.median(ended) <= 12.2 / 28.3
@@ -221,7 +215,7 @@ def test_from_another_base_the_first_name_is_a_force(basin, base):
     done = stages(held_in_the_basin(basin, ("Z_10_10_S", "Z_20_10_S"), *BASES[base]), {})
     tell(base, done)
     first = done[0].run.result.verdict.effect
-    assert first is None or pushes_the_ship(first)
+    assert first is None or CATALOGUE[first].of_the_ship
     assert not any(map(of_a_clock, names_said(done)))
 
 

@@ -125,7 +125,7 @@ def decide(
     is physical, held-out trials do not speak against it, and no force of another shape explains
     far more. In a model that has `grown` by effects already it must be worth a tenth.
     """
-    named = likeliest_refit(fit, refits, level)
+    named = likeliest_refit(fit, refits, level, grown)
     if whole is not None and (whole.outdoes(named.carried) if named else whole.gap):
         return Verdict("not in catalogue", None, (), _gap(named, whole))
     if named is None and (against := _contradicted(fit, refits, level)) is not None:
@@ -239,21 +239,31 @@ def _no_split(parts: Split) -> str:
     )
 
 
-def likeliest_refit(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
+def likeliest_refit(
+    fit: Fit, refits: Sequence[Refit], level: float, grown: bool = False
+) -> Refit | None:
     """Of the refits that stand every check the one whose fall carries over best."""
-    return best_of([r for r in refits if not objection(fit, r, level)])
+    return best_of([r for r in refits if not objection(fit, r, level)], grown)
 
 
-def best_of(refits: Sequence[Refit]) -> Refit | None:
+def best_of(refits: Sequence[Refit], grown: bool = False) -> Refit | None:
     """The refit that leaves least on blocks left out, sensors, clocks and forces alike.
 
-    One of which the parameters leave next to nothing gives way to any that is as good.
+    One of which the parameters leave next to nothing gives way to any that is as good. In a model
+    that has `grown` a sensor or a clock gives way to what is of the ship and as good: that the hull
+    is another is then known, and a lag mends any hull a little.
     """
     if not refits:
         return None
     least = min(refits, key=lambda r: r.cost)
     close = [r for r in refits if as_good(least.carried.after, r.carried.after)]
-    return min([least, *close], key=lambda r: (r.carried.seen < FAINT, r.cost))
+    return min([least, *close], key=lambda r: (_gives_way(r, grown), r.cost))
+
+
+def _gives_way(refit: Refit, grown: bool) -> bool:
+    """Whether an effect is not named where another is as good."""
+    beside = grown and not refit.candidate.effect.of_the_ship
+    return beside or refit.carried.seen < FAINT
 
 
 def objection(fit: Fit, refit: Refit, level: float) -> str:

@@ -56,6 +56,15 @@ def problem(detail: ErrorDetails, form: type[Section] = Pipeline) -> Problem:
     return dotted_key(*(parents if bare else detail["loc"])), say(detail, form)
 
 
+_HELD_OUT: Final = frozenset({"hold_out", "held_out", "holdout", "held out", "check", "validation"})
+"""What people write for a trial that is not fitted, as a key or as a value."""
+
+
+def _hint(word: str) -> str:
+    """How what was meant is spelt, where it is known."""
+    return '; use = "check" holds a trial out' if word.lower() in _HELD_OUT else ""
+
+
 def _as_reported(detail: ErrorDetails, form: type[Section]) -> str:
     wanted = detail["msg"].replace("Input should be", "must be")
     return f"{wanted}, got {reprlib.repr(detail['input'])}"
@@ -64,7 +73,7 @@ def _as_reported(detail: ErrorDetails, form: type[Section]) -> str:
 def _unknown_key(detail: ErrorDetails, form: type[Section]) -> str:
     *parents, key = detail["loc"]
     keys = _keys(_section(parents, form))
-    return f"unknown key; {nearest(str(key), keys)}"
+    return f"unknown key; {nearest(str(key), keys)}{_hint(str(key))}"
 
 
 def _not_listed(detail: ErrorDetails, form: type[Section]) -> str:
@@ -72,7 +81,7 @@ def _not_listed(detail: ErrorDetails, form: type[Section]) -> str:
     given = detail["input"]
     if given == "?":
         return f"is still open; write one of {', '.join(map(repr, sorted(allowed)))}"
-    return f"{given!r} is not allowed; {nearest(str(given), allowed)}"
+    return f"{given!r} is not allowed; {nearest(str(given), allowed)}{_hint(str(given))}"
 
 
 def _not_a_list(detail: ErrorDetails, form: type[Section]) -> str:

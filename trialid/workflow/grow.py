@@ -82,7 +82,7 @@ class _Path:
             return None
         fit = run.findings.before.fit
         able = [r for r in run.findings.refits if r.candidate.effect.name not in self.gone]
-        return best_of([r for r in able if not objection(fit, r, level)])
+        return best_of([r for r in able if not objection(fit, r, level)], grown=bool(self.own))
 
     def end(self, run: Run) -> str:
         """Why nothing more is to be added, empty where something is."""
