@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 from test_bad_input import trialid_
 
-from trialid.diagnosis import verdict
+from trialid.diagnosis.search import refit as refitted
 from trialid.diagnosis.search.backward import Worth, worth_naming
 from trialid.diagnosis.search.carry_over import Carried
 from trialid.errors import SimulationError
 from trialid.pipeline_file import load
+from trialid.ship.effect import Force
 from trialid.workflow import grow
 from trialid.workflow.edit_model import Edit
 
@@ -109,7 +110,7 @@ def own_errors(fit: Any) -> tuple[float, ...]:
 
 def candidate(name: str) -> Any:
     return SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters=(name,)), family=(name,),
+        effect=SimpleNamespace(name=name, parameters=(name,), forms=(Force,)), family=(name,),
         shown=lambda level: True, carried=SimpleNamespace(seen=1.0),
     )  # fmt: skip
 
@@ -121,8 +122,8 @@ def found_in(world: World, fit: Any, grown: bool) -> Any:
         with suppress(SimulationError):
             new = fit_in(world, with_(fit.effects, name))
             carried = Carried(own_errors(fit), own_errors(new))
-            refits.append(verdict.Refit(candidate(name), new, carried))
-    named = verdict.likeliest_refit(fit, refits, 0.05)
+            refits.append(refitted.Refit(candidate(name), new, carried))
+    named = refitted.likeliest_refit(fit, refits, 0.05)
     effect = named.candidate.effect.name if named else None
     kind = "missing" if named else "nothing missing"
     return SimpleNamespace(

@@ -152,7 +152,15 @@ def to_run(text: str) -> str:
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("document", with_any("sh"))
+def in_turn(documents: list[str]) -> list[Any]:
+    """What a stranger reads first each time, the other pages one after another."""
+    first = ("README", "first_trial")
+    later = [d for d in documents if d not in first]
+    cases = [pytest.param(d, marks=pytest.mark.study(turn=k % 5)) for k, d in enumerate(later)]
+    return [*(d for d in first if d in documents), *cases]
+
+
+@pytest.mark.parametrize("document", in_turn(with_any("sh")))
 def test_its_commands_run(document: str, copy: Path) -> None:
     for block in blocks(document):
         if block.kind == "sh":

@@ -92,6 +92,7 @@ PLACES = {"replace": "run", "rewrite": ".", "export": "."}
 
 @posix
 @pytest.mark.parametrize("act", PLACES)
+@pytest.mark.study(turn="each")
 def test_killed_at_every_file_event_it_leaves_nothing_to_the_next(tmp_path, act):
     number, left = 0, 0
     while True:

@@ -43,8 +43,9 @@ from trialid.diagnosis.diagnose import DiagnoseSettings, worth_a_name
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.completeness import completeness
+from trialid.diagnosis.search.refit import Refit, refit_best
 from trialid.diagnosis.search.score import Candidate, rank
-from trialid.diagnosis.verdict import Refit, Verdict, decide, refit_best
+from trialid.diagnosis.verdict import Verdict, decide
 from trialid.effects import CATALOGUE
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit

@@ -20,7 +20,6 @@ from trialid.diagnosis.search.carry_over import (
     own_errors,
 )
 from trialid.diagnosis.search.score import rank
-from trialid.diagnosis.verdict import HELD_OUT, Refit, best_of, objection, worse_held_out
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.trial_rows import Stretch
@@ -268,57 +267,7 @@ def test_leaving_it_out_again_costs_what_it_brought(sailed):
     assert not both[1].pays
 
 
-# --- objections, on made-up fits ----------------------------------------------------------------
-
-
-def refit(name, before, after, eps=(0.10, 0.08), check=(0.2, 0.15), seen=1.0, converged=True):
-    """A refit as far as its errors go, and the fit before it."""
-    candidate = SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters=("a",)), shown=lambda level: level > 0.0,
-        carried=SimpleNamespace(seen=seen),
-    )  # fmt: skip
-    old, new = (SimpleNamespace(eps_rmsn=e, eps_check=c, converged=True)
-                for e, c in zip(eps, check, strict=True))  # fmt: skip
-    new.converged = converged
-    return old, Refit(candidate, new, Carried(before, after, seen))
-
-
 BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
-LESS = tuple(0.7 * x for x in BEFORE)
-
-
-@pytest.mark.parametrize(("changes", "words"), [
-    ({}, ""),
-    ({"check": (None, None)}, ""),
-    ({"check": (np.inf, 0.2)}, ""),
-    ({"check": (0.2, 0.2001)}, HELD_OUT),
-    ({"check": (0.2, np.inf)}, HELD_OUT),
-    ({"check": (0.2, np.nan)}, HELD_OUT),
-    ({"check": (np.inf, np.inf)}, HELD_OUT),
-    ({"converged": False}, "the search does not arrive"),
-    ({"eps": (0.10, 0.0999)}, "the error hardly falls"),
-    ({"eps": (0.10, 0.11)}, "the error hardly falls"),
-    ({"eps": (0.10, np.nan)}, "the search does not arrive"),
-])  # fmt: skip
-def test_what_speaks_against_a_refit(changes, words):
-    old, new = refit("a", BEFORE, LESS, **changes)
-    assert objection(old, new, 0.05) == words
-    assert worse_held_out(old, new.fit) is (words == HELD_OUT)
-    turned_old, turned = refit("a", LESS, BEFORE)  # what it does not carry over
-    assert objection(turned_old, turned, 0.05) == "the error hardly falls"
-    assert objection(old, new, 0.0).startswith("chance")
-
-
-def test_the_best_leaves_least_and_what_is_hardly_seen_gives_way_to_its_equal():
-    force = refit("force", BEFORE, LESS)[1]
-    lag = refit("lag", BEFORE, tuple(0.69 * x + 0.02 * (-1) ** i for i, x in enumerate(BEFORE)),
-                seen=0.01)[1]  # fmt: skip
-    assert lag.carried.ratio < force.carried.ratio
-    assert best_of([lag, force]) is force
-    assert best_of([replace(lag, carried=replace(lag.carried, seen=0.2)), force]) is not force
-    far = refit("far", BEFORE, tuple(0.3 * x for x in BEFORE), seen=0.01)[1]
-    assert best_of([far, force]) is far  # no equal: what it takes off is three times as much
-    assert best_of([]) is None
 
 
 def test_what_is_hardly_seen_must_fall_further_to_be_worth_a_name():

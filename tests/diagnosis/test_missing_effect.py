@@ -7,8 +7,9 @@ from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.augment import augment, candidates_for
 from trialid.diagnosis.search.completeness import completeness
+from trialid.diagnosis.search.refit import likeliest_refit, refit
 from trialid.diagnosis.search.score import VISIBLE, rank
-from trialid.diagnosis.verdict import decide, likeliest_refit, refit, replace
+from trialid.diagnosis.verdict import decide, replace
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.maths import sqrt

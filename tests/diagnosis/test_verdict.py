@@ -8,7 +8,8 @@ import pytest
 from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.search.carry_over import Carried, as_good, lead_in_errors
 from trialid.diagnosis.search.completeness import Completeness, _Search
-from trialid.diagnosis.verdict import Refit, best_of, decide, rivals
+from trialid.diagnosis.search.refit import Refit, best_of
+from trialid.diagnosis.verdict import decide, rivals
 
 BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
 
@@ -22,7 +23,7 @@ def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=()):
     after = tuple(ratio * x * (1.0 + wobble * (-1) ** i) for i, x in enumerate(BEFORE))
     carried = Carried(BEFORE, after)
     candidate = SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters=tuple("abcdef"[:parameters])),
+        effect=SimpleNamespace(name=name, parameters=tuple("abcdef"[:parameters]), forms=()),
         shown=lambda level: True,
         carried=carried,
         family=(name, *family),

@@ -3,7 +3,7 @@
 import pytest
 from fuzz import fuzz, table
 
-EACH_TIME = 400
+EACH_TIME = 160
 STUDY = 2200
 
 

@@ -74,6 +74,7 @@ ROS = {
 @pytest.mark.parametrize("text", ROS.values(), ids=ROS)
 @pytest.mark.parametrize("payload", [CDR, CDR + bytes(4000), CDR + b"\xff" * 4000, CDR + bytes(MB)],
                          ids=["empty", "0", "ff", "a megabyte"])  # fmt: skip
+@pytest.mark.study(turn="each")
 def test_a_ros_schema_without_end(tmp_path, text, payload):
     path = log_of(tmp_path / "log", "cdr", ("p/msg/A", "ros2msg", text.encode()), payload)
     read_both(path, 600.0)

@@ -140,6 +140,7 @@ LONG_PATHS = {
 
 
 @pytest.mark.parametrize("words", LONG_PATHS.values(), ids=LONG_PATHS)
+@pytest.mark.study(turn="each")
 def test_a_word_of_thousands_of_letters(tmp_path, words):
     (tmp_path / "log.csv").write_text("t,u\n0,1\n1,2\n2,4\n", encoding="utf-8")
     (tmp_path / "run").mkdir()

@@ -35,6 +35,7 @@ def table(folder, name="log.csv"):
 @posix
 @pytest.mark.parametrize("streams", STREAMS)
 @pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.study(turn="each")
 def test_streams(tmp_path, command, streams):
     table(tmp_path)
     keep = "" if "2>" in streams else "2>err"

@@ -52,6 +52,7 @@ def test_from_a_good_start_one_search_is_enough(arrived):
 
 
 @pytest.mark.parametrize("GM", [0.05, 0.15, 1.0, 5.0])
+@pytest.mark.study(turn="each")
 def test_from_any_metacentric_height_the_same_optimum_is_reached(trials, arrived, GM):
     fit = identify(trials, MODEL.with_values({**FAR, "GM": GM}), SETTINGS)
     assert fit.converged

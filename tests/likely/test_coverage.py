@@ -26,6 +26,7 @@ def test_ranges_hold_the_truth(place):
     assert widths["likely"] < 0.5 * widths["Eq. 14"]
 
 
+@pytest.mark.study(turn=2)
 def test_standard_errors_alone_do_not():
     """What the ranges are for: with an effect hidden 1.96 x `+-` holds about half."""
     found = [count(CASES[0], seed) for seed in range(FIRST, FIRST + 8)]

@@ -15,6 +15,7 @@ from test_kvlcc2_zigzag import columns, in_ship
 
 from trialid import pipeline_file
 from trialid.diagnosis.search.backward import worth_naming
+from trialid.diagnosis.search.refit import of_the_ship
 from trialid.effects import CATALOGUE
 from trialid.workflow import run
 
@@ -202,7 +203,7 @@ def test_a_force_is_named_whatever_is_held_out(basin):
         errors = held_out(done)
         ended.append(errors[-1] / errors[0])
         assert errors == sorted(errors, reverse=True)
-        assert CATALOGUE[done[0].run.result.verdict.effect].of_the_ship
+        assert of_the_ship(CATALOGUE[done[0].run.result.verdict.effect])
         assert not any(map(of_a_clock, names_said(done)))
     print(f"held-out error at the end over that at the beginning: {np.round(ended, 2)}")
     assert np.median(ended) <= 12.2 / 28.3
@@ -215,7 +216,7 @@ def test_from_another_base_the_first_name_is_a_force(basin, base):
     done = stages(held_in_the_basin(basin, ("Z_10_10_S", "Z_20_10_S"), *BASES[base]), {})
     tell(base, done)
     first = done[0].run.result.verdict.effect
-    assert first is None or CATALOGUE[first].of_the_ship
+    assert first is None or of_the_ship(CATALOGUE[first])
     assert not any(map(of_a_clock, names_said(done)))
 
 

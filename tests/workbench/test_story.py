@@ -105,6 +105,7 @@ def export(page, name: str) -> None:
     page.locator("#exported").filter(has_text="report.html").wait_for()
 
 
+@pytest.mark.study(turn=3)
 def test_by_keyboard_alone_in_the_dark(sample: Path, tmp_path: Path) -> None:
     with (
         browser.started(sample) as address,
@@ -135,6 +136,7 @@ def test_by_keyboard_alone_in_the_dark(sample: Path, tmp_path: Path) -> None:
         assert sum(map(int, re.findall(r"\d+", dark)[:3])) < 150
 
 
+@pytest.mark.study(turn=1)
 def test_zooming_moves_all_panels_together(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page = screen.page
@@ -158,6 +160,7 @@ def test_zooming_moves_all_panels_together(sample: Path, tmp_path: Path) -> None
         assert page.locator("output.window").inner_text() == told  # a refit keeps the window
 
 
+@pytest.mark.study(turn=0)
 def test_two_windows_do_not_lose_each_others_edits(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page, other = screen.page, screen.page.context.new_page()
@@ -177,6 +180,7 @@ def test_two_windows_do_not_lose_each_others_edits(sample: Path, tmp_path: Path)
         assert "roll_rate_yaw" not in text
 
 
+@pytest.mark.study(turn=2)
 def test_a_mistake_is_told_where_it_was_made(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page = screen.page
@@ -196,6 +200,7 @@ def test_a_mistake_is_told_where_it_was_made(sample: Path, tmp_path: Path) -> No
         page.locator("#banner").wait_for(state="hidden")
 
 
+@pytest.mark.study(turn=4)
 def test_a_refit_is_cancelled(sample: Path, tmp_path: Path) -> None:
     before = sample.read_bytes()
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
@@ -210,6 +215,7 @@ def test_a_refit_is_cancelled(sample: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("width", [800, 1366, 1920])
+@pytest.mark.study(turn="each")
 def test_it_fits_the_screen(untouched: str, tmp_path: Path, width: int) -> None:
     size = {"width": width, "height": 900}
     with browser.opened(untouched, tmp_path, viewport=size) as screen:

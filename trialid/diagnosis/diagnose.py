@@ -13,9 +13,10 @@ from trialid.diagnosis.noise.split import Split, split
 from trialid.diagnosis.prediction_band import prediction_band
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.completeness import Completeness, completeness
+from trialid.diagnosis.search.refit import Refit, refit_best
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.diagnosis.trust import accuracy_of
-from trialid.diagnosis.verdict import Refit, Verdict, decide, refit_best
+from trialid.diagnosis.verdict import Verdict, decide
 from trialid.diagnosis.where.misfit import Where, where
 from trialid.effects import CATALOGUE
 from trialid.identification.adequacy import Inadequate, why_no_fit

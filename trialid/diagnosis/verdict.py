@@ -1,20 +1,25 @@
-"""From scores to a verdict: refit the best candidates, confirm them, and say what is missing."""
+"""From scores and refits to a verdict: what is missing, in a sentence."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from trialid.diagnosis.noise.split import Split
-from trialid.diagnosis.search.carry_over import EACH, FAINT, FALL, Carried, as_good, own_errors
+from trialid.diagnosis.search.carry_over import Carried, as_good
 from trialid.diagnosis.search.completeness import Completeness
+from trialid.diagnosis.search.refit import (
+    HELD_OUT,
+    Refit,
+    best_of,
+    fall,
+    falls,
+    likeliest_refit,
+    objection,
+)
 from trialid.diagnosis.search.score import Candidate
-from trialid.errors import TrialidError
-from trialid.identification.fit import Fit, identify
-from trialid.identification.problem import Settings
-from trialid.ship.effect import Effect
-from trialid.trial import Trial
+from trialid.identification.fit import Fit
 
 RIVAL: Final = 0.5
 """Share of the named effect's fall, as a logarithm, below which another explains too little to be
@@ -24,80 +29,9 @@ NAMED: Final = 1.10
 """Ratio of squared errors that a further effect must be worth to be named beside the first: below
 it, of what was added to ships of another hull, half were corrections of a shape."""
 
-HELD_OUT: Final = "the held-out error rises"
-"""An objection in its words."""
-
 SHARE: Final = 0.12
 """Share of what is not noise that the best effect must explain: the best of the catalogue explains
 0.04 of what it does not hold, and 0.21 or more of what it holds."""
-
-
-@dataclass(frozen=True)
-class Refit:
-    """A candidate added to the model and fitted; what carries over about the fits' own optima."""
-
-    candidate: Candidate
-    fit: Fit
-    carried: Carried
-
-    @property
-    def cost(self) -> float:
-        """What refits are ordered by, the least first: what is left, and 1 % a parameter."""
-        return self.carried.log_ratio + EACH * (len(self.candidate.effect.parameters) - 1)
-
-
-Progress = Callable[[str], None]
-
-
-def refit(
-    fit: Fit, trials: Sequence[Trial], candidates: Sequence[Candidate], progress: Progress
-) -> list[Refit]:
-    """Each candidate added and fitted from its expected value; those that fail are left out."""
-    done = []
-    before = own_errors(fit) if candidates else ()
-    for candidate in candidates:
-        progress(f"trying {candidate.effect.name}")
-        start = {n: _inside(candidate.effect, n, x) for n, x in candidate.expected.items()}
-        settings = _settings_with(fit.settings, candidate.effect)
-        try:
-            model = (fit.model + candidate.effect).with_values(start)
-            near = fit.estimates | start
-            fitted = identify(trials, model, settings, near=near, smaller=fit)
-        except TrialidError:  # it cannot be fitted on this record: it is not the missing one
-            continue
-        after = Carried(before, own_errors(fitted), candidate.carried.seen)
-        done.append(Refit(candidate, fitted, after))
-    return done
-
-
-def refit_best(
-    fit: Fit,
-    trials: Sequence[Trial],
-    candidates: Sequence[Candidate],
-    most: int,
-    level: float,
-    progress: Progress,
-) -> list[Refit]:
-    """The first few candidates fitted; as many of other families where none stands every check.
-
-    Twins stand side by side in the ranking, and what speaks against one speaks against all.
-    """
-    done = refit(fit, trials, candidates[:most], progress)
-    if likeliest_refit(fit, done, level) is None:
-        known = {n for c in candidates[:most] for n in (c.effect.name, *c.family)}
-        others = [c for c in candidates[most:] if c.effect.name not in known]
-        done += refit(fit, trials, others[:most], progress)
-    return done
-
-
-def _inside(effect: Effect, name: str, value: float) -> float:
-    p = effect.parameters[name]
-    return float(np.clip(value, p.low, p.high))
-
-
-def _settings_with(settings: Settings, effect: Effect) -> Settings:
-    new = tuple(p for p in effect.parameters if p not in settings.free)
-    return replace(settings, free=(*settings.free, *new))
 
 
 @dataclass(frozen=True)
@@ -191,7 +125,7 @@ def _gap(named: Refit | None, whole: Completeness) -> str:
 
 def _contradicted(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
     """The best effect that stands every check but that held-out trials become worse."""
-    return best_of([r for r in refits if objection(fit, r, level) == HELD_OUT and _falls(fit, r)])
+    return best_of([r for r in refits if objection(fit, r, level) == HELD_OUT and falls(fit, r)])
 
 
 def _against(fit: Fit, found: Refit) -> str:
@@ -217,12 +151,7 @@ def _explained(fit: Fit, named: Refit, parts: Split) -> float:
     if parts.noise is None:
         return 1.0
     rest = 1.0 - min(parts.noise / fit.eps_rmsn, 1.0) ** 2
-    return _fall(fit, named) / rest if rest > 0.0 else 1.0
-
-
-def _fall(fit: Fit, refit: Refit) -> float:
-    """Share of the squared error that goes with an effect."""
-    return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
+    return fall(fit, named) / rest if rest > 0.0 else 1.0
 
 
 def _little(named: Refit, share: float, parts: Split) -> str:
@@ -237,57 +166,6 @@ def _no_split(parts: Split) -> str:
         "no effect stands out, but noise and model error cannot be separated on this record: "
         + parts.why
     )
-
-
-def likeliest_refit(
-    fit: Fit, refits: Sequence[Refit], level: float, grown: bool = False
-) -> Refit | None:
-    """Of the refits that stand every check the one whose fall carries over best."""
-    return best_of([r for r in refits if not objection(fit, r, level)], grown)
-
-
-def best_of(refits: Sequence[Refit], grown: bool = False) -> Refit | None:
-    """The refit that leaves least on blocks left out, sensors, clocks and forces alike.
-
-    One of which the parameters leave next to nothing gives way to any that is as good. In a model
-    that has `grown` a sensor or a clock gives way to what is of the ship and as good: that the hull
-    is another is then known, and a lag mends any hull a little.
-    """
-    if not refits:
-        return None
-    least = min(refits, key=lambda r: r.cost)
-    close = [r for r in refits if as_good(least.carried.after, r.carried.after)]
-    return min([least, *close], key=lambda r: (_gives_way(r, grown), r.cost))
-
-
-def _gives_way(refit: Refit, grown: bool) -> bool:
-    """Whether an effect is not named where another is as good."""
-    beside = grown and not refit.candidate.effect.of_the_ship
-    return beside or refit.carried.seen < FAINT
-
-
-def objection(fit: Fit, refit: Refit, level: float) -> str:
-    """What speaks against an effect once it is fitted, empty where nothing does."""
-    if not refit.candidate.shown(level):
-        return "chance would do it, or no ship has such a value"
-    if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
-        return "the search does not arrive"
-    if worse_held_out(fit, refit.fit):
-        return HELD_OUT
-    return "" if _falls(fit, refit) else "the error hardly falls"
-
-
-def _falls(fit: Fit, refit: Refit) -> bool:
-    """Whether the error falls by what is worth a name, where it was fitted and where not."""
-    return refit.carried.falls and 1.0 - _fall(fit, refit) < FALL
-
-
-def worse_held_out(before: Fit, after: Fit) -> bool:
-    """Whether held-out trials, where there are any, become worse or are lost."""
-    old, new = before.eps_check, after.eps_check
-    if old is None or new is None:
-        return False
-    return not np.isfinite(new) or new > old
 
 
 def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) -> tuple[str, ...]:

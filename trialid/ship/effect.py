@@ -158,11 +158,6 @@ class Effect:
         """Whether it is not linear at its null at all, so that values have to be tried."""
         return self.tried and Rate in self.forms
 
-    @property
-    def of_the_ship(self) -> bool:
-        """Whether it moves the ship or her rudder; else it belongs to a sensor or a clock."""
-        return bool({Force, Rate, Mass} & {*self.forms})
-
     def acts_on(self, *forms: type) -> tuple[str, ...]:
         """Names in its results of these forms, as the signals that it delays."""
         values = dict.fromkeys(self.signals, 0.1) | {n: p.start for n, p in self.parameters.items()}

@@ -12,7 +12,7 @@ from typing import Final
 
 from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
 from trialid.diagnosis.search.carry_over import Carried, own_errors
-from trialid.diagnosis.verdict import Refit, best_of, objection, worse_held_out
+from trialid.diagnosis.search.refit import Refit, best_of, objection, worse_held_out
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline

@@ -12,7 +12,8 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.search.carry_over import FALL, Carried, lead_in_errors, left_out, own_errors
-from trialid.diagnosis.verdict import NAMED, worse_held_out
+from trialid.diagnosis.search.refit import worse_held_out
+from trialid.diagnosis.verdict import NAMED
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.output_error import stretches

@@ -29,7 +29,7 @@ from trialid.pipeline_file.edit import (
 )
 from trialid.pipeline_file.rewrite import rewriting
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PIPELINES = sorted(
     path
     for folder in ("pipelines", "tests/real_records")

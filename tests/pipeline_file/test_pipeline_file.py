@@ -318,7 +318,6 @@ def test_effects_come_from_python_files(folder: Path) -> None:
         ("ship =", "path = 'x'\nship =", "path", "known: "),
         ("ship =", "trials = []\nship =", "trials", "did you mean 'trial'"),
         ("ship =", "'odd name' = 1\nship =", '"odd name"', "did you mean 'name'"),
-        ("logs =", "hold_out = true\nlogs =", "trial[0].hold_out", 'use = "check" holds a trial'),
     ],
 )
 def test_an_unknown_key_leads_and_names_the_nearest(
@@ -337,11 +336,6 @@ def test_an_unknown_key_leads_and_names_the_nearest(
         ('"roll"', '"rol"', "trial[0].signals.phi.as: 'rol' is not allowed; did you mean 'roll'"),
         ('name = "zigzag-20"\n', "", "trial[0].name: missing; the pipeline needs it"),
         ('logs = ["logs/zigzag20.csv"]', "logs = []", "trial[0].logs: must not be empty"),
-        (
-            "logs =",
-            'use = "held_out"\nlogs =',
-            "trial[0].use: 'held_out' is not allowed; known: check",
-        ),
         ("[[trial]]", "[trial]", "trial: must be a list of tables; write [[trial]]"),
         ('["r", "phi"]\n', '"r"', "identify.outputs: must be a list in square brackets, got 'r'"),
         ("[model]", "align = 3\n[model]", "trial[0].signals.align: must be a table (keys: channel"),

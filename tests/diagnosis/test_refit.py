@@ -1,0 +1,78 @@
+"""What speaks against a refit, and which of several is the best; on made-up fits."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from trialid.diagnosis.search.carry_over import Carried
+from trialid.diagnosis.search.refit import HELD_OUT, Refit, best_of, objection, worse_held_out
+from trialid.ship.effect import Force, Lagged
+
+FORMS = ((Force,), (Lagged,))
+"""Of an effect of the ship, and of a sensor."""
+
+
+def refit(name, before, after, eps=(0.10, 0.08), check=(0.2, 0.15), seen=1.0, converged=True):
+    """A refit as far as its errors go, and the fit before it."""
+    candidate = SimpleNamespace(
+        effect=SimpleNamespace(name=name, parameters=("a",), forms=FORMS[name == "lag"]),
+        shown=lambda level: level > 0.0,
+        carried=SimpleNamespace(seen=seen),
+    )
+    old, new = (
+        SimpleNamespace(eps_rmsn=e, eps_check=c, converged=True)
+        for e, c in zip(eps, check, strict=True)
+    )
+    new.converged = converged
+    return old, Refit(candidate, new, Carried(before, after, seen))
+
+
+BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
+LESS = tuple(0.7 * x for x in BEFORE)
+ALIKE = tuple(0.69 * x + 0.02 * (-1) ** i for i, x in enumerate(BEFORE))
+"""A little less in all, and more in half of the blocks."""
+
+
+@pytest.mark.parametrize(("changes", "words"), [
+    ({}, ""),
+    ({"check": (None, None)}, ""),
+    ({"check": (np.inf, 0.2)}, ""),
+    ({"check": (0.2, 0.2001)}, HELD_OUT),
+    ({"check": (0.2, np.inf)}, HELD_OUT),
+    ({"check": (0.2, np.nan)}, HELD_OUT),
+    ({"check": (np.inf, np.inf)}, HELD_OUT),
+    ({"converged": False}, "the search does not arrive"),
+    ({"eps": (0.10, 0.0999)}, "the error hardly falls"),
+    ({"eps": (0.10, 0.11)}, "the error hardly falls"),
+    ({"eps": (0.10, np.nan)}, "the search does not arrive"),
+])  # fmt: skip
+def test_what_speaks_against_a_refit(changes, words):
+    old, new = refit("a", BEFORE, LESS, **changes)
+    assert objection(old, new, 0.05) == words
+    assert worse_held_out(old, new.fit) is (words == HELD_OUT)
+    turned_old, turned = refit("a", LESS, BEFORE)  # what it does not carry over
+    assert objection(turned_old, turned, 0.05) == "the error hardly falls"
+    assert objection(old, new, 0.0).startswith("chance")
+
+
+def test_the_best_leaves_least_and_what_is_hardly_seen_gives_way_to_its_equal():
+    force = refit("force", BEFORE, LESS)[1]
+    lag = refit("lag", BEFORE, tuple(0.69 * x + 0.02 * (-1) ** i for i, x in enumerate(BEFORE)),
+                seen=0.01)[1]  # fmt: skip
+    assert lag.carried.ratio < force.carried.ratio
+    assert best_of([lag, force]) is force
+    assert best_of([replace(lag, carried=replace(lag.carried, seen=0.2)), force]) is not force
+    far = refit("far", BEFORE, tuple(0.3 * x for x in BEFORE), seen=0.01)[1]
+    assert best_of([far, force]) is far  # no equal: what it takes off is three times as much
+    assert best_of([]) is None
+
+
+def test_beside_effects_that_were_added_a_lag_gives_way_to_what_is_of_the_ship_and_as_good():
+    force = refit("force", BEFORE, LESS)[1]
+    lag = refit("lag", BEFORE, ALIKE)[1]
+    assert best_of([force, lag]) is lag
+    assert best_of([force, lag], grown=True) is force
+    better = refit("lag", BEFORE, tuple(0.5 * x for x in BEFORE))[1]
+    assert best_of([force, better], grown=True) is better

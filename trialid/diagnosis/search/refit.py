@@ -1,0 +1,147 @@
+"""Candidates added to the model and fitted: what carries over, and what speaks against each."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from trialid.diagnosis.search.carry_over import EACH, FAINT, FALL, Carried, as_good, own_errors
+from trialid.diagnosis.search.score import Candidate
+from trialid.errors import TrialidError
+from trialid.identification.fit import Fit, identify
+from trialid.identification.problem import Settings
+from trialid.ship.effect import Effect, Force, Mass, Rate
+from trialid.trial import Trial
+
+HELD_OUT: Final = "the held-out error rises"
+"""An objection in its words."""
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A candidate added to the model and fitted; what carries over about the fits' own optima."""
+
+    candidate: Candidate
+    fit: Fit
+    carried: Carried
+
+    @property
+    def cost(self) -> float:
+        """What refits are ordered by, the least first: what is left, and 1 % a parameter."""
+        return self.carried.log_ratio + EACH * (len(self.candidate.effect.parameters) - 1)
+
+
+Progress = Callable[[str], None]
+
+
+def refit(
+    fit: Fit, trials: Sequence[Trial], candidates: Sequence[Candidate], progress: Progress
+) -> list[Refit]:
+    """Each candidate added and fitted from its expected value; those that fail are left out."""
+    done = []
+    before = own_errors(fit) if candidates else ()
+    for candidate in candidates:
+        progress(f"trying {candidate.effect.name}")
+        start = {n: _inside(candidate.effect, n, x) for n, x in candidate.expected.items()}
+        settings = _settings_with(fit.settings, candidate.effect)
+        try:
+            model = (fit.model + candidate.effect).with_values(start)
+            near = fit.estimates | start
+            fitted = identify(trials, model, settings, near=near, smaller=fit)
+        except TrialidError:  # it cannot be fitted on this record: it is not the missing one
+            continue
+        after = Carried(before, own_errors(fitted), candidate.carried.seen)
+        done.append(Refit(candidate, fitted, after))
+    return done
+
+
+def refit_best(
+    fit: Fit,
+    trials: Sequence[Trial],
+    candidates: Sequence[Candidate],
+    most: int,
+    level: float,
+    progress: Progress,
+) -> list[Refit]:
+    """The first few candidates fitted; as many of other families where none stands every check.
+
+    Twins stand side by side in the ranking, and what speaks against one speaks against all.
+    """
+    done = refit(fit, trials, candidates[:most], progress)
+    if likeliest_refit(fit, done, level) is None:
+        known = {n for c in candidates[:most] for n in (c.effect.name, *c.family)}
+        others = [c for c in candidates[most:] if c.effect.name not in known]
+        done += refit(fit, trials, others[:most], progress)
+    return done
+
+
+def _inside(effect: Effect, name: str, value: float) -> float:
+    p = effect.parameters[name]
+    return float(np.clip(value, p.low, p.high))
+
+
+def _settings_with(settings: Settings, effect: Effect) -> Settings:
+    new = tuple(p for p in effect.parameters if p not in settings.free)
+    return replace(settings, free=(*settings.free, *new))
+
+
+def likeliest_refit(
+    fit: Fit, refits: Sequence[Refit], level: float, grown: bool = False
+) -> Refit | None:
+    """Of the refits that stand every check the one whose fall carries over best."""
+    return best_of([r for r in refits if not objection(fit, r, level)], grown)
+
+
+def best_of(refits: Sequence[Refit], grown: bool = False) -> Refit | None:
+    """The refit that leaves least on blocks left out, sensors, clocks and forces alike.
+
+    One of which the parameters leave next to nothing gives way to any that is as good. In a model
+    that has `grown` a sensor or a clock gives way to what is of the ship and as good: that the hull
+    is another is then known, and a lag mends any hull a little.
+    """
+    if not refits:
+        return None
+    least = min(refits, key=lambda r: r.cost)
+    close = [r for r in refits if as_good(least.carried.after, r.carried.after)]
+    return min([least, *close], key=lambda r: (_gives_way(r, grown), r.cost))
+
+
+def of_the_ship(effect: Effect) -> bool:
+    """Whether it moves the ship or her rudder; else it belongs to a sensor or a clock."""
+    return bool({Force, Rate, Mass} & {*effect.forms})
+
+
+def _gives_way(refit: Refit, grown: bool) -> bool:
+    """Whether an effect is not named where another is as good."""
+    beside = grown and not of_the_ship(refit.candidate.effect)
+    return beside or refit.carried.seen < FAINT
+
+
+def objection(fit: Fit, refit: Refit, level: float) -> str:
+    """What speaks against an effect once it is fitted, empty where nothing does."""
+    if not refit.candidate.shown(level):
+        return "chance would do it, or no ship has such a value"
+    if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
+        return "the search does not arrive"
+    if worse_held_out(fit, refit.fit):
+        return HELD_OUT
+    return "" if falls(fit, refit) else "the error hardly falls"
+
+
+def falls(fit: Fit, refit: Refit) -> bool:
+    """Whether the error falls by what is worth a name, where it was fitted and where not."""
+    return refit.carried.falls and 1.0 - fall(fit, refit) < FALL
+
+
+def worse_held_out(before: Fit, after: Fit) -> bool:
+    """Whether held-out trials, where there are any, become worse or are lost."""
+    old, new = before.eps_check, after.eps_check
+    if old is None or new is None:
+        return False
+    return not np.isfinite(new) or new > old
+
+
+def fall(fit: Fit, refit: Refit) -> float:
+    """Share of the squared error that goes with an effect."""
+    return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
