@@ -6,6 +6,7 @@ from trialid.accuracy.likely import Averaged
 from trialid.accuracy.parameter_table import Accuracy, Subject, assess, with_ranges
 from trialid.diagnosis.noise.split import Split
 from trialid.identification.fit import Fit
+from trialid.identification.one_search import influence
 from trialid.identification.output_error import stretches
 
 NEAR_ZERO: Final = 0.05
@@ -30,7 +31,7 @@ def accuracy_of(fit: Fit, parts: Split, averaged: Averaged) -> Accuracy:
     made = assess(
         subjects=subjects,
         psi=fit.psi,
-        residual=fit.residual,
+        residual=influence(fit.residual) if fit.settings.loss == "huber" else fit.residual,
         stretches=stretches(fit.problem),
         noise=parts.noise,
         undermodelling=parts.undermodelling if model is None else model[1],

@@ -151,6 +151,17 @@ def huber(residual: Vector) -> Vector:
     return np.asarray(1.0 / np.sqrt(np.maximum(ratio, 1.0)))
 
 
+def influence(residual: Vector) -> Vector:
+    """Residual of the least squares that errs as the robust fit does; (M,).
+
+    Huber's psi over the share of rows it leaves as they are: Huber & Ronchetti (2009), Robust
+    Statistics, 7.6.
+    """
+    limit = HUBER * 1.4826 * float(np.median(np.abs(residual)))
+    inside = float(np.mean(np.abs(residual) <= limit))
+    return np.asarray(np.clip(residual, -limit, limit) / inside)
+
+
 def random_starts(problem: Problem, count: int, spread: float, seed: int) -> list[Vector]:
     """So many starts about the stated one, its physical parameters moved; (n_theta,) each."""
     rng = np.random.default_rng(seed)
