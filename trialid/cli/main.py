@@ -19,7 +19,6 @@ from trialid import temporary
 from trialid.cli.console import (
     Progress,
     complain,
-    file_width,
     let_go,
     no_room,
     note,
@@ -28,7 +27,9 @@ from trialid.cli.console import (
     render,
     say,
 )
+from trialid.cli.demo_command import demo
 from trialid.cli.design_command import design
+from trialid.cli.effects_command import effects
 from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
 from trialid.cli.replay_command import replay
@@ -179,31 +180,8 @@ def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bo
     _change("dropped", pipeline, effect, out, as_json, quiet)
 
 
-@commands.command()
-@click.argument("name", required=False)
-@click.option(
-    "--from",
-    "own_files",
-    type=click.Path(path_type=Path),
-    multiple=True,
-    help="A file of your own with effects in it; may be given again.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Print plain data, and nothing else.")
-def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> None:
-    """List the effects a model can be made of, or tell all about the one called NAME."""
-    from trialid.effects import CATALOGUE, find, from_file
-    from trialid.report.terminal.catalogue import list_effects, plain, plain_list, sheet
-
-    own = {n: e for path in own_files for n, e in from_file(path).items()}
-    everything = {**CATALOGUE, **own}
-    if as_json:
-        data = plain(find(name, own)) if name else plain_list(everything)
-        say(json.dumps(data, indent=2, allow_nan=False))
-    else:
-        shown = sheet(find(name, own)) if name else list_effects(everything)
-        say(render(*shown, width=None if name else file_width()))
-
-
+commands.add_command(effects)
+commands.add_command(demo)
 commands.add_command(inspect)
 commands.add_command(align)
 commands.add_command(design)
