@@ -57,7 +57,7 @@ chain.run = run
 folder = types.ModuleType("trialid.workflow.write_run")
 folder.write = write
 summary = types.ModuleType("trialid.report.terminal.summary")
-summary.summary = lambda result: "a summary\\n" * {size}
+summary.summary = lambda result, file, lines: "a summary\\n" * {size}
 sys.modules |= {{each.__name__: each for each in (chain, folder, summary)}}
 
 from trialid.cli.main import main
@@ -95,7 +95,7 @@ def stub(monkeypatch: pytest.MonkeyPatch, working: Stub = quietly) -> None:
     for name, function in {
         "trialid.workflow.run": run,
         "trialid.workflow.write_run": write,
-        "trialid.report.terminal.summary": lambda result: "fit [bold] 12.3 %",
+        "trialid.report.terminal.summary": lambda result, file, lines: "fit [bold] 12.3 %",
     }.items():
         stand_in = ModuleType(name)
         called = name.rpartition(".")[2].removesuffix("_run")

@@ -26,6 +26,7 @@ from trialid.cli.console import (
     progress_bar,
     render,
     say,
+    screen_less,
 )
 from trialid.cli.demo_command import demo
 from trialid.cli.design_command import design
@@ -149,11 +150,17 @@ def run(
         done = identify_from(asked, progress, force=draft is not None)
         with _writing(folder):
             write(done, folder)
-    _answer(done.result, folder, as_json, quiet, _summary)
+    _answer(
+        done.result,
+        folder,
+        as_json,
+        quiet,
+        _summary(str(asked.path), above=2 * (draft is not None)),
+    )
     if draft is not None:
         said = _write_draft(draft, done)
         if not quiet:
-            (note if as_json else say)(said)
+            note(said) if as_json else say(render(said))
 
 
 @commands.command()
@@ -254,8 +261,8 @@ def _change(
     for words in edit.taken_out:
         complain(f"{pipeline}: taken out with {effect}: {words}")
     back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
-    foot = f"{pipeline}: {difference_words(done.edit)}\nUndo: {back}"
-    _answer(done.run.result, folder, as_json, quiet, lambda result: f"{_beside(result)}\n{foot}")
+    foot = f"{pipeline}: {difference_words(done.edit)}\nUndo: {back}\n"
+    _answer(done.run.result, folder, as_json, quiet, _beside, foot)
 
 
 def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: bool) -> None:
@@ -272,9 +279,12 @@ def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: boo
             commit(asked, done[-1].pipeline, last, steps, folder)
         else:
             write(last, folder)
+    foot = _loop_ended(done, asked.path, keep)
+    file = str(asked.path) if keep else ""  # to add to a file that lacks the rest is another model
+    above = 2 + sum(stage.kept for stage in done)
     if told:
-        say(_loop_ended(done, asked.path, keep))
-    _answer(last.result, folder, as_json, quiet, _summary)
+        say("")
+    _answer(last.result, folder, as_json, quiet, _summary(file, above), foot)
 
 
 def _stages(asked: "Pipeline", told: bool, shown: bool) -> "Iterator[Stage]":
@@ -303,7 +313,7 @@ def _stages(asked: "Pipeline", told: bool, shown: bool) -> "Iterator[Stage]":
 
 
 def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
-    """Why no more was added, and what the file holds now."""
+    """Why no more was added, and what the file holds now, in lines of this terminal."""
     from trialid.diagnosis.search.backward import worth_naming
     from trialid.workflow.grow import survivors
 
@@ -315,11 +325,11 @@ def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
         words += (
             f"\nWhat was missing, the dearest to leave out first: {', '.join(names)}{corrected}."
         )
-    if not added:
-        return f"{words}\n"
-    if keep:
-        return f"{words}\n{pipeline} now has {', '.join(added)}.\n"
-    return f"{words}\n{pipeline} is as it was; --write puts {', '.join(added)} into it.\n"
+    if added and keep:
+        words += f"\n{pipeline} now has {', '.join(added)}."
+    elif added:
+        words += f"\n{pipeline} is as it was; --write puts {', '.join(added)} into it."
+    return render(words) + "\n"
 
 
 def _answer(
@@ -327,9 +337,13 @@ def _answer(
     folder: Path,
     as_json: bool,
     quiet: bool,
-    show: "Callable[[Result], str]",
+    show: "Callable[[Result, int], str]",
+    foot: str = "",
 ) -> None:
-    """Print a result the way that was asked for."""
+    """Print a result the way that was asked for.
+
+    `show` gives it in so many lines; with what stands at its foot it fits one screen.
+    """
     if result.history_remark:
         complain(result.history_remark)
     if as_json:
@@ -337,14 +351,15 @@ def _answer(
 
         say(json.dumps(plain(result), indent=2, allow_nan=False))
     elif not quiet:
-        say(f"{show(result)}\nReport: {folder / 'report.html'}")
+        foot += f"Report: {folder / 'report.html'}"
+        say(f"{show(result, screen_less(foot))}\n{foot}")
 
 
-def _beside(result: "Result") -> str:
+def _beside(result: "Result", lines: int) -> str:
     """The model before and after."""
     from trialid.report.terminal.before_after import before_after
 
-    return render(before_after(result))
+    return render(before_after(result, lines))
 
 
 @contextmanager
@@ -393,11 +408,15 @@ def _short(folder: Path) -> str:
     return text if len(text) <= 80 else f"{text[:40]}...{text[-37:]}"
 
 
-def _summary(result: "Result") -> str:
-    """Give the one-screen summary."""
-    from trialid.report.terminal.summary import summary
+def _summary(pipeline: str, above: int = 0) -> "Callable[[Result, int], str]":
+    """Give what shows the summary of a run of a pipeline, below so many lines of the screen."""
 
-    return render(summary(result))
+    def show(result: "Result", lines: int) -> str:
+        from trialid.report.terminal.summary import summary
+
+        return render(summary(result, pipeline, lines - above))
+
+    return show
 
 
 def _report_bug(
