@@ -19,7 +19,7 @@ TO_TRY: Final = (
 """Commands, each with what it does."""
 
 
-@click.command()
+@click.command(short_help="Write pipelines and sea trials to try everything on.")
 @click.argument("folder", type=click.Path(path_type=Path), default=PLACE, metavar="[DIR]")
 def demo(folder: Path) -> None:
     """Write the sample into DIR: pipelines, ships and sea trials to try everything on.

@@ -1,6 +1,7 @@
 """The command that shows what a model can be made of."""
 
 import json
+import shutil
 from pathlib import Path
 
 import click
@@ -8,7 +9,7 @@ import click
 from trialid.cli.console import file_width, render, say
 
 
-@click.command()
+@click.command(short_help="List the effects a model can be made of, or tell of one.")
 @click.argument("name", required=False)
 @click.option(
     "--from",
@@ -29,5 +30,6 @@ def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> Non
         data = plain(find(name, own)) if name else plain_list(everything)
         say(json.dumps(data, indent=2, allow_nan=False))
     else:
-        shown = sheet(find(name, own)) if name else list_effects(everything)
+        width = file_width() or shutil.get_terminal_size().columns
+        shown = sheet(find(name, own)) if name else list_effects(everything, width)
         say(render(*shown, width=None if name else file_width()))

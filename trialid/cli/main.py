@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -33,6 +33,7 @@ from trialid.cli.design_command import design
 from trialid.cli.effects_command import effects
 from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
+from trialid.cli.one_line_errors import WRONG_INPUT, OneLineErrors
 from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
 from trialid.cli.workbench_command import workbench
@@ -45,31 +46,8 @@ if TYPE_CHECKING:
     from trialid.workflow.grow import Stage
     from trialid.workflow.outcome import Run
 
-WRONG_INPUT: Final = 2
 FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF)
 """What a stream says that takes no more."""
-STOPPED: Final = 130
-"""128 + SIGINT, as shells report a command stopped by the keyboard."""
-
-
-class OneLineErrors(click.Group):
-    """A group whose commands answer the user's mistakes with one line and an exit status."""
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; status 2 for wrong input, 130 when stopped by the keyboard."""
-        try:
-            return super().invoke(ctx)
-        except TrialidError as error:
-            complain(str(error))
-            ctx.exit(WRONG_INPUT)
-        except OSError as error:
-            if error.filename is None:  # no file of the user's: ours to mend
-                raise
-            complain(str(TrialidError(f"{error.filename}: {(error.strerror or '').lower()}")))
-            ctx.exit(WRONG_INPUT)
-        except KeyboardInterrupt:
-            complain("stopped; no half-written results are left")
-            ctx.exit(STOPPED)
 
 
 @click.group(cls=OneLineErrors, context_settings={"help_option_names": ["-h", "--help"]})
@@ -99,7 +77,7 @@ def _answering(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-@commands.command()
+@commands.command(short_help="Fit a model to the logs of a pipeline; what is missing?")
 @_answering
 @click.argument("pipeline", type=click.Path(path_type=Path), required=False)
 @click.option("--auto", is_flag=True, help="Add what is missing until nothing more is named.")
@@ -163,7 +141,7 @@ def run(
             note(said) if as_json else say(render(said))
 
 
-@commands.command()
+@commands.command(short_help="Write an effect into a pipeline and fit again.")
 @_of_a_run
 @click.argument("effect")
 def add(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool) -> None:
@@ -176,7 +154,7 @@ def add(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: boo
     _change("added", pipeline, effect, out, as_json, quiet)
 
 
-@commands.command()
+@commands.command(short_help="Take an effect out of a pipeline and fit again.")
 @_of_a_run
 @click.argument("effect")
 def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool) -> None:
