@@ -4,15 +4,14 @@ Its hull is cubic in sway, yaw and heel, its rudder stands in the race of the pr
 flow that the hull straightens. Nothing of this is in the second-order model that is fitted.
 """
 
-import importlib
 from functools import cache
 from pathlib import Path
 
 import numpy as np
-import pytest
 from scipy.signal import lfilter
 
 from trialid.effects import CATALOGUE
+from trialid.sample import rudder_orders as helm
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import read_ship
 from trialid.simulation.integrate import prepare, respond
@@ -61,9 +60,6 @@ def motion(delta, period):
 @cache
 def manoeuvres():
     """Trial to time, rudder and true motion: 20 minutes each, 150 s of them straight on."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "sample_data")
-        helm = importlib.import_module("make_hidden_effect")
 
     def heading(delta):
         return motion(delta, helm.PERIOD)["psi"]

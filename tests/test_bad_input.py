@@ -26,6 +26,7 @@ from valid_result import assert_valid
 from trialid.cli import main
 from trialid.effects import CATALOGUE
 from trialid.own_files import LIST
+from trialid.sample import log_writers
 from trialid.ship.model import ShipModel
 
 EFFECTS = ("linear_hull", "linear_rudder", "linear_roll")
@@ -301,15 +302,12 @@ def test_a_log_that_is_none(content: bytes, words: tuple[str, ...]) -> None:
 
 def as_mcap(monkeypatch: pytest.MonkeyPatch, share: float) -> None:
     """Turn the log into MCAP and keep this share of its bytes."""
-    monkeypatch.syspath_prepend(s175q.ROOT / "sample_data")
-    import write_logs  # type: ignore[import-not-found]  # lies outside of the package
-
-    monkeypatch.setattr(write_logs, "CHUNK_SIZE", 8192)
+    monkeypatch.setattr(log_writers, "CHUNK_SIZE", 8192)
     table = pd.read_csv("log.csv")
     stamps = np.rint(table["t[s]"].to_numpy() * 1e9).astype(np.int64) + 1_700_000_000_000_000_000
     names = [head.partition("[")[0] for head in table.columns]
     samples = {f"/{n}": (stamps, table.iloc[:, i].to_numpy()) for i, n in enumerate(names) if i}
-    write_logs.write_json_mcap(Path("log.mcap"), samples)
+    log_writers.write_json_mcap(Path("log.mcap"), samples)
     whole = Path("log.mcap").read_bytes()
     Path("log.mcap").write_bytes(whole[: round(share * len(whole))])
     change("short.toml", "log.csv", "log.mcap")

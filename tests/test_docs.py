@@ -17,7 +17,7 @@ GUIDE = ROOT / "trialid" / "guide"
 CHANGELOG = ROOT / "CHANGELOG.md"
 
 RUN = "trialid run pipelines/hidden_effect.toml"
-LEFT_ALONE = {".git", ".venv", "build", "dist", "runs"}
+LEFT_ALONE = {".git", ".venv", "build", "dist", "runs", "trialid-demo"}
 """Folders that are not of the project; so are those that begin with a dot and end in cache."""
 
 FOREIGN = re.compile(

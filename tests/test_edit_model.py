@@ -115,7 +115,7 @@ def test_before_and_after_are_printed() -> None:
     outcome = trialid_("add", "short.toml", ADDED)
     assert outcome.exit_code == 0
     for words in (
-        f"{ADDED} added", "held-out trials", "verdict: ", "foreseen by linearisation: error",
+        f"{ADDED} added", "held-out trials", "Verdict: ", "foreseen by linearisation: error",
         "moved  foreseen", "new", "as written ", f"+ {ADDED} ",
         f"short.toml: effects + {ADDED}, free + Nrar\nUndo: trialid drop short.toml {ADDED}",
         "Report: runs/short/report.html",

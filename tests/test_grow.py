@@ -39,7 +39,8 @@ def test_the_hidden_effect_is_added_and_the_verdict_is_nothing_missing(hidden: P
     text = hidden.read_bytes()
     outcome = trialid_("run", str(hidden), "--auto")
     assert (outcome.exit_code, outcome.stderr) == (0, "")
-    head, first, then, end, what, left, *_ = outcome.stdout.splitlines()
+    head, first, then, blank, *_, end, what, left, report = outcome.stdout.splitlines()
+    assert (blank, report) == ("", "Report: runs/hidden/report.html")
     assert head.split() == ["step", "fitted", "held", "out", "noise", "model", "verdict"]
     assert first.startswith("as written   ")
     assert first.endswith("missing")

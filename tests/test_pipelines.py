@@ -1,7 +1,6 @@
 """Every shipped pipeline, from its logs to its folder: whole, consistent, the same each time."""
 
 import html
-import importlib
 import json
 import math
 import os
@@ -22,6 +21,7 @@ import trialid
 from trialid import own_files
 from trialid.errors import PipelineError
 from trialid.pipeline_file import load
+from trialid.sample.hidden_effect import HIDDEN
 from trialid.workflow.run import run
 from trialid.workflow.write_run import write
 
@@ -486,10 +486,7 @@ def _environment() -> dict[str, str]:
 @pytest.fixture(scope="module")
 def truth() -> str:
     """Name of the effect that the sample trials have and the pipeline's model lacks."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "sample_data")
-        made = importlib.import_module("make_hidden_effect")
-    name, _ = made.HIDDEN
+    name, _ = HIDDEN
     return str(name)
 
 
@@ -522,11 +519,8 @@ def test_the_noise_stays_and_the_model_error_goes(hidden: Finished) -> None:
 
 def test_its_size_is_found(hidden: Finished, truth: str) -> None:
     """Where the true effect was refitted its parameter is within a quarter of the truth."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "sample_data")
-        made = importlib.import_module("make_hidden_effect")
     row = next(row for row in hidden.result["missing"] if row["effect"] == truth)
-    for name, value in made.HIDDEN[1].items():
+    for name, value in HIDDEN[1].items():
         assert row["parameters"][name]["refitted"] == pytest.approx(value, rel=0.25)
 
 

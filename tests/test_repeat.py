@@ -132,7 +132,7 @@ def test_what_makes_no_sense_with_it_is_refused(place: Path, more: tuple[str, ..
 def test_a_run_needs_a_pipeline() -> None:
     outcome = trialid_("run")
     assert outcome.exit_code == 2
-    assert "Missing argument 'PIPELINE'" in outcome.stderr
+    assert "missing argument 'PIPELINE'" in outcome.stderr
 
 
 def test_a_last_digit_is_the_same_number_and_is_told() -> None:

@@ -20,4 +20,4 @@ def test_the_schema_that_ships_is_the_one_of_the_rows() -> None:
 def test_a_report_of_nothing_is_refused() -> None:
     said = CliRunner().invoke(commands, ["report"])
     assert said.exit_code == 2
-    assert "Missing argument 'RUN_DIR...'" in said.output
+    assert "missing argument 'RUN_DIR...'" in said.output

@@ -1,12 +1,22 @@
 """The error tree: everything the user can cause is a `TrialidError` with one clear line."""
 
 import difflib
+import re
 from collections.abc import Iterable, Sequence
 from typing import Final
 from unicodedata import category
 
 LISTED: Final = 30
 """Names that an error lists before it only counts them."""
+
+NEAREST: Final = 3
+"""Names that an error proposes."""
+
+ALIKE: Final = 0.6
+"""Likeness from which on a name may be the one that was meant; difflib's own limit."""
+
+PART: Final = 0.9
+"""What a part of a name counts for beside the whole."""
 
 LONGEST = 200
 """Letters of a library's message that are passed on."""
@@ -130,12 +140,34 @@ def nearest(name: str, known: Iterable[str]) -> str:
     "did you mean 'delta'?"
     >>> nearest("zz", ["delta", "phi"])
     'known: delta, phi'
+    >>> nearest("ferst", ["first_trial", "trust"])
+    "did you mean 'first_trial' or 'trust'?"
+    >>> nearest("zz", [f"column {i}" for i in range(85)])
+    'of 85 known the nearest are column 0, column 1, column 10'
     """
     names = sorted(known)
-    close = difflib.get_close_matches(name, names, n=3, cutoff=0.6)
-    if close:
+    likeness = _likenesses(name, names)
+    ordered = sorted(names, key=lambda other: -likeness[other])
+    if close := [other for other in ordered[:NEAREST] if likeness[other] >= ALIKE]:
         return "did you mean " + " or ".join(repr(c) for c in close) + "?"
+    if len(names) > LISTED:
+        return f"of {len(names)} known the nearest are {', '.join(ordered[:NEAREST])}"
     return "known: " + list_names(names)
+
+
+def _likenesses(name: str, names: Sequence[str]) -> dict[str, float]:
+    """How alike names are, 0 to 1; one whose part is meant, where no other is as alike in whole."""
+    whole = {other: _likeness(name, other) for other in names}
+    best = max(whole.values(), default=0.0)
+    for other in names:
+        parts = [PART * _likeness(name, one) for one in re.split(r"[_\W]+", other)]
+        if max(parts) > best:
+            whole[other] = max(parts)
+    return whole
+
+
+def _likeness(name: str, other: str) -> float:
+    return difflib.SequenceMatcher(None, other.lower(), name.lower()).ratio()
 
 
 def list_names(names: Sequence[str]) -> str:

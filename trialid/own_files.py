@@ -23,7 +23,12 @@ Hashes = dict[str, list[str]]
 """Names below a folder, with the hashes a file of ours may have there."""
 
 
-def check(folder: Path, names: tuple[str, ...], older: tuple[str, ...] = ()) -> None:
+def check(
+    folder: Path,
+    names: tuple[str, ...],
+    older: tuple[str, ...] = (),
+    option: str = "--out",
+) -> None:
     """Refuse, before the work, a folder in which one of these names is not ours to replace.
 
     Parameters
@@ -32,6 +37,8 @@ def check(folder: Path, names: tuple[str, ...], older: tuple[str, ...] = ()) -> 
         Files that will be written, beside those that were.
     older
         Files that a folder without a list of ours may hold from an earlier version.
+    option
+        What of the command says the folder.
 
     Raises
     ------
@@ -41,7 +48,7 @@ def check(folder: Path, names: tuple[str, ...], older: tuple[str, ...] = ()) -> 
     ours = _ours(folder)
     for name in dict.fromkeys([*names, *ours]):
         if ours or name not in older:
-            _check(folder, name, ours)
+            _check(folder, name, ours, option)
 
 
 def any_of_ours(folder: Path) -> bool:
@@ -51,7 +58,10 @@ def any_of_ours(folder: Path) -> bool:
 
 @contextmanager
 def replacing(
-    folder: Path, below: tuple[str, ...] = ("",), older: tuple[str, ...] = ()
+    folder: Path,
+    below: tuple[str, ...] = ("",),
+    older: tuple[str, ...] = (),
+    option: str = "--out",
 ) -> Iterator[Path]:
     """A place to write into; at the end its files are moved into the folder.
 
@@ -70,7 +80,7 @@ def replacing(
         work = Path(tempfile.mkdtemp(prefix=temporary.prefix(), dir=folder))
         try:
             yield work
-            _move(work, folder, below, older)
+            _move(work, folder, below, older, option=option)
         finally:
             shutil.rmtree(work, ignore_errors=True)
     finally:
@@ -79,13 +89,15 @@ def replacing(
                 parent.rmdir()
 
 
-def _move(work: Path, folder: Path, below: tuple[str, ...], older: tuple[str, ...]) -> None:
+def _move(
+    work: Path, folder: Path, below: tuple[str, ...], older: tuple[str, ...], option: str
+) -> None:
     ours = _ours(folder)
     if not ours:
         ours = {name: [_hash(folder / name)] for name in older if (folder / name).is_file()}
     new = {path.relative_to(work).as_posix(): [_hash(path)] for path in _files(work)}
     for name in new:
-        _check(folder, name, ours)
+        _check(folder, name, ours, option)
     gone = [name for name in ours if name not in new and name.startswith(below)]
     gone = [name for name in gone if not _foreign(folder, name, ours)]
     both = {n: [*ours.get(n, []), *new.get(n, [])] for n in dict.fromkeys([*ours, *new])}
@@ -99,18 +111,18 @@ def _move(work: Path, folder: Path, below: tuple[str, ...], older: tuple[str, ..
     _write_list(folder, kept | new)
 
 
-def _check(folder: Path, name: str, ours: Mapping[str, list[str]]) -> None:
+def _check(folder: Path, name: str, ours: Mapping[str, list[str]], option: str) -> None:
     path = folder / name
     if path.is_dir():
         raise TrialidError(f"{path}: is a folder, and a file of this name would be written; "
-                           "choose another --out")  # fmt: skip
+                           f"choose another {option}")  # fmt: skip
     for parent in path.relative_to(folder).parents[:-1]:
         if (folder / parent).exists() and not (folder / parent).is_dir():
-            raise TrialidError(f"{folder / parent}: is a file; choose another --out")
+            raise TrialidError(f"{folder / parent}: is a file; choose another {option}")
     if _foreign(folder, name, ours):
         was = "was changed since it was written" if name in ours else "is no file of trialid's"
         raise TrialidError(f"{path}: {was} and is not replaced; move it away, or choose "
-                           "another --out")  # fmt: skip
+                           f"another {option}")  # fmt: skip
 
 
 def _foreign(folder: Path, name: str, ours: Mapping[str, list[str]]) -> bool:

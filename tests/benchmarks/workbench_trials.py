@@ -1,16 +1,14 @@
 """Long sea trials with a hidden effect, for the workbench: made on the spot, by seed."""
 
-import sys
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-ROOT: Final = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "sample_data"))
+from trialid.sample import hidden_effect as sample
 
-import make_hidden_effect as sample  # noqa: E402
+ROOT: Final = Path(__file__).resolve().parents[2]
 
 Vector = NDArray[np.float64]
 PERIOD: Final = 0.1
@@ -54,9 +52,9 @@ def _write_log(place: Path, samples: int, seed: int) -> None:
     """The true motion under a random binary rudder, as sensors log it."""
     rng = np.random.default_rng(seed)
     delta = rudder(samples, np.deg2rad(8.0 + 2.0 * seed), rng)
-    ship = sample.ship_model()
+    ship = sample.ship_model(ROOT / "sample_data/ships/s175q.toml")
     forces = sample.sea(ship, 50 + seed, samples)
-    motion = sample.run(ship, delta, forces)
+    motion = sample.sail(ship, delta, forces)
     deg = np.rad2deg(1.0)
     columns = {
         "time": np.arange(samples) * PERIOD,

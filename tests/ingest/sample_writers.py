@@ -1,8 +1,12 @@
-"""The writers of the sample logs, which lie outside of the package."""
+"""The writers of the sample logs."""
 
-import importlib
-import sys
-from pathlib import Path
+from trialid.sample import log_writers as write_logs
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "sample_data"))
-write_logs = importlib.import_module("write_logs")
+__all__ = ["imu", "write_logs"]
+
+MOTIONS = ("roll", "pitch", "yaw", "roll_rate", "pitch_rate", "yaw_rate")
+
+
+def imu(t, *motions):
+    """An inertial unit's samples; the motions in the order of `MOTIONS`."""
+    return write_logs.Imu(t=t, **dict(zip(MOTIONS, motions, strict=True)))

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample_writers import write_logs
+from sample_writers import imu, write_logs
 
 from trialid.alignment import SignalSource, align
 from trialid.ingest import LogFile, read, read_together
@@ -52,9 +52,9 @@ def ros2(folder):
     (slow, slow_ns), (fast, fast_ns) = at(10), at(50)
     none = np.zeros(len(fast))
     heading = np.cumsum(-turn(fast)) / 50
-    imu = write_logs.Imu(fast_ns, roll(fast), none, heading, none, none, -turn(fast))
+    moved = imu(fast_ns, roll(fast), none, heading, none, none, -turn(fast))
     write_logs.write_ros2_mcap(
-        folder / "log", {"/rudder": (slow_ns, -rudder(slow))}, {"/imu": imu}, 10_000_000
+        folder / "log", {"/rudder": (slow_ns, -rudder(slow))}, {"/imu": moved}, 10_000_000
     )
     return [folder / "log"], [
         SignalSource("delta", "/rudder:data", "rad", "port", delay=0.01),

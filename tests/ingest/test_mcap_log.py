@@ -3,7 +3,7 @@ import struct
 import numpy as np
 import pytest
 from mcap.writer import Writer
-from sample_writers import write_logs
+from sample_writers import imu, write_logs
 
 from trialid.errors import LogError
 from trialid.ingest import read
@@ -60,8 +60,8 @@ def test_a_zero_is_a_value_in_protobuf_not_an_absent_field(tmp_path):
 def test_ros2_round_trip_header_stamp_and_publish_time(tmp_path):
     path, t, y = tmp_path / "log", stamps(400), values(400)
     none = np.zeros(400)
-    imu = write_logs.Imu(t, 0.1 * y, none, none, y, none, -y)
-    write_logs.write_ros2_mcap(path, {"/rudder": (t, 2 * y)}, {"/imu": imu}, LATE)
+    moved = imu(t, 0.1 * y, none, none, y, none, -y)
+    write_logs.write_ros2_mcap(path, {"/rudder": (t, 2 * y)}, {"/imu": moved}, LATE)
     channels = read(path).channels
     np.testing.assert_array_equal(channels["/rudder:data"].y, 2 * y)
     np.testing.assert_array_equal(channels["/rudder:data"].t, t + LATE)
@@ -165,8 +165,8 @@ def _stamped(stamp, value):
 
 def test_only_wanted_channels_are_read(tmp_path):
     path, t, y = tmp_path / "log", stamps(50), values(50)
-    imu = write_logs.Imu(t, *([y] * 6))
-    write_logs.write_ros2_mcap(path, {"/rudder": (t, y), "/other": (t, y)}, {"/imu": imu})
+    moved = imu(t, *([y] * 6))
+    write_logs.write_ros2_mcap(path, {"/rudder": (t, y), "/other": (t, y)}, {"/imu": moved})
     recording = read(path, ["/rudder:data", "/imu:angular_velocity"])
     axes = {f"/imu:angular_velocity.{axis}" for axis in "xyz"}
     covariances = {f"/imu:angular_velocity_covariance[{i}]" for i in range(9)}

@@ -11,7 +11,7 @@ import write_mcap
 from damage import damaged
 from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType, Writer
-from sample_writers import write_logs
+from sample_writers import imu, write_logs
 
 from trialid.alignment import align
 from trialid.errors import LogError
@@ -344,8 +344,8 @@ def test_sentences_are_left_out_and_said_to_be_sentences(tmp_path):
 
 def test_what_ros_and_keelson_define_is_said(tmp_path):
     path, none = tmp_path / "log", np.zeros(COUNT)
-    imu = write_logs.Imu(T, none, none, none, none, none, none)
-    write_logs.write_ros2_mcap(path, {"/rudder": (T, none)}, {"/imu": imu})
+    still = imu(T, *[none] * 6)
+    write_logs.write_ros2_mcap(path, {"/rudder": (T, none)}, {"/imu": still})
     channels = read(path).channels
     turn, roll = (channels[f"/imu:angular_velocity.{axis}"] for axis in "zx")
     assert (turn.unit, turn.quantity, turn.positive) == ("rad/s", "r", "port")
@@ -363,8 +363,8 @@ def test_what_ros_and_keelson_define_is_said(tmp_path):
 
 def test_batches_together_give_every_channel(tmp_path, monkeypatch):
     path = tmp_path / "log"
-    imu = write_logs.Imu(T, *[np.sin(np.arange(COUNT) / 9)] * 6)
-    write_logs.write_ros2_mcap(path, {"/rudder": (T, T * 1.0), "/b": (T, T * 2.0)}, {"/imu": imu})
+    moved = imu(T, *[np.sin(np.arange(COUNT) / 9)] * 6)
+    write_logs.write_ros2_mcap(path, {"/rudder": (T, T * 1.0), "/b": (T, T * 2.0)}, {"/imu": moved})
     whole = read(path).channels
     assert mcap_log.batches(path, NO_AIDS) == (None,)
     monkeypatch.setattr(mcap_batches, "SMALL", 0)
@@ -381,11 +381,11 @@ def test_batches_together_give_every_channel(tmp_path, monkeypatch):
 @pytest.mark.parametrize("stretch", [1, 3000])
 def test_how_much_is_decoded_together_changes_nothing(tmp_path, monkeypatch, stretch):
     path = tmp_path / "log"
-    imu = write_logs.Imu(T, *[np.sin(np.arange(COUNT) / 9)] * 6)
-    write_logs.write_ros2_mcap(path, {"/rudder": (T[::3], T[::3] * 1.0)}, {"/imu": imu})
+    moved = imu(T, *[np.sin(np.arange(COUNT) / 9)] * 6)
+    write_logs.write_ros2_mcap(path, {"/rudder": (T[::3], T[::3] * 1.0)}, {"/imu": moved})
     whole = read(path).channels
     monkeypatch.setattr(write_logs, "CHUNK_SIZE", 1500)
-    write_logs.write_ros2_mcap(path, {"/rudder": (T[::3], T[::3] * 1.0)}, {"/imu": imu})
+    write_logs.write_ros2_mcap(path, {"/rudder": (T[::3], T[::3] * 1.0)}, {"/imu": moved})
     monkeypatch.setattr(mcap_records, "STRETCH", stretch)
     for name, channel in read(path).channels.items():
         np.testing.assert_array_equal(channel.y, whole[name].y)

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 from mcap.reader import make_reader
-from sample_writers import write_logs
+from sample_writers import imu, write_logs
 
 T = 1_700_000_000_000_000_000 + np.arange(3000, dtype=np.int64) * 100_000_000
 Y = np.sin(np.arange(3000) / 40)
-IMU = write_logs.Imu(T, 0.1 * Y, 0 * Y, Y, Y, Y, Y)
+IMU = imu(T, 0.1 * Y, 0 * Y, *[Y] * 4)
 WRITERS = {
     "keelson": lambda path: write_logs.write_keelson_mcap(
         path, {"a": (T, Y), "b": (T[::3], Y[::3])}

@@ -245,7 +245,7 @@ def test_a_missing_pipeline_is_named_with_its_neighbours(folder: Path) -> None:
 
 
 def test_a_folder_is_no_pipeline(folder: Path) -> None:
-    assert "cannot be read" in refusal(folder)
+    assert "is a folder; name a file in it" in refusal(folder)
 
 
 def test_toml_errors_name_the_line(folder: Path) -> None:

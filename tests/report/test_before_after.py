@@ -90,7 +90,7 @@ def test_side_by_side_fits_a_terminal(changed, width):
     words = " ".join(text.split())
     for part in (
         "static_list added", "fitted trials all 20.0 % 12.6 %", "held-out trials all 30.0 % 31.0 %",
-        "verdict: missing (static_list) -> nothing missing; the held-out error does not fall",
+        "Verdict: missing (static_list) -> nothing missing; the held-out error does not fall",
         "foreseen by linearisation: error 13.1 %, fitted 12.6 %; a_0 14.3, fitted 17.2 deg",
         "+5.0 +4.0", "new",
     ):  # fmt: skip

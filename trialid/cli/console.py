@@ -1,6 +1,7 @@
 """What the commands share: words to a terminal, progress, one line for a mistake."""
 
 import os
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -80,6 +81,18 @@ def _harmless(console: Any, part: Any) -> Any:
             for one in console.render(part)
         ]
     )
+
+
+def screen_less(foot: str) -> int:
+    """Lines of one screen that a text at its foot leaves, on a terminal of the width it has.
+
+    >>> screen_less("Report: runs/a/report.html")
+    38
+    """
+    from trialid.report.terminal.terminal import SCREEN
+
+    width = max(shutil.get_terminal_size((SCREEN[1], 0)).columns, 1)
+    return SCREEN[0] - sum(max(1, -(-len(line) // width)) for line in foot.splitlines())
 
 
 def say(text: str) -> None:

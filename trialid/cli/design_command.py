@@ -11,7 +11,7 @@ from trialid.cli.console import file_width, progress_bar, render, say
 from trialid.errors import TrialidError
 
 
-@click.command()
+@click.command(short_help="Rate tests and choose the next one; papers for the bridge.")
 @click.argument("design", type=click.Path(path_type=Path))
 @click.option(
     "--out",

@@ -17,7 +17,7 @@ LINK: Final = re.compile(r"\[([^\[\]]+)\]\(\w+\.md\)")
 """A link to another page, whose name is its text."""
 
 
-@click.command()
+@click.command(short_help="Show a page of the manual, or list its topics.")
 @click.argument("topic", required=False)
 def guide(topic: str | None) -> None:
     """Show the page of the manual on TOPIC, or list the topics.

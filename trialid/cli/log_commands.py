@@ -31,7 +31,7 @@ def _options(*options: Callable[..., Any]) -> Callable[[Callable[..., None]], Ca
     return of
 
 
-@click.command()
+@click.command(short_help="Show what is in a log; begin a pipeline.")
 @_options(
     click.argument("logs", nargs=-1, required=True, type=FILE, metavar="LOG..."),
     click.option("--all", "everything", is_flag=True, help="Show every channel, not only those "
@@ -75,7 +75,7 @@ def inspect(
         _begin(surveys, pipeline, ship, length, speed)
 
 
-@click.command()
+@click.command(short_help="Write aligned series for other programs.")
 @_options(
     click.argument("pipeline", type=FILE),
     click.option("--out", type=FILE, required=True, metavar="FILE",

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -19,7 +19,6 @@ from trialid import temporary
 from trialid.cli.console import (
     Progress,
     complain,
-    file_width,
     let_go,
     no_room,
     note,
@@ -27,10 +26,14 @@ from trialid.cli.console import (
     progress_bar,
     render,
     say,
+    screen_less,
 )
+from trialid.cli.demo_command import demo
 from trialid.cli.design_command import design
+from trialid.cli.effects_command import effects
 from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
+from trialid.cli.one_line_errors import WRONG_INPUT, OneLineErrors
 from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
 from trialid.cli.workbench_command import workbench
@@ -43,31 +46,8 @@ if TYPE_CHECKING:
     from trialid.workflow.grow import Stage
     from trialid.workflow.outcome import Run
 
-WRONG_INPUT: Final = 2
 FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF)
 """What a stream says that takes no more."""
-STOPPED: Final = 130
-"""128 + SIGINT, as shells report a command stopped by the keyboard."""
-
-
-class OneLineErrors(click.Group):
-    """A group whose commands answer the user's mistakes with one line and an exit status."""
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; status 2 for wrong input, 130 when stopped by the keyboard."""
-        try:
-            return super().invoke(ctx)
-        except TrialidError as error:
-            complain(str(error))
-            ctx.exit(WRONG_INPUT)
-        except OSError as error:
-            if error.filename is None:  # no file of the user's: ours to mend
-                raise
-            complain(str(TrialidError(f"{error.filename}: {(error.strerror or '').lower()}")))
-            ctx.exit(WRONG_INPUT)
-        except KeyboardInterrupt:
-            complain("stopped; no half-written results are left")
-            ctx.exit(STOPPED)
 
 
 @click.group(cls=OneLineErrors, context_settings={"help_option_names": ["-h", "--help"]})
@@ -97,7 +77,7 @@ def _answering(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-@commands.command()
+@commands.command(short_help="Fit a model to the logs of a pipeline; what is missing?")
 @_answering
 @click.argument("pipeline", type=click.Path(path_type=Path), required=False)
 @click.option("--auto", is_flag=True, help="Add what is missing until nothing more is named.")
@@ -148,14 +128,20 @@ def run(
         done = identify_from(asked, progress, force=draft is not None)
         with _writing(folder):
             write(done, folder)
-    _answer(done.result, folder, as_json, quiet, _summary)
+    _answer(
+        done.result,
+        folder,
+        as_json,
+        quiet,
+        _summary(str(asked.path), above=2 * (draft is not None)),
+    )
     if draft is not None:
         said = _write_draft(draft, done)
         if not quiet:
-            (note if as_json else say)(said)
+            note(said) if as_json else say(render(said))
 
 
-@commands.command()
+@commands.command(short_help="Write an effect into a pipeline and fit again.")
 @_of_a_run
 @click.argument("effect")
 def add(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool) -> None:
@@ -168,7 +154,7 @@ def add(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: boo
     _change("added", pipeline, effect, out, as_json, quiet)
 
 
-@commands.command()
+@commands.command(short_help="Take an effect out of a pipeline and fit again.")
 @_of_a_run
 @click.argument("effect")
 def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool) -> None:
@@ -179,31 +165,8 @@ def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bo
     _change("dropped", pipeline, effect, out, as_json, quiet)
 
 
-@commands.command()
-@click.argument("name", required=False)
-@click.option(
-    "--from",
-    "own_files",
-    type=click.Path(path_type=Path),
-    multiple=True,
-    help="A file of your own with effects in it; may be given again.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Print plain data, and nothing else.")
-def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> None:
-    """List the effects a model can be made of, or tell all about the one called NAME."""
-    from trialid.effects import CATALOGUE, find, from_file
-    from trialid.report.terminal.catalogue import list_effects, plain, plain_list, sheet
-
-    own = {n: e for path in own_files for n, e in from_file(path).items()}
-    everything = {**CATALOGUE, **own}
-    if as_json:
-        data = plain(find(name, own)) if name else plain_list(everything)
-        say(json.dumps(data, indent=2, allow_nan=False))
-    else:
-        shown = sheet(find(name, own)) if name else list_effects(everything)
-        say(render(*shown, width=None if name else file_width()))
-
-
+commands.add_command(effects)
+commands.add_command(demo)
 commands.add_command(inspect)
 commands.add_command(align)
 commands.add_command(design)
@@ -276,8 +239,8 @@ def _change(
     for words in edit.taken_out:
         complain(f"{pipeline}: taken out with {effect}: {words}")
     back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
-    foot = f"{pipeline}: {difference_words(done.edit)}\nUndo: {back}"
-    _answer(done.run.result, folder, as_json, quiet, lambda result: f"{_beside(result)}\n{foot}")
+    foot = f"{pipeline}: {difference_words(done.edit)}\nUndo: {back}\n"
+    _answer(done.run.result, folder, as_json, quiet, _beside, foot)
 
 
 def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: bool) -> None:
@@ -294,9 +257,12 @@ def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: boo
             commit(asked, done[-1].pipeline, last, steps, folder)
         else:
             write(last, folder)
+    foot = _loop_ended(done, asked.path, keep)
+    file = str(asked.path) if keep else ""  # to add to a file that lacks the rest is another model
+    above = 2 + sum(stage.kept for stage in done)
     if told:
-        say(_loop_ended(done, asked.path, keep))
-    _answer(last.result, folder, as_json, quiet, _summary)
+        say("")
+    _answer(last.result, folder, as_json, quiet, _summary(file, above), foot)
 
 
 def _stages(asked: "Pipeline", told: bool, shown: bool) -> "Iterator[Stage]":
@@ -325,7 +291,7 @@ def _stages(asked: "Pipeline", told: bool, shown: bool) -> "Iterator[Stage]":
 
 
 def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
-    """Why no more was added, and what the file holds now."""
+    """Why no more was added, and what the file holds now, in lines of this terminal."""
     from trialid.diagnosis.search.backward import worth_naming
     from trialid.workflow.grow import survivors
 
@@ -337,11 +303,11 @@ def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
         words += (
             f"\nWhat was missing, the dearest to leave out first: {', '.join(names)}{corrected}."
         )
-    if not added:
-        return f"{words}\n"
-    if keep:
-        return f"{words}\n{pipeline} now has {', '.join(added)}.\n"
-    return f"{words}\n{pipeline} is as it was; --write puts {', '.join(added)} into it.\n"
+    if added and keep:
+        words += f"\n{pipeline} now has {', '.join(added)}."
+    elif added:
+        words += f"\n{pipeline} is as it was; --write puts {', '.join(added)} into it."
+    return render(words) + "\n"
 
 
 def _answer(
@@ -349,9 +315,13 @@ def _answer(
     folder: Path,
     as_json: bool,
     quiet: bool,
-    show: "Callable[[Result], str]",
+    show: "Callable[[Result, int], str]",
+    foot: str = "",
 ) -> None:
-    """Print a result the way that was asked for."""
+    """Print a result the way that was asked for.
+
+    `show` gives it in so many lines; with what stands at its foot it fits one screen.
+    """
     if result.history_remark:
         complain(result.history_remark)
     if as_json:
@@ -359,14 +329,15 @@ def _answer(
 
         say(json.dumps(plain(result), indent=2, allow_nan=False))
     elif not quiet:
-        say(f"{show(result)}\nReport: {folder / 'report.html'}")
+        foot += f"Report: {folder / 'report.html'}"
+        say(f"{show(result, screen_less(foot))}\n{foot}")
 
 
-def _beside(result: "Result") -> str:
+def _beside(result: "Result", lines: int) -> str:
     """The model before and after."""
     from trialid.report.terminal.before_after import before_after
 
-    return render(before_after(result))
+    return render(before_after(result, lines))
 
 
 @contextmanager
@@ -415,11 +386,15 @@ def _short(folder: Path) -> str:
     return text if len(text) <= 80 else f"{text[:40]}...{text[-37:]}"
 
 
-def _summary(result: "Result") -> str:
-    """Give the one-screen summary."""
-    from trialid.report.terminal.summary import summary
+def _summary(pipeline: str, above: int = 0) -> "Callable[[Result, int], str]":
+    """Give what shows the summary of a run of a pipeline, below so many lines of the screen."""
 
-    return render(summary(result))
+    def show(result: "Result", lines: int) -> str:
+        from trialid.report.terminal.summary import summary
+
+        return render(summary(result, pipeline, lines - above))
+
+    return show
 
 
 def _report_bug(

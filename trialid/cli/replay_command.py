@@ -43,7 +43,7 @@ class _WallClock:
         time.sleep(seconds)
 
 
-@click.command(cls=Following)
+@click.command(cls=Following, short_help="Play a trial through its model as a stream, with alarms.")
 @click.argument("pipeline", type=FILE)
 @click.option(
     "--run",

@@ -15,7 +15,7 @@ DIFFERENT = 1
 """Exit status where a repeated run gives other numbers."""
 
 
-@click.command()
+@click.command(short_help="Write the report of a run, or of several side by side.")
 @click.argument("runs", type=click.Path(path_type=Path), nargs=-1, metavar="RUN_DIR...")
 @click.option(
     "--out",

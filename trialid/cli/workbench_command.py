@@ -19,7 +19,7 @@ TRIED: Final = 20
 """Ports tried from the usual one on, so that several pipelines can be open at once."""
 
 
-@click.command()
+@click.command(short_help="Do the loop by hand in a browser: look, add, undo.")
 @click.argument("pipeline", type=click.Path(path_type=Path))
 @click.option(
     "--port",

@@ -57,7 +57,7 @@ def apparent_wind_ahead(V_aw, gamma_aw, *, C_ax=Parameter(0.00001, low=0.0, high
 
 @effect(source="Froude-Krylov moment of long waves")
 def wave_slope_roll(alpha_w, rho, g, nabla, *, GM_w=Parameter(0.5, "m", low=0.0, high=20.0)):
-    """K = rho g nabla GM_w alpha_w: the ship rights herself to the slope of a measured wave."""
+    """K = rho g nabla GM_w alpha_w: she rights herself to the slope of a measured wave."""
     return Force(K=rho * g * nabla * GM_w * alpha_w)
 
 

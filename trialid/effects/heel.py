@@ -55,7 +55,7 @@ def heel_sway_cubic(
     Yvvphi=Parameter(0.046, low=-0.5, high=0.5), Yvphiphi=Parameter(0.003, low=-0.1, high=0.1),
     Yrrphi=Parameter(0.0093, low=-0.1, high=0.1), Yrphiphi=Parameter(-0.0014, low=-0.05, high=0.05),
 ):  # fmt: skip
-    """Y = Yvvphi v^2 phi + Yvphiphi v phi^2 + Yrrphi r^2 phi + Yrphiphi r phi^2."""
+    """Y = (Yvvphi v + Yvphiphi phi) v phi + (Yrrphi r + Yrphiphi phi) r phi: heel and turns."""
     return Force(Y=(Yvvphi * v * v + Yrrphi * r * r) * phi + (Yvphiphi * v + Yrphiphi * r) * phi**2)
 
 
@@ -67,7 +67,7 @@ def heel_roll_cubic(
     Krrphi=Parameter(-0.00024, low=-0.005, high=0.005),
     Krphiphi=Parameter(0.000036, low=-0.004, high=0.004),
 ):  # fmt: skip
-    """K = Kvvphi v^2 phi + Kvphiphi v phi^2 + Krrphi r^2 phi + Krphiphi r phi^2."""
+    """K = (Kvvphi v + Kvphiphi phi) v phi + (Krrphi r + Krphiphi phi) r phi: heel and turns."""
     return Force(K=(Kvvphi * v * v + Krrphi * r * r) * phi + (Kvphiphi * v + Krphiphi * r) * phi**2)
 
 
@@ -78,7 +78,7 @@ def heel_yaw_cubic(
     Nrrphi=Parameter(-0.0039, low=-0.05, high=0.05),
     Nrphiphi=Parameter(0.0024, low=-0.05, high=0.05),
 ):  # fmt: skip
-    """N = Nvvphi v^2 phi + Nvphiphi v phi^2 + Nrrphi r^2 phi + Nrphiphi r phi^2."""
+    """N = (Nvvphi v + Nvphiphi phi) v phi + (Nrrphi r + Nrphiphi phi) r phi: heel and turns."""
     return Force(N=(Nvvphi * v * v + Nrrphi * r * r) * phi + (Nvphiphi * v + Nrphiphi * r) * phi**2)
 
 

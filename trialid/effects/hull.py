@@ -117,7 +117,7 @@ def _froude_gain(u: Number, g: Number, U0: Number) -> Number:
 
 @effect(source=PCC)
 def sway_froude(u, v, g, U0, *, Yv_F=Parameter(-0.006, low=-0.3, high=0.3)):
-    """Y = Yv_F v (F - F0): drift force that changes with the Froude number F = u / sqrt(g L)."""
+    """Y = Yv_F v (F - F0), F = u / sqrt(g L): drift force that changes with the Froude number."""
     return Force(Y=Yv_F * v * _froude_gain(u, g, U0))
 
 
@@ -137,7 +137,7 @@ def yaw_froude_r(u, r, g, U0, *, Nr_F=Parameter(-0.0035, low=-0.3, high=0.3)):
 def hull_asymmetry(
     *, Y0=Parameter(-0.00004, low=-0.0005, high=0.0005), N0=Parameter(0.00003, low=-3e-4, high=3e-4)
 ):
-    """Y = Y0,  N = N0: a hull or a propeller that is not the same to port and to starboard."""
+    """Y = Y0,  N = N0: a hull or a propeller unlike to port and starboard."""
     return Force(Y=Y0, N=N0)
 
 

@@ -36,13 +36,13 @@ def gravity_centre_lower(*, dz_G=Parameter(0.003, low=-0.05, high=0.05)):
 
 @effect(source=LOADING)
 def yaw_inertia_error(*, dI_zz=Parameter(0.00005, low=-0.001, high=0.001)):
-    """I_zz = I_zz + dI_zz: mass, or water that turns with it (-N_rdot), is further fore and aft."""
+    """I_zz = I_zz + dI_zz (or -N_rdot): mass or turning water lies further fore and aft."""
     return Mass(I_zz=dI_zz)
 
 
 @effect(source=LOADING)
 def roll_inertia_error(*, dI_xx=Parameter(0.000002, low=-0.0001, high=0.0001)):
-    """I_xx = I_xx + dI_xx: mass, or water that rolls with it (-K_pdot), is further out."""
+    """I_xx = I_xx + dI_xx (or -K_pdot): mass or rolling water lies further out."""
     return Mass(I_xx=dI_xx)
 
 

@@ -39,7 +39,7 @@ def surge_loss(
 
 @effect(source="diesel at constant fuel: van Berlekom & Goddard (1972), tanker")
 def shaft_speed_drop(n, u, U0, *, k_n=Parameter(0.2, low=0.0, high=1.5)):
-    """n = n + k_n n (u / U0 - 1): the shaft slows down with the ship; n is recorded as ordered."""
+    """n = n + k_n n (u / U0 - 1), n as ordered: the shaft slows down with the ship."""
     return Steered(n=k_n * n * (u - U0) * U0 / (U0 * U0 + STANDSTILL))
 
 

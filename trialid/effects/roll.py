@@ -13,7 +13,7 @@ def linear_roll(
     p, phi, rho, g, nabla, *,
     Kp=Parameter(-0.0000075, high=0.0), GM=Parameter(0.5, "m", low=0.0),
 ):  # fmt: skip
-    """K = Kp p - rho g nabla GM phi: damping that grows with speed, and the righting moment."""
+    """K = Kp p - rho g nabla GM phi: damping that grows with speed; righting moment."""
     return Force(K=Kp * p - rho * g * nabla * GM * phi)
 
 
@@ -31,7 +31,7 @@ def still_water_roll_damping(p, *, Kp0=Parameter(-1e6, "N m s", high=0.0)):
 
 @effect(source=ITTC)
 def quadratic_roll_damping(p, *, Kpap=Parameter(-0.00003, low=-0.01, high=0.0)):
-    """K = Kp|p| p |p|: eddies at bilges and keels, damping that grows with amplitude."""
+    """K = Kp|p| p |p|: eddies at bilges and keels, growing with amplitude."""
     return Force(K=Kpap * p * abs(p))
 
 
@@ -43,7 +43,7 @@ def cubic_roll_damping(p, *, Kppp=Parameter(-0.00005, low=-0.01, high=0.0)):
 
 @effect(source=BK99)
 def righting_arm_cubic(phi, rho, g, nabla, *, GM3=Parameter(2.0, "m", low=-50.0, high=50.0)):
-    """K = -rho g nabla GM3 phi^3: the righting arm hardens (wall sides: BM/2) or softens."""
+    """K = -rho g nabla GM3 phi^3 (wall sides: BM/2): the righting arm hardens or softens."""
     return Force(K=-rho * g * nabla * GM3 * phi**3)
 
 
@@ -71,7 +71,7 @@ def anti_roll_tank(
     omega_t=Parameter(1.5, low=0.3, high=10.0, null=None),
     zeta_t=Parameter(0.15, low=0.01, high=2.0, null=None),
 ):  # fmt: skip
-    """K = rho g nabla s_t (q_t - phi): water in a tank that swings with a frequency of its own.
+    """K = rho g nabla s_t (q_t - phi): water in a tank that swings at its own frequency.
 
     d(q_t)/dt = w_t,  d(w_t)/dt = w^2 (phi - q_t) - 2 zeta_t w w_t  with  w = omega_t sqrt(g / L).
     In slow motion the water follows the roll: GM is what the free surface leaves, s_t its cost.
@@ -85,7 +85,7 @@ def anti_roll_tank(
 
 @effect(source=BK99)
 def static_list(rho, g, nabla, *, a_0=Parameter(0.002, "m", low=-0.5, high=0.5)):
-    """K = rho g nabla a_0: a steady heeling arm, from cargo or trim tanks; at any speed."""
+    """K = rho g nabla a_0: a steady heel at any speed, from cargo or tanks."""
     return Force(K=rho * g * nabla * a_0)
 
 

@@ -93,13 +93,13 @@ def rudder_race(
 
 @effect(source="neutral angle of a single-screw ship; indicator zero")
 def rudder_offset(*, delta_0=Parameter(0.01, "rad", low=-0.1, high=0.1)):
-    """delta = delta + delta_0: the recorded zero is not the angle that keeps the ship straight."""
+    """delta = delta + delta_0: the recorded zero does not keep the ship straight."""
     return Steered(delta=delta_0)
 
 
 @effect(source="indicator gain")
 def rudder_scale(delta, *, e_delta=Parameter(0.05, low=-0.5, high=0.5)):
-    """delta = delta + e_delta delta: an indicator that reads too little; acts as Ydelta does."""
+    """delta = delta + e_delta delta: an indicator that reads too little; acts as Ydelta."""
     return Steered(delta=e_delta * delta)
 
 

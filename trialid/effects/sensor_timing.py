@@ -68,7 +68,7 @@ def lag_r(*, T_r=Parameter(0.5, "s", low=0.0, high=20.0, scan=(2.0, 5.0, 10.0)))
 
 @effect(source="compasses that smooth their rate of turn in two stages: 1 to 10 s each")
 def lag_twice_r(*, T_rr=Parameter(0.5, "s", low=0.0, high=20.0, scan=(1.0, 3.0, 6.0))):
-    """(1 + T_rr d/dt)^2 r_measured = r: a rate of turn behind two low-passes of one time constant.
+    """(1 + T_rr d/dt)^2 r_measured = r: a rate of turn behind two equal low-passes.
 
     A small T_rr is a delay of 2 T_rr, the longer the less.
     """

@@ -83,7 +83,7 @@ def gyro_cross_axis(p, *, e_rp=Parameter(0.02, low=-0.2, high=0.2)):
 
 @effect(source=MOUNT)
 def gyro_cross_axis_p(r, *, e_pr=Parameter(0.02, low=-0.2, high=0.2)):
-    """p_measured = p + e_pr r: a roll-rate gyro that is not level sees some of the turn."""
+    """p_measured = p + e_pr r: a roll-rate gyro that is not level sees some turn."""
     return Measured(p=e_pr * r)
 
 
@@ -128,7 +128,7 @@ def lever_arm_z(p, *, z_s=Parameter(-20.0, "m", low=-80.0, high=80.0)):
 
 @effect(source="two sensors of one rate of turn, with nothing simulated between them")
 def reference_rate(r_ref, *, k_ref=Parameter(1.0, low=0.0, high=2.0)):
-    """r_measured = r + k_ref r_ref: what a second sensor makes of the rate the first one measured.
+    """r_measured = r + k_ref r_ref: what a second sensor makes of the first one's rate.
 
     With `states = []` there is no other r, and k_ref = 1 where both have the same scale.
     """

@@ -190,7 +190,7 @@ def _beside(path: Path) -> str:
     """What lies where the file was looked for, the likeliest names first."""
     if not path.parent.is_dir():
         return f"nor is there a folder {path.parent}"
-    names = sorted(child.name for child in path.parent.iterdir())
+    names = sorted(c.name for c in path.parent.iterdir() if not c.name.startswith("."))
     close = difflib.get_close_matches(path.name, names, n=3)
     if close:
         return "did you mean " + " or ".join(repr(name) for name in close) + "?"

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from trialid import user_files
-from trialid.errors import PipelineError
+from trialid.errors import PipelineError, list_names
 from trialid.pipeline_file.complaints import dotted_key, own_mistakes, problem, refusal
 from trialid.pipeline_file.contradictions import contradictions
 from trialid.pipeline_file.form import (
@@ -21,8 +21,8 @@ from trialid.pipeline_file.form import (
     SignalSource,
     TrialSection,
     Written,
-    neighbours,
 )
+from trialid.pipeline_file.mistaken_file import Kind, check_kind, log_hint, neighbours
 
 __all__ = [
     "Pipeline",
@@ -58,7 +58,8 @@ def read(content: bytes, path: Path) -> Pipeline:
     PipelineError
         As `load`.
     """
-    pipeline = check_form(Pipeline, table_of(content, path), Origin(path, content))
+    table = table_of(content, path, "pipeline")
+    pipeline = check_form(Pipeline, table, Origin(path, content))
     if problems := list(contradictions(pipeline)):
         raise refusal(path, problems)
     return _with_shared_signals(pipeline)
@@ -100,18 +101,21 @@ def sources(pipeline: Pipeline) -> tuple[Path, ...]:
     return (pipeline.path, *ship, *pipeline.model.effects_from, *(f for f in files if f))
 
 
-def table_of(content: bytes, path: Path) -> dict[str, Any]:
-    """The TOML in a file; PipelineError when it is none."""
+def table_of(content: bytes, path: Path, wanted: Kind) -> dict[str, Any]:
+    """The TOML in a file; PipelineError when it is none, or plainly of another kind."""
     try:
         text = content.decode("utf-8-sig")  # some editors write a byte-order mark
     except UnicodeDecodeError as error:
-        raise PipelineError(f"{path}: not TOML: not UTF-8 text (byte {error.start})") from error
+        said = f"not UTF-8 text (byte {error.start})"
+        raise PipelineError(f"{path}: not TOML: {said}{log_hint(path)}") from error
     try:
-        return user_files.toml(text)
+        table = user_files.toml(text)
     except tomllib.TOMLDecodeError as error:
         last = f"at line {text.count(chr(10)) + 1}, the end of the file"
         said = str(error).replace("at end of document", last)
-        raise PipelineError(f"{path}: not TOML: {said}") from error
+        raise PipelineError(f"{path}: not TOML: {said}{log_hint(path)}") from error
+    check_kind(table, path, wanted)
+    return table
 
 
 def content_of(path: Path) -> bytes:
@@ -120,6 +124,10 @@ def content_of(path: Path) -> bytes:
         return user_files.content(path)
     except FileNotFoundError as error:
         raise PipelineError(f"{path}: no such pipeline file ({neighbours(path)})") from error
+    except IsADirectoryError as error:
+        names = sorted(other.name for other in path.glob("*.toml"))
+        inside = f"; there are {list_names(names)}" if names else ""
+        raise PipelineError(f"{path}: is a folder; name a file in it{inside}") from error
     except OSError as error:
         raise PipelineError(f"{path}: cannot be read ({error.strerror})") from error
 

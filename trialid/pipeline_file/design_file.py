@@ -188,7 +188,7 @@ def load_design(path: Path) -> DesignFile:
         In one line: the file, the key's full path, what is wrong, the nearest valid names.
     """
     content = content_of(path)
-    table = table_of(content, path)
+    table = table_of(content, path, "design")
     pipeline = check_form(DesignFile, {**_lent(table, path), **table}, Origin(path, content))
     if problems := [*_of_tests(pipeline), *_of_signals(pipeline), *_of_gear(pipeline)]:
         raise refusal(path, problems)

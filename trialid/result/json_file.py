@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from trialid import user_files
-from trialid.errors import TrialidError
+from trialid.errors import TrialidError, nearest
 from trialid.result.schema import SCHEMA, Result
 
 Row = TypeVar("Row")
@@ -70,6 +70,8 @@ def read(path: Path, advice: str = "name the folder of a finished `trialid run`"
     TrialidError
         There is none, it is none of this schema, or it was edited; with what to do.
     """
+    if not path.exists():
+        advice += _runs_beside(path.parent)
     data = read_object(path, advice)
     if data.get("schema") != SCHEMA:
         raise TrialidError(f"{path}: schema {data.get('schema')!r}, expected {SCHEMA!r}")
@@ -77,6 +79,12 @@ def read(path: Path, advice: str = "name the folder of a finished `trialid run`"
         return result_of(data)
     except TrialidError as error:
         raise TrialidError(f"{path}: {error}; it was edited, run the pipeline anew") from error
+
+
+def _runs_beside(folder: Path) -> str:
+    """Words about the finished runs that lie where one was looked for."""
+    names = [found.parent.name for found in folder.parent.glob(f"*/{NAME}")]
+    return f"; {nearest(folder.name, names)}" if names else ""
 
 
 def read_object(path: Path, advice: str) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """The rating of tests for a terminal."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from trialid.accuracy.weak import coefficient_label
 from trialid.names.wording import DASH
@@ -16,18 +16,27 @@ Design = Mapping[str, Any]
 ALIKE = 1e-9
 """Share of the outputs below which the full model and the fitted one do not differ."""
 
+MEANING: Final = (
+    "S_imin: what the outputs tell of the parameter beside all others; R_i: how many times more "
+    "they would tell if the others were known, 1 at best; R: largest over least of what they tell, "
+    "over all directions; error: noise and model part of Eq. 14; partner: the likest one, by cosine"
+)
+"""Letters of the tables in a clause each."""
+
 
 def tables(design: Design) -> list["RenderableType"]:
-    """Everything a design says, in reading order."""
-    shown: list[RenderableType] = [_tests(design["tests"], design["wanted"]), ""]
-    for test in design["tests"]:
+    """Everything a design says, in reading order: the best test first."""
+    tests, wanted = design["tests"], design["wanted"]
+    best = next((t for t in tests if t["name"] == design["best"]), None)
+    shown: list[RenderableType] = [_best(best, len(tests), wanted), _tests(tests, wanted), ""]
+    for test in tests:
         shown += _broken(test)
         shown += [Words(f"{test['name']}: {remark}", 3, "yellow") for remark in test["remarks"]]
-    best = next((t for t in design["tests"] if t["name"] == design["best"]), None)
     if best is not None:
         shown += [
             Words(f"{best['name']}, parameter by parameter, what to expect of a fit:", 2, "bold"),
-            _parameters(best["rating"], design["wanted"]),
+            _parameters(best["rating"], wanted),
+            Words(MEANING, 4, "dim"),
             "",
         ]
     if design["separation"]:
@@ -37,6 +46,23 @@ def tables(design: Design) -> list["RenderableType"]:
     return shown
 
 
+def _best(best: Mapping[str, Any] | None, of: int, wanted: Sequence[str]) -> Words:
+    """Which test to sail, before all figures."""
+    if best is None:
+        return Words("No test keeps the limits.", 1, "bold red")
+    error, name = _worst(best["rating"], wanted)
+    rank = f"Best of {of}: " if of > 1 else ""
+    said = f"{rank}{best['name']}; largest error to expect: {error}, of {name}"
+    return Words(said, 2, "bold")
+
+
+def _worst(rating: Mapping[str, Any], wanted: Sequence[str]) -> tuple[str, str]:
+    """Error and name of the wanted parameter that is least known."""
+    errors = {p["name"]: p["relative_error"] for p in rating["parameters"] if p["name"] in wanted}
+    name = max(errors, key=lambda name: errors[name] or float("inf"))
+    return percent(errors[name]), coefficient_label(name)
+
+
 def _tests(tests: Sequence[Mapping[str, Any]], wanted: Sequence[str]) -> "Table":
     table = new_table("test", "numbers", "R", "S_min", "largest error", "of", words=2)
     for test in tests:
@@ -44,13 +70,9 @@ def _tests(tests: Sequence[Mapping[str, Any]], wanted: Sequence[str]) -> "Table"
         if rating is None:
             add_row(table, test["name"], _numbers(test), "not feasible", "", "", "", style="red")
             continue
-        worst = max(
-            (p for p in rating["parameters"] if p["name"] in wanted),
-            key=lambda p: p["relative_error"] or float("inf"),
-        )
         add_row(
             table, test["name"], _numbers(test), number(rating["R"], 4), number(rating["S_min"], 2),
-            percent(worst["relative_error"]), coefficient_label(worst["name"]),
+            *_worst(rating, wanted),
         )  # fmt: skip
     return table
 
@@ -67,7 +89,7 @@ def _short(test: Mapping[str, Any]) -> str:
         if isinstance(value, list):
             told.append(f"{len(value)} {name}")
         elif value is not None:
-            told.append(f"{name} {value:.3g}")
+            told.append(f"{name} {value:.4g}")
     return ", ".join(told[:3])
 
 

@@ -1,6 +1,8 @@
 """A model before and after one effect was added or dropped, side by side on a terminal."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
@@ -8,6 +10,8 @@ from trialid.names import labels, wording
 from trialid.report.pictures.bars import foreseen_in_errors
 from trialid.report.terminal import steps
 from trialid.report.terminal.terminal import (
+    SCREEN,
+    FirstThatFits,
     Words,
     add_row,
     new_table,
@@ -23,12 +27,34 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-MOST: Final = 12
-"""Parameters shown: those that moved most, by their own error."""
+
+@dataclass(frozen=True)
+class Rows:
+    """How many rows the parts of a screen may have; errors by output or of all outputs alone."""
+
+    parameters: int
+    steps: int
+    by_output: bool
 
 
-def before_after(run: Result) -> "RenderableType":
+ROWS: Final = (
+    Rows(12, 8, by_output=True),
+    Rows(10, 5, by_output=True),
+    Rows(8, 4, by_output=True),
+    Rows(6, 3, by_output=True),
+    Rows(8, 3, by_output=False),
+    Rows(5, 2, by_output=False),
+    Rows(3, 1, by_output=False),
+)
+"""From what a short change shows in full to what a crowded one is left with."""
+
+
+def before_after(run: Result, lines: int = SCREEN[0] - 1) -> "RenderableType":
     """The change of a result, for a rich console; the page has all of it."""
+    return FirstThatFits([partial(_screen, run, rows) for rows in ROWS], lines)
+
+
+def _screen(run: Result, rows: Rows) -> "RenderableType":
     from rich.console import Group
     from rich.text import Text
 
@@ -37,22 +63,20 @@ def before_after(run: Result) -> "RenderableType":
     done = f"{change.effect or 'an effect'} {change.step or 'changed'}"
     title = f"{run.pipeline or 'trialid'}: {done}"
     return Group(
-        Words(title, 1, "bold"),
+        Words(title, 1, "dim"),
+        Words(_verdicts(change), 2, "bold"),
+        Words(run.verdict.sentence or run.verdict.kind or "No verdict.", 4, "bold"),
         Words(change.equation or "", 2, "dim"),
         Text(),
-        _errors(change),
+        _errors(change, rows),
+        Words(_foreseen(change), 3),
         Text(),
-        Words(_verdicts(change), 2),
-        Words(_foreseen(change), 4),
-        Text(),
-        *_parameters(change),
-        Text("\n".join(steps.rows(run.history)), no_wrap=True, overflow="ellipsis"),
-        Text(),
-        Words(run.verdict.sentence or run.verdict.kind or "No verdict.", 3, "bold"),
+        *_parameters(change, rows),
+        Text("\n".join(steps.rows(run.history, rows.steps)), no_wrap=True, overflow="ellipsis"),
     )
 
 
-def _errors(change: ChangePart) -> "Table":
+def _errors(change: ChangePart, rows: Rows) -> "Table":
     """Errors on fit and check trials by output, and what they are made of."""
     table = new_table("error, share of measured RMS", "", "before", "after", words=2)
     pairs = (
@@ -62,7 +86,7 @@ def _errors(change: ChangePart) -> "Table":
     for name, both, by_output in pairs:
         if both is not None:
             add_row(table, name, "all", *_pair(both), style="bold")
-            for output, each in by_output.items():
+            for output, each in by_output.items() if rows.by_output else ():
                 add_row(table, "", labels.symbol(output), *_pair(each))
     for name, key in (("noise part", "noise"), ("model part", "undermodelling")):
         add_row(table, name, "all", *_pair(getattr(change, key)))
@@ -77,7 +101,7 @@ def _pair(pair: Sequence[float | None] | None) -> tuple[str, str]:
 def _verdicts(change: ChangePart) -> str:
     """The verdict before and after, with what was named."""
     pairs = zip_longest(change.verdict, change.named)
-    words = "verdict: " + " -> ".join(
+    words = "Verdict: " + " -> ".join(
         f"{kind or wording.DASH} ({name})" if name else str(kind or wording.DASH)
         for kind, name in pairs
     )
@@ -107,11 +131,11 @@ def _foreseen(change: ChangePart) -> str:
     return words
 
 
-def _parameters(change: ChangePart) -> "Iterable[RenderableType]":
+def _parameters(change: ChangePart, rows: Rows) -> "Iterable[RenderableType]":
     """Before, after, and the move in standard errors of the fit before, next to the foreseen."""
     from rich.text import Text
 
-    shown = sorted(change.parameters, key=_distance, reverse=True)[:MOST]
+    shown = sorted(change.parameters, key=_distance, reverse=True)[: rows.parameters]
     if not shown:
         return
     table = new_table(
@@ -130,9 +154,7 @@ def _parameters(change: ChangePart) -> "Iterable[RenderableType]":
     yield table
     left = len(change.parameters) - len(shown)
     more = f"; {left} more parameters moved less" if left else ""
-    yield Words(
-        f"moved, and foreseen to move: in standard errors of the fit before{more}", 2, "dim"
-    )
+    yield Words(f"moved, foreseen: in standard errors (+-) of the fit before{more}", 2, "dim")
     yield Text()
 
 

@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import re
 import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -13,12 +14,16 @@ from trialid.ship.effect import SENSORS, Effect, Parameter, Steered
 
 if TYPE_CHECKING:
     from rich.table import Table
+    from rich.text import Text
 
 GIVEN = {"L", "rho", "g", "nabla", "U0", "U", "t", *ACCELERATIONS}
 """What every ship file, clock and simulation has, so that no record needs it."""
 
 NEEDS_WIDTH = 13
 """Room for what the record must hold; the longer ones are in an effect's own sheet."""
+
+WIDE = 120
+"""Columns from which on the list has room for equations."""
 
 KINDS = {
     "linear": "by its derivative where it is absent, all in one simulation",
@@ -47,19 +52,33 @@ def needs(effect: Effect) -> tuple[str, ...]:
     return tuple(dict.fromkeys(s for s in wanted if s and s not in GIVEN | own))
 
 
-def list_effects(effects: Mapping[str, Effect]) -> Sequence[Any]:
-    """One line an effect, by part of the ship; then what is left out, with the reason."""
+def list_effects(effects: Mapping[str, Effect], width: int) -> Sequence[Any]:
+    """One line an effect, by part of the ship; then what is left out, with the reason.
+
+    What each is; on `width` columns from `WIDE` on its equation too, and what it needs.
+    """
     from rich.text import Text
 
-    name = max(map(len, effects))
-    shown: list[Any] = [_lines((), name)]
+    room = max(map(len, effects))
+    lines = _with_equations if width >= WIDE else _with_meanings
+    shown: list[Any] = [lines((), room)]
     for title in dict.fromkeys(map(part, effects.values())):
         heading = Text(f"{title}: {_purpose(title)}".removesuffix(": "), style="bold")
-        shown += ["", heading, _lines([e for e in effects.values() if part(e) == title], name)]
-    return (*shown, "", _count(effects), "", "Left out, and why:", _reasons())
+        shown += ["", heading, lines([e for e in effects.values() if part(e) == title], room)]
+    return (*shown, "", _count(effects), "", "Left out, and why:", *_reasons())
 
 
-def _lines(group: Sequence[Effect], name_width: int) -> "Table":
+def _with_meanings(group: Sequence[Effect], name_width: int) -> "Text":
+    """Effects on a line each, a name never cut; without any the headings."""
+    from rich.text import Text
+
+    if not group:
+        return Text(f"{'effect':<{name_width}}  what it is", style="dim")
+    lines = "\n".join(f"{e.name:<{name_width}}  {meaning(e)}" for e in group)
+    return Text(lines, no_wrap=True, overflow="ellipsis")
+
+
+def _with_equations(group: Sequence[Effect], name_width: int) -> "Table":
     table = _table("effect", "equation", "scored", "needs")
     table.expand, table.show_header = True, not group
     widths = (name_width, None, max(map(len, KINDS)), NEEDS_WIDTH)
@@ -71,26 +90,46 @@ def _lines(group: Sequence[Effect], name_width: int) -> "Table":
     return table
 
 
+def meaning(effect: Effect) -> str:
+    """What an effect is, without its equation: what follows the colon outside of brackets.
+
+    >>> from trialid.effects import CATALOGUE
+    >>> meaning(CATALOGUE["righting_arm_cubic"])
+    'the righting arm hardens or softens'
+    """
+    depth = 0
+    for place, letter in enumerate(effect.equation):
+        depth += (letter == "(") - (letter == ")")
+        if depth == 0 and effect.equation.startswith(": ", place):
+            return effect.equation[place + 2 :].removesuffix(".")
+    return effect.equation.removesuffix(".")
+
+
 def _purpose(title: str) -> str:
-    """What a file of effects says of itself."""
+    """What a file of effects says of itself, to its first stop."""
     module = sys.modules.get(f"trialid.effects.{title.replace(' ', '_')}")
-    return (inspect.getdoc(module) or "").partition("\n")[0] if module else ""
+    said = (inspect.getdoc(module) or "").partition("\n")[0] if module else ""
+    return re.split("[:;]", said)[0].removesuffix(".")
 
 
 def _count(effects: Mapping[str, Effect]) -> str:
     kinds = [kind(e) for e in effects.values()]
     told = [f"  {kinds.count(k)} {k}: {meaning}" for k, meaning in KINDS.items()]
     said = f"they say {len(rows()) - len(left_out())} of {len(rows())} things that were considered"
-    more = "All about one: trialid effects NAME"
+    more = "All about one, its equation first: trialid effects NAME"
     return "\n".join([f"{len(effects)} effects; {said}. Scored", *told, more])
 
 
-def _reasons() -> "Table":
-    table = _table("what", "why")
-    table.columns[0].max_width = 26
-    for row in left_out():
-        table.add_row(row.what, row.why_not)
-    return table
+def _reasons() -> Sequence[Any]:
+    """What is left out, each with its reason on the lines below."""
+    from rich.padding import Padding
+    from rich.text import Text
+
+    return [
+        part
+        for row in left_out()
+        for part in (Text(row.what, style="bold"), Padding(Text(row.why_not), (0, 0, 0, 2)))
+    ]
 
 
 def sheet(effect: Effect) -> Sequence[Any]:

@@ -28,13 +28,13 @@ def line(step: StepRow) -> str:
     return _line(short_words(step), [percent(e) for e in errors], step.verdict or "")
 
 
-def rows(history: Sequence[StepRow]) -> Iterable[str]:
+def rows(history: Sequence[StepRow], most: int = SHOWN) -> Iterable[str]:
     """The last steps of a history, those apart that were only tried."""
     steps = [step for step in history if step.step != "proposed"]
     yield heading()
-    if len(steps) > SHOWN:
-        yield f"... {len(steps) - SHOWN} earlier steps"
-    yield from (line(step) for step in steps[-SHOWN:])
+    if len(steps) > most:
+        yield f"... {len(steps) - most} earlier steps"
+    yield from (line(step) for step in steps[-most:])
 
 
 def short_words(step: StepRow) -> str:

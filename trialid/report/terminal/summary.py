@@ -1,10 +1,14 @@
-"""The run on one screen of a terminal: at most 40 lines of 100 columns."""
+"""The run on one screen of a terminal: the verdict first, then what it rests on."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Final
 
 from trialid.names import labels, wording
 from trialid.report.terminal.terminal import (
+    SCREEN,
+    FirstThatFits,
     Words,
     add_row,
     new_table,
@@ -15,6 +19,7 @@ from trialid.report.terminal.terminal import (
     times,
 )
 from trialid.report.words import advice, doubt
+from trialid.result.change_rows import ChangePart
 from trialid.result.fit_rows import ParameterRow, Part, SplitPart
 from trialid.result.schema import Result
 
@@ -22,44 +27,93 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-TRIALS = 5
-PARAMETERS = 10
-WORST = 7
-CANDIDATES = 4
-FINDINGS = 3
-"""How many rows each part may have; together they keep the summary under 40 lines."""
+
+@dataclass(frozen=True)
+class Rows:
+    """How many rows the parts of a screen may have."""
+
+    trials: int
+    parameters: int
+    candidates: int
+    findings: int
 
 
-def summary(run: Result) -> "RenderableType":
-    """What a run found, for a rich console; all the rest is in the report page."""
+ROWS: Final = (
+    Rows(trials=8, parameters=12, candidates=4, findings=3),
+    Rows(trials=5, parameters=10, candidates=4, findings=3),
+    Rows(trials=5, parameters=7, candidates=4, findings=2),
+    Rows(trials=5, parameters=6, candidates=4, findings=1),
+    Rows(trials=5, parameters=5, candidates=3, findings=1),
+    Rows(trials=4, parameters=4, candidates=2, findings=1),
+    Rows(trials=3, parameters=3, candidates=1, findings=0),
+)
+"""From what a short run shows in full to what a crowded one is left with."""
+
+
+def summary(run: Result, file: str = "", lines: int = SCREEN[0] - 1) -> "RenderableType":
+    """What a run found, for a rich console; all the rest is in the report page.
+
+    `file` is the pipeline as the user named it, for the command to give next.
+    """
+    forms = [partial(_screen, run, file, rows) for rows in ROWS]
+    return FirstThatFits(forms, lines)
+
+
+def _screen(run: Result, file: str, rows: Rows) -> "RenderableType":
     from rich.console import Group
     from rich.text import Text
 
-    title = Words(run.pipeline or "trialid", 1, "bold")
+    title = Words(run.pipeline or "trialid", 1, "dim")
     if run.verdict.kind == "no fit":  # before everything: none of what follows may be relied on
-        return Group(*_verdict(run), title, _errors(run), Text(), *_parameters(run))
+        return Group(title, *_verdict(run), Text(), _errors(run, rows), *_parameters(run, rows))
     return Group(
         title,
-        _errors(run),
+        *_verdict(run),
+        *_next(run, file),
+        Text(),
+        _errors(run, rows),
         Words(_made_of(run), 2),
         *_band(run),
-        *_where(run),
-        Text(),
-        *_parameters(run),
-        *_ranking(run),
-        *_verdict(run),
-        Words(_change(run), 2, "bold"),
+        *_ranking(run, rows),
+        *_parameters(run, rows),
+        *_where(run, rows),
     )
 
 
-def _errors(run: Result) -> "Table":
+def _verdict(run: Result) -> "Iterable[RenderableType]":
+    verdict = run.verdict
+    styles = {"no fit": "bold red", "missing": "bold yellow", "nothing missing": "bold green"}
+    sentence = verdict.sentence or verdict.kind or "No verdict."
+    yield Words(sentence, 4, styles.get(verdict.kind or "", "bold"))
+    if run.fit.converged is False and verdict.kind != "no fit":
+        yield Words("The fit did not converge: rely on nothing here before it does.", 1, "bold red")
+
+
+def _next(run: Result, file: str) -> "Iterable[RenderableType]":
+    """What to do about the verdict, and the trial that would tell more."""
+    verdict = run.verdict
+    if file and verdict.kind == "missing" and verdict.effect:
+        yield Words(f"Next: {advice.command_on(file, 'add', verdict.effect)}", 2)
+    if file and verdict.kind == "not in catalogue":
+        yield Words(
+            f"Next: {advice.command_on(file, 'run', '--draft', 'my_effect.py')} writes the force "
+            "that is missing, to be edited",
+            2,
+        )
+    if run.before_after is not None and verdict.kind != "missing":
+        yield Words(_change(run.before_after), 2)
+    if verdict.next_trial and verdict.next_trial.sentence:
+        yield Words(f"Next trial: {verdict.next_trial.sentence}", 3)
+
+
+def _errors(run: Result, rows: Rows) -> "Table":
     """Error by trial and output; what was held out is marked."""
     fit = run.fit
     outputs = list(fit.eps_rmsn_by_output)[:6]
     letters = map(labels.symbol, outputs)
     table = new_table("error, share of measured RMS", "use", *letters, "all", words=2)
     trials = run.trials
-    shown = trials if len(trials) <= TRIALS else trials[: TRIALS - 1]
+    shown = trials if len(trials) <= rows.trials else trials[: rows.trials - 1]
     for trial in shown:
         use = "held out" if trial.use == "check" else "fitted"
         add_row(table, trial.name, use, *percents(map(trial.eps_rmsn.get, outputs)), "")
@@ -67,9 +121,10 @@ def _errors(run: Result) -> "Table":
         add_row(table, f"... and {len(trials) - len(shown)} more trials")
     by_output = percents(fit.eps_rmsn_by_output[name] for name in outputs)
     add_row(table, "all fitted trials", "", *by_output, percent(fit.eps_rmsn), style="bold")
-    if fit.eps_rmsn_check is not None:
-        blanks = [""] * len(outputs)
-        add_row(table, "all held-out trials", "", *blanks, percent(fit.eps_rmsn_check))
+    check = percent(fit.eps_rmsn_check)
+    if not any(trial.use == "check" for trial in trials):
+        check = "none"
+    add_row(table, "all held-out trials", "", *[""] * len(outputs), check)
     return table
 
 
@@ -102,11 +157,11 @@ def _shares(shares: list[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _where(run: Result) -> "Iterable[RenderableType]":
-    """The largest findings of where the model fails, a line each; the page has them in full."""
-    for finding in run.where[:FINDINGS]:
-        if finding.sentence:
-            yield Words(f"fails: {finding.sentence}", 1)
+def _where(run: Result, rows: Rows) -> "Iterable[RenderableType]":
+    """The largest findings of where the model fails; what the sign is like is on the page."""
+    said = [finding.sentence for finding in run.where if finding.sentence]
+    for sentence in said[: rows.findings]:
+        yield Words(f"Fails: {sentence.partition(';')[0]}", 2)
 
 
 def _part(split: SplitPart, part: Part) -> str:
@@ -114,36 +169,36 @@ def _part(split: SplitPart, part: Part) -> str:
     return percent(getattr(split, part)) + (f" ({ends})" if ends else "")
 
 
-def _parameters(run: Result) -> "Iterable[RenderableType]":
+def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     """Every physical parameter, or the least certain ones when there are many."""
     from rich.text import Text
 
-    rows = run.physical
-    if not rows:
+    found = run.physical
+    if not found:
         return
-    short = len(rows) > PARAMETERS
-    shown = sorted(rows, key=_doubt, reverse=True)[:WORST] if short else rows
-    table = new_table(
-        "parameter", "unit", "value", "+-", "likely from", "to", "off by", "Eq. 14", words=2
-    )
+    yield Text()
+    short = len(found) > rows.parameters
+    shown = sorted(found, key=_doubt, reverse=True)[: rows.parameters] if short else found
+    headings = ("parameter", "unit", "value", "+-", "likely from", "to", "may be off")
+    table = new_table(*headings, words=2)
     for row in shown:
         unit, factor = wording.shown_unit(row.unit)
         value, error = times(row.value, factor), times(row.standard_error, factor)
         ends = (number(times(end, factor), 3) for end in row.likely or (None, None))
         cells = (unit, number(value, 5), number(error, 2), *ends)
-        add_row(table, row.name, *cells, *percents((row.may_be_off, row.relative_error)))
+        add_row(table, row.name, *cells, percent(row.may_be_off))
     yield table
     if short:
-        yield Text(f"... and {len(rows) - len(shown)} more, all better known", style="dim")
-    if said := f"{doubt.doubtful(rows)} {advice.widest_range(run)}".strip():
-        yield Words(said, 2)
+        yield Text(f"... and {len(found) - len(shown)} more, all better known", style="dim")
+    if said := f"{doubt.doubtful(found)} {advice.widest_range(run)}".strip():
+        yield Words(said, 3)
 
 
 def _doubt(row: ParameterRow) -> float:
     return float("inf") if row.may_be_off is None else row.may_be_off
 
 
-def _ranking(run: Result) -> "Iterable[RenderableType]":
+def _ranking(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     from rich.text import Text
 
     if not run.missing:
@@ -151,7 +206,7 @@ def _ranking(run: Result) -> "Iterable[RenderableType]":
     yield Text()
     headings = ("effect tried", "verdict", "would leave", "refitted", "held out", "p")
     table = new_table(*headings, words=2)
-    for row in run.missing[:CANDIDATES]:
+    for row in run.missing[: rows.candidates]:
         errors = (row.eps_rmsn_predicted, row.eps_rmsn_refitted, row.eps_rmsn_check)
         effect = f"{row.rank or ''} {row.effect}".strip()
         p_value = number(row.p_value, 2)
@@ -159,25 +214,8 @@ def _ranking(run: Result) -> "Iterable[RenderableType]":
     yield table
 
 
-def _verdict(run: Result) -> "Iterable[RenderableType]":
-    from rich.text import Text
-
-    verdict = run.verdict
-    styles = {"no fit": "bold red", "missing": "bold yellow", "nothing missing": "bold green"}
-    yield Text()
-    sentence = verdict.sentence or verdict.kind or "No verdict."
-    yield Words(sentence, 3, styles.get(verdict.kind or "", "bold"))
-    if verdict.next_trial and verdict.next_trial.sentence:
-        yield Words(f"Next: {verdict.next_trial.sentence}", 2)
-
-
-def _change(run: Result) -> str:
+def _change(pair: ChangePart) -> str:
     """The error before and after, fitted and held out."""
-    pair = run.before_after
-    if pair is None and run.verdict.kind == "not in catalogue":
-        return "No effect is proposed; --draft FILE writes the force that is missing, to be edited."
-    if pair is None:
-        return "No effect is proposed."
     check = pair.eps_rmsn_check
     held_out = f"held out {_pair(check)}" if check else "nothing held out"
     return f"With {pair.effect}: fitted {_pair(pair.eps_rmsn)}, {held_out}"

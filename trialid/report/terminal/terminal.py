@@ -1,23 +1,27 @@
 """Tables and words for a terminal, as wide as it is."""
 
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from trialid.names import wording
 
 if TYPE_CHECKING:
-    from rich.console import Console, ConsoleOptions, RenderResult
+    from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
     from rich.table import Table
+    from rich.text import Text
 
-WIDTH = 98
+WIDTH: Final = 98
 """Columns beyond which words are hard to read."""
+
+SCREEN: Final = (39, 80)
+"""Lines and columns that the first screen may take: a terminal of 40 less the prompt below."""
 
 
 @dataclass(frozen=True)
 class Words:
-    """A sentence in so many lines of the full width, and in more on a narrower terminal."""
+    """A sentence in so many lines of `SCREEN`, and in more on a narrower terminal."""
 
     text: str
     lines: int
@@ -28,32 +32,60 @@ class Words:
         from rich.text import Text
 
         width = min(options.max_width, WIDTH)
-        lines = -(-self.lines * WIDTH // width)
+        lines = max(self.lines, -(-self.lines * SCREEN[1] // width))
         yield Text(cut(self.text, lines, width), style=self.style)
 
 
+@dataclass(frozen=True)
+class FirstThatFits:
+    """The first of several forms of the same, longest first, that takes no more than so many lines.
+
+    The last where none does.
+    """
+
+    forms: Sequence[Callable[[], "RenderableType"]]
+    lines: int
+
+    def __rich_console__(self, console: "Console", options: "ConsoleOptions") -> "RenderResult":
+        """Try one form after the other at the width of this terminal."""
+        for form in self.forms[:-1]:
+            made = form()
+            if len(console.render_lines(made, options, pad=False)) <= self.lines:
+                yield made
+                return
+        yield self.forms[-1]()
+
+
 def new_table(*headings: str, words: int) -> "Table":
-    """A table without rules: so many columns of words, the rest of numbers."""
+    """A table without rules: so many columns of words, which give way, the rest of numbers."""
     from rich.table import Table
-    from rich.text import Text
 
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
     for place, heading in enumerate(headings):
         side: Literal["left", "right"] = "left" if place < words else "right"
-        table.add_column(Text(heading), justify=side, no_wrap=True, overflow="ellipsis")
+        # a column that may wrap gives way first; the cells cut their words and never wrap
+        table.add_column(_uncut(heading), justify=side, no_wrap=place >= words, overflow="ellipsis")
     return table
 
 
 def add_row(table: "Table", *cells: str, style: str | None = None) -> None:
     """One more row."""
+    table.add_row(*map(_uncut, cells), style=style)
+
+
+def _uncut(cell: str) -> "Text":
+    """Words that stay on one line."""
     from rich.text import Text
 
-    table.add_row(*(Text(cell) for cell in cells), style=style)
+    return Text(cell, no_wrap=True, overflow="ellipsis")
 
 
 def cut(words: str, lines: int, width: int = WIDTH) -> str:
     """Words on so many lines; the page has the rest."""
-    return "\n".join(textwrap.wrap(words, width, max_lines=lines, placeholder=" ..."))
+    wrapped = textwrap.wrap(
+        words, width, max_lines=lines, placeholder=" ...", break_on_hyphens=False
+    )
+    return "\n".join(wrapped)
 
 
 def percents(values: Iterable[float | None]) -> list[str]:

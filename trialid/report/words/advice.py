@@ -52,7 +52,15 @@ def command(run: Result, verb: str, *words: str) -> str:
     >>> command(Result(file="my trial.toml"), "add", "static_list")
     "trialid add 'my trial.toml' static_list"
     """
-    file = run.file or "PIPELINE"
+    return command_on(run.file or "PIPELINE", verb, *words)
+
+
+def command_on(file: str, verb: str, *words: str) -> str:
+    """A command of trialid on a pipeline file.
+
+    >>> command_on("pipelines/a.toml", "drop", "static_list")
+    'trialid drop pipelines/a.toml static_list'
+    """
     return shlex.join(["trialid", verb, file, *words])
 
 

@@ -73,7 +73,7 @@ float64 z
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Imu:
     """Motions as an inertial unit logs them, in the unit's own axes; angles [rad], rates [rad/s].
 
@@ -121,7 +121,7 @@ def write_ros2_mcap(
             schema = imu if "header" in message else plain
             log = stamp + received_after
             writer.write_message(topic, schema, message, log_time=log, publish_time=log)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
 
 
 def write_json_mcap(
@@ -136,7 +136,7 @@ def write_json_mcap(
         for stamp, topic, value in _in_order(channels):
             log = stamp + received_after
             writer.add_message(topics[topic], log, _json(stamp, value), log)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
 
 
 def write_csv(

@@ -2,43 +2,39 @@
 
 The first line of a fence says what is done with it: `sh` is run by a shell in which `trialid` is
 this one, `python` is executed, the blocks of a page one after another in one namespace, `toml` is a
-pipeline, `toml part` a part of one, `toml ship` and `toml design` the other files; `text` is only
-shown.
+pipeline, `toml part` a part of one, `toml ship` and `toml design` the other files; `text printed`
+is what the `sh` before it prints, `text` is only shown.
 """
 
-import os
 import re
 import shutil
-import stat
-import subprocess
-import sys
 import tomllib
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
+from printed import (
+    DOCUMENTS,
+    PRINTED,
+    SAMPLE,
+    Block,
+    blocks,
+    sample_project,
+    shell,
+    to_run,
+    told,
+)
 
 import trialid
 from trialid import effects, pipeline_file
-from trialid.guide import TOPICS
 from trialid.pipeline_file.design_file import load_design
+from trialid.report.terminal.terminal import SCREEN
 from trialid.ship.particulars import read_ship
 
-ROOT = Path(__file__).parent.parent
-DOCUMENTS = {
-    "README": ROOT / "README.md",
-    **{topic: ROOT / "trialid" / "guide" / f"{topic}.md" for topic in TOPICS},
-}
-KINDS = (
-    "sh", "python", "python front-door", "toml", "toml part", "toml ship", "toml design", "text",
-)  # fmt: skip
-LONGEST = 300
-"""A page whose commands need more hangs [s]."""
-
-SAMPLE = "trialid run pipelines/hidden_effect.toml"
-"""What is run once, and not again by every page that begins with it."""
+FILES = ("toml", "toml part", "toml ship", "toml design")
+KINDS = ("sh", "python", "python front-door", "text", PRINTED, *FILES)
+ONE_SCREEN = re.compile(r"trialid (?:run|add|drop|design) [^\n]*\n?")
+"""A block of one command whose answer is one screen."""
 
 FRONT_DOOR = hasattr(trialid, "run")
 
@@ -58,22 +54,6 @@ free = ["Nr"]
 outputs = ["r"]
 """
 """What a part of a pipeline is put into."""
-
-
-@dataclass(frozen=True)
-class Block:
-    """One fence of a document: what kind it says it is, its text, the line it begins on."""
-
-    kind: str
-    text: str
-    line: int
-
-
-def blocks(document: str) -> Iterator[Block]:
-    """Every fence of a document, in order."""
-    text = DOCUMENTS[document].read_text(encoding="utf-8")
-    for found in re.finditer(r"^```([^\n]*)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
-        yield Block(found[1], found[2], text.count("\n", 0, found.start()) + 1)
 
 
 def of_kind(*kinds: str) -> list[Any]:
@@ -106,50 +86,22 @@ def test_every_block_says_what_it_is(document: str) -> None:
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Samples and pipelines, a `trialid` of this interpreter, and the run of the sample, once."""
     folder = tmp_path_factory.mktemp("manual") / "project"
-    for name in ("pipelines", "sample_data"):
-        shutil.copytree(ROOT / name, folder / name)
-    shim = folder / "bin" / "trialid"
-    shim.parent.mkdir()
-    shim.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m trialid "$@"\n', encoding="utf-8")
-    shim.chmod(shim.stat().st_mode | stat.S_IXUSR)
-    told = shell(folder, SAMPLE)
-    assert "righting_arm_cubic is missing" in " ".join(told.split())
+    printed = sample_project(folder)
+    (folder / "printed.txt").write_text(printed, encoding="utf-8")
+    assert "righting_arm_cubic is missing" in " ".join(printed.split())
     return folder
+
+
+@pytest.fixture(scope="module")
+def sample(project: Path) -> str:
+    """What the run of the sample printed."""
+    return (project / "printed.txt").read_text(encoding="utf-8")
 
 
 @pytest.fixture
 def copy(project: Path, tmp_path: Path) -> Path:
     """The same for one page, which may write into it."""
     return Path(shutil.copytree(project, tmp_path / "project"))
-
-
-def shell(folder: Path, commands: str) -> str:
-    """What commands print; the first that fails is shown with all it says."""
-    paths = f"{folder / 'bin'}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", commands],
-        cwd=folder,
-        env={**os.environ, "PATH": paths, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=LONGEST,
-    )
-    assert done.returncode == 0, f"{commands}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
-    return done.stdout
-
-
-def to_run(text: str) -> str:
-    """A block without what installs, and without what was run for all pages already.
-
-    A line that installs ends with what is to be run; the tests are those that are running.
-    """
-    lines = []
-    for line in text.replace("\\\n", " ").splitlines():
-        last = line.rpartition("&&")[2].strip().removeprefix(".venv/bin/")
-        if last not in ("pytest", SAMPLE):
-            lines.append(last if "pip install" in line else line)
-    return "\n".join(lines)
 
 
 def in_turn(documents: list[str]) -> list[Any]:
@@ -161,10 +113,39 @@ def in_turn(documents: list[str]) -> list[Any]:
 
 
 @pytest.mark.parametrize("document", in_turn(with_any("sh")))
-def test_its_commands_run(document: str, copy: Path) -> None:
+def test_its_commands_run_and_print_what_is_shown(document: str, copy: Path, sample: str) -> None:
+    last = ""
     for block in blocks(document):
         if block.kind == "sh":
-            shell(copy, to_run(block.text))
+            last = told(copy, block.text, sample)
+            if ONE_SCREEN.fullmatch(block.text):
+                assert_one_screen(last)
+        if block.kind == PRINTED:
+            where = f"{document}, line {block.line}"
+            assert block.text == last, f"{where}: stale; run: python tests/manual/printed.py"
+
+
+def test_the_readme_shows_the_first_screen_whole(sample: str) -> None:
+    """80 columns of 40 lines, one of them for the prompt, and it is the one that comes out."""
+    assert [block.text for block in blocks("README") if block.kind == PRINTED] == [sample]
+    assert_one_screen(sample)
+    lines = sample.splitlines()
+    assert lines[1].startswith("righting_arm_cubic is missing: ")
+    assert lines[-1] == "Report: runs/hidden_effect/report.html"
+
+
+def assert_one_screen(printed: str) -> None:
+    lines = printed.splitlines()
+    assert len(lines) <= SCREEN[0] < 40  # and the prompt
+    assert max(map(len, lines)) <= SCREEN[1]
+
+
+def test_commands_of_one_screen_are_found() -> None:
+    """A run, a change, the loop and a design are among what the documents show."""
+    texts = [b.text.strip() for d in DOCUMENTS for b in blocks(d) if b.kind == "sh"]
+    found = [text for text in texts if ONE_SCREEN.fullmatch(text)]
+    words = {word for text in found for word in text.split()}
+    assert {"run", "add", "drop", "design", "--auto"} <= words
 
 
 def test_what_is_left_of_a_block() -> None:
