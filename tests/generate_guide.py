@@ -23,7 +23,9 @@ from trialid.design.kinds import KINDS
 from trialid.guide import TOPICS
 from trialid.names.quantities import MASS_PARAMETERS, PARTICULARS, SIGNALS
 from trialid.pipeline_file.design_file import DesignFile
-from trialid.pipeline_file.form import Described, Pipeline, Section
+from trialid.pipeline_file.form import Described, Pipeline
+from trialid.pipeline_file.prior_section import Word
+from trialid.pipeline_file.section import Section
 from trialid.ship import particulars
 from trialid.ship.prime import ARMS
 
@@ -161,7 +163,8 @@ def _kind(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     if origin is tuple:
         return _list(inner)
     if isinstance(origin, type) and issubclass(origin, Mapping):
-        return f"{_kind(inner[1])} for each name"
+        words = [f'`"{each.text}"`' for each in metadata if isinstance(each, Word)]
+        return _alternatives([f"{_kind(inner[1])} for each name", *words])
     return _plain(annotation) + _limits(metadata)
 
 

@@ -14,7 +14,7 @@ from trialid.report.terminal.terminal import (
     plain,
     times,
 )
-from trialid.report.words import advice, doubt
+from trialid.report.words import advice, beforehand, doubt
 from trialid.result.fit_rows import ParameterRow, Part, SplitPart
 from trialid.result.schema import Result
 
@@ -137,6 +137,8 @@ def _parameters(run: Result) -> "Iterable[RenderableType]":
         yield Text(f"... and {len(rows) - len(shown)} more, all better known", style="dim")
     if said := f"{doubt.doubtful(rows)} {advice.widest_range(run)}".strip():
         yield Words(said, 2)
+    if known := beforehand.prior_words(rows):
+        yield Words(plain(known), 3)
 
 
 def _doubt(row: ParameterRow) -> float:
