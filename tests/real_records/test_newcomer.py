@@ -113,8 +113,10 @@ def true_GM(model, seconds):
 
 @pytest.mark.parametrize("case", CASES)
 def test_as_begun_the_fit_is_sound_and_no_sensor_is_absurd(case, tmp_path):
-    """Ours: 18.5, 10.0, 21.8, 27.7, 19.0, 22.3 %; with the S-175 scaled to the length 18.9, 10.0,
-    22.2, 27.9, 19.1, 22.5 %. GM 1.26, 1.35, 0.90 of 1.51 m, 0.98, 1.34 and 1.00 of 1.40 m.
+    """Ours: 18.5, 10.0, 21.8, 27.7, 19.0, 22.3 %; 18.9, 10.0, 22.2, 27.9, 19.1, 22.5 % from S-175.
+
+    S-175 is the container ship scaled to the length. GM 1.26, 1.35, 0.90 where 1.51 m is true, and
+    0.98, 1.34, 1.00 where 1.40 m is.
     """
     fit = fitted(begun(tmp_path, case))
     assert fit.converged

@@ -1,6 +1,7 @@
 """Every number of a ship file from particulars, and how far each may be off."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Final
 
 from trialid.errors import ShipError
@@ -22,6 +23,10 @@ SOURCES: Final = (
     "Clarke, Gedling & Hine (1983), Kijima et al. (1990), Yoshimura & Masumoto (2012), Fujii & "
     "Tsuda (1961), 2008 IS Code"
 )
+INERTIAS: Final = {"v": ("m", "Yvdot"), "p": ("I_xx", "Kpdot"), "r": ("I_zz", "Nrdot")}
+COUPLINGS: Final = {"p": ("Ypdot", "Kvdot"), "r": ("Yrdot", "Nvdot")}
+HOLDS: Final = {"p": 0.5, "r": 0.3}
+"""Share of the product of two inertias that the square of their coupling may reach."""
 ALONE: Final = "PLACEHOLDER"
 """How the source of a ship begins whose hull is a guess: see `identification.file_of_ship`."""
 
@@ -165,9 +170,7 @@ def _numbers(form: HullForm) -> Estimates:
     }
     steering = rudder_and_propeller.rudder(form, Xuu, screw)
     return {
-        **rigid,
-        **roll_moments.inertia(form, masses["Yvdot"]),
-        **masses,
+        **_invertible({**rigid, **roll_moments.inertia(form, masses["Yvdot"]), **masses}),
         **sideways,
         **roll_moments.moments(form, {**sideways, "Ydelta": steering["Ydelta"]}),
         **roll_moments.restoring_moment(form),
@@ -177,6 +180,22 @@ def _numbers(form: HullForm) -> Estimates:
         **sway_yaw.surge(form, masses["Yvdot"]),
         **screw,
     }
+
+
+def _invertible(masses: Estimates) -> Estimates:
+    """Masses with the couplings of sway held within what keeps every acceleration finite.
+
+    Only of hulls as deep as a keel boat's are they that large: their squares take 0.02 and 0.2 of
+    the product of the inertias of S-175.
+    """
+    own = {s: masses[i].value - masses[a].value for s, (i, a) in INERTIAS.items()}
+    kept = dict(masses)
+    for state, names in COUPLINGS.items():
+        most = math.sqrt(HOLDS[state] * own["v"] * own[state])
+        for name in names:
+            e = masses[name]
+            kept[name] = replace(e, value=max(-most, min(most, e.value)))
+    return kept
 
 
 def _widened(given: Given, taken: tuple[str, ...], numbers: Estimates) -> Estimates:

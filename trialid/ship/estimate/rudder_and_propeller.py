@@ -36,7 +36,7 @@ def resistance(form: HullForm) -> Estimate:
     wetted = 1.7 * form.L * form.T + form.volume / form.T
     reynolds = max(form.U * form.L / VISCOSITY, 1e5)
     friction = 0.075 / (math.log10(reynolds) - 2.0) ** 2
-    share = joint_share(0.3 + 5.0 * max(form.froude - CALM, 0.0))
+    share = joint_share(0.4 + 10.0 * max(form.froude - CALM, 0.0))
     total = (FORM * friction + ROUGH) * wetted / form.L**2
     return Estimate(-total, share, "ITTC 1957 friction, form 1.2, 0.0004 for roughness; no waves")
 
@@ -47,8 +47,8 @@ def propeller(form: HullForm) -> Estimates:
     series = "Wageningen B, pitch ratio 0.7 to 1.1"
     return {
         "D_P": Estimate(form.propeller, 0.02, "as stated, or by D/T"),
-        "KT0": Estimate(0.40, 0.25, series),
-        "KT1": Estimate(-0.40, 0.25, series),
+        "KT0": Estimate(0.40, 0.3, series),
+        "KT1": Estimate(-0.40, 0.3, series),
         "w_P": Estimate(wake, 0.3, "0.5 C_B - 0.05, Taylor (1933), single screw"),
         "t_P": Estimate(0.6 * wake, 0.3, "0.6 w_P, Schneekluth & Bertram (1998)"),
         "tau_P": Estimate(1.09, 0.5, S175),
@@ -96,7 +96,7 @@ def _in_the_race(form: HullForm, a_H: float, x_H: float, c_RX: float) -> Estimat
         "k_R": Estimate(KAPPA, 0.15, MMG),
         "eps_R": Estimate(EPSILON, 0.1, MMG),
         "x_R": Estimate(-0.5, 0.03, "at the aft perpendicular"),
-        "gamma_R": Estimate(0.3, 0.7, mean),
+        "gamma_R": Estimate(0.3, 0.8, mean),
         "l_R": Estimate(-0.22, 0.5, mean),
         "l_Rrrr": Estimate(0.0, 0.0, f"none in {MMG}"),
         "l_Rrrv": Estimate(0.0, 0.0, f"none in {MMG}"),

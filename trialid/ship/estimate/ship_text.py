@@ -7,6 +7,7 @@ from typing import Final
 from trialid.ship.estimate.all_numbers import Estimated
 from trialid.ship.estimate.hull_form import typical
 from trialid.ship.estimate.particulars_given import SEA, known_names, told_of
+from trialid.ship.estimate.sway_yaw import WIDEST
 
 WIDTH: Final = 100
 HEAD: Final = """\
@@ -68,6 +69,12 @@ def assumption_words(made: Estimated) -> Iterator[str]:
         ratio = ratios[name]
         size = f" {ratio.value:.3g}" if ratio.value else ""
         yield f"ASSUMED: {ratio.what}{size} +-{100.0 * ratio.share:.0f} % ({ratio.source})"
+    wide = made.form.B / made.form.L
+    if wide > WIDEST:
+        yield (
+            f"OUTSIDE: beam over length {wide:.2g}; Clarke's hulls end at {WIDEST:g}, what is "
+            "written is of that, with more scatter"
+        )
 
 
 def _particulars(made: Estimated, speed_words: str) -> Iterator[str]:

@@ -42,6 +42,17 @@ TURN_SWAY: Final = 0.30
 drift up to 0.3 and r L / U up to 0.8, an even hull."""
 
 
+WIDEST: Final = 0.25
+"""Beam over length of the widest hulls behind Clarke's formulas; beyond, added masses turn negative
+and what is written is that of the edge."""
+
+
+def _clarke(form: HullForm, bracket: float, share: float) -> Estimate:
+    """-pi (T/L)^2 times a bracket; outside of the hulls behind it less is known."""
+    beyond = max(form.B / form.L / WIDEST - 1.0, 0.0)
+    return Estimate(-math.pi * (form.T / form.L) ** 2 * bracket, joint_share(share, beyond), CGH83)
+
+
 def drag_across(beam: float, draught: float) -> float:
     """C_D of the flow across the hull, by half beam over draught.
 
@@ -59,27 +70,25 @@ def drag_across(beam: float, draught: float) -> float:
 
 def added_mass(form: HullForm) -> Estimates:
     """Added masses in sway and yaw, and 5 % of the mass in surge."""
-    L, B, T = form.L, form.B, form.T
-    plate = -math.pi * (T / L) ** 2
-    full, wide = form.block * B / T, B / L
+    deep, wide = form.B / form.T, min(form.B / form.L, WIDEST)
+    full = form.block * deep
     return {
         "Xudot": Estimate(-0.05 * form.m, 0.5, "5 % of m, van Berlekom & Goddard (1972)"),
-        "Yvdot": Estimate(plate * (1.0 + 0.16 * full - 5.1 * wide**2), 0.2, CGH83),
-        "Yrdot": Estimate(plate * (0.67 * wide - 0.0033 * (B / T) ** 2), 0.6, CGH83),
-        "Nvdot": Estimate(plate * (1.1 * wide - 0.041 * B / T), 1.3, CGH83),
-        "Nrdot": Estimate(plate * (1.0 / 12.0 + 0.017 * full - 0.33 * wide), 0.2, CGH83),
+        "Yvdot": _clarke(form, 1.0 + 0.16 * full - 5.1 * wide**2, 0.2),
+        "Yrdot": _clarke(form, 0.67 * wide - 0.0033 * deep**2, 0.6),
+        "Nvdot": _clarke(form, 1.1 * wide - 0.041 * deep, 1.3),
+        "Nrdot": _clarke(form, 1.0 / 12.0 + 0.017 * full - 0.33 * wide, 0.2),
     }
 
 
 def linear(form: HullForm) -> Estimates:
     """Yv, Yr, Nv, Nr; what the water that turns with the hull does is inside Yr."""
-    L, B, T = form.L, form.B, form.T
-    plate = -math.pi * (T / L) ** 2
+    deep, wide = form.B / form.T, min(form.B / form.L, WIDEST)
     return {
-        "Yv": Estimate(plate * (1.0 + 0.40 * form.block * B / T), 0.3, CGH83),
-        "Yr": Estimate(plate * (-0.5 + 2.2 * B / L - 0.080 * B / T), 0.3, CGH83),
-        "Nv": Estimate(plate * (0.5 + 2.4 * T / L), 0.45, CGH83),
-        "Nr": Estimate(plate * (0.25 + 0.039 * B / T - 0.56 * B / L), 0.35, CGH83),
+        "Yv": _clarke(form, 1.0 + 0.40 * form.block * deep, 0.3),
+        "Yr": _clarke(form, -0.5 + 2.2 * wide - 0.080 * deep, 0.3),
+        "Nv": _clarke(form, 0.5 + 2.4 * form.T / form.L, 0.45),
+        "Nr": _clarke(form, 0.25 + 0.039 * deep - 0.56 * wide, 0.35),
         "Yurm": Estimate(0.0, 0.0, "inside Yr, as tests at a rotating arm have it"),
     }
 
@@ -93,7 +102,7 @@ def quadratic(form: HullForm) -> Estimates:
     turn = 0.5 * full * form.T / form.B - 0.05
     return {
         "C_D": Estimate(C_D, 0.35, "Hoerner (1965), by B / 2T"),
-        "Yvav": Estimate(-slim * (2.5 * k_T + 0.5), 0.6, KIJIMA),
+        "Yvav": Estimate(-slim * (2.5 * k_T + 0.5), 0.7, KIJIMA),
         "Yvar": Estimate(-TURN_SWAY * across, 0.6, CROSS),
         "Yrav": Estimate(-0.0026, 1.5, NAVAL),
         "Yrar": Estimate(slim * (0.343 * full * form.T / form.B - 0.07), 2.0, KIJIMA),
@@ -106,17 +115,17 @@ def quadratic(form: HullForm) -> Estimates:
 
 def cubic(form: HullForm) -> Estimates:
     """Third-order terms, for a model that has these and not the modulus ones."""
-    slim, full, wide = form.T / form.L, form.block, form.B / form.L
+    slim, full, wide = form.T / form.L, form.block, min(form.B / form.L, WIDEST)
     turn = 0.5 * full * form.T / form.B - 0.05
     return {
         "Yvvv": Estimate(-slim * (0.185 / wide + 0.48), 0.3, YM12),
         "Yvvr": Estimate(slim * 0.35, 1.0, SETS),
         "Yvrr": Estimate(-slim * 5.95 * (1.0 - full) * form.T / form.B, 0.3, KIJIMA),
         "Yrrr": Estimate(slim * 0.10, 1.0, SETS),
-        "Nvvv": Estimate(slim * (0.69 * full - 0.66), 1.5, YM12),
+        "Nvvv": Estimate(slim * (0.69 * full - 0.66), 1.6, YM12),
         "Nvvr": Estimate(slim * (1.55 * full * wide - 0.76), 0.6, YM12),
-        "Nvrr": Estimate(slim * turn, 2.0, KIJIMA),
-        "Nrrr": Estimate(slim * (0.25 * full * wide - 0.056), 0.6, YM12),
+        "Nvrr": Estimate(slim * turn, 3.0, KIJIMA),
+        "Nrrr": Estimate(slim * min(0.25 * full * wide - 0.056, -0.005), 0.7, YM12),
     }
 
 
@@ -143,6 +152,6 @@ def surge(form: HullForm, Yvdot: Estimate) -> Estimates:
     return {
         "Xvrm": Estimate(-Yvdot.value, Yvdot.share, "-Yvdot"),
         "Xvr": Estimate(Xvr, joint_share(0.3, Yvdot.share * Yvdot.value / Xvr), YM12),
-        "Xvv": Estimate(slim * (1.15 * wide - 0.18), 1.0, YM12),
-        "Xrr": Estimate(slim * (0.008 - 0.085 * wide), 2.0, YM12),
+        "Xvv": Estimate(slim * (1.15 * wide - 0.18), 1.5, YM12),
+        "Xrr": Estimate(slim * 0.008, 2.5, f"{YM12}, of a slender hull"),
     }
