@@ -1,5 +1,6 @@
 """The text of a ship file that was made of particulars: a comment for each number."""
 
+import json
 import textwrap
 from collections.abc import Iterator
 from typing import Final
@@ -41,7 +42,7 @@ def ship_text(made: Estimated, speed_words: str = "as stated") -> str:
     lines = [
         *_wrapped(HEAD.format(told=told_of(made.given))),
         *(f"# {words}" for words in assumption_words(made)),
-        f'name = "{_escaped(ship.name)}"',
+        f"name = {_quoted(ship.name)}",
         f'source = "{ship.source}"',
         f'notes = "{ship.notes}"',
         'system = "prime"',
@@ -101,8 +102,9 @@ def _number(made: Estimated, name: str) -> str:
     return f"{name} = {found.value:g}  # {found.source}{scatter}"
 
 
-def _escaped(text: str) -> str:
-    return text.replace("\\", "\\\\").replace('"', '\\"')
+def _quoted(text: str) -> str:
+    """A text as TOML has it, on one line."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _wrapped(head: str) -> Iterator[str]:
