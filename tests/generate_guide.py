@@ -19,11 +19,17 @@ from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+sys.path.insert(0, str(Path(__file__).resolve().parent / "ship" / "estimate"))
+
+from guide_of_estimates import ship_estimates
+
 from trialid.design.kinds import KINDS
 from trialid.guide import TOPICS
 from trialid.names.quantities import MASS_PARAMETERS, PARTICULARS, SIGNALS
 from trialid.pipeline_file.design_file import DesignFile
-from trialid.pipeline_file.form import Described, Pipeline, Section
+from trialid.pipeline_file.form import Described, Pipeline
+from trialid.pipeline_file.prior_section import Word
+from trialid.pipeline_file.section import Section
 from trialid.ship import particulars
 from trialid.ship.prime import ARMS
 
@@ -161,7 +167,8 @@ def _kind(annotation: Any, metadata: Iterable[Any] = ()) -> str:
     if origin is tuple:
         return _list(inner)
     if isinstance(origin, type) and issubclass(origin, Mapping):
-        return f"{_kind(inner[1])} for each name"
+        words = [f'`"{each.text}"`' for each in metadata if isinstance(each, Word)]
+        return _alternatives([f"{_kind(inner[1])} for each name", *words])
     return _plain(annotation) + _limits(metadata)
 
 
@@ -275,6 +282,7 @@ PARTS: Final[Mapping[str, Callable[[], str]]] = {
     "signals": signals,
     "manoeuvres": manoeuvres,
     "claims": claims,
+    "ship estimates": ship_estimates,
 }
 """Each generated part by the name it has in a page."""
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from trialid.ingest import read
     from trialid.result.schema import Result
     from trialid.ship.effect import Force, Parameter, effect
+    from trialid.ship.estimate import ship_from_particulars
     from trialid.ship.model import ShipModel
     from trialid.ship.particulars import read_ship
     from trialid.trial import Trial
@@ -39,6 +40,7 @@ __all__ = [
     "read",
     "read_ship",
     "run",
+    "ship_from_particulars",
     "simulate",
 ]
 
@@ -48,6 +50,7 @@ _HOMES: Final = {
     "SignalSource": "alignment",
     "Trial": "trial",
     "read_ship": "ship.particulars",
+    "ship_from_particulars": "ship.estimate",
     "ShipModel": "ship.model",
     "effect": "ship.effect",
     "Force": "ship.effect",

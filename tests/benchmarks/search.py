@@ -1,4 +1,4 @@
-"""Whether the search arrives: drawn ships begun from a placeholder, as `inspect --init` writes it.
+"""Whether the search arrives: drawn ships begun from a placeholder, the S-175 of another length.
 
     python tests/benchmarks/search.py --count 300 --seed 0
 
@@ -22,7 +22,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from search_ships import KINDS, Drawn, draw
+from search_ships import KINDS, Drawn, draw, placeholder
 
 from trialid.effects import CATALOGUE
 from trialid.identification.adequacy import why_no_fit
@@ -32,7 +32,6 @@ from trialid.ship.model import ShipModel
 from trialid.ship.particulars import read_ship
 from trialid.threads import one_thread
 from trialid.workflow.first_pipeline.pipeline_text import ROLL
-from trialid.workflow.first_pipeline.placeholder_ship import placeholder
 
 RESULTS: Final = Path(__file__).parent / "results" / "search.md"
 EFFECTS: Final = ("linear_hull", "linear_rudder", "linear_roll")
@@ -83,7 +82,7 @@ def begun(drawn: Drawn) -> ShipModel:
     """The model of a starter pipeline for a ship of this length and speed."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "ship.toml"
-        path.write_text(placeholder(drawn.length, drawn.speed, "as stated"), encoding="utf-8")
+        path.write_text(placeholder(drawn.length, drawn.speed), encoding="utf-8")
         ship = read_ship(path)
     return ShipModel(ship, ("v", "p", "r", "phi"), tuple(CATALOGUE[e] for e in EFFECTS))
 

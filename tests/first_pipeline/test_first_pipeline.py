@@ -11,6 +11,7 @@ import pytest
 from trialid import pipeline_file
 from trialid.errors import LogError, PipelineError
 from trialid.inspection import inspect_log
+from trialid.ship.estimate import Given
 from trialid.ship.particulars import read_ship
 from trialid.workflow.first_pipeline import starter
 from trialid.workflow.first_pipeline.choice import OPEN
@@ -26,9 +27,10 @@ RADIUS = 15.0
 """Time constant of the yaw rate of the made trials [s]."""
 
 
-def begun(folder, logs, ship=None, length=L, speed=None):
+def begun(folder, logs, ship=None, length=L, speed=None, **particulars):
     """The pipeline written, as `inspect --init` writes it."""
-    made = starter([inspect_log(log) for log in logs], folder / "p.toml", ship, length, speed)
+    given = Given(length=length, **particulars)
+    made = starter([inspect_log(log) for log in logs], folder / "p.toml", ship, given, speed)
     for path, text in made.files.items():
         path.write_text(text, encoding="utf-8")
     return made
@@ -263,7 +265,7 @@ def test_a_channel_s_name_can_neither_break_the_file_nor_the_terminal(tmp_path):
         for key, one in found.channels.items()
     }
     made = starter(
-        [dataclasses.replace(found, channels=channels)], tmp_path / "p.toml", None, L, None
+        [dataclasses.replace(found, channels=channels)], tmp_path / "p.toml", None, Given(length=L)
     )
     text = made.files[tmp_path / "p.toml"]
     assert tomllib.loads(text)["trial"][0]["signals"]["r"]["channel"] == evil

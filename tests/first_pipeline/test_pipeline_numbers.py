@@ -49,7 +49,8 @@ def test_stated_noise_is_in_the_units_of_reports(tmp_path):
 
 def test_a_prior_is_a_mean_and_its_deviation_and_bounds_are_low_and_high(tmp_path):
     said = "priors = { Nr = { mean = -0.002, std = 0.0005 } }\nbounds = { Ndelta = [0.0, 0.01] }"
-    settings = settings_of(written(tmp_path, ('outputs = ["r"]', f'outputs = ["r"]\n{said}')))
+    asked = written(tmp_path, ('outputs = ["r"]', f'outputs = ["r"]\n{said}'))
+    settings = settings_of(asked, build_model(asked, available(asked)))
     assert settings.priors == {"Nr": (-0.002, 0.0005)}
     assert settings.bounds == {"Ndelta": (0.0, 0.01)}
 

@@ -131,8 +131,8 @@ def test_what_is_said_of_the_numbers_themselves(text: str, tmp_path: Path) -> No
     ("line", "says"),
     [
         ("Yvv = 0.1", r"\[uncertainty\] Yvv is no number of it; did you mean 'Yvav'"),
-        ("Yv = -0.1", r"\[uncertainty\] Yv = -0.1; expected a share of the number from 0 to 1"),
-        ("Yv = 15", r"\[uncertainty\] Yv = 15; expected a share of the number from 0 to 1"),
+        ("Yv = -0.1", r"\[uncertainty\] Yv = -0.1; expected a share of the number from 0 to 3"),
+        ("Yv = 15", r"\[uncertainty\] Yv = 15; expected a share of the number from 0 to 3"),
         ('Yv = "15 %"', r"\[uncertainty\] Yv = '15 %' is not a number"),
     ],
 )

@@ -34,7 +34,7 @@ class ParameterAccuracy:
     `freedom` are the degrees of freedom of the standard error: noise as slow as the manoeuvre tells
     little of itself. `likely` is where the parameter lies at 95 % whatever is missing, None where
     nobody can say; `widened_by` what makes it wider than noise does, empty where that is what was
-    held fixed.
+    held fixed; `prior_share` how much of what is known of it is its prior's, None without.
     """
 
     name: str
@@ -53,6 +53,7 @@ class ParameterAccuracy:
     freedom: float = np.inf
     likely: tuple[float, float] | None = None
     widened_by: str | None = None
+    prior_share: float | None = None
 
     @property
     def may_be_off(self) -> float | None:
@@ -133,6 +134,7 @@ def assess(
     covariance[hidden, :] = covariance[:, hidden] = np.nan
     white[hidden, :] = white[:, hidden] = np.nan
     rows = _rows(subjects, A, white, coloured, noise, undermodelling)
+    rows = _with_shares(rows, prior_shares(A, held))
     physical = np.array([s.kind == "physical" for s in subjects])
     clean = without_nuisance(A, physical)
     S_min, S_max, ratio = sensitivity_range(clean)
@@ -195,6 +197,29 @@ def _rows(
             freedom=float(found.freedom[i]),
         )
         for i, s in enumerate(subjects)
+    )
+
+
+def prior_shares(A: Vector, held: Vector | None) -> Vector | None:
+    """How much of what is known of each parameter is its prior's; (n_theta,), None without any.
+
+    The variance that is left, over the prior's: one where the record says nothing of it, as after
+    a fit of the prior alone, near zero where the record says all.
+    """
+    if held is None:
+        return None
+    narrow = np.linalg.pinv(with_priors(A, held))
+    return np.asarray(held**2 * np.sum(narrow**2, axis=1))
+
+
+def _with_shares(
+    rows: tuple[ParameterAccuracy, ...], shares: Vector | None
+) -> tuple[ParameterAccuracy, ...]:
+    if shares is None:
+        return rows
+    return tuple(
+        replace(row, prior_share=min(float(share), 1.0)) if share > 0.0 else row
+        for row, share in zip(rows, shares, strict=True)
     )
 
 

@@ -10,14 +10,23 @@ import click
 
 from trialid import temporary
 from trialid.cli.console import file_width, note, progress_bar, render, say
+from trialid.cli.particulars_options import (
+    KNOT,
+    given_from,
+    option_names,
+    particulars_options,
+)
 from trialid.errors import TrialidError
 
 if TYPE_CHECKING:
     from trialid.inspection import Inspection
-
-KNOT: Final = 1852.0 / 3600.0
+    from trialid.ship.estimate import Given
 
 FILE: Final = click.Path(path_type=Path)
+OF_THE_SHIP: Final = tuple(
+    ["--length", "--beam", "--draught", "--block", "--displacement", "--gm", "--rudder-area"]
+)
+"""What `--init` asks for; `trialid ship` takes more."""
 
 
 def _options(*options: Callable[..., Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -40,8 +49,7 @@ def _options(*options: Callable[..., Any]) -> Callable[[Callable[..., None]], Ca
                  help="Write a pipeline to begin with: a trial each log, the last of several held "
                  "out."),
     click.option("--ship", type=FILE, metavar="SHIP.toml", help="With --init: the ship's file."),
-    click.option("--length", type=click.FloatRange(min=0, min_open=True), metavar="METRES",
-                 help="With --init and no --ship: write a placeholder ship of this length."),
+    particulars_options(*OF_THE_SHIP, prefix="With --init and no --ship: her "),
     click.option("--speed", type=click.FloatRange(min=0, min_open=True), metavar="KNOTS",
                  help="With --init: the approach speed, where no log tells it."),
     click.option("--template", type=FILE, metavar="FILE",
@@ -54,8 +62,8 @@ def _options(*options: Callable[..., Any]) -> Callable[[Callable[..., None]], Ca
 )  # fmt: skip
 def inspect(
     logs: tuple[Path, ...], everything: bool, pipeline: Path | None, ship: Path | None,
-    length: float | None, speed: float | None, template: Path | None, layout: Path | None,
-    dbc: Path | None, zone: str | None, as_json: bool,
+    speed: float | None, template: Path | None, layout: Path | None, dbc: Path | None,
+    zone: str | None, as_json: bool, **particulars: Any,
 ) -> None:  # fmt: skip
     """Show what is in each LOG, a file or a folder of files: channels, rates, gaps, clocks.
 
@@ -65,14 +73,15 @@ def inspect(
     if template is not None:
         _draft_template(logs, template)
         return
-    _check_new_pipeline(pipeline, ship, length, speed)
+    given = given_from(particulars)
+    _check_new_pipeline(pipeline, ship, speed, given)
     surveys = _surveys(logs, layout, dbc, zone)
     if as_json:
         _print_plain(surveys)
     else:
         _print_tables(surveys, everything)
     if pipeline is not None:
-        _begin(surveys, pipeline, ship, length, speed)
+        _begin(surveys, pipeline, ship, speed, given)
 
 
 @click.command(short_help="Write aligned series for other programs.")
@@ -162,17 +171,13 @@ def _print_tables(surveys: Sequence["Inspection"], everything: bool) -> None:
 
 
 def _check_new_pipeline(
-    pipeline: Path | None, ship: Path | None, length: float | None, speed: float | None
+    pipeline: Path | None, ship: Path | None, speed: float | None, given: "Given"
 ) -> None:
     """Refuse, before the logs are read, what cannot be written."""
-    given = {"--ship": ship, "--length": length, "--speed": speed}
+    _check_said(pipeline, ship, speed, option_names(given))
     if pipeline is None:
-        extra = next((name for name, value in given.items() if value is not None), None)
-        if extra is not None:
-            raise click.UsageError(f"{extra} goes with --init")
         return
-    if ship is not None and length is not None:
-        raise click.UsageError("--length is for a placeholder; the file of --ship has the length")
+    _check_given(pipeline, given)
     if pipeline.suffix != ".toml":
         raise TrialidError(f"--init {pipeline}: a pipeline file ends in .toml")
     if not pipeline.parent.is_dir():
@@ -180,22 +185,44 @@ def _check_new_pipeline(
             f"--init {pipeline}: there is no folder {pipeline.parent}; make it first"
         )
     temporary.check_writable(pipeline.parent, "--init")
-    from trialid.workflow.first_pipeline.placeholder_ship import placeholder_path
+    from trialid.workflow.first_pipeline import begun_ship
 
-    for file in (pipeline, *([placeholder_path(pipeline)] if ship is None else [])):
+    for file in (pipeline, *([begun_ship(pipeline)] if ship is None else [])):
         if file.exists():
             raise TrialidError(f"--init {pipeline}: {file} exists; name another pipeline")
 
 
+def _check_said(
+    pipeline: Path | None, ship: Path | None, speed: float | None, of_her: Sequence[str]
+) -> None:
+    """Refuse what makes no sense together."""
+    beside = {"--ship": ship, "--speed": speed}
+    said = [*of_her, *(name for name, value in beside.items() if value is not None)]
+    if pipeline is None and said:
+        raise click.UsageError(f"{said[0]} goes with --init")
+    if ship is not None and of_her:
+        raise click.UsageError(f"{of_her[0]} is for a new ship file; that of --ship has its own")
+
+
+def _check_given(pipeline: Path, given: "Given") -> None:
+    """Refuse a ship that cannot be; where nothing is known of her, the logs are read first."""
+    from trialid.errors import ShipError
+    from trialid.ship.estimate.all_numbers import refusal
+    from trialid.ship.estimate.impossible import complaints
+
+    if (wrong := complaints(given)) and option_names(given):
+        raise ShipError(f"--init {pipeline}: {refusal(wrong)}")
+
+
 def _begin(
-    surveys: Sequence["Inspection"], pipeline: Path, ship: Path | None, length: float | None,
-    speed: float | None,
+    surveys: Sequence["Inspection"], pipeline: Path, ship: Path | None, speed: float | None,
+    given: "Given",
 ) -> None:  # fmt: skip
     """Write the starter, and say what is left to do, on stderr."""
     from trialid.workflow.first_pipeline import starter
 
     stated = None if speed is None else speed * KNOT
-    begun = starter(surveys, pipeline, ship, length, stated)
+    begun = starter(surveys, pipeline, ship, given, stated)
     _write_new(begun.files)
     for path in begun.files:
         note(f"Written: {path}")

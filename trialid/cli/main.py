@@ -36,6 +36,7 @@ from trialid.cli.log_commands import align, inspect
 from trialid.cli.one_line_errors import WRONG_INPUT, OneLineErrors
 from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
+from trialid.cli.ship_command import ship
 from trialid.cli.workbench_command import workbench
 from trialid.errors import TrialidError
 from trialid.version import VERSION
@@ -165,15 +166,8 @@ def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bo
     _change("dropped", pipeline, effect, out, as_json, quiet)
 
 
-commands.add_command(effects)
-commands.add_command(demo)
-commands.add_command(inspect)
-commands.add_command(align)
-commands.add_command(design)
-commands.add_command(report)
-commands.add_command(replay)
-commands.add_command(workbench)
-commands.add_command(guide)
+for command in (effects, demo, ship, inspect, align, design, report, replay, workbench, guide):
+    commands.add_command(command)
 
 
 def main() -> None:

@@ -241,7 +241,7 @@ def _revived(asked: "Pipeline", trials: "Sequence[Trial]", folder: Path, result:
             f"--run {folder}: is of another model than {asked.path.name} (apart in "
             f"{', '.join(apart)}); name a run of this pipeline, or leave --run out to fit again"
         )
-    settings = replace(settings_of(asked), substeps=result.fit.substeps or 1)
+    settings = replace(settings_of(asked, model), substeps=result.fit.substeps or 1)
     values = {p.name: p.value for p in result.accuracy.parameters if p.value is not None}
     try:
         return revive(trials, model, settings, values)

@@ -24,20 +24,22 @@ PLACEHOLDER: Final = "PLACEHOLDER"
 def unlike_file(fit: Fit) -> tuple[dict[str, float], int]:
     """Fitted coefficients clearly unlike the ship file's, over the file's; and how many compare.
 
-    Those whose start the user states differently are not compared, nor is a placeholder.
+    Those whose start the user states differently are not compared, nor is a placeholder. What the
+    file says of its own scatter counts: an estimate is not another ship's for being as far off.
     """
     model = fit.problem.simulator.model
     if model.ship.source.startswith(PLACEHOLDER):
         return {}, 0
-    plain, errors = replace(model, values={}), _standard_errors(fit)
+    plain, errors, said = replace(model, values={}), _standard_errors(fit), model.ship.uncertainty
     found, compared = dict[str, float](), 0
     for x, a, error in zip(fit.problem.unknowns, fit.theta, errors, strict=True):
         stated = plain.stated(x.name) if x.kind == "physical" else None
         if not stated or model.values.get(x.name, stated) != stated:
             continue
         compared += 1
-        ratio = float(a) / stated
-        if not 1.0 / OFF < ratio < OFF and abs(float(a) - stated) > CLEARLY * error:
+        ratio, scatter = float(a) / stated, said.get(x.name, said.get("default", 0.0)) * stated
+        clearly = CLEARLY * float(np.hypot(error, scatter))
+        if not 1.0 / OFF < ratio < OFF and abs(float(a) - stated) > clearly:
             found[x.name] = ratio
     return found, compared
 

@@ -47,8 +47,7 @@ class Settings:
 
     `priors` are (mean, standard deviation) in the parameter's own unit; `bounds` (low, high).
     Steps a sample begin with `substeps` and go up to `most_substeps` where they matter.
-    With `hold_nuisance` what each trial has for itself is held weakly about what is likely, and
-    so are GM and the roll damping about those of other ships.
+    `hold_nuisance`: weakly, what each trial has for itself, and GM and damping without a prior.
     """
 
     free: tuple[str, ...]
@@ -132,8 +131,9 @@ def question(
 
 
 def _roll(model: ShipModel, trial: Trial, unknowns: Sequence[Unknown]) -> RollRange | None:
-    places = {x.name: i for i, x in enumerate(unknowns) if x.trial is None and x.prior is None}
-    return roll_range(model, speed(model, trial), places)
+    places = {x.name: i for i, x in enumerate(unknowns) if x.trial is None}
+    own = frozenset(i for i, x in enumerate(unknowns) if x.prior is not None)
+    return roll_range(model, speed(model, trial), places, own)
 
 
 def _check_ready(simulator: Simulator, trials: Sequence[Trial]) -> None:

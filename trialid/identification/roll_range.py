@@ -40,12 +40,15 @@ class RollRange:
         Of the ship [m].
     critical
         Kp of critical damping at a GM of 1 m, negative; in proportion to sqrt(GM).
+    known
+        Places with a prior of their own: of those this says nothing.
     """
 
     GM: int
     Kp: int | None
     length: float
     critical: float
+    known: frozenset[int] = frozenset()
 
     def damping(self, GM: float, ratio: float) -> float:
         """Kp of a damping ratio at a GM [m]."""
@@ -58,22 +61,25 @@ class RollRange:
         if self.Kp is not None:
             ratio = max(float(theta[self.Kp]) / self.damping(GM, 1.0), 1e-6)
             found[self.Kp] = float(np.log(ratio / DAMPING_RATIO)) / FACTOR
-        return found
+        return {place: z for place, z in found.items() if place not in self.known}
 
     def rows(self, theta: Vector) -> tuple[Vector, Vector]:
         """Residual and gradient of the rows, in standard deviations; (k,), (k, n_theta)."""
         off = self.off(theta)
         slopes = np.zeros((len(off), len(theta)))
         GM = max(float(theta[self.GM]), LEAST * self.length)
-        slopes[0, self.GM] = 1.0 / (GM * FACTOR)
-        if self.Kp is not None:
-            Kp = min(float(theta[self.Kp]), 1e-6 * self.damping(GM, 1.0))
-            slopes[1, self.Kp] = 1.0 / (Kp * FACTOR)
-            slopes[1, self.GM] = -0.5 / (GM * FACTOR)
+        for row, place in zip(slopes, off, strict=True):
+            if place == self.GM:
+                row[self.GM] = 1.0 / (GM * FACTOR)
+            else:
+                row[place] = 1.0 / (min(theta[place], 1e-6 * self.damping(GM, 1.0)) * FACTOR)
+                row[self.GM] = -0.5 / (GM * FACTOR)
         return -np.array(list(off.values())), slopes
 
 
-def roll_range(model: ShipModel, U: float, places: dict[str, int]) -> RollRange | None:
+def roll_range(
+    model: ShipModel, U: float, places: dict[str, int], known: frozenset[int] = frozenset()
+) -> RollRange | None:
     """The rows of a model that rolls, None where its GM is not free.
 
     Parameters
@@ -81,11 +87,13 @@ def roll_range(model: ShipModel, U: float, places: dict[str, int]) -> RollRange 
     U
         How fast she goes [m/s].
     places
-        Free parameters without a prior of their own, and where they stand in theta.
+        Free parameters, and where they stand in theta.
+    known
+        Places with a prior of their own.
     """
     if "GM" not in places or not {"p", "phi"} <= {*model.states}:
         return None
     L, rho, g, nabla = (model.ship.particulars[n] for n in ("L", "rho", "g", "nabla"))
     inertia = mass_scale("I_xx", L, rho) * (model.value("I_xx") - model.value("Kpdot"))
     critical = -2.0 * float(np.sqrt(rho * g * nabla * inertia)) / (0.5 * rho * L**4 * U)
-    return RollRange(places["GM"], places.get("Kp"), L, critical)
+    return RollRange(places["GM"], places.get("Kp"), L, critical, known)

@@ -11,7 +11,8 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from trialid.errors import PipelineError, nearest
-from trialid.pipeline_file.form import Pipeline, Section
+from trialid.pipeline_file.form import Pipeline
+from trialid.pipeline_file.section import Section
 
 Problem = tuple[str, str]
 """The key's full path, and a sentence that says what is wrong there."""

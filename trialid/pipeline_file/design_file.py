@@ -20,16 +20,13 @@ from trialid.pipeline_file.form import (
     GivenValue,
     Names,
     NotEmpty,
-    NotNegative,
-    Number,
     Origin,
-    Positive,
     ReadFile,
-    Section,
     Whole,
     Window,
     with_value,
 )
+from trialid.pipeline_file.section import NotNegative, Number, Positive, Section
 
 MOST: Final = 200_000
 """Samples of a test: a day and more at the usual period."""

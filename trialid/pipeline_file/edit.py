@@ -137,7 +137,8 @@ def _without_words(
     """The text without what tables say of parameters, and that in words."""
     said = []
     for table, name in product(tables, names):
-        value = data_of(text).get(table[0], {}).get(table[1], {}).get(name)
+        said_there = data_of(text).get(table[0], {}).get(table[1], {})
+        value = said_there.get(name) if isinstance(said_there, dict) else None  # or `"ship"`
         if value is not None:
             said.append(f"{dotted_key(*table, name)} = {inline(value)}")
             text = without_entry(text, table, name)

@@ -8,9 +8,7 @@ from typing import Annotated, Any, Literal, NamedTuple, cast
 from pydantic import (
     AfterValidator,
     AllowInfNan,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     PlainValidator,
     PrivateAttr,
@@ -22,6 +20,8 @@ from trialid.errors import nearest
 from trialid.ingest.times.local_time import known_zone
 from trialid.names import units
 from trialid.pipeline_file.mistaken_file import neighbours
+from trialid.pipeline_file.prior_section import OR_SHIP, SHIP, Prior, Word
+from trialid.pipeline_file.section import NotNegative, Number, Positive, Section
 
 
 class Origin(NamedTuple):
@@ -96,10 +96,6 @@ def _candidates(given: Any) -> Literal["all", "none"] | tuple[str, ...]:
     raise ValueError(f'must be "all", "none" or a list of effects, got {given!r} ({hint})')
 
 
-# Strict, because a pipeline that writes "0.5" or true for a number has a slip worth showing.
-Number = Annotated[float, Strict()]
-Positive = Annotated[Number, Field(gt=0)]
-NotNegative = Annotated[Number, Field(ge=0)]
 Count = Annotated[int, Strict(), Field(ge=1)]
 Rounds = Annotated[Count, Field(le=10_000)]
 """Of searches, steps or shares of a sample; ten thousand of any take hours."""
@@ -126,17 +122,6 @@ Limit = Annotated[Number, AllowInfNan(True)]
 Bounds = Annotated[tuple[Limit, Limit], AfterValidator(_rising)]
 Fault = Literal["range", "dropouts", "spikes", "saturation", "stuck"]
 Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
-
-
-class Section(BaseModel):
-    """A table of the pipeline file: frozen, finite numbers, no key it does not know.
-
-    The line under a key says what it means: the guide's page of keys is made of them.
-    """
-
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
-    )
 
 
 class SignalSource(Section):
@@ -254,15 +239,6 @@ class ModelSection(Section):
     starts."""
 
 
-class Prior(Section):
-    """What is known of a parameter beforehand, in the parameter's own unit."""
-
-    mean: Number
-    """The value known beforehand."""
-    std: Positive
-    """Its standard deviation."""
-
-
 class IdentifySection(Section):
     """What is estimated, against which outputs, and how the search goes."""
 
@@ -276,8 +252,9 @@ class IdentifySection(Section):
     """Weight of an output in the error, by its name; 1 where not given."""
     loss: Literal["squares", "huber"] = "squares"
     """What is made small: squares, or `"huber"` where the log has outliers."""
-    priors: Mapping[str, Prior] = {}
-    """What is known of a parameter beforehand, by its name."""
+    priors: Annotated[Mapping[str, Prior], OR_SHIP, Word(SHIP)] = {}
+    """What is known of a parameter beforehand, by its name; `"ship"`: of each that the ship file
+    states, its number there, with the standard deviation of its `[uncertainty]`."""
     bounds: Mapping[str, Bounds] = {}
     """`[low, high]` a parameter may not leave, by its name, in its own unit; `inf` is allowed."""
     starts: Rounds = 1

@@ -20,6 +20,7 @@ from trialid.ship.stability import PARTS, Stability, stability
 
 def accuracy_part(fit: Fit, accuracy: Accuracy) -> AccuracyPart:
     """Sensitivities, errors and stability of a fit, with what weights and scales them in words."""
+    known = {x.name: x.prior for x in fit.problem.unknowns}
     return AccuracyPart(
         S_min=accuracy.S_min,
         S_max=accuracy.S_max,
@@ -31,7 +32,7 @@ def accuracy_part(fit: Fit, accuracy: Accuracy) -> AccuracyPart:
             "for nuisance parameters; S_min, S_max and R of the physical parameters, with "
             "everything projected out that nuisance parameters can mimic"
         ),
-        parameters=tuple(_parameter(p) for p in accuracy.parameters),
+        parameters=tuple(_parameter(p, known.get(p.name)) for p in accuracy.parameters),
         weak=tuple(
             WeakRow(
                 sentence=w.sentence,
@@ -45,7 +46,7 @@ def accuracy_part(fit: Fit, accuracy: Accuracy) -> AccuracyPart:
     )
 
 
-def _parameter(p: ParameterAccuracy) -> ParameterRow:
+def _parameter(p: ParameterAccuracy, prior: tuple[float, float] | None) -> ParameterRow:
     """One row; the two parts of Eq. 14 and their sum are relative, other errors in the unit."""
     size = abs(p.reference)
     return ParameterRow(
@@ -67,6 +68,8 @@ def _parameter(p: ParameterAccuracy) -> ParameterRow:
         likely=p.likely,
         widened_by=p.widened_by,
         kind=p.kind,
+        prior=prior,
+        prior_share=p.prior_share,
     )
 
 

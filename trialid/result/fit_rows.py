@@ -3,11 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
-from typing import Literal
+from typing import Final, Literal
 
 from trialid.accuracy.likely import share_off, student
 
 Interval = tuple[float, float]
+
+UNTOLD: Final = 1e-3
+"""Share of what is known that is the record's: with less it says nothing against a prior."""
 
 
 Part = Literal["noise", "undermodelling"]
@@ -157,7 +160,8 @@ class ParameterRow:
 
     `freedom` are the degrees of freedom of `standard_error`. `likely` is where the value lies at
     95 % whatever is missing, in `unit`; `widened_by` the effect that widens this most, empty where
-    that is what was held fixed.
+    that is what was held fixed. `prior` is what was known of it beforehand, mean and standard
+    deviation; `prior_share` how much of what is known now that is.
     """
 
     name: str
@@ -176,6 +180,8 @@ class ParameterRow:
     likely: Interval | None = None
     widened_by: str | None = None
     kind: Literal["physical", "nuisance"] = "physical"
+    prior: tuple[float, float] | None = None
+    prior_share: float | None = None
 
     @property
     def may_be_off(self) -> float | None:
@@ -189,6 +195,19 @@ class ParameterRow:
             return None
         wide = float(student(inf if self.freedom is None else self.freedom))
         return wide * abs(self.standard_error / self.value)
+
+    @property
+    def off_prior(self) -> float | None:
+        """How far the record and the prior lie apart, in standard deviations of their difference.
+
+        Where the two of them meet in the estimate, it lies from the prior's mean by what its
+        deviation and the one that is left leave: sqrt(std^2 - left^2).
+        """
+        if self.prior is None or self.prior_share is None or self.value is None:
+            return None
+        mean, deviation = self.prior
+        told = 1.0 - self.prior_share
+        return (self.value - mean) / (deviation * told**0.5) if told > UNTOLD else None
 
 
 @dataclass(frozen=True, kw_only=True)

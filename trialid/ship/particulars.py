@@ -24,6 +24,9 @@ says none. With held coefficients up to 15 % off, drawn evenly, ranges of the ot
 the truths in sensor noise and 95 % with gusts on the hull; at half of it 93 and 92, at twice 100
 and 98, and half as wide again."""
 
+MOST_UNCERTAIN: Final = 3.0
+"""Of a number of which hardly the sign is known; a larger share is per cent, written by mistake."""
+
 KEYS: Final = {
     "name": "What reports call the ship.",
     "source": "Where the numbers come from.",
@@ -40,7 +43,8 @@ KEYS: Final = {
     "writes the speed into the term, as `Y_|u|v |u| v`.",
     "uncertainty": "How far numbers of `[mass]` and `[coefficients]` may be off, by name: a "
     "standard deviation as a share of the number, zero for one that is exact; `default` for all "
-    f"others, {UNCERTAIN:g} where not given. It widens the likely ranges of what is fitted.",
+    f"others, {UNCERTAIN:g} where not given. It widens the likely ranges of what is fitted, and "
+    'with `priors = "ship"` in a pipeline it holds what is fitted about these numbers.',
     "notes": "Anything a reader should know of it.",
 }
 """What each key of a ship file means; the guide's page of keys is made of it."""
@@ -198,10 +202,10 @@ def _shares(path: Path, table: Mapping[str, Any]) -> dict[str, float]:
         if key not in known:
             nearby = nearest(key, known)
             raise ShipError(f"ship file {path}: [uncertainty] {key} is no number of it; {nearby}")
-        if not 0.0 <= share <= 1.0:
+        if not 0.0 <= share <= MOST_UNCERTAIN:
             raise ShipError(
                 f"ship file {path}: [uncertainty] {key} = {share:g}; expected a share of the "
-                "number from 0 to 1"
+                f"number from 0 to {MOST_UNCERTAIN:g}"
             )
     return shares
 

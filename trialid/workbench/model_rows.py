@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
-from trialid.errors import EffectError
+from trialid.errors import EffectError, PipelineError
 from trialid.names.quantities import MASS_PARAMETERS
 from trialid.report.pictures import bars
 from trialid.report.pictures.bars import RangeBar
@@ -12,6 +12,7 @@ from trialid.result import fit_rows
 from trialid.ship.effect import Effect, Parameter
 from trialid.ship.model import ShipModel
 from trialid.workbench.shown import Shown
+from trialid.workflow.build_model import priors_of
 
 
 @dataclass(frozen=True)
@@ -111,11 +112,11 @@ def _free(
 ) -> ParameterRow:
     said = shown.pipeline.identify
     low, high = said.bounds.get(name, (-inf, inf))
-    prior = said.priors.get(name)
+    prior = _known(shown).get(name)
     made = ParameterRow(
         name, p.unit, True, _estimate(name, shown), bar=bar, low=as_typed(low), high=as_typed(high),
         limits=(as_typed(p.low), as_typed(p.high)),
-        prior=None if prior is None else (prior.mean, prior.std),
+        prior=prior,
     )  # fmt: skip
     if row is None:
         return made
@@ -123,6 +124,14 @@ def _free(
         made, value=row.value, error=row.standard_error, likely=row.likely,
         may_be_off=row.may_be_off, stale=shown.run is None,
     )  # fmt: skip
+
+
+def _known(shown: Shown) -> Mapping[str, tuple[float, float]]:
+    """What is known beforehand; nothing while a ship file cannot say what it is asked for."""
+    try:
+        return {} if shown.model is None else priors_of(shown.pipeline, shown.model)
+    except PipelineError:
+        return {}
 
 
 def _estimate(name: str, shown: Shown) -> float | None:

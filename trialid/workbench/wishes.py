@@ -127,7 +127,7 @@ def grant(pipeline: Pipeline, wish: Any) -> Granted:
     if found.after.content == pipeline.content:
         raise PipelineError(f"{found.words}: it is so already")
     model = build_model(found.after, available(found.after))
-    check_bounds(found.after, model, settings_of(found.after))
+    check_bounds(found.after, model, settings_of(found.after, model))
     return found
 
 

@@ -6,12 +6,14 @@ from typing import Final
 import numpy as np
 
 from trialid import effects
-from trialid.errors import NotIdentifiable, PipelineError, UnitError, nearest
+from trialid.errors import NotIdentifiable, PipelineError, ShipError, UnitError, nearest
 from trialid.identification.problem import Settings
+from trialid.identification.ship_priors import ship_priors
 from trialid.names import units
 from trialid.names.quantities import PARTICULARS, SIGNALS
 from trialid.pipeline_file import Pipeline, where
 from trialid.pipeline_file.form import Described
+from trialid.pipeline_file.prior_section import OfTheShip
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES, ShipModel, needs_ship
 from trialid.ship.particulars import NO_SHIP, read_ship
@@ -104,13 +106,13 @@ def check_bounds(pipeline: Pipeline, model: ShipModel, settings: Settings) -> No
             )
 
 
-def settings_of(pipeline: Described) -> Settings:
+def settings_of(pipeline: Described, model: ShipModel) -> Settings:
     """The pipeline's `[identify]` as the identifier takes it.
 
     Raises
     ------
     PipelineError
-        A prior or a bound of a parameter that is not free.
+        A prior or a bound of a parameter that is not free, or the ship's where she gives none.
     """
     r = pipeline.identify
     for table, names in (("priors", r.priors), ("bounds", r.bounds)):
@@ -122,10 +124,27 @@ def settings_of(pipeline: Described) -> Settings:
                 )
     return Settings(
         free=r.free, outputs=r.outputs, nuisance=r.nuisance, weights=r.weights, loss=r.loss,
-        priors={n: (p.mean, p.std) for n, p in r.priors.items()}, bounds=r.bounds,
+        priors=priors_of(pipeline, model), bounds=r.bounds,
         starts=r.starts, spread=r.spread, seed=r.seed, max_iterations=r.max_iterations,
         norm=r.norm, substeps=r.substeps, engine=r.engine,
     )  # fmt: skip
+
+
+def priors_of(pipeline: Described, model: ShipModel) -> dict[str, tuple[float, float]]:
+    """Mean and standard deviation of what is known beforehand, by the pipeline or by the ship.
+
+    Raises
+    ------
+    PipelineError
+        The ship's file was asked, and says nothing.
+    """
+    said = pipeline.identify.priors
+    if not isinstance(said, OfTheShip):
+        return {n: (p.mean, p.std) for n, p in said.items()}
+    try:
+        return ship_priors(model, pipeline.identify.free)
+    except ShipError as error:
+        raise PipelineError(f"{where(pipeline, 'identify.priors')}: {error}") from error
 
 
 def candidates(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> dict[str, Effect]:

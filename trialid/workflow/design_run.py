@@ -205,7 +205,8 @@ def _ships(pipeline: DesignFile, catalogue: Mapping[str, Effect]) -> list[Ship]:
     """The ship as she is known, first, and others she might be."""
     model = build_model(pipeline, catalogue)
     known = {n: x for n, x in fitted_values(pipeline).items() if n in model.parameters}
-    model = with_starts(model.with_values(known), pipeline.identify.free, settings_of(pipeline))
+    settings = settings_of(pipeline, model)
+    model = with_starts(model.with_values(known), pipeline.identify.free, settings)
     full = _full(pipeline, model, catalogue)
     made = [_ship(pipeline, model, full)]
     draw = np.random.default_rng(pipeline.ships.seed)
@@ -252,7 +253,7 @@ def _ship(pipeline: DesignFile, model: ShipModel, full: ShipModel) -> Ship:
         )
         for name, given in at_sea.constant.items()
     }
-    settings = settings_of(pipeline)
+    settings = settings_of(pipeline, model)
     ready = vessel(full, at_sea.period, constants, np.deg2rad(at_sea.rudder_rate))
     noise = {
         c: Noise(n.sigma / units.shown_factor(SIGNALS[c]), n.memory)
@@ -327,10 +328,9 @@ def _separation(
             at = where(pipeline, f"separate.effects[{i}]")
             raise PipelineError(f"{at}: there is no effect {name!r}; {nearest(name, catalogue)}")
     one, other = (catalogue[name] for name in pipeline.separate.effects)
-    settings = settings_of(pipeline)
     pair = rivals(
         model=ship.vessel.model,
-        settings=_without_bias(settings),
+        settings=_without_bias(settings_of(pipeline, ship.vessel.model)),
         noise=dict(ship.goal.noise),
         effects=(one, other),
         vessel=ship.vessel,

@@ -35,7 +35,7 @@ def fit_of(
         The model or the record does not allow one.
     """
     model = build_model(pipeline, catalogue)
-    settings = settings_of(pipeline)
+    settings = settings_of(pipeline, model)
     check_bounds(pipeline, model, settings)
     check_moving(pipeline, model, trials)
     progress("fitting", 0.3)

@@ -10,7 +10,7 @@ from trialid.names import labels, wording
 from trialid.report.pictures import bars, error_history, force_plots, panels, where_pictures
 from trialid.report.script import script
 from trialid.report.tables import run_tables
-from trialid.report.words import advice, doubt, ranking
+from trialid.report.words import advice, beforehand, doubt, ranking
 from trialid.result.change_rows import ChangePart
 from trialid.result.finding_rows import CandidateRow
 from trialid.result.fit_rows import TrialRow
@@ -121,6 +121,7 @@ def _filters() -> dict[str, Any]:
         "percent_range": wording.percent_range,
         "by_error": wording.by_error,
         "doubtful": doubt.doubtful,
+        "prior_words": beforehand.prior_words,
         "likely": run_tables.likely,
         "breakable": _breakable,
         "prose": wording.prose,

@@ -18,7 +18,7 @@ from trialid.report.terminal.terminal import (
     plain,
     times,
 )
-from trialid.report.words import advice, doubt
+from trialid.report.words import advice, beforehand, doubt
 from trialid.result.change_rows import ChangePart
 from trialid.result.fit_rows import ParameterRow, Part, SplitPart
 from trialid.result.schema import Result
@@ -192,6 +192,8 @@ def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
         yield Text(f"... and {len(found) - len(shown)} more, all better known", style="dim")
     if said := f"{doubt.doubtful(found)} {advice.widest_range(run)}".strip():
         yield Words(said, 3)
+    if known := beforehand.prior_words(found):
+        yield Words(plain(known), 2)
 
 
 def _doubt(row: ParameterRow) -> float:

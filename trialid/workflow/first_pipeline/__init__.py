@@ -6,12 +6,13 @@ from pathlib import Path
 
 from trialid.errors import LogError
 from trialid.inspection import Inspection
+from trialid.ship.estimate import Given, estimate
+from trialid.ship.estimate.ship_text import ship_text
 from trialid.ship.particulars import read_ship
 from trialid.workflow.first_pipeline.choice import Chosen, choose_signals, shared_signals, size_unit
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
-from trialid.workflow.first_pipeline.placeholder_ship import placeholder, placeholder_path
 
-__all__ = ["Starter", "starter"]
+__all__ = ["Starter", "begun_ship", "starter"]
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,8 @@ def starter(
     surveys: Sequence[Inspection],
     pipeline: Path,
     ship: Path | None,
-    length: float | None,
-    speed: float | None,
+    given: Given,
+    speed: float | None = None,
 ) -> Starter:
     """A pipeline for logs, a trial each, the last of several held out.
 
@@ -38,9 +39,9 @@ def starter(
     pipeline
         Where it is to stand; nothing is written here.
     ship
-        The ship file; None: a placeholder of the length is made beside the pipeline.
-    length
-        Of the ship [m], where there is no ship file.
+        The ship file; None: one is made of the particulars, beside the pipeline.
+    given
+        Particulars of the ship, where there is no ship file.
     speed
         Approach speed [m/s], where no log tells it.
 
@@ -51,10 +52,10 @@ def starter(
     """
     trials = _with_speeds([choose_signals(one, speed) for one in surveys], speed)
     _check_shared(trials)
-    if ship is None and length is None:
+    if ship is None and given.length is None:
         raise LogError(
-            f"{pipeline}: no log knows the ship; add --ship SHIP.toml, or --length METRES to begin "
-            "with a placeholder of that length"
+            f"{pipeline}: no log knows the ship; add --ship SHIP.toml, or --length METRES, and "
+            "--beam, --draught, --displacement where you have them"
         )
     u0 = next((one.speed for one in trials if one.speed), None)
     if u0 is None:
@@ -62,16 +63,23 @@ def starter(
             f"{pipeline}: no log tells the speed in a stated unit; add --speed KNOTS, the approach "
             "speed"
         )
-    own = read_ship(ship).particulars["L"] if ship else length
-    assert own is not None
-    trials = [size_unit(one, own, u0) for one in trials]
     files: dict[Path, str] = {}
     if ship is None:
-        ship = placeholder_path(pipeline)
+        ship = begun_ship(pipeline)
         words = next(one.speed_words for one in trials if one.speed)
-        files[ship] = placeholder(own, u0, comment(words))
-    files[pipeline] = pipeline_text(pipeline, ship, own, u0, trials)
+        made = estimate(replace(given, speed=u0), f"ship of {pipeline.stem}")
+        files[ship], own = ship_text(made, comment(words)), made.ship
+    else:
+        own = read_ship(ship)
+    L = own.particulars["L"]
+    trials = [size_unit(one, L, u0) for one in trials]
+    files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)))
+
+
+def begun_ship(pipeline: Path) -> Path:
+    """Where the ship of a pipeline stands: `zigzag.toml` has `zigzag_ship.toml`."""
+    return pipeline.with_name(f"{pipeline.stem}_ship.toml")
 
 
 def _with_speeds(trials: list[Chosen], stated: float | None) -> list[Chosen]:

@@ -8,6 +8,7 @@ from typing import Final
 
 from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection
+from trialid.ship.particulars import Ship
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
 
 HEAD: Final = """\
@@ -21,27 +22,27 @@ MOST_OTHERS: Final = 6
 
 PERIODS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
 ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
-"""All of the roll: a rudder's heeling moment held at a placeholder's would drag GM along."""
+"""All of the roll: a rudder's heeling moment held at another ship's would drag GM along."""
 
 STEPS_A_LENGTH: Final = 40
 """Samples while the ship moves by her own length: she does little in a fortieth of that."""
 
 
 def pipeline_text(
-    path: Path, ship: Path, length: float, speed: float, trials: Sequence[Chosen]
+    path: Path, ship_path: Path, ship: Ship, length: float, speed: float, trials: Sequence[Chosen]
 ) -> str:
     """The pipeline that is to stand at `path`, for a ship of this length [m] and speed [m/s]."""
     several = len(trials) > 1
     head = HEAD.format(s="s" if several else "", not_s="" if several else "s", name=path.name)
     lines = [
         head + f"name = {_text(path.stem)}",
-        f"ship = {_text(_relative(ship, path))}",
+        f"ship = {_text(_relative(ship_path, path))}",
     ]
     names = _names(trials)
     for place, (name, trial) in enumerate(zip(names, trials, strict=True)):
         held_out = several and place == len(trials) - 1
         lines += ["", *_trial(path, name, trial, held_out=held_out)]
-    lines += ["", *_align(trials, length, speed), "", *_model(trials)]
+    lines += ["", *_align(trials, length, speed), "", *_model(trials, ship)]
     return "\n".join(lines) + "\n"
 
 
@@ -133,7 +134,7 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
     return max((p for p in PERIODS if p <= max(slow, quick) * 1.05), default=PERIODS[0])
 
 
-def _model(trials: Sequence[Chosen]) -> Iterator[str]:
+def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
     outputs = ["r" if "r" in known else "psi", *(["phi"] if "phi" in known else [])]
     rolls, order_only = "phi" in known, "delta" not in known
@@ -154,6 +155,8 @@ def _model(trials: Sequence[Chosen]) -> Iterator[str]:
     yield "# Masses and the sway coefficients stay as the ship file has them: the yaw alone does"
     yield "# not tell them apart. Free them where the speed v is recorded."
     yield f"free = {_list(free)}"
+    if any(name in ship.uncertainty for name in free):
+        yield 'priors = "ship"  # held about her file\'s numbers, as far as it says they scatter'
     yield f"outputs = {_list(outputs)}"
     yield (
         'nuisance = ["initial_state", "bias", "rudder_offset", "delay"]  # of each trial, '

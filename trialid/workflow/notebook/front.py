@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from trialid.errors import NotIdentifiable, nearest
 from trialid.identification import fit as search
 from trialid.identification.fit import Fit, of_trial
 from trialid.identification.problem import Nuisance, Settings
+from trialid.identification.ship_priors import ship_priors
 from trialid.pipeline_file import load
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect
@@ -24,6 +26,8 @@ from trialid.workflow.run import run as run_pipeline
 
 if TYPE_CHECKING:
     import pandas as pd
+
+NOTHING: Final[Mapping[str, tuple[float, float]]] = MappingProxyType({})
 
 
 def run(pipeline: str | Path, progress: Progress = silent) -> PipelineRun:
@@ -46,6 +50,7 @@ def identify(
     free: Sequence[str],
     outputs: Sequence[str],
     nuisance: Sequence[Nuisance] = ("initial_state", "bias", "rudder_offset"),
+    priors: Mapping[str, tuple[float, float]] | str = NOTHING,
     **settings: Any,
 ) -> Fit:
     """Fit the free parameters to every trial marked `fit`, with all safeguards.
@@ -58,9 +63,12 @@ def identify(
         Signals to compare: `r`, `phi`, ...
     nuisance
         What each trial has for itself.
+    priors
+        What is known beforehand: mean and standard deviation by name, or `"ship"`: of each that the
+        ship's file states with its scatter, what it says.
     settings
-        The rest of a pipeline's `[identify]`: `priors` and `bounds` (name to a pair), `weights`,
-        `loss`, `starts`, `seed`, `max_iterations`.
+        The rest of a pipeline's `[identify]`: `bounds` (name to a pair), `weights`, `loss`,
+        `starts`, `seed`, `max_iterations`.
 
     Raises
     ------
@@ -71,7 +79,16 @@ def identify(
     for name in settings:
         if name not in known:
             raise NotIdentifiable(f"identify has no setting {name!r}; {nearest(name, known)}")
-    asked = Settings(free=tuple(free), outputs=tuple(outputs), nuisance=tuple(nuisance), **settings)
+    if isinstance(priors, str) and priors != "ship":
+        raise NotIdentifiable(f'priors = {priors!r} is not known; "ship", or a pair for each name')
+    known_before = ship_priors(model, free) if isinstance(priors, str) else priors
+    asked = Settings(
+        free=tuple(free),
+        outputs=tuple(outputs),
+        nuisance=tuple(nuisance),
+        priors=known_before,
+        **settings,
+    )
     return search.identify(tuple(trials), model, asked)
 
 

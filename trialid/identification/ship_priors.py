@@ -1,0 +1,54 @@
+"""What the ship's file knows of parameters that are estimated: its numbers, as sure as it says."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from trialid.errors import ShipError
+from trialid.ship.model import ShipModel
+
+Known = tuple[float, float]
+"""Mean and standard deviation."""
+
+
+def ship_priors(model: ShipModel, free: Sequence[str]) -> dict[str, Known]:
+    """Mean and standard deviation of every free parameter that the file states with its scatter.
+
+    Parameters
+    ----------
+    model
+        Values given by hand are where a search begins, never what is known: the file's count.
+    free
+        Parameters that are estimated; those the file says nothing of are left alone.
+
+    Returns
+    -------
+    dict
+        In the parameters' own units, and with this project's rudder sign.
+
+    Raises
+    ------
+    ShipError
+        The file states no scatter for any of them, or calls one exact.
+    """
+    plain, known = replace(model, values={}), dict[str, Known]()
+    ship = model.ship
+    for name in free:
+        share = ship.uncertainty.get(name, ship.uncertainty.get("default"))
+        value = plain.stated(name) if name in plain.parameters else None
+        if share is None or value is None or not (name in ship.mass or name in ship.coefficients):
+            continue
+        if share == 0.0 and value != 0.0:
+            raise ShipError(
+                f"ship {ship.name!r}: [uncertainty] {name} = 0 calls it exact, and the pipeline "
+                'estimates it with priors = "ship"; take it out of identify.free, or say how far '
+                "it may be off"
+            )
+        if value != 0.0:
+            known[name] = value, share * abs(value)
+    if not known:
+        raise ShipError(
+            f"ship {ship.name!r}: [uncertainty] says nothing of {', '.join(free)}, so priors = "
+            '"ship" has nothing to hold them by; write it there (`trialid ship` does), or '
+            "leave priors out"
+        )
+    return known

@@ -1,0 +1,51 @@
+"""What was known before the record, in words: how much of it is left, what speaks against it."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from trialid.names import wording
+from trialid.result.fit_rows import ParameterRow
+
+CONTRADICTS: Final = 3.0
+"""Standard deviations at which the record speaks against a prior."""
+
+NAMED: Final = 8
+"""Parameters that a sentence names before it only counts them."""
+
+
+def prior_words(parameters: Sequence[ParameterRow]) -> str:
+    r"""How much of each parameter is its prior's, and which priors the record contradicts.
+
+    >>> rows = [ParameterRow(name="Yr", value=2.9, prior=(3.0, 1.0), prior_share=0.9),
+    ...         ParameterRow(name="Nr", value=-6.0, prior=(-2.0, 1.0), prior_share=0.04)]
+    >>> print(prior_words(rows).replace(wording.THIN, " ").replace(". ", ".\n"))
+    Known beforehand, as a share of what is known now: Yr 90 %, Nr 4.0 %.
+    The record contradicts what was known of Nr: -6, where -2 +-1 was expected (4.1 deviations).
+    >>> prior_words(rows[:0])
+    ''
+    """
+    held = [r for r in parameters if r.kind == "physical" and r.prior_share is not None]
+    held.sort(key=lambda row: -(row.prior_share or 0.0))
+    if not held:
+        return ""
+    shares = [f"{r.name} {wording.percent(r.prior_share or 0.0, 2)}" for r in held[:NAMED]]
+    more = f" and {len(held) - NAMED} more" if len(held) > NAMED else ""
+    listed = f"Known beforehand, as a share of what is known now: {', '.join(shares)}{more}."
+    return " ".join([listed, *(contradictions(held))])
+
+
+def contradictions(parameters: Sequence[ParameterRow]) -> list[str]:
+    """A sentence for each prior that the record contradicts."""
+    return [_against(row) for row in parameters if abs(row.off_prior or 0.0) > CONTRADICTS]
+
+
+def _against(row: ParameterRow) -> str:
+    assert row.prior is not None
+    unit, factor = wording.shown_unit(row.unit)
+    mean, deviation = (x * factor for x in row.prior)
+    value, off = (row.value or 0.0) * factor, row.off_prior or 0.0
+    unit = "" if unit == "1" else f" {unit}"
+    return (
+        f"The record contradicts what was known of {row.name}: {value:.4g}, where {mean:.4g} "
+        f"+-{deviation:.2g}{unit} was expected ({abs(off):.1f} deviations)."
+    )
