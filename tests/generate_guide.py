@@ -19,6 +19,10 @@ from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+sys.path.insert(0, str(Path(__file__).resolve().parent / "ship" / "estimate"))
+
+from guide_of_estimates import ship_estimates
+
 from trialid.design.kinds import KINDS
 from trialid.guide import TOPICS
 from trialid.names.quantities import MASS_PARAMETERS, PARTICULARS, SIGNALS
@@ -278,6 +282,7 @@ PARTS: Final[Mapping[str, Callable[[], str]]] = {
     "signals": signals,
     "manoeuvres": manoeuvres,
     "claims": claims,
+    "ship estimates": ship_estimates,
 }
 """Each generated part by the name it has in a page."""
 

@@ -13,6 +13,7 @@ TOPICS: Final = {
     "logs": "which logs are read, and what a log does not say itself",
     "pipeline_file": "the file that says what is done: every key",
     "ship_file": "the ship's particulars, masses and coefficients: every key",
+    "own_ship": "a ship file from length, beam and draught; how far off it is",
     "effects": "what a model is made of, and how to write an effect of your own",
     "verdicts": "what the four verdicts mean, and how each is reached",
     "accuracy": "how far off a parameter may be: what each column means",

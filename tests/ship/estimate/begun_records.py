@@ -45,6 +45,7 @@ def _osaka(count: int) -> Case:
         beam=0.489,
         draught=0.201,
         displacement=244.6,
+        speed=0.4,
         rudder_area=0.0106,
         propeller_diameter=0.084,
         x_G=0.094,
@@ -70,7 +71,7 @@ def begun(folder: Path, case: Case, ship: str) -> Path | None:
     given, own = case.given, None
     if ship == S175:
         own = folder / "ship.toml"
-        own.write_text(placeholder(given.length or math.nan, given.speed or 5.0), encoding="utf-8")
+        own.write_text(placeholder(given.length or math.nan, given.speed or 8.0), encoding="utf-8")
     elif ship == LENGTH:
         given = Given(length=given.length)
     made = starter(surveys, folder / "p.toml", own, Given() if own else given, case.given.speed)
