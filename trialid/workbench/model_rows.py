@@ -131,7 +131,7 @@ def _known(shown: Shown) -> Mapping[str, tuple[float, float]]:
     """What is known beforehand; nothing while a ship file cannot say what it is asked for."""
     said = shown.pipeline.identify.priors
     if not isinstance(said, OfTheShip):
-        return {n: (p.mean, p.std) for n, p in said.items()}
+        return {n: p.known for n, p in said.items()}
     try:
         return {} if shown.model is None else priors_of(shown.pipeline, shown.model)
     except PipelineError:
