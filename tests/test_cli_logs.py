@@ -106,6 +106,15 @@ def test_init_without_a_ship_is_one_line_and_writes_nothing(tmp_path: Path) -> N
         (["nowhere.mcap"], "no such file"),
         ([str(CSV), "--init", "a.txt", "--length", "9"], "a pipeline file ends in .toml"),
         ([str(CSV), "--init", "no/a.toml", "--length", "9"], "there is no folder no"),
+        (
+            [str(CSV), "--init", "a.toml", "--length", "96", "--beam", "960", "--block", "2"],
+            "2 things are wrong: (1) beam 960 m is more than the length 96 m; are both in metres?; "
+            "(2) block coefficient 2 is above 1",
+        ),
+        (
+            [str(CSV), "--init", "a.toml", "--beam", "16"],
+            "the length is missing",
+        ),
         ([str(CSV), "--dbc", "no.dbc"], "no.dbc: no such file"),
         ([str(LOGS / "zigzag-10.mcap"), "--zone", "Europe/Oslo"], "zone"),
         (
@@ -125,7 +134,7 @@ def test_mistakes_are_one_line(
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], [str(CSV), "--length", "9"], [str(CSV), "--init", "a.toml", "--length", "-1"]]
+    "arguments", [[], [str(CSV), "--length", "9"], [str(CSV), "--init", "a.toml", "--length", "x"]]
 )
 def test_misuse_leads_to_the_help(arguments: list[str]) -> None:
     assert refused("inspect", *arguments).rstrip().endswith("; see trialid inspect --help")

@@ -11,6 +11,7 @@ import pytest
 from trialid import pipeline_file
 from trialid.errors import LogError, PipelineError
 from trialid.inspection import inspect_log
+from trialid.pipeline_file.prior_section import OfTheShip
 from trialid.ship.estimate import Given
 from trialid.ship.particulars import read_ship
 from trialid.workflow.first_pipeline import starter
@@ -195,6 +196,31 @@ def test_the_placeholder_says_that_it_is_one_and_keeps_the_length(tmp_path):
     assert ship.source.startswith("PLACEHOLDER")
     mass = ship.mass["m"] * 0.5 * 42.5**3
     assert ship.particulars["nabla"] == pytest.approx(mass, rel=1e-3)
+
+
+def test_what_is_known_of_the_ship_goes_into_her_file(tmp_path):
+    """Length, beam, draught and displacement; the speed from the log, with the words for it."""
+    begun(tmp_path, LOGS[:1], length=42.5, beam=9.0, draught=3.1, displacement=700e3, GM=0.8)
+    ship = read_ship(tmp_path / "p_ship.toml")
+    known = {n: ship.particulars[n] for n in ("L", "B", "T")}
+    assert known == {"L": 42.5, "B": 9.0, "T": 3.1}
+    assert ship.particulars["nabla"] == pytest.approx(700.0 / 1.025, rel=1e-4)
+    assert ship.coefficients["GM"] == 0.8
+    assert ship.source.startswith("Estimated from her particulars")
+    text = (tmp_path / "p_ship.toml").read_text(encoding="utf-8")
+    assert re.search(r"^U0 = [67][.\d]*  # m/s, median of .*speed through the water$", text, re.M)
+    made = pipeline_file.load(tmp_path / "p.toml")
+    assert isinstance(made.identify.priors, OfTheShip)
+
+
+@pytest.mark.parametrize(("known", "held"), [("", False), ("\n[uncertainty]\nNr = 0.3\n", True)])
+def test_a_file_that_says_how_it_scatters_holds_by_that(tmp_path, known, held):
+    ship = tmp_path / "own.toml"
+    text = (SAMPLES / "ships" / "s175q.toml").read_text(encoding="utf-8")
+    ship.write_text(text + known, encoding="utf-8")
+    begun(tmp_path, LOGS[:1], ship=ship, length=None)
+    made = pipeline_file.load(tmp_path / "p.toml")
+    assert isinstance(made.identify.priors, OfTheShip) == held
 
 
 def test_an_own_ship_file_is_taken_and_no_placeholder_made(tmp_path):

@@ -35,7 +35,7 @@ GM = ParameterAccuracy(
 
 def part(model, *rows):
     """The accuracy part of a fit of this model, which knows its parameters exactly."""
-    problem = SimpleNamespace(weights=np.ones(2), outputs=("r", "phi"))
+    problem = SimpleNamespace(weights=np.ones(2), outputs=("r", "phi"), unknowns=())
     fit = SimpleNamespace(model=model, problem=problem, settings=SimpleNamespace(norm="mean"))
     size = len(rows)
     return accuracy_part(

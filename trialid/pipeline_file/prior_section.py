@@ -25,6 +25,11 @@ class Prior(Section):
     std: Positive
     """Its standard deviation."""
 
+    @property
+    def known(self) -> tuple[float, float]:
+        """Mean and standard deviation."""
+        return self.mean, self.std
+
 
 class OfTheShip(dict[str, Prior]):
     """Stands for what the ship file knows; holds nothing, as the file is not read here."""

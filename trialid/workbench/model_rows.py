@@ -6,6 +6,7 @@ from math import inf
 
 from trialid.errors import EffectError, PipelineError
 from trialid.names.quantities import MASS_PARAMETERS
+from trialid.pipeline_file.prior_section import OfTheShip
 from trialid.report.pictures import bars
 from trialid.report.pictures.bars import RangeBar
 from trialid.result import fit_rows
@@ -128,6 +129,9 @@ def _free(
 
 def _known(shown: Shown) -> Mapping[str, tuple[float, float]]:
     """What is known beforehand; nothing while a ship file cannot say what it is asked for."""
+    said = shown.pipeline.identify.priors
+    if not isinstance(said, OfTheShip):
+        return {n: p.known for n, p in said.items()}
     try:
         return {} if shown.model is None else priors_of(shown.pipeline, shown.model)
     except PipelineError:

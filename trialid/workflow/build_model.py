@@ -140,7 +140,7 @@ def priors_of(pipeline: Described, model: ShipModel) -> dict[str, tuple[float, f
     """
     said = pipeline.identify.priors
     if not isinstance(said, OfTheShip):
-        return {n: (p.mean, p.std) for n, p in said.items()}
+        return {n: p.known for n, p in said.items()}
     try:
         return ship_priors(model, pipeline.identify.free)
     except ShipError as error:

@@ -1,19 +1,23 @@
 """Real records begun as `inspect --init` begins them, with three kinds of ship file."""
 
 import math
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from search_ships import placeholder
-from test_carried_over import ESSO
-from test_newcomer import CASES as NEWCOMER
-from test_newcomer import COASTER, FERRY, LOGS
+TESTS: Final = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(TESTS), str(TESTS / "real_records"), str(TESTS / "benchmarks")]
 
-from trialid.ingest import Aids
-from trialid.inspection import inspect_log
-from trialid.ship.estimate import Given
-from trialid.workflow.first_pipeline import starter
+from search_ships import placeholder  # noqa: E402
+from test_carried_over import ESSO  # noqa: E402
+from test_newcomer import CASES as NEWCOMER  # noqa: E402
+from test_newcomer import COASTER, FERRY, LOGS  # noqa: E402
+
+from trialid.ingest import Aids  # noqa: E402
+from trialid.inspection import inspect_log  # noqa: E402
+from trialid.ship.estimate import Given  # noqa: E402
+from trialid.workflow.first_pipeline import starter  # noqa: E402
 
 KNOT: Final = 1852.0 / 3600.0
 S175: Final = "S-175 scaled"

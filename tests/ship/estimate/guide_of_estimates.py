@@ -32,9 +32,9 @@ def _paragraph(words: str) -> str:
 
 
 def _table(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A table of Markdown, its numbers to the right."""
+    """A table of Markdown; without alignment, which would be a style in HTML."""
     names = list(headings)
-    lines = [names, ["---", *["---:"] * (len(names) - 1)], *rows]
+    lines = [names, ["---"] * len(names), *rows]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines) + "\n"
 
 

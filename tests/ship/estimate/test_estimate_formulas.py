@@ -37,6 +37,25 @@ def test_a_thin_hull_is_a_flat_plate():
         assert found[name].value == pytest.approx(of_plate * plate, rel=1e-2), name
 
 
+@pytest.mark.parametrize(
+    "hull",
+    [{}, {"L": 320.0, "B": 58.0, "T": 20.8, "block": 0.81}, {"B": 23.17, "T": 7.46, "L": 160.93}],
+    ids=["S-175", "KVLCC2", "Mariner"],
+)
+def test_another_papers_formulas_say_the_same_of_ordinary_ships(hull):
+    """Kijima et al. (1990), k = 2 T/L, over L d: pi k/2 + 1.4 C_B B/L, k, and -0.54 k + k^2."""
+    ship = form(**hull)
+    k, slim = 2.0 * ship.T / ship.L, ship.T / ship.L
+    kijima = {
+        "Yv": -(0.5 * math.pi * k + 1.4 * ship.block * ship.B / ship.L),
+        "Nv": -k,
+        "Nr": -0.54 * k + k**2,
+    }
+    found = sway_yaw.linear(ship)
+    for name, value in kijima.items():
+        assert found[name].value / slim == pytest.approx(value, rel=0.08), name
+
+
 def test_the_rudder_of_the_kvlcc2():
     """f_alpha = 2.747 in Yasukawa & Yoshimura (2015), aspect ratio 1.827."""
     assert rudder_and_propeller.normal_force_slope(1.827) == pytest.approx(2.747, abs=5e-4)

@@ -102,6 +102,7 @@ HULL = "--length 175 --beam 25.4 --draught 8.5 --block 0.56"
         ("--length 175 --block 0.05", "block coefficient 0.05 is below 0.1"),
         (f"{HULL} --displacement 21752550", "is a block coefficient of 562 with"),
         (f"{HULL} --displacement 21.75", "is a block coefficient of 0.000562 with"),
+        (f"{HULL} --displacement 15000", "coefficient of 0.387, and block coefficient 0.56"),
         (f"{HULL} --displacement 30000", "coefficient of 0.775, and block coefficient 0.56"),
         ("--length 175 --displacement 21752550", "displacement 21752550 t makes a hull of"),
         ("--length 175 --displacement -1", "displacement -1 t is not above zero"),

@@ -2,7 +2,8 @@
 
 The papers show their scatter in figures. The shares here are how far published sets lie from each
 formula, root mean square: S-175, Mariner, naval vessel, ONR Tumblehome, as far as each has the
-number; `tests/benchmarks/ship_estimates.py` counts them and holds them against three other ships.
+number; `tests/ship/estimate/test_estimate_scatter.py` counts them, and holds them against three
+other ships.
 """
 
 import math
