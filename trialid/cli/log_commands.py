@@ -74,8 +74,8 @@ def inspect(
         _draft_template(logs, template)
         return
     given = given_from(particulars)
-    _check_new_pipeline(pipeline, ship, speed, given)
-    surveys = _surveys(logs, layout, dbc, zone)
+    check_new_pipeline(pipeline, ship, speed, given)
+    surveys = look_into(logs, layout, dbc, zone)
     if as_json:
         _print_plain(surveys)
     else:
@@ -130,12 +130,13 @@ def _check_names(asked: Sequence[str], known: Sequence[str], pipeline: Path) -> 
             raise TrialidError(f"{pipeline}: no trial {name!r}; {nearest(name, known)}")
 
 
-def _surveys(
+def look_into(
     logs: Sequence[Path], template: Path | None, dbc: Path | None, zone: str | None
 ) -> list["Inspection"]:
+    """What the logs hold; a folder of several trials is several."""
     from trialid.ingest import Aids
     from trialid.ingest.times.local_time import known_zone
-    from trialid.inspection import inspect_log
+    from trialid.inspection import inspect_trials
 
     for file in (template, dbc):
         if file is not None and not file.is_file():
@@ -147,10 +148,10 @@ def _surveys(
             raise TrialidError(f"--zone: {error}") from error
     aids = Aids(template, dbc, zone)
     with progress_bar(shown=sys.stderr.isatty()) as progress:
-        found = []
+        found: list[Inspection] = []
         for place, path in enumerate(logs):
             progress(f"reading {path.name}", place / len(logs))
-            found.append(inspect_log(path, aids))
+            found += inspect_trials(path, aids)
     return found
 
 
@@ -170,26 +171,30 @@ def _print_tables(surveys: Sequence["Inspection"], everything: bool) -> None:
         say(render(*gap, *inspection(one, everything=everything), width=file_width()))
 
 
-def _check_new_pipeline(
-    pipeline: Path | None, ship: Path | None, speed: float | None, given: "Given"
+def check_new_pipeline(
+    pipeline: Path | None,
+    ship: Path | None,
+    speed: float | None,
+    given: "Given",
+    option: str = "--init",
 ) -> None:
-    """Refuse, before the logs are read, what cannot be written."""
+    """Refuse, before the logs are read, what cannot be written; `option` asked for it."""
     _check_said(pipeline, ship, speed, option_names(given))
     if pipeline is None:
         return
-    _check_given(pipeline, given)
+    _check_given(f"{option} {pipeline}", given)
     if pipeline.suffix != ".toml":
-        raise TrialidError(f"--init {pipeline}: a pipeline file ends in .toml")
+        raise TrialidError(f"{option} {pipeline}: a pipeline file ends in .toml")
     if not pipeline.parent.is_dir():
         raise TrialidError(
-            f"--init {pipeline}: there is no folder {pipeline.parent}; make it first"
+            f"{option} {pipeline}: there is no folder {pipeline.parent}; make it first"
         )
-    temporary.check_writable(pipeline.parent, "--init")
+    temporary.check_writable(pipeline.parent, option)
     from trialid.workflow.first_pipeline import begun_ship
 
     for file in (pipeline, *([begun_ship(pipeline)] if ship is None else [])):
         if file.exists():
-            raise TrialidError(f"--init {pipeline}: {file} exists; name another pipeline")
+            raise TrialidError(f"{option} {pipeline}: {file} exists; name another pipeline")
 
 
 def _check_said(
@@ -204,14 +209,14 @@ def _check_said(
         raise click.UsageError(f"{of_her[0]} is for a new ship file; that of --ship has its own")
 
 
-def _check_given(pipeline: Path, given: "Given") -> None:
+def _check_given(place: str, given: "Given") -> None:
     """Refuse a ship that cannot be; where nothing is known of her, the logs are read first."""
     from trialid.errors import ShipError
     from trialid.ship.estimate.all_numbers import refusal
     from trialid.ship.estimate.impossible import complaints
 
     if (wrong := complaints(given)) and option_names(given):
-        raise ShipError(f"--init {pipeline}: {refusal(wrong)}")
+        raise ShipError(f"{place}: {refusal(wrong)}")
 
 
 def _begin(
@@ -223,7 +228,7 @@ def _begin(
 
     stated = None if speed is None else speed * KNOT
     begun = starter(surveys, pipeline, ship, given, stated)
-    _write_new(begun.files)
+    write_new(begun.files)
     for path in begun.files:
         note(f"Written: {path}")
     for words in begun.to_fill:
@@ -235,7 +240,7 @@ def _begin(
         note(f"Read its comments, then: trialid run {pipeline}")
 
 
-def _write_new(files: Mapping[Path, str]) -> None:
+def write_new(files: Mapping[Path, str]) -> None:
     """Write new files, and replace none."""
     for path, text in files.items():
         try:
@@ -256,6 +261,6 @@ def _draft_template(logs: Sequence[Path], template: Path) -> None:
     if template.exists():
         raise TrialidError(f"--template {template}: exists; name another file")
     temporary.check_writable(template.parent, "--template")
-    _write_new({template: draft(logs[0])})
+    write_new({template: draft(logs[0])})
     note(f"Written: {template}")
     note(f"Review it, then: trialid inspect {logs[0]} --with-template {template}")

@@ -5,10 +5,8 @@ Everything heavy is imported inside the commands, so that `trialid --help` answe
 
 import errno
 import io
-import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final
@@ -16,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from trialid import temporary
+from trialid.cli.answering import answer, open_pipeline, summary_of, write_or_say_why
 from trialid.cli.console import (
     Progress,
     complain,
@@ -26,7 +25,6 @@ from trialid.cli.console import (
     progress_bar,
     render,
     say,
-    screen_less,
 )
 from trialid.cli.demo_command import demo
 from trialid.cli.design_command import design
@@ -37,6 +35,7 @@ from trialid.cli.one_line_errors import WRONG_INPUT, OneLineErrors
 from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
 from trialid.cli.ship_command import ship
+from trialid.cli.start_command import start
 from trialid.cli.workbench_command import workbench
 from trialid.errors import TrialidError
 from trialid.version import VERSION
@@ -116,7 +115,7 @@ def run(
     _check_options(auto, keep, draft)
     if pipeline is None:
         raise click.UsageError("Missing argument 'PIPELINE'.")
-    asked, folder = _opened(pipeline, out)
+    asked, folder = open_pipeline(pipeline, out)
     _check_draft(draft)
     if auto:
         _grow(asked, folder, keep, as_json, quiet)
@@ -127,14 +126,14 @@ def run(
 
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         done = identify_from(asked, progress, force=draft is not None)
-        with _writing(folder):
+        with write_or_say_why(folder):
             write(done, folder)
-    _answer(
+    answer(
         done.result,
         folder,
         as_json,
         quiet,
-        _summary(str(asked.path), above=2 * (draft is not None)),
+        summary_of(str(asked.path), above=2 * (draft is not None)),
     )
     if draft is not None:
         said = _write_draft(draft, done)
@@ -166,7 +165,19 @@ def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bo
     _change("dropped", pipeline, effect, out, as_json, quiet)
 
 
-for command in (effects, demo, ship, inspect, align, design, report, replay, workbench, guide):
+for command in (
+    effects,
+    demo,
+    start,
+    ship,
+    inspect,
+    align,
+    design,
+    report,
+    replay,
+    workbench,
+    guide,
+):
     commands.add_command(command)
 
 
@@ -195,27 +206,11 @@ def _check_options(auto: bool, keep: bool, draft: Path | None) -> None:
         raise click.UsageError("--draft goes with a plain run: add what is known first")
 
 
-def _opened(pipeline: Path, out: Path | None) -> tuple["Pipeline", Path]:
-    """The pipeline, and the folder for its results, which may be replaced."""
-    from trialid.pipeline_file import load
-    from trialid.workflow.run_folder import check_replaceable, folder_of
-
-    asked = load(pipeline)
-    folder = out or folder_of(asked)
-    try:
-        check_replaceable(folder, asked)
-        temporary.check_writable(folder)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise TrialidError(f"{_short(folder)}: {reason}; choose another --out") from error
-    return asked, folder
-
-
 def _change(
     step: str, pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bool
 ) -> None:
     """Add or drop an effect, and show what it changed."""
-    asked, folder = _opened(pipeline, out)
+    asked, folder = open_pipeline(pipeline, out)
     temporary.check_writable(pipeline.parent, "place for the pipeline")
     from trialid.workflow.edit_model import (
         add_to_pipeline,
@@ -228,13 +223,13 @@ def _change(
     edit = (add_to_pipeline if step == "added" else drop_from_pipeline)(asked, effect)
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         done = carry_out(edit, folder, progress)
-        with _writing(folder):
+        with write_or_say_why(folder):
             commit(asked, done.edit.after, done.run, done.steps, folder)
     for words in edit.taken_out:
         complain(f"{pipeline}: taken out with {effect}: {words}")
     back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
     foot = f"{pipeline}: {difference_words(done.edit)}\nUndo: {back}\n"
-    _answer(done.run.result, folder, as_json, quiet, _beside, foot)
+    answer(done.run.result, folder, as_json, quiet, _beside, foot)
 
 
 def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: bool) -> None:
@@ -246,7 +241,7 @@ def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: boo
     told = not (as_json or quiet)
     done = list(_stages(asked, told, shown=not quiet and sys.stderr.isatty()))
     last, steps = conclude(done)
-    with _writing(folder):
+    with write_or_say_why(folder):
         if keep and steps:
             commit(asked, done[-1].pipeline, last, steps, folder)
         else:
@@ -256,7 +251,7 @@ def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: boo
     above = 2 + sum(stage.kept for stage in done)
     if told:
         say("")
-    _answer(last.result, folder, as_json, quiet, _summary(file, above), foot)
+    answer(last.result, folder, as_json, quiet, summary_of(file, above), foot)
 
 
 def _stages(asked: "Pipeline", told: bool, shown: bool) -> "Iterator[Stage]":
@@ -304,43 +299,11 @@ def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
     return render(words) + "\n"
 
 
-def _answer(
-    result: "Result",
-    folder: Path,
-    as_json: bool,
-    quiet: bool,
-    show: "Callable[[Result, int], str]",
-    foot: str = "",
-) -> None:
-    """Print a result the way that was asked for.
-
-    `show` gives it in so many lines; with what stands at its foot it fits one screen.
-    """
-    if result.history_remark:
-        complain(result.history_remark)
-    if as_json:
-        from trialid.result.json_file import plain
-
-        say(json.dumps(plain(result), indent=2, allow_nan=False))
-    elif not quiet:
-        foot += f"Report: {folder / 'report.html'}"
-        say(f"{show(result, screen_less(foot))}\n{foot}")
-
-
 def _beside(result: "Result", lines: int) -> str:
     """The model before and after."""
     from trialid.report.terminal.before_after import before_after
 
     return render(before_after(result, lines))
-
-
-@contextmanager
-def _writing(folder: Path) -> Iterator[None]:
-    """A place that cannot be written is the user's to mend."""
-    try:
-        yield
-    except OSError as error:
-        raise TrialidError(f"{folder}: cannot be written ({error.strerror or error})") from error
 
 
 def _check_draft(draft: Path | None) -> None:
@@ -372,23 +335,6 @@ def _write_draft(draft: Path, done: "Run") -> str:
     except OSError as error:
         raise TrialidError(f"--draft {draft}: {(error.strerror or str(error)).lower()}") from error
     return f"Draft: {draft}"
-
-
-def _short(folder: Path) -> str:
-    """A path short enough for one line."""
-    text = str(folder)
-    return text if len(text) <= 80 else f"{text[:40]}...{text[-37:]}"
-
-
-def _summary(pipeline: str, above: int = 0) -> "Callable[[Result, int], str]":
-    """Give what shows the summary of a run of a pipeline, below so many lines of the screen."""
-
-    def show(result: "Result", lines: int) -> str:
-        from trialid.report.terminal.summary import summary
-
-        return render(summary(result, pipeline, lines - above))
-
-    return show
 
 
 def _report_bug(

@@ -12,8 +12,9 @@ from trialid.ingest import LogFile, adapter_of, files_of
 from trialid.ingest.adapter import NO_AIDS, Aids
 from trialid.inspection import channels, relations
 from trialid.inspection.inspected import ChannelInspection, Inspection, LogFileInspection
+from trialid.inspection.trials_in_folder import follow_one_another
 
-__all__ = ["Inspection", "survey"]
+__all__ = ["Inspection", "inspect_log", "inspect_trials"]
 
 A_YEAR_NS = 366 * 86400 * 10**9
 
@@ -26,22 +27,46 @@ def inspect_log(path: Path, aids: Aids = NO_AIDS) -> Inspection:
     LogError
         There is no such log, it cannot be read, or it holds no number at all.
     """
+    return _together(path, _read(path, aids), aids)
+
+
+def inspect_trials(path: Path, aids: Aids = NO_AIDS) -> tuple[Inspection, ...]:
+    """The same, of a folder that holds recordings of their own each of its files by itself.
+
+    Raises
+    ------
+    LogError
+        As `inspect_log`.
+    """
+    files = _read(path, aids)
+    if follow_one_another([found for found, _ in files]):
+        return (_together(path, files, aids),)
+    return tuple(_together(log.path, [(found, log)], aids) for found, log in files if found)
+
+
+File = tuple[list[ChannelInspection], LogFileInspection]
+
+
+def _read(path: Path, aids: Aids) -> list[File]:
+    return [_file(file, aids) for file in files_of(LogFile(path, aids))]
+
+
+def _together(path: Path, read: Sequence[File], aids: Aids) -> Inspection:
+    """Files of one recording."""
     parts: dict[str, list[ChannelInspection]] = {}
-    files = []
-    for file in files_of(LogFile(path, aids)):
-        found, log = _file(file, aids)
-        files.append(log)
+    for found, _ in read:
         for one in found:
             parts.setdefault(one.key, []).append(one)
+    files = tuple(log for _, log in read)
     if not parts:
         remarks = "; ".join(remark for file in files for remark in file.remarks)
         raise LogError(f"{path}: holds no channel of numbers; {remarks or 'take another log'}")
     together = {key: channels.merge_channels(pieces) for key, pieces in parts.items()}
     known = relations.recognise(together)
-    return Inspection(path, tuple(files), known, tuple(_warnings(list(known.values()))), aids)
+    return Inspection(path, files, known, tuple(_warnings(list(known.values()))), aids)
 
 
-def _file(path: Path, aids: Aids) -> tuple[list[ChannelInspection], LogFileInspection]:
+def _file(path: Path, aids: Aids) -> File:
     """One file, in as many readings as its adapter wants."""
     adapter = adapter_of(path, aids)
     found: dict[str, ChannelInspection] = {}

@@ -17,10 +17,11 @@ __all__ = ["Starter", "begun_ship", "starter"]
 
 @dataclass(frozen=True)
 class Starter:
-    """Files to write, text by path, and what the user must still fill in, in words."""
+    """Files to write, text by path, what was chosen, and what the user must still fill in."""
 
     files: dict[Path, str]
     to_fill: tuple[str, ...]
+    trials: tuple[Chosen, ...]
 
 
 def starter(
@@ -74,7 +75,7 @@ def starter(
     L = own.particulars["L"]
     trials = [size_unit(one, L, u0) for one in trials]
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
-    return Starter(files, tuple(_to_fill(trials)))
+    return Starter(files, tuple(_to_fill(trials)), tuple(trials))
 
 
 def begun_ship(pipeline: Path) -> Path:

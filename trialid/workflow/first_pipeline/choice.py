@@ -83,8 +83,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
         missing = "rudder or rudder order" if rudder is None else "yaw rate or heading"
         raise LogError(
             f"{survey.path}: no moving {missing} is recognised among its {len(survey.channels)} "
-            "channels, so no pipeline can be begun; see `trialid inspect --all`, and map the "
-            "channels by hand"
+            f"channels, so no pipeline can be begun; {_what_then(survey)}"
         )
     r = _rate(live) if live["r"] else None
     signals = [_rudder(rudder, live, r)]
@@ -93,7 +92,20 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     known, words = _speed(survey, live, speed)
     if live["u"]:
         signals.append(_through_water(live, speed))
+    elif speed is None and (other := _instead(survey)) is not None:
+        signals.append(other)
     return Chosen(survey, survey.path, tuple(signals), known, words)
+
+
+def _what_then(survey: Inspection) -> str:
+    """What to do where no rudder or no motion is recognised."""
+    thrust = [one.name for one in survey.channels.values() if "thrust" in one.name.lower()]
+    if thrust:
+        return (
+            f"she seems to steer by thrusters ({', '.join(thrust[:4])}), and a boat without a "
+            "rudder has no model here yet"
+        )
+    return "see `trialid inspect --all`, and map the channels by hand"
 
 
 Live = dict[str, tuple[ChannelInspection, ...]]
@@ -164,6 +176,18 @@ def _through_water(live: Live, speed: float | None) -> Signal:
         return plain
     words = f"by its name; unit by the stated speed of {speed:.3g} m/s"
     return Signal("u", plain.source, fitting[0], None, words, plain.others)
+
+
+def _instead(survey: Inspection) -> Signal | None:
+    """Another speed in the place of that through the water: it falls in turns as that does."""
+    for sources, words in ((_over_ground(survey), "over ground"), (_some_speed(survey), "unsaid")):
+        for source in sources:
+            unit = source.unit or source.unit_in_name
+            why = (
+                f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
+            )
+            return Signal("u", source, unit, None, why, ())
+    return None
 
 
 def _near(speed: float, stated: float) -> bool:

@@ -1,0 +1,117 @@
+"""`trialid start`: logs in, a pipeline, a ship and a first fit out; what is not known is asked."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from test_first_pipeline import L, trial, written
+
+from trialid import pipeline_file
+from trialid.cli.main import commands
+from trialid.inspection import inspect_trials
+from trialid.result.json_file import read
+
+NEWCOMER = Path(__file__).parents[3] / "shared" / "data" / "newcomer"
+SHIP = ("--length", str(L))
+
+
+def started(folder, monkeypatch, *words):
+    monkeypatch.chdir(folder)
+    return CliRunner().invoke(commands, ["start", *map(str, words)])
+
+
+def log(path, seed=0, begun=0.0, **others):
+    t, delta, r, psi, u = trial(seed=seed)
+    columns = {
+        "t_in_s": t + begun,
+        "rudder_in_deg": delta,
+        "yaw_rate_in_deg_per_s": r,
+        "heading_in_deg": psi % 360.0,
+        "sog_in_m_per_s": u,
+    }
+    return written(path, **(columns | others))
+
+
+def test_logs_become_a_pipeline_a_ship_and_a_fit(tmp_path, monkeypatch):
+    logs = [log(tmp_path / f"zigzag-{k}.csv", seed=k) for k in range(3)]
+    done = started(tmp_path, monkeypatch, *logs, *SHIP)
+    assert done.exit_code == 0, done.output
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("3 trials: zigzag-0.csv, zigzag-1.csv, zigzag-2.csv; the last")
+    assert len(lines) < 40
+    assert max(map(len, lines)) <= 80
+    asked = pipeline_file.load(tmp_path / "first_trial.toml")
+    assert [t.use for t in asked.trials] == ["fit", "fit", "check"]
+    assert (tmp_path / "first_trial_ship.toml").is_file()
+    result = read(tmp_path / "runs" / "first_trial" / "result.json")
+    assert result.fit.eps_rmsn < 0.3
+    assert lines[-1] == "Report: runs/first_trial/report.html"
+
+
+def test_a_recorded_speed_is_no_constant_whatever_it_is_called(tmp_path, monkeypatch):
+    """Frozen at its median the ferry's speed once named an effect that was not there."""
+    started(tmp_path, monkeypatch, log(tmp_path / "a.csv"), *SHIP)
+    text = (tmp_path / "first_trial.toml").read_text(encoding="utf-8")
+    assert 'u     = { channel = "sog", unit = "m/s" }' in text
+    assert "CAREFUL: a speed over ground" in text
+    assert "speed = " not in text
+
+
+def test_nothing_is_replaced(tmp_path, monkeypatch):
+    made = log(tmp_path / "a.csv")
+    (tmp_path / "first_trial.toml").write_text("mine", encoding="utf-8")
+    done = started(tmp_path, monkeypatch, made, *SHIP)
+    assert done.exit_code == 2
+    assert "first_trial.toml exists; name another pipeline" in done.stderr
+    assert (tmp_path / "first_trial.toml").read_text(encoding="utf-8") == "mine"
+
+
+def test_what_only_the_user_knows_is_asked_and_nothing_is_fitted(tmp_path, monkeypatch):
+    """A rudder that has nothing to do with the turn: its side cannot be measured."""
+    t, *_ = trial()
+    rudder = 10.0 * np.sign(np.sin(0.31 * t))
+    made = log(tmp_path / "a.csv", rudder_in_deg=rudder)
+    done = started(tmp_path, monkeypatch, made, *SHIP)
+    assert done.exit_code == 0
+    assert "To fill in: a.csv: delta" in done.stdout
+    assert "Not fitted yet" in done.stderr
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_folder_of_trials_is_several_and_a_split_recording_is_one(tmp_path):
+    for name, later in {"zero": 0.0, "split": 600.0, "hours": 3600.0}.items():
+        (tmp_path / name).mkdir()
+        for k in range(3):
+            log(tmp_path / name / f"{k}.csv", seed=k, begun=later * k)
+    for several in ("zero", "hours"):
+        found = inspect_trials(tmp_path / several)
+        assert [one.path.name for one in found] == ["0.csv", "1.csv", "2.csv"]
+    (whole,) = inspect_trials(tmp_path / "split")
+    assert whole.path == tmp_path / "split"
+    assert len(whole.files) == 3
+
+
+def test_a_boat_of_thrusters_is_told_what_she_is(tmp_path, monkeypatch):
+    made = log(tmp_path / "a.csv")
+    text = made.read_text(encoding="utf-8").replace("rudder", "thrust_left", 1)
+    made.write_text(text, encoding="utf-8")
+    done = started(tmp_path, monkeypatch, made, *SHIP)
+    assert done.exit_code == 2
+    assert "she seems to steer by thrusters (thrust_left" in done.stderr
+
+
+@pytest.mark.real_data
+@pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
+@pytest.mark.parametrize(
+    ("names", "length"), [(("z10", "z20", "z15"), 62), (("twin10", "twin20", "twin15"), 96)]
+)
+def test_a_strangers_first_logs(tmp_path, monkeypatch, names, length):
+    """A cubic yaw term is what both lack: named, or said to be significant and small."""
+    logs = [NEWCOMER / f"{name}.csv" for name in names]
+    done = started(tmp_path, monkeypatch, *logs, "--length", length)
+    assert done.exit_code == 0, done.output
+    result = read(tmp_path / "runs" / "first_trial" / "result.json")
+    assert result.fit.converged
+    assert "yaw_cubic_rrr" in result.verdict.sentence
+    assert result.verdict.effect in {None, "yaw_cubic_rrr"}

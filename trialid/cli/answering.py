@@ -1,0 +1,80 @@
+"""From a pipeline file to its answer on a screen: the folder, the summary, or plain data."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trialid import temporary
+from trialid.cli.console import complain, render, say, screen_less
+from trialid.errors import TrialidError
+
+if TYPE_CHECKING:
+    from trialid.pipeline_file import Pipeline
+    from trialid.result.schema import Result
+
+
+def open_pipeline(pipeline: Path, out: Path | None) -> tuple["Pipeline", Path]:
+    """The pipeline, and the folder for its results, which may be replaced."""
+    from trialid.pipeline_file import load
+    from trialid.workflow.run_folder import check_replaceable, folder_of
+
+    asked = load(pipeline)
+    folder = out or folder_of(asked)
+    try:
+        check_replaceable(folder, asked)
+        temporary.check_writable(folder)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise TrialidError(f"{_short(folder)}: {reason}; choose another --out") from error
+    return asked, folder
+
+
+def answer(
+    result: "Result",
+    folder: Path,
+    as_json: bool,
+    quiet: bool,
+    show: "Callable[[Result, int], str]",
+    foot: str = "",
+) -> None:
+    """Print a result the way that was asked for.
+
+    `show` gives it in so many lines; with what stands at its foot it fits one screen.
+    """
+    if result.history_remark:
+        complain(result.history_remark)
+    if as_json:
+        from trialid.result.json_file import plain
+
+        say(json.dumps(plain(result), indent=2, allow_nan=False))
+    elif not quiet:
+        foot += f"Report: {folder / 'report.html'}"
+        say(f"{show(result, screen_less(foot))}\n{foot}")
+
+
+@contextmanager
+def write_or_say_why(folder: Path) -> Iterator[None]:
+    """A place that cannot be written is the user's to mend."""
+    try:
+        yield
+    except OSError as error:
+        raise TrialidError(f"{folder}: cannot be written ({error.strerror or error})") from error
+
+
+def summary_of(pipeline: str, above: int = 0) -> "Callable[[Result, int], str]":
+    """Give what shows the summary of a run of a pipeline, below so many lines of the screen."""
+
+    def show(result: "Result", lines: int) -> str:
+        from trialid.report.terminal.summary import summary
+
+        return render(summary(result, pipeline, lines - above))
+
+    return show
+
+
+def _short(folder: Path) -> str:
+    """A path short enough for one line."""
+    text = str(folder)
+    return text if len(text) <= 80 else f"{text[:40]}...{text[-37:]}"

@@ -1,0 +1,106 @@
+"""The command that does a first trial in one: logs in; a pipeline, a ship and a first fit out."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from trialid.cli.answering import answer, open_pipeline, summary_of, write_or_say_why
+from trialid.cli.console import note, progress_bar, render, say
+from trialid.cli.log_commands import FILE, OF_THE_SHIP, check_new_pipeline, look_into, write_new
+from trialid.cli.particulars_options import KNOT, given_from, particulars_options
+
+if TYPE_CHECKING:
+    from trialid.workflow.first_pipeline import Starter
+
+FIRST: Final = Path("first_trial.toml")
+
+
+@click.command(short_help="Logs in, a first model out: inspect, begin, fit.")
+@click.argument("logs", nargs=-1, required=True, type=FILE, metavar="LOG...")
+@click.option(
+    "--pipeline",
+    type=FILE,
+    default=FIRST,
+    show_default=True,
+    metavar="FILE.toml",
+    help="The pipeline to write; none is replaced.",
+)
+@click.option("--ship", type=FILE, metavar="SHIP.toml", help="The ship's file, where there is one.")
+@particulars_options(*OF_THE_SHIP, prefix="Where there is none: her ")
+@click.option(
+    "--speed",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="KNOTS",
+    help="The approach speed, where no log tells it.",
+)
+@click.option("--zone", help="Time zone of stamps that state none, like Europe/Oslo.")
+@click.option("--dbc", type=FILE, help="What the frames of a CAN bus mean.")
+@click.option("--quiet", is_flag=True, help="No progress and no summary.")
+def start(
+    logs: tuple[Path, ...],
+    pipeline: Path,
+    ship: Path | None,
+    speed: float | None,
+    zone: str | None,
+    dbc: Path | None,
+    quiet: bool,
+    **particulars: Any,
+) -> None:
+    """Look into each LOG, a file or a folder, write a pipeline and a ship to begin with, and fit.
+
+    A folder of several trials is several trials, the last of all is held out. Each choice stands in
+    the pipeline with its reason; what only you can know is left open there, and then nothing is
+    fitted yet. The same by hand: `trialid inspect LOG... --init`, then `trialid run`.
+    """
+    from trialid.workflow.first_pipeline import starter
+
+    given = given_from(particulars)
+    check_new_pipeline(pipeline, ship, speed, given, "--pipeline")
+    stated = None if speed is None else speed * KNOT
+    begun = starter(look_into(logs, None, dbc, zone), pipeline, ship, given, stated)
+    write_new(begun.files)
+    told = "" if quiet else "\n".join(map(render, _told(begun)))
+    if told:
+        say(told)
+    if begun.to_fill:
+        note(f"Not fitted yet. When that is filled in: trialid run {pipeline}")
+        return
+    _run(pipeline, quiet, told.count("\n") + 1)
+
+
+def _told(begun: "Starter") -> Iterator[str]:
+    """What was taken from the logs, and what was written, in a few lines."""
+    names = [one.path.name for one in begun.trials]
+    held = f"; the last, {names[-1]}, is held out" if len(names) > 1 else ""
+    yield f"{len(names)} trial{'s' * (len(names) > 1)}: {_few(names)}{held}."
+    for signal in begun.trials[0].signals:
+        yield f"{signal.quantity}: {signal.source.key}, {signal.why}."
+    yield f"Written, each choice with its reason: {' and '.join(map(str, begun.files))}."
+    for words in begun.to_fill:
+        yield f"To fill in: {words}"
+
+
+def _few(names: Sequence[str]) -> str:
+    """The first names, and how many more.
+
+    >>> _few(["a", "b", "c", "d", "e"])
+    'a, b, c and 2 more'
+    """
+    more = len(names) - 3
+    return ", ".join(names[:3]) + (f" and {more} more" if more > 0 else "")
+
+
+def _run(pipeline: Path, quiet: bool, above: int) -> None:
+    """The run, its folder and its screen, below so many lines."""
+    asked, folder = open_pipeline(pipeline, None)
+    from trialid.workflow.run import run
+    from trialid.workflow.write_run import write
+
+    with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
+        done = run(asked, progress)
+        with write_or_say_why(folder):
+            write(done, folder)
+    answer(done.result, folder, False, quiet, summary_of(str(pipeline), above))
