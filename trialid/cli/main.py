@@ -33,6 +33,7 @@ from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
 from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
+from trialid.cli.structures_command import structures
 from trialid.cli.workbench_command import workbench
 from trialid.errors import TrialidError
 from trialid.version import VERSION
@@ -204,13 +205,8 @@ def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> Non
         say(render(*shown, width=None if name else file_width()))
 
 
-commands.add_command(inspect)
-commands.add_command(align)
-commands.add_command(design)
-commands.add_command(report)
-commands.add_command(replay)
-commands.add_command(workbench)
-commands.add_command(guide)
+for command in (inspect, align, design, report, replay, structures, workbench, guide):
+    commands.add_command(command)
 
 
 def main() -> None:

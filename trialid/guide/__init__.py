@@ -15,6 +15,7 @@ TOPICS: Final = {
     "ship_file": "the ship's particulars, masses and coefficients: every key",
     "effects": "what a model is made of, and how to write an effect of your own",
     "verdicts": "what the four verdicts mean, and how each is reached",
+    "structures": "whole models compared by leaving out each trial",
     "accuracy": "how far off a parameter may be: what each column means",
     "nomenclature": "letters, units and signs",
     "design": "which test to sail next",

@@ -21,8 +21,8 @@ from trialid.pipeline_file.form import (
     SignalSource,
     TrialSection,
     Written,
-    neighbours,
 )
+from trialid.pipeline_file.missing_file import neighbours
 
 __all__ = [
     "Pipeline",

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, NamedTuple, cast
+from typing import Annotated, Any, Literal, NamedTuple, cast
 
 from pydantic import (
     AfterValidator,
@@ -21,9 +21,7 @@ from pydantic import (
 from trialid.errors import nearest
 from trialid.ingest.times.local_time import known_zone
 from trialid.names import units
-
-LISTED_AT_MOST: Final = 8
-"""How many file names an error lists before it only counts them."""
+from trialid.pipeline_file.missing_file import neighbours
 
 
 class Origin(NamedTuple):
@@ -45,19 +43,6 @@ def _existing(path: Path, info: ValidationInfo) -> Path:
 def _existing_log(path: Path, info: ValidationInfo) -> Path:
     found = cast(Origin, info.context).path.parent / path
     return found if found.is_dir() else _existing(path, info)
-
-
-def neighbours(path: Path) -> str:
-    """Words about the files of the same kind beside a missing one."""
-    if not path.parent.is_dir():
-        return f"there is no folder {path.parent}"
-    names = [other.name for other in path.parent.iterdir() if other.suffix == path.suffix]
-    hint = nearest(path.name, names)
-    if not names:
-        return f"no {path.suffix or 'such'} file there"
-    if len(names) > LISTED_AT_MOST and not hint.startswith("did you mean"):
-        return f"{len(names)} {path.suffix} files there, none of a similar name"
-    return hint
 
 
 def _python(path: Path) -> Path:
@@ -388,3 +373,6 @@ class Pipeline(Described):
     """How the missing effect is sought."""
     imo: bool = False
     """Whether the standard measures of MSC.137(76) are predicted too."""
+    structures: Mapping[str, Names] = {}
+    """Structures for `trialid structures` to compare, each a list of effects on top of those of
+    `model.effects` that no list names; left out: the usual ones."""
