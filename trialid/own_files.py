@@ -52,9 +52,9 @@ def check_folder(folder: Path, names: tuple[str, ...], what: str) -> None:
     TrialidError
         In one line: the folder or the file, and what to do; `what` is what such files are.
     """
-    temporary.check_writable(folder)
     if folder.exists() and not folder.is_dir():
         raise TrialidError(f"{folder}: is a file; --out takes a folder")
+    temporary.check_writable(folder)
     if not folder.is_dir() or not any(folder.iterdir()):
         return
     if not _ours(folder).keys() & {*names}:

@@ -86,6 +86,13 @@ def test_a_folder_of_somebody_elses_is_left_alone(turning, tmp_path, name, count
     assert [p.name for p in tmp_path.iterdir()] == [name]
 
 
+def test_a_file_is_no_folder(turning, tmp_path, count) -> None:
+    (tmp_path / "there").write_text("mine", encoding="utf-8")
+    said = run(turning, "--out", tmp_path / "there")
+    assert (said.exit_code, count["fits"]) == (2, 0)
+    assert "is a file; --out takes a folder" in said.stderr
+
+
 # --- how it is told -----------------------------------------------------------------------------
 
 
