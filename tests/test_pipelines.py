@@ -26,9 +26,8 @@ from trialid.workflow.run import run
 from trialid.workflow.write_run import write
 
 ROOT = Path(__file__).parent.parent
-PIPELINES = sorted(
-    path for path in (ROOT / "pipelines").glob("*.toml") if not path.name.startswith("design_")
-)
+OTHERS = ("design_", "structures")  # files of other commands
+PIPELINES = sorted(p for p in (ROOT / "pipelines").glob("*.toml") if not p.name.startswith(OTHERS))
 HIDDEN_EFFECT = ROOT / "pipelines" / "hidden_effect.toml"
 STEADY = 0.15
 """Share by which the noise part may move when an effect is added: noise is not the model's."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from trialid.ship.particulars import read_ship
     from trialid.trial import Trial
     from trialid.workflow.notebook.front import diagnose, identify, run, simulate
+    from trialid.workflow.notebook.structures_view import structures
 
 __version__ = VERSION
 
@@ -42,6 +43,7 @@ __all__ = [
     "run",
     "ship_from_particulars",
     "simulate",
+    "structures",
 ]
 
 _HOMES: Final = {
@@ -60,6 +62,7 @@ _HOMES: Final = {
     "diagnose": "workflow.notebook.front",
     "run": "workflow.notebook.front",
     "simulate": "workflow.notebook.front",
+    "structures": "workflow.notebook.structures_view",
     "Fit": "identification.fit",
     "Result": "result.schema",
 }

@@ -51,9 +51,24 @@ def check(
             _check(folder, name, ours, option)
 
 
-def any_of_ours(folder: Path) -> bool:
-    """Whether anything of ours was written into a folder."""
-    return bool(_ours(folder))
+def check_folder(folder: Path, names: tuple[str, ...], what: str) -> None:
+    """Refuse, before the work, a folder that holds anything but earlier files of these names.
+
+    Raises
+    ------
+    TrialidError
+        In one line: the folder or the file, and what to do; `what` is what such files are.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise TrialidError(f"{folder}: is a file; --out takes a folder")
+    temporary.check_writable(folder)
+    if not folder.is_dir() or not any(folder.iterdir()):
+        return
+    if not _ours(folder).keys() & {*names}:
+        raise TrialidError(
+            f"{folder}: holds other files and no earlier {what}; choose another --out"
+        )
+    check(folder, names)
 
 
 @contextmanager

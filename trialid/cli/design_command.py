@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from trialid import own_files, temporary
+from trialid import own_files
 from trialid.cli.console import file_width, progress_bar, render, say
 from trialid.errors import TrialidError
 
@@ -32,7 +32,7 @@ def design(design: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
 
     pipeline = load_design(design)
     folder = out or Path("designs", design.stem)
-    _check_folder(folder)
+    own_files.check_folder(folder, ("design.json", "bridge.html"), "design")
     from trialid.report.tables.design_tables import tables
     from trialid.workflow.design_folder import write
     from trialid.workflow.design_run import plan
@@ -49,17 +49,3 @@ def design(design: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     elif not quiet:
         say(render(*tables(data), width=file_width()))
         say(f"For the bridge: {folder / 'bridge.html'}")
-
-
-def _check_folder(folder: Path) -> None:
-    """Refuse, before the work, a folder that holds anything but an earlier design."""
-    temporary.check_writable(folder)
-    if folder.exists() and not folder.is_dir():
-        raise TrialidError(f"{folder}: is a file; --out takes a folder")
-    if not folder.is_dir() or not any(folder.iterdir()):
-        return
-    if not own_files.any_of_ours(folder):
-        raise TrialidError(
-            f"{folder}: holds other files and no earlier design; choose another --out"
-        )
-    own_files.check(folder, ("design.json", "bridge.html"))

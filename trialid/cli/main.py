@@ -36,6 +36,7 @@ from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
 from trialid.cli.ship_command import ship
 from trialid.cli.start_command import start
+from trialid.cli.structures_command import structures
 from trialid.cli.workbench_command import workbench
 from trialid.errors import TrialidError
 from trialid.version import VERSION
@@ -175,6 +176,7 @@ for command in (
     design,
     report,
     replay,
+    structures,
     workbench,
     guide,
 ):

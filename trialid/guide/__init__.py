@@ -16,6 +16,7 @@ TOPICS: Final = {
     "own_ship": "a ship file from length, beam and draught; how far off it is",
     "effects": "what a model is made of, and how to write an effect of your own",
     "verdicts": "what the four verdicts mean, and how each is reached",
+    "structures": "whole models compared by leaving out each trial",
     "accuracy": "how far off a parameter may be: what each column means",
     "nomenclature": "letters, units and signs",
     "design": "which test to sail next",

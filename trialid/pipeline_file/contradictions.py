@@ -25,6 +25,8 @@ def contradictions(pipeline: Pipeline) -> Iterator[Problem]:
     yield from _output_problems(pipeline)
     yield from _repetitions(pipeline)
     yield from _quiet_problems(pipeline)
+    if len(pipeline.structures) == 1:
+        yield "structures", "one structure has nothing to be compared with; write two or more"
 
 
 def _ship_problems(pipeline: Pipeline) -> Iterator[Problem]:
@@ -137,6 +139,7 @@ def _repetitions(pipeline: Pipeline) -> Iterator[Problem]:
         "identify.free": pipeline.identify.free,
         "identify.outputs": pipeline.identify.outputs,
         "identify.nuisance": pipeline.identify.nuisance,
+        **{dotted_key("structures", n): each for n, each in pipeline.structures.items()},
     }
     for key, entries in lists.items():
         for entry, times in Counter(entries).items():

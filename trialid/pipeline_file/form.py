@@ -350,3 +350,6 @@ class Pipeline(Described):
     """How the missing effect is sought."""
     imo: bool = False
     """Whether the standard measures of MSC.137(76) are predicted too."""
+    structures: Mapping[str, Names] = {}
+    """Structures for `trialid structures` to compare, each a list of effects on top of those of
+    `model.effects` that no list names; left out: the usual ones."""

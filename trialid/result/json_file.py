@@ -24,8 +24,8 @@ def plain(row: Any) -> dict[str, Any]:
     return asdict(row)
 
 
-def text_of(result: Result) -> str:
-    """The content of `result.json`."""
+def text_of(result: Any) -> str:
+    """The content of `result.json`, or of another result's file."""
     return json.dumps(plain(result), indent=1, allow_nan=False) + "\n"
 
 
@@ -120,10 +120,10 @@ def _number(text: str) -> float:
     return number
 
 
-def json_schema() -> dict[str, Any]:
-    """The JSON Schema of `result.json`, derived from the rows."""
+def json_schema(kind: type = Result) -> dict[str, Any]:
+    """The JSON Schema of `result.json`, or of another result, derived from the rows."""
     dialect = "https://json-schema.org/draft/2020-12/schema"
-    return {"$schema": dialect, **_reader(Result).json_schema()}
+    return {"$schema": dialect, **_reader(kind).json_schema()}
 
 
 def finite(value: Any) -> Any:

@@ -96,6 +96,16 @@ def candidates_for(
 def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, Effect]) -> str:
     if not effect.scanned and not linear_parameters(effect):
         return "nothing in it can be zero"
+    if trouble := why_unusable(model, trial, effect):
+        return trouble
+    others = [e for e in able.values() if not e.scanned]
+    taken = {*model.parameters, *(p for e in others for p in e.parameters)}
+    clash = sorted(taken & set(effect.parameters))
+    return f"parameter {clash[0]!r} is already there" if clash else ""
+
+
+def why_unusable(model: ShipModel, trial: Trial, effect: Effect) -> str:
+    """Why this effect has no place in a model of this record, empty where it has one."""
     known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
     known |= set(ACCELERATIONS)
     asked = dict.fromkeys((*signals_of(effect), *filter(None, effect.states.values())))
@@ -107,11 +117,6 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
     if doubled:
         held = "simulated" if doubled[0] in model.all_states else "recorded"
         return f"gives {doubled[0]}, which is {held} already"
-    others = [e for e in able.values() if not e.scanned]
-    taken = {*model.parameters, *(p for e in others for p in e.parameters)}
-    clash = sorted(taken & set(effect.parameters))
-    if clash:
-        return f"parameter {clash[0]!r} is already there"
     return _steers_wrongly(model, trial, effect)
 
 

@@ -1,0 +1,61 @@
+"""What comparing structures found, in sentences: the choice, and how far it can be relied on."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trialid.diagnosis.search.carry_over import WHOLE
+from trialid.result.structure_rows import StructureRow, Structures
+
+
+def sentences(found: Structures) -> tuple[str, ...]:
+    """The choice first; then what limits it."""
+    return (_choice(found), *_stability(found), *_few(found))
+
+
+def _choice(found: Structures) -> str:
+    if found.best is None or found.chosen is None:
+        return "No structure can be chosen: none could be fitted with every trial left out in turn."
+    best, chosen = found.row(found.best), found.row(found.chosen)
+    if sum(row.why_not is None for row in found.rows) == 1:
+        return f"{_told(chosen)} is the only structure that stands, so there was no choice."
+    if chosen == best:
+        return f"{_told(best)} is the best, and none that is simpler is as good."
+    return (
+        f"{_told(chosen)} is the simplest that is as good as the best, {_told(best)}: "
+        f"{_points(chosen)} percentage points behind."
+    )
+
+
+def _told(row: StructureRow) -> str:
+    """A structure with its size and its error."""
+    parameters = f"{row.parameters} free parameters"
+    return f"{row.name} ({parameters}, {row.eps_rmsn_left_out or 0.0:.2%} on trials left out)"
+
+
+def _points(row: StructureRow) -> str:
+    """How far behind the best, with one standard error; in percentage points."""
+    behind, error = row.behind or 0.0, row.behind_standard_error or 0.0
+    return f"{100.0 * behind:.2f} +- {100.0 * error:.2f}"
+
+
+def _stability(found: Structures) -> Iterator[str]:
+    again = found.chosen_without
+    others = [f"; without {n}: {x or 'none'}" for n, x in again.items() if x != found.chosen]
+    if again and found.chosen is not None:
+        yield (
+            f"Without any use of one trial, each in turn, {len(again) - len(others)} of "
+            f"{len(again)} choices are the same{''.join(others)}."
+        )
+    elif len(found.trials) == 2:
+        yield "With two trials nobody can tell how stable that is."
+
+
+def _few(found: Structures) -> Iterator[str]:
+    count = len(found.trials)
+    if found.best is not None and count < WHOLE:
+        off = 1.0 / np.sqrt(2.0 * (count - 1))
+        yield (
+            f"{count} trials are few: a standard error from {count} differences is itself off by "
+            f"{off:.0%}."
+        )

@@ -1,0 +1,63 @@
+"""Structures compared from a notebook: the same as the command, as DataFrames."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trialid.pipeline_file import load
+from trialid.progress import Progress, silent
+from trialid.result.structure_rows import Structures
+from trialid.workflow.structures.compare_structures import compare_structures
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, repr=False)
+class StructuresView:
+    """Compared structures; `result` is what `structures.json` holds."""
+
+    result: Structures
+
+    @property
+    def table(self) -> "pd.DataFrame":
+        """A row for each structure, the best first; the columns of `rows`, the name as index."""
+        import pandas as pd
+
+        return pd.DataFrame([asdict(row) for row in self.result.rows]).set_index("name")
+
+    @property
+    def errors(self) -> "pd.DataFrame":
+        """Error of each structure on each trial when it was left out; a column for each trial."""
+        import pandas as pd
+
+        rows = {row.name: row.left_out for row in self.result.rows}
+        return pd.DataFrame.from_dict(rows, orient="index", columns=list(self.result.trials))
+
+    def __repr__(self) -> str:
+        return "\n".join(self.result.sentences)
+
+
+def structures(
+    pipeline: str | Path,
+    folder: str | Path | None = None,
+    *,
+    stability: bool = True,
+    progress: Progress = silent,
+) -> StructuresView:
+    """Compare whole model structures, as `trialid structures` does, digit for digit.
+
+    Parameters
+    ----------
+    folder
+        Where fits are kept as they are done, and the result is written; None writes nothing.
+    stability
+        Whether the choice is made again without any use of each trial.
+
+    Raises
+    ------
+    TrialidError
+        The input is wrong; one line says what, where and what to do.
+    """
+    place = None if folder is None else Path(folder)
+    return StructuresView(compare_structures(load(Path(pipeline)), progress, place, stability))
