@@ -160,10 +160,11 @@ def measures_of(
     remarks: Mapping[str, str],
     ranges: Mapping[str, tuple[float, float] | None],
 ) -> tuple[Measure, ...]:
-    """What was read of a ship beside what the resolution allows her."""
+    """What was read of a ship beside what the resolution allows her; none of it is below zero."""
     p = ship.particulars
+    positive = {n: (max(r[0], 0.0), max(r[1], 0.0)) for n, r in ranges.items() if r is not None}
     return tuple(
-        Measure(c, values.get(c.name), ranges.get(c.name), remarks.get(c.name, ""))
+        Measure(c, values.get(c.name), positive.get(c.name), remarks.get(c.name, ""))
         for c in measures.criteria(p["L"], p["U0"])
     )
 
