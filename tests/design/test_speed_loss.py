@@ -9,7 +9,7 @@ from waters import D
 
 from trialid.design.helm import carry_out, vessel
 from trialid.design.manoeuvres import zigzag
-from trialid.design.speed_loss import NAMES, speed_loss, with_speed_loss
+from trialid.design.speed_loss import LAW, NAMES, TYPICAL, loses_speed, speed_loss, with_speed_loss
 from trialid.design.standard import predict
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -47,7 +47,7 @@ def test_the_measures_of_a_ship_that_loses_speed(trials):
     """Given the speed alone, her circle comes out 5 % too wide and an overshoot 12 % too large."""
     true = {m.criterion.name: m.value for m in predict([TRUE])}
     kept = {m.criterion.name: m.value for m in predict([KEEPING])}
-    found = speed_loss(fit_of(GIVEN, trials))
+    found = speed_loss(fit_of(GIVEN, trials)).values
     lost = {m.criterion.name: m.value for m in predict([with_speed_loss(KEEPING, found)])}
     assert kept["tactical diameter"] > 1.04 * true["tactical diameter"]
     assert kept["second overshoot 20/20"] > 1.1 * true["second overshoot 20/20"]
@@ -59,13 +59,36 @@ def test_its_own_law_comes_back():
     """Logs of a ship that loses speed by the law itself: the three numbers that made them."""
     law = dict(zip(NAMES, (6.0, 0.4, 7.0), strict=True))
     trials = [logged(a, 0.0, with_speed_loss(KEEPING, law)) for a in (10, 20)]
-    assert speed_loss(fit_of(GIVEN, trials)) == pytest.approx(law, rel=0.01)
+    found = speed_loss(fit_of(GIVEN, trials))
+    assert found.values == pytest.approx(law, rel=0.01)
+    # nothing is left of the logs: only that no ship keeps to a law
+    shares = np.sqrt(np.diag(found.covariance)) / list(law.values())
+    assert shares == pytest.approx([LAW] * 3, rel=0.01)
 
 
-def test_nothing_is_made_of_a_speed_that_is_simulated_or_stated(trials):
-    assert speed_loss(fit_of(MODEL, trials)) == {}
-    assert speed_loss(fit_of(GIVEN, [logged(10, stated=7.33)])) == {}
+def test_nothing_is_made_of_a_speed_that_is_simulated(trials):
+    assert speed_loss(fit_of(MODEL, trials)) is None
     assert with_speed_loss(TRUE, dict.fromkeys(NAMES, 1.0)) is TRUE
+
+
+def test_a_stated_speed_tells_of_no_loss_and_rules_none_out():
+    found = speed_loss(fit_of(GIVEN, [logged(10, stated=7.33)]))
+    assert not loses_speed(found.values)
+    assert np.sqrt(np.diag(found.covariance)) == pytest.approx(TYPICAL)
+
+
+def test_a_log_that_does_not_follow_the_turns_leaves_the_loss_open(trials):
+    """A speed that wanders by 1 m/s as it likes: nothing typical is ruled out by it."""
+    rng, wandering = np.random.default_rng(3), []
+    for one in trials:
+        slow = np.cumsum(rng.standard_normal(one.samples))
+        u = 7.0 + slow / np.abs(slow).max()
+        wandering.append(replace(one, signals={**one.signals, "u": u}))
+    known = np.sqrt(np.diag(speed_loss(fit_of(GIVEN, trials)).covariance))
+    found = speed_loss(fit_of(GIVEN, wandering))
+    open_ = np.sqrt(np.diag(found.covariance))
+    assert known[0] < 0.2 * TYPICAL[0]
+    assert open_[0] > 0.4 * TYPICAL[0]
 
 
 def test_the_track_goes_by_the_speed_that_is_left():

@@ -20,7 +20,7 @@ from trialid.design.measure_slopes import Shows, measure_slopes
 from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
-from trialid.design.speed_loss import LAW, NAMES, speed_loss, with_speed_loss
+from trialid.design.speed_loss import NAMES, speed_loss, with_speed_loss
 from trialid.design.standard import Measure, measures_of
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
@@ -35,6 +35,8 @@ GEAR: Final = float(np.deg2rad(2.5))
 """rad/s of rudder, where the record shows none faster: what a ship's gear does at least."""
 MOVED: Final = 0.25
 """Share of the rudder's range that it is clocked over: 5 of the 20 deg of a zig-zag 10/10."""
+SPIKE: Final = 3
+"""Moves as quick that there have to be: a wild sample makes two."""
 
 WORTH_SAILING: Final = 0.9
 """A test that leaves more than this share of a width is not proposed for it."""
@@ -94,9 +96,9 @@ def rudder_rate(delta: Vector, period: float) -> float:
     if far == 0.0:
         return 0.0
     for apart in range(1, len(delta)):
-        moves = np.abs(delta[apart:] - delta[:-apart])
-        if moves.max() >= far:
-            return float(moves.max()) / (apart * period)
+        quickest = np.sort(np.abs(delta[apart:] - delta[:-apart]))[-SPIKE:]
+        if len(quickest) == SPIKE and quickest[0] >= far:
+            return float(quickest[0]) / (apart * period)
     return 0.0
 
 
@@ -249,7 +251,9 @@ def standard_measures(
     width = sum(len(m.columns) for m in missing)
     slopes = measure_slopes(sailed_ship(fit), [*fitted, *NAMES, *held], missing, width)
     averaged = standing.average(np.delete(slopes.by, np.s_[len(fitted) : sources], axis=1))
-    known = block_diag(np.nan_to_num(covariance), np.diag(_loss_variances(fit)))
+    loss = speed_loss(fit)
+    of_loss = np.zeros((len(NAMES),) * 2) if loss is None else loss.covariance
+    known = block_diag(np.nan_to_num(covariance), of_loss)
     by = slopes.by[:, :sources]
     errors = np.sqrt(np.einsum("ni,ij,nj->n", by, known, by))
     ranges = {
@@ -267,13 +271,8 @@ def sailed_ship(fit: Fit) -> Vessel:
     DesignError
         The model does not turn, or is not steered by a rudder.
     """
-    return with_speed_loss(vessel_of(fit), speed_loss(fit))
-
-
-def _loss_variances(fit: Fit) -> Vector:
-    """How uncertain each number of the speed that turning costs is; zero where there is none."""
-    values = dict.fromkeys(NAMES, 0.0) | speed_loss(fit)
-    return np.array([(LAW * values[n]) ** 2 for n in NAMES])
+    loss = speed_loss(fit)
+    return vessel_of(fit) if loss is None else with_speed_loss(vessel_of(fit), loss.values)
 
 
 def by_name(catalogue: Mapping[str, Effect], names: Sequence[str]) -> tuple[Effect, Effect] | None:

@@ -5,7 +5,9 @@ speed fell says how it would: by squares of the rate of turn and of the rudder, 
 to the logs along the rates of turn that the model had there.
 """
 
-from collections.abc import Mapping
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -47,35 +49,67 @@ def logged_loss(
 
 
 NAMES: Final = tuple(logged_loss.parameters)
+TYPICAL: Final = np.array([p.start for p in logged_loss.parameters.values()])
+NOTHING: Final = np.array([0.0, 0.0, TYPICAL[-1]])
 LAW: Final = 0.15
 """Standard deviation of each number as a share of it: a ship loses speed by a law of her own, and a
-hard turn costs another share than those that were logged. By noise they are far better known."""
+hard turn costs another share than those that were logged."""
+TINY: Final = 1e-12
+"""(m/s)^2 that are always left of the logs."""
+LEAST: Final = 0.01
+"""Share of what is typical below which nothing is lost."""
 APPROACH: Final = 0.95
 """Quantile of the logged speeds that is the approach: noise is beyond it, turns are below."""
 
 
-def speed_loss(fit: Fit) -> dict[str, float]:
-    """Values of `logged_loss`; empty where speed is simulated, not logged, or not lost in turns."""
+@dataclass(frozen=True)
+class SpeedLoss:
+    """Values of `logged_loss` by name, and their covariance; (3, 3).
+
+    Where no log tells, nothing is lost, and that is uncertain by what is typical.
+    """
+
+    values: Mapping[str, float]
+    covariance: Vector
+
+
+def speed_loss(fit: Fit) -> SpeedLoss | None:
+    """What turns cost of the speed by the fitted trials' logs; None where it is simulated.
+
+    What the law leaves of a log is no noise: each trial counts as one value of it.
+    """
     simulated = {*fit.problem.simulator.model.all_states}
     if {"u", "u_lost"} & simulated or "r" not in simulated:
-        return {}
+        return None
     logged = [s for s in fit.scores if s.trial.use == "fit" and _logged(s.trial)]
     if not logged:
-        return {}
+        return SpeedLoss(_named(NOTHING), np.diag(TYPICAL**2))
     simulator = prepare(ShipModel(fit.model.ship, ("psi",), (logged_loss,)), NAMES, ("U",))
     records = [_record(fit, s) for s in logged]
 
-    def left(values: Vector) -> Vector:
-        return np.concatenate([_left(simulator, values, *record)[0] for record in records])
+    @functools.lru_cache(maxsize=1)
+    def at(*values: float) -> tuple[Vector, Vector]:
+        found = [_left(simulator, values, *record) for record in records]
+        return np.concatenate([e for e, _ in found]), np.concatenate([psi for _, psi in found])
 
-    def slopes(values: Vector) -> Vector:
-        return np.concatenate([_left(simulator, values, *record)[1] for record in records])
-
-    ranges = [logged_loss.parameters[n] for n in NAMES]
-    start = np.array([p.start for p in ranges])
+    ranges = logged_loss.parameters.values()
     bounds = ([p.low for p in ranges], [p.high for p in ranges])
-    found = least_squares(left, start, slopes, bounds=bounds, x_scale=start)
-    return dict(zip(NAMES, map(float, found.x), strict=True))
+    found = least_squares(
+        lambda x: at(*x)[0], TYPICAL, lambda x: at(*x)[1], bounds=bounds, x_scale=TYPICAL
+    )
+    best = found.x if loses_speed(_named(found.x)) else NOTHING
+    e, psi = at(*best)
+    known = psi.T @ psi * len(records) / max(float(e @ e), TINY) + np.diag(TYPICAL**-2)
+    return SpeedLoss(_named(best), np.asarray(np.linalg.inv(known) + np.diag((LAW * best) ** 2)))
+
+
+def _named(values: Sequence[float] | Vector) -> dict[str, float]:
+    return dict(zip(NAMES, map(float, values), strict=True))
+
+
+def loses_speed(values: Mapping[str, float]) -> bool:
+    """Whether any speed is lost that is worth a word."""
+    return any(values.get(n, 0.0) > LEAST * x for n, x in zip(NAMES[:2], TYPICAL, strict=False))
 
 
 def with_speed_loss(ship: Vessel, values: Mapping[str, float]) -> Vessel:
@@ -90,14 +124,20 @@ def _logged(trial: Trial) -> bool:
     """Whether the speed was logged, and the rudder: a stated one is one number all along."""
     if "u" not in trial.signals or record_for(trial, "delta") is None:
         return False
-    return float(np.ptp(trial.signals["u"])) > 0.0
+    speeds = trial.signals["u"][_valid(trial)]
+    return len(speeds) > 0 and float(np.ptp(speeds)) > 0.0
+
+
+def _valid(trial: Trial) -> Mask:
+    """Where a speed was logged."""
+    return trial.valid["u"] & np.isfinite(trial.signals["u"])
 
 
 def _record(fit: Fit, score: Score) -> tuple[Trial, Vector, Mask]:
     """A trial of the approach speed alone along the fit's rates of turn; the log, where valid."""
     trial, states = score.trial, fit.problem.simulator.model.all_states
     rate = score.response.states[:, states.index("r")]
-    valid = trial.valid["u"] & np.isfinite(rate)
+    valid = _valid(trial) & np.isfinite(rate)
     speed = np.full(trial.samples, np.quantile(trial.signals["u"][valid], APPROACH))
     rudder = trial.signals[record_for(trial, "delta") or "delta"]
     given = {"r": rate, "u": speed, "delta": rudder}
@@ -105,11 +145,10 @@ def _record(fit: Fit, score: Score) -> tuple[Trial, Vector, Mask]:
 
 
 def _left(
-    simulator: Simulator, values: Vector, blank: Trial, logged: Vector, valid: Mask
+    simulator: Simulator, values: Sequence[float], blank: Trial, logged: Vector, valid: Mask
 ) -> tuple[Vector, Vector]:
     """What the loss leaves of the logged speed less its mean, and the derivatives of that."""
-    named = dict(zip(NAMES, values, strict=True))
-    response = respond(simulator, blank, named, {})
+    response = respond(simulator, blank, _named(values), {})
     assert response.S is not None
     places = [simulator.columns.index(n) for n in NAMES]
     e = (response.y[:, 0] - logged)[valid]

@@ -197,8 +197,8 @@ class SailedPart:
     constants
         Recorded signals that stay as they were, by name.
     speed_lost
-        Parameters of `surge_loss` that the logged speed fell by in turns; empty where the model
-        says itself what turning costs, or no log does.
+        By what numbers the logged speed fell in turns; empty where the model says itself what
+        turning costs.
     """
 
     speed: float

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from trialid.design.helm import GEAR_STATE, Vessel
-from trialid.design.speed_loss import NAMES
+from trialid.design.speed_loss import NAMES, loses_speed
 from trialid.design.standard import Measure, in_calm
 from trialid.names import labels
 from trialid.result.finding_rows import MeasureRow, SailedPart
@@ -38,13 +38,8 @@ def sailed_part(ship: Vessel) -> SailedPart:
         speed=ship.model.ship.particulars["U0"],
         rudder_rate=None if GEAR_STATE in ship.model.all_states else ship.rudder_rate,
         constants={n: ship.constants[n] for n in read},
-        speed_lost={n: ship.model.value(n) for n in _loss(ship)},
+        speed_lost={n: ship.model.value(n) for n in NAMES if n in ship.model.parameters},
     )
-
-
-def _loss(ship: Vessel) -> tuple[str, ...]:
-    """Parameters of the speed that turning costs, where the ship has them."""
-    return NAMES if {*NAMES} <= {*ship.model.parameters} else ()
 
 
 def sailing_words(ship: Vessel) -> str:
@@ -56,9 +51,11 @@ def sailing_words(ship: Vessel) -> str:
     steady = "".join(f", {n} = {labels.shown_text(n, x)}" for n, x in how.constants.items())
     speed = ""
     if "u" not in ship.model.states:
-        speed = "; speed is lost in turns as in the logs"
-        if not how.speed_lost:
-            speed = "; the speed stays: what a turn loses of it is not in these numbers"
+        speed = "; the speed stays: what a turn loses of it is not in these numbers"
+        if how.speed_lost:
+            speed = "; the speed stays: what a turn may cost of it only widens the ranges"
+        if loses_speed(how.speed_lost):
+            speed = "; speed is lost in turns as in the logs"
     return (
         f"Sailed by simulation in calm deep water: approach at {how.speed:.3g} m/s, first to "
         f"starboard, rudder {rate}{steady}{speed}."
