@@ -184,12 +184,13 @@ HEAD: Final = """\
 # Ranges of IMO's measures, against the true ship
 
 `python tests/likely/measures_coverage.py`, commit {commit}, seeds {first} to {last}, none of them
-used while building. Hidden is any effect of the catalogue on this ship, on her rudder or her sensors,
-at a random size. Zig-zags of 10 and 20 deg and a binary of 15 deg are fitted, 20 min each at 2 Hz with waves in
-the sensors unless said; the turning circle of 35 deg lies beyond them. Share of 95 % ranges that
-hold the true ship's measure, then the median half-width as a share of it; `all` with its 95 %
-interval, from draws of whole records. Where nothing else is said the ship file says that what is
-held fixed is exact. `lost`: fits that did not converge, ships that what is hidden makes unsailable.
+used while building. Hidden is any effect of the catalogue on this ship, on her rudder or her
+sensors, at a random size. Zig-zags of 10 and 20 deg and a binary of 15 deg are fitted, 20 min
+each at 2 Hz with waves in the sensors unless said; the turning circle of 35 deg lies beyond them.
+Share of 95 % ranges that hold the true ship's measure, then the median half-width as a share of
+it; `all` with its 95 % interval, from draws of whole records. Where nothing else is said the ship
+file says that what is held fixed is exact. `lost`: fits that did not converge, ships that what is
+hidden makes unsailable.
 
 """
 
