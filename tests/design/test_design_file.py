@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from trialid.errors import PipelineError
-from trialid.pipeline_file.design_file import fitted_values, load_design
+from trialid.pipeline_file.design_file import load_design
+from trialid.pipeline_file.finished_run import FinishedRun, finished_run
 
 ROOT = Path(__file__).parents[2]
 GOOD = """
@@ -135,11 +136,11 @@ def test_values_of_a_finished_run(file, tmp_path):
     path = file('run = "out"\n' + GOOD)
     recipe = load_design(path)
     with pytest.raises(PipelineError, match=r"run: .*is no result of a run; give the folder"):
-        fitted_values(recipe)
+        finished_run(recipe)
     (tmp_path / "out").mkdir()
     rows = [{"name": "Nr", "value": -0.002, "kind": "physical"},
             {"name": "b_r", "value": 0.1, "kind": "nuisance"}]  # fmt: skip
     result = json.dumps({"accuracy": {"parameters": rows}})
     (tmp_path / "out" / "result.json").write_text(result, encoding="utf-8")
-    assert fitted_values(recipe) == {"Nr": -0.002}
-    assert fitted_values(load_design(file())) == {}
+    assert finished_run(recipe) == FinishedRun(values={"Nr": -0.002})
+    assert finished_run(load_design(file())) == FinishedRun()

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from trialid.diagnosis import may_be_off as tested
-from trialid.diagnosis.may_be_off import may_be_off
+from trialid.diagnosis.may_be_off import doubts
 
 
 def handed_over(monkeypatch, *, tried=None, prior=None):
     """What a fit with one number held fixed hands to the averaging."""
     given = []
-    monkeypatch.setattr(tested, "average", lambda rows, rivals: given.append((rows, rivals)))
+    monkeypatch.setattr(tested, "stand", lambda rows, rivals: given.append((rows, rivals)))
     parameters = {"Nrar": SimpleNamespace(start=-0.0015), "Nvar": SimpleNamespace(start=0.005)}
     effect = SimpleNamespace(name="drag", parameters=parameters)
     trace = SimpleNamespace(
@@ -31,7 +31,7 @@ def handed_over(monkeypatch, *, tried=None, prior=None):
         held=("Nv",),
         traces=[trace],
     )
-    may_be_off(SimpleNamespace(problem=problem, level=0.02, theta=np.array([1.0, 3e-3])), augmented)
+    doubts(SimpleNamespace(problem=problem, level=0.02, theta=np.array([1.0, 3e-3])), augmented)
     return given[0]
 
 

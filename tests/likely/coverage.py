@@ -104,7 +104,7 @@ KINDS: Final = ("likely", "1.96 +-", "Eq. 14")
 @one_thread
 def count(case: Case, seed: int) -> Counted | None:
     """One record's intervals; None where she cannot be sailed or the fit did not converge."""
-    ship = hidden_world(case.conditions, seed) if case.hides else _as_known(case.conditions)
+    ship = hidden_world(case.conditions, seed) if case.hides else as_known(case.conditions)
     try:
         fit = fit_of(ship, seed, exact=case.exact)
     except NoPassage:
@@ -115,7 +115,7 @@ def count(case: Case, seed: int) -> Counted | None:
     return counted(fit, ship, {n: e for n, e in CATALOGUE.items() if n not in gone})
 
 
-def _as_known(conditions: Conditions) -> World:
+def as_known(conditions: Conditions) -> World:
     return world(conditions, SCENARIOS["nothing"])
 
 
@@ -221,12 +221,12 @@ def main() -> int:
         missed += share(done, "likely")[0] < case.asked
         print(lines[-1], flush=True)
     last = said.first + said.records - 1
-    head = HEAD.format(commit=_commit(), first=said.first, last=last)
+    head = HEAD.format(commit=commit(), first=said.first, last=last)
     RESULTS.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
     return int(missed > 0)
 
 
-def _commit() -> str:
+def commit() -> str:
     command = ["git", "rev-parse", "--short", "HEAD"]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 

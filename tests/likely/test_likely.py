@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trialid.accuracy.likely import COARSE, Rival, Rows, average
+from trialid.accuracy.likely import COARSE, Rival, Rows, average, stand
 
 RNG = np.random.default_rng(11)
 N = 400
@@ -150,3 +150,38 @@ def test_at_a_fit_that_its_prior_pulls_nothing_is_shifted_by_the_pull_alone():
     given = rows(y - PSI @ theta, S=HIDDEN, slopes=(slope, 0.0), gaps=(gap, 0.0), level=level)
     found = average(given, (Rival("hidden", (0,), (deviation,)),))
     assert found.shifts == pytest.approx(np.tile(whole[:2] - theta, (len(COARSE), 1)), rel=1e-9)
+
+
+def test_through_slopes_of_one_it_is_the_parameters_themselves():
+    _, left = fitted(0.4 * HIDDEN[:, 0])
+    held = (PSI @ [0.7, -0.2])[:, None]
+    given = rows(left, S=HIDDEN, held=held, deviations=(0.3,))
+    standing = stand(given, (Rival("hidden", (0,), (0.5,)),))
+    same = standing.average(np.eye(2, 4))
+    assert same.shifts == pytest.approx(standing.average().shifts)
+    assert same.variances == pytest.approx(standing.average().variances)
+
+
+def test_a_missing_effect_moves_what_follows_through_the_parameters_and_by_itself():
+    """With y = psi_1 + 0.3 hidden a prediction 2 theta_1 + 5 hidden is true at 2 * 1.0 + 5 * 0.3.
+
+    With the parameters' move alone the range would end at the fitted model's prediction.
+    """
+    theta, left = fitted(PSI @ [1.0, -0.5] + 0.3 * HIDDEN[:, 0])
+    standing = stand(rows(left, S=HIDDEN, level=1e-3), (Rival("hidden", (0,), (2.0,)),))
+    found = standing.average(np.array([[2.0, 0.0, 5.0], [2.0, 0.0, 0.0]]))
+    fit, true = 2.0 * theta[0], 2.0 * 1.0 + 5.0 * 0.3
+    assert fit + found.shifts[0, 0] == pytest.approx(true, rel=1e-3)
+    assert fit + found.shifts[0, 1] == pytest.approx(2.0, rel=1e-3)
+    low, high = found.range(0, fit, 2e-3)
+    assert low < fit < true < high
+
+
+def test_what_is_held_fixed_acts_in_a_prediction_too():
+    """A number that the parameters make up for in the record, and the prediction lacks besides."""
+    held = (PSI @ [0.7, -0.2])[:, None]
+    left = 0.01 * RNG.standard_normal(N)
+    standing = stand(rows(left, held=held, deviations=(0.3,)), ())
+    found = standing.average(np.array([[1.0, 0.0, 0.7], [1.0, 0.0, 2.0]]))
+    # up by one of its units moves the first parameter by -0.7: to nothing, or to 1.3
+    assert np.sqrt(found.variances[0]) == pytest.approx([0.0, 0.39], abs=1e-6)

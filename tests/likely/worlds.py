@@ -6,6 +6,7 @@ off. Time and forces go by Froude's law, so that a boat manoeuvres as the ship d
 """
 
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -13,7 +14,7 @@ from typing import Final
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 
 import numpy as np
-from hidden_scenarios import SCENARIOS
+from hidden_scenarios import SCENARIOS, TYPICAL
 from hidden_truth import (
     EFFECTS,
     FREE,
@@ -25,6 +26,7 @@ from hidden_truth import (
 )
 
 from trialid.effects import CATALOGUE
+from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import Ship, read_ship
 from trialid.simulation.integrate import Simulator, prepare
@@ -50,6 +52,13 @@ POOL: Final = tuple(
     and name not in ("clock_drift_r", "propeller_side_force", "shaft_speed_drop")
 )
 """What is hidden: what acts on sway, roll and yaw of a ship whose speed and shaft are steady."""
+
+EVERY: Final = (
+    *POOL,
+    *(n for n, s in TYPICAL.items() if s.group in ("physics", "sensor") and n[:6] != "surge_"),
+)
+"""The same with all else of the catalogue at its typical size, as a rudder that stalls where no
+trial goes: what may act in a manoeuvre beyond the trials."""
 
 SMALLEST, LARGEST = 0.4, 1.6
 """Sizes of what is hidden, as shares of the scenario's own; even in the logarithm."""
@@ -79,10 +88,11 @@ class Conditions:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class World:
-    """A true ship, what of her is known, and the unit of time [s] of the record."""
+    """A true ship, what of her is hidden and known, and the unit of time [s] of the record."""
 
     conditions: Conditions
     hidden: str
+    effects: tuple[Effect, ...]
     known: ShipModel
     true: Simulator
     free: tuple[str, ...]
@@ -104,11 +114,12 @@ class World:
         return self.conditions.period * self.unit
 
 
-def hidden_world(conditions: Conditions, seed: int) -> World:
+def hidden_world(conditions: Conditions, seed: int, pool: Sequence[str] = POOL) -> World:
     """A world with a random effect of the pool hidden at a random size, by its seed."""
     rng = generator(seed, repr(conditions), "hidden")
-    able = [n for n in POOL if _fits(conditions, SCENARIOS[n])]
-    scenario = SCENARIOS[able[int(rng.integers(len(able)))]]
+    every = {**SCENARIOS, **TYPICAL}
+    able = [n for n in pool if _fits(conditions, every[n])]
+    scenario = every[able[int(rng.integers(len(able)))]]
     size = float(np.exp(rng.uniform(np.log(SMALLEST), np.log(LARGEST))))
     return world(conditions, scenario, size)
 
@@ -138,6 +149,7 @@ def world(conditions: Conditions, scenario: Scenario, size: float = 1.0) -> Worl
     return World(
         conditions=conditions,
         hidden=scenario.name,
+        effects=scenario.effects,
         known=known,
         true=simulator,
         free=free,

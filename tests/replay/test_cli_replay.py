@@ -41,6 +41,32 @@ def columns(path, trial, role):
     return np.array(read)
 
 
+def edges(path, trial):
+    """Both edges of the band about the predicted rate of turn and roll."""
+    topics = [f"/trialid/{trial}/predicted_band"]
+    with path.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        read = [m for *_, m in reader.iter_decoded_messages(topics=topics)]
+    return [
+        (m.yaw_rate_radps_upper, m.yaw_rate_radps_lower, m.roll_rad_upper, m.roll_rad_lower)
+        for m in read
+    ]
+
+
+def test_the_band_is_that_of_the_run(done, tmp_path):
+    """As `result.json` has it, with --run and where the fit is made anew."""
+    pipeline, run = done
+    band = json.loads((run / "result.json").read_text(encoding="utf-8"))["fit"]["band"]
+    for given in (["--run", run], []):
+        out = tmp_path / "replay.mcap"
+        options = [*given, "--fast", "--out", out, "--force"]
+        told = trialid_("replay", pipeline, *options)
+        with out.open("rb") as stream:
+            [attached] = make_reader(stream).iter_attachments()
+        assert json.loads(attached.data)["prediction_band"] == pytest.approx(band, rel=1e-9)
+        assert bool(band) is ("95 % band of the prediction" in told.stdout)
+
+
 @pytest.mark.parametrize("trial", ["before", "halfway"])
 @pytest.mark.parametrize("start", [0.0, 333.0])
 def test_the_recording_holds_the_runs_numbers_bit_for_bit(done, trial, start):
@@ -55,6 +81,7 @@ def test_the_recording_holds_the_runs_numbers_bit_for_bit(done, trial, start):
         replayed = columns(out, trial, role)
         assert len(replayed) == len(batch) - round(start / 0.5)
         assert np.array_equal(replayed, batch[-len(replayed) :], equal_nan=True)
+    assert edges(out, trial) == edges(run / "predicted.mcap", trial)[-len(replayed) :]
     assert out.with_suffix(".foxglove.json").is_file()
     assert out.with_suffix(".plotjuggler.xml").is_file()
 

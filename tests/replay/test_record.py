@@ -15,9 +15,13 @@ from trialid.identification.fit import identify
 from trialid.identification.output_error import row_scale, stretches
 from trialid.replay.alarm import Band, Bands
 from trialid.replay.clock import Pace
+from trialid.replay.closing_words import summary
 from trialid.replay.playback import Playback
 from trialid.replay.record import write
 from trialid.replay.view import bar, draw
+
+HALF = {"r": 0.002, "phi": 0.03}
+"""Half of the band about the prediction [rad/s, rad]: 1.7 deg of roll."""
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +36,8 @@ def playback():
         Band(c, fit.eps_by_output[c] * y[i], colour[i] * scale[i]) for i, c in enumerate(OUTPUTS)
     )
     off = np.where(trial.t >= 700.0, np.deg2rad(3.0), 0.0)
-    made = Playback(fit, with_noise(trial, 0.0, off), Bands(of, "these tests", True))
+    late = with_noise(trial, 0.0, off)
+    made = Playback(fit, late, Bands(of, "these tests", True), prediction_band=HALF)
     made.go_to(round(900.0 / trial.period))
     return made
 
@@ -58,7 +63,11 @@ def test_measured_predicted_residual_and_events_are_there_from_the_start_asked_f
 ):
     stem = "/trialid/zigzag-20/"
     assert set(topics) == {
-        stem + t for t in ("inputs", "measured", "predicted", "residual", "band", "alarm", "events")
+        stem + t
+        for t in (
+            *("inputs", "measured", "predicted", "predicted_band"),
+            *("residual", "band", "alarm", "events"),
+        )
     }
     first = round(100.0 / playback.trial.period)
     for role, values in (
@@ -88,7 +97,7 @@ def test_every_curve_of_both_layouts_is_in_the_recording(files, topics):
     foxglove = json.loads(files[1].read_text(encoding="utf-8"))
     plots = foxglove["configById"]
     paths = [p["value"] for plot in plots.values() for p in plot.get("paths", ())]
-    assert len(paths) == 2 * 5 + 2
+    assert len(paths) == 2 * 7 + 2
     for path in paths:
         topic, _, field = path.rpartition(".")
         assert hasattr(topics[topic][0][2], field), path
@@ -96,7 +105,7 @@ def test_every_curve_of_both_layouts_is_in_the_recording(files, topics):
     assert sorted(_leaves(foxglove["layout"])) == sorted(plots)
     root = ElementTree.fromstring(files[2].read_text(encoding="utf-8"))
     curves = [curve.get("name") for curve in root.iter("curve")]
-    assert len(curves) == 2 * 5 + 2
+    assert len(curves) == 2 * 7 + 2
     for name in curves:
         topic, _, field = name.rpartition("/")
         assert hasattr(topics[topic][0][2], field), name
@@ -122,6 +131,7 @@ def test_the_picture_shows_time_signals_bar_and_alarms(playback):
     assert "zigzag-20  899.5 of 1200.0 s  10 times" in text
     assert re.search(r"roll angle φ +-?[\d.]+ deg +-?[\d.]+ deg .*#.* [+-][\d.]+ sigma", text)
     assert "phi left its noise band at" in text
+    assert "95 % band of the prediction: r +-0.115 deg/s, phi +-1.72 deg (now outside: phi)" in text
     assert bar(-2.0) == "      ======|            "
 
 
@@ -140,3 +150,37 @@ def test_the_band_is_two_deviations_of_noise_to_either_side(topics, playback):
     for band, field in zip(playback.bands.of, ("yaw_rate_radps", "roll_rad"), strict=True):
         assert getattr(message, f"{field}_upper") == pytest.approx(2.0 * band.sigma)
         assert getattr(message, f"{field}_lower") == pytest.approx(-2.0 * band.sigma)
+
+
+def test_the_prediction_lies_in_the_middle_of_its_band(topics):
+    predicted = [m for *_, m in topics["/trialid/zigzag-20/predicted"]]
+    about = [m for *_, m in topics["/trialid/zigzag-20/predicted_band"]]
+    assert len(about) == len(predicted)
+    for field, half in (("yaw_rate_radps", HALF["r"]), ("roll_rad", HALF["phi"])):
+        middle = np.array([getattr(m, field) for m in predicted])
+        upper = np.array([getattr(m, f"{field}_upper") for m in about])
+        lower = np.array([getattr(m, f"{field}_lower") for m in about])
+        assert np.array_equal(upper, middle + half)
+        assert np.array_equal(lower, middle - half)
+
+
+def test_what_the_closing_words_count_is_what_lies_in_the_band(playback):
+    """The roll angle is 3 deg off for the last 200 of 800 s, and of noise hardly ever 1.7."""
+    inside = playback.inside(100.0)
+    assert inside["phi"] == pytest.approx(0.75, abs=0.01)
+    assert inside["r"] > 0.97
+    said = summary(playback, 100.0, ())
+    assert "95 % band of the prediction: r +-0.115 deg/s, phi +-1.72 deg; inside it r " in said
+    assert re.search(r"inside it r \d+%, phi 75%", said)
+
+
+def test_without_a_band_nothing_is_said_of_it(playback, tmp_path):
+    bare = Playback(playback.fit, playback.trial, playback.bands)
+    bare.go_to(400)
+    assert bare.inside() == {}
+    assert "95 %" not in summary(bare, 0.0, ())
+    (path, foxglove, _) = write(tmp_path / "bare.mcap", bare, "0")
+    assert "predicted_band" not in foxglove.read_text(encoding="utf-8")
+    with path.open("rb") as stream:
+        channels = make_reader(stream).get_summary().channels.values()
+    assert not any("predicted_band" in channel.topic for channel in channels)

@@ -20,7 +20,7 @@ from trialid.result.schema import SCHEMA, Result
 KEYS = [
     "schema", "version", "versions", "pipeline", "file", "trials", "model", "fit", "split",
     "accuracy", "where", "where_else", "missing", "not_tried", "missing_force", "verdict", "imo",
-    "history", "before_after", "history_remark", "sources", "signals", "change", "grown",
+    "sailed", "history", "before_after", "history_remark", "sources", "signals", "change", "grown",
 ]  # fmt: skip
 """The keys of `trialid-result/1` in their order: other programs read them."""
 
@@ -99,7 +99,9 @@ def _leaves(value):
 def test_null_and_absent_are_the_same(result):
     """Where a key may be null; where it may not, null is refused by its name."""
     unknown = {each.name: each.default for each in fields(Result) if each.default is None}
-    assert unknown.keys() == {"missing_force", "imo", "before_after", "history_remark", "change"}
+    assert unknown.keys() == {
+        *("missing_force", "imo", "sailed", "before_after", "history_remark", "change")
+    }
     assert result_of(unknown) == result_of({})
     for key in KEYS:
         if key not in unknown:

@@ -13,7 +13,7 @@ well they stand: Hoeting et al. (1999), Bayesian model averaging: a tutorial, St
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -125,30 +125,56 @@ def student(freedom: float | Vector) -> Vector:
     return np.asarray(stdtrit(np.maximum(freedom, 1.0), CONFIDENCE))
 
 
+@dataclass(frozen=True)
+class Standing:
+    """How each model of what may be missing stands, with all that anything follows from it.
+
+    Made from the rows once; they are not needed again.
+    """
+
+    known: "_Reduced"
+    rivals: tuple[Rival, ...]
+
+    def average(self, slopes: Vector | None = None) -> Averaged:
+        """Moves over all rivals and the model as it is, by how well each stands.
+
+        Of the parameters, or of quantities that follow from them: by `slopes` of each by what is
+        fitted, what is held and what may be missing; (n, n_theta + n_h + n_S). What is missing
+        moves such a quantity through the parameters that stand in for it, and by itself.
+        """
+        known = self.known if slopes is None else _through(self.known, slopes)
+        models = [_model(known, r) for r in (Rival("", (), ()), *self.rivals)]
+        cost = np.array([m.cost for m in models])
+        weights = np.exp(-0.5 * (cost - cost.min()) / np.array(COARSE)[:, None])
+        weights /= weights.sum(axis=1, keepdims=True)
+        moves, own = np.array([m.shift for m in models]), np.array([m.variance for m in models])
+        shifts = weights @ moves
+        about = (moves - shifts[:, None]) ** 2
+        variances = np.einsum("cm,cmi->ci", weights, own + about)
+        # what is held fixed widens every model alike: a rival is named for what it adds
+        added = np.maximum(own - own[0] + (moves - moves[0]) ** 2, 0.0)
+        parts = weights.sum(axis=0)[:, None] * added
+        parts[0] = len(COARSE) * own[0]
+        names = ("", *(r.name for r in self.rivals))
+        return Averaged(shifts, variances, tuple(names[i] for i in parts.argmax(axis=0)))
+
+
 def average(rows: Rows, rivals: Sequence[Rival]) -> Averaged:
     """The parameters' moves over all rivals and the model as it is, by how well each stands."""
-    reduced = _reduce(rows)
-    models = [_model(reduced, Rival("", (), ())), *(_model(reduced, r) for r in rivals)]
-    cost = np.array([m.cost for m in models])
-    weights = np.exp(-0.5 * (cost - cost.min()) / np.array(COARSE)[:, None])
-    weights /= weights.sum(axis=1, keepdims=True)
-    moves, own = np.array([m.shift for m in models]), np.array([m.variance for m in models])
-    shifts = weights @ moves
-    about = (moves - shifts[:, None]) ** 2
-    variances = np.einsum("cm,cmi->ci", weights, own + about)
-    # what is held fixed widens every model alike: a rival is named for what it adds
-    added = np.maximum(own - own[0] + (moves - moves[0]) ** 2, 0.0)
-    parts = weights.sum(axis=0)[:, None] * added
-    parts[0] = len(COARSE) * own[0]
-    names = ("", *(r.name for r in rivals))
-    return Averaged(shifts, variances, tuple(names[i] for i in parts.argmax(axis=0)))
+    return stand(rows, rivals).average()
+
+
+def stand(rows: Rows, rivals: Sequence[Rival]) -> Standing:
+    """How all rivals and the model as it is stand by these rows."""
+    return Standing(_reduce(rows), tuple(rivals))
 
 
 @dataclass(frozen=True)
 class _Reduced:
     """Sums of products with the fitted parameters taken out; the residual first, then the held.
 
-    `moves` is what the parameters do per unit of each column; (n_theta, 1 + n_h + n_S).
+    `moves` is what the parameters, or what follows from them, do per unit of each column, with its
+    sign turned; (n, 1 + n_h + n_S).
     """
 
     gram: Vector
@@ -156,6 +182,14 @@ class _Reduced:
     deviations: Vector
     variance: float
     independent: float
+
+
+def _through(known: _Reduced, slopes: Vector) -> _Reduced:
+    """The same for quantities that follow from parameters, from what is held and what is added."""
+    fitted = len(known.moves)
+    moves = slopes[:, :fitted] @ known.moves
+    moves[:, 1:] -= slopes[:, fitted:]
+    return replace(known, moves=moves)
 
 
 def _reduce(rows: Rows) -> _Reduced:

@@ -3,7 +3,7 @@
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -191,7 +191,7 @@ def _ready(
     from trialid.workflow.fit_model import fit_of
     from trialid.workflow.read_trials import align_trial
 
-    def made() -> "tuple[Fit, Trial, Bands]":
+    def made() -> "tuple[Fit, Trial, Bands, Mapping[str, float]]":
         catalogue = available(asked)
         progress("reading", 0.1)
         own = align_trial(asked, chosen) if follower is None else follower.first(time.sleep)
@@ -208,10 +208,11 @@ def _ready(
             fit = _revived(asked, trials, folder, result)
         how = diagnose_settings(asked, catalogue)
         found, _, augmented = examine_fit(fit, how, progress)
-        return fit, own, bands(fit, found.split, augmented)
+        about = found.band if result is None else result.fit.band
+        return fit, own, bands(fit, found.split, augmented), about
 
-    fit, own, noise = one_thread(made)()
-    return Playback(fit, own, noise, growing=follower is not None)
+    fit, own, noise, about = one_thread(made)()
+    return Playback(fit, own, noise, growing=follower is not None, prediction_band=about)
 
 
 def _beside(one: "TrialSection", played: "TrialSection", live: bool) -> bool:
@@ -326,13 +327,6 @@ def _written(out: Path, playback: "Playback", start: float) -> list[Path]:
 
 
 def _summary(playback: "Playback", start: float, files: Sequence[Path]) -> str:
-    trial = playback.trial
-    end = max(playback.furthest - 1, 0) * trial.period
-    lines = [f"{trial.name}: played from {start:g} to {end:g} s; band: {playback.bands.source}"]
-    events = [e for e in playback.events(start) if e.warning]
-    lines += [f"  {event.words}" for event in events] or ["  no alarm"]
-    if playback.revised:
-        moved = f"{playback.revised:.2g} sigma"
-        lines.append(f"  what was shown as the log grew moved by up to {moved} once more was there")
-    lines += [f"Written: {path}" for path in files]
-    return "\n".join(lines)
+    from trialid.replay.closing_words import summary
+
+    return summary(playback, start, files)

@@ -9,31 +9,34 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from scipy.linalg import block_diag
 
-from trialid.accuracy.likely import WIDE
-from trialid.accuracy.parameter_table import Accuracy
+from trialid.accuracy.likely import WIDE, Standing
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
+from trialid.design.measure_slopes import Shows, measure_slopes
 from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
-from trialid.design.standard import Measure, predict
+from trialid.design.speed_loss import NAMES, speed_loss, with_speed_loss
+from trialid.design.standard import Measure, measures_of
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import compared_mask, norms
 from trialid.ship.effect import Effect
-from trialid.ship.model import ShipModel
+from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import inputs
 from trialid.trial import Trial
 
 STEERED: Final = frozenset({"delta", "delta_order"})
-GEAR: Final = np.deg2rad(2.5)
+GEAR: Final = float(np.deg2rad(2.5))
 """rad/s of rudder, where the record shows none faster: what a ship's gear does at least."""
-DRAWS: Final = 24
-"""Ships drawn for an interval: its width is then known to 15 %."""
-SEED: Final = 1
+MOVED: Final = 0.25
+"""Share of the rudder's range that it is clocked over: 5 of the 20 deg of a zig-zag 10/10."""
+SPIKE: Final = 3
+"""Moves as quick that there have to be: a wild sample makes two."""
 
 WORTH_SAILING: Final = 0.9
 """A test that leaves more than this share of a width is not proposed for it."""
@@ -68,19 +71,35 @@ def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
     eq = fit.problem.simulator.equations
     u = inputs(fit.problem.simulator, trial, fit.problem.simulator.fixed | fit.estimates)
     steady = {n: float(np.median(c)) for n, c in zip(eq.inputs, u.T, strict=True)}
-    constants = {n: x for n, x in steady.items() if n not in STEERED and n != "t"}
+    logged = {n: float(np.median(x)) for n, x in trial.signals.items() if n not in STATES}
+    constants = {n: x for n, x in (logged | steady).items() if n not in STEERED and n != "t"}
     constants["u"] = fit.model.ship.particulars["U0"]  # the approach, not what a turn leaves of it
     return vessel(sailed, trial.period, constants, _rate(fit))
 
 
 def _rate(fit: Fit) -> float:
     """How fast the rudder was seen to move [rad/s]."""
-    rates = [
-        float(np.quantile(np.abs(np.diff(t.signals["delta"])), 0.99)) / t.period
-        for t in fit.problem.trials
-        if "delta" in t.signals
-    ]
-    return max([GEAR, *rates])
+    logged = [t for t in fit.problem.trials if "delta" in t.signals]
+    return max([GEAR, *(rudder_rate(t.signals["delta"], t.period) for t in logged)])
+
+
+def rudder_rate(delta: Vector, period: float) -> float:
+    """How fast a recorded rudder goes over [rad/s]: its quickest move by a part of its range.
+
+    From one sample to the next noise moves it too, and the faster the log the more.
+
+    >>> noisy = np.tile([0.0, 0.003], 50) + np.repeat([0.0, 0.2], 50).cumsum() / 50
+    >>> round(rudder_rate(noisy, 0.1), 2)
+    0.04
+    """
+    far = MOVED * float(np.ptp(delta))
+    if far == 0.0:
+        return 0.0
+    for apart in range(1, len(delta)):
+        quickest = np.sort(np.abs(delta[apart:] - delta[:-apart]))[-SPIKE:]
+        if len(quickest) == SPIKE and quickest[0] >= far:
+            return float(quickest[0]) / (apart * period)
+    return 0.0
 
 
 def next_trial(
@@ -206,40 +225,54 @@ def _openness(asked: Goal, trials: Sequence[Trial], parameter: str, added: Seque
 
 
 def standard_measures(
-    fit: Fit, accuracy: Accuracy, undermodelling: float | None
+    fit: Fit, covariance: Vector, standing: Standing, held: Sequence[str], missing: Sequence[Shows]
 ) -> tuple[Measure, ...]:
-    """IMO's measures of the fitted ship, with intervals from the errors of her parameters.
+    """IMO's measures of the fitted ship, with where each is likely to lie.
 
-    Parameters of the fit are drawn together from their covariance; the model error is added as a
-    share of each measure, since it is one of the response.
+    What the record leaves open of the parameters, of what was held fixed and of what may be missing
+    is followed through the manoeuvre to each measure. So a missing effect counts twice: it moved
+    the parameters, and it is not there in the prediction.
+
+    Parameters
+    ----------
+    covariance
+        Of the unknowns by noise; (n_theta, n_theta).
+    standing, held, missing
+        What may be off: how models of what is missing stand, and what their columns are.
 
     Raises
     ------
     DesignError
         The model does not turn, or is not steered by a rudder.
     """
-    ships = [vessel_of(fit), *(vessel_of(fit, model) for model in _drawn(fit, accuracy))]
-    return predict(ships, undermodelling or 0.0)
-
-
-def _drawn(fit: Fit, accuracy: Accuracy) -> list[ShipModel]:
-    """Models as likely as the fitted one, by the covariance of the shared parameters."""
     unknowns = fit.problem.unknowns
-    shared = [i for i, x in enumerate(unknowns) if x.trial is None]
-    block = np.nan_to_num(accuracy.covariance[np.ix_(shared, shared)])
-    values, vectors = np.linalg.eigh(block)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    draw = np.random.default_rng(SEED)
-    made = []
-    for _ in range(DRAWS):
-        moved: Vector = fit.theta[shared] + root @ draw.standard_normal(len(shared))
-        inside = [
-            float(np.clip(x, unknowns[i].low, unknowns[i].high))
-            for i, x in zip(shared, moved, strict=True)
-        ]
-        names = [unknowns[i].column for i in shared]
-        made.append(fit.model.with_values(dict(zip(names, inside, strict=True))))
-    return made
+    fitted = [x.column if x.trial is None else x.name for x in unknowns]
+    sources = len(fitted) + len(NAMES)
+    width = sum(len(m.columns) for m in missing)
+    slopes = measure_slopes(sailed_ship(fit), [*fitted, *NAMES, *held], missing, width)
+    averaged = standing.average(np.delete(slopes.by, np.s_[len(fitted) : sources], axis=1))
+    loss = speed_loss(fit)
+    of_loss = np.zeros((len(NAMES),) * 2) if loss is None else loss.covariance
+    known = block_diag(np.nan_to_num(covariance), of_loss)
+    by = slopes.by[:, :sources]
+    errors = np.sqrt(np.einsum("ni,ij,nj->n", by, known, by))
+    ranges = {
+        name: averaged.range(i, value, float(errors[i]))
+        for i, (name, value) in enumerate(slopes.values.items())
+    }
+    return measures_of(fit.model.ship, slopes.values, slopes.remarks, ranges)
+
+
+def sailed_ship(fit: Fit) -> Vessel:
+    """The fitted ship as the standard measures are predicted: she loses speed as in her trials.
+
+    Raises
+    ------
+    DesignError
+        The model does not turn, or is not steered by a rudder.
+    """
+    loss = speed_loss(fit)
+    return vessel_of(fit) if loss is None else with_speed_loss(vessel_of(fit), loss.values)
 
 
 def by_name(catalogue: Mapping[str, Effect], names: Sequence[str]) -> tuple[Effect, Effect] | None:

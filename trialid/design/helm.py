@@ -114,7 +114,13 @@ def vessel(
         )
     states = model.states if "psi" in model.states else (*model.states, "psi")
     sailed = ShipModel(model.ship, states, model.effects, model.values)
-    return Vessel(sailed, prepare(sailed, (), ("r",)), period, dict(constants), rudder_rate)
+    simulator = prepare(sailed, (), speed_outputs(sailed))
+    return Vessel(sailed, simulator, period, dict(constants), rudder_rate)
+
+
+def speed_outputs(model: ShipModel) -> tuple[str, ...]:
+    """What tells the speed ahead as it acts: a speed that is given may be lost in turns."""
+    return ("u",) if "u" in model.states else ("U",)
 
 
 def carry_out(
@@ -185,7 +191,8 @@ def _sail(vessel: Vessel, orders: Vector) -> tuple[dict[str, Vector], Departure 
     blank = Trial("sailed", "fit", vessel.period, given, {})
     response = respond(vessel.simulator, blank, {}, {}, sensitivities=False)
     states = dict(zip(model.all_states, response.states.T, strict=True))
-    return {"t": blank.t, **given, **states}, response.departure
+    speed = {} if "u" in states else {"U": response.y[:, 0]}
+    return {"t": blank.t, **given, **states, **speed}, response.departure
 
 
 def ramp(orders: Vector, step: float) -> Vector:
@@ -222,10 +229,12 @@ def _passage(vessel: Vessel, orders: Vector, name: str) -> Passage:
 def track(t: Vector, motion: Motion, speed: float) -> tuple[Vector, Vector]:
     """Where the ship is, ahead and to starboard of where she began [m]; (N,) each.
 
-    `speed` [m/s] is used where surge is not simulated.
+    `speed` [m/s] is used where neither surge nor the speed U through the water is known.
     """
     u = motion["u"] if "u" in motion else np.full(len(t), speed)
     v = motion["v"] if "v" in motion else np.zeros(len(t))
+    if "U" in motion:
+        u = np.sqrt(np.maximum(motion["U"] ** 2 - v**2, 0.0))
     psi = motion["psi"]
     ahead = u * np.cos(psi) - v * np.sin(psi)
     abeam = u * np.sin(psi) + v * np.cos(psi)

@@ -1,6 +1,5 @@
 """Standard measures of a manoeuvre, as MSC.137(76) asks for them."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -15,10 +14,10 @@ QUARTER: Final = np.pi / 2.0
 
 @dataclass(frozen=True)
 class Criterion:
-    """A largest value the resolution allows; `words` say for what."""
+    """A largest value the resolution allows, None where it sets none; `words` say for what."""
 
     name: str
-    largest: float
+    largest: float | None
     unit: str
     words: str
 
@@ -35,7 +34,7 @@ def turning(passage: Passage) -> dict[str, float]:
     DesignError
         The heading does not change by 180 deg.
     """
-    begin = _execute(passage)
+    begin = execute_sample(passage)
     psi = np.abs(passage.trial.signals["psi"] - passage.trial.signals["psi"][begin])
     course = float(passage.trial.signals["psi"][begin])
     x, y = passage.x - passage.x[begin], passage.y - passage.y[begin]
@@ -56,36 +55,47 @@ def turning(passage: Passage) -> dict[str, float]:
 
 def initial_turning(passage: Passage, angle: float) -> float:
     """Track run [m] from a 10 deg order until the heading has changed by `angle`, 10 deg."""
-    begin = _execute(passage)
+    begin = execute_sample(passage)
     psi = np.abs(passage.trial.signals["psi"] - passage.trial.signals["psi"][begin])
     if psi[begin:].max() < angle:
-        raise DesignError("the heading does not change so far; give the turn more time")
+        raise DesignError(
+            f"the heading changes by {np.rad2deg(psi[begin:].max()):.0f} deg; initial turning "
+            f"needs {np.rad2deg(angle):.0f} deg: give it more time"
+        )
     run = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(passage.x), np.diff(passage.y)))])
     return _at(run - run[begin], _when(psi, begin, angle))
 
 
-def overshoots(passage: Passage) -> list[float]:
-    """Overshoot angles of a zig-zag [rad], first, second and so on.
+def overshoots(passage: Passage, headings: Vector | None = None) -> list[float]:
+    """Overshoot angles of a zig-zag [rad], first, second and so on; none without a reversal.
 
     How far the heading goes on after each reversal of the rudder; the last only when it has come
-    back.
+    back. `headings` (N,) are those that a reversal is reckoned from, where not the passage's own.
     """
     psi, order = passage.trial.signals["psi"], passage.trial.signals["delta_order"]
-    changes = np.flatnonzero(np.diff(order)) + 1
-    reversals = [k for k in changes if order[k] * order[k - 1] < 0.0]
+    reckoned = psi if headings is None else headings
+    reversals = reversal_samples(order)
     found = []
-    for k, end in zip(reversals, [*reversals[1:], len(psi)], strict=True):
-        beyond = np.sign(order[k - 1]) * (psi[k:end] - psi[k])
+    for k, end in zip(reversals, [*reversals, len(psi)][1:], strict=True):
+        beyond = np.sign(order[k - 1]) * (psi[k:end] - reckoned[k])
         peak = int(np.argmax(beyond))
-        if 0 < peak < len(beyond) - 1:
-            found.append(_peak(beyond, peak))
+        if not 0 < peak < len(beyond) - 1:
+            break
+        found.append(_peak(beyond, peak))
     return found
+
+
+def reversal_samples(order: Vector) -> list[int]:
+    """Samples at which the rudder is first ordered to the other side."""
+    changes = np.flatnonzero(np.diff(order)) + 1
+    return [int(k) for k in changes if order[k] * order[k - 1] < 0.0]
 
 
 def criteria(length: float, speed: float) -> tuple[Criterion, ...]:
     """What MSC.137(76) asks of a ship of this length [m] at this test speed [m/s].
 
-    The limits of the 10/10 zig-zag grow with the time the ship takes to run her length.
+    The limits of the 10/10 zig-zag grow with the time the ship takes to run her length. The second
+    overshoot of the 20/20 has none; it is asked for with the others all the same.
     """
     time = length / speed
     first = float(np.clip(5.0 + time / 2.0, 10.0, 20.0))
@@ -97,10 +107,11 @@ def criteria(length: float, speed: float) -> tuple[Criterion, ...]:
         Criterion("first overshoot 10/10", first, "deg", "zig-zag 10/10"),
         Criterion("second overshoot 10/10", second, "deg", "zig-zag 10/10"),
         Criterion("first overshoot 20/20", 25.0, "deg", "zig-zag 20/20"),
+        Criterion("second overshoot 20/20", None, "deg", "zig-zag 20/20"),
     )
 
 
-def _execute(passage: Passage) -> int:
+def execute_sample(passage: Passage) -> int:
     """The sample of the first order."""
     ordered = np.flatnonzero(passage.trial.signals["delta_order"])
     if not len(ordered):
@@ -125,6 +136,3 @@ def _peak(y: Vector, k: int) -> float:
     below, top, above = y[k - 1], y[k], y[k + 1]
     bend = below - 2.0 * top + above
     return float(top - (above - below) ** 2 / (8.0 * bend)) if bend < 0.0 else float(top)
-
-
-Measures = Mapping[str, float]

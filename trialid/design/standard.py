@@ -1,28 +1,37 @@
 """The standard manoeuvres of MSC.137(76), predicted from a model, with how sure that is.
 
 The resolution asks for them at 90 % of the speed at 85 % of the engine's power, at full load and in
-deep calm water: a model fitted at another speed predicts them at that one.
+deep calm water. A model fitted at another speed or load predicts them at that one; what is wind,
+waves, current or a near bottom in it is left out. They are always sailed alike, to starboard first,
+from a ship length of straight course at the approach speed, on a clock that goes by the ship: who
+asks for one ship twice gets one number.
 """
 
-import contextlib
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from trialid.arrays import Vector
 from trialid.design import manoeuvres, measures
-from trialid.design.helm import Instructions, Passage, Vessel, carry_out
+from trialid.design.helm import Instructions, Passage, Vessel, carry_out, vessel
 from trialid.design.measures import Criterion
 from trialid.errors import DesignError
+from trialid.ship.effect import SENSORS, Delayed, Effect
+from trialid.ship.model import STATES
+from trialid.ship.particulars import Ship
 
-TEN: Final = float(np.deg2rad(10.0))
-TWENTY: Final = float(np.deg2rad(20.0))
-HARD: Final = float(np.deg2rad(35.0))
-BEFORE: Final = 20.0
-"""s of straight course before the order."""
+DEGREES: Final = float(np.rad2deg(1.0))
+TEN, TWENTY, HARD = (float(np.deg2rad(x)) for x in (10.0, 20.0, 35.0))
+STRAIGHT: Final = 1.0
+"""Ship lengths of straight course before the order."""
 LENGTHS: Final = 90.0
 """Ship lengths a manoeuvre is given; a turn of 540 deg takes about 15."""
+STEPS: Final = 200
+"""Samples in the time for a ship length: a helmsman who looks so often is late by nothing."""
+AT_SEA: Final = {"psi", "V_aw", "gamma_aw", "alpha_w", "h", "X_ext", "Y_ext", "K_ext", "N_ext"}
+"""What nothing depends on in calm deep water: course, wind, waves, depth, outer forces."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +41,7 @@ class Measure:
     Attributes
     ----------
     value
-        In the criterion's unit; None where the manoeuvre did not come so far.
+        In the criterion's unit; None where the manoeuvre did not come so far, and `remark` why.
     interval
         95 %, None where nothing says how sure the model is.
     """
@@ -40,62 +49,133 @@ class Measure:
     criterion: Criterion
     value: float | None
     interval: tuple[float, float] | None
+    remark: str = ""
 
     @property
     def kept(self) -> bool | None:
         """Whether the criterion is kept, whatever of its interval; None where that is open."""
-        if self.value is None:
+        largest = self.criterion.largest
+        if self.value is None or largest is None:
             return None
         low, high = self.interval or (self.value, self.value)
-        if high <= self.criterion.largest:
+        if high <= largest:
             return True
-        return False if low > self.criterion.largest else None
+        return False if low > largest else None
 
 
-def predict(vessels: Sequence[Vessel], model_error: float = 0.0) -> tuple[Measure, ...]:
-    """The standard measures of the first vessel; the others are what she might be as well.
+Read = Callable[[Passage, Vector | None], list[float]]
 
-    `model_error` is what the model's own error adds, as a share of each measure.
+
+@dataclass(frozen=True)
+class Reading:
+    """Measures read from one manoeuvre, in the units of their criteria.
+
+    `read` takes the headings that reversals are reckoned from, where not the passage's own.
     """
-    first = vessels[0]
-    found = [_values(vessel) for vessel in vessels]
-    particulars = first.model.ship.particulars
-    made = []
-    for criterion in measures.criteria(particulars["L"], particulars["U0"]):
-        value = found[0].get(criterion.name)
-        others = [f[criterion.name] for f in found[1:] if criterion.name in f]
-        spread = float(np.std(others, ddof=1)) if len(others) > 2 else None
-        interval = None
-        if value is not None and spread is not None:
-            wide = 1.96 * float(np.hypot(spread, model_error * value))
-            interval = (value - wide, value + wide)
-        made.append(Measure(criterion, value, interval))
-    return tuple(made)
+
+    names: tuple[str, ...]
+    manoeuvre: str
+    read: Read
 
 
-def _values(vessel: Vessel) -> dict[str, float]:
-    """Every measure the ship's model comes to, in the units of the criteria."""
-    degrees = float(np.rad2deg(1.0))
-    found: dict[str, float] = {}
-    circle = _sailed(vessel, manoeuvres.turning_circle(HARD))
-    if circle is not None:
-        with contextlib.suppress(DesignError):  # she does not turn so far in the time
-            found |= measures.turning(circle)
-    ten, twenty = (_sailed(vessel, manoeuvres.zigzag(a, a, 4)) for a in (TEN, TWENTY))
-    if ten is not None:
-        over = measures.overshoots(ten)
-        names = ("first overshoot 10/10", "second overshoot 10/10")
-        found |= {n: x * degrees for n, x in zip(names, over, strict=False)}
-        found["initial turning"] = measures.initial_turning(ten, TEN)
-    if twenty is not None:
-        over = measures.overshoots(twenty)
-        found |= {n: x * degrees for n, x in zip(["first overshoot 20/20"], over, strict=False)}
-    return found
+def _turning(passage: Passage, headings: Vector | None) -> list[float]:
+    del headings
+    found = measures.turning(passage)
+    return [found["advance"], found["tactical diameter"]]
 
 
-def _sailed(vessel: Vessel, instructions: Instructions) -> Passage | None:
-    """A manoeuvre carried out; None where the ship leaves her model."""
-    particulars = vessel.model.ship.particulars
-    duration = LENGTHS * particulars["L"] / particulars["U0"]
-    passage = carry_out(vessel, instructions, BEFORE, duration)
-    return None if passage.departure is not None else passage
+def _initial_turning(passage: Passage, headings: Vector | None) -> list[float]:
+    del headings
+    return [measures.initial_turning(passage, TEN)]
+
+
+def _overshoots(passage: Passage, headings: Vector | None) -> list[float]:
+    return [x * DEGREES for x in measures.overshoots(passage, headings)]
+
+
+MANOEUVRES: Final[Mapping[str, Callable[[], Instructions]]] = {
+    "turning circle": lambda: manoeuvres.turning_circle(HARD),
+    "zig-zag 10/10": lambda: manoeuvres.zigzag(TEN, TEN, 4),
+    "zig-zag 20/20": lambda: manoeuvres.zigzag(TWENTY, TWENTY, 4),
+}
+READINGS: Final = (
+    Reading(("advance", "tactical diameter"), "turning circle", _turning),
+    Reading(("initial turning",), "zig-zag 10/10", _initial_turning),
+    *(
+        Reading((f"first overshoot {a}", f"second overshoot {a}"), f"zig-zag {a}", _overshoots)
+        for a in ("10/10", "20/20")
+    ),
+)
+
+
+def acts_in_calm(effect: Effect) -> bool:
+    """Whether an effect moves a ship in deep water without wind, waves, current or a tug.
+
+    What only changes what is logged does not. An input that acts late does: a record of the rudder
+    that is early is no worse told from a gear that is late.
+    """
+    late = {*effect.acts_on(Delayed)} - {*STATES}
+    moves = bool({*effect.forms} - {*SENSORS}) or bool(late)
+    return moves and not AT_SEA & {*effect.signals}
+
+
+def in_calm(ship: Vessel) -> Vessel:
+    """The ship as the resolution's manoeuvres are sailed: calm deep water, her own clock."""
+    model, p = ship.model, ship.model.ship.particulars
+    for effect in (e for e in ship.model.effects if not acts_in_calm(e)):
+        model = model - effect.name
+    constants = {**ship.constants, "u": p["U0"]}
+    return vessel(model, p["L"] / p["U0"] / STEPS, constants, ship.rudder_rate)
+
+
+def sail_all(ship: Vessel) -> dict[str, Passage]:
+    """Every manoeuvre of the resolution, by name, on a ship that is in calm water."""
+    one = STEPS * ship.period
+    return {
+        name: carry_out(ship, told(), STRAIGHT * one, LENGTHS * one, name)
+        for name, told in MANOEUVRES.items()
+    }
+
+
+def read_all(passages: Mapping[str, Passage]) -> tuple[dict[str, float], dict[str, str]]:
+    """Every measure that the passages come to, and why there are no others; by name."""
+    values, remarks = dict[str, float](), dict[str, str]()
+    for reading in READINGS:
+        passage = passages[reading.manoeuvre]
+        try:
+            found = reading.read(passage, None)
+            why = f"no such overshoot in {LENGTHS:.0f} ship lengths"
+        except DesignError as error:
+            found, why = [], str(error)
+        if passage.departure is not None:
+            found, why = [], f"the ship leaves her model: {passage.departure}"
+        values |= dict(zip(reading.names, found, strict=False))
+        remarks |= dict.fromkeys(reading.names[len(found) :], why)
+    return values, remarks
+
+
+def measures_of(
+    ship: Ship,
+    values: Mapping[str, float],
+    remarks: Mapping[str, str],
+    ranges: Mapping[str, tuple[float, float] | None],
+) -> tuple[Measure, ...]:
+    """What was read of a ship beside what the resolution allows her; none of it is below zero."""
+    p = ship.particulars
+    positive = {n: (max(r[0], 0.0), max(r[1], 0.0)) for n, r in ranges.items() if r is not None}
+    return tuple(
+        Measure(c, values.get(c.name), positive.get(c.name), remarks.get(c.name, ""))
+        for c in measures.criteria(p["L"], p["U0"])
+    )
+
+
+def predict(vessels: Sequence[Vessel]) -> tuple[Measure, ...]:
+    """The standard measures of the first vessel; the others are what she might be as well."""
+    (values, remarks), *others = [read_all(sail_all(in_calm(one))) for one in vessels]
+    ranges = {}
+    for name, value in values.items():
+        drawn = [f[name] for f, _ in others if name in f]
+        if len(drawn) > 2:
+            wide = 1.96 * float(np.std(drawn, ddof=1))
+            ranges[name] = value - wide, value + wide
+    return measures_of(vessels[0].model.ship, values, remarks, ranges)

@@ -4,10 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from trialid.accuracy.likely import Averaged
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
-from trialid.diagnosis.may_be_off import may_be_off
+from trialid.diagnosis.may_be_off import Doubts, doubts
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import Split, split
 from trialid.diagnosis.prediction_band import prediction_band
@@ -55,12 +54,12 @@ class Diagnosed:
     fit: Fit
     split: Split
     routes: tuple[Split, ...]
-    averaged: Averaged
+    doubts: Doubts
 
     @cached_property
     def accuracy(self) -> Accuracy:
         """Eq. 8 to 14 and likely ranges of every unknown."""
-        return accuracy_of(self.fit, self.split, self.averaged)
+        return accuracy_of(self.fit, self.split, self.doubts.averaged)
 
     @cached_property
     def band(self) -> dict[str, float]:
@@ -162,7 +161,7 @@ def examine_fit(
     progress("looking for what is missing", 0.65)
     ranking, augmented = rank(fit, asked.candidates, asked.family_cos, asked.level)
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
-    return Diagnosed(fit, best, routes, may_be_off(fit, augmented)), ranking, augmented
+    return Diagnosed(fit, best, routes, doubts(fit, augmented)), ranking, augmented
 
 
 def _bounded(done: Diagnosed, fits: Sequence[Fit], whole: Completeness | None = None) -> Diagnosed:

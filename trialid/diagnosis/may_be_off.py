@@ -1,10 +1,12 @@
 """By how much every parameter of a fit may be off, by all that its model may lack or hold wrong."""
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from trialid.accuracy.likely import WIDE, Averaged, Rival, Rows, average
+from trialid.accuracy.likely import WIDE, Averaged, Rival, Rows, Standing, stand
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.identification.fit import Fit
@@ -13,8 +15,33 @@ SMALLEST: Final = 1e-12
 """Typical size of a parameter whose effect calls nothing typical."""
 
 
+@dataclass(frozen=True)
+class Doubts:
+    """How the models of what may be missing stand, and what their columns are.
+
+    Attributes
+    ----------
+    held, missing
+        Coefficients that were held fixed, and what may be missing.
+    """
+
+    standing: Standing
+    held: tuple[str, ...]
+    missing: tuple[Trace, ...]
+
+    @cached_property
+    def averaged(self) -> Averaged:
+        """The parameters' moves, averaged over the catalogue and the model as it is."""
+        return self.standing.average()
+
+
 def may_be_off(fit: Fit, augmented: Augmented) -> Averaged:
     """The parameters' moves, averaged over the catalogue and the model as it is."""
+    return doubts(fit, augmented).averaged
+
+
+def doubts(fit: Fit, augmented: Augmented) -> Doubts:
+    """What the rows of a fit say of the catalogue and of the model as it is."""
     ship = fit.problem.simulator.model
     deviations = [abs(ship.value(n)) * ship.ship.share_off(n) for n in augmented.held]
     rows = Rows(
@@ -26,7 +53,8 @@ def may_be_off(fit: Fit, augmented: Augmented) -> Averaged:
         S=augmented.S,
         level=fit.level,
     )
-    return average(rows, [_rival(t) for t in augmented.traces])
+    standing = stand(rows, [_rival(t) for t in augmented.traces])
+    return Doubts(standing, augmented.held, augmented.traces)
 
 
 def _rival(trace: Trace) -> Rival:

@@ -1,15 +1,13 @@
 """The design file: TOML that says what the next trial is for, what is allowed, what may be run."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import BeforeValidator, Field
 
-from trialid import user_files
 from trialid.design.kinds import KINDS
-from trialid.errors import PipelineError, UnitError, nearest
+from trialid.errors import UnitError, nearest
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file import check_form, content_of, load, table_of
@@ -55,11 +53,12 @@ class AtSea(Section):
     """Time between samples of the log to come [s]."""
     approach: NotNegative = 30.0
     """Straight run before each test [s]."""
-    rudder_rate: Positive = 2.5
-    """Speed of the steering gear [deg/s], where no effect of the model is one."""
+    rudder_rate: Positive | None = None
+    """Speed of the steering gear [deg/s], where no effect of the model is one; left out: as in the
+    trials of `run`, or 2.5."""
     constant: Mapping[str, Given] = {}
     """Recorded signals that do not change, as the shaft speed, by name: a number in the unit of
-    reports, or with a `unit` of its own."""
+    reports, or with a `unit` of its own; what is left out is as in the trials of `run`."""
 
 
 class LimitsSection(Section):
@@ -280,7 +279,7 @@ def _missing(test: TestSection, at: Sequence[str | int]) -> list[Problem]:
 def _of_gear(pipeline: DesignFile) -> list[Problem]:
     """A gear that is to run faster than it can."""
     able, asked = pipeline.limits.rudder_rate, pipeline.at_sea.rudder_rate
-    if able is None or asked <= able:
+    if able is None or asked is None or asked <= able:
         return []
     words = (
         f"{asked:g} deg/s are more than limits.rudder_rate allows, {able:g}; give the gear's own"
@@ -303,25 +302,3 @@ def _of_signals(pipeline: DesignFile) -> list[Problem]:
         if name not in SIGNALS:
             found.append((dotted_key("noise", name), f"unknown quantity; {nearest(name, SIGNALS)}"))
     return found
-
-
-def fitted_values(pipeline: DesignFile) -> dict[str, float]:
-    """Parameter values of the finished run the design builds on; empty where there is none.
-
-    Raises
-    ------
-    PipelineError
-        The folder holds no run.
-    """
-    if pipeline.run is None:
-        return {}
-    file = pipeline.path.parent / pipeline.run / "result.json"
-    try:
-        result = json.loads(user_files.text(file, user_files.MOST_OF_A_RESULT))
-        rows = result["accuracy"]["parameters"]
-        return {p["name"]: float(p["value"]) for p in rows if p["kind"] == "physical"}
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-        raise PipelineError(
-            f"{pipeline.path}: run: {file} is no result of a run; give the folder that "
-            "`trialid run` wrote"
-        ) from error

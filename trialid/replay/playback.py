@@ -1,6 +1,8 @@
 """What is played: one trial, the model in step with it, its residual watched."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -36,6 +38,9 @@ class Playback:
 
     Attributes
     ----------
+    prediction_band
+        Half-width [SI] about the prediction that holds 95 % of what is measured in a trial that was
+        not fitted, by output; empty where the fit does not tell.
     at
         Samples played, counted from the start of the trial.
     furthest
@@ -45,8 +50,16 @@ class Playback:
         stamps are put right by all of a log, and so is where a held-out trial starts.
     """
 
-    def __init__(self, fit: Fit, trial: Trial, bands: Bands, growing: bool = False) -> None:
+    def __init__(
+        self,
+        fit: Fit,
+        trial: Trial,
+        bands: Bands,
+        growing: bool = False,
+        prediction_band: Mapping[str, float] = MappingProxyType({}),
+    ) -> None:
         self.fit, self.trial, self.bands, self.growing = fit, trial, bands, growing
+        self.prediction_band = prediction_band
         self.stream = Stream(fit.problem.simulator, trial, *of_trial(fit.problem, fit.theta, trial))
         self.monitor = Monitor(bands.of, trial.period, trial.samples)
         self.measured = output_matrix(trial, fit.problem.outputs)
@@ -66,6 +79,17 @@ class Playback:
         """Measured less predicted [SI], NaN where not compared or not yet played; (N, n_y)."""
         return np.where(self.compared, output_error(self.measured, self.stream.y), np.nan)
 
+    def inside(self, start: float = 0.0) -> dict[str, float]:
+        """Share of what was compared and played from a time [s] on within the prediction's band."""
+        played = slice(round(start / self.trial.period), self.furthest)
+        off = np.abs(self.residual[played])
+        shares = {}
+        for c, output in enumerate(self.fit.problem.outputs):
+            known = off[:, c][np.isfinite(off[:, c])]
+            if output in self.prediction_band and len(known):
+                shares[output] = float(np.mean(known <= self.prediction_band[output]))
+        return shares
+
     @one_thread
     def go_to(self, samples: int) -> None:
         """Play or seek until so many samples are played; the numbers do not depend on the way."""
@@ -81,7 +105,7 @@ class Playback:
 
     def grown(self, trial: Trial, growing: bool) -> "Playback":
         """The same of a longer reading of the log, played as far."""
-        longer = Playback(self.fit, trial, self.bands, growing)
+        longer = Playback(self.fit, trial, self.bands, growing, self.prediction_band)
         longer.stream.take_over(self.stream)
         longer.go_to(self.furthest)
         longer.go_to(self.at)

@@ -12,8 +12,9 @@ from trialid import temporary
 from trialid.export.lines import INFO, WARNING, Line
 from trialid.export.tracks import About, Track, stems, write_tracks
 from trialid.names import labels
+from trialid.replay.closing_words import band_words
 from trialid.replay.playback import Playback
-from trialid.report.files.overlay import tracks_of
+from trialid.report.files.overlay import BAND, tracks_of
 from trialid.result.series import OutputSeries, TrialSeries
 
 if TYPE_CHECKING:
@@ -72,11 +73,13 @@ def write(path: Path, playback: Playback, version: str, start: float = 0.0) -> l
     first = round(start / playback.trial.period)
     topic = f"/trialid/{_stem(playback)}/"
     made = series(playback, first)
-    tracks = [*tracks_of(made, _stem(playback)), *_watched(playback, topic, first)]
+    shown = tracks_of(made, _stem(playback), playback.prediction_band)
+    tracks = [*shown, *_watched(playback, topic, first)]
     lines = {topic + "events": list(_lines(playback, start))}
     about = About(f"trialid {version}", _manifest(playback, version), "replay.json",
                   {"band": playback.bands.source,
-                   "sigma": {b.output: b.sigma for b in playback.bands.of}})  # fmt: skip
+                   "sigma": {b.output: b.sigma for b in playback.bands.of},
+                   "prediction_band": dict(playback.prediction_band)})  # fmt: skip
     with temporary.replace_whole(path) as ready, ready.open("wb") as stream:
         write_tracks(stream, tracks, about, lines)
     layouts = layout_paths(path)
@@ -96,12 +99,16 @@ def panels(playback: Playback) -> list[Panel]:
     topic, made = f"/trialid/{_stem(playback)}/", []
     for band in playback.bands.of:
         field = labels.message_field(band.output)
-        edges = [(w, Curve(topic + "band", f"{field}_{w}")) for w in ("upper", "lower")]
+        edges, about = (
+            [(w, Curve(topic + which, f"{field}_{w}")) for w in ("upper", "lower")]
+            for which in ("band", BAND)
+        )
+        signals = tuple((w, Curve(topic + w, field)) for w in ("measured", "predicted"))
         made.append(
             Panel(
                 labels.label(band.output),
                 labels.quantity(band.output).unit,
-                tuple((w, Curve(topic + w, field)) for w in ("measured", "predicted")),
+                (*signals, *(about if band.output in playback.prediction_band else ())),
                 (("residual", Curve(topic + "residual", field)), *edges),
                 Curve(topic + "alarm", f"{field}_score"),
             )
@@ -128,6 +135,8 @@ def _watched(playback: Playback, topic: str, first: int) -> Iterator[Track]:
 
 def _lines(playback: Playback, start: float) -> Iterator[Line]:
     yield Line(_ns(start), INFO, f"from here on; band: {playback.bands.source}")
+    if said := band_words(playback.prediction_band):
+        yield Line(_ns(start), INFO, said)
     for event in playback.events(start):
         level = WARNING if event.warning else INFO
         yield Line(_ns(max(event.t, start)), level, event.words)

@@ -5,9 +5,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from trialid.errors import harmless
 from trialid.names import labels
 from trialid.replay.clock import Pace
+from trialid.replay.closing_words import band_words
 from trialid.replay.playback import Playback
 
 if TYPE_CHECKING:
@@ -61,11 +64,14 @@ def draw(playback: Playback, pace: Pace) -> "Group":
         seen = float(playback.measured[place, c]) if playback.compared[place, c] else math.nan
         table.add_row(
             labels.label(band.output), _shown(band.output, seen),
-            _shown(band.output, float(playback.stream.y[place, c])), bar(ratio), _deviations(ratio),
+            _shown(band.output, float(playback.stream.y[place, c])),
+            bar(ratio), _deviations(ratio),
         )  # fmt: skip
     events = [e for e in playback.events() if e.t <= place * playback.trial.period][-LAST:]
     told = [(f"{e.t:8.1f} s  {harmless(e.words)}", "red" if e.warning else "") for e in events]
     lines = [Text(words, style) for words, style in told] or [Text("no alarm")]
+    if said := _about(playback, place):
+        lines.insert(0, Text(said))
     return Group(Text(harmless(_heading(playback, pace, place))), table, *lines)
 
 
@@ -95,6 +101,15 @@ def _heading(playback: Playback, pace: Pace, place: int) -> str:
 
 def _shown(name: str, value: float) -> str:
     return labels.shown_text(name, None if math.isnan(value) else value)
+
+
+def _about(playback: Playback, place: int) -> str:
+    """The band about the prediction, and what is measured outside of it just now."""
+    half, off = playback.prediction_band, np.abs(playback.residual[place])
+    errors = zip(playback.fit.problem.outputs, off, strict=True)
+    outside = [c for c, e in errors if c in half and e > half[c]]
+    now = f" (now outside: {', '.join(outside)})" if outside else ""
+    return band_words(half) + now
 
 
 def _deviations(ratio: float) -> str:

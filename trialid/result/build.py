@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from trialid.design.following import Narrowing
+from trialid.design.helm import Vessel
 from trialid.design.observed import Overshoot
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
@@ -38,7 +39,7 @@ from trialid.result.fit_rows import (
     StartsPart,
 )
 from trialid.result.force_series import missing_force_part
-from trialid.result.imo import measure_rows
+from trialid.result.imo import UNRELIABLE, measure_rows, sailed_part, sailing_words
 from trialid.result.json_file import finite
 from trialid.result.missing_rows import missing_rows, verdict_part
 from trialid.result.schema import Result
@@ -51,13 +52,15 @@ class Findings(Diagnosis):
     """All that a run found.
 
     `proposal` is None where nothing is to be told apart, `narrowing` where no effect widens a
-    range. `measures` and `overshoots` are there where the pipeline asks for IMO's measures.
+    range. `ship` is the fitted one as she is sailed, None where no rudder steers her. `measures`
+    and `overshoots` are there where the pipeline asks for IMO's measures.
     """
 
     name: str
     pipeline: str
     proposal: Separation | None = None
     narrowing: Narrowing | None = None
+    ship: Vessel | None = None
     measures: tuple[Measure, ...] = ()
     overshoots: tuple[Overshoot, ...] = ()
 
@@ -86,6 +89,7 @@ def result_from(found: Findings, **beside: Any) -> Result:
             missing_force=None if found.force is None else missing_force_part(found.force),
             verdict=verdict_part(found.verdict, found.proposal),
             imo=_imo(found),
+            sailed=None if found.ship is None else sailed_part(found.ship),
             before_after=_before_after(found),
             **beside,
         )
@@ -212,10 +216,13 @@ def _where_else(found: Where) -> WhereElsePart:
 
 def _imo(found: Findings) -> ImoPart | None:
     """Standard measures, predicted; overshoots the trials hold, measured beside predicted."""
-    if not found.measures:
+    if not found.measures or found.ship is None:
         return None
+    reliable = found.verdict.kind != "no fit"
     return ImoPart(
-        measures=measure_rows(found.measures),
+        measures=measure_rows(found.measures, reliable=reliable),
+        sailed=sailing_words(found.ship),
+        doubt="" if reliable else UNRELIABLE,
         speed_simulated="u" in found.before.fit.model.states,
         overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
     )

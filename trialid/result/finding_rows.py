@@ -158,7 +158,10 @@ class VerdictPart:
 
 @dataclass(frozen=True, kw_only=True)
 class MeasureRow:
-    """A standard measure of the fitted ship beside what is allowed."""
+    """A standard measure of the fitted ship beside what is allowed.
+
+    `remark` says why there is no value.
+    """
 
     name: str
     unit: str
@@ -167,6 +170,7 @@ class MeasureRow:
     allowed: float | None = None
     kept: bool | None = None
     manoeuvre: str = ""
+    remark: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,9 +185,42 @@ class OvershootRow:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SailedPart:
+    """How the fitted ship is sailed where she is predicted; SI.
+
+    Attributes
+    ----------
+    speed
+        Of the approach.
+    rudder_rate
+        As the trials show it; None where the model has a steering gear of its own.
+    constants
+        Recorded signals that stay as they were, by name.
+    speed_lost
+        By what numbers the logged speed fell in turns; empty where the model says itself what
+        turning costs.
+    """
+
+    speed: float
+    rudder_rate: float | None = None
+    constants: Mapping[str, float] = field(default_factory=dict)
+    speed_lost: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
 class ImoPart:
-    """Standard measures of MSC.137(76), and overshoots the trials hold."""
+    """Standard measures of MSC.137(76), and overshoots the trials hold.
+
+    Attributes
+    ----------
+    sailed
+        How the measures were come by, in a sentence.
+    doubt
+        Why they are not to be relied on; empty where nothing speaks against them.
+    """
 
     measures: tuple[MeasureRow, ...] = ()
     speed_simulated: bool = False
     overshoots: tuple[OvershootRow, ...] = ()
+    sailed: str = ""
+    doubt: str = ""

@@ -1,13 +1,21 @@
 """Standard measures of manoeuvring as plain data."""
 
 from collections.abc import Sequence
+from typing import Final
 
-from trialid.design.standard import Measure
-from trialid.result.finding_rows import MeasureRow
+import numpy as np
+
+from trialid.design.helm import GEAR_STATE, Vessel
+from trialid.design.speed_loss import NAMES, loses_speed
+from trialid.design.standard import Measure, in_calm
+from trialid.names import labels
+from trialid.result.finding_rows import MeasureRow, SailedPart
+
+UNRELIABLE: Final = "The fit carries no verdict: none of these numbers is to be relied on."
 
 
-def measure_rows(measures: Sequence[Measure]) -> tuple[MeasureRow, ...]:
-    """The standard measures beside what is allowed."""
+def measure_rows(measures: Sequence[Measure], *, reliable: bool = True) -> tuple[MeasureRow, ...]:
+    """The standard measures beside what is allowed; open where they are not to be relied on."""
     return tuple(
         MeasureRow(
             name=m.criterion.name,
@@ -15,8 +23,40 @@ def measure_rows(measures: Sequence[Measure]) -> tuple[MeasureRow, ...]:
             value=m.value,
             interval=m.interval,
             allowed=m.criterion.largest,
-            kept=m.kept,
+            kept=m.kept if reliable else None,
             manoeuvre=m.criterion.words,
+            remark=m.remark,
         )
         for m in measures
+    )
+
+
+def sailed_part(ship: Vessel) -> SailedPart:
+    """How a ship is sailed: her speed, her gear, what stays as it was."""
+    read = [n for n in ship.simulator.equations.inputs if n in ship.constants and n != "u"]
+    return SailedPart(
+        speed=ship.model.ship.particulars["U0"],
+        rudder_rate=None if GEAR_STATE in ship.model.all_states else ship.rudder_rate,
+        constants={n: ship.constants[n] for n in read},
+        speed_lost={n: ship.model.value(n) for n in NAMES if n in ship.model.parameters},
+    )
+
+
+def sailing_words(ship: Vessel) -> str:
+    """How the standard measures of a ship were come by, in a sentence."""
+    how = sailed_part(in_calm(ship))
+    rate = "as its effect has it"
+    if how.rudder_rate is not None:
+        rate = f"at {np.rad2deg(how.rudder_rate):.3g} deg/s"
+    steady = "".join(f", {n} = {labels.shown_text(n, x)}" for n, x in how.constants.items())
+    speed = ""
+    if "u" not in ship.model.states:
+        speed = "; the speed stays: what a turn loses of it is not in these numbers"
+        if how.speed_lost:
+            speed = "; the speed stays: what a turn may cost of it only widens the ranges"
+        if loses_speed(how.speed_lost):
+            speed = "; speed is lost in turns as in the logs"
+    return (
+        f"Sailed by simulation in calm deep water: approach at {how.speed:.3g} m/s, first to "
+        f"starboard, rudder {rate}{steady}{speed}."
     )

@@ -15,6 +15,7 @@ from trialid.result.finding_rows import (
     FindingRow,
     ImoPart,
     MissingForcePart,
+    SailedPart,
     VerdictPart,
     WhereElsePart,
 )
@@ -68,6 +69,7 @@ class Result:
     missing_force: MissingForcePart | None = None
     verdict: VerdictPart = field(default_factory=VerdictPart)
     imo: ImoPart | None = None
+    sailed: SailedPart | None = None
     history: tuple[StepRow, ...] = ()
     before_after: ChangePart | None = None
     history_remark: str | None = None

@@ -43,13 +43,14 @@ def _texts(plan: Plan, data: Mapping[str, Any], folder: Path) -> dict[str, str]:
             sheets.append(bridge.sheet(test, passage, plan.limits))
             texts[f"{stem}.csv"] = bridge.order_csv(passage)
         own = stems[0] if len(stems) == 1 else file_name(rated.name, taken)
-        texts[f"{own}.toml"] = _pipeline(plan.pipeline, folder, rated, stems)
+        texts[f"{own}.toml"] = _pipeline(plan, folder, rated, stems)
     texts["bridge.html"] = bridge.page(data, sheets, bridge.aborts(plan.limits))
     return texts
 
 
-def _pipeline(pipeline: DesignFile, folder: Path, rated: Rated, stems: Sequence[str]) -> str:
+def _pipeline(plan: Plan, folder: Path, rated: Rated, stems: Sequence[str]) -> str:
     """A pipeline for the log that will come back: only the channels are left to be named."""
+    pipeline = plan.pipeline
     lines = [
         f"# The pipeline for {quote(rated.name)}: name the log and its channels, then:",
         "# trialid run THIS FILE; `trialid inspect LOG` lists what channels there are.",
@@ -65,7 +66,7 @@ def _pipeline(pipeline: DesignFile, folder: Path, rated: Rated, stems: Sequence[
             f"logs = {toml([LOG.format(stem)])}",
         ]
     lines += ["", "[signals]"]
-    wanted = ["delta", *pipeline.identify.outputs, *pipeline.at_sea.constant]
+    wanted = ["delta", *pipeline.identify.outputs, *plan.ship.vessel.constants]
     for signal in dict.fromkeys([*wanted, "u"]):
         side = ', positive = "starboard"' if signal == "delta" else ""
         unit = design_data.shown_unit(signal)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -24,20 +24,20 @@ from trialid.design.search import (
     score,
 )
 from trialid.design.separation import Separation, likeness, rivals, separate
-from trialid.design.standard import Measure, predict
 from trialid.errors import DesignError, PipelineError, UnitError, nearest
 from trialid.identification.problem import Settings, with_starts
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file import where
-from trialid.pipeline_file.design_file import DesignFile, Numbers, TestSection, fitted_values
+from trialid.pipeline_file.design_file import DesignFile, Numbers, TestSection
+from trialid.pipeline_file.finished_run import FinishedRun, finished_run
 from trialid.pipeline_file.form import GivenValue
 from trialid.report.files import design_data
-from trialid.result.imo import measure_rows
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.version import VERSION
+from trialid.workflow import design_imo
 from trialid.workflow.build_model import available, build_model, settings_of
 
 Progress = Callable[[str, float | None], None]
@@ -69,7 +69,7 @@ class Plan:
     limits: Limits
     rated: tuple[Rated, ...]
     separation: Separation | None
-    measures: tuple[Measure, ...]
+    imo: design_imo.Imo | None
 
     @property
     def best(self) -> Rated | None:
@@ -109,8 +109,8 @@ def plan(pipeline: DesignFile, progress: Progress = lambda words, share: None) -
     for i, (name, programme) in enumerate(programmes):
         tell = _told(progress, name, i / len(programmes), pipeline.search.criterion)
         rated.append(_rated(pipeline, name, programme, ships, limits, tell))
-    measures = predict([ship.vessel for ship in ships]) if pipeline.imo else ()
-    return Plan(pipeline, ships[0], limits, tuple(rated), separation, measures)
+    imo = design_imo.imo(ships, finished_run(pipeline)) if pipeline.imo else None
+    return Plan(pipeline, ships[0], limits, tuple(rated), separation, imo)
 
 
 BEST: Final[Mapping[str, tuple[str, Callable[[float], float]]]] = {
@@ -204,11 +204,12 @@ def _of_late(passage: Passage) -> list[str]:
 def _ships(pipeline: DesignFile, catalogue: Mapping[str, Effect]) -> list[Ship]:
     """The ship as she is known, first, and others she might be."""
     model = build_model(pipeline, catalogue)
-    known = {n: x for n, x in fitted_values(pipeline).items() if n in model.parameters}
+    run = finished_run(pipeline)
+    known = {n: x for n, x in run.values.items() if n in model.parameters}
     settings = settings_of(pipeline, model)
     model = with_starts(model.with_values(known), pipeline.identify.free, settings)
     full = _full(pipeline, model, catalogue)
-    made = [_ship(pipeline, model, full)]
+    made = [_ship(pipeline, run, model, full)]
     draw = np.random.default_rng(pipeline.ships.seed)
     for _ in range(pipeline.ships.count - 1):
         factors = {
@@ -217,7 +218,7 @@ def _ships(pipeline: DesignFile, catalogue: Mapping[str, Effect]) -> list[Ship]:
             if n in model.parameters
         }
         values = {n: model.value(n) * f for n, f in factors.items()}
-        made.append(_ship(pipeline, model.with_values(values), full.with_values(values)))
+        made.append(_ship(pipeline, run, model.with_values(values), full.with_values(values)))
     return made
 
 
@@ -245,21 +246,20 @@ def _full(pipeline: DesignFile, model: ShipModel, catalogue: Mapping[str, Effect
     return full.with_values({**typical, **values})
 
 
-def _ship(pipeline: DesignFile, model: ShipModel, full: ShipModel) -> Ship:
+def _ship(pipeline: DesignFile, run: FinishedRun, model: ShipModel, full: ShipModel) -> Ship:
     at_sea = pipeline.at_sea
-    constants = {
+    constants = {n: x for n, x in run.constants.items() if n in full.recorded} | {
         name: _si(
             pipeline, f"at_sea.constant.{name}", given, SIGNALS[name].unit, SIGNALS[name].shown
         )
         for name, given in at_sea.constant.items()
     }
-    settings = settings_of(pipeline, model)
-    ready = vessel(full, at_sea.period, constants, np.deg2rad(at_sea.rudder_rate))
+    ready = vessel(full, at_sea.period, constants, run.gear_rate(at_sea.rudder_rate))
     noise = {
         c: Noise(n.sigma / units.shown_factor(SIGNALS[c]), n.memory)
         for c, n in pipeline.noise.items()
     }
-    asked = goal(model, settings, noise, pipeline.wanted, pipeline.scale)
+    asked = goal(model, settings_of(pipeline, model), noise, pipeline.wanted, pipeline.scale)
     rolls = {"p", "phi"} <= {*model.states}
     speed = model.ship.particulars["U0"]
     return Ship(ready, asked, natural_roll(ready) if rolls else NO_ROLL, speed)
@@ -359,13 +359,13 @@ def _without_bias(settings: Settings) -> Settings:
     return replace(settings, nuisance=kept)
 
 
-def _recorded(pipeline: DesignFile) -> list[str]:
+def _recorded(plan: Plan) -> list[str]:
     """What the crew must record, in words."""
     names = [
         "delta_order",
         "delta",
-        *pipeline.identify.outputs,
-        *pipeline.at_sea.constant,
+        *plan.pipeline.identify.outputs,
+        *plan.ship.vessel.constants,
         "psi",
         "u",
     ]
@@ -393,10 +393,10 @@ def plain(plan: Plan) -> dict[str, Any]:
         "ship": plan.ship.vessel.model.ship.name,
         "wanted": list(plan.ship.goal.wanted),
         "outputs": list(plan.pipeline.identify.outputs),
-        "recorded": _recorded(plan.pipeline),
+        "recorded": _recorded(plan),
         "roll_period": 2.0 * np.pi / plan.ship.roll_frequency,
         "tests": tests,
         "best": None if best is None else best.name,
         "separation": design_data.of_separation(plan.separation),
-        "imo": [asdict(row) for row in measure_rows(plan.measures)],
+        **design_imo.plain(plan.imo),
     }

@@ -4,11 +4,13 @@ from collections.abc import Mapping
 
 from trialid.design import following, observed
 from trialid.design.following import Narrowing
+from trialid.design.helm import Vessel
 from trialid.design.observed import Overshoot
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
 from trialid.diagnosis.verdict import Verdict
+from trialid.errors import DesignError
 from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
@@ -49,6 +51,7 @@ def find_out(
     found = diagnose(
         fit, diagnose_settings(pipeline, catalogue), progress, force=force, grown=grown
     )
+    ship = _ship(found.before.fit)
     measures, overshoots = _imo(pipeline, found.before)
     progress("looking for the trial to sail next", 0.95)
     return Findings(
@@ -57,6 +60,7 @@ def find_out(
         pipeline=pipeline.path.name,
         proposal=proposal(fit, found.verdict, catalogue),
         narrowing=narrowing_trial(found, catalogue),
+        ship=ship,
         measures=measures,
         overshoots=overshoots,
     )
@@ -87,9 +91,20 @@ def narrowing_trial(found: Diagnosis, catalogue: Mapping[str, Effect]) -> Narrow
     return following.narrowing_trial(fit, worst.name, effect, _noise(fit))
 
 
+def _ship(fit: Fit) -> Vessel | None:
+    """The fitted ship as she is sailed; None where no rudder steers her."""
+    try:
+        return following.sailed_ship(fit)
+    except DesignError:
+        return None
+
+
 def _imo(pipeline: Pipeline, done: Diagnosed) -> tuple[tuple[Measure, ...], tuple[Overshoot, ...]]:
     """IMO's measures of the fitted ship, where the pipeline asks for them."""
     if not pipeline.imo:
         return (), ()
-    measures = following.standard_measures(done.fit, done.accuracy, done.split.undermodelling)
+    off = done.doubts
+    measures = following.standard_measures(
+        done.fit, done.accuracy.covariance, off.standing, off.held, off.missing
+    )
     return measures, observed.overshoots(done.fit)

@@ -20,7 +20,7 @@ from trialid.workflow.run import run
 
 FOUND: Final = (
     "model", "trials", "fit", "split", "accuracy", "where", "where_else", "missing", "not_tried",
-    "missing_force", "verdict", "imo", "before_after",
+    "missing_force", "verdict", "imo", "sailed", "before_after",
 )  # fmt: skip
 """What a run finds out; the history and the versions are not of its finding."""
 

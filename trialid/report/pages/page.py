@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from trialid.names import labels, wording
 from trialid.report.pictures import bars, error_history, force_plots, panels, where_pictures
 from trialid.report.script import script
-from trialid.report.tables import run_tables
+from trialid.report.tables import imo_tables, run_tables
 from trialid.report.words import advice, beforehand, doubt, ranking
 from trialid.result.change_rows import ChangePart
 from trialid.result.finding_rows import CandidateRow
@@ -123,6 +123,7 @@ def _filters() -> dict[str, Any]:
         "doubtful": doubt.doubtful,
         "prior_words": beforehand.prior_words,
         "likely": run_tables.likely,
+        "criterion": imo_tables.criterion,
         "breakable": _breakable,
         "prose": wording.prose,
         "shown": wording.shown_unit,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 from trialid.accuracy.weak import coefficient_label
 from trialid.names.wording import DASH
 from trialid.report.terminal.terminal import Words, add_row, new_table, number, percent
+from trialid.result.finding_rows import MeasureRow
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -41,8 +42,10 @@ def tables(design: Design) -> list["RenderableType"]:
         ]
     if design["separation"]:
         shown += [Words(design["separation"]["sentence"] + ".", 4), ""]
-    if design["imo"]:
-        shown += [_measures(design["imo"]), ""]
+    if measures := [MeasureRow(**row) for row in design["imo"]]:
+        doubt = design["imo_doubt"]
+        shown += [_measures(measures), Words(design["imo_sailed"], 3)]
+        shown += [Words(doubt, 2, "red"), ""] if doubt else [""]
     return shown
 
 
@@ -121,14 +124,14 @@ def _parameters(rating: Mapping[str, Any], wanted: Sequence[str]) -> "Table":
     return table
 
 
-def _measures(imo: Sequence[Mapping[str, Any]]) -> "Table":
+def _measures(imo: Sequence[MeasureRow]) -> "Table":
     table = new_table("MSC.137(76)", "predicted", "95 %", "allowed", "", words=1)
     for row in imo:
-        low, high = row["interval"] or (None, None)
+        low, high = row.interval or (None, None)
         between = DASH if low is None else f"{number(low, 3)} to {number(high, 3)}"
-        verdict = "" if row["kept"] is None else ("kept" if row["kept"] else "NOT KEPT")
+        verdict = "" if row.kept is None else ("kept" if row.kept else "NOT KEPT")
         add_row(
-            table, f"{row['name']} [{row['unit']}]", number(row["value"], 3), between,
-            number(row["allowed"], 3), verdict,
+            table, f"{row.name} [{row.unit}]", number(row.value, 3), between,
+            number(row.allowed, 3), verdict or row.remark,
         )  # fmt: skip
     return table

@@ -4,9 +4,10 @@ from collections.abc import Iterable
 
 from trialid.names import labels, wording
 from trialid.report.pictures import error_history
+from trialid.report.tables import imo_tables
 from trialid.report.tables.rounded_table import Cell, Figure, Table, by_error, percent
 from trialid.result.change_rows import MovedRow
-from trialid.result.finding_rows import ForceEquationRow, ImoPart
+from trialid.result.finding_rows import ForceEquationRow
 from trialid.result.fit_rows import Interval, LeversPart, ParameterRow, PartsRow, SplitPart
 from trialid.result.schema import Result
 
@@ -17,7 +18,8 @@ def tables(run: Result) -> tuple[Table, ...]:
     """Every table the run has something for."""
     made = (
         _parameters(run), _nuisance(run), _weak(run), _levers(run), _split(run), _history(run),
-        _change(run), _validation(run), _missing(run), _force(run), _imo(run), _overshoots(run),
+        _change(run), _validation(run), _missing(run), _force(run), imo_tables.measures(run),
+        imo_tables.overshoots(run),
         _logs(run), _signals(run),
     )  # fmt: skip
     return tuple(table for table in made if table.rows)
@@ -244,38 +246,6 @@ def _terms(equations: Iterable[ForceEquationRow]) -> Iterable[tuple[Cell, ...]]:
                    Figure(error, 2), Figure(term.p_value, 2))  # fmt: skip
         if not each.shape:
             yield (*begun, "no simple shape", Figure(None), Figure(None), Figure(None))
-
-
-def _imo(run: Result) -> Table:
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (
-            each.name or "", each.manoeuvre or "", Figure(each.value, 3),
-            *(Figure(end, 3) for end in each.interval or (None, None)),
-            Figure(each.allowed, 3), each.unit or "",
-            _said(each.kept, "kept", "not kept", "open"),
-        )
-        for each in (run.imo or ImoPart()).measures
-    )  # fmt: skip
-    headings = ("measure", "manoeuvre", "predicted", "95 % from", "to", "allowed", "unit",
-                "criterion")  # fmt: skip
-    return Table("imo", "Standard measures of MSC.137(76)", headings, rows)
-
-
-def _overshoots(run: Result) -> Table:
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (
-            each.trial, Figure(each.t),
-            *(Figure(_degrees(x), 3) for x in (each.rudder, each.measured, each.predicted)),
-        )
-        for each in (run.imo or ImoPart()).overshoots
-    )  # fmt: skip
-    headings = ("trial", "t [s]", "rudder [deg]", "measured [deg]", "model [deg]")
-    return Table("overshoots", "Overshoots in the trials", headings, rows)
-
-
-def _degrees(angle: float | None) -> float | None:
-    _, factor = wording.shown_unit("rad")
-    return None if angle is None else angle * factor
 
 
 def _logs(run: Result) -> Table:

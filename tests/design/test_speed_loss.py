@@ -1,0 +1,103 @@
+"""The speed that turning costs, from logs: against a ship that loses it by her own forces."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import MODEL, OUTPUTS, SHAFT
+from waters import D
+
+from trialid.design.helm import carry_out, vessel
+from trialid.design.manoeuvres import zigzag
+from trialid.design.speed_loss import LAW, NAMES, TYPICAL, loses_speed, speed_loss, with_speed_loss
+from trialid.design.standard import predict
+from trialid.identification.fit import identify
+from trialid.identification.problem import Settings
+from trialid.trial import Trial
+
+TRUE = vessel(MODEL, 0.5, {"n": SHAFT}, 2.5 * D)
+GIVEN = replace(MODEL, states=("v", "p", "r", "phi"))
+"""The same with the speed from the log."""
+KEEPING = vessel(GIVEN, 0.5, {"n": SHAFT, "u": 7.33}, 2.5 * D)
+SETTINGS = Settings(("Nr", "Ndelta"), OUTPUTS, nuisance=("initial_state",))
+
+
+def logged(angle, noise=0.02, ship=TRUE, stated=None):
+    """A zig-zag as logged, with the speed ahead; or with a stated one in its place."""
+    passage = carry_out(ship, zigzag(angle * D, angle * D), 20.0, 600.0, f"zigzag-{angle}")
+    signals = {n: passage.trial.signals[n].copy() for n in ("delta", "n", "r", "phi")}
+    u = np.full(passage.trial.samples, stated)
+    if stated is None:
+        u = passage.trial.signals["u"] - passage.trial.signals.get("u_lost", 0.0)
+        u = u + noise * np.random.default_rng(angle).standard_normal(passage.trial.samples)
+    valid = {n: np.ones(passage.trial.samples, dtype=bool) for n in (*signals, "u")}
+    return Trial(f"zigzag-{angle}", "fit", 0.5, {**signals, "u": u}, valid)
+
+
+def fit_of(model, trials):
+    return identify(trials, model, SETTINGS)
+
+
+@pytest.fixture(scope="module")
+def trials():
+    return [logged(10), logged(20)]
+
+
+def test_the_measures_of_a_ship_that_loses_speed(trials):
+    """Given the speed alone, her circle comes out 5 % too wide and an overshoot 12 % too large."""
+    true = {m.criterion.name: m.value for m in predict([TRUE])}
+    kept = {m.criterion.name: m.value for m in predict([KEEPING])}
+    found = speed_loss(fit_of(GIVEN, trials)).values
+    lost = {m.criterion.name: m.value for m in predict([with_speed_loss(KEEPING, found)])}
+    assert kept["tactical diameter"] > 1.04 * true["tactical diameter"]
+    assert kept["second overshoot 20/20"] > 1.1 * true["second overshoot 20/20"]
+    for name, value in true.items():
+        assert lost[name] == pytest.approx(value, rel=0.01)
+
+
+def test_its_own_law_comes_back():
+    """Logs of a ship that loses speed by the law itself: the three numbers that made them."""
+    law = dict(zip(NAMES, (6.0, 0.4, 7.0), strict=True))
+    trials = [logged(a, 0.0, with_speed_loss(KEEPING, law)) for a in (10, 20)]
+    found = speed_loss(fit_of(GIVEN, trials))
+    assert found.values == pytest.approx(law, rel=0.01)
+    # nothing is left of the logs: only that no ship keeps to a law
+    shares = np.sqrt(np.diag(found.covariance)) / list(law.values())
+    assert shares == pytest.approx([LAW] * 3, rel=0.01)
+
+
+def test_nothing_is_made_of_a_speed_that_is_simulated(trials):
+    assert speed_loss(fit_of(MODEL, trials)) is None
+    assert with_speed_loss(TRUE, dict.fromkeys(NAMES, 1.0)) is TRUE
+
+
+def test_a_stated_speed_tells_of_no_loss_and_rules_none_out():
+    found = speed_loss(fit_of(GIVEN, [logged(10, stated=7.33)]))
+    assert not loses_speed(found.values)
+    assert np.sqrt(np.diag(found.covariance)) == pytest.approx(TYPICAL)
+
+
+def test_a_log_that_does_not_follow_the_turns_leaves_the_loss_open(trials):
+    """A speed that wanders by 1 m/s as it likes: nothing typical is ruled out by it."""
+    rng, wandering = np.random.default_rng(3), []
+    for one in trials:
+        slow = np.cumsum(rng.standard_normal(one.samples))
+        u = 7.0 + slow / np.abs(slow).max()
+        wandering.append(replace(one, signals={**one.signals, "u": u}))
+    known = np.sqrt(np.diag(speed_loss(fit_of(GIVEN, trials)).covariance))
+    found = speed_loss(fit_of(GIVEN, wandering))
+    open_ = np.sqrt(np.diag(found.covariance))
+    assert known[0] < 0.2 * TYPICAL[0]
+    assert open_[0] > 0.4 * TYPICAL[0]
+
+
+def test_the_track_goes_by_the_speed_that_is_left():
+    law = dict(zip(NAMES, (5.0, 0.5, 5.0), strict=True))
+    ship = with_speed_loss(KEEPING, law)
+    passage = carry_out(ship, zigzag(20 * D, 20 * D), 20.0, 300.0)
+    signals = passage.trial.signals
+    left = 7.33 - signals["u_lost"]
+    assert left.min() < 6.5
+    run = np.hypot(np.diff(passage.x), np.diff(passage.y)).sum()
+    speeds = np.hypot(left, signals["v"])
+    assert run == pytest.approx(np.sum(speeds[1:] + speeds[:-1]) * 0.25, rel=1e-4)

@@ -1,0 +1,156 @@
+"""The speed that turning costs, from the logs of a fit that reads its speed from them.
+
+A model that is given the speed knows none in a manoeuvre that nobody has sailed. How the logged
+speed fell says how it would: by squares of the rate of turn and of the rudder, behind a lag, fitted
+to the logs along the rates of turn that the model had there.
+"""
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from trialid.arrays import Mask, Vector
+from trialid.design.helm import Vessel, vessel
+from trialid.identification.fit import Fit, Score
+from trialid.maths import Number
+from trialid.ship.effect import Parameter, Rate, Steered, effect
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import Simulator, prepare, record_for, respond
+from trialid.trial import Trial
+
+
+@effect(
+    source="Son & Nomoto (1982): 10 % of speed lost at 5 deg of rudder, 55 % at 35 deg",
+    states={"u_lost": None},
+)
+def logged_loss(
+    u: Number,
+    r: Number,
+    delta: Number,
+    u_lost: Number,
+    L: Number,
+    *,
+    lost_in_turns: Any = Parameter(5.0, low=0.0, high=50.0),
+    lost_by_rudder: Any = Parameter(0.5, low=0.0, high=5.0),
+    lost_after: Any = Parameter(5.0, low=0.5, high=100.0, null=None),
+) -> tuple[Steered, Rate]:
+    """Speed loss: u = u - u_lost,  d(u_lost)/dt = (a (r L)^2 + b (delta u)^2 - u u_lost) / (c L).
+
+    a is lost_in_turns, b lost_by_rudder, c lost_after, in ship lengths. Without b the speed begins
+    to fall too late: both overshoots of a 20/20 of the S-175 then come out 1 % too large, with it
+    0.2 % and 0.1 %.
+    """
+    fall = lost_in_turns * (r * L) ** 2 + lost_by_rudder * (delta * u) ** 2 - u * u_lost
+    return Steered(u=-u_lost), Rate(u_lost=fall / (lost_after * L))
+
+
+NAMES: Final = tuple(logged_loss.parameters)
+TYPICAL: Final = np.array([p.start for p in logged_loss.parameters.values()])
+NOTHING: Final = np.array([0.0, 0.0, TYPICAL[-1]])
+LAW: Final = 0.15
+"""Standard deviation of each number as a share of it: a ship loses speed by a law of her own, and a
+hard turn costs another share than those that were logged."""
+TINY: Final = 1e-12
+"""(m/s)^2 that are always left of the logs."""
+LEAST: Final = 0.01
+"""Share of what is typical below which nothing is lost."""
+APPROACH: Final = 0.95
+"""Quantile of the logged speeds that is the approach: noise is beyond it, turns are below."""
+
+
+@dataclass(frozen=True)
+class SpeedLoss:
+    """Values of `logged_loss` by name, and their covariance; (3, 3).
+
+    Where no log tells, nothing is lost, and that is uncertain by what is typical.
+    """
+
+    values: Mapping[str, float]
+    covariance: Vector
+
+
+def speed_loss(fit: Fit) -> SpeedLoss | None:
+    """What turns cost of the speed by the fitted trials' logs; None where it is simulated.
+
+    What the law leaves of a log is no noise: each trial counts as one value of it.
+    """
+    simulated = {*fit.problem.simulator.model.all_states}
+    if {"u", "u_lost"} & simulated or "r" not in simulated:
+        return None
+    logged = [s for s in fit.scores if s.trial.use == "fit" and _logged(s.trial)]
+    if not logged:
+        return SpeedLoss(_named(NOTHING), np.diag(TYPICAL**2))
+    simulator = prepare(ShipModel(fit.model.ship, ("psi",), (logged_loss,)), NAMES, ("U",))
+    records = [_record(fit, s) for s in logged]
+
+    @functools.lru_cache(maxsize=1)
+    def at(*values: float) -> tuple[Vector, Vector]:
+        found = [_left(simulator, values, *record) for record in records]
+        return np.concatenate([e for e, _ in found]), np.concatenate([psi for _, psi in found])
+
+    ranges = logged_loss.parameters.values()
+    bounds = ([p.low for p in ranges], [p.high for p in ranges])
+    found = least_squares(
+        lambda x: at(*x)[0], TYPICAL, lambda x: at(*x)[1], bounds=bounds, x_scale=TYPICAL
+    )
+    best = found.x if loses_speed(_named(found.x)) else NOTHING
+    e, psi = at(*best)
+    known = psi.T @ psi * len(records) / max(float(e @ e), TINY) + np.diag(TYPICAL**-2)
+    return SpeedLoss(_named(best), np.asarray(np.linalg.inv(known) + np.diag((LAW * best) ** 2)))
+
+
+def _named(values: Sequence[float] | Vector) -> dict[str, float]:
+    return dict(zip(NAMES, map(float, values), strict=True))
+
+
+def loses_speed(values: Mapping[str, float]) -> bool:
+    """Whether any speed is lost that is worth a word."""
+    return any(values.get(n, 0.0) > LEAST * x for n, x in zip(NAMES[:2], TYPICAL, strict=False))
+
+
+def with_speed_loss(ship: Vessel, values: Mapping[str, float]) -> Vessel:
+    """The ship losing speed in turns; as she is where her model says how, or nothing does."""
+    if not values or {"u", "u_lost"} & {*ship.model.all_states}:
+        return ship
+    model = (ship.model + logged_loss).with_values(values)
+    return vessel(model, ship.period, ship.constants, ship.rudder_rate)
+
+
+def _logged(trial: Trial) -> bool:
+    """Whether the speed was logged, and the rudder: a stated one is one number all along."""
+    if "u" not in trial.signals or record_for(trial, "delta") is None:
+        return False
+    speeds = trial.signals["u"][_valid(trial)]
+    return len(speeds) > 0 and float(np.ptp(speeds)) > 0.0
+
+
+def _valid(trial: Trial) -> Mask:
+    """Where a speed was logged."""
+    return trial.valid["u"] & np.isfinite(trial.signals["u"])
+
+
+def _record(fit: Fit, score: Score) -> tuple[Trial, Vector, Mask]:
+    """A trial of the approach speed alone along the fit's rates of turn; the log, where valid."""
+    trial, states = score.trial, fit.problem.simulator.model.all_states
+    rate = score.response.states[:, states.index("r")]
+    valid = _valid(trial) & np.isfinite(rate)
+    speed = np.full(trial.samples, np.quantile(trial.signals["u"][valid], APPROACH))
+    rudder = trial.signals[record_for(trial, "delta") or "delta"]
+    given = {"r": rate, "u": speed, "delta": rudder}
+    return Trial(trial.name, "fit", trial.period, given, {}), trial.signals["u"], valid
+
+
+def _left(
+    simulator: Simulator, values: Sequence[float], blank: Trial, logged: Vector, valid: Mask
+) -> tuple[Vector, Vector]:
+    """What the loss leaves of the logged speed less its mean, and the derivatives of that."""
+    response = respond(simulator, blank, _named(values), {})
+    assert response.S is not None
+    places = [simulator.columns.index(n) for n in NAMES]
+    e = (response.y[:, 0] - logged)[valid]
+    slopes = response.S[valid, 0][:, places]
+    return e - e.mean(), slopes - slopes.mean(axis=0)

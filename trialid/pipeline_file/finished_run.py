@@ -1,0 +1,86 @@
+"""The finished run that a design file builds on."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from trialid import user_files
+from trialid.design.following import GEAR
+from trialid.errors import PipelineError
+from trialid.pipeline_file.design_file import DesignFile
+
+
+@dataclass(frozen=True, kw_only=True)
+class FinishedRun:
+    """What a design takes over from a run; SI.
+
+    Attributes
+    ----------
+    values
+        Of the fitted parameters, by name.
+    rudder_rate, constants, speed_lost
+        How the ship is sailed where she is predicted.
+    intervals
+        The value of each standard measure with its 95 % range.
+    """
+
+    values: Mapping[str, float] = field(default_factory=dict)
+    rudder_rate: float | None = None
+    constants: Mapping[str, float] = field(default_factory=dict)
+    speed_lost: Mapping[str, float] = field(default_factory=dict)
+    intervals: Mapping[str, tuple[float, tuple[float, float]]] = field(default_factory=dict)
+    verdict: str = ""
+
+    def gear_rate(self, given: float | None) -> float:
+        """Of the rudder [rad/s]: as a file gives it in deg/s, else as in the run, else usual."""
+        if given is not None:
+            return float(np.deg2rad(given))
+        return GEAR if self.rudder_rate is None else self.rudder_rate
+
+
+def finished_run(pipeline: DesignFile) -> FinishedRun:
+    """The finished run that the design builds on; an empty one where there is none.
+
+    Raises
+    ------
+    PipelineError
+        The folder holds no run.
+    """
+    if pipeline.run is None:
+        return FinishedRun()
+    file = pipeline.path.parent / pipeline.run / "result.json"
+    try:
+        result = json.loads(user_files.text(file, user_files.MOST_OF_A_RESULT))
+        rows = result["accuracy"]["parameters"]
+        values = {p["name"]: float(p["value"]) for p in rows if p["kind"] == "physical"}
+        sailed = result.get("sailed") or {}  # runs of before have none
+        rate = sailed.get("rudder_rate")
+        return FinishedRun(
+            values=values,
+            rudder_rate=None if rate is None else float(rate),
+            constants=_numbers(sailed.get("constants")),
+            speed_lost=_numbers(sailed.get("speed_lost")),
+            intervals=_intervals(result.get("imo")),
+            verdict=str((result.get("verdict") or {}).get("kind", "")),
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise PipelineError(
+            f"{pipeline.path}: run: {file} is no result of a run; give the folder that "
+            "`trialid run` wrote"
+        ) from error
+
+
+def _numbers(rows: Mapping[str, Any] | None) -> dict[str, float]:
+    return {str(n): float(x) for n, x in (rows or {}).items()}
+
+
+def _intervals(imo: Mapping[str, Any] | None) -> dict[str, tuple[float, tuple[float, float]]]:
+    found = {}
+    for row in (imo or {}).get("measures", ()):
+        if row["interval"] is not None:
+            low, high = row["interval"]
+            found[row["name"]] = float(row["value"]), (float(low), float(high))
+    return found

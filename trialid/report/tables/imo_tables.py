@@ -1,0 +1,48 @@
+"""The tables of the standard measures of a run, and of the overshoots its trials hold."""
+
+from trialid.names import wording
+from trialid.report.tables.rounded_table import Cell, Figure, Table
+from trialid.result.finding_rows import ImoPart, MeasureRow, OvershootRow
+from trialid.result.schema import Result
+
+
+def measures(run: Result) -> Table:
+    """Every standard measure beside what is allowed, how sure it is, and whether it is kept."""
+    rows = tuple(_measure(each) for each in (run.imo or ImoPart()).measures)
+    headings = (
+        *("measure", "manoeuvre", "predicted", "95 % from", "to"),
+        *("allowed", "unit", "criterion"),
+    )
+    return Table("imo", "Standard measures of MSC.137(76)", headings, rows)
+
+
+def _measure(each: MeasureRow) -> tuple[Cell, ...]:
+    low, high = each.interval or (None, None)
+    numbers = tuple(Figure(x, 3) for x in (each.value, low, high, each.allowed))
+    return each.name, each.manoeuvre, *numbers, each.unit, criterion(each)
+
+
+def criterion(each: MeasureRow) -> str:
+    """Whether a measure keeps what is allowed, or why that is not known."""
+    if each.value is None or each.allowed is None:
+        return each.remark or "no limit"
+    if each.kept is None:
+        return "open"
+    return "kept" if each.kept else "not kept"
+
+
+def overshoots(run: Result) -> Table:
+    """Every overshoot of the trials, measured and of the model."""
+    rows = tuple(_overshoot(each) for each in (run.imo or ImoPart()).overshoots)
+    headings = ("trial", "t [s]", "rudder [deg]", "measured [deg]", "model [deg]")
+    return Table("overshoots", "Overshoots in the trials", headings, rows)
+
+
+def _overshoot(each: OvershootRow) -> tuple[Cell, ...]:
+    angles = (_degrees(x) for x in (each.rudder, each.measured, each.predicted))
+    return each.trial, Figure(each.t), *(Figure(x, 3) for x in angles)
+
+
+def _degrees(angle: float) -> float:
+    _, factor = wording.shown_unit("rad")
+    return angle * factor

@@ -1,0 +1,56 @@
+"""The standard measures of the ship that a design file is for."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Final
+
+from trialid.design.helm import Vessel
+from trialid.design.search import Ship
+from trialid.design.speed_loss import with_speed_loss
+from trialid.design.standard import Measure, predict
+from trialid.pipeline_file.finished_run import FinishedRun
+from trialid.result.imo import UNRELIABLE, measure_rows, sailing_words
+
+SAME: Final = 1e-6
+"""Share of a measure that the run's own differs by where it is of the same ship."""
+
+
+@dataclass(frozen=True)
+class Imo:
+    """The standard measures of a ship, how she is sailed, and whether they may be relied on."""
+
+    measures: tuple[Measure, ...]
+    vessel: Vessel
+    reliable: bool
+
+
+def imo(ships: Sequence[Ship], run: FinishedRun) -> Imo:
+    """The measures of the first ship; the others are what she might be as well.
+
+    Of a single ship that a run fitted the run knows how sure they are.
+    """
+    vessels = [with_speed_loss(ship.vessel, run.speed_lost) for ship in ships]
+    measures = predict(vessels)
+    if len(ships) == 1:
+        measures = tuple(_with_range(m, run) for m in measures)
+    return Imo(measures, vessels[0], reliable=run.verdict != "no fit")
+
+
+def _with_range(measure: Measure, run: FinishedRun) -> Measure:
+    """A measure with the run's range, where it is the run's measure."""
+    value, interval = run.intervals.get(measure.criterion.name, (None, None))
+    if value is None or measure.value is None:
+        return measure
+    same = abs(value - measure.value) <= SAME * abs(value)
+    return replace(measure, interval=interval) if same else measure
+
+
+def plain(found: Imo | None) -> dict[str, Any]:
+    """The measures as plain data; empty where nobody asked."""
+    if found is None:
+        return {"imo": [], "imo_sailed": "", "imo_doubt": ""}
+    return {
+        "imo": [asdict(row) for row in measure_rows(found.measures, reliable=found.reliable)],
+        "imo_sailed": sailing_words(found.vessel),
+        "imo_doubt": "" if found.reliable else UNRELIABLE,
+    }
