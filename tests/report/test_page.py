@@ -260,7 +260,7 @@ def test_a_long_ranking_keeps_its_tail_closed(result, series):
     run = copy.deepcopy(result)
     run["missing"] = [row | {"rank": k} for k, row in enumerate(run["missing"] * 4, start=1)]
     read = Reader(page(result_of(run), series[:1]))
-    assert "29 more candidates" in read.text
+    assert "33 more candidates" in read.text
     assert "4 that this record cannot see" in read.text
     assert "1 not tried" in read.text
     assert ("details", "open", None) not in read.attributes

@@ -24,7 +24,7 @@ def test_every_candidate_stands_in_one_place(result):
     run = result_of(result)
     ranked = ranking(run)
     placed = [leader.row.effect for leader in ranked.leaders]
-    placed += [each.effect for each in ranked.others + ranked.hidden]
+    placed += [each.effect for each in ranked.followers + ranked.others + ranked.hidden]
     placed += [each.effect for each, _ in ranked.ruled_out]
     assert sorted(placed) == sorted(each.effect for each in run.missing)
     assert placed[:3] == [each.effect for each in run.missing[:3]]
@@ -35,7 +35,23 @@ def test_where_none_was_fitted_the_first_that_stand_out_lead():
     rows = [{"rank": k, "effect": str(k), "verdict": "stands out"} for k in range(5)]
     ranked = ranking(result_of({"missing": rows}))
     assert [leader.row.effect for leader in ranked.leaders] == ["0", "1", "2"]
-    assert [each.effect for each in ranked.others] == ["3", "4"]
+    assert [each.effect for each in ranked.followers] == ["3", "4"]
+
+
+def test_only_what_the_record_speaks_for_follows_and_no_more_than_a_screen_of_it():
+    words = ["stands out"] * 12 + ["no evidence"] * 5
+    rows = [{"rank": k, "effect": str(k), "verdict": word} for k, word in enumerate(words)]
+    ranked = ranking(result_of({"missing": rows}))
+    assert [each.effect for each in ranked.followers] == ["3", "4", "5", "6", "7", "8"]
+    assert [each.effect for each in ranked.others] == [str(k) for k in range(9, 17)]
+
+
+def test_where_the_record_speaks_for_none_three_are_shown():
+    rows = [{"rank": k, "effect": str(k), "verdict": "no evidence"} for k in range(9)]
+    ranked = ranking(result_of({"missing": rows}))
+    assert ranked.leaders == ()
+    assert [each.effect for each in ranked.followers] == ["0", "1", "2"]
+    assert [each.effect for each in ranked.others] == [str(k) for k in range(3, 9)]
 
 
 def test_bars_share_a_scale_and_drops_count_from_now():

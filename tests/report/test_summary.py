@@ -67,6 +67,14 @@ def test_the_verdict_comes_first_and_then_what_to_do(result):
     assert line.startswith("Next: trialid run a.toml --draft my_effect.py")
 
 
+def test_what_was_tried_without_a_verdict_is_told_with_its_errors(result):
+    run = copy.deepcopy(result)
+    said = "With yaw_damping_cubic: fitted 12.6 % -> 8.71 %, held out 14.4 % -> 9.12 %"
+    assert said not in lines(run)  # the sentence of the verdict has them
+    run["verdict"]["kind"] = "cannot tell"
+    assert said in lines(run)
+
+
 def test_a_search_that_did_not_end_is_said(result):
     run = copy.deepcopy(result)
     assert "did not converge" not in "\n".join(lines(run))

@@ -224,3 +224,66 @@ def test_it_fits_the_screen(untouched: str, tmp_path: Path, width: int) -> None:
         screen.picture(f"width-{width}")
         wide = screen.page.evaluate("document.documentElement.scrollWidth")
         assert wide <= width
+
+
+LEGENDS_OUTSIDE = """() => [...document.querySelectorAll(".panel")].flatMap((panel) => {
+  const edge = panel.getBoundingClientRect();
+  return [...panel.querySelectorAll(".top b, .u-series")].filter((each) => {
+    const box = each.getBoundingClientRect();
+    return box.left < edge.left - 1 || box.right > edge.right + 1;
+  }).map((each) => each.textContent);
+})"""
+
+
+@pytest.mark.parametrize("width", [390, 1024, 1366])
+def test_title_verdict_and_legends_are_whole(untouched: str, tmp_path: Path, width: int) -> None:
+    """On a phone in one column, the verdict before the plots."""
+    size = {"width": width, "height": 800}
+    with browser.opened(untouched, tmp_path, viewport=size) as screen:
+        page = screen.page
+        screen.number("5.44")
+        screen.settled()
+        screen.picture(f"whole-{width}")
+        title = page.locator("#bar h1")
+        assert title.evaluate("e => e.scrollWidth <= e.clientWidth")
+        assert page.evaluate(LEGENDS_OUTSIDE) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        tops = [
+            page.locator(each).first.bounding_box()["y"]
+            for each in ("#error-number", ".verdict .sentence", ".panels", ".candidates")
+        ]
+        if width < 1000:
+            assert tops == sorted(tops)
+            head = page.locator(".candidate summary .name").first.bounding_box()
+            assert head["height"] < 60  # a name is not broken into a column of syllables
+
+
+def test_signals_stay_chosen_and_what_is_seen_is_saved(sample: Path, tmp_path: Path) -> None:
+    with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
+        page = screen.page
+        screen.number("5.44")
+        screen.settled()
+        panels = page.locator("#trial .panel:visible")
+        before = panels.count()
+        page.locator("#trial .signals summary").click()
+        page.locator('[data-signal="rudder angle"]').uncheck()
+        page.locator('[data-signal="residual of r"]').uncheck()
+        page.keyboard.press("Escape")
+        assert panels.count() == before - 2
+        page.get_by_role("button", name=f"Add {MISSING}").click()
+        screen.number("3.84")
+        screen.settled()
+        page.locator(".panels[data-drawn$=diagnosed]").wait_for()
+        assert panels.count() == before - 2  # a refit keeps the choice
+        assert "model before" in panels.nth(1).inner_text()
+        page.get_by_role("tab", name="zigzag-20").click()
+        page.locator(".panels canvas").first.wait_for()
+        assert panels.count() == before - 2
+        with page.expect_download() as download:
+            page.get_by_role("button", name="Save picture").click()
+        assert download.value.suggested_filename == "zigzag-20.png"
+        assert Path(download.value.path()).read_bytes().startswith(b"\x89PNG")
+        page.locator("#trial .signals summary").click()
+        page.locator('[data-signal="rudder angle"]').check()
+        assert panels.count() == before - 1
+        assert panels.first.locator("canvas").count() == 1

@@ -1,12 +1,13 @@
 /* The report's own page: all its trials, drawn from the data inside it; nothing is fetched. */
 
-import { build, resize, trialOf } from "./plots.js";
+import { build, resize, shareSignals, trialOf } from "./plots.js";
 import { draw } from "./plots/chart.js";
 import { around } from "./plots/zoom.js";
 
 const trials = JSON.parse(document.getElementById("series").textContent).map((data, index) => trialOf(data, index));
 const articleOf = (trial) => document.getElementById("trial-" + trial.index);
-trials.forEach((trial) => build(trial, articleOf(trial)));
+trials.forEach((trial) => build(trial, articleOf(trial), document.querySelector("h1").textContent));
+shareSignals(trials, [...document.querySelectorAll(".trial .signals")]);
 const plots = trials.flatMap((trial) => trial.plots);
 
 const redraw = () => plots.filter((plot) => plot.chart).forEach(draw);

@@ -13,6 +13,8 @@ MODULES: Final = (
     "plots/zoom.js",
     "plots/drawings.js",
     "plots/chart.js",
+    "plots/picture.js",
+    "plots/signals.js",
     "plots.js",
     "page.js",
 )

@@ -63,7 +63,8 @@ def write_one(run: Finished, place: Path) -> tuple[Path, int]:
 
 def write_several(runs: Sequence[Finished], place: Path) -> tuple[Path, int]:
     """`compare.html` and the tables side by side: the page's path, and how many other files."""
-    shown = side_by_side.shown_runs({run.label: run.result for run in runs})
+    series = {run.label: run.series for run in runs}
+    shown = side_by_side.shown_runs({run.label: run.result for run in runs}, series)
     made = table_files(side_by_side.tables(shown))
     tables = {f"tables/{name}": each for name, each in made.items()}
     _write(place, {"compare.html": side_by_side.page(shown), **tables})

@@ -68,7 +68,7 @@ def page(run: Result, series: Sequence[TrialSeries], forces: Sequence[ForceSerie
             shown_trials=_shown_trials(run, series),
             plots=panels.trial_panels(series, run),
             forces=force_plots.pictures(run, forces),
-            assets=_assets(),
+            assets=assets(),
         )
     )
 
@@ -152,7 +152,7 @@ def _breakable(name: str | None) -> "markupsafe.Markup":
     return Markup("_<wbr>").join((name or wording.DASH).split("_"))
 
 
-def _assets() -> dict[str, str]:
+def assets() -> dict[str, str]:
     """The style and script that go into the page as they are, uPlot with its licence."""
     files = resources.files("trialid.report")
     names = {
@@ -165,11 +165,6 @@ def _assets() -> dict[str, str]:
         for asset, each in names.items()
     }
     return {**texts, "script": script()}
-
-
-def style() -> str:
-    """The page's own style, for pages without plots."""
-    return resources.files("trialid.report").joinpath("page.css").read_text(encoding="utf-8")
 
 
 def _no_check(run: Result) -> str:

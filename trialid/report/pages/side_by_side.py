@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from typing import Final
 
 from trialid.names import labels, wording
-from trialid.report.pages.page import VERDICTS, environment, style
+from trialid.report.pages.page import VERDICTS, assets, environment
+from trialid.report.pictures.overlays import overlays
 from trialid.report.tables import run_tables
 from trialid.report.tables.rounded_table import Cell, Figure, Table, numeric, percent
 from trialid.result.fit_rows import ParameterRow, Part
 from trialid.result.schema import Result
+from trialid.result.series import TrialSeries
 
 APART: Final = 1.96
 """Joint standard errors from which on two values differ, at 95 % for one pair."""
@@ -23,11 +25,17 @@ class Shown:
 
     label: str
     run: Result
+    series: tuple[TrialSeries, ...] = ()
 
 
-def shown_runs(results: Mapping[str, Result]) -> tuple[Shown, ...]:
-    """Runs by their labels."""
-    return tuple(Shown(label, result) for label, result in results.items())
+def shown_runs(
+    results: Mapping[str, Result], series: Mapping[str, Sequence[TrialSeries]] | None = None
+) -> tuple[Shown, ...]:
+    """Runs by their labels, with the series that are laid over one another."""
+    found = series or {}
+    return tuple(
+        Shown(label, result, tuple(found.get(label, ()))) for label, result in results.items()
+    )
 
 
 def joint_distance(values: Sequence[tuple[float | None, float | None]]) -> float | None:
@@ -173,6 +181,7 @@ def shared_logs(runs: Sequence[Shown]) -> int:
 
 def page(runs: Sequence[Shown]) -> str:
     """`compare.html`: the runs side by side, everything inside the file."""
+    laid_over = overlays({each.label: each.series for each in runs})
     return (
         environment()
         .get_template("compare.html.j2")
@@ -183,7 +192,9 @@ def page(runs: Sequence[Shown]) -> str:
             threshold=APART,
             cell=_cell,
             numeric=numeric,
-            style=style(),
+            overlays=laid_over,
+            plots=[each.panels for each in laid_over],
+            assets=assets(),
         )
     )
 

@@ -23,15 +23,15 @@ def trial_panels(series: Sequence[TrialSeries], run: Result) -> list[dict[str, A
     return [
         {
             "name": trial.name,
-            "t": _clock(trial.t),
-            "panels": [*_inputs(trial), *(_output(o, trial, run) for o in trial.outputs)],
+            "t": clock(trial.t),
+            "panels": [*input_panels(trial), *(_output(o, trial, run) for o in trial.outputs)],
         }
         for trial in series
     ]
 
 
-def _clock(t: Vector) -> dict[str, Any]:
-    """A uniform clock by start, period and length; another one sample by sample."""
+def clock(t: Vector) -> dict[str, Any]:
+    """A uniform clock [s] by start, period and length; another one sample by sample."""
     if len(t) < 2:
         return {"start": float(t[0]) if len(t) else 0.0, "period": 1.0, "samples": len(t)}
     period = float(t[-1] - t[0]) / (len(t) - 1)
@@ -40,7 +40,7 @@ def _clock(t: Vector) -> dict[str, Any]:
     return {"each": encode_floats(t)}
 
 
-def _inputs(trial: TrialSeries) -> Iterator[Panel]:
+def input_panels(trial: TrialSeries) -> Iterator[Panel]:
     """A panel an input; what was ordered and what came of it share one."""
     shared: dict[str, list[str]] = {}
     for name in trial.inputs:

@@ -6,6 +6,7 @@ import { AXIS, CLOCK, LOW, PAPER, onPaper, widthOf } from "./sizes.js";
 import { choose, showAll } from "./zoom.js";
 
 export function draw(plot) {
+  if (plot.panel.hidden) return;
   if (plot.chart) plot.chart.destroy();
   plot.top.querySelectorAll(".u-legend").forEach((legend) => legend.remove());
   const values = plot.drawing.values();
@@ -20,7 +21,7 @@ export function draw(plot) {
 function options(plot, width) {
   const { drawing, trial } = plot;
   const height = (onPaper() ? PAPER : trial.heights)[drawing.kind];
-  const withClock = drawing.kind === "residual" || plot.last;
+  const withClock = carriesClock(plot);
   return {
     width, height: height + (withClock ? CLOCK - 4 : 0), padding: [6, 8, 0, 0],
     series: [clockSeries(), ...drawing.lines.map((line) => lineSeries(line, trial))],
@@ -35,6 +36,14 @@ function options(plot, width) {
       setSelect: [(u) => choose(u, trial)],
     },
   };
+}
+
+/* The time stands under a residual and under the last of what is seen, and where a residual is hidden under its output. */
+function carriesClock(plot) {
+  const seen = plot.trial.plots.filter((each) => !each.panel.hidden);
+  const next = seen[seen.indexOf(plot) + 1];
+  const alone = plot.drawing.kind === "output" && (!next || next.drawing.kind !== "residual");
+  return plot.drawing.kind === "residual" || !next || alone;
 }
 
 const clockSeries = () => ({
@@ -87,6 +96,8 @@ function cursorOf(trial) {
 export function place(plot) {
   const panel = document.createElement("div");
   panel.className = "panel";
+  panel.hidden = plot.trial.hidden.has(plot.drawing.title);
+  plot.panel = panel;
   plot.top = document.createElement("div");
   plot.top.className = "top";
   plot.top.append(heading(plot.drawing));

@@ -7,6 +7,7 @@ const BEFORE = { label: "model before", stroke: "second", width: 1.2, before: tr
 /* An output is two panels, the residual below. */
 export function drawings(panel) {
   if (panel.kind === "input") return [inputDrawing(panel)];
+  if (panel.kind === "overlay") return overlayDrawings(panel);
   let values;
   const read = () => (values = values || outputValues(panel));
   const before = panel.before === undefined ? [] : [BEFORE];
@@ -46,6 +47,26 @@ function inputDrawing(panel) {
     })),
     values: () => panel.lines.map((line) => numbers(line.data)),
   };
+}
+
+const PALETTE = ["predicted", "model", "residual", "second", "soft"];
+
+/* Of several runs: their predictions over what was measured, and below what each leaves. */
+function overlayDrawings(panel) {
+  let values;
+  const read = () => (values = values || {
+    measured: numbers(panel.measured), runs: panel.runs.map((run) => numbers(run.data)),
+  });
+  const lines = panel.runs.map((run, k) => ({
+    label: run.label, stroke: PALETTE[k % PALETTE.length], width: 1.4, dash: k < PALETTE.length ? undefined : [5, 4],
+  }));
+  const shared = { unit: panel.unit, stretches: [] };
+  return [
+    { ...shared, kind: "output", title: panel.title, lines: [{ label: "measured", stroke: "measured", width: 1 }, ...lines],
+      values: () => [read().measured, ...read().runs] },
+    { ...shared, kind: "residual", title: "residual of " + panel.symbol, zero: true, lines: lines.map((line) => ({ ...line, width: 1 })),
+      values: () => read().runs.map((predicted) => difference(read().measured, predicted)) },
+  ];
 }
 
 function outputValues(panel) {

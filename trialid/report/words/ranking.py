@@ -16,6 +16,13 @@ LEADING: Final = 5
 OFF: Final = 0.2
 """Share by which a refit may miss what was foreseen before the page says why."""
 
+FOLLOWING: Final = 6
+"""Candidates in the table below them, of those the record speaks for."""
+
+BEST_OF_NONE: Final = 3
+"""Candidates shown where the record speaks for none."""
+
+NOTHING: Final = "no evidence"
 HIDDEN: Final = "not visible"
 IMPOSSIBLE: Final = "unphysical"
 
@@ -54,11 +61,15 @@ class Leader:
     remark: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Ranking:
-    """Every candidate once: in full, in a table, ruled out, invisible, or not tried."""
+    """Every candidate once: in full, in a table, behind a fold, ruled out, invisible, or not tried.
+
+    Followers are what the record speaks for beside the leaders.
+    """
 
     leaders: tuple[Leader, ...]
+    followers: tuple[CandidateRow, ...]
     others: tuple[CandidateRow, ...]
     ruled_out: tuple[tuple[CandidateRow, str], ...]
     hidden: tuple[CandidateRow, ...]
@@ -74,12 +85,17 @@ def ranking(run: Result) -> Ranking:
     able = [row for row in rows if row.verdict not in (HIDDEN, IMPOSSIBLE)]
     fitted = [row for row in able if row.eps_rmsn_refitted is not None][:LEADING]
     heads = fitted or [row for row in able if row.verdict == "stands out"][:3]
+    rest = [row for row in able if not any(row is head for head in heads)]
+    followers = [row for row in rest if row.verdict != NOTHING][:FOLLOWING]
+    if not heads and not followers:
+        followers = rest[:BEST_OF_NONE]
     return Ranking(
-        tuple(_leader(row, run) for row in heads),
-        tuple(row for row in able if not any(row is head for head in heads)),
-        tuple((row, reason(row)) for row in rows if row.verdict == IMPOSSIBLE),
-        tuple(row for row in rows if row.verdict == HIDDEN),
-        tuple(_by_reason(run.not_tried)),
+        leaders=tuple(_leader(row, run) for row in heads),
+        followers=tuple(followers),
+        others=tuple(row for row in rest if not any(row is each for each in followers)),
+        ruled_out=tuple((row, reason(row)) for row in rows if row.verdict == IMPOSSIBLE),
+        hidden=tuple(row for row in rows if row.verdict == HIDDEN),
+        not_tried=tuple(_by_reason(run.not_tried)),
     )
 
 

@@ -13,6 +13,7 @@ export const state = {
   drawn: null,           // what is plotted: {trial, name, mark}
   windows: new Map(),    // zoom by trial
   beside: true,          // the model before, in the plots
+  hidden: new Set(),     // signals that are not plotted, by title
   edited: null,          // key of the control that made the last edit
   refused: null,         // {key, words} of an edit that was refused
   declined: "",          // the numbers of it: leaving the field does not send them again

@@ -3,6 +3,8 @@
 import { HEIGHTS } from "./plots/sizes.js";
 import * as plots from "./plots.js";
 import { draw } from "./plots/chart.js";
+import { savePicture } from "./plots/picture.js";
+import { choosePanels, closeMenus, fillMenu, signalsOf } from "./plots/signals.js";
 import { around, isAll, listen, tell } from "./plots/zoom.js";
 import { answer, byId, state } from "./state.js";
 
@@ -78,19 +80,26 @@ function heightsFor(panels) {
 }
 
 function drawTrial(data, index) {
-  const trial = plots.trialOf(data, index, heightsFor(data.panels), state.beside);
+  const trial = plots.trialOf(data, index, heightsFor(data.panels), state.beside, state.hidden);
   state.drawn.trial = trial;
   document.querySelector("#trial .tools").hidden = false;
   const kept = state.windows.get(trial.name);
   if (kept && kept.min >= trial.from && kept.max <= trial.to) trial.window = kept;
   byId("beside-switch").hidden = !data.panels.some((panel) => panel.before !== undefined);
   const box = document.querySelector("#trial .panels");
+  fillSignals(trial);
   box.style.minHeight = box.offsetHeight + "px";      // else what is below jumps up and down
   plots.fill(trial, byId("trial"));
   trial.plots.forEach(draw);
   tell(trial);
   box.dataset.drawn = state.drawn.mark;               // for who waits until the last curves are there
   box.style.minHeight = "";
+}
+
+function fillSignals(trial) {
+  const menu = document.querySelector("#trial .signals");
+  const choose = () => choosePanels(trial, state.hidden);
+  fillMenu(menu, signalsOf([trial]), state.hidden, choose);
 }
 
 const shownTrial = () => (state.drawn && state.drawn.trial) || null;
@@ -118,6 +127,10 @@ export function setBeside(on) {
 export function listenToPlots() {
   const nothing = { window: { min: 0, max: 1 }, from: 0, to: 1, period: 1, plots: [], told: byId("said") };
   listen(byId("trial"), () => shownTrial() || nothing);
+  closeMenus();
+  document.querySelector("#trial [data-save]").addEventListener("click", () => {
+    if (shownTrial()) savePicture(shownTrial(), document.querySelector("#bar h1").textContent);
+  });
   const panels = document.querySelector("#trial .panels");
   new ResizeObserver(() => shownTrial() && plots.resize(shownTrial().plots)).observe(panels);
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
