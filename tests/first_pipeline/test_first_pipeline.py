@@ -168,15 +168,16 @@ def test_with_an_order_alone_the_rudder_follows_it(tmp_path):
     assert run_pipeline(made).result.fit.eps_rmsn < 0.1
 
 
-def test_a_speed_over_ground_is_the_approach_speed_where_no_log_is(tmp_path):
+def test_a_speed_over_ground_is_the_speed_where_no_log_is(tmp_path):
     t, delta, r, _, u = trial()
     log = written(
         tmp_path / "a.csv", t=t, rudder_in_deg=delta, rot_in_deg_per_s=r, sog_in_m_per_s=u
     )
     begun(tmp_path, [log])
     made = pipeline_file.load(tmp_path / "p.toml")
-    assert made.trials[0].speed == pytest.approx(U, abs=0.05)
-    assert "speed over ground" in made.text
+    assert made.trials[0].speed is None
+    assert signals(tmp_path)["u"]["channel"] == "sog"
+    assert "over ground" in made.text
     assert run_pipeline(made).result.fit.converged
 
 

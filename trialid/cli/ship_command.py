@@ -11,7 +11,7 @@ from trialid.cli.particulars_options import given_from, particulars_options
 from trialid.errors import ShipError, TrialidError
 
 
-@click.command()
+@click.command(short_help="Write a ship file from her particulars.")
 @click.argument("out", type=click.Path(path_type=Path), metavar="OUT.toml")
 @particulars_options()
 @click.option("--name", default="", help="What reports call her.")

@@ -9,7 +9,7 @@ import click
 from trialid.cli.console import progress_bar, render, say
 
 
-@click.command()
+@click.command(short_help="Compare whole models; name the simplest that holds.")
 @click.argument("pipeline", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--out",
