@@ -26,7 +26,7 @@ from trialid.diagnosis.search.completeness import WORTH, Completeness, completen
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.effects import CATALOGUE
 from trialid.threads import one_thread
-from trialid.workflow import run
+from trialid.workflow.fit_model import fit_with_progress
 
 HIDDEN: Final = (
     "yaw_drag_rar", "quadratic_roll_damping", "righting_arm_cubic", "delay_r", "gyro_cross_axis",
@@ -55,11 +55,11 @@ def look(name: str, noise: str, seed: int) -> Seen:
     scenario = EVERY[name]
     model = guessed(scenario, seed)
     trials = record(scenario, noise, "mixed", seed)
-    fit = run.fitted(trials, model, settings_of(model), lambda words, share: None)
+    fit = fit_with_progress(trials, model, settings_of(model), lambda words, share: None)
     found = {}
     for blocks in (3, 6, 12):
         with mock.patch.object(carry_over, "BLOCKS", blocks):
-            found[blocks], augmented = rank(fit, CATALOGUE, DEFAULTS.diagnose.family_cos)
+            found[blocks], augmented = rank(fit, CATALOGUE, DEFAULTS.family_cos)
     whole = completeness(fit, augmented)
     assert whole is not None
     return Seen(scenario, noise, found, whole)
@@ -67,7 +67,7 @@ def look(name: str, noise: str, seed: int) -> Seen:
 
 def said(seen: Seen, blocks: int) -> str:
     """Right, wrong or nothing, by the first of the ranking under the thresholds as they stand."""
-    worth = [c for c in seen.ranking[blocks] if c.worth_a_name(DEFAULTS.diagnose.level)]
+    worth = [c for c in seen.ranking[blocks] if c.worth_a_name(DEFAULTS.level)]
     if not worth:
         return "none"
     first = min(worth, key=lambda c: c.price)
