@@ -18,6 +18,9 @@ ALIKE: Final = 0.6
 PART: Final = 0.9
 """What a part of a name counts for beside the whole."""
 
+SHORTEST_PART: Final = 3
+"""Letters of a part that can be meant: an `x` is in no name's stead."""
+
 LONGEST = 200
 """Letters of a library's message that are passed on."""
 
@@ -160,9 +163,10 @@ def _likenesses(name: str, names: Sequence[str]) -> dict[str, float]:
     whole = {other: _likeness(name, other) for other in names}
     best = max(whole.values(), default=0.0)
     for other in names:
-        parts = [PART * _likeness(name, one) for one in re.split(r"[_\W]+", other)]
-        if max(parts) > best:
-            whole[other] = max(parts)
+        parts = [part for part in re.split(r"[_\W]+", other) if len(part) >= SHORTEST_PART]
+        alike = max((PART * _likeness(name, part) for part in parts), default=0.0)
+        if alike > best:
+            whole[other] = alike
     return whole
 
 

@@ -40,6 +40,7 @@ def fit_of(theta, sizes):
         psi=psi,
         residual=0.1 * e / np.linalg.norm(e),
         level=0.1 / np.sqrt(N),
+        settings=SimpleNamespace(loss="squares"),
     )
 
 

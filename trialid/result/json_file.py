@@ -70,7 +70,7 @@ def read(path: Path, advice: str = "name the folder of a finished `trialid run`"
     TrialidError
         There is none, it is none of this schema, or it was edited; with what to do.
     """
-    if not path.exists():
+    if not _exists(path):
         advice += _runs_beside(path.parent)
     data = read_object(path, advice)
     if data.get("schema") != SCHEMA:
@@ -79,6 +79,14 @@ def read(path: Path, advice: str = "name the folder of a finished `trialid run`"
         return result_of(data)
     except TrialidError as error:
         raise TrialidError(f"{path}: {error}; it was edited, run the pipeline anew") from error
+
+
+def _exists(path: Path) -> bool:
+    """Whether there is such a file, or a name that only reading it can complain about."""
+    try:
+        return path.exists()
+    except OSError:
+        return True
 
 
 def _runs_beside(folder: Path) -> str:

@@ -9,6 +9,7 @@ from trialid.errors import TrialidError
 
 SHIPPED: Final = (
     "pipelines/hidden_effect.toml",
+    "pipelines/structures.toml",
     "pipelines/design_s175q.toml",
     "pipelines/design_rivals.toml",
     "pipelines/design_programme.toml",
