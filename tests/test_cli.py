@@ -2,7 +2,6 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -243,11 +242,7 @@ def test_a_bug_is_status_1_with_its_traceback(pipeline: Path) -> None:
 
 
 def test_a_real_interrupt_is_one_line(pipeline: Path) -> None:
-    # whoever starts the tests in the background has them begin deaf to it
-    body = (
-        f"import os, signal; signal.signal({int(signal.SIGINT)}, signal.default_int_handler); "
-        f"os.kill(os.getpid(), {int(signal.SIGINT)})"
-    )
+    body = "import os, signal as s; s.signal(2, s.default_int_handler); os.kill(os.getpid(), 2)"
     outcome = spawn("-c", STUBS.format(body=body, size=1), "run", str(pipeline))
     assert (outcome.returncode, outcome.stdout) == (130, "")
     assert outcome.stderr == "trialid: stopped; no half-written results are left\n"

@@ -24,7 +24,7 @@ from nmea2000.decoder import NMEA2000Decoder
 
 from trialid.ingest import read
 from trialid.ingest.adapter import Aids
-from trialid.ingest.nmea2000.nmea2000_groups import LAYOUTS
+from trialid.ingest.nmea2000.nmea2000_pgns import LAYOUTS
 
 MESSAGES = 20_000
 ASKED = 3.0

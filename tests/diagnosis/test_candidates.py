@@ -8,10 +8,10 @@ from s175q import MODEL, SETTINGS, white, with_noise, zigzag
 from scipy.signal import lfilter
 
 from trialid.diagnosis.noise.noise_colour import colour, whiten_rows
-from trialid.diagnosis.search import bootstrap
+from trialid.diagnosis.search import p_value
 from trialid.diagnosis.search.bias import foresee_adding
-from trialid.diagnosis.search.bootstrap import against_chance
 from trialid.diagnosis.search.carry_over import Carried
+from trialid.diagnosis.search.p_value import against_chance
 from trialid.diagnosis.search.score import Candidate, _best_of_each, _families, _in_range, rank
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
@@ -138,9 +138,9 @@ def test_a_draw_is_the_record_with_blocks_turned_and_all_parameters_fitted_again
     S /= np.linalg.norm(S)
     e = rng.standard_normal(n)
     e -= Q @ (Q.T @ e)
-    sums, blocks = bootstrap._sums(e, Q, S, part), bootstrap._blocks(part)
-    signs = bootstrap._signs(blocks.max() + 1)[:20]
-    found, _ = bootstrap._scores(sums, [0], signs, signs @ sums.moved)
+    sums, blocks = p_value._sums(e, Q, S, part), p_value._blocks(part)
+    signs = p_value._signs(blocks.max() + 1)[:20]
+    found, _ = p_value._scores(sums, [0], signs, signs @ sums.moved)
     for score, sign in zip(found, signs, strict=True):
         turned = sign[blocks] * e
         turned -= Q @ (Q.T @ turned)

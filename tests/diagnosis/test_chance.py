@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from trialid.diagnosis.noise.variance import lag_window
-from trialid.diagnosis.search.bootstrap import against_chance, inflation
+from trialid.diagnosis.search.p_value import against_chance, inflation
 from trialid.diagnosis.search.projection import gather
 from trialid.trial_rows import Stretch
 

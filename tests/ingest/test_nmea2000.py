@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from nmea2000.decoder import NMEA2000Decoder
 
 from trialid.ingest.nmea2000 import nmea2000_frames, nmea2000_messages
-from trialid.ingest.nmea2000.nmea2000_groups import LAYOUTS
+from trialid.ingest.nmea2000.nmea2000_pgns import LAYOUTS
 
 THEIRS = {
     (127237, "rudder_order"): "commandedRudderAngle",

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.diagnosis.noise.whitening import Colour, colour_of, memory, whiten_columns
-from trialid.diagnosis.search.bootstrap import inflation
+from trialid.diagnosis.search.p_value import inflation
 from trialid.trial_rows import Stretch
 
 Vector = NDArray[np.float64]

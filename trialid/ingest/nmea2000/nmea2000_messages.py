@@ -2,7 +2,7 @@
 
 A channel is `message/source:field`, and `message/source/instance:field` where the message numbers
 its devices: `rudder/11/255:position`. The source is the address of the sender. What a message holds
-is in `nmea2000_groups`, who sent it in `nmea2000_sources`. Messages are whole: the frames of a fast
+is in `nmea2000_pgns`, who sent it in `nmea2000_sources`. Messages are whole: the frames of a fast
 packet are already joined (`nmea2000_frames`).
 """
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from trialid.ingest.adapter import Wanted, is_wanted
 from trialid.ingest.nmea2000 import nmea2000_sources
-from trialid.ingest.nmea2000.nmea2000_groups import LAYOUTS, Field, Layout
+from trialid.ingest.nmea2000.nmea2000_pgns import LAYOUTS, Field, Layout
 from trialid.recording import Channel
 
 Ints = NDArray[np.int64]
