@@ -16,6 +16,7 @@ from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where
+from trialid.identification.adequacy import remarks
 from trialid.identification.fit import Fit, step_halving
 from trialid.plugins import packages
 from trialid.result.accuracy_part import accuracy_part, weighting
@@ -152,6 +153,8 @@ def _fit(fit: Fit, band: Mapping[str, float]) -> FitPart:
         weighting=weighting(fit),
         y_rms=dict(zip(fit.problem.outputs, map(float, fit.problem.y_rms), strict=True)),
         band=dict(band),
+        search=fit.told,
+        remarks=remarks(fit),
     )
 
 

@@ -79,7 +79,9 @@ class FitPart:
     """How the search ended; errors are shares of the measured RMS.
 
     `band` is the half-width about the prediction of a trial that was not fitted that holds 95 % of
-    what is measured, by output [SI]; empty where fewer than two trials were fitted.
+    what is measured, by output [SI]; empty where fewer than two trials were fitted. `search` is
+    what the search did beyond going down from the stated start, `remarks` what to read beside the
+    parameters: values at a bound, priors that the record contradicts; a line each.
     """
 
     eps_rmsn: float | None = None
@@ -97,6 +99,8 @@ class FitPart:
     weighting: str | None = None
     y_rms: Mapping[str, float] = field(default_factory=dict)
     band: Mapping[str, float] = field(default_factory=dict)
+    search: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -194,6 +194,8 @@ def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
         yield Words(said, 3)
     if known := beforehand.prior_words(found):
         yield Words(plain(known), 2)
+    if run.fit.remarks:
+        yield Words(f"Beside them: {'; '.join(run.fit.remarks)}.", 2)
 
 
 def _doubt(row: ParameterRow) -> float:

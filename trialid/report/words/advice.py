@@ -197,7 +197,12 @@ def trust(run: Result) -> str:
 
 
 def widest_range(run: Result) -> str:
-    """Which likely range is the widest, what makes it so, and the trial that would narrow it."""
+    """Which likely range is the widest, what makes it so, and the trial that would narrow it.
+
+    Nothing without a fit: then no effect may be spoken of.
+    """
+    if run.verdict.kind == "no fit":
+        return ""
     return f"{widest(run.physical)} {run.accuracy.narrowed_by or ''}".strip()
 
 

@@ -9,6 +9,9 @@ from trialid.result.fit_rows import ParameterRow
 CONTRADICTS: Final = 3.0
 """Standard deviations at which the record speaks against a prior."""
 
+LEAST: Final = 0.01
+"""Share that is worth a word."""
+
 NAMED: Final = 8
 """Parameters that a sentence names before it only counts them."""
 
@@ -28,8 +31,11 @@ def prior_words(parameters: Sequence[ParameterRow]) -> str:
     held.sort(key=lambda row: -(row.prior_share or 0.0))
     if not held:
         return ""
-    shares = [f"{r.name} {wording.percent(r.prior_share or 0.0, 2)}" for r in held[:NAMED]]
-    more = f" and {len(held) - NAMED} more" if len(held) > NAMED else ""
+    telling = [r for r in held if (r.prior_share or 0.0) >= LEAST][:NAMED]
+    shares = [f"{r.name} {wording.percent(r.prior_share or 0.0, 2)}" for r in telling]
+    if not telling:
+        shares = [f"less than {wording.percent(LEAST, 1)} of each"]
+    more = f" and {len(held) - len(telling)} more, less" if 0 < len(telling) < len(held) else ""
     listed = f"Known beforehand, as a share of what is known now: {', '.join(shares)}{more}."
     return " ".join([listed, *(contradictions(held))])
 
