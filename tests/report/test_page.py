@@ -61,14 +61,6 @@ def html(result, series):
     return page(result_of(result), series)
 
 
-def test_what_the_search_did_and_a_value_at_its_bound_are_told(result, series):
-    run = copy.deepcopy(result)
-    run["fit"] |= {"remarks": ["Kp ended at its bound"], "search": ["one start", "went further"]}
-    words = " ".join(Reader(page(result_of(run), series)).text.split())
-    assert "Kp ended at its bound" in words
-    assert "The search: one start; went further." in words
-
-
 def test_the_page_is_well_formed_and_its_links_lead_somewhere(html):
     read = Reader(html)
     ids = [value for _, name, value in read.attributes if name == "id"]

@@ -55,22 +55,6 @@ def test_a_short_run_is_shown_whole_and_a_long_one_less(result):
     assert any(line.endswith("more, all better known") for line in less)
 
 
-def test_a_value_at_its_bound_is_told_beside_the_table(result):
-    run = copy.deepcopy(result)
-    assert "at its bound" not in "\n".join(lines(run))
-    run["fit"]["remarks"] = ["Kp ended at its bound -6e-06"]
-    assert "Beside them: Kp ended at its bound -6e-06." in lines(run)
-
-
-def test_without_a_fit_no_effect_is_said_to_be_missing(result):
-    run = copy.deepcopy(result)
-    row = next(r for r in run["accuracy"]["parameters"] if r["kind"] == "physical")
-    row |= {"value": 1.0, "likely": [0.1, 1.2], "widened_by": "static_list"}
-    assert "as static_list may be missing" in " ".join(lines(run))
-    run["verdict"]["kind"] = "no fit"
-    assert "static_list" not in " ".join(lines(run))
-
-
 def test_the_verdict_comes_first_and_then_what_to_do(result):
     shown = lines(result, file="pipelines/a.toml")
     assert shown[1].startswith("The model lacks nonlinear yaw damping")
