@@ -1,4 +1,4 @@
-"""What is told beside the parameters: values at a bound, what widens a range, what the search did."""
+"""What is told beside the parameters: values at a bound, what widens a range, the search."""
 
 import copy
 import html
