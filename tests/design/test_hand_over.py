@@ -15,7 +15,8 @@ from trialid.design import signals
 from trialid.own_files import LIST
 from trialid.pipeline_file import load
 from trialid.pipeline_file.design_file import load_design
-from trialid.workflow.design_folder import quote, write
+from trialid.toml_text import quote
+from trialid.workflow.design_folder import write
 from trialid.workflow.design_run import plan
 
 ROOT = Path(__file__).parents[2]

@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,6 +22,9 @@ from trialid.names.quantities import (
 )
 
 System = Literal["prime", "SI"]
+
+WITHOUT_DOCSTRINGS: Final = 2
+"""Level of `python -OO`, which strips them: then an effect may have none."""
 
 
 class Force(NamedTuple):
@@ -141,7 +145,7 @@ class Effect:
     @property
     def equation(self) -> str:
         """The first line of the docstring, which is the equation."""
-        return (self.function.__doc__ or "").strip().splitlines()[0]
+        return next(iter((self.function.__doc__ or "").strip().splitlines()), self.name)
 
     @property
     def nulls(self) -> dict[str, float]:
@@ -224,7 +228,7 @@ def effect(
 
     def declare(function: Callable[..., Any]) -> Effect:
         name = function.__name__
-        if not (function.__doc__ or "").strip():
+        if not (function.__doc__ or "").strip() and sys.flags.optimize < WITHOUT_DOCSTRINGS:
             raise EffectError(f"effect {name!r} has no docstring; write its equation there")
         own = dict(states or {})
         signals, parameters = _signature(name, function, own)

@@ -12,6 +12,7 @@ from trialid.pipeline_file.design_file import DesignFile
 from trialid.report.files import design_data
 from trialid.report.pages import bridge
 from trialid.report.pages.bridge import file_name
+from trialid.toml_text import quote
 from trialid.workflow import design_run as plans
 from trialid.workflow.design_run import Plan, Rated
 
@@ -117,12 +118,3 @@ def toml(value: Any) -> str:
 
 def _key(name: str) -> str:
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quote(name)
-
-
-def quote(text: str) -> str:
-    r"""A TOML string on one line: what JSON writes, but with no pairs of surrogates.
-
-    >>> print(quote('a "b"\n'))
-    "a \"b\"\n"
-    """
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -4,7 +4,6 @@ An export is read through its template exactly or not at all: a header that diff
 idea is that of the equipment templates of marinerg-data.
 """
 
-import json
 import re
 import time
 from collections import Counter
@@ -27,6 +26,7 @@ from trialid import user_files
 from trialid.errors import LogError, nearest, reason_of
 from trialid.ingest.times.local_time import known_zone
 from trialid.names import units
+from trialid.toml_text import quote
 
 WHITESPACE, TAB = "whitespace", "tab"
 
@@ -252,4 +252,4 @@ def _keys(parents: Sequence[str | int]) -> list[str]:
 
 def _key(step: str | int) -> str:
     text = str(step)
-    return text if re.fullmatch(r"[\w-]+", text, re.ASCII) else json.dumps(text, ensure_ascii=False)
+    return text if re.fullmatch(r"[\w-]+", text, re.ASCII) else quote(text)

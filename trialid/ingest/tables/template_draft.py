@@ -1,6 +1,5 @@
 """A first template of a table, with what was guessed and what to ask; it loads once reviewed."""
 
-import json
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ from trialid.ingest.tables.table_time import DAYS
 from trialid.ingest.tables.template import TAB, WHITESPACE, distinct
 from trialid.ingest.tables.template_guess import Guess, guess, is_number
 from trialid.names.quantities import SIGNALS
+from trialid.toml_text import quote, remark
 
 HEAD = 4096
 TOP = (
@@ -52,21 +52,21 @@ def _of_text(path: Path, found: Guess) -> str:
     header = distinct([head(text).text for text in found.header])
     separator = {SPACES: WHITESPACE, "\t": TAB}.get(found.separator, found.separator)
     lines = [
-        f"separator = {_quoted(separator)}",
-        f"decimal = {_quoted(found.decimal)}",
+        f"separator = {quote(separator)}",
+        f"decimal = {quote(found.decimal)}",
         *(
             ["# QUESTION: numbers have points and commas; do points part the thousands?"]
             if found.mixed
             else []
         ),
         *(['thousands = "."'] if found.mixed else []),
-        f"encoding = {_quoted(found.encoding)}",
+        f"encoding = {quote(found.encoding)}",
         f"skip = {found.skip}  # lines before the header",
         f"header_rows = {found.header_rows}"
         + ("" if found.header_rows else "  # QUESTION: none was found; are the names right?"),
         f"units_row = {str(found.units_row).lower()}",
-        *([f"comment = {_quoted(found.comment)}"] if found.comment else []),
-        *([f"end = {_quoted(found.end)}  # what follows is no data"] if found.end else []),
+        *([f"comment = {quote(found.comment)}"] if found.comment else []),
+        *([f"end = {quote(found.end)}  # what follows is no data"] if found.end else []),
         *_missing(found.missing),
     ]
     return _text(path, lines, header, _times(header, found.rows), found.rows, found.units)
@@ -75,7 +75,7 @@ def _of_text(path: Path, found: Guess) -> str:
 def _missing(texts: Sequence[str]) -> Iterator[str]:
     if texts:
         yield "# QUESTION: these stand among numbers; do they mean that there is no value?"
-        yield f"missing = [{', '.join(map(_quoted, texts))}]"
+        yield f"missing = [{', '.join(map(quote, texts))}]"
 
 
 def _of_excel(path: Path) -> str:
@@ -91,7 +91,7 @@ def _of_excel(path: Path) -> str:
     header = distinct([text or f"column {excel_log.letters(i)}" for i, text in enumerate(texts)])
     others = ", ".join(other for other in held if other != name)
     lines = [
-        f"sheet = {_quoted(name)}" + (f"  # QUESTION: or one of {others}?" if others else ""),
+        f"sheet = {quote(name)}" + (f"  # QUESTION: or one of {remark(others)}?" if others else ""),
         f"skip = {at if named is None else named}  # rows before the header",
         f"header_rows = {0 if named is None else 1}",
         f"skip_after = {0 if named is None else at - named - 1}  # rows between header and data",
@@ -123,7 +123,7 @@ def _of_mat(path: Path) -> str:
     rows = [
         tuple(f"{one.y[i]:.17g}" for one in held if len(one.y) == length) for i in range(length)[:2]
     ]
-    lines = [f"group = {_quoted(group)}"] if group else []
+    lines = [f"group = {quote(group)}"] if group else []
     return _text(path, lines, header, _times(header, rows), rows)
 
 
@@ -137,7 +137,7 @@ def _times(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
         others = ", ".join(repr(header[i]) for i in named if i not in columns)
         asked.append(f"# QUESTION: or is it {others}?")
     shown = " ".join(rows[0][i] for i in columns) if rows else ""
-    written = [_quoted(header[i]) for i in columns]
+    written = [quote(header[i]) for i in columns]
     return ["[time]", *asked, f"columns = [{', '.join(written)}]", *_kind(shown, len(columns))]
 
 
@@ -167,7 +167,7 @@ def _counted(value: float) -> Iterator[str]:
     if excel or matlab:
         yield f"# QUESTION: {value:.10g} may be days; are they, or seconds?"
     kind = "excel days" if excel else "matlab datenum" if matlab else "seconds"
-    yield f"kind = {_quoted(kind)}"
+    yield f"kind = {quote(kind)}"
     if kind == "seconds":
         yield '# unit = "ms"  # where neither the header nor a row of units says it'
 
@@ -183,7 +183,7 @@ def _format(shown: str) -> Iterator[str]:
     order = f"%m{mark}%d" if int(found[3]) > 12 else f"%d{mark}%m"
     if int(found[1]) <= 12 and int(found[3]) <= 12:
         yield f"# QUESTION: {found[0]} may begin with the day (%d) or the month (%m); which?"
-    yield f"format = {_quoted(f'{order}{mark}{year}{of_day}{fraction}')}"
+    yield f"format = {quote(f'{order}{mark}{year}{of_day}{fraction}')}"
 
 
 def _text(
@@ -194,8 +194,8 @@ def _text(
     rows: Sequence[Sequence[str]] = (),
     units: Sequence[str] = (),
 ) -> str:
-    names = ", ".join(map(_quoted, header))
-    top = [line.replace("{name}", path.name) for line in TOP]
+    names = ", ".join(map(quote, header))
+    top = [line.replace("{name}", remark(path.name)) for line in TOP]
     stated = [*units] + [""] * len(header)
     first = rows[0] if rows else [""] * len(header)
     columns = [_column(*one) for one in zip(header, stated, first, strict=False)]
@@ -213,12 +213,6 @@ def _column(text: str, stated: str, first: str) -> str:
     one = head(text, stated.strip(" []()"))
     alias = re.sub(r"\W+", "_", one.name.lower())
     quantity = next((name for name, q in SIGNALS.items() if alias in q.aliases), None)
-    inside = f" rename = {_quoted(quantity)} " if quantity else ""
+    inside = f" rename = {quote(quantity)} " if quantity else ""
     note = f"in {one.unit}" if one.unit else "states no unit"
-    return f"{_quoted(text)} = {{{inside}}}  # {note}" + (
-        f", first {first[:40]!r}" if first else ""
-    )
-
-
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
+    return f"{quote(text)} = {{{inside}}}  # {note}" + (f", first {first[:40]!r}" if first else "")

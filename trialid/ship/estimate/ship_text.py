@@ -1,6 +1,5 @@
 """The text of a ship file that was made of particulars: a comment for each number."""
 
-import json
 import textwrap
 from collections.abc import Iterator
 from typing import Final
@@ -9,6 +8,7 @@ from trialid.ship.estimate.all_numbers import Estimated
 from trialid.ship.estimate.hull_form import typical
 from trialid.ship.estimate.particulars_given import SEA, known_names, told_of
 from trialid.ship.estimate.sway_yaw import WIDEST
+from trialid.toml_text import quote
 
 WIDTH: Final = 100
 HEAD: Final = """\
@@ -42,7 +42,7 @@ def ship_text(made: Estimated, speed_words: str = "as stated") -> str:
     lines = [
         *_wrapped(HEAD.format(told=told_of(made.given))),
         *(f"# {words}" for words in assumption_words(made)),
-        f"name = {_quoted(ship.name)}",
+        f"name = {quote(ship.name)}",
         f'source = "{ship.source}"',
         f'notes = "{ship.notes}"',
         'system = "prime"',
@@ -100,11 +100,6 @@ def _number(made: Estimated, name: str) -> str:
     found = made.numbers[name]
     scatter = f", +-{100.0 * found.share:.3g} %" if found.share else ""
     return f"{name} = {found.value:g}  # {found.source}{scatter}"
-
-
-def _quoted(text: str) -> str:
-    """A text as TOML has it, on one line."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _wrapped(head: str) -> Iterator[str]:

@@ -1,6 +1,5 @@
 """The text of a starter pipeline: a comment for each choice, the other choices commented out."""
 
-import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import Final
 from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection
 from trialid.ship.particulars import Ship
+from trialid.toml_text import quote
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
 
 HEAD: Final = """\
@@ -35,8 +35,8 @@ def pipeline_text(
     several = len(trials) > 1
     head = HEAD.format(s="s" if several else "", not_s="" if several else "s", name=path.name)
     lines = [
-        head + f"name = {_text(path.stem)}",
-        f"ship = {_text(_relative(ship_path, path))}",
+        head + f"name = {quote(path.stem)}",
+        f"ship = {quote(_relative(ship_path, path))}",
     ]
     names = _names(trials)
     for place, (name, trial) in enumerate(zip(names, trials, strict=True)):
@@ -48,7 +48,7 @@ def pipeline_text(
 
 def _trial(path: Path, name: str, trial: Chosen, *, held_out: bool) -> Iterator[str]:
     yield "[[trial]]"
-    yield f"name = {_text(name)}"
+    yield f"name = {quote(name)}"
     yield f"logs = [{_log(trial, path)}]"
     if held_out:
         yield 'use = "check"  # the last log is held out: simulated and scored, never fitted'
@@ -81,8 +81,8 @@ def _log(trial: Chosen, path: Path) -> str:
     if aids.zone is not None:
         keys["zone"] = aids.zone
     if len(keys) == 1:
-        return _text(keys["path"])
-    return f"{{ {', '.join(f'{key} = {_text(value)}' for key, value in keys.items())} }}"
+        return quote(keys["path"])
+    return f"{{ {', '.join(f'{key} = {quote(value)}' for key, value in keys.items())} }}"
 
 
 def _remarks(trial: Chosen) -> Iterator[str]:
@@ -108,7 +108,7 @@ def _source(signal: Signal, one: ChannelInspection) -> str:
         "unit": None if one.angle else unit,
         "positive": positive,
     }
-    return ", ".join(f"{key} = {_text(value)}" for key, value in keys.items() if value)
+    return ", ".join(f"{key} = {quote(value)}" for key, value in keys.items() if value)
 
 
 def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:
@@ -184,16 +184,7 @@ def _relative(path: Path, pipeline: Path) -> str:
 
 
 def _list(entries: Sequence[str]) -> str:
-    return f"[{', '.join(_text(entry) for entry in entries)}]"
-
-
-def _text(text: str) -> str:
-    r"""A text as TOML has it.
-
-    >>> _text('say "x"'), _text("bell\x07")
-    ('"say \\"x\\""', '"bell\\u0007"')
-    """
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return f"[{', '.join(quote(entry) for entry in entries)}]"
 
 
 def comment(text: str) -> str:

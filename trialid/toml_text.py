@@ -1,0 +1,23 @@
+"""Texts as TOML writes them, for files that are made."""
+
+import json
+
+from trialid.errors import printable
+
+
+def quote(text: str) -> str:
+    r"""A TOML string on one line: what JSON writes, but with no pairs of surrogates, and no DEL.
+
+    >>> print(quote('a "b"\n'), quote("bell\x07"), quote("\x7f"))
+    "a \"b\"\n" "bell\u0007" "\u007f"
+    """
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def remark(text: str) -> str:
+    r"""A text as it may stand in a comment: on one line, with nothing that TOML forbids there.
+
+    >>> remark("a\x7f\nb")
+    'a\\x7f\\nb'
+    """
+    return printable(text)
