@@ -11,6 +11,7 @@ from limits import bounded
 
 from trialid.effects import from_file
 from trialid.errors import TrialidError
+from trialid.ingest import draft_template
 from trialid.ingest.tables import template
 from trialid.pipeline_file import load
 from trialid.pipeline_file.design_file import load_design
@@ -210,3 +211,12 @@ def test_a_count_far_out(tmp_path, key):
     text = path.read_text(encoding="utf-8").replace("[identify]", f"[identify]\n{key} = 1000000000")
     path.write_text(text, encoding="utf-8")
     assert f"identify.{key}" in bounded(lambda: load(path))
+
+
+def test_a_draft_is_toml_whatever_the_names_hold(tmp_path):
+    """TOML forbids DEL and escapes, in comments too."""
+    odd = "a\x7f\x1b]b"
+    path = tmp_path / f"{odd}.csv"
+    path.write_text(f"time,{odd},x\n" + "".join(f"{i},{i},1\n" for i in range(30)))
+    told = template.parse(draft_template(path), tmp_path / "draft")
+    assert told.header == ("time", odd, "x")

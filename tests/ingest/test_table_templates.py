@@ -361,15 +361,6 @@ def test_a_draft_loads_once_it_is_reviewed(tmp_path, form):
         np.testing.assert_array_equal(one.t, other.t)
 
 
-def test_a_draft_is_toml_whatever_the_names_hold(tmp_path):
-    """TOML forbids DEL and escapes, in comments too."""
-    odd = "a\x7f\x1b]b"
-    path = tmp_path / f"{odd}.csv"
-    path.write_text(f"time,{odd},x\n" + "".join(f"{i},{i},1\n" for i in range(30)))
-    told = template.parse(draft_template(path), tmp_path / "draft")
-    assert told.header == ("time", odd, "x")
-
-
 def test_a_draft_asks_what_it_cannot_know(tmp_path):
     rows = [f"05/11/2023,14:00:0{i},{y}\n" for i, y in enumerate(("1", "--", "3"))]
     text = "Run 7\nDate,Time,roll\n" + "".join(rows)

@@ -2,7 +2,6 @@
 
 import inspect
 import math
-import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,9 +21,6 @@ from trialid.names.quantities import (
 )
 
 System = Literal["prime", "SI"]
-
-WITHOUT_DOCSTRINGS: Final = 2
-"""Level of `python -OO`, which strips them: then an effect may have none."""
 
 
 class Force(NamedTuple):
@@ -228,7 +224,7 @@ def effect(
 
     def declare(function: Callable[..., Any]) -> Effect:
         name = function.__name__
-        if not (function.__doc__ or "").strip() and sys.flags.optimize < WITHOUT_DOCSTRINGS:
+        if __debug__ and not (function.__doc__ or "").strip():  # python -OO strips them all
             raise EffectError(f"effect {name!r} has no docstring; write its equation there")
         own = dict(states or {})
         signals, parameters = _signature(name, function, own)
