@@ -127,6 +127,7 @@ def test_a_plot_is_of_the_series_and_is_saved_once(run, tmp_path: Path) -> None:
         run.plot("psi")
 
 
+@pytest.mark.study(turn=3)
 def test_a_run_is_written_as_the_command_writes_it(run, tmp_path: Path) -> None:
     report = run.write(tmp_path / "here")
     CliRunner().invoke(commands, ["run", str(PIPELINE), "--quiet", "--out", str(tmp_path / "c")])

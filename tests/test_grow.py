@@ -61,6 +61,7 @@ def test_the_hidden_effect_is_added_and_the_verdict_is_nothing_missing(hidden: P
     assert errors[1] < 0.75 * errors[0]
 
 
+@pytest.mark.study(turn=2)
 def test_what_was_added_is_written_when_asked_and_a_run_then_gives_the_same(hidden: Path) -> None:
     text = hidden.read_text(encoding="utf-8")
     outcome = trialid_("run", str(hidden), "--auto", "--write", "--json")

@@ -42,6 +42,7 @@ def run(pipeline, *options):
     return CliRunner().invoke(commands, ["run", str(pipeline), *map(str, options)])
 
 
+@pytest.mark.study(turn=1)
 def test_the_file_declares_the_effect_and_the_error_falls(hidden, tmp_path):
     fit, found = hidden
     path = tmp_path / "mine.py"
@@ -70,6 +71,7 @@ def test_an_effect_of_the_same_name_gets_another(hidden):
     assert "N_delta_aphi_2=Parameter(" in text
 
 
+@pytest.mark.study(turn=2)
 def test_nothing_missing_and_no_shape_draft_nothing():
     nothing = missing_force(fit_of(None, 8)[0])
     assert draft(nothing, "x") is None

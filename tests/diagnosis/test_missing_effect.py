@@ -86,6 +86,7 @@ def rooted(r, *, a_root=0.001):
     return Force(N=a_root * (sqrt(0.02 + r) - sqrt(0.02)))
 
 
+@pytest.mark.study(turn=0)
 def test_a_candidate_that_is_no_number_along_the_record_is_left_out_alone():
     fit = identify(record(MODEL, 3), MODEL, FIT)
     augmented = augment(fit, {**CATALOGUE, "rooted": rooted})

@@ -43,6 +43,7 @@ def test_linear_response_is_that_of_the_engine():
         assert np.abs(found - wanted).max() < 0.05 * np.abs(wanted).max(), row
 
 
+@pytest.mark.study(turn=3)
 def test_noise_has_no_force():
     for noise in ({}, {"noise": white}):
         found = missing_force(fit_of(None, 2, **noise)[0])
@@ -78,6 +79,7 @@ def test_a_hidden_effect_is_found_with_its_shape():
     )
 
 
+@pytest.mark.study(turn=4)
 def test_the_same_comes_out_again():
     fit, _ = fit_of(turning_in_heel, 5)
     found = missing_force(fit)

@@ -63,6 +63,7 @@ def test_from_any_metacentric_height_the_same_optimum_is_reached(trials, arrived
         assert "starts by the record itself" in fit.told[0]
 
 
+@pytest.mark.study(turn=3)
 def test_one_search_alone_would_have_stayed_elsewhere():
     """A drawn model of 3 m, from a placeholder: what the starts by the record are for."""
     drawn = draw(1009)
@@ -77,6 +78,7 @@ def test_one_search_alone_would_have_stayed_elsewhere():
     assert "one of them went further" in fit.told[0]
 
 
+@pytest.mark.study(turn=4)
 def test_a_search_is_repeated_to_the_last_bit(trials):
     far = MODEL.with_values({**FAR, "GM": 1.0})
     one, two = identify(trials, far, SETTINGS), identify(trials, far, SETTINGS)

@@ -30,6 +30,7 @@ def test_ranges_hold_what_the_true_ship_does(place):
     assert max(w for n, w in widths.items() if "overshoot" in n) < 0.1
 
 
+@pytest.mark.study(turn=4)
 def test_a_record_counts_the_same_twice():
     assert count(CASES[0], 3) == count(CASES[0], 3)
 

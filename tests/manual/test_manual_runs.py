@@ -106,7 +106,7 @@ def copy(project: Path, tmp_path: Path) -> Path:
 
 def in_turn(documents: list[str]) -> list[Any]:
     """What a stranger reads first each time, the other pages one after another."""
-    first = ("README", "first_trial")
+    first = ("README",)
     later = [d for d in documents if d not in first]
     cases = [pytest.param(d, marks=pytest.mark.study(turn=k % 5)) for k, d in enumerate(later)]
     return [*(d for d in first if d in documents), *cases]

@@ -122,6 +122,7 @@ def test_every_sea_finds_it(tmp_path, rudders, seed):
     assert 600.0 < first.raised <= 610.0
 
 
+@pytest.mark.study(turn=1)
 def test_without_a_late_effect_there_is_no_alarm_and_unknown_noise_is_said(tmp_path, rudders):
     playback = replayed(tmp_path, 0.0, 600.0, 0, rudders)
     assert playback.bands.separated

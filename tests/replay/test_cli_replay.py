@@ -86,6 +86,7 @@ def test_the_recording_holds_the_runs_numbers_bit_for_bit(done, trial, start):
     assert out.with_suffix(".plotjuggler.xml").is_file()
 
 
+@pytest.mark.study(turn=2)
 def test_alarms_are_told_as_they_come_and_fitting_first_gives_the_same(done):
     pipeline, run = done
     given = trialid_("replay", pipeline, "--run", run, "--fast")

@@ -57,6 +57,7 @@ def ready(pipeline):
     return read, fit, bands(fit, found.split, augmented)
 
 
+@pytest.mark.study(turn=3)
 def test_a_growing_log_is_followed_and_ends_in_the_numbers_of_the_batch_run(pipeline, ready):
     read, fit, noise = ready
     path = pipeline.parent / "halfway.csv"

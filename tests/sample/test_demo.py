@@ -70,6 +70,7 @@ def test_the_wheel_is_told_of_every_text() -> None:
     assert wheel["force-include"] == {name: f"trialid/sample/shipped/{name}" for name in SHIPPED}
 
 
+@pytest.mark.study(turn=2)
 def test_once_more_is_the_same(copy: Path) -> None:
     before = state(copy)
     told = demo(copy)

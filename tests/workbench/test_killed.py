@@ -87,9 +87,8 @@ def works_again(path: Path, effects: Sequence[str]) -> None:
     assert (steps[-1].dropped if name in effects else steps[-1].added) == name
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_an_edit_answered_for_is_never_lost(tmp_path: Path, seed: int) -> None:
-    killed(tmp_path, seed)
+def test_an_edit_answered_for_is_never_lost(tmp_path: Path) -> None:
+    killed(tmp_path, seed=1)
 
 
 @pytest.mark.study(turn=4)

@@ -236,6 +236,7 @@ LEGENDS_OUTSIDE = """() => [...document.querySelectorAll(".panel")].flatMap((pan
 
 
 @pytest.mark.parametrize("width", [390, 1024, 1366])
+@pytest.mark.study(turn=1)
 def test_title_verdict_and_legends_are_whole(untouched: str, tmp_path: Path, width: int) -> None:
     """On a phone in one column, the verdict before the plots."""
     size = {"width": width, "height": 800}
@@ -258,6 +259,7 @@ def test_title_verdict_and_legends_are_whole(untouched: str, tmp_path: Path, wid
             assert head["height"] < 60  # a name is not broken into a column of syllables
 
 
+@pytest.mark.study(turn=0)
 def test_signals_stay_chosen_and_what_is_seen_is_saved(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page = screen.page
