@@ -85,8 +85,8 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         for n, x in fit.at_bounds.items()
     ]
     against = [
-        f"{n} = {said(n, fit.value(n))} is {abs(z):.1f} standard deviations "
-        f"{'above' if z > 0.0 else 'below'} what is likely for it"
+        f"{n} = {said(n, fit.value(n))} is {abs(z):.1f} deviations "
+        f"{'above' if z > 0.0 else 'below'} what is likely"
         for n, z in fit.contradicted.items()
         if n not in own
     ]

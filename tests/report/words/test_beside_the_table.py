@@ -22,7 +22,7 @@ def test_a_value_at_its_bound_is_told_beside_the_table(result):
     run = copy.deepcopy(result)
     assert "at its bound" not in words(run)
     run["fit"]["remarks"] = ["Kp ended at its bound -6e-06"]
-    assert "Beside them: Kp ended at its bound -6e-06." in words(run)
+    assert " Kp ended at its bound -6e-06." in words(run)
 
 
 def test_without_a_fit_no_effect_is_said_to_be_missing(result):
