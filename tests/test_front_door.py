@@ -194,7 +194,6 @@ def test_a_fit_from_arrays_is_diagnosed_and_grows(fit) -> None:
     assert (found.verdict.kind, found.verdict.effect) == ("missing", EFFECT)
     grown = found.add(EFFECT)
     assert grown.verdict.kind == "nothing missing"
-    assert grown.drop(EFFECT).error == pytest.approx(fit.eps_rmsn, rel=1e-5)
     assert "arrays" in grown._repr_html_()
     with pytest.raises(TrialidError, match="in the model already"):
         grown.add(EFFECT)

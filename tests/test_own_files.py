@@ -185,6 +185,7 @@ def test_notes_in_a_runs_own_folder_stay(tmp_path: Path, finished: Path) -> None
     assert json.loads((folder / "result.json").read_text())["schema"] == "trialid-result/1"
 
 
+@pytest.mark.study(turn=0)
 def test_a_run_folder_of_an_earlier_version_is_replaced(tmp_path: Path, finished: Path) -> None:
     folder = tmp_path / "run"
     shutil.copytree(finished, folder)

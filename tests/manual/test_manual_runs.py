@@ -163,7 +163,7 @@ def test_a_command_that_fails_is_found(project: Path) -> None:
 # --- Python -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("document", with_any("python", "python front-door"))
+@pytest.mark.parametrize("document", in_turn(with_any("python", "python front-door")))
 def test_its_python_runs(document: str, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In one namespace, so that a page can go on from what stands above."""
     monkeypatch.chdir(copy)

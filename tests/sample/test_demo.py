@@ -85,6 +85,7 @@ def test_what_to_try_is_said(copy: Path) -> None:
         assert f"\n  trialid {command} {HIDDEN_EFFECT}" in told
 
 
+@pytest.mark.study(turn=3)
 def test_a_missing_extra_is_named(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(demo_command, "find_spec", lambda name: util.find_spec("json"))
     assert "pip install" not in demo(copy).stdout
