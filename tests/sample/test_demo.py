@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import tomllib
 import venv
 from importlib import util
 from pathlib import Path
+from urllib.request import HTTPCookieProcessor, build_opener
 
 import pytest
 from click.testing import CliRunner, Result
@@ -139,7 +141,7 @@ def without_python_path() -> dict[str, str]:
 
 @pytest.mark.study(turn=4)
 def test_a_wheel_is_enough(installed: Path, tmp_path: Path) -> None:
-    """In a fresh environment: demo, run, add, drop, report; what lacks an extra names it."""
+    """In a fresh environment: demo, run, add, drop, report, start; an extra is named, and works."""
 
     def trialid(*arguments: str, status: int = 0) -> str:
         done = subprocess.run(
@@ -166,6 +168,31 @@ def test_a_wheel_is_enough(installed: Path, tmp_path: Path) -> None:
     trialid("drop", HIDDEN_EFFECT, "righting_arm_cubic")
     assert (place / HIDDEN_EFFECT).read_bytes() == pipeline
     assert "Report: runs/hidden_effect/report.html" in trialid("report", "runs/hidden_effect")
+    started = trialid("start", f"{LOGS}/zigzag-15.csv", "--length", "175", "--pipeline", "own.toml")
+    assert "Report: runs/own/report.html" in started
     assert "'trialid[workbench]'" in trialid("workbench", HIDDEN_EFFECT, status=2)
     parquet = ("align", HIDDEN_EFFECT, "--out", "series.parquet")
     assert "'trialid[tables]'" in trialid(*parquet, status=2)
+    with_extra(installed, "workbench")
+    assert answered([str(installed), "workbench", HIDDEN_EFFECT, "--port", "0"], place) == 200
+
+
+def with_extra(installed: Path, extra: str) -> None:
+    """Install what an extra asks for; its names stand in the wheel."""
+    (wheel,) = installed.parents[2].glob("*.whl")
+    pip = [str(installed.with_name("python")), "-m", "pip", "install", "--quiet"]
+    subprocess.run([*pip, f"{wheel}[{extra}]"], check=True, env=without_python_path(), timeout=600)
+
+
+def answered(command: list[str], folder: Path) -> int:
+    """The status that the printed address is answered with."""
+    with subprocess.Popen(
+        command, cwd=folder, env=without_python_path(), stdout=subprocess.PIPE, text=True
+    ) as server:
+        assert server.stdout is not None
+        try:
+            said = next(found for x in server.stdout if (found := re.search(r"http://\S+", x)))
+            with build_opener(HTTPCookieProcessor()).open(said[0], timeout=60) as page:
+                return int(page.status)
+        finally:
+            server.kill()
