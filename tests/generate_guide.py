@@ -10,7 +10,6 @@ import datetime
 import re
 import sys
 import textwrap
-import tomllib
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
@@ -20,7 +19,9 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "ship" / "estimate"))
+sys.path.insert(0, str(Path(__file__).resolve().parent / "manual"))
 
+import claims
 from guide_of_estimates import ship_estimates
 
 from trialid.design.kinds import KINDS
@@ -35,7 +36,6 @@ from trialid.ship.prime import ARMS
 
 ROOT: Final = Path(__file__).resolve().parent.parent
 PAGES: Final = ROOT / "trialid" / "guide"
-CLAIMS: Final = ROOT / "tests" / "benchmarks" / "results" / "claims.toml"
 WIDTH: Final = 100
 COMMAND: Final = "python tests/generate_guide.py"
 
@@ -257,22 +257,10 @@ def _manoeuvre(name: str) -> str:
     return f"`{name}`, {kind.words}: {numbers}"
 
 
-def claims() -> str:
+def claimed() -> str:
     """What is claimed, the figure, on how many cases, and where it comes from."""
-    table = tomllib.loads(CLAIMS.read_text(encoding="utf-8"))
-    stated = f"Stated at commit `{table['commit']}`.\n\n"
-    return stated + items(
-        f"{row['claim']}: **{row['figure']}**{_cases(row)}. From {_sources(row)}."
-        for row in table["claim"]
-    )
-
-
-def _cases(row: Mapping[str, Any]) -> str:
-    return f" ({row['cases']} cases)" if "cases" in row else ""
-
-
-def _sources(row: Mapping[str, Any]) -> str:
-    return ", ".join(f"`{path}`" for path in row["from"])
+    stated = f"Where no other commit stands, stated at `{claims.stated_at()}`.\n\n"
+    return stated + items(claims.claims())
 
 
 PARTS: Final[Mapping[str, Callable[[], str]]] = {
@@ -281,7 +269,7 @@ PARTS: Final[Mapping[str, Callable[[], str]]] = {
     "keys of a ship": ship,
     "signals": signals,
     "manoeuvres": manoeuvres,
-    "claims": claims,
+    "claims": claimed,
     "ship estimates": ship_estimates,
 }
 """Each generated part by the name it has in a page."""

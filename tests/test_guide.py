@@ -146,7 +146,7 @@ def test_every_column_is_explained() -> None:
 
 
 def test_every_claim_says_where_it_comes_from() -> None:
-    table = tomllib.loads(generate_guide.CLAIMS.read_text(encoding="utf-8"))
+    table = tomllib.loads(generate_guide.claims.CLAIMS.read_text(encoding="utf-8"))
     assert re.fullmatch(r"[0-9a-f]{7,40}", table["commit"])
     for row in table["claim"]:
         assert set(row) <= {"claim", "figure", "cases", "from"}
@@ -155,6 +155,17 @@ def test_every_claim_says_where_it_comes_from() -> None:
         assert "cases" not in row or str(row["cases"]) in row["figure"] + row["claim"] or (
             row["claim"].startswith("replay: 30 %")
         )  # fmt: skip
+
+
+def test_a_cell_of_a_result_file_is_quoted_and_a_lost_one_refused(tmp_path: Path) -> None:
+    page, claims = tmp_path / "a.md", generate_guide.claims
+    page.write_text(
+        "| | x |\n| - | - |\n| b | 1 |\n\n| | likely | half |\n| - | - |\n| b | 9 % | 2 |"
+    )
+    assert claims.cell(page, "b", "half") == "2"
+    assert claims.figure({"from": [str(page)], "figure": "{b|likely} left"}) == "9 % left"
+    with pytest.raises(KeyError, match="no 'likely' of 'c'"):
+        claims.cell(page, "c", "likely")
 
 
 # --- as they are shown --------------------------------------------------------------------------
