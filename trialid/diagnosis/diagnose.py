@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
@@ -105,8 +105,9 @@ def diagnose(
     if (failed := why_no_fit(fit)) is not None:
         return _no_fit(fit, before, augmented, failed)
     worth = worth_a_name(ranking, asked)
-    told = partial(_trying, progress)
-    refits = refit_best(fit, trials, worth, asked.refit, asked.level, told, grown=grown)
+    refits = tuple(
+        refit_best(fit, trials, worth, asked.refit, asked.level, lambda words: progress(words, 0.7))
+    )
     whole = _whole(fit, augmented)
     fits = [r.fit for r in refits]
     before = _bounded(before, fits, whole)
@@ -120,16 +121,12 @@ def diagnose(
         before=before,
         ranking=ranking,
         left_out=augmented.left_out,
-        refits=tuple(refits),
+        refits=refits,
         verdict=verdict,
         where=where(fit),
         after=after,
         force=sought,
     )
-
-
-def _trying(progress: Progress, words: str) -> None:
-    progress(words, 0.7)
 
 
 def _whole(fit: Fit, augmented: Augmented) -> Completeness | None:

@@ -63,23 +63,17 @@ def refit_best(
     most: int,
     level: float,
     progress: Progress,
-    grown: bool = False,
 ) -> list[Refit]:
-    """The first few candidates fitted, and as many more where those leave a question.
+    """The first few candidates fitted; as many of other families where none stands every check.
 
-    Where none stands every check, of other families: twins stand side by side in the ranking, and
-    what speaks against one speaks against all. Where in a model that has `grown` a sensor or a
-    clock would be named, of the ship: they had no turn, and may be as good.
+    Twins stand side by side in the ranking, and what speaks against one speaks against all.
     """
     done = refit(fit, trials, candidates[:most], progress)
-    likeliest = likeliest_refit(fit, done, level, grown)
-    more: list[Candidate] = []
-    if likeliest is None:
+    if likeliest_refit(fit, done, level) is None:
         known = {n for c in candidates[:most] for n in (c.effect.name, *c.family)}
-        more = [c for c in candidates[most:] if c.effect.name not in known]
-    elif grown and not of_the_ship(likeliest.candidate.effect):
-        more = [c for c in candidates[most:] if of_the_ship(c.effect)]
-    return [*done, *refit(fit, trials, more[:most], progress)]
+        others = [c for c in candidates[most:] if c.effect.name not in known]
+        done += refit(fit, trials, others[:most], progress)
+    return done
 
 
 def _inside(effect: Effect, name: str, value: float) -> float:
