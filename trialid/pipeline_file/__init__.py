@@ -16,13 +16,13 @@ from trialid.errors import PipelineError, list_names
 from trialid.pipeline_file.complaints import dotted_key, own_mistakes, problem, refusal
 from trialid.pipeline_file.contradictions import contradictions
 from trialid.pipeline_file.form import (
-    Origin,
     Pipeline,
     SignalSource,
     TrialSection,
     Written,
 )
 from trialid.pipeline_file.mistaken_file import Kind, check_kind, log_hint, neighbours
+from trialid.pipeline_file.named_file import Origin
 
 __all__ = [
     "Pipeline",

@@ -18,12 +18,11 @@ from trialid.pipeline_file.form import (
     GivenValue,
     Names,
     NotEmpty,
-    Origin,
-    ReadFile,
     Whole,
     Window,
     with_value,
 )
+from trialid.pipeline_file.named_file import Origin, ReadFile
 from trialid.pipeline_file.section import NotNegative, Number, Positive, Section
 
 MOST: Final = 200_000

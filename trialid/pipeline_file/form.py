@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, cast
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -13,42 +13,14 @@ from pydantic import (
     PlainValidator,
     PrivateAttr,
     Strict,
-    ValidationInfo,
 )
 
 from trialid.errors import nearest
 from trialid.ingest.times.local_time import known_zone
 from trialid.names import units
-from trialid.pipeline_file.mistaken_file import neighbours
+from trialid.pipeline_file.named_file import Origin, PythonFile, ReadFile, ReadLog
 from trialid.pipeline_file.prior_section import OR_SHIP, SHIP, Prior, Word
 from trialid.pipeline_file.section import NotNegative, Number, Positive, Section
-
-
-class Origin(NamedTuple):
-    """The file a pipeline stands in, and all that it holds."""
-
-    path: Path
-    content: bytes
-
-
-def _existing(path: Path, info: ValidationInfo) -> Path:
-    found = cast(Origin, info.context).path.parent / path
-    if found.is_file():
-        return found
-    if found.is_dir():
-        raise ValueError(f"{str(path)!r} is a folder; name the file in it")
-    raise ValueError(f"no file {str(path)!r} (looked for {found}; {neighbours(found)})")
-
-
-def _existing_log(path: Path, info: ValidationInfo) -> Path:
-    found = cast(Origin, info.context).path.parent / path
-    return found if found.is_dir() else _existing(path, info)
-
-
-def _python(path: Path) -> Path:
-    if path.suffix != ".py":
-        raise ValueError(f"{str(path)!r} is not a .py file; effects are written in Python")
-    return path
 
 
 def _rising(interval: tuple[float, float]) -> tuple[float, float]:
@@ -111,10 +83,7 @@ Whole = Annotated[int, Strict(), Field(ge=0)]
 Unit = Annotated[str, AfterValidator(_unit_text)]
 Names = tuple[str, ...]
 SomeNames = Annotated[Names, Field(min_length=1)]
-ReadFile = Annotated[Path, AfterValidator(_existing)]
-ReadLog = Annotated[Path, AfterValidator(_existing_log)]
 Zone = Annotated[str, AfterValidator(known_zone)]
-PythonFile = Annotated[ReadFile, AfterValidator(_python)]
 Instant = Number | datetime
 NotEmpty = Annotated[str, Field(min_length=1)]
 Window = Annotated[tuple[Seconds, Seconds], AfterValidator(_rising)]
