@@ -36,6 +36,7 @@ from trialid.cli.console import (
 from trialid.cli.demo_command import demo
 from trialid.cli.design_command import design
 from trialid.cli.effects_command import effects
+from trialid.cli.export_command import export
 from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
 from trialid.cli.one_line_errors import WRONG_INPUT, OneLineErrors
@@ -183,6 +184,7 @@ for command in (
     report,
     replay,
     simulate,
+    export,
     structures,
     workbench,
     guide,
