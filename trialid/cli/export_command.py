@@ -1,5 +1,6 @@
 """The command that hands a fitted model over to other programs."""
 
+import json
 import sys
 from pathlib import Path
 from typing import Final
@@ -11,18 +12,18 @@ from trialid.cli.console import note, progress_bar, say
 from trialid.errors import TrialidError
 
 FILE = click.Path(path_type=Path)
-KINDS: Final = {"ship": (".toml",), "python": (".py",)}
+KINDS: Final = {"ship": (".toml",), "json": (".json",), "python": (".py",), "c": (".c", ".h")}
 """What a model can be written as, and how the files end; `hand_over` has what they hold."""
 
 
 @click.command(short_help="Write the fitted model: a ship file, JSON, NumPy or C.")
-@click.argument("run", type=FILE, metavar="RUN_DIR")
+@click.argument("run", type=FILE, metavar="RUN_DIR", required=False)
 @click.option(
     "--as",
     "kind",
     type=click.Choice([*KINDS]),
-    required=True,
-    help="ship: a ship file for a next pipeline; python: one file that needs NumPy alone.",
+    help="ship: a ship file for a next pipeline; json: plain data; python: one file that needs "
+    "NumPy alone; c: C99 with a header, no dependencies.",
 )
 @click.option(
     "--out",
@@ -33,12 +34,29 @@ KINDS: Final = {"ship": (".toml",), "python": (".py",)}
 @click.option("--force", is_flag=True, help="Replace what is there.")
 @click.option("--anyway", is_flag=True, help="Of a fit that carries no verdict, too.")
 @click.option("--quiet", is_flag=True, help="No progress, and no words about what was written.")
-def export(run: Path, kind: str, out: Path | None, force: bool, anyway: bool, quiet: bool) -> None:
+@click.option("--schema", is_flag=True, help="Instead: print the JSON Schema of --as json.")
+def export(
+    run: Path | None,
+    kind: str | None,
+    out: Path | None,
+    force: bool,
+    anyway: bool,
+    quiet: bool,
+    schema: bool,
+) -> None:
     """Write the model of a finished run for other programs, with how sure its numbers are.
 
     Each file holds the fitted values, where each is likely to lie, what the trials held of speeds
     and angles, and which logs it was fitted to; beyond what was seen the model says so itself.
     """
+    if schema:
+        from trialid.export.model.json_model import model_schema
+
+        say(json.dumps(model_schema(), indent=1))
+        return
+    if run is None or kind is None:
+        missing = "argument 'RUN_DIR'" if run is None else f"option '--as' ({', '.join(KINDS)})"
+        raise click.UsageError(f"Missing {missing}.")
     places = _places(run, kind, out, force)
     from trialid.workflow.use.finished_model import finished_model
     from trialid.workflow.use.hand_over import FORMATS

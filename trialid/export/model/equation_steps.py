@@ -32,7 +32,8 @@ C_WORDS: Final = (
 C_FUNCTIONS: Final = (
     "fabs sqrt sin cos exp tanh atan fmin fmax copysign y0 y1 yn j0 j1 jn gamma NAN INFINITY"
 )
-RESERVED: Final = frozenset(f"{C_WORDS} {C_FUNCTIONS}".split())
+OURS: Final = "np state inputs parameters rates outputs found"
+RESERVED: Final = frozenset(f"{C_WORDS} {C_FUNCTIONS} {OURS}".split())
 """What no step may be called in any of the languages."""
 
 
