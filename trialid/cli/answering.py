@@ -13,6 +13,7 @@ from trialid.errors import TrialidError
 if TYPE_CHECKING:
     from trialid.pipeline_file import Pipeline
     from trialid.result.schema import Result
+    from trialid.workflow.outcome import Run
 
 
 def open_pipeline(pipeline: Path, out: Path | None) -> tuple["Pipeline", Path]:
@@ -78,3 +79,34 @@ def _short(folder: Path) -> str:
     """A path short enough for one line."""
     text = str(folder)
     return text if len(text) <= 80 else f"{text[:40]}...{text[-37:]}"
+
+
+def check_draft(draft: Path | None) -> None:
+    """Refuse, before the work, a place where no new effect file can be."""
+    if draft is None:
+        return
+    if draft.exists():
+        raise TrialidError(f"--draft {draft}: exists; name another file, or move it away")
+    if draft.suffix != ".py":
+        raise TrialidError(f"--draft {draft}: an effect file ends in .py")
+    if not draft.parent.is_dir():
+        raise TrialidError(f"--draft {draft}: there is no folder {draft.parent}; make it first")
+    temporary.check_writable(draft.parent, "--draft")
+
+
+def write_draft(draft: Path, done: "Run") -> str:
+    """Write the effect file; what was written or why nothing, in one line."""
+    from trialid.diagnosis.force.draft import draft as drafted
+    from trialid.diagnosis.force.draft import why_none
+
+    found = done.findings.force
+    if found is None:
+        return "No draft: nothing is simulated, so that no force can be missing."
+    text = drafted(found, done.pipeline.name)
+    if text is None:
+        return why_none(found)
+    try:
+        temporary.write_new(draft, text)
+    except OSError as error:
+        raise TrialidError(f"--draft {draft}: {(error.strerror or str(error)).lower()}") from error
+    return f"Draft: {draft}"

@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from trialid import temporary
-from trialid.cli.answering import answer, open_pipeline, summary_of, write_or_say_why
+from trialid.cli.answering import (
+    answer,
+    check_draft,
+    open_pipeline,
+    summary_of,
+    write_draft,
+    write_or_say_why,
+)
 from trialid.cli.console import (
     Progress,
     complain,
@@ -29,23 +36,23 @@ from trialid.cli.console import (
 from trialid.cli.demo_command import demo
 from trialid.cli.design_command import design
 from trialid.cli.effects_command import effects
+from trialid.cli.export_command import export
 from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
 from trialid.cli.one_line_errors import WRONG_INPUT, OneLineErrors
 from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
 from trialid.cli.ship_command import ship
+from trialid.cli.simulate_command import simulate
 from trialid.cli.start_command import start
 from trialid.cli.structures_command import structures
 from trialid.cli.workbench_command import workbench
-from trialid.errors import TrialidError
 from trialid.version import VERSION
 
 if TYPE_CHECKING:
     from trialid.pipeline_file import Pipeline
     from trialid.result.schema import Result
     from trialid.workflow.grow import Stage
-    from trialid.workflow.outcome import Run
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF)
 """What a stream says that takes no more."""
@@ -117,7 +124,7 @@ def run(
     if pipeline is None:
         raise click.UsageError("Missing argument 'PIPELINE'.")
     asked, folder = open_pipeline(pipeline, out)
-    _check_draft(draft)
+    check_draft(draft)
     if auto:
         _grow(asked, folder, keep, as_json, quiet)
         return
@@ -137,7 +144,7 @@ def run(
         summary_of(str(asked.path), above=2 * (draft is not None)),
     )
     if draft is not None:
-        said = _write_draft(draft, done)
+        said = write_draft(draft, done)
         if not quiet:
             note(said) if as_json else say(render(said))
 
@@ -176,6 +183,8 @@ for command in (
     design,
     report,
     replay,
+    simulate,
+    export,
     structures,
     workbench,
     guide,
@@ -306,37 +315,6 @@ def _beside(result: "Result", lines: int) -> str:
     from trialid.report.terminal.before_after import before_after
 
     return render(before_after(result, lines))
-
-
-def _check_draft(draft: Path | None) -> None:
-    """Refuse, before the work, a place where no new effect file can be."""
-    if draft is None:
-        return
-    if draft.exists():
-        raise TrialidError(f"--draft {draft}: exists; name another file, or move it away")
-    if draft.suffix != ".py":
-        raise TrialidError(f"--draft {draft}: an effect file ends in .py")
-    if not draft.parent.is_dir():
-        raise TrialidError(f"--draft {draft}: there is no folder {draft.parent}; make it first")
-    temporary.check_writable(draft.parent, "--draft")
-
-
-def _write_draft(draft: Path, done: "Run") -> str:
-    """Write the effect file; what was written or why nothing, in one line."""
-    from trialid.diagnosis.force.draft import draft as drafted
-    from trialid.diagnosis.force.draft import why_none
-
-    found = done.findings.force
-    if found is None:
-        return "No draft: nothing is simulated, so that no force can be missing."
-    text = drafted(found, done.pipeline.name)
-    if text is None:
-        return why_none(found)
-    try:
-        temporary.write_new(draft, text)
-    except OSError as error:
-        raise TrialidError(f"--draft {draft}: {(error.strerror or str(error)).lower()}") from error
-    return f"Draft: {draft}"
 
 
 def _report_bug(

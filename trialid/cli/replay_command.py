@@ -14,7 +14,7 @@ import click
 from trialid import temporary
 from trialid.cli.console import complain, progress_bar, say
 from trialid.cli.replay_source import Following, source_of
-from trialid.errors import NotIdentifiable, PipelineError, TrialidError, nearest
+from trialid.errors import TrialidError, nearest
 from trialid.version import VERSION
 
 if TYPE_CHECKING:
@@ -190,6 +190,7 @@ def _ready(
     from trialid.workflow.findings import diagnose_settings
     from trialid.workflow.fit_model import fit_of
     from trialid.workflow.read_trials import align_trial
+    from trialid.workflow.use.finished_model import revived_fit
 
     def made() -> "tuple[Fit, Trial, Bands, Mapping[str, float]]":
         catalogue = available(asked)
@@ -205,7 +206,7 @@ def _ready(
         if folder is None or result is None:
             fit = fit_of(asked, tuple(trials), catalogue, progress)
         else:
-            fit = _revived(asked, trials, folder, result)
+            fit = revived_fit(asked, trials, result, f"--run {folder}")
         how = diagnose_settings(asked, catalogue)
         found, _, augmented = examine_fit(fit, how, progress)
         about = found.band if result is None else result.fit.band
@@ -227,29 +228,6 @@ def _in_order(asked: "Pipeline", trials: "Sequence[Trial]") -> "list[Trial]":
     """As the pipeline has them: sums over trials are then those of the run, bit for bit."""
     place = {t.name: i for i, t in enumerate(asked.trials)}
     return sorted(trials, key=lambda trial: place[trial.name])
-
-
-def _revived(asked: "Pipeline", trials: "Sequence[Trial]", folder: Path, result: "Result") -> "Fit":
-    """The fit of a finished run, its values taken as they are written."""
-    from trialid.identification.fit import revive
-    from trialid.workflow.build_model import available, build_model, settings_of
-
-    model = build_model(asked, available(asked))
-    kept, here = list(result.model.effects), [e.name for e in model.effects]
-    if kept != here:
-        apart = sorted({*kept} ^ {*here}) or ["their order"]
-        raise PipelineError(
-            f"--run {folder}: is of another model than {asked.path.name} (apart in "
-            f"{', '.join(apart)}); name a run of this pipeline, or leave --run out to fit again"
-        )
-    settings = replace(settings_of(asked, model), substeps=result.fit.substeps or 1)
-    values = {p.name: p.value for p in result.accuracy.parameters if p.value is not None}
-    try:
-        return revive(trials, model, settings, values)
-    except NotIdentifiable as error:
-        raise PipelineError(
-            f"--run {folder}: does not fit {asked.path.name}: {error}; leave --run out to fit"
-        ) from error
 
 
 def _follower(

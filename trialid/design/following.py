@@ -9,18 +9,18 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from trialid.accuracy.likely import WIDE, Standing
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.design.kinds import Test
+from trialid.design.likely_spread import likely_spread
 from trialid.design.limits import Limits, excesses
 from trialid.design.measure_slopes import Shows, measure_slopes
 from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
-from trialid.design.speed_loss import NAMES, speed_loss, with_speed_loss
+from trialid.design.speed_loss import speed_loss, with_speed_loss
 from trialid.design.standard import Measure, measures_of
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
@@ -64,17 +64,22 @@ def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
     DesignError
         The model does not turn, or is not steered by a rudder.
     """
-    trial = fit.problem.trials[0]
     sailed = model or fit.model
     if not STEERED & {*sailed.recorded}:
         raise DesignError("the model is not steered by a rudder")
+    return vessel(sailed, fit.problem.trials[0].period, steady_inputs(fit), _rate(fit))
+
+
+def steady_inputs(fit: Fit) -> dict[str, float]:
+    """What stays as it was in the first trial, the rudder apart: medians of its signals [SI]."""
+    trial = fit.problem.trials[0]
     eq = fit.problem.simulator.equations
     u = inputs(fit.problem.simulator, trial, fit.problem.simulator.fixed | fit.estimates)
     steady = {n: float(np.median(c)) for n, c in zip(eq.inputs, u.T, strict=True)}
     logged = {n: float(np.median(x)) for n, x in trial.signals.items() if n not in STATES}
     constants = {n: x for n, x in (logged | steady).items() if n not in STEERED and n != "t"}
     constants["u"] = fit.model.ship.particulars["U0"]  # the approach, not what a turn leaves of it
-    return vessel(sailed, trial.period, constants, _rate(fit))
+    return constants
 
 
 def _rate(fit: Fit) -> float:
@@ -245,22 +250,11 @@ def standard_measures(
     DesignError
         The model does not turn, or is not steered by a rudder.
     """
-    unknowns = fit.problem.unknowns
-    fitted = [x.column if x.trial is None else x.name for x in unknowns]
-    sources = len(fitted) + len(NAMES)
-    width = sum(len(m.columns) for m in missing)
-    slopes = measure_slopes(sailed_ship(fit), [*fitted, *NAMES, *held], missing, width)
-    averaged = standing.average(np.delete(slopes.by, np.s_[len(fitted) : sources], axis=1))
-    loss = speed_loss(fit)
-    of_loss = np.zeros((len(NAMES),) * 2) if loss is None else loss.covariance
-    known = block_diag(np.nan_to_num(covariance), of_loss)
-    by = slopes.by[:, :sources]
-    errors = np.sqrt(np.einsum("ni,ij,nj->n", by, known, by))
-    ranges = {
-        name: averaged.range(i, value, float(errors[i]))
-        for i, (name, value) in enumerate(slopes.values.items())
-    }
-    return measures_of(fit.model.ship, slopes.values, slopes.remarks, ranges)
+    spread = likely_spread(fit, covariance, standing, held, missing)
+    slopes = measure_slopes(sailed_ship(fit), spread.known, missing, spread.width)
+    ranges = spread.ranges([*slopes.values.values()], slopes.by)
+    known = dict(zip(slopes.values, ranges, strict=True))
+    return measures_of(fit.model.ship, slopes.values, slopes.remarks, known)
 
 
 def sailed_ship(fit: Fit) -> Vessel:

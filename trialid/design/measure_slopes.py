@@ -89,46 +89,67 @@ def measure_slopes(
     """
     base = in_calm(ship)
     acting = [m for m in missing if acts_in_calm(m.effect)]
+    moved = with_columns(base, known, acting)
+    passages = sail_all(base)
+    values, remarks = read_all(passages)
+    whole = np.zeros((len(values), len(known) + width))
+    rows = {n: i for i, n in enumerate(values)}
+    for reading in (r for r in READINGS if set(r.names) & set(values) and moved.places):
+        slopes = reading_slopes(moved.ship, passages[reading.manoeuvre], reading)
+        for name, row in slopes.items():
+            whole[rows[name], moved.places] = row
+    for one in (m for m in acting if m.tried):
+        other, _ = read_all(sail_all(tried_ship(base, one)))
+        apart = np.array([other.get(n, x) - x for n, x in values.items()])
+        whole[:, [len(known) + c for c in one.columns]] = apart[:, None]
+    return Slopes(values, remarks, whole)
+
+
+@dataclass(frozen=True)
+class WithColumns:
+    """A ship that gives derivatives, and the place of each among known and missing columns."""
+
+    ship: Vessel
+    places: list[int]
+
+
+def with_columns(
+    base: Vessel, known: Sequence[str], acting: Sequence[Shows], more: Sequence[str] = ()
+) -> WithColumns:
+    """The ship with what may be missing, all of it absent, ready to give sensitivities.
+
+    Parameters
+    ----------
+    known
+        Parameters that are fitted or held; those the ship has not, as of a sensor, move nothing.
+    acting
+        What may be missing and would move her; what is tried at one value has no sensitivity.
+    more
+        Outputs beside the heading, the speed ahead and the sway speed.
+    """
     linear = [m for m in acting if not m.tried]
     places = {n: i for i, n in enumerate(known) if n in base.model.parameters}
     for one in linear:
         places |= {n: len(known) + c for n, c in zip(one.parameters, one.columns, strict=True)}
-    passages = sail_all(base)
-    values, remarks = read_all(passages)
-    moved = _with_columns(base, [m.effect for m in linear], [*places])
-    order = [places[n] for n in moved.simulator.equations.free]
-    whole = np.zeros((len(values), len(known) + width))
-    rows = {n: i for i, n in enumerate(values)}
-    for reading in (r for r in READINGS if set(r.names) & set(values) and order):
-        for name, row in _slopes(moved, passages[reading.manoeuvre], reading).items():
-            whole[rows[name], order] = row
-    for one in (m for m in acting if m.tried):
-        whole[:, [len(known) + c for c in one.columns]] = _apart(base, one, values)[:, None]
-    return Slopes(values, remarks, whole)
-
-
-def _with_columns(base: Vessel, effects: Sequence[Effect], columns: Sequence[str]) -> Vessel:
-    """The ship with what may be missing, all of it absent, ready to give sensitivities."""
     model = base.model
-    for effect in effects:
-        model = model + effect
-    model = model.with_values({n: x for e in effects for n, x in e.nulls.items()})
-    outputs = ["psi", *speed_outputs(model), *({"v"} & {*model.states})]
-    return replace(base, model=model, simulator=prepare(model, columns, outputs))
+    for one in linear:
+        model = model + one.effect
+    model = model.with_values({n: x for m in linear for n, x in m.effect.nulls.items()})
+    outputs = dict.fromkeys(["psi", *speed_outputs(model), *({"v"} & {*model.states}), *more])
+    ship = replace(base, model=model, simulator=prepare(model, [*places], [*outputs]))
+    return WithColumns(ship, [places[n] for n in ship.simulator.equations.free])
 
 
-def _apart(base: Vessel, one: Shows, values: Mapping[str, float]) -> Vector:
-    """What an effect at the value tried does to each measure; nothing to one that it takes away."""
+def tried_ship(base: Vessel, one: Shows) -> Vessel:
+    """The ship with an effect at the value tried; the same where that takes nothing away."""
     model = (base.model + one.effect).with_values({**one.effect.nulls, **one.tried})
-    ship = vessel(model, base.period, base.constants, base.rudder_rate)
-    other, _ = read_all(sail_all(ship))
-    return np.array([other.get(n, x) - x for n, x in values.items()])
+    return vessel(model, base.period, base.constants, base.rudder_rate)
 
 
-def _slopes(ship: Vessel, passage: Passage, reading: Reading) -> dict[str, Vector]:
+def reading_slopes(ship: Vessel, passage: Passage, reading: Reading) -> dict[str, Vector]:
     """Slopes of what is read from a passage, by the columns of the ship; (n_columns,) each."""
-    short = _cut(passage)
-    motion = _total(ship, short)
+    short = until_amidships(passage)
+    motion = motion_slopes(ship, short)
     speed = ship.model.ship.particulars["U0"]
     scales = [1.0 if name == "psi" else speed for name in ship.simulator.outputs]
     sizes = np.max(np.abs(motion) / np.array(scales)[:, None], axis=(0, 1))
@@ -152,7 +173,7 @@ def _read(ship: Vessel, passage: Passage, change: Vector, reading: Reading) -> V
     return np.array(reading.read(moved, trial.signals["psi"]))
 
 
-def _cut(passage: Passage) -> Passage:
+def until_amidships(passage: Passage) -> Passage:
     """A passage up to amidships, where it comes so far; what is after that is measured nowhere."""
     trial = passage.trial
     end = int(np.flatnonzero(trial.signals["delta_order"])[-1]) + 3
@@ -161,7 +182,7 @@ def _cut(passage: Passage) -> Passage:
     return Passage(short, passage.x[:end], passage.y[:end], None)
 
 
-def _total(ship: Vessel, passage: Passage) -> Vector:
+def motion_slopes(ship: Vessel, passage: Passage) -> Vector:
     """Derivatives of the motion at each time, the helmsman answering; (N, n_outputs, n_columns)."""
     trial = passage.trial
     response = respond(ship.simulator, trial, _values(ship), {})

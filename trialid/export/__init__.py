@@ -4,7 +4,7 @@ Everything is in SI and says so; a sample that was not measured is empty or NaN,
 simulation would put there; and each file carries where it comes from.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ from trialid.export import csv_file, mat_file, mcap_file, parquet_file
 from trialid.plugins import plugins
 from trialid.trial import Trial
 
-__all__ = ["FORMATS", "check_place", "provenance_beside", "write"]
+__all__ = ["FORMATS", "check_place", "place", "provenance_beside", "write"]
 
 Writer = Callable[[Path, Sequence[Trial], Mapping[str, Any]], None]
 
@@ -33,16 +33,16 @@ def provenance_beside(path: Path) -> Path | None:
     return path.with_name(f"{path.name}.json") if path.suffix.lower() == ".csv" else None
 
 
-def check_place(path: Path, *, replace: bool) -> None:
+def check_place(path: Path, *, replace: bool, formats: Collection[str] = FORMATS) -> None:
     """Refuse, before the work, a file that cannot or should not be written.
 
     Raises
     ------
     TrialidError
-        Its suffix is none of `FORMATS`, its folder is missing, or it exists.
+        Its suffix is none of the formats, its folder is missing, or it exists.
     """
-    if path.suffix.lower() not in FORMATS:
-        known = ", ".join(FORMATS)
+    if path.suffix.lower() not in formats:
+        known = ", ".join(formats)
         given = f"{path.suffix!r} is none of them" if path.suffix else "it has none"
         raise TrialidError(f"--out {path}: the suffix says the format, {known}; {given}")
     if not path.parent.is_dir():
@@ -63,10 +63,22 @@ def write(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) ->
     TrialidError
         The file cannot be written, or a package its format needs is not there.
     """
+    writer = FORMATS[path.suffix.lower()]
+    place(path, lambda ready: writer(ready, trials, provenance), provenance)
+
+
+def place(path: Path, fill: Callable[[Path], None], provenance: Mapping[str, Any]) -> None:
+    """Let a file be filled and put in its place at one stroke, with what it is beside it.
+
+    Raises
+    ------
+    TrialidError
+        The file cannot be written.
+    """
     beside = provenance_beside(path)
     try:
         with temporary.replace_whole(path) as ready:
-            FORMATS[path.suffix.lower()](ready, trials, provenance)
+            fill(ready)
             if beside is not None:
                 near = ready.with_name(beside.name)
                 csv_file.write_provenance(near, provenance)

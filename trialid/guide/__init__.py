@@ -21,6 +21,7 @@ TOPICS: Final = {
     "nomenclature": "letters, units and signs",
     "design": "which test to sail next",
     "replay": "a trial played through the fitted model, with alarms",
+    "use": "the fitted ship under orders, and as files for others",
     "workbench": "add, look, undo: in the terminal and in a browser",
     "python": "the same from a notebook or a script",
     "trust": "how far the results can be trusted, in figures",

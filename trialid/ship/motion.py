@@ -1,7 +1,7 @@
 """Motion a ship model makes, as the simulator and the reader see it."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from trialid.errors import EffectError, ShipError
@@ -55,20 +55,45 @@ def motion(
     theta
         Values of `model.parameters`: primed, or in the parameter's unit.
     """
+    signals = acting_signals(model, states, inputs, theta)
+    force, rates = Force(), dict[str, Number]()
+    for _, part in effect_parts(model, states, inputs, theta):
+        if isinstance(part, Force):
+            force = _add(force, part)
+        else:
+            rates |= dict(part)
+    rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
+    return Motion(_balance(model, signals, force, theta), rates)
+
+
+def acting_signals(
+    model: ShipModel,
+    states: Mapping[str, Number],
+    inputs: Mapping[str, Number],
+    theta: Mapping[str, Number],
+) -> dict[str, Number]:
+    """States and inputs as they act on the ship, particulars and the speed U; SI."""
+    return _signals(model, {**model.ship.particulars, **inputs, **states}, theta)
+
+
+def effect_parts(
+    model: ShipModel,
+    states: Mapping[str, Number],
+    inputs: Mapping[str, Number],
+    theta: Mapping[str, Number],
+) -> Iterator[tuple[Effect, Force | Rate]]:
+    """What each effect adds to the motion: forces [SI], rates of its states."""
     recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
     signals = _signals(model, recorded, theta)
-    force, rates = Force(), dict[str, Number]()
     for effect in model.effects:
         if not {Force, Rate} & set(effect.forms):
             continue
         seen = measured_by(effect, recorded, signals)
         for part in effect(_values(model, effect, seen, theta)):
             if isinstance(part, Force):
-                force = _add(force, _to_SI(model, effect, part, signals))
+                yield effect, _to_SI(model, effect, part, signals)
             elif isinstance(part, Rate):
-                rates |= dict(part)
-    rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
-    return Motion(_balance(model, signals, force, theta), rates)
+                yield effect, part
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """What a run shows of itself in a notebook: tables as DataFrames, the card, the pictures."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
@@ -43,6 +43,41 @@ class RunView:
     def error(self) -> float:
         """Error of all outputs over all trials to fit, as a share of the measured RMS."""
         return self.fit.eps_rmsn
+
+    def simulate(
+        self,
+        *manoeuvre: str | float,
+        period: float | None = None,
+        anyway: bool = False,
+        **inputs: "Sequence[float]",
+    ) -> "pd.DataFrame":
+        """What the fitted ship does under orders, with where each motion is likely to lie.
+
+        Parameters
+        ----------
+        manoeuvre
+            Its name and angles [deg]: `"zigzag", 20, 20`, `"circle", 35`.
+        period, inputs
+            Or orders: the time between samples [s], and inputs by name in SI, the rudder positive
+            to starboard; (N,) each.
+        anyway
+            Of a fit that carries no verdict, too.
+
+        Returns
+        -------
+        DataFrame
+            Index `t` [s]; inputs, motions and the track in SI, each motion with `_from` and `_to`;
+            `attrs` holds the standard `numbers` with their ranges, and `words` to read beside them.
+
+        Raises
+        ------
+        TrialidError
+            There is no such manoeuvre or input, or the fit carries no verdict.
+        """
+        from trialid.workflow.use.in_memory import simulated_frame
+
+        words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
+        return simulated_frame(self, words, period, inputs, anyway=anyway)
 
     @property
     def parameters(self) -> "pd.DataFrame":

@@ -1,0 +1,91 @@
+"""The fitted ship file: what is fitted again moves by nothing, and the file says how sure it is."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import s175q
+from test_bad_input import trialid_
+
+from trialid.effects import CATALOGUE
+from trialid.export.model.fitted_ship import _file_factor, fitted_ship, fitted_ship_text
+from trialid.result.fit_rows import AccuracyPart, ParameterRow
+from trialid.result.schema import Result
+from trialid.ship.model import ShipModel
+from trialid.ship.particulars import Ship, read_ship
+
+HUNDREDTH = 0.01
+
+
+@pytest.fixture
+def exported(run_folder: Path, tmp_path: Path) -> Path:
+    """The project of the run once more, its ship file the exported one."""
+    project = Path(shutil.copytree(run_folder.parents[1], tmp_path / "again"))
+    out = ("--out", str(project / "ship.toml"), "--force")
+    told = trialid_("export", str(run_folder), "--as", "ship", *out)
+    assert told.exit_code == 0, told.stderr
+    return project
+
+
+def test_fitted_again_nothing_moves(run_folder: Path, exported: Path) -> None:
+    """By no more than a hundredth of its standard error, from where the first fit ended."""
+    told = trialid_("run", str(exported / "used.toml"), "--quiet", "--out", str(exported / "r"))
+    assert told.exit_code == 0, told.stderr
+    before, after = (
+        {p["name"]: p for p in json.loads(path.read_text("utf-8"))["accuracy"]["parameters"]}
+        for path in (run_folder / "result.json", exported / "r" / "result.json")
+    )
+    assert before.keys() == after.keys()
+    for name, row in before.items():
+        moved = abs(after[name]["value"] - row["value"])
+        assert moved <= HUNDREDTH * row["standard_error"], name
+    old = s175q.SHIP.coefficients["Nr"]
+    assert read_ship(exported / "ship.toml").coefficients["Nr"] != old
+
+
+def test_how_sure_it_is_goes_with_it(run_folder: Path, exported: Path) -> None:
+    """No number more sure than its likely range; what was not fitted keeps what it had."""
+    rows = json.loads((run_folder / "result.json").read_text("utf-8"))["accuracy"]["parameters"]
+    ship = read_ship(exported / "ship.toml")
+    fitted = [p for p in rows if p["kind"] == "physical"]
+    assert {p["name"] for p in fitted} == {"Nr", "Nv", "Ndelta", "GM"}
+    for p in fitted:
+        far = max(abs(end - p["value"]) for end in p["likely"]) / abs(p["value"])
+        assert ship.uncertainty[p["name"]] == pytest.approx(far / 1.96, rel=1e-3)
+        assert ship.coefficients[p["name"]] == p["value"]
+    assert ship.share_off("Yv") == s175q.SHIP.share_off("Yv")
+    assert "zigzag-10.csv, zigzag-20.csv" in ship.source
+    assert s175q.SHIP.source in ship.source
+
+
+def test_a_ship_of_another_system_keeps_it(tmp_path: Path) -> None:
+    """Dimensional, her rudder to port: her file has the fitted numbers in her own system."""
+    prime = s175q.SHIP
+    names = ("linear_hull", "linear_rudder", "linear_roll")
+    effects = tuple(CATALOGUE[n] for n in names)
+    port = Ship(
+        name="port",
+        source="made",
+        system="dimensional",
+        rudder_positive="port",
+        particulars=prime.particulars,
+        mass={"m": 2.2e7, "I_zz": 3.8e10, "I_xx": 1.5e9, "Nrdot": -3.5e10},
+        coefficients={"Ndelta": -9.0e6, "Nr": -2.0e9, "Yv": -1.3e6, "GM": 0.4},
+        coefficient_speed=7.0,
+    )
+    model = ShipModel(port, ("v", "r"), effects)
+    fitted = {"Ndelta": 0.0016, "Nr": -0.0026, "GM": 0.33, "Nrdot": -0.0004}
+    rows = tuple(
+        ParameterRow(name=n, value=x, likely=(0.9 * x, 1.1 * x)) for n, x in fitted.items()
+    )
+    result = Result(accuracy=AccuracyPart(parameters=rows))
+    made = fitted_ship(model.with_values(fitted), result)
+    path = tmp_path / "port.toml"
+    path.write_text(fitted_ship_text(made, ()), encoding="utf-8")
+    back = ShipModel(read_ship(path), ("v", "r"), effects)
+    for name, value in fitted.items():
+        assert back.value(name) == pytest.approx(value, rel=1e-14), name
+    assert back.value("Yv") == model.value("Yv")
+    assert read_ship(path).coefficients["Ndelta"] < 0.0
+    assert _file_factor(model, "Ndelta") < 0.0

@@ -1,0 +1,77 @@
+"""Where whatever follows from a fit is likely to lie, from how it goes with what is uncertain.
+
+What the record leaves open of the parameters, of what was held fixed and of what may be missing is
+followed to each number by its slopes. So a missing effect counts twice: it moved the parameters,
+and it is not there in the prediction.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from trialid.accuracy.likely import Standing
+from trialid.arrays import Vector
+from trialid.design.measure_slopes import Shows
+from trialid.design.speed_loss import NAMES, speed_loss
+from trialid.identification.fit import Fit
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class LikelySpread:
+    """All that a prediction of a fitted ship is uncertain by.
+
+    Attributes
+    ----------
+    fitted, held, missing
+        Columns of the fit's unknowns, coefficients held fixed, and what may be missing.
+    covariance
+        Of the unknowns by noise, and of what turns cost of the speed.
+    standing
+        How models of what is missing stand.
+    """
+
+    fitted: tuple[str, ...]
+    held: tuple[str, ...]
+    missing: tuple[Shows, ...]
+    covariance: Vector
+    standing: Standing
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """What slopes are by, before what may be missing."""
+        return (*self.fitted, *NAMES, *self.held)
+
+    @property
+    def width(self) -> int:
+        """Columns of what may be missing."""
+        return sum(len(m.columns) for m in self.missing)
+
+    def ranges(self, values: Sequence[float] | Vector, by: Vector) -> list[Range | None]:
+        """The 95 % range of each number; None where nobody knows.
+
+        Parameters
+        ----------
+        values, by
+            The numbers (n,), and their slopes by `known` and `missing`; (n, n_known + width).
+        """
+        first, last = len(self.fitted), len(self.fitted) + len(NAMES)
+        averaged = self.standing.average(np.delete(by, np.s_[first:last], axis=1))
+        own = by[:, :last]
+        errors = np.sqrt(np.einsum("ni,ni->n", own @ self.covariance, own))
+        each = zip(values, errors, strict=True)
+        return [averaged.range(i, float(x), float(e)) for i, (x, e) in enumerate(each)]
+
+
+def likely_spread(
+    fit: Fit, covariance: Vector, standing: Standing, held: Sequence[str], missing: Sequence[Shows]
+) -> LikelySpread:
+    """All that a prediction is uncertain by; arguments as the accuracy of the fit gives them."""
+    fitted = [x.column if x.trial is None else x.name for x in fit.problem.unknowns]
+    loss = speed_loss(fit)
+    of_loss = np.zeros((len(NAMES),) * 2) if loss is None else loss.covariance
+    known = block_diag(np.nan_to_num(covariance), of_loss)
+    return LikelySpread(tuple(fitted), tuple(held), tuple(missing), known, standing)

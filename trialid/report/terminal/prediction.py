@@ -1,0 +1,43 @@
+"""A predicted manoeuvre for a terminal: its numbers, how far motions go, what to know of it."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from trialid.design.predicted_motion import TRACK, PredictedMotion
+from trialid.names import labels
+from trialid.report.terminal.terminal import Words, add_row, new_table, number
+
+DIGITS: Final = 4
+LINES: Final = 6
+"""Lines that a sentence may take."""
+
+
+def prediction_table(name: str, made: PredictedMotion, words: Sequence[str]) -> Iterator[Any]:
+    """What was predicted, and every sentence that belongs beside it."""
+    for sentence in words:
+        yield Words(sentence, LINES)
+    yield f"{name}, {made.t[-1]:.0f} s"
+    if made.numbers:
+        table = new_table("", "value", "likely from", "to", words=1)
+        for label, (value, ends) in made.numbers.items():
+            low, high = ends or (None, None)
+            add_row(table, label, *(number(x, DIGITS) for x in (value, low, high)))
+        yield table
+    if made.remark:
+        yield Words(f"Not come to: {made.remark}.", LINES)
+    table = new_table("farthest from its beginning", "unit", "value", "likely from", "to", words=2)
+    for signal in (s for s in made.motion if s not in TRACK and s != "psi"):
+        add_row(table, *_largest(made, signal))
+    yield table
+
+
+def _largest(made: PredictedMotion, signal: str) -> tuple[str, ...]:
+    """A motion where it is farthest from where it begins, with its range there."""
+    values = np.abs(made.motion[signal] - made.motion[signal][0])
+    place = int(np.nanargmax(values))
+    factor, ends = labels.shown_factor(signal), made.ranges[signal]
+    known = [factor * float(x[place]) for x in (made.motion[signal], *ends)]
+    shown = (number(x if np.isfinite(x) else None, DIGITS) for x in known)
+    return (labels.label(signal), labels.shown_unit(signal), *shown)

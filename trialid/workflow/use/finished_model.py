@@ -1,0 +1,132 @@
+"""The fitted model of a finished run, with how sure it is, from the run's folder and its logs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+from trialid.design.seen_range import SeenRange, seen_ranges
+from trialid.diagnosis.diagnose import Diagnosed, examine_fit
+from trialid.errors import NotIdentifiable, PipelineError, TrialidError
+from trialid.identification.fit import Fit, revive
+from trialid.pipeline_file import Pipeline
+from trialid.progress import Progress
+from trialid.report.words.doubt import doubtful
+from trialid.result.schema import Result
+from trialid.threads import one_thread
+from trialid.trial import Trial
+from trialid.workflow.build_model import available, build_model, settings_of
+from trialid.workflow.findings import diagnose_settings
+from trialid.workflow.read_trials import align_trials
+from trialid.workflow.repeat import earlier
+
+NO_FIT: Final = "no fit"
+"""The verdict of a fit that nothing may be built on."""
+
+
+@dataclass(frozen=True)
+class FinishedModel:
+    """A finished run taken up again: the same values, and what they rest on.
+
+    Attributes
+    ----------
+    where
+        What a mistake is told of: the run's folder.
+    seen
+        What the fitted trials hold of every input and motion, by name [SI].
+    """
+
+    where: str
+    result: Result
+    done: Diagnosed
+    seen: dict[str, SeenRange]
+
+    @property
+    def fit(self) -> Fit:
+        """The fit, its search over."""
+        return self.done.fit
+
+    @property
+    def reliable(self) -> bool:
+        """Whether the run reached a verdict at all."""
+        return self.result.verdict.kind != NO_FIT
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What anybody who uses the model has to know of it, a sentence each."""
+        verdict = self.result.verdict
+        said = [verdict.sentence or "no fit"] if not self.reliable else []
+        if verdict.kind in ("missing", "not in catalogue"):
+            what = verdict.effect or "something outside the catalogue"
+            said.append(f"The run says that {what} is missing; this is the model without it.")
+        return (*said, *filter(None, [doubtful(self.result.physical)]))
+
+
+@one_thread
+def finished_model(folder: Path, progress: Progress, *, anyway: bool = False) -> FinishedModel:
+    """The model of a run's folder; its logs are read again, and checked by their hashes.
+
+    Parameters
+    ----------
+    anyway
+        Take a fit that carries no verdict too.
+
+    Raises
+    ------
+    TrialidError
+        The folder holds no run, what it rests on has changed, or its fit carries no verdict.
+    """
+    run = earlier(folder)
+    check_verdict(run.result, str(folder), anyway=anyway)
+    progress("reading", 0.1)
+    trials = align_trials(run.pipeline, progress)
+    fit = revived_fit(run.pipeline, trials, run.result, str(folder))
+    how = diagnose_settings(run.pipeline, available(run.pipeline))
+    done, _, _ = examine_fit(fit, how, progress)
+    return FinishedModel(str(folder), run.result, done, seen_ranges(fit))
+
+
+def check_verdict(result: Result, where: str, *, anyway: bool) -> None:
+    """Refuse a fit that carries no verdict, unless somebody wants it anyway.
+
+    Raises
+    ------
+    TrialidError
+        It carries none; the message says why.
+    """
+    if result.verdict.kind == NO_FIT and not anyway:
+        raise TrialidError(
+            f"{where}: {result.verdict.sentence or NO_FIT}; nothing is built on it; mend the fit, "
+            "or say --anyway (in Python anyway=True), which marks what comes out"
+        )
+
+
+def revived_fit(asked: Pipeline, trials: Sequence[Trial], result: Result, where: str) -> Fit:
+    """The fit of a finished run, its values taken as they are written.
+
+    Parameters
+    ----------
+    where
+        What a mistake is told of: the folder, or the option that names it.
+
+    Raises
+    ------
+    PipelineError
+        The run is of another model, or of other trials.
+    """
+    model = build_model(asked, available(asked))
+    kept, here = list(result.model.effects), [e.name for e in model.effects]
+    if kept != here:
+        apart = sorted({*kept} ^ {*here}) or ["their order"]
+        raise PipelineError(
+            f"{where}: is of another model than {asked.path.name} (apart in "
+            f"{', '.join(apart)}); name a run of this pipeline, or run it anew"
+        )
+    settings = replace(settings_of(asked, model), substeps=result.fit.substeps or 1)
+    values = {p.name: p.value for p in result.accuracy.parameters if p.value is not None}
+    try:
+        return revive(trials, model, settings, values)
+    except NotIdentifiable as error:
+        raise PipelineError(
+            f"{where}: does not fit {asked.path.name}: {error}; run it anew"
+        ) from error

@@ -1,0 +1,60 @@
+"""A finished run's model as files: which there are, and what each holds."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from trialid.export.model.c_text import c_texts
+from trialid.export.model.fitted_model import FittedModel, fitted_model
+from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
+from trialid.export.model.json_model import model_file
+from trialid.export.model.numpy_text import numpy_text
+from trialid.result.json_file import text_of
+from trialid.workflow.use.finished_model import FinishedModel
+
+Files = dict[str, str]
+"""By the suffix that follows the name of what is written."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """A form of a model: how its files end, and what they hold."""
+
+    words: str
+    suffixes: tuple[str, ...]
+    write: Callable[[FinishedModel, str], Files]
+
+
+def taken_up(model: FinishedModel) -> FittedModel:
+    """The model with all that its files say of it."""
+    done = model.done
+    return fitted_model(model.fit, done.accuracy, model.result, model.seen, model.doubts)
+
+
+def _ship(model: FinishedModel, name: str) -> Files:
+    del name
+    made = fitted_ship(model.fit.model, model.result)
+    return {".toml": fitted_ship_text(made, model.doubts)}
+
+
+def _python(model: FinishedModel, name: str) -> Files:
+    del name
+    return {".py": numpy_text(taken_up(model))}
+
+
+def _json(model: FinishedModel, name: str) -> Files:
+    del name
+    return {".json": text_of(model_file(taken_up(model)))}
+
+
+def _c(model: FinishedModel, name: str) -> Files:
+    return c_texts(taken_up(model), name)
+
+
+FORMATS: Final[Mapping[str, Format]] = {
+    "ship": Format("a ship file for a next pipeline", (".toml",), _ship),
+    "json": Format("plain data, with a schema", (".json",), _json),
+    "c": Format("C99 with a header, no dependencies", (".c", ".h"), _c),
+    "python": Format("one file that needs NumPy alone", (".py",), _python),
+}
+"""What a model can be written as."""

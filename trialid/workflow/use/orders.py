@@ -1,0 +1,143 @@
+"""What a ship is told: a manoeuvre by name and numbers, or a table of orders."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trialid import ingest
+from trialid.arrays import Vector
+from trialid.design import manoeuvres, measures
+from trialid.design.helm import Passage
+from trialid.design.predicted_motion import Manoeuvre
+from trialid.design.standard import DEGREES, Reading
+from trialid.errors import TrialidError, nearest
+from trialid.names import units
+from trialid.names.quantities import SIGNALS
+
+REVERSALS: Final = 4
+LARGEST: Final = 90.0
+"""deg beyond which no rudder goes."""
+FEWEST: Final = 2
+TIME: Final = "t"
+ORDINALS: Final = ("first", "second", "third")
+
+
+@dataclass(frozen=True)
+class OrderTable:
+    """Inputs over time in SI, straight between the times; (N,) each."""
+
+    t: Vector
+    signals: Mapping[str, Vector]
+
+
+def named_manoeuvre(words: Sequence[str]) -> Manoeuvre:
+    """A manoeuvre from its name and numbers [deg]: `zigzag 20 20`, `circle 35`.
+
+    Raises
+    ------
+    TrialidError
+        There is no such manoeuvre, or its numbers are none.
+    """
+    name, *numbers = words
+    if name not in BY_NAME:
+        raise TrialidError(
+            f"ORDERS {name!r}: is no file and no manoeuvre; give a CSV of orders, or one of "
+            f"{'; '.join(one.usage for one in BY_NAME.values())} ({nearest(name, BY_NAME)})"
+        )
+    known = BY_NAME[name]
+    try:
+        angles = [float(number) for number in numbers]
+    except ValueError as error:
+        raise TrialidError(f"ORDERS: {known.usage}: {error}") from error
+    if not known.fewest <= len(angles) <= known.most:
+        raise TrialidError(f"ORDERS: {' '.join(words)!r}: expected {known.usage}, angles in deg")
+    wrong = [a for a in angles if not 0.0 < a <= LARGEST]
+    if wrong:
+        raise TrialidError(
+            f"ORDERS: {' '.join(words)!r}: {wrong[0]:g} is no angle of a manoeuvre; expected more "
+            f"than 0 and at most {LARGEST:g} deg"
+        )
+    return known.make(angles)
+
+
+def _zigzag(angles: Sequence[float]) -> Manoeuvre:
+    rudder, heading = angles[0], angles[-1]
+    kind = f"{rudder:g}/{heading:g}"
+    a, h = float(np.deg2rad(rudder)), float(np.deg2rad(heading))
+    overshoots = tuple(f"{n} overshoot {kind} [deg]" for n in ORDINALS)
+    names = (f"track to {heading:g} deg of heading [m]", *overshoots)
+
+    def read(passage: Passage, headings: Vector | None) -> list[float]:
+        found = [x * DEGREES for x in measures.overshoots(passage, headings)]
+        return [measures.initial_turning(passage, h), *found[: len(ORDINALS)]]
+
+    reading = Reading(names, f"zig-zag {kind}", read)
+    return Manoeuvre(reading.manoeuvre, lambda: manoeuvres.zigzag(a, h, REVERSALS), reading)
+
+
+def _circle(angles: Sequence[float]) -> Manoeuvre:
+    name = f"turning circle {angles[0]:g}"
+
+    def read(passage: Passage, headings: Vector | None) -> list[float]:
+        del headings
+        return [*measures.turning(passage).values()]
+
+    names = ("advance [m]", "transfer [m]", "tactical diameter [m]")
+    angle = float(np.deg2rad(angles[0]))
+    reading = Reading(names, name, read)
+    return Manoeuvre(name, lambda: manoeuvres.turning_circle(angle), reading)
+
+
+@dataclass(frozen=True)
+class _Named:
+    usage: str
+    fewest: int
+    most: int
+    make: Callable[[Sequence[float]], Manoeuvre]
+
+
+BY_NAME: Final = {
+    "zigzag": _Named("zigzag RUDDER [HEADING]", 1, 2, _zigzag),
+    "circle": _Named("circle RUDDER", 1, 1, _circle),
+}
+"""Manoeuvres that can be asked for by a word."""
+
+
+def read_orders(path: Path) -> OrderTable:
+    """The orders in a table: a column t, and inputs by their names with their units.
+
+    Names and signs are those of the dictionary, as `delta[deg]`: positive turns the ship to
+    starboard.
+
+    Raises
+    ------
+    TrialidError
+        A column without a unit or of no known name is left out; none is left, a value is missing,
+        or the times do not rise.
+    """
+    recording = ingest.read(path)
+    signals, t = dict[str, Vector](), None
+    for name, channel in recording.channels.items():
+        if name not in SIGNALS or name == TIME:
+            continue
+        if channel.unit is None:
+            raise TrialidError(
+                f"{path}: column {name}: no unit; write its header as {name}[{SIGNALS[name].shown}]"
+            )
+        if not np.isfinite(channel.y).all():
+            row = int(np.flatnonzero(~np.isfinite(channel.y))[0]) + 1
+            raise TrialidError(f"{path}: column {name}: row {row} of the orders has no number")
+        signals[name] = channel.y * units.factor(channel.unit, SIGNALS[name].unit)
+        t = channel.t
+    if t is None or len(t) < FEWEST:
+        raise TrialidError(
+            f"{path}: no orders; expected a column t [s] and inputs such as delta[deg], of at "
+            f"least {FEWEST} rows; its columns: {', '.join(recording.channels) or 'none'}"
+        )
+    if not (np.diff(t) > 0).all():
+        row = int(np.flatnonzero(np.diff(t) <= 0)[0]) + 2
+        raise TrialidError(f"{path}: t does not rise at row {row}; give one manoeuvre in a file")
+    return OrderTable((t - t[0]) / 1e9, signals)

@@ -1,0 +1,131 @@
+"""A finished run's model under orders: series, ranges, numbers, and what to know of them."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.design.following import STEERED, sailed_ship, steady_inputs
+from trialid.design.helm import Vessel, vessel
+from trialid.design.likely_spread import LikelySpread, likely_spread
+from trialid.design.predicted_motion import Manoeuvre, PredictedMotion, sail_manoeuvre, sail_orders
+from trialid.design.seen_range import beyond_words
+from trialid.errors import DesignError, TrialidError
+from trialid.names import labels
+from trialid.threads import one_thread
+from trialid.trial import Trial
+from trialid.workflow.use.finished_model import FinishedModel
+from trialid.workflow.use.orders import OrderTable
+
+LONGEST: Final = 1_000_000
+"""Samples that are simulated at most."""
+NOTHING: Final[Mapping[str, float]] = MappingProxyType({})
+EVEN: Final = 1e-3
+"""Share of a step by which times may differ and count as even."""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What a model does under orders, and every sentence that belongs beside it."""
+
+    name: str
+    motion: PredictedMotion
+    words: tuple[str, ...]
+
+
+@one_thread
+def predict_manoeuvre(model: FinishedModel, asked: Manoeuvre) -> Prediction:
+    """A manoeuvre by name, as the run's standard measures are sailed.
+
+    Raises
+    ------
+    DesignError
+        The model cannot be steered by a rudder.
+    """
+    ship = sailed_ship(model.fit)
+    made = sail_manoeuvre(ship, asked, spread_of(model), model.result.fit.band)
+    return _with_words(model, asked.name, made)
+
+
+@one_thread
+def predict_orders(model: FinishedModel, table: OrderTable, name: str) -> Prediction:
+    """Orders of a table.
+
+    Raises
+    ------
+    TrialidError
+        None of them is an input of the model, or there are too many.
+    """
+    ship, held = _ship_for(model, {*table.signals})
+    clock = model.fit.problem.trials[0].period / model.fit.settings.substeps
+    t, every = _clock(table.t, clock)
+    signals = {n: np.interp(t, table.t, x) for n, x in table.signals.items()}
+    inputs = {*ship.simulator.equations.inputs}
+    if not ({*signals} | ({"delta"} if "delta_order" in signals else set())) & inputs:
+        raise TrialidError(
+            f"{name}: holds no input of the model; expected {', '.join(sorted(inputs))}, it has "
+            f"{', '.join(signals)}"
+        )
+    signals |= {n: np.full(len(t), x) for n, x in held.items()}
+    orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
+    made = sail_orders(ship, orders, spread_of(model), model.result.fit.band, every)
+    unread = {*table.signals} - inputs - {*ship.model.all_states} - STEERED
+    return _with_words(model, name, made, held, unread)
+
+
+def spread_of(model: FinishedModel) -> LikelySpread:
+    """All that a prediction of a finished run is uncertain by."""
+    off = model.done.doubts
+    covariance = model.done.accuracy.covariance
+    return likely_spread(model.fit, covariance, off.standing, off.held, off.missing)
+
+
+def _ship_for(model: FinishedModel, given: set[str]) -> tuple[Vessel, dict[str, float]]:
+    """The ship, losing speed in turns where no speed is given; inputs held as in her trials."""
+    fit = model.fit
+    try:
+        steered = sailed_ship(fit)
+    except DesignError:
+        steady = steady_inputs(fit)
+        steered = vessel(fit.model, fit.problem.trials[0].period, steady, np.inf)
+    if "u" in given and "u" not in fit.model.states:
+        steered = vessel(fit.model, steered.period, steered.constants, steered.rudder_rate)
+    needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
+    return steered, {n: steered.constants[n] for n in sorted(needed) if n in steered.constants}
+
+
+def _clock(t: Vector, longest: float) -> tuple[Vector, int]:
+    """Even times no farther apart than the fit's, and how many there are to one of the table's."""
+    steps = np.diff(t)
+    own = float(np.median(steps))
+    even = bool(np.all(np.abs(steps - own) <= EVEN * own))
+    every = max(int(np.ceil(own / longest - EVEN)), 1) if even else 1
+    period = own / every if even else longest
+    count = round(float(t[-1]) / period) if even else int(np.ceil(t[-1] / period))
+    if count >= LONGEST:
+        raise TrialidError(
+            f"the orders take {count} steps of {period:.3g} s, at most {LONGEST}; give fewer"
+        )
+    return np.asarray(np.arange(max(count, 1) + 1) * period), every
+
+
+def _with_words(
+    model: FinishedModel,
+    name: str,
+    made: PredictedMotion,
+    held: Mapping[str, float] = NOTHING,
+    unread: Collection[str] = (),
+) -> Prediction:
+    words = [*model.doubts]
+    words += filter(None, [beyond_words(model.seen, {**made.given, **made.motion})])
+    if unread:
+        words.append(f"Not read by the model: {', '.join(sorted(unread))}.")
+    if held:
+        listed = ", ".join(f"{n} = {labels.shown_text(n, x)}" for n, x in held.items())
+        words.append(f"Not among the orders, held as in the trials: {listed}.")
+    if made.departure is not None:
+        words.append(f"The ship leaves her model: {made.departure}; nothing is given beyond.")
+    return Prediction(name, made, tuple(words))
