@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from trialid.errors import EffectError, ShipError
-from trialid.maths import Number, sqrt
-from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS
+from trialid.maths import Number, arctan, cos, sin, sqrt
+from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, POSITION
 from trialid.ship.effect import (
     SENSORS,
     Delayed,
@@ -19,7 +19,7 @@ from trialid.ship.effect import (
     Steered,
 )
 from trialid.ship.mass_matrix import determinant, solve
-from trialid.ship.model import KINEMATICS, STANDSTILL, ShipModel, late, slope
+from trialid.ship.model import DRIFT, KINEMATICS, STANDSTILL, ShipModel, late, slope
 from trialid.ship.prime import mass_scale, prime_parameter, prime_signal
 from trialid.ship.rigid_body import ROWS, Balance, rigid_body
 
@@ -68,6 +68,7 @@ def motion(
             elif isinstance(part, Rate):
                 rates |= dict(part)
     rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
+    rates |= {a: rate for a, rate in _way(model, signals).items() if a in model.states}
     return Motion(_balance(model, signals, force, theta), rates)
 
 
@@ -100,6 +101,7 @@ def readings(
     """What is recorded of one instant; `rates` are the time derivatives of the states."""
     recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
     recorded |= {a: rates.get(a[0], 0.0) for a in ACCELERATIONS}
+    recorded |= {f"{a}_dot": rates[a] for a in POSITION if a in rates}
     signals = _signals(model, recorded, theta)
     measured = {**recorded, "U": signals["U"]} | dict.fromkeys(_from_reference(model), 0.0)
     delay, lags = dict[str, Number](), dict[str, tuple[Number, ...]]()
@@ -116,7 +118,7 @@ def readings(
                     delay |= {n: delay.get(n, 0.0) + x for n, x in part.items()}
                 case Lagged():
                     lags |= {n: (*lags.get(n, ()), x) for n, x in part.items()}
-    return Readings(measured, delay, lags)
+    return Readings(measured | _course(measured), delay, lags)
 
 
 def derivatives(
@@ -144,6 +146,27 @@ def measured_by(
 ) -> Mapping[str, Number]:
     """What an effect sees: steering gear and sensors the recorded rudder, forces the acting one."""
     return acting if Force in effect.forms else {**recorded, "U": acting["U"]}
+
+
+def _way(model: ShipModel, signals: Mapping[str, Number]) -> dict[str, Number]:
+    """Speed to the north and to the east of a ship in still water; axes stay horizontal."""
+    if not {*POSITION} & {*model.states}:
+        return {}
+    u, v, psi = (signals[s] for s in DRIFT)
+    return {"x": u * cos(psi) - v * sin(psi), "y": u * sin(psi) + v * cos(psi)}
+
+
+def _course(measured: Mapping[str, Number]) -> dict[str, Number]:
+    """Speed and course over ground; the course goes on with the heading beyond 180 deg.
+
+    It has no number where she drives straight astern over the ground.
+    """
+    if not {"x_dot", "y_dot", "psi"} <= {*measured}:
+        return {}
+    north, east, psi = (measured[n] for n in ("x_dot", "y_dot", "psi"))
+    sog = sqrt(north * north + east * east + STANDSTILL**2)
+    ahead, aside = north * cos(psi) + east * sin(psi), east * cos(psi) - north * sin(psi)
+    return {"sog": sog, "cog": psi + 2.0 * arctan(aside / (sog + ahead))}
 
 
 def _from_reference(model: ShipModel) -> tuple[str, ...]:
