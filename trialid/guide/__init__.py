@@ -19,6 +19,7 @@ TOPICS: Final = {
     "structures": "whole models compared by leaving out each trial",
     "accuracy": "how far off a parameter may be: what each column means",
     "nomenclature": "letters, units and signs",
+    "track": "positions, the current",
     "design": "which test to sail next",
     "replay": "a trial played through the fitted model, with alarms",
     "workbench": "add, look, undo: in the terminal and in a browser",
