@@ -16,7 +16,8 @@ from trialid.maths import exp
 from trialid.ship.effect import Delayed
 from trialid.ship.model import ShipModel, late
 from trialid.ship.model import slope as slope_of
-from trialid.ship.motion import derivatives, readings
+from trialid.ship.motion import derivatives
+from trialid.ship.readings import readings
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]

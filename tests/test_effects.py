@@ -12,7 +12,7 @@ from dual import independent, slope
 from typical import draw
 
 from trialid.effects import CATALOGUE, FILES
-from trialid.names.quantities import PARTICULARS, QUANTITIES, SIGNALS
+from trialid.names.quantities import PARTICULARS, POSITION, QUANTITIES, SIGNALS
 from trialid.ship.effect import FORMS, Effect, Force
 from trialid.ship.model import STATES, ShipModel
 from trialid.ship.motion import derivatives
@@ -151,7 +151,7 @@ def test_nothing_happens_on_a_straight_course(name: str) -> None:
 def test_a_ship_at_rest_stays_at_rest(name: str) -> None:
     """In the model, where the speed U that primes the forces is itself zero."""
     effect = CATALOGUE[name]
-    states = tuple(s for s in STATES if s not in effect.states)
+    states = tuple(s for s in STATES if s not in {*effect.states, *POSITION})
     model = ShipModel(SHIP, states, (effect,))
     theta = {n: SHIP.mass.get(n, 0.0) for n in model.parameters}
     theta |= {n: p.start for n, p in effect.parameters.items()}

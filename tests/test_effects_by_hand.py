@@ -9,8 +9,9 @@ import pytest
 from trialid.effects import CATALOGUE
 from trialid.maths import Number
 from trialid.ship.model import STATES, ShipModel
-from trialid.ship.motion import derivatives, readings
+from trialid.ship.motion import derivatives
 from trialid.ship.particulars import read_ship
+from trialid.ship.readings import readings
 
 SHIP = read_ship(Path(__file__).parent.parent / "sample_data" / "ships" / "s175q.toml")
 L, RHO, G, NABLA, T, U0 = (SHIP.particulars[n] for n in ("L", "rho", "g", "nabla", "T", "U0"))

@@ -9,6 +9,7 @@ from s175q import MODEL, SHAFT
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
+from trialid.names.quantities import POSITION
 from trialid.ship.effect import Effect, Steered
 from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import prepare, respond
@@ -45,7 +46,7 @@ def ship_with(effect: Effect) -> ShipModel:
         e for e in MODEL.effects if e.name != same and not {*e.parameters} & {*effect.parameters}
     )
     steered = effect.acts_on(Steered)
-    states = tuple(s for s in STATES if s not in steered)
+    states = tuple(s for s in STATES if s not in {*steered, *POSITION})
     return replace(MODEL, states=states, effects=kept) + effect
 
 

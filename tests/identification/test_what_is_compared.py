@@ -56,10 +56,12 @@ def test_an_output_is_normed_about_its_own_mean_unless_about_zero():
     trial = zigzag(10)
     level = replace(trial, signals={**trial.signals, "phi": trial.signals["phi"] + 0.1})
     mask = [np.ones((trial.samples, 1), dtype=bool)]
-    about = norms([trial], mask, ("phi",), "mean")[0]
-    assert norms([level], mask, ("phi",), "mean")[0] == pytest.approx(about)
+    about = norms([trial], mask, ("phi",), "mean", 175.0)[0]
+    assert norms([level], mask, ("phi",), "mean", 175.0)[0] == pytest.approx(about)
     offset = 0.1 + float(trial.signals["phi"].mean())
-    assert norms([level], mask, ("phi",), "zero")[0] == pytest.approx(np.hypot(about, offset))
+    assert norms([level], mask, ("phi",), "zero", 175.0)[0] == pytest.approx(
+        np.hypot(about, offset)
+    )
 
 
 def test_every_output_counts_alike_however_much_of_it_is_missing():

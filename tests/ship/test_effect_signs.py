@@ -7,7 +7,7 @@ from test_effects_by_hand import MASSES, NABLA, RHO, SHIP, STILL, U0, G, L, forc
 
 from trialid.effects import CATALOGUE
 from trialid.ship.model import STATES, ShipModel
-from trialid.ship.motion import readings
+from trialid.ship.readings import readings
 
 
 def test_what_comes_late_twice_comes_later_by_both() -> None:

@@ -126,9 +126,9 @@ def test_a_recorded_motion_acts_as_a_simulated_one(s175q: ShipModel) -> None:
 
 def test_the_model_is_a_mirror_image_of_itself(s175q: ShipModel) -> None:
     """Port for starboard in the whole model, with the centre of gravity off the origin."""
-    odd = {"v", "p", "r", "phi", "psi", "delta"}
+    odd = {"v", "p", "r", "phi", "psi", "y", "delta"}
     model = masses(s175q, x_G=-0.02, z_G=-0.01)
-    x = {"u": 7.0, "v": 0.3, "p": 0.01, "r": -0.004, "phi": 0.1, "psi": 0.2}
+    x = {"u": 7.0, "v": 0.3, "p": 0.01, "r": -0.004, "phi": 0.1, "psi": 0.2, "x": 40.0, "y": 9.0}
     there_x = {s: -a if s in odd else a for s, a in x.items()}
     here = derivatives(model, x, {"n": 7.3, "delta": 0.1}, theta(model))
     there = derivatives(model, there_x, {"n": 7.3, "delta": -0.1}, theta(model))
@@ -142,11 +142,12 @@ def test_a_starboard_rudder_turns_to_starboard_and_heels_outward(s175q: ShipMode
 
     signals = {"n": np.full(400, 7.33), "delta": np.full(400, 0.17)}
     trial = Trial("turn", "fit", 0.5, signals, {})
-    _, v, _, r, phi, psi = respond(
+    _, v, _, r, phi, psi, _, y = respond(
         prepare(s175q, (), ("r",)), trial, {}, {}, sensitivities=False
     ).states[-1]  # fmt: skip
     assert r > 0.0
     assert psi > 0.0
+    assert y > 0.0, "north at first, then to the east"
     assert v < 0.0, "drift: the bow points into the turn"
     assert phi < 0.0, "port side down"
 

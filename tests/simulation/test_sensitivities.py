@@ -12,8 +12,8 @@ from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Response, prepare, respond
 from trialid.trial import Trial
 
-OUTPUTS = ("r", "phi", "u", "v", "psi")
-START = {"u": 7.1, "v": 0.2, "p": 0.01, "r": -0.002, "phi": 0.05, "psi": 0.3}
+OUTPUTS = ("r", "phi", "u", "v", "psi", "x", "y")
+START = {"u": 7.1, "v": 0.2, "p": 0.01, "r": -0.002, "phi": 0.05, "psi": 0.3, "x": 2.0, "y": -1.0}
 
 OWN_EFFECT = '''
 from trialid.maths import arctan, clip, cos, exp, sin, sqrt, tanh

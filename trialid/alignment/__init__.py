@@ -27,6 +27,7 @@ from trialid.alignment import (
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.log_clock import LogClock
 from trialid.alignment.sources import SignalSource, log_with, seams
+from trialid.alignment.track import antenna, position
 from trialid.errors import AlignmentError
 from trialid.recording import Recording
 from trialid.trial import LogSource, Trial
@@ -64,14 +65,12 @@ def align(
         Put the stamps of evenly paced sensors on a line through their count of samples (`dejitter`)
         and undo steps of a sensor's clock; else every stamp counts as logged.
     log_clocks
-        For each recording how its clock lies to the trial's, None where it is the trial's; empty
-        where all are.
+        For each recording how its clock lies to the trial's, None where it is; empty: all are.
     keep
         Quantity to the kinds of `faults.KINDS` that are remarked but not masked.
 
-    Raises LogError for a channel that is in no log, UnitError for a unit, and AlignmentError for
-    everything that would have to be guessed: a missing sign or unit, signals that do not overlap
-    in time or contradict one another.
+    Raises LogError for a channel in no log, UnitError for a unit, AlignmentError for all that would
+    have to be guessed: a missing sign or unit, signals that contradict one another or never meet.
     """
     where = f"trial {name!r}"
     _check_sources(sources, where)
@@ -85,8 +84,8 @@ def align(
         clocks.check(one, place)
     _check_epochs(series, sources, recordings, where)
     grid = clocks.common(series, period, window, where)
-    series, found = faults.mask_all(series, sources, grid, keep or {}, at)
-    trial = _trial(name, use, recordings, series, grid, where)
+    series, found = _without_faults(series, sources, grid, keep or {}, at)
+    trial = antenna.with_course(_trial(name, use, recordings, series, grid, where))
     findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
     checks.refuse(findings, where)
     remarks = (
@@ -97,11 +96,30 @@ def align(
         *_of_signals(logged, series, grid),
         *found,
         *quality.of_trial(series, grid, window),
-        *signs.check(trial, {source.quantity: source for source in sources}, where),
+        *_of_motions(trial, sources, where),
         *(finding.sentence for finding in findings),
         *(finding.sentence for finding in duplicate_channels.unchosen(sources, recordings)),
     )
     return dataclasses.replace(trial, remarks=remarks)
+
+
+def _of_motions(trial: Trial, sources: Sequence[SignalSource], where: str) -> Iterator[str]:
+    """Whether motions agree: the track with heading and speed, signs with each other."""
+    yield from antenna.check_track(trial)
+    yield from signs.check(trial, {source.quantity: source for source in sources}, where)
+
+
+def _without_faults(
+    series: Sequence[Series],
+    sources: Sequence[SignalSource],
+    grid: Grid,
+    keep: Mapping[str, Collection[str]],
+    places: Sequence[str],
+) -> tuple[list[Series], list[str]]:
+    """All series without what is surely no measurement, positions in a plane, and remarks."""
+    tracked, of_track = position.to_plane(series, grid, places[0].partition(",")[0])
+    left, found = faults.mask_all(tracked, sources, grid, keep, places)
+    return left, [*of_track, *found]
 
 
 def _repaired(logged: Series) -> tuple[Series, tuple[str, ...]]:

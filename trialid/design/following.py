@@ -219,7 +219,8 @@ def _openness(asked: Goal, trials: Sequence[Trial], parameter: str, added: Seque
     """
     outputs = asked.settings.outputs
     compared = [compared_mask(t, asked.simulator) for t in trials]
-    sizes = norms(trials, compared, outputs, asked.settings.norm)
+    length = asked.simulator.model.ship.particulars["L"]
+    sizes = norms(trials, compared, outputs, asked.settings.norm, length)
     shares = [asked.noise[c].sigma / size for c, size in zip(outputs, sizes, strict=True)]
     eps = float(np.sqrt(np.mean(np.square(shares))))
     alike = {c: Noise(eps * float(size)) for c, size in zip(outputs, sizes, strict=True)}

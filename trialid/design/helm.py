@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask
 from trialid.errors import DesignError
+from trialid.names.quantities import POSITION
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure, Simulator, prepare, respond
 from trialid.trial import Trial
@@ -112,7 +113,8 @@ def vessel(
         raise DesignError(
             "a manoeuvre needs a ship that turns: put r among the states of the model"
         )
-    states = model.states if "psi" in model.states else (*model.states, "psi")
+    moving = tuple(s for s in model.states if s not in POSITION)  # the track follows from them
+    states = moving if "psi" in moving else (*moving, "psi")
     sailed = ShipModel(model.ship, states, model.effects, model.values)
     simulator = prepare(sailed, (), speed_outputs(sailed))
     return Vessel(sailed, simulator, period, dict(constants), rudder_rate)

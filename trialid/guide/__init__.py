@@ -19,6 +19,7 @@ TOPICS: Final = {
     "structures": "whole models compared by leaving out each trial",
     "accuracy": "how far off a parameter may be: what each column means",
     "nomenclature": "letters, units and signs",
+    "track": "positions, the current",
     "design": "which test to sail next",
     "replay": "a trial played through the fitted model, with alarms",
     "use": "the fitted ship under orders, and as files for others",

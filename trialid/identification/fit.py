@@ -20,7 +20,7 @@ from trialid.identification.output_error import (
     respond_all,
     scores,
 )
-from trialid.identification.own_start import own_start
+from trialid.identification.own_start import own_start, starts_of
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.weighing import level_of
 from trialid.ship.model import ShipModel
@@ -312,20 +312,20 @@ def of_trial(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Parameters and initial states with which a fit simulates one trial.
 
-    A trial to check has no parameters of its own but where its motion starts, if the fit leaves
-    that free too: sensors keep the mean of the fitted ones. `level` is the fit's, found where it
-    is not given.
+    A trial to check has nothing of its own but its start and its current, if the fit leaves them
+    free too: sensors keep the mean of the fitted ones. `level` is the fit's, else found.
     """
     if trial.use == "fit":
         place = [t.name for t in problem.trials].index(trial.name)
         values = problem.values(theta, place)
-        return values, {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+        return values, starts_of(values)
     values = _mean_values(problem, theta)
     compared = compared_mask(trial, problem.simulator)
     if level is None:
         point = linearise(problem, theta)
         level = 0.0 if isinstance(point, Departure) else level_of(problem, point[0])
-    return values, own_start(problem, trial, compared, values, level)
+    own = own_start(problem, trial, compared, values, level)
+    return values | {n: own[n] for n in own if n in values}, starts_of(own)
 
 
 def _score(problem: Problem, theta: Vector, trial: Trial, level: float) -> Score:

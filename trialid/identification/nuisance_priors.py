@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.effects.track import CURRENT as WATER
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import guess
 from trialid.trial import Trial
@@ -38,6 +39,10 @@ DRIFT: Final = 0.05
 
 SWING: Final = 0.5
 """Sideways speed over r L in a turn: a ship turns about a point a half length before midships."""
+
+CURRENT: Final = 1.0
+"""[m/s] Speed to the north or to the east of the water that trials are sailed in: tides of open
+roads run at 0.5 to 1.5 m/s, and only a narrow sound has more. A record that sees it is not held."""
 
 LIMIT: Final = 10.0
 """Standard deviations beyond which no initial state is looked for."""
@@ -82,6 +87,8 @@ def speed(model: ShipModel, trial: Trial) -> float:
 def _offset(model: ShipModel, trial: Trial, column: str, size: float) -> float:
     if column in OFFSETS:
         return OFFSETS[column]
+    if column in WATER:
+        return CURRENT
     turning = speed(model, trial) / model.ship.particulars["L"]
     of = column.removeprefix("b_")
     if of in ("r", "p"):

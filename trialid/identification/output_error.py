@@ -16,6 +16,7 @@ from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable
 from trialid.identification.roll_range import RollRange
+from trialid.names.quantities import POSITION
 from trialid.simulation.delay import margin
 from trialid.simulation.integrate import Departure, Response, Simulator, record_for, respond
 from trialid.trial import Trial
@@ -218,9 +219,16 @@ def _edge(simulator: Simulator, output: str, period: float) -> int:
 
 
 def norms(
-    trials: Sequence[Trial], compared: Sequence[Mask], outputs: Sequence[str], norm: Norm
+    trials: Sequence[Trial],
+    compared: Sequence[Mask],
+    outputs: Sequence[str],
+    norm: Norm,
+    length: float,
 ) -> Vector:
     """y_RMS of each output over the trials, about each trial's own mean or about zero; (n_y,).
+
+    A position is normed by the ship's `length` [m]: it grows with the length of a trial, and what
+    is wrong with it does not.
 
     Raises
     ------
@@ -243,7 +251,7 @@ def norms(
                 f"output {name!r} does not move in the trials to fit; check the channel, or leave "
                 "it out of [identify] outputs"
             )
-        result.append(rms)
+        result.append(length if name in POSITION else rms)
     return np.array(result)
 
 

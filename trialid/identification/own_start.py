@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask
+from trialid.effects.track import CURRENT
 from trialid.identification.gauss_newton import minimise
 from trialid.identification.nuisance_priors import limits, nuisance_prior
+from trialid.identification.of_each_trial import STATE_SIZE
 from trialid.identification.output_error import Problem, output_error, output_matrix, row_scale
-from trialid.identification.problem import STATE_SIZE
 from trialid.simulation.integrate import guess, initial, respond
 from trialid.trial import Trial
 
@@ -26,10 +27,11 @@ NEAR_ENOUGH: Final = 1e-3
 def own_start(
     problem: Problem, trial: Trial, compared: Mask, values: Mapping[str, float], level: float
 ) -> dict[str, float]:
-    """Initial states of a held-out trial; recorded samples alone would add their noise.
+    """Initial states of a held-out trial, and its current; by the name of the column.
 
-    They are free where the fit leaves them free, and held by what the trial's first moments make
-    likely: a stiff roll whose start is free can otherwise leave the model's domain at once.
+    Recorded samples alone would add their noise. They are free where the fit leaves them free, and
+    held by what the trial's first moments make likely: a stiff roll whose start is free can
+    otherwise leave the model's domain at once. No trial tells another's current.
 
     Parameters
     ----------
@@ -39,20 +41,22 @@ def own_start(
         What one independent row of the fit is uncertain by: see `Weighing`.
     """
     model = problem.simulator.model
-    free = [s for s in model.states if any(x.column == initial(s) for x in problem.unknowns)]
-    start = {s: guess(model, trial, s) for s in free}
+    sizes = {initial(s): STATE_SIZE[s] for s in model.states} | dict.fromkeys(CURRENT, 0.0)
+    own = {x.column for x in problem.unknowns if x.trial is not None}
+    free = [column for column in sizes if column in own]
+    start = {c: guess(model, trial, c[:-3]) if c.endswith("(0)") else 0.0 for c in free}
     if not free or not compared.any():
         return start
-    known = {s: nuisance_prior(model, trial, initial(s), STATE_SIZE[s]) for s in free}
+    known = {c: nuisance_prior(model, trial, c, sizes[c]) for c in free}
     evaluate = _Rows(problem, trial, compared, values, known, level)
-    bounds = np.array([limits(known[s]) for s in free])
-    sizes = np.array([known[s][1] for s in free])
-    recorded = np.clip(np.array([start[s] for s in free]), bounds[:, 0], bounds[:, 1])
+    bounds = np.array([limits(known[c]) for c in free])
+    scale = np.array([known[c][1] for c in free])
+    recorded = np.clip(np.array([start[c] for c in free]), bounds[:, 0], bounds[:, 1])
     for begin in (recorded, evaluate.means):
         end = minimise(
             evaluate=evaluate,
             start=begin,
-            scale=sizes,
+            scale=scale,
             low=bounds[:, 0],
             high=bounds[:, 1],
             max_iterations=START_STEPS,
@@ -63,8 +67,13 @@ def own_start(
     return start
 
 
+def starts_of(values: Mapping[str, float]) -> dict[str, float]:
+    """Initial states among the columns of a simulation, by the state's name."""
+    return {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+
+
 class _Rows:
-    """Residual of one trial and its gradient by the initial states, with rows of priors."""
+    """Residual of one trial and its gradient by what is its own, with rows of priors."""
 
     def __init__(
         self,
@@ -76,19 +85,19 @@ class _Rows:
         level: float,
     ) -> None:
         self.problem, self.trial, self.compared, self.values = problem, trial, compared, values
-        self.states = list(known)
+        self.names = list(known)
         self.means = np.array([mean for mean, _ in known.values()])
         self.weigh = level / np.array([deviation for _, deviation in known.values()])
-        self.columns = [problem.simulator.columns.index(initial(s)) for s in known]
+        self.columns = [problem.simulator.columns.index(c) for c in known]
         self.scale = np.broadcast_to(row_scale(problem), compared.shape)[compared]
 
-    def __call__(self, x0: Vector) -> tuple[Vector, Vector] | None:
-        start = dict(zip(self.states, map(float, x0), strict=True))
-        response = respond(self.problem.simulator, self.trial, self.values, start)
+    def __call__(self, own: Vector) -> tuple[Vector, Vector] | None:
+        values = {**self.values, **dict(zip(self.names, map(float, own), strict=True))}
+        response = respond(self.problem.simulator, self.trial, values, starts_of(values))
         if response.departure is not None or response.S is None:
             return None
         y = output_matrix(self.trial, self.problem.outputs)
         gap = output_error(y, response.y)[self.compared] * self.scale
         slopes = response.S[:, :, self.columns][self.compared] * self.scale[:, None]
-        priors = (self.means - x0) * self.weigh
+        priors = (self.means - own) * self.weigh
         return np.append(gap, priors), np.concatenate([slopes, np.diag(self.weigh)])

@@ -8,13 +8,13 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable, nearest
-from trialid.identification.nuisance_priors import limits, nuisance_prior, speed
+from trialid.identification.nuisance_priors import speed
+from trialid.identification.of_each_trial import Nuisance, nuisances, with_nuisance
 from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask, norms
 from trialid.identification.roll_range import RollRange, roll_range
 from trialid.names.quantities import MASS_PARAMETERS
-from trialid.ship.effect import Effect, Force, Parameter, Rate
+from trialid.ship.effect import Force, Rate
 from trialid.ship.model import ShipModel
 from trialid.ship.motion import check_mass
 from trialid.simulation.at_rest import check_at_rest
@@ -22,8 +22,6 @@ from trialid.simulation.graph import SYMBOL, order
 from trialid.simulation.integrate import (
     Engine,
     Simulator,
-    guess,
-    initial,
     inputs,
     prepare,
     record_for,
@@ -32,10 +30,6 @@ from trialid.trial import Trial
 from trialid.trial_rows import Kind
 
 Vector = NDArray[np.float64]
-Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
-
-STATE_SIZE: Final = {"u": 0.1, "v": 0.1, "p": 0.002, "r": 0.0005, "phi": 0.01, "psi": 0.01}
-"""Typical error of a start guessed from the record [SI]: the scale of an initial state."""
 
 STILL_RUDDER: Final = 0.002
 """[rad rms] A rudder that moves less than this excites nothing; its sensor's noise is less."""
@@ -120,10 +114,11 @@ def question(
         Starts by the name of the unknown.
     """
     unknowns = (*(_shared(simulator, n, settings) for n in shared),
-                *_nuisances(simulator, trials, per_trial, settings))  # fmt: skip
+                *nuisances(simulator, trials, per_trial, settings))  # fmt: skip
     unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
     compared = tuple(compared_mask(t, simulator) for t in trials)
-    y_rms = norms(trials, compared, settings.outputs, settings.norm)
+    length = simulator.model.ship.particulars["L"]
+    y_rms = norms(trials, compared, settings.outputs, settings.norm, length)
     weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
     weights = weights / np.sqrt(np.mean(weights**2))
     roll = _roll(simulator.model, trials[0], unknowns) if settings.hold_nuisance else None
@@ -165,22 +160,6 @@ def _check_simulated(simulator: Simulator) -> None:
                 f"output {name!r} is not simulated, it is an input; take it out of [identify] "
                 f"outputs, or choose from what is simulated: {', '.join(states)}"
             )
-
-
-def with_nuisance(model: ShipModel, settings: Settings) -> tuple[ShipModel, tuple[str, ...]]:
-    """The model with the effects that nuisance parameters act through, and their names."""
-    wanted: list[Effect] = []
-    if "bias" in settings.nuisance:
-        wanted += [CATALOGUE[f"bias_{c}"] for c in settings.outputs if f"bias_{c}" in CATALOGUE]
-    if "delay" in settings.nuisance:
-        wanted += [CATALOGUE[f"delay_{c}"] for c in settings.outputs if f"delay_{c}" in CATALOGUE]
-    if "rudder_offset" in settings.nuisance:
-        wanted += [CATALOGUE["rudder_offset"]]
-    present = {e.name for e in model.effects}
-    added = [e for e in wanted if e.name not in present]
-    for effect in added:
-        model = model + effect
-    return model, tuple(p for e in added for p in e.parameters)
 
 
 def with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> ShipModel:
@@ -225,60 +204,6 @@ def _shared(simulator: Simulator, name: str, settings: Settings) -> Unknown:
         high=high,
         unit=parameter.unit,
         kind=kind,
-        prior=prior,
-    )
-
-
-def _nuisances(
-    simulator: Simulator, trials: Sequence[Trial], names: Sequence[str], settings: Settings
-) -> list[Unknown]:
-    model = simulator.model
-    made = []
-    for i, trial in enumerate(trials):
-        for name in names:
-            p: Parameter = model.parameters[name]
-            label = f"{name} [{trial.name}]"
-            null, size = p.start if p.null is None else p.null, abs(p.start)
-            held = settings.hold_nuisance
-            prior = nuisance_prior(model, trial, name, size, null) if held else None
-            made.append(
-                Unknown(
-                    name=label,
-                    column=name,
-                    trial=i,
-                    start=null,
-                    size=size,
-                    low=p.low,
-                    high=p.high,
-                    unit=p.unit,
-                    kind="nuisance",
-                    prior=prior,
-                )
-            )
-        if "initial_state" in settings.nuisance:
-            made += [_initial(model, trial, i, s, settings) for s in model.states]
-    return made
-
-
-def _initial(model: ShipModel, trial: Trial, index: int, state: str, settings: Settings) -> Unknown:
-    start, size = guess(model, trial, state), STATE_SIZE[state]
-    unit = {"u": "m/s", "v": "m/s", "p": "rad/s", "r": "rad/s"}.get(state, "rad")
-    label = f"{initial(state)} [{trial.name}]"
-    prior, low, high = None, -np.inf, np.inf
-    if settings.hold_nuisance:
-        prior = nuisance_prior(model, trial, initial(state), size)
-        low, high = limits(prior)
-    start = float(np.clip(start, low, high))
-    return Unknown(
-        name=label,
-        column=initial(state),
-        trial=index,
-        start=start,
-        size=size,
-        low=low,
-        high=high,
-        unit=unit,
-        kind="nuisance",
         prior=prior,
     )
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from trialid.identification.fit import Fit
 from trialid.identification.nuisance_priors import speed
+from trialid.names.quantities import POSITION
 from trialid.simulation.integrate import arguments
 
 Vector = NDArray[np.float64]
@@ -16,7 +17,7 @@ LONGEST: Final = 3.0
 """Ship lengths sailed beyond which no time scale is asked for: a ship that is hardly stable on a
 straight course never settles by herself, but a manoeuvre shows her damping all the same."""
 
-NEUTRAL: Final = ("psi",)
+NEUTRAL: Final = ("psi", *POSITION)
 """States that nothing brings back: no motion of their own."""
 
 NUDGE: Final = 1e-5

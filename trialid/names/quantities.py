@@ -163,6 +163,16 @@ SIGNALS = _table(
             mirror=-1,
             aliases=_aliases("wave_slope"),
         ),
+        Quantity("x", "x", "m", "m", "position north of where the trial begins", length=1),
+        Quantity("y", "y", "m", "m", "position east of where the trial begins", -1, length=1),
+        Quantity("x_dot", "dx/dt", "m/s", "m/s", "speed over ground to the north", speed=1),
+        Quantity("y_dot", "dy/dt", "m/s", "m/s", "speed over ground to the east", -1, speed=1),
+        Quantity("sog", "SOG", "m/s", "m/s", "speed over ground", speed=1),
+        Quantity(
+            "cog", "COG", "rad", "deg", "course over ground, clockwise from north", -1, angle=True
+        ),
+        Quantity("lat", "lat", "rad", "deg", "latitude by WGS 84, positive north"),
+        Quantity("lon", "lon", "rad", "deg", "longitude by WGS 84, positive east", angle=True),
         Quantity("U", "U", "m/s", "m/s", "speed through the water sqrt(u^2 + v^2)", speed=1),
         Quantity("t", "t", "s", "s", "time since the start of the trial", length=1, speed=-1),
         Quantity("u_dot", "du/dt", "m/s^2", "m/s^2", "rate of the surge speed"),
@@ -204,6 +214,12 @@ QUANTITIES = SIGNALS | PARTICULARS
 
 ACCELERATIONS = ("u_dot", "v_dot", "p_dot", "r_dot")
 """Signals that the equations give and only a sensor may read."""
+
+POSITION = ("x", "y")
+"""Where the ship is; no force depends on it, and a ship length is its natural measure."""
+
+OVER_GROUND = (*POSITION, "x_dot", "y_dot", "sog", "cog")
+"""What a satellite receiver tells and a current changes."""
 
 MASS_PARAMETERS = (
     "m", "x_G", "z_G", "I_xx", "I_zz",

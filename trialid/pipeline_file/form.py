@@ -90,7 +90,7 @@ Window = Annotated[tuple[Seconds, Seconds], AfterValidator(_rising)]
 Limit = Annotated[Number, AllowInfNan(True)]
 Bounds = Annotated[tuple[Limit, Limit], AfterValidator(_rising)]
 Fault = Literal["range", "dropouts", "spikes", "saturation", "stuck"]
-Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay"]
+Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay", "current"]
 
 
 class SignalSource(Section):

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Final
 
 from trialid.errors import EffectError, ShipError, nearest
-from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS
+from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, POSITION
 from trialid.ship.effect import (
     Delayed,
     Effect,
@@ -19,8 +19,10 @@ from trialid.ship.particulars import Ship
 from trialid.ship.prime import mass_scale, primed_coefficient
 from trialid.ship.rigid_body import ROWS
 
-STATES: Final = ("u", "v", "p", "r", "phi", "psi")
+STATES: Final = ("u", "v", "p", "r", "phi", "psi", "x", "y")
 KINEMATICS: Final = {"phi": "p", "psi": "r"}  # horizontal axes: the heading rate is r
+DRIFT: Final = ("u", "v", "psi")
+"""Motions that carry the ship along, simulated or recorded where her position is simulated."""
 NEEDED_MASS: Final = {"u": ("m",), "v": ("m",), "p": ("I_xx",), "r": ("I_zz",)}
 STANDSTILL: Final = 1e-6
 """[m/s] Added to the speed in squares, so that quadratic terms keep their limit at rest."""
@@ -33,7 +35,7 @@ class ShipModel:
     Attributes
     ----------
     states
-        Subset of u, v, p, r, phi, psi; other motions come from the record.
+        Subset of `STATES`; other motions come from the record.
     effects
         Physical effects in the order they were added.
     values
@@ -89,6 +91,7 @@ class ShipModel:
         wanted = {s for e in self.effects for s in e.signals} | {"u"}
         wanted |= {s for e in self.effects for s in e.acts_on(Steered)}
         wanted |= {"r"} if "psi" in self.states else set()
+        wanted |= {*DRIFT} if {*POSITION} & {*self.states} else set()
         wanted |= {n for s in self.late_inputs for n in (s, late(s), slope(s))}
         known = {*self.all_states, *PARTICULARS, *ACCELERATIONS, "U"}
         return tuple(sorted(wanted - known))

@@ -4,24 +4,20 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from trialid.errors import EffectError, ShipError
-from trialid.maths import Number, sqrt
-from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS
+from trialid.errors import ShipError
+from trialid.maths import Number, cos, sin
+from trialid.names.quantities import MASS_PARAMETERS, POSITION
 from trialid.ship.effect import (
-    SENSORS,
-    Delayed,
     Effect,
     Force,
-    Lagged,
     Mass,
-    Measured,
     Rate,
-    Steered,
 )
 from trialid.ship.mass_matrix import determinant, solve
-from trialid.ship.model import KINEMATICS, STANDSTILL, ShipModel, late, slope
-from trialid.ship.prime import mass_scale, prime_parameter, prime_signal
+from trialid.ship.model import DRIFT, KINEMATICS, ShipModel
+from trialid.ship.prime import mass_scale
 from trialid.ship.rigid_body import ROWS, Balance, rigid_body
+from trialid.ship.signals_now import measured_by, signals_now, values_for
 
 
 @dataclass(frozen=True)
@@ -63,6 +59,7 @@ def motion(
         else:
             rates |= dict(part)
     rates |= {a: signals[b] for a, b in KINEMATICS.items() if a in model.states}
+    rates |= {a: rate for a, rate in _way(model, signals).items() if a in model.states}
     return Motion(_balance(model, signals, force, theta), rates)
 
 
@@ -73,7 +70,7 @@ def acting_signals(
     theta: Mapping[str, Number],
 ) -> dict[str, Number]:
     """States and inputs as they act on the ship, particulars and the speed U; SI."""
-    return _signals(model, {**model.ship.particulars, **inputs, **states}, theta)
+    return signals_now(model, {**model.ship.particulars, **inputs, **states}, theta)
 
 
 def effect_parts(
@@ -84,64 +81,16 @@ def effect_parts(
 ) -> Iterator[tuple[Effect, Force | Rate]]:
     """What each effect adds to the motion: forces [SI], rates of its states."""
     recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
-    signals = _signals(model, recorded, theta)
+    signals = signals_now(model, recorded, theta)
     for effect in model.effects:
         if not {Force, Rate} & set(effect.forms):
             continue
         seen = measured_by(effect, recorded, signals)
-        for part in effect(_values(model, effect, seen, theta)):
+        for part in effect(values_for(model, effect, seen, theta)):
             if isinstance(part, Force):
                 yield effect, _to_SI(model, effect, part, signals)
             elif isinstance(part, Rate):
                 yield effect, part
-
-
-@dataclass(frozen=True)
-class Readings:
-    """What the sensors make of a motion, on any kind of number.
-
-    Attributes
-    ----------
-    measured
-        Signal to what is recorded of it, before delay and low-pass.
-    delay
-        Output to its delay [s].
-    lags
-        Output to the time constants of its sensor's low-passes [s].
-    """
-
-    measured: Mapping[str, Number]
-    delay: Mapping[str, Number]
-    lags: Mapping[str, tuple[Number, ...]]
-
-
-def readings(
-    model: ShipModel,
-    states: Mapping[str, Number],
-    inputs: Mapping[str, Number],
-    theta: Mapping[str, Number],
-    rates: Mapping[str, Number],
-) -> Readings:
-    """What is recorded of one instant; `rates` are the time derivatives of the states."""
-    recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
-    recorded |= {a: rates.get(a[0], 0.0) for a in ACCELERATIONS}
-    signals = _signals(model, recorded, theta)
-    measured = {**recorded, "U": signals["U"]} | dict.fromkeys(_from_reference(model), 0.0)
-    delay, lags = dict[str, Number](), dict[str, tuple[Number, ...]]()
-    for effect in model.effects:
-        if not set(SENSORS) & set(effect.forms):
-            continue
-        seen = measured_by(effect, recorded, signals)
-        for part in effect(_values(model, effect, seen, theta)):
-            match part:
-                case Measured():
-                    _check_known(effect, part, measured)
-                    measured |= {n: measured[n] + x for n, x in part.items()}
-                case Delayed():
-                    delay |= {n: delay.get(n, 0.0) + x for n, x in part.items()}
-                case Lagged():
-                    lags |= {n: (*lags.get(n, ()), x) for n, x in part.items()}
-    return Readings(measured, delay, lags)
 
 
 def derivatives(
@@ -164,73 +113,12 @@ def derivatives(
     return {s: rates[s] for s in model.all_states}
 
 
-def measured_by(
-    effect: Effect, recorded: Mapping[str, Number], acting: Mapping[str, Number]
-) -> Mapping[str, Number]:
-    """What an effect sees: steering gear and sensors the recorded rudder, forces the acting one."""
-    return acting if Force in effect.forms else {**recorded, "U": acting["U"]}
-
-
-def _from_reference(model: ShipModel) -> tuple[str, ...]:
-    """Signals that a reference sensor gives alone: their record is what is to be explained."""
-    return tuple(
-        n
-        for e in model.effects
-        for n in e.acts_on(Measured)
-        if f"{n}_ref" in e.signals and n not in model.all_states
-    )
-
-
-def _check_known(effect: Effect, part: Measured, measured: Mapping[str, Number]) -> None:
-    """Refuse what is added to a record that nothing gives."""
-    for name in part:
-        if name not in measured:
-            raise EffectError(
-                f"{effect.place} adds to the measurement of {name!r}, which the model neither "
-                f"simulates nor reads; leave the effect out, or simulate {name!r}"
-            )
-
-
-def _signals(
-    model: ShipModel, recorded: Mapping[str, Number], theta: Mapping[str, Number]
-) -> dict[str, Number]:
-    """States and inputs as they act on the ship, particulars and the speed U; SI."""
-    signals = dict(recorded)
-    for name, tau in _late_by(model, signals, theta).items():
-        # the record comes shifted by the current delay: the value stands, and so does the slope
-        signals[name] = signals[name] + (tau - signals[late(name)]) * signals[slope(name)]
-    for effect in model.effects:
-        if Steered in effect.forms:
-            for part in effect({**signals, **theta}):
-                if isinstance(part, Steered):
-                    signals |= {n: signals[n] + x for n, x in part.items()}
-    u, v = signals["u"], signals.get("v", 0.0)
-    signals["U"] = sqrt(u * u + v * v + STANDSTILL**2)
-    return signals
-
-
-def _late_by(
-    model: ShipModel, signals: Mapping[str, Number], theta: Mapping[str, Number]
-) -> dict[str, Number]:
-    """By how much each late input is late [s]."""
-    total: dict[str, Number] = {}
-    for effect in model.effects if model.late_inputs else ():
-        if Delayed in effect.forms and set(effect.acts_on(Delayed)) & set(model.late_inputs):
-            for part in effect({**signals, **theta}):
-                if isinstance(part, Delayed):
-                    total |= {n: total.get(n, 0.0) + x for n, x in part.items()}
-    return {n: x for n, x in total.items() if n in model.late_inputs}
-
-
-def _values(
-    model: ShipModel, effect: Effect, signals: Mapping[str, Number], theta: Mapping[str, Number]
-) -> dict[str, Number]:
-    """Signals and parameters in the effect's own system."""
-    if effect.system == "SI":
-        return {**signals, **theta}
-    L, U = model.ship.particulars["L"], signals["U"]
-    values = {s: prime_signal(s, signals[s], L, U) for s in effect.signals}
-    return values | {n: prime_parameter(effect, n, theta[n], L, U) for n in effect.parameters}
+def _way(model: ShipModel, signals: Mapping[str, Number]) -> dict[str, Number]:
+    """Speed to the north and to the east of a ship in still water; axes stay horizontal."""
+    if not {*POSITION} & {*model.states}:
+        return {}
+    u, v, psi = (signals[s] for s in DRIFT)
+    return {"x": u * cos(psi) - v * sin(psi), "y": u * sin(psi) + v * cos(psi)}
 
 
 def _to_SI(model: ShipModel, effect: Effect, force: Force, signals: Mapping[str, Number]) -> Force:
@@ -268,7 +156,7 @@ def _masses(model: ShipModel, theta: Mapping[str, Number]) -> dict[str, Number]:
     particulars = {**model.ship.particulars, "U": model.ship.particulars["U0"]}
     for effect in model.effects:
         if Mass in effect.forms:
-            for part in effect(_values(model, effect, particulars, theta)):
+            for part in effect(values_for(model, effect, particulars, theta)):
                 masses |= {n: masses[n] + x for n, x in dict(part).items()}
     return masses
 

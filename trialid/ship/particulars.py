@@ -13,10 +13,11 @@ from trialid.names.quantities import MASS_PARAMETERS
 from trialid.names.quantities import PARTICULARS as KNOWN
 
 REQUIRED: Final = ("name", "source", "system", "rudder_positive", "particulars", "mass")
-OPTIONAL: Final = ("coefficients", "coefficient_speed", "uncertainty", "notes")
+OPTIONAL: Final = ("coefficients", "coefficient_speed", "uncertainty", "antenna", "notes")
 PARTICULARS: Final = ("L", "rho", "g", "nabla", "U0")
 """Those no model can do without; T and B are for the effects that ask for them."""
-SECTIONS: Final = ("particulars", "mass", "coefficients", "uncertainty")
+SECTIONS: Final = ("particulars", "mass", "coefficients", "uncertainty", "antenna")
+ARM: Final = ("x", "y", "z")
 
 UNCERTAIN: Final = 0.05
 """Standard deviation of a number of `[mass]` or `[coefficients]`, as a share of it, where the file
@@ -45,6 +46,8 @@ KEYS: Final = {
     "standard deviation as a share of the number, zero for one that is exact; `default` for all "
     f"others, {UNCERTAIN:g} where not given. It widens the likely ranges of what is fitted, and "
     'with `priors = "ship"` in a pipeline it holds what is fitted about these numbers.',
+    "antenna": "Where the antenna of the positions stands, from the origin [m]: `x` ahead, `y` to "
+    "starboard, `z` below (above: negative); zero where not given.",
     "notes": "Anything a reader should know of it.",
 }
 """What each key of a ship file means; the guide's page of keys is made of it."""
@@ -86,6 +89,8 @@ class Ship:
         Which way the ship turns for a positive rudder angle in these coefficients.
     uncertainty
         Standard deviations as shares of the numbers, by name, `default` for all others.
+    antenna
+        Place of the receiver of positions [m]: `x` ahead, `y` to starboard, `z` below the origin.
     """
 
     name: str
@@ -98,6 +103,7 @@ class Ship:
     coefficient_speed: float = 1.0
     notes: str = ""
     uncertainty: Mapping[str, float] = field(default_factory=dict)
+    antenna: Mapping[str, float] = field(default_factory=dict)
 
     def share_off(self, name: str) -> float:
         """Standard deviation of a mass or coefficient, as a share of it."""
@@ -151,6 +157,7 @@ def read_ship(path: str | Path) -> Ship:
         coefficient_speed=_positive(path, "", table, "coefficient_speed", 1.0),
         notes=table.get("notes", ""),
         uncertainty=_shares(path, table),
+        antenna=_arm(path, table),
     )
 
 
@@ -208,6 +215,13 @@ def _shares(path: Path, table: Mapping[str, Any]) -> dict[str, float]:
                 f"number from 0 to {MOST_UNCERTAIN:g}"
             )
     return shares
+
+
+def _arm(path: Path, table: Mapping[str, Any]) -> dict[str, float]:
+    for key in table.get("antenna", {}):
+        if key not in ARM:
+            raise ShipError(f"ship file {path}: [antenna] {key} is not known; write x, y and z")
+    return _numbers(path, table, "antenna")
 
 
 _CHOICES: Final = {"system": ("prime", "dimensional"), "rudder_positive": ("starboard", "port")}

@@ -237,7 +237,7 @@ def _input(model: ShipModel, trial: Trial, name: str) -> Vector:
         return trial.signals[source]
     if name == "u":
         return np.full(trial.samples, model.ship.particulars["U0"])
-    users = [e.name for e in model.effects if name in signals_of(e)]
+    users = [e.name for e in model.effects if name in signals_of(e)] or ["kinematics"]
     raise NotIdentifiable(
         f"trial {trial.name!r} has no signal {name!r}, which effect {', '.join(users)!r} needs: "
         "map it in [trial.signals], simulate it in [model] states, or leave the effect out"

@@ -8,7 +8,8 @@ from typing import Final
 from trialid.errors import EffectError
 from trialid.ship.mass_matrix import solve
 from trialid.ship.model import ShipModel
-from trialid.ship.motion import Motion, Readings, motion, readings
+from trialid.ship.motion import Motion, motion
+from trialid.ship.readings import Readings, readings
 from trialid.simulation.graph import SYMBOL, Graph, Node, gradient, lift, order
 
 BLOCK: Final = 8

@@ -6,10 +6,12 @@ import numpy as np
 
 from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
+from trialid.alignment.track.antenna import at_origin
 from trialid.ingest import Aids, LogFile
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.pipeline_file.form import ClockSection
 from trialid.progress import Progress
+from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
 from trialid.workflow.origin import as_written
 
@@ -40,6 +42,7 @@ def align_trial(pipeline: Pipeline, trial: TrialSection) -> Trial:
         log_clocks=[c for g, c in zip(logs, clocks, strict=True) for _ in ingest.files_of(g)],
         keep={q: s.keep for q, s in trial.signals.items() if s.keep},
     )  # fmt: skip
+    made = _at_origin(pipeline, made)
     if trial.speed is None:
         return made
     if "u" in made.signals:
@@ -49,6 +52,13 @@ def align_trial(pipeline: Pipeline, trial: TrialSection) -> Trial:
     valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
     remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
     return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+
+
+def _at_origin(pipeline: Pipeline, trial: Trial) -> Trial:
+    """The trial with the track of the ship's origin, where her file says where the antenna is."""
+    if pipeline.ship is None or not {"x", "y"} <= {*trial.signals}:
+        return trial
+    return at_origin(trial, read_ship(pipeline.ship).antenna)
 
 
 def _log_clock(clock: ClockSection | None) -> LogClock | None:

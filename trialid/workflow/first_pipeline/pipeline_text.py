@@ -1,11 +1,12 @@
 """The text of a starter pipeline: a comment for each choice, the other choices commented out."""
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 from trialid.errors import printable
+from trialid.inspection.channel_names import words
 from trialid.inspection.inspected import ChannelInspection
 from trialid.ship.particulars import Ship
 from trialid.toml_text import quote
@@ -16,6 +17,12 @@ HEAD: Final = """\
 #     trialid run {name}
 # It begins with the simplest model. What is missing in it the run says; `trialid add` puts it in.
 """
+
+POSITION_NAMES: Final = {
+    "lat": frozenset(("lat", "latitude")),
+    "lon": frozenset(("lon", "lng", "longitude")),
+}
+"""Words of a channel that is a position."""
 
 MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
@@ -67,6 +74,22 @@ def _trial(path: Path, name: str, trial: Chosen, *, held_out: bool) -> Iterator[
             yield f"{words}  # {_facts(other)}"
         if len(signal.others) > MOST_OTHERS:
             yield f"# and {len(signal.others) - MOST_OTHERS} more sources: `trialid inspect`"
+    yield from _track(trial.survey.channels.values())
+
+
+def _track(channels: Iterable[ChannelInspection]) -> Iterator[str]:
+    """Positions that the log holds, commented out: what they are for the guide says."""
+    moving = [one for one in channels if not one.constant]
+    found: dict[str, ChannelInspection] = {}
+    for name, called in POSITION_NAMES.items():
+        told = [c for c in moving if called & {*words(c.name.rpartition(":")[2])}]
+        found |= {name: told[0]} if told else {}
+    if len(found) < len(POSITION_NAMES):
+        return
+    yield "# the track, its current and the turning circle: `trialid guide track`"
+    for name, one in found.items():
+        keys = {"channel": one.name} | ({} if one.unit else {"unit": "deg"})
+        yield f"# {name} = {{ {', '.join(f'{k} = {quote(v)}' for k, v in keys.items())} }}"
 
 
 def _log(trial: Chosen, path: Path) -> str:

@@ -12,7 +12,8 @@ from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification import fit as search
 from trialid.identification.fit import Fit, of_trial
-from trialid.identification.problem import Nuisance, Settings
+from trialid.identification.of_each_trial import Nuisance
+from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import ship_priors
 from trialid.pipeline_file import load
 from trialid.progress import Progress, silent

@@ -1,0 +1,71 @@
+"""Trials of a ship whose truth is known, with a track by satellite receiver and a current."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from s175q import MODEL, SHAFT
+
+from trialid.accuracy.parameter_table import Accuracy, Subject, assess
+from trialid.design import manoeuvres
+from trialid.design.helm import carry_out, vessel
+from trialid.effects.track import current
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import stretches
+from trialid.identification.problem import Settings
+from trialid.simulation.integrate import prepare, respond
+from trialid.trial import Trial
+
+FREE = ("Nv", "Nr", "Ndelta", "Yv", "Ydelta")
+OUTPUTS = ("r", "psi", "x", "y")
+SHIP = replace(MODEL, states=("u", "v", "p", "r", "phi", "psi", "x", "y"))
+NOISE = {"r": np.deg2rad(0.05), "psi": np.deg2rad(0.3), "x": 1.0, "y": 1.0}
+"""A rate gyro, a compass, and a satellite receiver of 1 m."""
+
+PERIOD, APPROACH = 2.0, 30.0
+CURRENTS = {"circle": (0.5, -0.3), "zigzag": (-0.2, 0.8)}
+SETTINGS = Settings(FREE, OUTPUTS, nuisance=("initial_state", "current"))
+
+
+@cache
+def sailed(name: str, water: tuple[float, float], use: str = "fit", course: float = 0.7) -> Trial:
+    """A turning circle or a 20/20 zig-zag without noise, from a course that is not north."""
+    told = {
+        "circle": lambda: manoeuvres.turning_circle(np.deg2rad(35.0)),
+        "zigzag": lambda: manoeuvres.zigzag(np.deg2rad(20.0), np.deg2rad(20.0), 4),
+    }
+    ship = vessel(MODEL, PERIOD, {"n": SHAFT}, np.deg2rad(3.0))
+    run = carry_out(ship, told[name](), APPROACH, 500.0, name).trial
+    inputs = {s: run.signals[s] for s in ("delta", "delta_order", "n")}
+    true = (SHIP + current).with_values(dict(zip(("V_cn", "V_ce"), water, strict=True)))
+    blank = Trial(name, "fit", PERIOD, inputs, {})
+    y = respond(prepare(true, (), OUTPUTS), blank, {}, {"psi": course}, sensitivities=False).y
+    signals = {**inputs, **{c: y[:, i].copy() for i, c in enumerate(OUTPUTS)}}
+    valid = {c: np.ones(len(y), dtype=bool) for c in signals}
+    return Trial(name, "check" if use == "check" else "fit", PERIOD, signals, valid)
+
+
+def noisy(trial: Trial, rng: np.random.Generator) -> Trial:
+    """The trial as its sensors log it."""
+    added = {c: s * rng.standard_normal(trial.samples) for c, s in NOISE.items()}
+    return replace(trial, signals={n: x + added.get(n, 0.0) for n, x in trial.signals.items()})
+
+
+def trials(seed: int, still: bool = False) -> list[Trial]:
+    """Both manoeuvres, each in a current of its own, or in still water."""
+    rng = np.random.default_rng([11, seed])
+    water: Mapping[str, tuple[float, float]] = {n: (0.0, 0.0) for n in CURRENTS}
+    return [noisy(sailed(n, (water if still else CURRENTS)[n]), rng) for n in CURRENTS]
+
+
+def accuracy(fit: Fit) -> Accuracy:
+    """Errors of every unknown by the formula of a run."""
+    subjects = [
+        replace(Subject(x.name, x.kind, x.unit, v, v if x.kind == "physical" else x.size), prior=p)
+        for x, v in zip(fit.problem.unknowns, fit.theta, strict=True)
+        for p in [None if x.prior is None else x.prior[1]]
+    ]
+    parts = stretches(fit.problem)
+    residual, psi = fit.residual, fit.psi
+    return assess(subjects, psi, residual, parts, fit.eps_rmsn, 0.0, level=fit.level)

@@ -1,0 +1,78 @@
+"""The steady current of a trial from her track: found, covered, and no harm to the ship."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import MODEL
+from sailed_tracks import CURRENTS, FREE, SETTINGS, SHIP, accuracy, noisy, sailed, trials
+from scipy.stats import t as student
+
+from trialid.effects.track import CURRENT
+from trialid.errors import NotIdentifiable
+from trialid.identification.fit import identify, of_trial
+from trialid.identification.problem import Settings
+from trialid.threads import one_thread
+
+SEEDS = 200
+BY_NOISE = {"x": 12.0, "y": 12.0, "psi": 12.0}
+"""About what their noise deserves beside the rate of turn's."""
+
+
+def test_each_trial_has_its_own_current() -> None:
+    fit = identify(trials(0), SHIP, SETTINGS)
+    rows = {p.name: p for p in accuracy(fit).parameters}
+    for name, water in CURRENTS.items():
+        for column, truth in zip(CURRENT, water, strict=True):
+            row = rows[f"{column} [{name}]"]
+            assert abs(row.value - truth) < 4.0 * row.standard_error < 0.1
+    assert max(fit.eps_by_output[c] for c in ("x", "y")) < 0.01  # ship lengths; 1 m is 0.006
+
+
+def test_a_current_is_no_matter_of_the_ship() -> None:
+    """The same noise in still water: the same ship, and the current is less by what was added."""
+    drifting, still = (identify(trials(1, calm), SHIP, SETTINGS) for calm in (False, True))
+    np.testing.assert_allclose(drifting.theta[:5], still.theta[:5], rtol=0.01)
+    for name, water in CURRENTS.items():
+        for column, truth in zip(CURRENT, water, strict=True):
+            less = drifting.value(f"{column} [{name}]") - still.value(f"{column} [{name}]")
+            assert less == pytest.approx(truth, abs=0.002)
+
+
+def test_a_trial_to_check_finds_its_own_current() -> None:
+    """That of the fitted trial is another day's: 1.1 m/s off for 500 s."""
+    rng = np.random.default_rng(5)
+    check = noisy(sailed("zigzag", CURRENTS["zigzag"], "check"), rng)
+    fit = identify([trials(0)[0], check], SHIP, SETTINGS)
+    values, _ = of_trial(fit.problem, fit.theta, check)
+    assert values["V_ce"] == pytest.approx(CURRENTS["zigzag"][1], abs=0.08)
+    assert fit.eps_check_by_output["y"] < 0.05
+
+
+def test_a_current_without_a_track_is_refused() -> None:
+    blind = Settings(FREE, ("r",), nuisance=("current",))
+    with pytest.raises(NotIdentifiable, match="shows only over the ground"):
+        identify(trials(0), MODEL, blind)
+
+
+@pytest.mark.study(turn=2)
+@one_thread
+def test_currents_lie_within_their_intervals_and_the_ship_is_as_good_as_without() -> None:
+    inside, with_current, without = [], [], []
+    settings = replace(SETTINGS, weights=BY_NOISE)
+    calm = replace(settings, nuisance=("initial_state",))
+    for seed in range(SEEDS):
+        rows = {p.name: p for p in accuracy(identify(trials(seed), SHIP, SETTINGS)).parameters}
+        for name, water in CURRENTS.items():
+            for column, truth in zip(CURRENT, water, strict=True):
+                row = rows[f"{column} [{name}]"]
+                reach = student.ppf(0.975, row.freedom) * row.standard_error
+                inside.append(abs(row.value - truth) < reach)
+        with_current.append(identify(trials(seed), SHIP, settings).theta[:5])
+        without.append(identify(trials(seed, True), SHIP, calm).theta[:5])
+    truth = np.array([SHIP.value(n) for n in FREE])
+    pair = [np.array(x) / truth - 1.0 for x in (with_current, without)]
+    errors = [np.sqrt(np.mean(x**2, axis=0)) for x in pair]
+    print(f"current within 95 %: {np.mean(inside):.3f} of {len(inside)}; rms errors {errors}")
+    assert 0.93 <= np.mean(inside) <= 0.97
+    assert np.all(errors[0] < 1.25 * errors[1])
