@@ -18,6 +18,7 @@ KINDS: Final = {
     "python": (".py",),
     "c": (".c", ".h"),
     "fmu": (".fmu",),
+    "nomoto": (".json",),
 }
 """What a model can be written as, and how the files end; `hand_over` has what they hold."""
 
@@ -29,7 +30,7 @@ KINDS: Final = {
     "kind",
     type=click.Choice([*KINDS]),
     help="ship: a ship file for a next pipeline; json: plain data; python: one file that needs "
-    "NumPy alone; c: C99 with a header; fmu: FMI 2.0 for co-simulation.",
+    "NumPy alone; c: C99 with a header; fmu: FMI 2.0 for co-simulation; nomoto: K and T.",
 )
 @click.option(
     "--out",

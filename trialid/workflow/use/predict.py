@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.following import STEERED, sailed_ship, steady_inputs
+from trialid.design.following import GEAR, STEERED, sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
 from trialid.design.likely_spread import LikelySpread, likely_spread
 from trialid.design.predicted_motion import Manoeuvre, PredictedMotion, sail_manoeuvre, sail_orders
@@ -90,7 +90,7 @@ def _ship_for(model: FinishedModel, given: set[str]) -> tuple[Vessel, dict[str, 
         steered = sailed_ship(fit)
     except DesignError:
         steady = steady_inputs(fit)
-        steered = vessel(fit.model, fit.problem.trials[0].period, steady, np.inf)
+        steered = vessel(fit.model, fit.problem.trials[0].period, steady, GEAR)
     if "u" in given and "u" not in fit.model.states:
         steered = vessel(fit.model, steered.period, steered.constants, steered.rudder_rate)
     needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
