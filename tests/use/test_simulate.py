@@ -184,7 +184,6 @@ def test_what_the_trials_do_not_hold_is_said(model: FinishedModel) -> None:
     ("text", "words"),
     [
         ("t[s],delta\n0,0\n1,1\n", "no unit; write its header as delta[deg]"),
-        ("t[s],delta[deg]\n0,0\n1,\n2,1\n", "row 2 of the orders has no number"),
         ("t[s],helm[deg]\n0,0\n1,1\n", "inputs such as delta[deg]"),
         ("t[s],delta[m]\n0,0\n1,1\n", "'m' cannot become 'rad'"),
     ],
@@ -195,6 +194,32 @@ def test_wrong_orders_are_one_line(text: str, words: str, tmp_path: Path) -> Non
     with pytest.raises(TrialidError) as caught:
         read_orders(path)
     assert words in str(caught.value)
+
+
+def test_a_gap_is_not_bridged_and_ends_without_numbers_are_left_out(
+    model: FinishedModel, tmp_path: Path
+) -> None:
+    """As `trialid align` writes them; a motion's first number says how she begins."""
+    path = tmp_path / "aligned.csv"
+    head = "trial,t[s],delta[rad],r[rad/s],u[m/s]\n"
+    rows = [f"a,{0.5 * k},0.1,{0.004 if k == 2 else ''},7.0" for k in range(2, 40)]
+    whole = head + "\n".join(["a,0.0,,,", "a,0.5,,,7.0", *rows, "a,20.0,,,"])
+    path.write_text(whole, encoding="utf-8")
+    found = predict_orders(model, read_orders(path), "aligned").motion
+    assert (len(found.t), found.t[0], found.motion["r"][0]) == (38, 0.0, 0.004)
+    path.write_text(whole.replace("a,10.0,0.1", "a,10.0,"), encoding="utf-8")
+    with pytest.raises(TrialidError, match="column delta: row 21 of the orders has no number"):
+        predict_orders(model, read_orders(path), "aligned")
+
+
+def test_sensors_alone_are_refused(run_folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(run_folder.parents[1], tmp_path / "copy")
+    spoilt = tmp_path / "copy" / run_folder.relative_to(run_folder.parents[1])
+    text = json.loads((spoilt / "result.json").read_text(encoding="utf-8"))
+    text["model"] |= {"states": []}
+    (spoilt / "result.json").write_text(json.dumps(text), encoding="utf-8")
+    with pytest.raises(TrialidError, match="compares sensors alone"):
+        finished_model(spoilt, silent)
 
 
 @pytest.mark.parametrize(

@@ -12,18 +12,25 @@ from trialid.cli.console import note, progress_bar, say
 from trialid.errors import TrialidError
 
 FILE = click.Path(path_type=Path)
-KINDS: Final = {"ship": (".toml",), "json": (".json",), "python": (".py",), "c": (".c", ".h")}
+KINDS: Final = {
+    "ship": (".toml",),
+    "json": (".json",),
+    "python": (".py",),
+    "c": (".c", ".h"),
+    "fmu": (".fmu",),
+    "nomoto": (".json",),
+}
 """What a model can be written as, and how the files end; `hand_over` has what they hold."""
 
 
-@click.command(short_help="Write the fitted model: a ship file, JSON, NumPy or C.")
+@click.command(short_help="Write the fitted model: ship file, JSON, NumPy, C, FMU.")
 @click.argument("run", type=FILE, metavar="RUN_DIR", required=False)
 @click.option(
     "--as",
     "kind",
     type=click.Choice([*KINDS]),
     help="ship: a ship file for a next pipeline; json: plain data; python: one file that needs "
-    "NumPy alone; c: C99 with a header, no dependencies.",
+    "NumPy alone; c: C99 with a header; fmu: FMI 2.0 for co-simulation; nomoto: K and T.",
 )
 @click.option(
     "--out",

@@ -18,7 +18,7 @@ def prediction_table(name: str, made: PredictedMotion, words: Sequence[str]) -> 
     """What was predicted, and every sentence that belongs beside it."""
     for sentence in words:
         yield Words(sentence, LINES)
-    yield f"{name}, {made.t[-1]:.0f} s"
+    yield f"{name}, {made.t[-1]:.0f} s: what she does, delays and offsets of sensors apart"
     if made.numbers:
         table = new_table("", "value", "likely from", "to", words=1)
         for label, (value, ends) in made.numbers.items():

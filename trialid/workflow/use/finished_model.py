@@ -59,7 +59,8 @@ class FinishedModel:
         if verdict.kind in ("missing", "not in catalogue"):
             what = verdict.effect or "something outside the catalogue"
             said.append(f"The run says that {what} is missing; this is the model without it.")
-        return (*said, *filter(None, [doubtful(self.result.physical)]))
+        said += filter(None, [doubtful(self.result.physical)])
+        return (*said, *self.result.fit.remarks)
 
 
 @one_thread
@@ -78,6 +79,11 @@ def finished_model(folder: Path, progress: Progress, *, anyway: bool = False) ->
     """
     run = earlier(folder)
     check_verdict(run.result, str(folder), anyway=anyway)
+    if not run.result.model.states:
+        raise TrialidError(
+            f"{folder}: compares sensors alone; nothing is simulated that could be put under "
+            "orders or handed over"
+        )
     progress("reading", 0.1)
     trials = align_trials(run.pipeline, progress)
     fit = revived_fit(run.pipeline, trials, run.result, str(folder))

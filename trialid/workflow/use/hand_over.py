@@ -4,15 +4,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from trialid.design.following import sailed_ship
+from trialid.design.nomoto import nomoto
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
+from trialid.export.model.fmu import fmu_bytes
 from trialid.export.model.json_model import model_file
+from trialid.export.model.nomoto_file import nomoto_file
 from trialid.export.model.numpy_text import numpy_text
 from trialid.result.json_file import text_of
 from trialid.workflow.use.finished_model import FinishedModel
+from trialid.workflow.use.predict import spread_of
 
-Files = dict[str, str]
+Files = Mapping[str, str | bytes]
 """By the suffix that follows the name of what is written."""
 
 
@@ -48,13 +53,25 @@ def _json(model: FinishedModel, name: str) -> Files:
 
 
 def _c(model: FinishedModel, name: str) -> Files:
-    return c_texts(taken_up(model), name)
+    return {**c_texts(taken_up(model), name)}
+
+
+def _fmu(model: FinishedModel, name: str) -> Files:
+    return {".fmu": fmu_bytes(taken_up(model), name)}
+
+
+def _nomoto(model: FinishedModel, name: str) -> Files:
+    del name
+    found = nomoto(sailed_ship(model.fit), spread_of(model))
+    return {".json": text_of(nomoto_file(taken_up(model), found))}
 
 
 FORMATS: Final[Mapping[str, Format]] = {
     "ship": Format("a ship file for a next pipeline", (".toml",), _ship),
     "json": Format("plain data, with a schema", (".json",), _json),
     "c": Format("C99 with a header, no dependencies", (".c", ".h"), _c),
+    "fmu": Format("FMI 2.0 for co-simulation, C source and a Linux binary", (".fmu",), _fmu),
+    "nomoto": Format("Nomoto's K and T", (".json",), _nomoto),
     "python": Format("one file that needs NumPy alone", (".py",), _python),
 }
 """What a model can be written as."""

@@ -1,6 +1,6 @@
 """What a ship is told: a manoeuvre by name and numbers, or a table of orders."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -115,8 +115,7 @@ def read_orders(path: Path) -> OrderTable:
     Raises
     ------
     TrialidError
-        A column without a unit or of no known name is left out; none is left, a value is missing,
-        or the times do not rise.
+        A column of a known name has no unit, there is no such column, or the times do not rise.
     """
     recording = ingest.read(path)
     signals, t = dict[str, Vector](), None
@@ -127,9 +126,6 @@ def read_orders(path: Path) -> OrderTable:
             raise TrialidError(
                 f"{path}: column {name}: no unit; write its header as {name}[{SIGNALS[name].shown}]"
             )
-        if not np.isfinite(channel.y).all():
-            row = int(np.flatnonzero(~np.isfinite(channel.y))[0]) + 1
-            raise TrialidError(f"{path}: column {name}: row {row} of the orders has no number")
         signals[name] = channel.y * units.factor(channel.unit, SIGNALS[name].unit)
         t = channel.t
     if t is None or len(t) < FEWEST:
@@ -141,3 +137,32 @@ def read_orders(path: Path) -> OrderTable:
         row = int(np.flatnonzero(np.diff(t) <= 0)[0]) + 2
         raise TrialidError(f"{path}: t does not rise at row {row}; give one manoeuvre in a file")
     return OrderTable((t - t[0]) / 1e9, signals)
+
+
+def complete_rows(table: OrderTable, inputs: Collection[str], where: str) -> OrderTable:
+    """The rows from the first to the last that has a number of every input; time begins there.
+
+    Of other signals, motions that say how she begins, only the first number counts.
+
+    Raises
+    ------
+    TrialidError
+        A number is missing between them: no gap is bridged.
+    """
+    needed = [n for n in table.signals if n in inputs]
+    full = np.all([np.isfinite(table.signals[n]) for n in needed], axis=0)
+    rows = np.flatnonzero(full)
+    if len(rows) < FEWEST:
+        raise TrialidError(f"{where}: fewer than {FEWEST} rows have a number of {needed}")
+    kept = slice(int(rows[0]), int(rows[-1]) + 1)
+    if not full[kept].all():
+        gap = int(rows[0]) + int(np.flatnonzero(~full[kept])[0])
+        name = next(n for n in needed if not np.isfinite(table.signals[n][gap]))
+        raise TrialidError(
+            f"{where}: column {name}: row {gap + 1} of the orders has no number; fill it, or give "
+            "the part before or behind it"
+        )
+    cut = {n: x[kept] for n, x in table.signals.items()}
+    begun = {n: x for n, x in cut.items() if n in needed or np.isfinite(x[0])}
+    t = table.t[kept]
+    return OrderTable(t - t[0], {n: np.nan_to_num(x) for n, x in begun.items()})

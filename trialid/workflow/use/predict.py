@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.following import STEERED, sailed_ship, steady_inputs
+from trialid.design.following import GEAR, STEERED, sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
 from trialid.design.likely_spread import LikelySpread, likely_spread
 from trialid.design.predicted_motion import Manoeuvre, PredictedMotion, sail_manoeuvre, sail_orders
@@ -18,7 +18,7 @@ from trialid.names import labels
 from trialid.threads import one_thread
 from trialid.trial import Trial
 from trialid.workflow.use.finished_model import FinishedModel
-from trialid.workflow.use.orders import OrderTable
+from trialid.workflow.use.orders import OrderTable, complete_rows
 
 LONGEST: Final = 1_000_000
 """Samples that are simulated at most."""
@@ -60,15 +60,17 @@ def predict_orders(model: FinishedModel, table: OrderTable, name: str) -> Predic
         None of them is an input of the model, or there are too many.
     """
     ship, held = _ship_for(model, {*table.signals})
+    inputs = {*ship.simulator.equations.inputs}
+    acting = inputs | ({"delta_order"} if "delta" in inputs else set())
+    if not {*table.signals} & acting:
+        raise TrialidError(
+            f"{name}: holds no input of the model; expected {', '.join(sorted(inputs))}, it has "
+            f"{', '.join(table.signals)}"
+        )
+    table = complete_rows(table, acting, name)
     clock = model.fit.problem.trials[0].period / model.fit.settings.substeps
     t, every = _clock(table.t, clock)
     signals = {n: np.interp(t, table.t, x) for n, x in table.signals.items()}
-    inputs = {*ship.simulator.equations.inputs}
-    if not ({*signals} | ({"delta"} if "delta_order" in signals else set())) & inputs:
-        raise TrialidError(
-            f"{name}: holds no input of the model; expected {', '.join(sorted(inputs))}, it has "
-            f"{', '.join(signals)}"
-        )
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
     made = sail_orders(ship, orders, spread_of(model), model.result.fit.band, every)
@@ -90,7 +92,7 @@ def _ship_for(model: FinishedModel, given: set[str]) -> tuple[Vessel, dict[str, 
         steered = sailed_ship(fit)
     except DesignError:
         steady = steady_inputs(fit)
-        steered = vessel(fit.model, fit.problem.trials[0].period, steady, np.inf)
+        steered = vessel(fit.model, fit.problem.trials[0].period, steady, GEAR)
     if "u" in given and "u" not in fit.model.states:
         steered = vessel(fit.model, steered.period, steered.constants, steered.rudder_rate)
     needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
