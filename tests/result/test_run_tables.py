@@ -6,7 +6,7 @@ import pytest
 from trialid.report.tables import run_tables
 from trialid.report.tables.rounded_table import Figure
 from trialid.result.change_rows import ChangePart, MovedRow, StepRow
-from trialid.result.finding_rows import CandidateRow, ImoPart, MeasureRow, OvershootRow
+from trialid.result.finding_rows import CandidateRow, ImoPart, MeasureRow, OvershootRow, TurnRow
 from trialid.result.fit_rows import (
     AccuracyPart,
     FitPart,
@@ -92,6 +92,18 @@ RUN = Result(
             ),
         ),
         overshoots=(OvershootRow(trial="ten", t=61.0, rudder=0.17, measured=0.10, predicted=0.13),),
+        turns=(
+            TurnRow(
+                trial="circle",
+                t=30.0,
+                rudder=-0.61,
+                name="advance",
+                measured=523.0,
+                interval=(513.0, 533.0),
+                corrected=502.0,
+                predicted=501.0,
+            ),
+        ),
     ),
     history=(
         StepRow(
@@ -179,6 +191,14 @@ def test_candidates_foreseen_fitted_and_held_out():
         "visible [%]": 61.0,
     }
     assert {n: found[n] for n in expected} == pytest.approx(expected)
+
+
+def test_a_turning_circle_stands_over_the_ground_and_through_the_water():
+    found = row("turns")
+    assert found["measured [m]"] == 523.0
+    assert found["without current [m]"] == 502.0
+    assert found["model [m]"] == 501.0
+    assert found["rudder [deg]"] == pytest.approx(-34.95, abs=0.01)
 
 
 def test_standard_measures_and_overshoots():

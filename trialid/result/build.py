@@ -12,6 +12,7 @@ from trialid.design.helm import Vessel
 from trialid.design.observed import Overshoot
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
+from trialid.design.turns import TurnMeasure
 from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.where.finding import Finding
@@ -27,6 +28,7 @@ from trialid.result.finding_rows import (
     OvershootRow,
     RestRow,
     ShareRow,
+    TurnRow,
     WhereElsePart,
 )
 from trialid.result.fit_rows import (
@@ -53,8 +55,8 @@ class Findings(Diagnosis):
     """All that a run found.
 
     `proposal` is None where nothing is to be told apart, `narrowing` where no effect widens a
-    range. `ship` is the fitted one as she is sailed, None where no rudder steers her. `measures`
-    and `overshoots` are there where the pipeline asks for IMO's measures.
+    range. `ship` is the fitted one as she is sailed, None where no rudder steers her. `measures`,
+    `overshoots` and `turns` are there where the pipeline asks for IMO's measures.
     """
 
     name: str
@@ -64,6 +66,7 @@ class Findings(Diagnosis):
     ship: Vessel | None = None
     measures: tuple[Measure, ...] = ()
     overshoots: tuple[Overshoot, ...] = ()
+    turns: tuple[TurnMeasure, ...] = ()
 
 
 def result_from(found: Findings, **beside: Any) -> Result:
@@ -228,6 +231,7 @@ def _imo(found: Findings) -> ImoPart | None:
         doubt="" if reliable else UNRELIABLE,
         speed_simulated="u" in found.before.fit.model.states,
         overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
+        turns=tuple(TurnRow(**asdict(one)) for one in found.turns),
     )
 
 

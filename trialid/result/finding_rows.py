@@ -185,6 +185,25 @@ class OvershootRow:
 
 
 @dataclass(frozen=True, kw_only=True)
+class TurnRow:
+    """A measure of a turning circle that a trial holds: m, rudder in rad, time of the order in s.
+
+    `measured` is over the ground as recorded, `corrected` through the water by the current found,
+    each with its 95 % interval; `predicted` is of the fitted model in still water.
+    """
+
+    trial: str
+    t: float
+    rudder: float
+    name: str
+    measured: float
+    interval: tuple[float, float]
+    corrected: float | None = None
+    corrected_interval: tuple[float, float] | None = None
+    predicted: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class SailedPart:
     """How the fitted ship is sailed where she is predicted; SI.
 
@@ -209,7 +228,7 @@ class SailedPart:
 
 @dataclass(frozen=True, kw_only=True)
 class ImoPart:
-    """Standard measures of MSC.137(76), and overshoots the trials hold.
+    """Standard measures of MSC.137(76), and overshoots and turning circles the trials hold.
 
     Attributes
     ----------
@@ -222,5 +241,6 @@ class ImoPart:
     measures: tuple[MeasureRow, ...] = ()
     speed_simulated: bool = False
     overshoots: tuple[OvershootRow, ...] = ()
+    turns: tuple[TurnRow, ...] = ()
     sailed: str = ""
     doubt: str = ""

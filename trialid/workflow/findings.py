@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 
-from trialid.design import following, observed
+from trialid.design import following, observed, turns
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
 from trialid.design.observed import Overshoot
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
+from trialid.design.turns import TurnMeasure
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError
@@ -52,7 +53,7 @@ def find_out(
         fit, diagnose_settings(pipeline, catalogue), progress, force=force, grown=grown
     )
     ship = _ship(found.before.fit)
-    measures, overshoots = _imo(pipeline, found.before)
+    measures, overshoots, turned = _imo(pipeline, found.before)
     progress("looking for the trial to sail next", 0.95)
     return Findings(
         **vars(found),
@@ -63,6 +64,7 @@ def find_out(
         ship=ship,
         measures=measures,
         overshoots=overshoots,
+        turns=turned,
     )
 
 
@@ -99,12 +101,15 @@ def _ship(fit: Fit) -> Vessel | None:
         return None
 
 
-def _imo(pipeline: Pipeline, done: Diagnosed) -> tuple[tuple[Measure, ...], tuple[Overshoot, ...]]:
-    """IMO's measures of the fitted ship, where the pipeline asks for them."""
+def _imo(
+    pipeline: Pipeline, done: Diagnosed
+) -> tuple[tuple[Measure, ...], tuple[Overshoot, ...], tuple[TurnMeasure, ...]]:
+    """IMO's measures of the fitted ship and of the trials, where the pipeline asks for them."""
     if not pipeline.imo:
-        return (), ()
+        return (), (), ()
     off = done.doubts
     measures = following.standard_measures(
         done.fit, done.accuracy.covariance, off.standing, off.held, off.missing
     )
-    return measures, observed.overshoots(done.fit)
+    errors = {p.name: p.standard_error for p in done.accuracy.parameters}
+    return measures, observed.overshoots(done.fit), turns.turns(done.fit, errors)

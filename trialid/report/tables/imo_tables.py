@@ -2,7 +2,7 @@
 
 from trialid.names import wording
 from trialid.report.tables.rounded_table import Cell, Figure, Table
-from trialid.result.finding_rows import ImoPart, MeasureRow, OvershootRow
+from trialid.result.finding_rows import ImoPart, MeasureRow, OvershootRow, TurnRow
 from trialid.result.schema import Result
 
 
@@ -41,6 +41,24 @@ def overshoots(run: Result) -> Table:
 def _overshoot(each: OvershootRow) -> tuple[Cell, ...]:
     angles = (_degrees(x) for x in (each.rudder, each.measured, each.predicted))
     return each.trial, Figure(each.t), *(Figure(x, 3) for x in angles)
+
+
+def turns(run: Result) -> Table:
+    """Every measure of a turning circle in the trials, over the ground and through the water."""
+    rows = tuple(_turn(each) for each in (run.imo or ImoPart()).turns)
+    headings = (
+        *("trial", "t [s]", "rudder [deg]", "turning circle", "measured [m]", "95 % from", "to"),
+        *("without current [m]", "95 % from", "to", "model [m]"),
+    )
+    return Table("turns", "Turning circles in the trials", headings, rows)
+
+
+def _turn(each: TurnRow) -> tuple[Cell, ...]:
+    low, high = each.corrected_interval or (None, None)
+    sizes = (each.measured, *each.interval, each.corrected, low, high, each.predicted)
+    numbers = (Figure(x, 4) for x in sizes)
+    angle = Figure(_degrees(each.rudder), 3)
+    return each.trial, Figure(each.t), angle, each.name, *numbers
 
 
 def _degrees(angle: float) -> float:

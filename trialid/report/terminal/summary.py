@@ -6,6 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from trialid.names import labels, wording
+from trialid.names.quantities import POSITION
 from trialid.report.terminal.terminal import (
     SCREEN,
     FirstThatFits,
@@ -111,7 +112,9 @@ def _errors(run: Result, rows: Rows) -> "Table":
     fit = run.fit
     outputs = list(fit.eps_rmsn_by_output)[:6]
     letters = map(labels.symbol, outputs)
-    table = new_table("error, share of measured RMS", "use", *letters, "all", words=2)
+    tracked = {*POSITION} & {*outputs}
+    share = "error by RMS; x, y by length" if tracked else "error, share of measured RMS"
+    table = new_table(share, "use", *letters, "all", words=2)
     trials = run.trials
     shown = trials if len(trials) <= rows.trials else trials[: rows.trials - 1]
     for trial in shown:

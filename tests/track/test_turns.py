@@ -1,0 +1,106 @@
+"""Turning circles of a record: found by evidence, measured with intervals that hold the truth."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from sailed_tracks import (
+    APPROACH,
+    CURRENTS,
+    SETTINGS,
+    SHIP,
+    accuracy,
+    noisy,
+    sailed,
+    trials,
+)
+
+from trialid.design.turns import TurnMeasure, find_turns, measure, turns
+from trialid.identification.fit import identify
+from trialid.threads import one_thread
+from trialid.trial import Trial
+
+BY_NOISE = replace(SETTINGS, weights={"x": 12.0, "y": 12.0, "psi": 12.0})
+STILL = (0.0, 0.0)
+SEEDS = 100
+
+
+def without_order(trial: Trial) -> Trial:
+    """The trial as a logger has it that knows the rudder's angle alone."""
+    signals = {n: x for n, x in trial.signals.items() if n != "delta_order"}
+    return replace(trial, signals=signals, valid={n: trial.valid[n] for n in signals})
+
+
+@cache
+def truth(water: tuple[float, float]) -> dict[str, float]:
+    """Of the track without noise, from the instant at which the rudder began to move."""
+    trial = without_order(sailed("circle", water))
+    [turn] = find_turns(trial)
+    assert turn.t == pytest.approx(APPROACH, abs=0.01)
+    return measure(replace(turn, t=APPROACH), trial.t, trial.signals)
+
+
+def measured(seed: int) -> tuple[TurnMeasure, ...]:
+    fit = identify([without_order(t) for t in trials(seed)], SHIP, BY_NOISE)
+    return turns(fit, {p.name: p.standard_error for p in accuracy(fit).parameters})
+
+
+def test_measures_over_the_ground_and_through_the_water() -> None:
+    found = {m.name: m for m in measured(0)}
+    over, still = truth(CURRENTS["circle"]), truth(STILL)
+    assert [*found] == ["advance", "transfer", "tactical diameter"]
+    for name, m in found.items():
+        assert m.interval[0] < over[name] < m.interval[1]
+        assert m.corrected_interval is not None
+        assert m.corrected_interval[0] < still[name] < m.corrected_interval[1]
+        assert m.interval[1] - m.interval[0] < 25.0
+        assert m.predicted == pytest.approx(still[name], rel=0.005)
+    assert abs(over["tactical diameter"] - still["tactical diameter"]) > 100.0  # what it is about
+
+
+def test_a_zigzag_holds_no_turn_and_a_turn_to_port_is_the_mirror() -> None:
+    rng = np.random.default_rng(2)
+    assert list(find_turns(noisy(sailed("zigzag", STILL), rng))) == []
+    trial = sailed("circle", STILL, course=0.0)
+    odd = ("delta", "delta_order", "psi", "r", "y")
+    port = replace(trial, signals={n: -x if n in odd else x for n, x in trial.signals.items()})
+    [a], [b] = find_turns(trial), find_turns(port)
+    assert b.rudder == pytest.approx(-a.rudder)
+    assert measure(b, port.t, port.signals) == pytest.approx(measure(a, trial.t, trial.signals))
+
+
+def test_a_turn_out_of_another_manoeuvre_or_broken_off_is_none() -> None:
+    trial = sailed("circle", STILL)
+    [turn] = find_turns(trial)
+    late = {n: x[turn.begin + 5 :] for n, x in trial.signals.items()}
+    cut = replace(
+        trial, signals=late, valid={n: x[turn.begin + 5 :] for n, x in trial.valid.items()}
+    )
+    assert list(find_turns(cut)) == []
+    stop = int(np.argmax(trial.signals["psi"] - turn.course > np.deg2rad(150.0)))
+    short = {n: x[:stop] for n, x in trial.signals.items()}
+    assert list(find_turns(replace(trial, signals=short))) == []
+    lost = {n: x.copy() for n, x in trial.valid.items()}
+    lost["x"][turn.begin + 10 : turn.begin + 60] = False
+    assert list(find_turns(replace(trial, valid=lost))) == []
+
+
+@pytest.mark.study(turn=4)
+@one_thread
+def test_intervals_hold_the_truth() -> None:
+    """Advance more often: a ramp tells the order better than the half sample allowed for."""
+    over, still = truth(CURRENTS["circle"]), truth(STILL)
+    inside: dict[tuple[str, bool], list[bool]] = {}
+    for seed in range(SEEDS):
+        for m in measured(seed):
+            assert m.corrected_interval is not None
+            low, high = m.interval
+            inside.setdefault((m.name, True), []).append(low < over[m.name] < high)
+            low, high = m.corrected_interval
+            inside.setdefault((m.name, False), []).append(low < still[m.name] < high)
+    shares = {key: float(np.mean(x)) for key, x in inside.items()}
+    print(shares)
+    assert min(shares.values()) >= 0.9
+    sideways = [x for (name, _), x in shares.items() if name != "advance"]
+    assert 0.92 <= np.mean(sideways) <= 0.98
