@@ -63,7 +63,7 @@ def test_nuisances_of_short_records_stay_likely_where_alone_they_run_off(short):
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_half_or_twice_of_what_is_likely_does_not_move_the_ship(short, factor, monkeypatch):
     """The ship's own numbers move by less than their errors: the priors hold what nobody saw."""
-    from trialid.identification import problem as posing
+    from trialid.identification import of_each_trial as posing
 
     def other(*asked):
         mean, deviation = nuisance_prior(*asked)
