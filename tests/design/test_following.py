@@ -6,8 +6,9 @@ from s175q import MODEL, OUTPUTS, SHAFT, with_noise, zigzag
 from waters import NOISE, SPEED, D
 
 from trialid.accuracy.parameter_table import Subject, assess
-from trialid.design import following, observed
+from trialid.design import following
 from trialid.design.helm import carry_out, ramp
+from trialid.design.imo import observed
 from trialid.design.manoeuvres import zigzag as ordered
 from trialid.design.standard import predict
 from trialid.diagnosis.may_be_off import doubts

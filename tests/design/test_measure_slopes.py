@@ -9,7 +9,7 @@ from waters import VESSEL, D
 
 from trialid.design import standard
 from trialid.design.helm import vessel
-from trialid.design.measure_slopes import measure_slopes
+from trialid.design.imo.measure_slopes import measure_slopes
 from trialid.design.standard import acts_in_calm, in_calm, predict
 from trialid.effects import CATALOGUE
 from trialid.ship.effect import Effect, Parameter, Steered, effect

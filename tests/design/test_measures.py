@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from waters import VESSEL, D
 
-from trialid.design import manoeuvres, measures
+from trialid.design import manoeuvres
 from trialid.design.helm import Passage, carry_out
+from trialid.design.imo import measures
 from trialid.errors import DesignError
 from trialid.trial import Trial
 

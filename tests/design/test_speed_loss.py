@@ -8,8 +8,15 @@ from s175q import MODEL, OUTPUTS, SHAFT
 from waters import D
 
 from trialid.design.helm import carry_out, vessel
+from trialid.design.imo.speed_loss import (
+    LAW,
+    NAMES,
+    TYPICAL,
+    loses_speed,
+    speed_loss,
+    with_speed_loss,
+)
 from trialid.design.manoeuvres import zigzag
-from trialid.design.speed_loss import LAW, NAMES, TYPICAL, loses_speed, speed_loss, with_speed_loss
 from trialid.design.standard import predict
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings

@@ -3,9 +3,10 @@ import pytest
 from s175q import MODEL, SHAFT
 from waters import VESSEL, D
 
-from trialid.design import manoeuvres, measures
+from trialid.design import manoeuvres
 from trialid.design.helm import Passage, carry_out, vessel
-from trialid.design.measures import Criterion
+from trialid.design.imo import measures
+from trialid.design.imo.measures import Criterion
 from trialid.design.standard import Measure, predict
 from trialid.trial import Trial
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trialid.design.turns import find_turns, turns
+from trialid.design.imo.turns import find_turns, turns
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings

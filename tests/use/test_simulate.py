@@ -13,9 +13,9 @@ from trialid import ingest
 from trialid.accuracy.likely import Rows, stand
 from trialid.design import predicted_motion
 from trialid.design.following import vessel_of
+from trialid.design.imo.speed_loss import NAMES
 from trialid.design.likely_spread import LikelySpread
 from trialid.design.predicted_motion import sail_manoeuvre, sail_orders
-from trialid.design.speed_loss import NAMES
 from trialid.errors import TrialidError
 from trialid.progress import silent
 from trialid.trial import Trial

@@ -13,14 +13,14 @@ import numpy as np
 from trialid.accuracy.likely import WIDE, Standing
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
+from trialid.design.imo.measure_slopes import Shows, measure_slopes
+from trialid.design.imo.speed_loss import speed_loss, with_speed_loss
 from trialid.design.kinds import Test
 from trialid.design.likely_spread import likely_spread
 from trialid.design.limits import Limits, excesses
-from trialid.design.measure_slopes import Shows, measure_slopes
 from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
-from trialid.design.speed_loss import speed_loss, with_speed_loss
 from trialid.design.standard import Measure, measures_of
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit

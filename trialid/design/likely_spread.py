@@ -13,8 +13,8 @@ from scipy.linalg import block_diag
 
 from trialid.accuracy.likely import Standing
 from trialid.arrays import Vector
-from trialid.design.measure_slopes import Shows
-from trialid.design.speed_loss import NAMES, speed_loss
+from trialid.design.imo.measure_slopes import Shows
+from trialid.design.imo.speed_loss import NAMES, speed_loss
 from trialid.identification.fit import Fit
 
 Range = tuple[float, float]

@@ -22,8 +22,7 @@ from trialid.design.helm import (
     ramp,
     track,
 )
-from trialid.design.likely_spread import LikelySpread, Range
-from trialid.design.measure_slopes import (
+from trialid.design.imo.measure_slopes import (
     SMALL,
     Shows,
     motion_slopes,
@@ -32,6 +31,7 @@ from trialid.design.measure_slopes import (
     until_amidships,
     with_columns,
 )
+from trialid.design.likely_spread import LikelySpread, Range
 from trialid.design.standard import (
     AT_SEA,
     LENGTHS,

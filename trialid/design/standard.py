@@ -14,9 +14,10 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design import manoeuvres, measures
+from trialid.design import manoeuvres
 from trialid.design.helm import Instructions, Passage, Vessel, carry_out, vessel
-from trialid.design.measures import Criterion
+from trialid.design.imo import measures
+from trialid.design.imo.measures import Criterion
 from trialid.errors import DesignError
 from trialid.ship.effect import SENSORS, Delayed, Effect
 from trialid.ship.model import STATES

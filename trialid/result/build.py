@@ -9,10 +9,10 @@ import numpy as np
 
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
-from trialid.design.observed import Overshoot
+from trialid.design.imo.observed import Overshoot
+from trialid.design.imo.turns import TurnMeasure
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
-from trialid.design.turns import TurnMeasure
 from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.where.finding import Finding

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from trialid.design.helm import GEAR_STATE, Vessel
-from trialid.design.speed_loss import NAMES, loses_speed
+from trialid.design.imo.speed_loss import NAMES, loses_speed
 from trialid.design.standard import Measure, in_calm
 from trialid.names import labels
 from trialid.result.finding_rows import MeasureRow, SailedPart

@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any, Final
 
 from trialid.design.helm import Vessel
+from trialid.design.imo.speed_loss import with_speed_loss
 from trialid.design.search import Ship
-from trialid.design.speed_loss import with_speed_loss
 from trialid.design.standard import Measure, predict
 from trialid.pipeline_file.finished_run import FinishedRun
 from trialid.result.imo import UNRELIABLE, measure_rows, sailing_words

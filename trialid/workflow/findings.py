@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 
-from trialid.design import following, observed, turns
+from trialid.design import following
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
-from trialid.design.observed import Overshoot
+from trialid.design.imo import observed, turns
+from trialid.design.imo.observed import Overshoot
+from trialid.design.imo.turns import TurnMeasure
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
-from trialid.design.turns import TurnMeasure
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError

@@ -9,8 +9,9 @@ import numpy as np
 
 from trialid import ingest
 from trialid.arrays import Vector
-from trialid.design import manoeuvres, measures
+from trialid.design import manoeuvres
 from trialid.design.helm import Passage
+from trialid.design.imo import measures
 from trialid.design.predicted_motion import Manoeuvre
 from trialid.design.standard import DEGREES, Reading
 from trialid.errors import TrialidError, nearest

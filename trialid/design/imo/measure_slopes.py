@@ -14,7 +14,7 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.helm import GEAR_STATE, Passage, Vessel, ramp, speed_outputs, track, vessel
-from trialid.design.measures import execute_sample, reversal_samples
+from trialid.design.imo.measures import execute_sample, reversal_samples
 from trialid.design.standard import (
     READINGS,
     Reading,

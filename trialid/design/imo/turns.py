@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design import measures
 from trialid.design.helm import Passage
+from trialid.design.imo import measures
 from trialid.effects.track import CURRENT
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit, Score, of_trial
