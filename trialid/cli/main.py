@@ -6,6 +6,7 @@ Everything heavy is imported inside the commands, so that `trialid --help` answe
 import errno
 import io
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -173,22 +174,9 @@ def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bo
     _change("dropped", pipeline, effect, out, as_json, quiet)
 
 
-for command in (
-    effects,
-    demo,
-    start,
-    ship,
-    inspect,
-    align,
-    design,
-    report,
-    replay,
-    simulate,
-    export,
-    structures,
-    workbench,
-    guide,
-):
+OF_LOGS = (inspect, align, start, ship, replay)
+OF_MODELS = (effects, design, report, simulate, export, structures)
+for command in (*OF_LOGS, *OF_MODELS, demo, workbench, guide):
     commands.add_command(command)
 
 
@@ -199,6 +187,8 @@ def main() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without Greek is no reason to fail
     sys.excepthook = _report_bug
+    # NumPy's, of numbers far out in a log: what comes of them is checked, and told in our words
+    warnings.filterwarnings("ignore", category=RuntimeWarning)
     try:
         commands(prog_name="trialid")
     except OSError as error:  # of click's own texts, as --help; those of ours go through `say`

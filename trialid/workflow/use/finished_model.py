@@ -60,7 +60,7 @@ class FinishedModel:
             what = verdict.effect or "something outside the catalogue"
             said.append(f"The run says that {what} is missing; this is the model without it.")
         said += filter(None, [doubtful(self.result.physical)])
-        return (*said, *self.result.fit.remarks)
+        return (*said, *(f"{line}." for line in self.result.fit.remarks))
 
 
 @one_thread

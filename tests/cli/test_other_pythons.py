@@ -1,4 +1,4 @@
-"""`python -OO` strips assertions and docstrings; the program is the same without them."""
+"""`python -O` and `-OO` strip assertions and docstrings, NumPy warns: the program is the same."""
 
 import subprocess
 import sys
@@ -21,3 +21,17 @@ def test_an_effect_is_there_without_its_words(flag: str) -> None:
     whole, stripped = printed(), printed(flag)
     assert '"righting_arm_cubic"' in stripped
     assert (stripped == whole) is (flag == "-O")
+
+
+def test_what_numpy_warns_of_does_not_reach_the_user() -> None:
+    """A process of its own, as the tests themselves take every warning for an error."""
+    code = (
+        "import numpy as np\n"
+        "from trialid.cli import main\n"
+        "main.commands = lambda **options: print(np.float64(1e308) * 10)\n"
+        "main.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "inf\n", "")
