@@ -2,8 +2,6 @@
 
 import json
 
-from trialid.errors import printable
-
 
 def quote(text: str) -> str:
     r"""A TOML string on one line: what JSON writes, but with no pairs of surrogates, and no DEL.
@@ -12,12 +10,3 @@ def quote(text: str) -> str:
     "a \"b\"\n" "bell\u0007" "\u007f"
     """
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def remark(text: str) -> str:
-    r"""A text as it may stand in a comment: on one line, with nothing that TOML forbids there.
-
-    >>> remark("a\x7f\nb")
-    'a\\x7f\\nb'
-    """
-    return printable(text)

@@ -2,9 +2,11 @@
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
+
+from stated_ships import NAVAL, S175
 
 from trialid.effects import CATALOGUE
 from trialid.errors import EffectError
@@ -86,18 +88,7 @@ def _s175() -> Published:
     """Hull and masses of S-175; the rudder and the modulus terms of S175Q, derived from her."""
     ship, derived = (read_ship(SHIPS / f"{n}.toml") for n in ("s175", "s175q"))
     values = {**primed(derived), **primed(ship)}
-    given = Given(
-        length=175.0,
-        beam=25.4,
-        draught=8.5,
-        displacement=21222.0 * 1025.0,
-        speed=7.33,
-        GM=0.3,
-        rudder_area=33.0376,
-        rudder_aspect=1.8219,
-        propeller_diameter=6.533,
-    )
-    return _whole("S-175", ship.source, values, given)
+    return _whole("S-175", ship.source, values, S175)
 
 
 def _naval() -> Published:
@@ -115,19 +106,7 @@ def _naval() -> Published:
     values["Kp"] += values.pop("Kp0") / (0.5 * rho * L**4 * U)  # all of it, under way
     for name in ("Ydelta", "Ndelta", "Kdelta", "z_G", "I_xx", "Kpdot"):
         del values[name]
-    given = Given(
-        length=51.5,
-        beam=8.6,
-        draught=2.3,
-        displacement=357.0 * 1014.0,
-        rho=1014.0,
-        speed=8.0,
-        GM=1.1,
-        rudder_area=3.0,
-        rudder_aspect=1.5,
-        propeller_diameter=1.6,
-        x_G=-3.38,
-    )
+    given = replace(NAVAL, rudder_area=3.0, rudder_aspect=1.5, propeller_diameter=1.6, x_G=-3.38)
     return _whole("naval vessel", ship.source, values, given)
 
 

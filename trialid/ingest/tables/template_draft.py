@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from trialid.errors import LogError
+from trialid.errors import LogError, printable
 from trialid.ingest.tables import excel_log, mat_log, parquet_log
 from trialid.ingest.tables.table import head
 from trialid.ingest.tables.table_header import is_data
@@ -15,7 +15,7 @@ from trialid.ingest.tables.table_time import DAYS
 from trialid.ingest.tables.template import TAB, WHITESPACE, distinct
 from trialid.ingest.tables.template_guess import Guess, guess, is_number
 from trialid.names.quantities import SIGNALS
-from trialid.toml_text import quote, remark
+from trialid.toml_text import quote
 
 HEAD = 4096
 TOP = (
@@ -91,7 +91,8 @@ def _of_excel(path: Path) -> str:
     header = distinct([text or f"column {excel_log.letters(i)}" for i, text in enumerate(texts)])
     others = ", ".join(other for other in held if other != name)
     lines = [
-        f"sheet = {quote(name)}" + (f"  # QUESTION: or one of {remark(others)}?" if others else ""),
+        f"sheet = {quote(name)}"
+        + (f"  # QUESTION: or one of {printable(others)}?" if others else ""),
         f"skip = {at if named is None else named}  # rows before the header",
         f"header_rows = {0 if named is None else 1}",
         f"skip_after = {0 if named is None else at - named - 1}  # rows between header and data",
@@ -195,7 +196,7 @@ def _text(
     units: Sequence[str] = (),
 ) -> str:
     names = ", ".join(map(quote, header))
-    top = [line.replace("{name}", remark(path.name)) for line in TOP]
+    top = [line.replace("{name}", printable(path.name)) for line in TOP]
     stated = [*units] + [""] * len(header)
     first = rows[0] if rows else [""] * len(header)
     columns = [_column(*one) for one in zip(header, stated, first, strict=False)]
