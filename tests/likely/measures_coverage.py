@@ -106,21 +106,28 @@ class Counted:
     widths: Mapping[str, float]
 
 
-@one_thread
-def count(case: Case, seed: int) -> Counted | None:
-    """One record's ranges; None where she cannot be sailed or the fit did not converge."""
+def fitted(case: Case, seed: int) -> tuple[World, Fit] | None:
+    """The true ship and the fit of one record; None where she cannot be sailed, or no fit."""
     known = as_known(case.conditions)
     ship = hidden_world(case.conditions, seed, EVERY) if case.hides else known
     try:
         fit = fit_of(case, ship, seed)
     except NoPassage:
         return None
-    if not fit.converged:
+    return (ship, fit) if fit.converged else None
+
+
+@one_thread
+def count(case: Case, seed: int) -> Counted | None:
+    """One record's ranges; None where she cannot be sailed or the fit did not converge."""
+    found = fitted(case, seed)
+    if found is None:
         return None
+    ship, fit = found
     gone = {e.name for e in ship.effects} if case.left_out else set[str]()
-    found = ranges(fit, {n: e for n, e in CATALOGUE.items() if n not in gone})
+    likely = ranges(fit, {n: e for n, e in CATALOGUE.items() if n not in gone})
     truth = {m.criterion.name: m.value for m in predict([vessel_of(fit, ship.true.model)])}
-    return counted(found, truth)
+    return counted(likely, truth)
 
 
 def fit_of(case: Case, ship: World, seed: int) -> Fit:

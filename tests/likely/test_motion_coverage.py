@@ -2,10 +2,7 @@
 
 import numpy as np
 import pytest
-from coverage import as_known
-from measures_coverage import CASES, fit_of, hidden_world
-from sailed_records import NoPassage
-from worlds import EVERY
+from measures_coverage import CASES, fitted
 
 from trialid.design.following import sailed_ship, vessel_of
 from trialid.design.helm import carry_out
@@ -26,14 +23,10 @@ MOTIONS = ("r", "phi", "psi", "v")
 
 def holds(case, seed):
     """Share of the times at which each motion's range holds the true ship's; None: no fit."""
-    known = as_known(case.conditions)
-    ship = hidden_world(case.conditions, seed, EVERY) if case.hides else known
-    try:
-        fit = fit_of(case, ship, seed)
-    except NoPassage:
+    record = fitted(case, seed)
+    if record is None:
         return None
-    if not fit.converged:
-        return None
+    ship, fit = record
     augmented = augment(fit, CATALOGUE)
     off = doubts(fit, augmented)
     parts, _ = split(fit, augmented, {})

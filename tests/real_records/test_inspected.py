@@ -11,6 +11,7 @@ from trialid import pipeline_file
 from trialid.alignment import SignalSource, align
 from trialid.cli import main
 from trialid.errors import AlignmentError
+from trialid.identification.nuisance_priors import DELAY
 from trialid.ingest import Aids, read
 from trialid.inspection import disagreements, inspect_log
 from trialid.workflow.run import run as run_pipeline
@@ -105,7 +106,7 @@ def test_as_begun_there_is_no_fit_of_the_yacht(begun):
     assert fit.reason == "the number of iterations is used up"
     assert all(np.isfinite(p.standard_error) for p in found.values())
     delays = [p.value for name, p in found.items() if name.startswith("tau_")]
-    assert all(abs(x) < 1.5 for x in delays)
+    assert all(abs(x) < 3 * DELAY for x in delays)  # what is likely of a delay, three times
 
 
 def test_her_yaw_alone_converges(begun):

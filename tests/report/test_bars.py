@@ -1,3 +1,5 @@
+from statistics import NormalDist
+
 import pytest
 
 from trialid.report.pictures import bars
@@ -36,8 +38,9 @@ def test_a_range_lies_about_its_value_less_to_the_left(result):
     end = row.may_be_off
     assert end == pytest.approx(1.2 * 0.081)
     assert bar.likely == pytest.approx((0.0, 50.0 + 50.0 * 0.8 / 1.2))
+    wide = NormalDist().inv_cdf(0.975)
     assert bar.noise == pytest.approx(
-        (50.0 - 50.0 * 1.96 * 0.0042 / end, 50.0 + 50.0 * 1.96 * 0.0042 / end), rel=1e-4
+        (50.0 - 50.0 * wide * 0.0042 / end, 50.0 + 50.0 * wide * 0.0042 / end)
     )
 
 
