@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
+from trialid.errors import printable
 from trialid.export.model.fitted_model import deviation_of
 from trialid.names.quantities import MASS_PARAMETERS
 from trialid.result.fit_rows import ParameterRow
@@ -11,7 +12,7 @@ from trialid.result.schema import Result
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import MOST_UNCERTAIN, Ship
 from trialid.ship.prime import mass_scale, primed_coefficient
-from trialid.toml_text import quote, remark
+from trialid.toml_text import quote
 from trialid.version import VERSION
 
 HEAD: Final = """\
@@ -88,7 +89,7 @@ def fitted_ship_text(made: FittedShip, warnings: tuple[str, ...]) -> str:
     ship = made.ship
     lines = [
         *HEAD.splitlines(),
-        *(f"# {remark(words)}" for words in warnings),
+        *(f"# {printable(words)}" for words in warnings),
         f"name = {quote(ship.name)}",
         f"source = {quote(ship.source)}",
         f"notes = {quote(ship.notes)}",
