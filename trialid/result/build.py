@@ -127,6 +127,7 @@ def _model(fit: Fit) -> ModelPart:
     model = fit.model
     return ModelPart(
         ship=model.ship.name,
+        particulars=dict(model.ship.particulars),
         rudder_positive="starboard",
         states=tuple(model.states),
         effects=tuple(e.name for e in model.effects),

@@ -189,7 +189,8 @@ class TurnRow:
     """A measure of a turning circle that a trial holds: m, rudder in rad, time of the order in s.
 
     `measured` is over the ground as recorded, `corrected` through the water by the current found,
-    each with its 95 % interval; `predicted` is of the fitted model in still water.
+    each with its 95 % interval; `predicted` is of the fitted model through the water under the
+    recorded rudder, with where the true ship's is likely to lie.
     """
 
     trial: str
@@ -201,6 +202,7 @@ class TurnRow:
     corrected: float | None = None
     corrected_interval: tuple[float, float] | None = None
     predicted: float | None = None
+    predicted_interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

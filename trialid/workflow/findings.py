@@ -8,6 +8,7 @@ from trialid.design.helm import Vessel
 from trialid.design.imo import observed, turns
 from trialid.design.imo.observed import Overshoot
 from trialid.design.imo.turns import TurnMeasure
+from trialid.design.likely_spread import likely_spread
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
@@ -109,8 +110,7 @@ def _imo(
     if not pipeline.imo:
         return (), (), ()
     off = done.doubts
-    measures = following.standard_measures(
-        done.fit, done.accuracy.covariance, off.standing, off.held, off.missing
-    )
+    spread = likely_spread(done.fit, done.accuracy.covariance, off.standing, off.held, off.missing)
+    measures = following.measures_within(done.fit, spread)
     errors = {p.name: p.standard_error for p in done.accuracy.parameters}
-    return measures, observed.overshoots(done.fit), turns.turns(done.fit, errors)
+    return measures, observed.overshoots(done.fit), turns.turns(done.fit, errors, spread)

@@ -10,9 +10,11 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.helm import Passage
 from trialid.design.imo import measures
+from trialid.design.imo.sailed_trial import Numbers, numbers, sail_trial
+from trialid.design.likely_spread import LikelySpread, Range
 from trialid.effects.track import CURRENT
 from trialid.errors import DesignError
-from trialid.identification.fit import Fit, Score, of_trial
+from trialid.identification.fit import Fit, of_trial
 from trialid.trial import Trial
 
 NEEDED: Final = ("x", "y", "psi")
@@ -60,8 +62,9 @@ class TurnMeasure:
         sample of the order.
     corrected, corrected_interval
         The same through the water, by the current that the fit found, with its error.
-    predicted
-        Of the fitted model in still water, under the rudder as recorded.
+    predicted, predicted_interval
+        Of the fitted model through the water, under the rudder as recorded, and where the true
+        ship's is likely to lie.
     """
 
     trial: str
@@ -73,6 +76,7 @@ class TurnMeasure:
     corrected: float | None = None
     corrected_interval: tuple[float, float] | None = None
     predicted: float | None = None
+    predicted_interval: Range | None = None
 
 
 @dataclass(frozen=True)
@@ -150,24 +154,31 @@ def measure(turn: Turn, t: Vector, track: Mapping[str, Vector]) -> dict[str, flo
     return measures.turning(Passage(trial, parts["x"], parts["y"], None))
 
 
-def turns(fit: Fit, errors: Mapping[str, float]) -> tuple[TurnMeasure, ...]:
+def turns(
+    fit: Fit, errors: Mapping[str, float], spread: LikelySpread | None = None
+) -> tuple[TurnMeasure, ...]:
     """Every measure of every turning circle in the trials of a fit, to fit and to check.
 
     Parameters
     ----------
     errors
         Standard errors of the unknowns by name.
+    spread
+        What a prediction is uncertain by; without it there is none.
     """
-    return tuple(one for s in fit.scores for one in _of_score(fit, s, errors))
+    return tuple(one for s in fit.scores for one in _of_trial(fit, s.trial, errors, spread))
 
 
-def _of_score(fit: Fit, score: Score, errors: Mapping[str, float]) -> Iterator[TurnMeasure]:
-    trial = score.trial
+def _of_trial(
+    fit: Fit, trial: Trial, errors: Mapping[str, float], spread: LikelySpread | None
+) -> Iterator[TurnMeasure]:
     found = list(find_turns(trial))
     water = _water(fit, trial, errors) if found else None
+    sailed = sail_trial(fit, trial, spread) if found and spread is not None else None
     for turn in found:
+        predicted = {} if sailed is None else numbers(sailed, reader(turn, trial))
         try:
-            yield from _measured(turn, trial, water, _predicted(fit, score, turn))
+            yield from _measured(turn, trial, water, predicted)
         except DesignError:
             continue  # the noise of the heading took the last degree
 
@@ -182,21 +193,21 @@ def _water(fit: Fit, trial: Trial, errors: Mapping[str, float]) -> Water | None:
     return Water((north, east), known)
 
 
-def _predicted(fit: Fit, score: Score, turn: Turn) -> dict[str, float]:
-    """The model's own turn, through the water; empty where it does not simulate the track."""
-    states = dict(zip(fit.problem.simulator.equations.states, score.response.states.T, strict=True))
-    if score.response.departure is not None or not {"x", "y"} <= {*states}:
-        return {}
-    psi = states.get("psi", score.trial.signals["psi"])
-    course = float(np.mean(psi[turn.begin + 1 - APPROACH : turn.begin + 1]))
-    try:
-        return measure(replace(turn, course=course), score.trial.t, {**states, "psi": psi})
-    except DesignError:
-        return {}
+def reader(turn: Turn, trial: Trial) -> Numbers:
+    """What reads the measures of a turn from a track through it, with the course of that track."""
+
+    def read(track: Mapping[str, Vector]) -> dict[str, float]:
+        course = float(np.mean(track["psi"][turn.begin + 1 - APPROACH : turn.begin + 1]))
+        return measure(replace(turn, course=course), trial.t, track)
+
+    return read
 
 
 def _measured(
-    turn: Turn, trial: Trial, water: Water | None, predicted: Mapping[str, float]
+    turn: Turn,
+    trial: Trial,
+    water: Water | None,
+    predicted: Mapping[str, tuple[float, Range | None]],
 ) -> Iterator[TurnMeasure]:
     track = {n: trial.signals[n] for n in NEEDED}
     plain = measure(turn, trial.t, track)
@@ -216,7 +227,8 @@ def _measured(
             interval=(value - spread[name], value + spread[name]),
             corrected=through.get(name),
             corrected_interval=_about(through.get(name), width.get(name)),
-            predicted=predicted.get(name),
+            predicted=predicted.get(name, (None, None))[0],
+            predicted_interval=predicted.get(name, (None, None))[1],
         )
 
 

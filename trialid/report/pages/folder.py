@@ -1,7 +1,7 @@
 """The report of finished runs as files: pages, tables in three forms, figures."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -14,6 +14,7 @@ from trialid.report.tables.rounded_table import Table, as_csv, as_latex, as_mark
 from trialid.result.force_series import ForceSeries, read_force_csv
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries, read_csv
+from trialid.result.track_series import FILE, read_track_csv
 
 OLDER: Final = ("report.html",)
 """What a folder written by an earlier version may hold of a report's."""
@@ -37,9 +38,10 @@ def read_finished(label: str, folder: Path, result: Result) -> Finished:
     LogError
         A table of series is missing or torn.
     """
-    forces = folder / "missing_force.csv"
+    forces, tracks = folder / "missing_force.csv", read_track_csv(folder / FILE)
+    series = read_csv(folder / "series.csv")
     return Finished(
-        label, result, read_csv(folder / "series.csv"),
+        label, result, tuple(replace(one, track=tracks.get(one.name)) for one in series),
         read_force_csv(forces) if forces.exists() else (),
     )  # fmt: skip
 

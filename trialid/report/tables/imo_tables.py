@@ -48,14 +48,15 @@ def turns(run: Result) -> Table:
     rows = tuple(_turn(each) for each in (run.imo or ImoPart()).turns)
     headings = (
         *("trial", "t [s]", "rudder [deg]", "turning circle", "measured [m]", "95 % from", "to"),
-        *("without current [m]", "95 % from", "to", "model [m]"),
+        *("without current [m]", "95 % from", "to", "model [m]", "95 % from", "to"),
     )
     return Table("turns", "Turning circles in the trials", headings, rows)
 
 
 def _turn(each: TurnRow) -> tuple[Cell, ...]:
     low, high = each.corrected_interval or (None, None)
-    sizes = (each.measured, *each.interval, each.corrected, low, high, each.predicted)
+    band = each.predicted_interval or (None, None)
+    sizes = (each.measured, *each.interval, each.corrected, low, high, each.predicted, *band)
     numbers = (Figure(x, 4) for x in sizes)
     angle = Figure(_degrees(each.rudder), 3)
     return each.trial, Figure(each.t), angle, each.name, *numbers
