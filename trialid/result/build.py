@@ -42,7 +42,7 @@ from trialid.result.fit_rows import (
     StartsPart,
 )
 from trialid.result.force_series import missing_force_part
-from trialid.result.imo import UNRELIABLE, measure_rows, sailed_part, sailing_words
+from trialid.result.imo import UNRELIABLE, condition_rows, measure_rows, sailed_part, sailing_words
 from trialid.result.json_file import finite
 from trialid.result.missing_rows import missing_rows, verdict_part
 from trialid.result.schema import Result
@@ -233,6 +233,7 @@ def _imo(found: Findings) -> ImoPart | None:
         speed_simulated="u" in found.before.fit.model.states,
         overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
         turns=tuple(TurnRow(**asdict(one)) for one in found.turns),
+        conditions=tuple(condition_rows([s.trial for s in found.before.fit.scores])),
     )
 
 

@@ -206,6 +206,16 @@ class TurnRow:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ConditionRow:
+    """What a signal of a trial was like, SI: its median, and where 95 % of its samples lie."""
+
+    trial: str
+    signal: str
+    median: float
+    interval: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
 class SailedPart:
     """How the fitted ship is sailed where she is predicted; SI.
 
@@ -244,5 +254,6 @@ class ImoPart:
     speed_simulated: bool = False
     overshoots: tuple[OvershootRow, ...] = ()
     turns: tuple[TurnRow, ...] = ()
+    conditions: tuple[ConditionRow, ...] = ()
     sailed: str = ""
     doubt: str = ""

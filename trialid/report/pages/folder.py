@@ -59,7 +59,7 @@ def write_one(run: Finished, place: Path) -> tuple[Path, int]:
     made = {f"tables/{name}": each for name, each in tables.items()}
     drawn = figures(text, run.result, run.series)
     made |= {f"figures/{stem}.svg": each for stem, each in drawn.items()}
-    _write(place, {"report.html": text, **made})
+    write_texts(place, {"report.html": text, **made})
     return place / "report.html", len(made)
 
 
@@ -69,7 +69,7 @@ def write_several(runs: Sequence[Finished], place: Path) -> tuple[Path, int]:
     shown = side_by_side.shown_runs({run.label: run.result for run in runs}, series)
     made = table_files(side_by_side.tables(shown))
     tables = {f"tables/{name}": each for name, each in made.items()}
-    _write(place, {"compare.html": side_by_side.page(shown), **tables})
+    write_texts(place, {"compare.html": side_by_side.page(shown), **tables})
     return place / "compare.html", len(made)
 
 
@@ -83,9 +83,11 @@ def table_files(tables: Sequence[Table]) -> dict[str, str]:
     return made
 
 
-def _write(folder: Path, texts: Mapping[str, str]) -> None:
+def write_texts(
+    folder: Path, texts: Mapping[str, str], below: tuple[str, ...] = ("tables/", "figures/")
+) -> None:
     """Texts by their names below the folder; ours of an earlier report that are not made go."""
-    with own_files.replacing(folder, below=("tables/", "figures/"), older=OLDER) as work:
+    with own_files.replacing(folder, below=below, older=OLDER) as work:
         for name, text in texts.items():
             (work / name).parent.mkdir(parents=True, exist_ok=True)
             (work / name).write_text(text, encoding="utf-8")
