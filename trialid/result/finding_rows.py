@@ -206,6 +206,40 @@ class TurnRow:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ManoeuvreRow:
+    """A manoeuvre recognised in a trial: order and end [s], first rudder angle [rad].
+
+    `remark` says what it lacks; empty where it is whole.
+    """
+
+    trial: str
+    kind: str
+    t: float
+    end: float
+    rudder: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredRow:
+    """A number of a zig-zag, pull-out or spiral of a trial, and the fitted model's, in `unit`.
+
+    Each with its 95 %; `predicted` under the rudder as recorded.
+    """
+
+    trial: str
+    kind: str
+    t: float
+    rudder: float
+    name: str
+    unit: str
+    measured: float
+    interval: tuple[float, float]
+    predicted: float | None = None
+    predicted_interval: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class ConditionRow:
     """What a signal of a trial was like, SI: its median, and where 95 % of its samples lie."""
 
@@ -255,5 +289,7 @@ class ImoPart:
     overshoots: tuple[OvershootRow, ...] = ()
     turns: tuple[TurnRow, ...] = ()
     conditions: tuple[ConditionRow, ...] = ()
+    manoeuvres: tuple[ManoeuvreRow, ...] = ()
+    measured: tuple[MeasuredRow, ...] = ()
     sailed: str = ""
     doubt: str = ""

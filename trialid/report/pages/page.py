@@ -67,6 +67,7 @@ def page(run: Result, series: Sequence[TrialSeries], forces: Sequence[ForceSerie
             axis=axis,
             outputs=run_tables.outputs_of(run),
             shown_trials=_shown_trials(run, series),
+            imo_found=(imo_tables.manoeuvres(run), imo_tables.manoeuvre_numbers(run)),
             tracks=[track_picture(each.track, run.model.particulars) for each in series],
             plots=panels.trial_panels(series, run),
             forces=force_plots.pictures(run, forces),

@@ -21,7 +21,9 @@ def tables(run: Result) -> tuple[Table, ...]:
         particulars(run),
         conditions(run),
         imo_tables.measures(run),
+        imo_tables.manoeuvres(run),
         imo_tables.turns(run),
+        imo_tables.manoeuvre_numbers(run),
         imo_tables.overshoots(run),
         validity(run),
     )
