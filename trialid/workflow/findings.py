@@ -105,10 +105,13 @@ def _imo(pipeline: Pipeline, done: Diagnosed) -> dict[str, Any]:
     off, fit = done.doubts, done.fit
     spread = likely_spread(fit, done.accuracy.covariance, off.standing, off.held, off.missing)
     errors = {p.name: p.standard_error for p in done.accuracy.parameters}
+    read = measured.manoeuvre_numbers(fit, spread)
+    by_heading = {one.trial for one in read if one.kind == "zig-zag"}
+    integrals = (one for one in observed.overshoots(fit) if one.trial not in by_heading)
     return {
         "measures": following.measures_within(fit, spread),
-        "overshoots": observed.overshoots(fit),
+        "overshoots": tuple(integrals),
         "turns": turns.turns(fit, errors, spread),
         "manoeuvres": measured.manoeuvres(fit),
-        "measured": measured.manoeuvre_numbers(fit, spread),
+        "measured": read,
     }

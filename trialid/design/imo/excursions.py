@@ -11,15 +11,20 @@ from trialid.arrays import Vector
 from trialid.trial import Trial
 
 MIDSHIPS: Final = float(np.deg2rad(3.0))
-"""Rudder within which a course is kept."""
+"""Rudder within which a course is kept. Here and below, on 15 simulated days with 71 manoeuvres (70
+found and bounded right, 2 names besides): by half of it 51 are found and 29 named besides, for an
+autopilot's rudder then is one; by twice 69 and 3."""
 LEAST: Final = float(np.deg2rad(4.5))
-"""A rudder that is held by less executes no manoeuvre: the smallest standard angle is 5 deg."""
+"""A rudder that is held by less executes no manoeuvre: the smallest standard angle is 5 deg. Half
+and twice change nothing on those days."""
 ALIKE: Final = 0.15
-"""Share by which angles of one manoeuvre may differ, and the rudder while it is held."""
+"""Share by which angles of one manoeuvre may differ, and the rudder while it is held. By half of it
+70 are found and 1 is named besides, by twice 70 and 11."""
 HELD: Final = 0.9
 """Share of the samples, from the first to the last at the angle, at which the rudder is there."""
 STRAIGHT: Final = float(np.deg2rad(3.0))
-"""From the middle of the headings before the order; a turn out of another one has no advance."""
+"""From the middle of the headings before the order; a turn out of another one has no advance.
+Half and twice change nothing on those days, nor do those of the lengths below."""
 LATE: Final = 10
 """Samples by which a rudder may have left an angle before it is seen to."""
 LENGTHS: Final = 1.0

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.imo.excursions import LATE, heading, order_sample
+from trialid.design.imo.excursions import LATE, order_sample
 from trialid.design.imo.recognise import Recognised, recognise
 from trialid.design.imo.sailed_trial import SailedTrial, numbers, sail_trial
 from trialid.design.likely_spread import LikelySpread, Range
@@ -105,9 +105,9 @@ def order_time(trial: Trial, one: Recognised) -> float:
 
 def _of_trial(fit: Fit, trial: Trial, spread: LikelySpread | None) -> Iterator[Measured]:
     found = [m for m in _recognised(fit, trial) if m.kind in READERS]
-    psi = heading(trial)
+    psi = trial.signals.get("psi")
     if not found or psi is None:
-        return
+        return  # the integral of a rate has its bias in it, and no white noise
     sailed = None if spread is None else sail_trial(fit, trial, spread)
     for one in found:
         read, unit = READERS[one.kind](trial, one), UNITS[one.kind]
