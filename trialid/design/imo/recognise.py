@@ -39,6 +39,8 @@ ROUND, SPARE = float(np.deg2rad(5.0)), float(np.deg2rad(0.7))
 one name less is wrong on those days, by twice two more are."""
 SLOWEST_GEAR: Final = 2.0 * 6.0 / (65.0 / 28.0)
 """[s] Twice what SOLAS leaves a gear for the 6 deg about midships: 65 deg in 28 s."""
+RECENT: Final = 200
+"""Samples that tell where a rudder is held."""
 STEPS: Final = 5
 """Angles of a spiral at least, of both sides."""
 WAY: Final = 0.1
@@ -229,12 +231,15 @@ def _left_midships(record: SteeredRecord, k: int) -> int:
 def _levels(record: SteeredRecord) -> Iterator[tuple[int, int, float]]:
     """Stretches of at least two ship lengths in which the rudder stays within a degree."""
     rudder, begin = record.rudder, 0
+    summed = np.concatenate([[0.0], np.cumsum(rudder)]).tolist()
     for k in range(1, len(rudder) + 1):
-        span = rudder[begin:k]
-        if k < len(rudder) and abs(rudder[k] - np.median(span[-200:])) <= MIDSHIPS / 3.0:
-            continue
+        first = max(begin, k - RECENT)
+        if k < len(rudder):
+            usual = (summed[k] - summed[first]) / (k - first)
+            if abs(rudder[k] - usual) <= MIDSHIPS / 3.0:
+                continue
         if k - begin >= 2 * record.clock:
-            yield begin, k, float(np.median(span))
+            yield begin, k, float(np.median(rudder[begin:k]))
         begin = k
 
 
