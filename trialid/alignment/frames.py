@@ -9,7 +9,7 @@ from trialid.alignment.clocks import Series
 from trialid.alignment.sources import SignalSource, find
 from trialid.errors import AlignmentError, UnitError, nearest
 from trialid.names import units
-from trialid.names.quantities import RUDDERS, SIGNALS, Quantity
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.recording import Channel, Recording
 
 MARKER = 1e30
@@ -37,6 +37,8 @@ def sensor_values(y: Vector) -> Vector:
 
 
 def _quantity(source: SignalSource, where: str) -> Quantity:
+    if source.of is not None:
+        return source.of
     if source.quantity not in SIGNALS:
         known = nearest(source.quantity, SIGNALS)
         raise AlignmentError(f"{where}: no quantity of that name ({known})")
@@ -44,7 +46,7 @@ def _quantity(source: SignalSource, where: str) -> Quantity:
 
 
 def _check_side(source: SignalSource, quantity: Quantity, where: str) -> None:
-    if source.positive is None and quantity.name in RUDDERS:
+    if source.positive is None and quantity.steers:
         raise AlignmentError(
             f"{where}: the sign of a rudder is never guessed; say which way the ship turns when "
             f'{source.channel!r} is positive: add positive = "starboard" or positive = "port"'

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import AlignmentError, LogError, nearest
+from trialid.names.quantities import Quantity
 from trialid.recording import Channel, Recording
 
 Number = TypeVar("Number", np.int64, np.float64)
@@ -42,6 +43,8 @@ class SignalSource:
         How much later than the motion the sensor stamps it [s].
     gain, offset
         The signal is gain times the logged number plus offset, in `unit`.
+    of
+        What the quantity is, where it is in no dictionary: an actuator's signal, or one's own.
     """
 
     quantity: str
@@ -52,6 +55,7 @@ class SignalSource:
     delay: float = 0.0
     gain: float = 1.0
     offset: float = 0.0
+    of: Quantity | None = None
 
 
 def find(channel: str, recordings: Sequence[Recording], where: str) -> Channel:

@@ -1,5 +1,6 @@
 """Trials of a pipeline: logs read and brought onto one clock."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -8,28 +9,43 @@ from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
 from trialid.alignment.track.antenna import at_origin
 from trialid.ingest import Aids, LogFile
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.pipeline_file.form import ClockSection
 from trialid.progress import Progress
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
 from trialid.workflow.origin import as_written
+from trialid.workflow.quantities_read import quantities_of
 
 
 def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
     """Logs of every trial, read and brought onto one clock."""
-    done = []
+    done, known = [], quantities_of(pipeline)
     for i, trial in enumerate(pipeline.trials):
         progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
-        done.append(align_trial(pipeline, trial))
+        done.append(align_trial(pipeline, trial, known))
     return tuple(done)
 
 
-def align_trial(pipeline: Pipeline, trial: TrialSection) -> Trial:
-    """Logs of one trial, read and brought onto one clock."""
+def align_trial(
+    pipeline: Pipeline, trial: TrialSection, known: Mapping[str, Quantity] | None = None
+) -> Trial:
+    """Logs of one trial, read and brought onto one clock; `known` what its signals may be."""
+    known = quantities_of(pipeline) if known is None else known
     sources = [
-        SignalSource(q, s.channel, s.unit, s.positive, s.angle, s.delay, s.gain, s.offset)
-        for q, s in trial.signals.items()
+        SignalSource(
+            quantity=name,
+            channel=s.channel,
+            unit=s.unit,
+            positive=s.positive,
+            as_=s.angle,
+            delay=s.delay,
+            gain=s.gain,
+            offset=s.offset,
+            of=None if name in SIGNALS else known[name],
+        )
+        for name, s in trial.signals.items()
     ]
     logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
     clocks = [_log_clock(g.clock) for g in trial.logs]
