@@ -31,14 +31,15 @@ class SignalSource:
     quantity
         Name in the dictionary of quantities: `delta`, `r`, `phi`.
     channel
-        Name of the channel in the logs; with `as_`, of the quaternion whose fields are x, y, z, w.
+        Name of the channel in the logs; with `as_`, of the quaternion whose fields are x, y, z, w,
+        or of the velocity whose fields are x and y.
     unit
-        Unit of the channel; None when the log states it, and with `as_`.
+        Unit of the channel; None when the log states it, and with `as_` of an angle.
     positive
         Side the logged number is positive to; None where the quantity has no side, and where the
         log follows our own direction (starboard). The rudder's must be stated.
     as_
-        Which angle of a quaternion is meant; None for a plain number.
+        Which angle of a quaternion is meant, or the speed of a velocity; None for a plain number.
     delay
         How much later than the motion the sensor stamps it [s].
     gain, offset
@@ -51,7 +52,7 @@ class SignalSource:
     channel: str
     unit: str | None = None
     positive: Literal["starboard", "port"] | None = None
-    as_: Literal["roll", "pitch", "yaw"] | None = None
+    as_: Literal["roll", "pitch", "yaw", "speed"] | None = None
     delay: float = 0.0
     gain: float = 1.0
     offset: float = 0.0

@@ -188,6 +188,7 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
             close += [name] if c.allowed else []
         elif refit:
             apart.add(name)
+    apart |= {c.effect.name for c in ranking if c.effect.bound_by_meaning and not c.allowed}
     alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
     return (*close, *alike)
 

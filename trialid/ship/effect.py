@@ -78,6 +78,9 @@ class Parameter:
     scan
         Values tried where the effect is not linear at its null, as the speed of a steering gear,
         or may be far from it, as a sensor of many seconds.
+    by_meaning
+        Whether its range is what it means: beyond it is another effect, as what is not weak but
+        strong, or weak on the other side.
     """
 
     start: float
@@ -86,6 +89,7 @@ class Parameter:
     high: float = math.inf
     null: float | None = 0.0
     scan: tuple[float, ...] = ()
+    by_meaning: bool = False
 
 
 @dataclass(frozen=True)
@@ -143,6 +147,16 @@ class Effect:
     def tried(self) -> bool:
         """Whether there are values to try: it may be too strong for its slope at the null."""
         return any(p.scan for p in self.parameters.values())
+
+    @property
+    def bound_by_meaning(self) -> bool:
+        """Whether a value outside its range says that it is not this effect."""
+        return any(p.by_meaning for p in self.parameters.values())
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is there or not, and never in part: reversed, exchanged."""
+        return any(p.by_meaning and p.low > (p.null or 0.0) for p in self.parameters.values())
 
     @property
     def scanned(self) -> bool:

@@ -21,6 +21,8 @@ from trialid.ship.effect import Delayed, Effect, Force, Parameter, Steered
 from trialid.ship.particulars import Ship
 
 SOURCE = "by its letters: a share, a time, an angle; ranges by judgement"
+_REVERSED = Parameter(2.0, low=1.2, high=3.0, scan=(2.0,), by_meaning=True)
+_EXCHANGED = Parameter(1.0, low=0.7, high=1.3, scan=(1.0,), by_meaning=True)
 NOWHERE = 1e-9
 """Keeps the slope of a root finite where an actuator has lost all of its force."""
 
@@ -62,7 +64,7 @@ def _weak(one: Actuator) -> Effect:
         equation=f"force of {one.name} times 1 - weak_{one.name}: weak, dead at 1",
         source=SOURCE,
         signals=[one.name],
-        parameters={f"weak_{one.name}": Parameter(0.2, low=0.0, high=1.0)},
+        parameters={f"weak_{one.name}": Parameter(0.2, low=0.0, high=1.0, by_meaning=True)},
     )
 
 
@@ -73,7 +75,7 @@ def _reversed(one: Actuator) -> Effect:
         equation=f"force of {one.name} times 1 - reversed_{one.name}: the other way round at 2",
         source=SOURCE,
         signals=[one.name],
-        parameters={f"reversed_{one.name}": Parameter(2.0, low=1.2, high=3.0, scan=(2.0,))},
+        parameters={f"reversed_{one.name}": _REVERSED},
     )
 
 
@@ -144,5 +146,5 @@ def _exchanged(one: Actuator, other: Actuator) -> Effect:
         equation=f"{one.name} acts as {other.name} is recorded, and the other way round, at 1",
         source="channels or cables exchanged",
         signals=[s for pair in pairs for s in pair],
-        parameters={e: Parameter(1.0, low=0.7, high=1.3, scan=(1.0,))},
+        parameters={e: _EXCHANGED},
     )

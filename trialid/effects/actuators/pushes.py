@@ -94,7 +94,7 @@ def lag_of(kind: str, ones: Sequence[Actuator], typical: float) -> Effect:
         source=F11,
         signals=[*follows, *follows.values()],
         parameters={
-            f"T_{kind}": Parameter(typical, "s", low=0.01, high=60.0, scan=(0.2, 1.0, 4.0)),
+            f"T_{kind}": Parameter(typical, "s", low=0.05, high=60.0, scan=(0.2, 1.0, 4.0)),
         },
         states=follows,
     )
