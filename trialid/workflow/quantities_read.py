@@ -23,8 +23,8 @@ def quantities_of(pipeline: Pipeline) -> Mapping[str, Quantity]:
     known = dict(ship_quantities(pipeline))
     if not pipeline.model.effects_from:
         return known
-    effects = available(pipeline)
-    known |= {q.name: q for effect in effects.values() for q in _own(effect, known)}
+    for effect in available(pipeline).values():
+        known |= {q.name: q for q in _own(effect, known)}
     for trial in pipeline.trials:
         for name, source in trial.signals.items():
             place = where(pipeline, signal_key(pipeline, trial, name))

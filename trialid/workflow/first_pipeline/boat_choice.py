@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.errors import LogError
+from trialid.inspection.channel_names import words
 from trialid.inspection.drives import drives_of
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.relations import side
@@ -93,6 +94,9 @@ def _unit(source: ChannelInspection) -> tuple[str, str]:
         return source.unit, ""
     if source.unit_in_name is not None:
         return source.unit_in_name, "; unit by its name"
+    turns = [word for word in words(source.name) if word in ("rpm", "rps")]
+    if turns:
+        return turns[0], "; unit by its name"
     largest = max(abs(source.low), abs(source.high))
     if largest <= SHARE:
         return "1", f"; no unit is stated, up to {largest:.3g} can only be a share of full"
