@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trialid.errors import ShipError
-from trialid.ship.actuators import Actuator, actuator_quantities
+from trialid.ship.actuators import Actuator, actuator_quantities, actuator_tables
 from trialid.ship.particulars import read_ship
 
 HEAD = """
@@ -33,6 +33,12 @@ def test_actuators_are_read(tmp_path: Path) -> None:
     assert (left.command, left.own, bow.command) == ("revolutions", False, "share")
     assert bow.direction == pytest.approx(np.pi / 2)
     assert ship(tmp_path, "").actuators == ()
+
+
+def test_what_is_written_reads_back_as_it_was(tmp_path: Path) -> None:
+    first = ship(tmp_path, ONE + "direction = 7.5\nown = true\n" + BOW).actuators
+    again = ship(tmp_path, "\n".join(actuator_tables(first))).actuators
+    assert again == first
 
 
 def test_their_signals_have_units_and_sides(tmp_path: Path) -> None:

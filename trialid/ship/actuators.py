@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal, get_args
 
@@ -165,6 +165,20 @@ def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> N
         raise ShipError(
             f"{where}: direction = {full['direction']!r}; write degrees from ahead, clockwise"
         )
+
+
+def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
+    """Lines of a ship file; `actuators_of` reads the same."""
+    for one in actuators:
+        yield "[[actuator]]"
+        yield f'name = "{one.name}"'
+        yield f'kind = "{one.kind}"'
+        yield f"at = [{one.x!r}, {one.y!r}]  # m ahead, m to starboard"
+        yield f"direction = {math.degrees(one.direction)!r}"
+        if one.kind != "rudder":
+            yield f'command = "{one.command}"'
+        yield f"own = {str(one.own).lower()}"
+        yield ""
 
 
 def _plain(words: str) -> str:

@@ -13,7 +13,7 @@ from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
-from trialid.ship.actuators import Actuator, Command
+from trialid.ship.actuators import Actuator, Command, actuator_tables
 from trialid.ship.particulars import Ship
 from trialid.workflow.first_pipeline.choice import (
     OPEN,
@@ -172,13 +172,7 @@ def actuator_lines(actuators: tuple[Actuator, ...]) -> Iterator[str]:
     yield ""
     yield "# ASSUMED: where the thrusters stand. Measure it: the moment goes with it, and what is"
     yield "# found of the inertia in yaw too."
-    for one in actuators:
-        yield "[[actuator]]"
-        yield f'name = "{one.name}"'
-        yield f'kind = "{one.kind}"'
-        yield f"at = [{one.x:g}, {one.y:g}]  # m ahead, m to starboard"
-        yield f'command = "{one.command}"'
-        yield ""
+    yield from actuator_tables(actuators)
 
 
 def named_by_ship(signals: tuple[Signal, ...], ship: Ship) -> tuple[Signal, ...]:
