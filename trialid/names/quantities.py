@@ -231,6 +231,8 @@ MASS_PARAMETERS = (
 )  # fmt: skip
 """Primed; those a ship file does not give are zero, except m, I_xx and I_zz."""
 
+POSITIONS = frozenset({"lat", "lon", "x", "y"})
+"""Where an antenna is."""
 RUDDERS = frozenset(name for name, signal in SIGNALS.items() if signal.steers)
 """Half of the literature and many loggers count the rudder to port: its side is never guessed."""
 

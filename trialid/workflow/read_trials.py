@@ -33,20 +33,7 @@ def align_trial(
 ) -> Trial:
     """Logs of one trial, read and brought onto one clock; `known` what its signals may be."""
     known = quantities_of(pipeline) if known is None else known
-    sources = [
-        SignalSource(
-            quantity=name,
-            channel=s.channel,
-            unit=s.unit,
-            positive=s.positive,
-            as_=s.angle,
-            delay=s.delay,
-            gain=s.gain,
-            offset=s.offset,
-            of=None if name in SIGNALS else known[name],
-        )
-        for name, s in trial.signals.items()
-    ]
+    sources = _sources(trial, known)
     logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
     clocks = [_log_clock(g.clock) for g in trial.logs]
     matched = [name for clock in clocks if clock and clock.match for name in clock.match]
@@ -68,6 +55,26 @@ def align_trial(
     valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
     remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
     return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+
+
+def _sources(trial: TrialSection, known: Mapping[str, Quantity]) -> list[SignalSource]:
+    """What each signal is read from, one for each channel."""
+    return [
+        SignalSource(
+            quantity=name,
+            channel=channel,
+            unit=s.unit,
+            positive=s.positive,
+            as_=s.angle,
+            delay=s.delay,
+            gain=s.gain,
+            offset=s.offset,
+            combine=s.combine,
+            of=None if name in SIGNALS else known[name],
+        )
+        for name, s in trial.signals.items()
+        for channel in s.names
+    ]
 
 
 def _at_origin(pipeline: Pipeline, trial: Trial) -> Trial:
