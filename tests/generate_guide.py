@@ -31,7 +31,7 @@ from trialid.pipeline_file.design_file import DesignFile
 from trialid.pipeline_file.form import Described, Pipeline
 from trialid.pipeline_file.prior_section import Word
 from trialid.pipeline_file.section import Section
-from trialid.ship import particulars
+from trialid.ship import actuators, particulars
 from trialid.ship.prime import ARMS
 
 ROOT: Final = Path(__file__).resolve().parent.parent
@@ -229,6 +229,11 @@ def ship() -> str:
     return f"### Top of the file\n\n{top}\n### `[particulars]`\n\n{inside}\n### `[mass]`\n\n{mass}"
 
 
+def actuator() -> str:
+    """The keys of an `[[actuator]]`."""
+    return items(f"`{key}`: {said}" for key, said in actuators.KEYS.items())
+
+
 def _unit(unit: str) -> str:
     return "-" if unit == "1" else unit
 
@@ -267,6 +272,7 @@ PARTS: Final[Mapping[str, Callable[[], str]]] = {
     "keys of a pipeline": lambda: form(Pipeline),
     "keys of a design": lambda: form(DesignFile, besides=("model", "identify")),
     "keys of a ship": ship,
+    "keys of an actuator": actuator,
     "signals": signals,
     "manoeuvres": manoeuvres,
     "claims": claimed,

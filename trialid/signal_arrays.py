@@ -23,11 +23,19 @@ def in_si(
     signals: Mapping[str, Sequence[float] | Vector],
     units: Mapping[str, str],
     positive: Mapping[str, Literal["port", "starboard"]],
+    *,
+    wanted: Mapping[str, str],
 ) -> tuple[float, dict[str, Vector], dict[str, Mask]]:
-    """The period [s], values in SI and where they were measured; errors as `Trial.from_arrays`."""
+    """The period [s], values in SI and where they were measured; errors as `Trial.from_arrays`.
+
+    Parameters
+    ----------
+    wanted
+        Every signal there may be, to its unit in SI.
+    """
     clock = np.asarray(t, dtype=float)
     period = _period(name, clock)
-    _check_names(name, signals, units, positive)
+    _check_names(name, signals, units, positive, wanted)
     values, valid = dict[str, Vector](), dict[str, Mask]()
     for quantity, given in signals.items():
         y = np.asarray(given, dtype=float)
@@ -38,7 +46,7 @@ def in_si(
             )
         side = -1.0 if positive.get(quantity) == "port" else 1.0
         valid[quantity] = np.isfinite(y)
-        in_si = side * unit_table.factor(units[quantity], SIGNALS[quantity].unit) * y
+        in_si = side * unit_table.factor(units[quantity], wanted[quantity]) * y
         values[quantity] = _filled(name, quantity, in_si, valid[quantity])
     return period, values, valid
 
@@ -76,16 +84,17 @@ def _check_names(
     signals: Mapping[str, object],
     units: Mapping[str, str],
     positive: Mapping[str, str],
+    wanted: Mapping[str, str],
 ) -> None:
     for quantity in signals:
-        if quantity not in SIGNALS:
+        if quantity not in wanted:
             raise AlignmentError(
-                f"trial {name!r}: there is no signal {quantity!r}; {nearest(quantity, SIGNALS)}"
+                f"trial {name!r}: there is no signal {quantity!r}; {nearest(quantity, wanted)}"
             )
         if quantity not in units:
             raise AlignmentError(
                 f"trial {name!r}: the unit of {quantity!r} is not stated; add it to units, such as "
-                f'{{"{quantity}": "{SIGNALS[quantity].shown}"}}'
+                f'{{"{quantity}": "{_shown(quantity, wanted)}"}}'
             )
         if quantity in RUDDERS and positive.get(quantity) not in ("port", "starboard"):
             raise AlignmentError(
@@ -93,6 +102,10 @@ def _check_names(
                 f'turns when {quantity!r} is positive: positive={{"{quantity}": "starboard"}}, or '
                 '"port"'
             )
+
+
+def _shown(quantity: str, wanted: Mapping[str, str]) -> str:
+    return SIGNALS[quantity].shown if quantity in SIGNALS else wanted[quantity]
 
 
 def _filled(name: str, quantity: str, y: Vector, valid: Mask) -> Vector:

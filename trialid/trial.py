@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from trialid.arrays import Mask, Vector
+from trialid.names.quantities import SIGNALS
 from trialid.signal_arrays import columns_of, in_si
 
 if TYPE_CHECKING:
@@ -83,6 +84,7 @@ class Trial:
         units: Mapping[str, str],
         positive: Mapping[str, Literal["port", "starboard"]] | None = None,
         use: Literal["fit", "check"] = "fit",
+        own: Mapping[str, str] | None = None,
     ) -> "Trial":
         """A trial from arrays on one uniform clock.
 
@@ -97,13 +99,17 @@ class Trial:
         positive
             The side a quantity counts positive; of a rudder it has to be said, others are positive
             to starboard where nothing is said.
+        own
+            Names beside the dictionary, an actuator's or one's own, to the unit in which the
+            effects read them: `{"left": "rad/s", "tow": "N"}`.
 
         Raises
         ------
         TrialidError
             The clock is not uniform, a name or a unit is not known, a rudder's side is not said.
         """
-        period, values, valid = in_si(name, t, signals, units, positive or {})
+        wanted = {n: q.unit for n, q in SIGNALS.items()} | dict(own or {})
+        period, values, valid = in_si(name, t, signals, units, positive or {}, wanted=wanted)
         return cls(name, use, period, values, valid)
 
     @classmethod
@@ -115,6 +121,7 @@ class Trial:
         units: Mapping[str, str],
         positive: Mapping[str, Literal["port", "starboard"]] | None = None,
         use: Literal["fit", "check"] = "fit",
+        own: Mapping[str, str] | None = None,
     ) -> "Trial":
         """A trial from a table: a column for each signal named in `units`.
 
@@ -122,4 +129,4 @@ class Trial:
         `from_arrays`.
         """
         t, signals = columns_of(frame, units)
-        return cls.from_arrays(name, t, signals, units=units, positive=positive, use=use)
+        return cls.from_arrays(name, t, signals, units=units, positive=positive, use=use, own=own)

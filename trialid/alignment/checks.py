@@ -20,7 +20,7 @@ from trialid.alignment.resample import onto
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError, UnitError
 from trialid.names import units
-from trialid.names.quantities import RUDDERS, SIGNALS
+from trialid.names.quantities import MOTIONS, RUDDERS, SIGNALS
 from trialid.trial import Trial
 
 SLOPES = (("r", "psi"), ("p", "phi"))
@@ -155,7 +155,7 @@ def _better(trial: Trial, rate: str, angle: str) -> str:
     if angle not in trial.signals:
         return ""
     for name, y in trial.signals.items():
-        if name in {rate, angle} or name in RUDDERS or SIGNALS[name].mirror > 0:
+        if name in {rate, angle} or name not in MOTIONS or SIGNALS[name].mirror > 0:
             continue
         valid = trial.valid[name] & trial.valid[angle]
         found = relation.of_slope(y, trial.signals[angle], valid, trial.period)

@@ -18,12 +18,10 @@ from trialid.alignment.sources import SignalSource
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
 from trialid.names import units
-from trialid.names.quantities import RUDDERS
+from trialid.names.quantities import RUDDERS, is_input
 
 KINDS = ("range", "dropouts", "spikes", "saturation", "stuck")
 """What may be found; a signal's `keep` names those that are left as they are."""
-INPUTS = RUDDERS | {"n", "n_p", "n_s"}
-"""They move as they are ordered, however abruptly; their pulses may be real."""
 
 MOST_WRONG = 0.2
 """Share of impossible values above which the unit is wrong, not the values."""
@@ -295,7 +293,7 @@ def _judged(
     if not found.any():
         return
     sure = found
-    if series.quantity.name in INPUTS:
+    if is_input(series.quantity):
         brief = (WIDEST_SPIKE + 1) * series.period < PULSE_S and kind == "dropouts"
         sure = found & (outside | brief | _too_quick(series, s))
     for part, certain in ((sure, True), (found & ~sure, False)):
@@ -318,7 +316,7 @@ def _too_quick(series: Series, s: _Samples) -> Mask:
 def _saturation(series: Series, zero: float) -> Iterator[Fault]:
     """Flat tops of a motion: its extreme value held, entered and left at speed."""
     s = _samples(series)
-    if series.quantity.name in INPUTS or series.quantity.angle or len(s.y) < 10 * FLAT:
+    if is_input(series.quantity) or series.quantity.angle or len(s.y) < 10 * FLAT:
         return
     steps = np.abs(np.diff(s.y))
     usual = float(np.mean(steps[steps > 0])) if np.any(steps) else 0.0
@@ -357,7 +355,7 @@ def _abrupt(s: _Samples, run: tuple[int, int], usual: float, levels: float) -> b
 def frozen(series: Sequence[Series], i: int, grid: Grid) -> Fault | None:
     """Where motion `i` keeps one value while the others say that the ship moves."""
     one, s = series[i], _samples(series[i])
-    if one.quantity.mirror > 0 or one.quantity.name in INPUTS or len(s.y) < 2:
+    if one.quantity.mirror > 0 or is_input(one.quantity) or len(s.y) < 2:
         return None
     edges = np.flatnonzero(~((np.diff(s.y) == 0) & s.near[1:])) + 1
     first, last = np.append(0, edges), np.append(edges, len(s.y)) - 1

@@ -9,7 +9,7 @@ from trialid.alignment.clocks import Series
 from trialid.alignment.sources import SignalSource, find
 from trialid.errors import AlignmentError, UnitError, nearest
 from trialid.names import units
-from trialid.names.quantities import RUDDERS, SIGNALS, Quantity
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.recording import Channel, Recording
 
 MARKER = 1e30
@@ -22,7 +22,8 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     """The signal in SI on its sensor's own clock, in the order of the log."""
     quantity = _quantity(source, where)
     _check_side(source, quantity, where)
-    channel = _angle(source, recordings, where) if source.as_ else None
+    taken = _speed if source.as_ == "speed" else _angle
+    channel = taken(source, recordings, where) if source.as_ else None
     channel = channel or find(source.channel, recordings, where)
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
     t = channel.t - round(source.delay * 1e9)
@@ -37,6 +38,8 @@ def sensor_values(y: Vector) -> Vector:
 
 
 def _quantity(source: SignalSource, where: str) -> Quantity:
+    if source.of is not None:
+        return source.of
     if source.quantity not in SIGNALS:
         known = nearest(source.quantity, SIGNALS)
         raise AlignmentError(f"{where}: no quantity of that name ({known})")
@@ -44,7 +47,7 @@ def _quantity(source: SignalSource, where: str) -> Quantity:
 
 
 def _check_side(source: SignalSource, quantity: Quantity, where: str) -> None:
-    if source.positive is None and quantity.name in RUDDERS:
+    if source.positive is None and quantity.steers:
         raise AlignmentError(
             f"{where}: the sign of a rudder is never guessed; say which way the ship turns when "
             f'{source.channel!r} is positive: add positive = "starboard" or positive = "port"'
@@ -110,6 +113,18 @@ def _angle(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     angle = np.where(square > 0, _euler(source.as_, x, y, z, w), np.nan)
     first = parts[0]
     return Channel(source.channel, first.t, angle, "rad", first.clock, received=first.received)
+
+
+def _speed(source: SignalSource, recordings: Sequence[Recording], where: str) -> Channel:
+    """The length of a horizontal velocity, whatever its axes: fields `channel`.x and .y."""
+    x, y = (find(f"{source.channel}.{axis}", recordings, where) for axis in "xy")
+    if not np.array_equal(x.t, y.t):
+        raise AlignmentError(
+            f"{where}: the fields of {source.channel!r} do not share their stamps; a velocity "
+            "needs both at once"
+        )
+    speed = np.hypot(sensor_values(x.y), sensor_values(y.y))
+    return Channel(source.channel, x.t, speed, x.unit, x.clock, received=x.received)
 
 
 def _euler(name: str | None, x: Vector, y: Vector, z: Vector, w: Vector) -> Vector:

@@ -17,7 +17,7 @@ from trialid.alignment.resample import (
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
 from trialid.names import units
-from trialid.names.quantities import RUDDERS
+from trialid.names.quantities import MOTIONS
 
 JITTER = 0.2
 """Spread of the time between samples, as a share of it, that is worth a remark."""
@@ -68,7 +68,7 @@ def of_values(series: Series, grid: Grid) -> Iterator[str]:
         yield f"{name}: constant at {shown} throughout; is the sensor alive?"
     elif len(y):
         yield from _coarse(series, y)
-    if len(y) and np.ptp(y) > 0 and name not in RUDDERS and series.quantity.mirror < 0:
+    if len(y) and np.ptp(y) > 0 and name in MOTIONS and series.quantity.mirror < 0:
         yield from _stuck(name, t, y)
 
 

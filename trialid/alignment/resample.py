@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.curve import curve
-from trialid.names.quantities import RUDDERS
+from trialid.names.quantities import RUDDERS, SIGNALS
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -105,7 +105,7 @@ def onto(series: Series, grid: Grid, *, smooth: bool) -> tuple[Vector, Mask]:
 
 def _curve(quantity: str, t: Vector, y: Vector) -> Callable[[Vector], Vector]:
     """The motion between its samples."""
-    if quantity in RUDDERS or len(t) == 1:
+    if quantity in RUDDERS or quantity not in SIGNALS or len(t) == 1:
         return lambda at: np.interp(at, t, y)
     with np.errstate(over="ignore"):  # beside a step of 1e-300 any other is without end
         return curve(t, y)

@@ -44,9 +44,20 @@ def check(trial: Trial, sources: Mapping[str, SignalSource], where: str) -> Iter
     if "r" in trial.signals and "psi" in trial.signals:
         yield from _heading(trial, where)
     turning = rate_of_turn(trial)
-    for rudder in sorted(RUDDERS & trial.signals.keys()):
+    rudders = RUDDERS | _together(trial, sources)
+    for rudder in sorted(rudders & trial.signals.keys()):
         if turning is not None and ahead(trial):
             yield from _rudder(trial, rudder, turning, sources[rudder], where)
+
+
+def _together(trial: Trial, sources: Mapping[str, SignalSource]) -> set[str]:
+    """Rudders of several that move alike; apart from the others one may well go against them."""
+    several = [n for n, s in sources.items() if s.of is not None and s.of.steers]
+    moved = [trial.signals[n] for n in several if np.ptp(trial.signals[n]) > 0.0]
+    if not moved or len(moved) < len(several):
+        return set()
+    alike = np.min(np.corrcoef(moved)) > FOLLOWS
+    return {*several} if alike else set()
 
 
 def _heading(trial: Trial, where: str) -> Iterator[str]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import AlignmentError, LogError, nearest
+from trialid.names.quantities import Quantity
 from trialid.recording import Channel, Recording
 
 Number = TypeVar("Number", np.int64, np.float64)
@@ -30,31 +31,35 @@ class SignalSource:
     quantity
         Name in the dictionary of quantities: `delta`, `r`, `phi`.
     channel
-        Name of the channel in the logs; with `as_`, of the quaternion whose fields are x, y, z, w.
+        Name of the channel in the logs; with `as_`, of the quaternion whose fields are x, y, z, w,
+        or of the velocity whose fields are x and y.
     unit
-        Unit of the channel; None when the log states it, and with `as_`.
+        Unit of the channel; None when the log states it, and with `as_` of an angle.
     positive
         Side the logged number is positive to; None where the quantity has no side, and where the
         log follows our own direction (starboard). The rudder's must be stated.
     as_
-        Which angle of a quaternion is meant; None for a plain number.
+        Which angle of a quaternion is meant, or the speed of a velocity; None for a plain number.
     delay
         How much later than the motion the sensor stamps it [s].
     gain, offset
         The signal is gain times the logged number plus offset, in `unit`.
     combine
         "mean" where the quantity is the mean of several sources, each with this; else None.
+    of
+        What the quantity is, where it is in no dictionary: an actuator's signal, or one's own.
     """
 
     quantity: str
     channel: str
     unit: str | None = None
     positive: Literal["starboard", "port"] | None = None
-    as_: Literal["roll", "pitch", "yaw"] | None = None
+    as_: Literal["roll", "pitch", "yaw", "speed"] | None = None
     delay: float = 0.0
     gain: float = 1.0
     offset: float = 0.0
     combine: Literal["mean"] | None = None
+    of: Quantity | None = None
 
     @property
     def name(self) -> str:

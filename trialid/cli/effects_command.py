@@ -18,13 +18,24 @@ from trialid.cli.console import file_width, render, say
     multiple=True,
     help="A file of your own with effects in it; may be given again.",
 )
+@click.option(
+    "--ship",
+    type=click.Path(path_type=Path),
+    metavar="SHIP.toml",
+    help="A ship whose actuators bring effects of their own.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print plain data, and nothing else.")
-def effects(name: str | None, own_files: tuple[Path, ...], as_json: bool) -> None:
+def effects(
+    name: str | None, own_files: tuple[Path, ...], ship: Path | None, as_json: bool
+) -> None:
     """List the effects a model can be made of, or tell all about the one called NAME."""
     from trialid.effects import CATALOGUE, find, from_file
+    from trialid.effects.actuators import actuator_effects
     from trialid.report.terminal.catalogue import list_effects, plain, plain_list, sheet
+    from trialid.ship.particulars import read_ship
 
-    own = {n: e for path in own_files for n, e in from_file(path).items()}
+    own = {} if ship is None else actuator_effects(read_ship(ship))
+    own |= {n: e for path in own_files for n, e in from_file(path).items()}
     everything = {**CATALOGUE, **own}
     if as_json:
         data = plain(find(name, own)) if name else plain_list(everything)

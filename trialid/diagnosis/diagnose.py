@@ -12,10 +12,11 @@ from trialid.diagnosis.noise.split import Split, split
 from trialid.diagnosis.prediction_band import prediction_band
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.completeness import Completeness, completeness
+from trialid.diagnosis.search.gross_fault import gross_faults
 from trialid.diagnosis.search.refit import Refit, refit_best
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.diagnosis.trust import accuracy_of
-from trialid.diagnosis.verdict import Verdict, decide
+from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
 from trialid.diagnosis.where.misfit import Where, where
 from trialid.effects import CATALOGUE
 from trialid.identification.adequacy import Inadequate, why_no_fit
@@ -102,6 +103,8 @@ def diagnose(
     asked = settings or DiagnoseSettings()
     trials = [s.trial for s in fit.scores]
     before, ranking, augmented = examine_fit(fit, asked, progress)
+    if faults := gross_faults(fit, trials, asked.candidates, progress):
+        return _gross(fit, before, augmented, faults, asked)
     if (failed := why_no_fit(fit)) is not None:
         return _no_fit(fit, before, augmented, failed)
     worth = worth_a_name(ranking, asked)
@@ -151,6 +154,25 @@ def _no_fit(fit: Fit, before: Diagnosed, augmented: Augmented, failed: Inadequat
         refits=(),
         verdict=Verdict("no fit", None, (), f"no fit: {failed}"),
         where=where(fit),
+    )
+
+
+def _gross(
+    fit: Fit,
+    before: Diagnosed,
+    augmented: Augmented,
+    faults: Sequence[Refit],
+    asked: DiagnoseSettings,
+) -> Diagnosis:
+    """A fault of an actuator that alone explains the record; slopes without it say nothing."""
+    return Diagnosis(
+        before=before,
+        ranking=tuple(r.candidate for r in faults),
+        left_out=augmented.left_out,
+        refits=tuple(faults),
+        verdict=gross_verdict(fit, faults),
+        where=where(fit),
+        after=examine_fit(faults[0].fit, asked, silent)[0],
     )
 
 

@@ -41,7 +41,10 @@ def may_be_off(fit: Fit, augmented: Augmented) -> Averaged:
 
 
 def doubts(fit: Fit, augmented: Augmented) -> Doubts:
-    """What the rows of a fit say of the catalogue and of the model as it is."""
+    """What the rows of a fit say of the catalogue and of the model as it is.
+
+    What is there whole or not at all has no size that could be small and unseen: it is left out.
+    """
     ship = fit.problem.simulator.model
     deviations = [abs(ship.value(n)) * ship.ship.share_off(n) for n in augmented.held]
     rows = Rows(
@@ -53,8 +56,9 @@ def doubts(fit: Fit, augmented: Augmented) -> Doubts:
         S=augmented.S,
         level=fit.level,
     )
-    standing = stand(rows, [_rival(t) for t in augmented.traces])
-    return Doubts(standing, augmented.held, augmented.traces)
+    traces = tuple(t for t in augmented.traces if not t.effect.is_whole)
+    standing = stand(rows, [_rival(t) for t in traces])
+    return Doubts(standing, augmented.held, traces)
 
 
 def _rival(trace: Trace) -> Rival:

@@ -74,6 +74,18 @@ def decide(
     return _unnamed(parts, whole, small)
 
 
+def gross_verdict(fit: Fit, faults: Sequence[Refit]) -> Verdict:
+    """An actuator's fault without which the model does not follow the record at all."""
+    names = tuple(r.candidate.effect.name for r in faults)
+    alike = f"; this record cannot tell it from {', '.join(names[1:])}" if names[1:] else ""
+    before = f"{fit.eps_rmsn:.2%}" if np.isfinite(fit.eps_rmsn) else "no motion at all"
+    said = (
+        f"{names[0]} is missing: with it the error falls from {before} to "
+        f"{faults[0].fit.eps_rmsn:.2%}, with other faults of an actuator it hardly does{alike}"
+    )
+    return Verdict("missing", names[0], names, said)
+
+
 def _unnamed(parts: Split, whole: Completeness | None, shown: Sequence[Candidate]) -> Verdict:
     """What to say where no effect is worth a name."""
     said = _unnamed_plainly(parts, whole)
@@ -188,6 +200,7 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
             close += [name] if c.allowed else []
         elif refit:
             apart.add(name)
+    apart |= {c.effect.name for c in ranking if c.effect.bound_by_meaning and not c.allowed}
     alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
     return (*close, *alike)
 

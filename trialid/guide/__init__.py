@@ -14,6 +14,7 @@ TOPICS: Final = {
     "pipeline_file": "the file that says what is done: every key",
     "ship_file": "the ship's particulars, masses and coefficients: every key",
     "own_ship": "a ship file from length, beam and draught; how far off it is",
+    "actuators": "several rudders, thrusters, pods; signals of your own",
     "effects": "what a model is made of, and how to write an effect of your own",
     "verdicts": "what the four verdicts mean, and how each is reached",
     "structures": "whole models compared by leaving out each trial",

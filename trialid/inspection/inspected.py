@@ -83,7 +83,8 @@ class ChannelInspection:
     name
         What a pipeline writes as `channel`.
     angle
-        Key `as` of the pipeline, where the channel is a quaternion; None for a plain number.
+        Key `as` of the pipeline, where the channel is a quaternion or a velocity; None for a plain
+        number.
     start, end
         First and last stamp [ns].
     samples, missing
@@ -115,7 +116,7 @@ class ChannelInspection:
     unit: str | None = None
     unit_in_name: str | None = None
     description: str = ""
-    angle: Literal["roll", "yaw"] | None = None
+    angle: Literal["roll", "yaw", "speed"] | None = None
     guess: Guess | None = None
     sketch: Sketch = field(default=EMPTY, repr=False, compare=False)
 

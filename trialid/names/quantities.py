@@ -10,7 +10,8 @@ class Quantity:
 
     `mirror` is the sign the quantity takes when port and starboard are exchanged: +1 for what the
     mirror leaves alone (surge speed), -1 for what it reverses (rudder angle). `shown` is the unit
-    in reports, `length` and `speed` the powers of L and U in its prime scale.
+    in reports, `length` and `speed` the powers of L and U in its prime scale; `steers` that it is
+    an angle of a rudder, whose side no convention settles.
     """
 
     name: str
@@ -23,6 +24,7 @@ class Quantity:
     speed: int = 0
     angle: bool = False
     aliases: frozenset[str] = frozenset()
+    steers: bool = False
 
 
 def _table(rows: Iterable[Quantity]) -> dict[str, Quantity]:
@@ -94,6 +96,7 @@ SIGNALS = _table(
             "rudder angle, positive turns the ship to starboard",
             mirror=-1,
             aliases=_aliases("rudder rudder_angle"),
+            steers=True,
         ),
         Quantity(
             "delta_order",
@@ -103,6 +106,7 @@ SIGNALS = _table(
             "ordered rudder angle, positive turns the ship to starboard",
             mirror=-1,
             aliases=_aliases("rudder_order"),
+            steers=True,
         ),
         Quantity(
             "n",
@@ -229,5 +233,13 @@ MASS_PARAMETERS = (
 
 POSITIONS = frozenset({"lat", "lon", "x", "y"})
 """Where an antenna is."""
-RUDDERS = frozenset({"delta", "delta_order"})
+RUDDERS = frozenset(name for name, signal in SIGNALS.items() if signal.steers)
 """Half of the literature and many loggers count the rudder to port: its side is never guessed."""
+
+MOTIONS = SIGNALS.keys() - RUDDERS
+"""What moves by itself; a rudder may well be held."""
+
+
+def is_input(quantity: Quantity) -> bool:
+    """Whether it is moved, however abruptly: rudders, shafts, actuators, a signal of one's own."""
+    return quantity.steers or quantity.name in ("n", "n_p", "n_s") or quantity.name not in SIGNALS

@@ -40,6 +40,8 @@ def factor(unit: str, si: str) -> float:
     0.514444
     >>> round(factor("deg/min", "rad/s") * 60 * 180, 6)
     3.141593
+    >>> factor("kN", "N"), round(factor("kN", "m/s"), 6)  # of a speed it is knots
+    (1000.0, 0.514444)
     >>> factor("deg", "m/s")
     Traceback (most recent call last):
         ...
@@ -49,7 +51,7 @@ def factor(unit: str, si: str) -> float:
 
     if not TEXT.fullmatch(unit):
         raise UnitError(f"unit {unit!r} is not a unit text; write it like {', '.join(COMMON[:4])}")
-    text = unit_words.plain(unit)
+    text = "kilonewton" if unit == "kN" and si == "N" else unit_words.plain(unit)
     if "rad" in si and not ROTATION.search(text):
         raise UnitError(
             f"unit {unit!r} cannot become {si!r}: it does not say what turns; write deg, rad, "

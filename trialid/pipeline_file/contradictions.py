@@ -2,27 +2,28 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Final
 
 from trialid.errors import UnitError, nearest
 from trialid.names import units
 from trialid.names.quantities import POSITIONS, SIGNALS, Quantity
 from trialid.pipeline_file.complaints import Problem, dotted_key
 from trialid.pipeline_file.form import ClockSection, Pipeline, SignalSource, TrialSection
+from trialid.pipeline_file.own_quantities import ship_quantities
 
-RUDDERS: Final = frozenset({"delta", "delta_order"})
-"""Signals whose sign no convention settles: indicators and SNAME have it opposite."""
+Quantities = Mapping[str, Quantity]
 
 
 def contradictions(pipeline: Pipeline) -> Iterator[Problem]:
     """Everything wrong that no single key shows."""
     yield from _ship_problems(pipeline)
     yield from _trial_problems(pipeline)
-    yield from _signal_problems(pipeline.signals, "signals")
+    known = ship_quantities(pipeline)
+    own = bool(pipeline.model.effects_from)  # which may read signals of their own
+    yield from _signal_problems(pipeline.signals, known, own, "signals")
     for place, trial in enumerate(pipeline.trials):
-        yield from _signal_problems(trial.signals, "trial", place, "signals")
+        yield from _signal_problems(trial.signals, known, own, "trial", place, "signals")
         yield from _clock_problems(trial, place)
-    yield from _output_problems(pipeline)
+    yield from _output_problems(pipeline, known)
     yield from _repetitions(pipeline)
     yield from _quiet_problems(pipeline)
     if len(pipeline.structures) == 1:
@@ -75,29 +76,35 @@ def _clock_trouble(clock: ClockSection) -> str:
     return ""
 
 
-def _signal_problems(signals: Mapping[str, SignalSource], *steps: str | int) -> Iterator[Problem]:
+def _signal_problems(
+    signals: Mapping[str, SignalSource], known: Quantities, own: bool, *steps: str | int
+) -> Iterator[Problem]:
     for name, source in signals.items():
-        if name not in SIGNALS:
-            yield dotted_key(*steps, name), f"unknown quantity; {_nearest_signal(name)}"
+        if name not in known:
+            if not own:
+                yield dotted_key(*steps, name), f"unknown quantity; {nearest_signal(name, known)}"
+                continue
+            for key, words in _channel_problems(source, Quantity(name, name, "1", "1", name)):
+                yield dotted_key(*steps, name, key), words
             continue
-        for key, words in _channel_problems(source, SIGNALS[name]):
+        for key, words in _channel_problems(source, known[name]):
             yield dotted_key(*steps, name, key), words
-        if trouble := _side_trouble(SIGNALS[name], source.positive):
+        if trouble := _side_trouble(known[name], source.positive):
             yield dotted_key(*steps, name, "positive"), trouble
-        if trouble := _unit_trouble(SIGNALS[name], source.unit):
+        if trouble := _unit_trouble(known[name], source.unit):
             yield dotted_key(*steps, name, "unit"), trouble
 
 
-def _nearest_signal(name: str) -> str:
+def nearest_signal(name: str, known: Quantities = SIGNALS) -> str:
     """Words for an unknown signal; a name that logs use leads to ours.
 
-    >>> _nearest_signal("heading")
+    >>> nearest_signal("heading")
     "did you mean 'psi'?"
     """
-    for own, signal in SIGNALS.items():
+    for own, signal in known.items():
         if name.lower() in signal.aliases:
             return f"did you mean {own!r}?"
-    return nearest(name, SIGNALS)
+    return nearest(name, known)
 
 
 def _channel_problems(source: SignalSource, quantity: Quantity) -> Iterator[Problem]:
@@ -120,7 +127,7 @@ def _channel_problems(source: SignalSource, quantity: Quantity) -> Iterator[Prob
 def _side_trouble(quantity: Quantity, positive: str | None) -> str:
     if quantity.mirror == 1 and positive is not None:
         return f"{quantity.name!r} has no port or starboard ({quantity.meaning}); leave it out"
-    if quantity.name in RUDDERS and positive is None:
+    if quantity.steers and positive is None:
         return (
             'missing; write the side the ship turns to when it is positive: "starboard" or "port"'
         )
@@ -135,12 +142,21 @@ def _unit_trouble(quantity: Quantity, unit: str | None) -> str:
     return ""
 
 
-def _output_problems(pipeline: Pipeline) -> Iterator[Problem]:
+def _output_problems(pipeline: Pipeline, known: Quantities) -> Iterator[Problem]:
     outputs = pipeline.identify.outputs
+    mapped = {*pipeline.signals, *(name for trial in pipeline.trials for name in trial.signals)}
     for place, name in enumerate(outputs):
-        if name not in SIGNALS:
-            key = dotted_key("identify", "outputs", place)
-            yield key, f"unknown quantity {name!r}; {_nearest_signal(name)}"
+        key = dotted_key("identify", "outputs", place)
+        if name in mapped - {*known}:
+            yield (
+                key,
+                (
+                    f"{name!r} is a signal of your own, and no equation of the ship gives it; take "
+                    f"it out, or choose from {', '.join(pipeline.model.states)}"
+                ),
+            )
+        elif name not in known:
+            yield key, f"unknown quantity {name!r}; {nearest_signal(name, known)}"
     for section, table in (
         (("identify", "weights"), pipeline.identify.weights),
         (("diagnose", "noise"), pipeline.diagnose.noise),

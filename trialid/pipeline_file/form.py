@@ -56,8 +56,8 @@ class SignalSource(Section):
     positive: Literal["starboard", "port"] | None = None
     """The side the channel counts positive; left out: as the guide's nomenclature; a rudder's is
     never left out."""
-    angle: Literal["roll", "pitch", "yaw"] | None = Field(default=None, alias="as")
-    """The angle to take out of an orientation quaternion."""
+    angle: Literal["roll", "pitch", "yaw", "speed"] | None = Field(default=None, alias="as")
+    """The angle to take out of an orientation quaternion, or the speed of a velocity in x and y."""
     delay: Delay = 0.0
     """How much later than the ship the channel shows it [s]."""
     keep: tuple[Fault, ...] = ()

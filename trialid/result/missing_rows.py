@@ -1,5 +1,7 @@
 """Candidates and the verdict as rows of a result."""
 
+import numpy as np
+
 from trialid.design.separation import Separation
 from trialid.diagnosis.diagnose import Diagnosis
 from trialid.diagnosis.search.score import VISIBLE, Candidate
@@ -35,7 +37,7 @@ def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Diagnosis) -> 
         eps_rmsn_refitted=refit.eps_rmsn if refit else None,
         eps_rmsn_check=refit.eps_check if refit else None,
         score=c.score,
-        p_value=c.p_value,
+        p_value=None if np.isnan(c.p_value) else c.p_value,
         visibility=c.visibility,
         left_out_ratio=c.carried.ratio,
         better_in=c.carried.better,
@@ -72,11 +74,16 @@ def _standing(c: Candidate, found: Diagnosis) -> str:
     return "significant and small" if c.shown(0.05) else "no evidence"
 
 
+def _chance(candidate: Candidate) -> str:
+    """How likely chance would do as well, empty where that was not tested."""
+    return "" if np.isnan(candidate.p_value) else f" (p = {candidate.p_value:.2g})"
+
+
 def _sentence(c: Candidate, refit: Fit | None, found: Diagnosis) -> str:
     eps = found.before.fit.eps_rmsn
     if c.visibility <= VISIBLE:
         return f"{c.effect.name} leaves no trace here that the free parameters could not leave too"
-    said = f"would bring the error from {eps:.2%} to {c.eps_predicted:.2%} (p = {c.p_value:.2g})"
+    said = f"would bring the error from {eps:.2%} to {c.eps_predicted:.2%}{_chance(c)}"
     if refit is not None:
         said += f"; fitted, it brings it to {refit.eps_rmsn:.2%}"
     return f"{c.effect.name} {said}"

@@ -2,87 +2,62 @@
 
 import inspect
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from traceback import extract_tb
-from typing import Any, Final, Literal, NamedTuple
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from trialid.errors import EffectError, nearest
 from trialid.maths import Number
 from trialid.names.quantities import (
-    ACCELERATIONS,
-    MASS_PARAMETERS,
-    PARTICULARS,
     QUANTITIES,
-    SIGNALS,
+)
+from trialid.ship.effect_checks import (
+    check_names,
+    check_numbers,
+    check_own,
+    check_rates,
+    check_readings,
+    check_scan,
+    check_states,
+)
+from trialid.ship.forms import (
+    FORMS,
+    SENSORS,
+    Delayed,
+    Force,
+    Lagged,
+    Mass,
+    Measured,
+    Rate,
+    Result,
+    Steered,
 )
 
+__all__ = [
+    "FORMS",
+    "SENSORS",
+    "Delayed",
+    "Effect",
+    "Force",
+    "Lagged",
+    "Mass",
+    "Measured",
+    "Parameter",
+    "Rate",
+    "Result",
+    "Signal",
+    "Steered",
+    "effect",
+]
+
 System = Literal["prime", "SI"]
-
-
-class Force(NamedTuple):
-    """Forces X, Y and moments K, N on the ship; the axes stay horizontal and move with the ship.
-
-    Primed (divided by 1/2 rho L^2 U^2, moments by 1/2 rho L^3 U^2) unless the effect says SI.
-    """
-
-    X: Number = 0.0
-    Y: Number = 0.0
-    K: Number = 0.0
-    N: Number = 0.0
-
-
-class _Named(Mapping[str, Number]):
-    """A frozen mapping written with keywords: `Rate(delta=...)`."""
-
-    def __init__(self, **parts: Number) -> None:
-        self._parts = parts
-
-    def __getitem__(self, name: str) -> Number:
-        return self._parts[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._parts)
-
-    def __len__(self) -> int:
-        return len(self._parts)
-
-
-class Rate(_Named):
-    """Time derivatives [SI/s] of the states an actuator or a sensor adds."""
-
-
-class Measured(_Named):
-    """What a sensor adds to the true value of an output [SI]: bias, scale, cross-axis."""
-
-
-class Steered(_Named):
-    """What is added to a recorded input before it acts on the ship [SI]: the rudder's offset."""
-
-
-class Delayed(_Named):
-    """How late an output is recorded, or how much later than recorded an input acts [s]."""
-
-
-class Lagged(_Named):
-    """Time constant of a sensor's first-order low-pass on an output [s]."""
-
-
-class Mass(_Named):
-    """What is added to the ship's mass parameters, primed."""
-
-
-Result = Force | Rate | Measured | Steered | Delayed | Lagged | Mass
-FORMS: Final = (Force, Rate, Measured, Steered, Delayed, Lagged, Mass)
 SIZES: Final = (0.001, 0.1, 1.0, 10.0, 1000.0)
 """Values of all signals at which an effect is tried: it may have no number at some, as at a length
 of 0.1 m, but not at all."""
-
-SENSORS: Final = (Measured, Delayed, Lagged)
-"""Forms of what happens between a motion and its record."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +78,9 @@ class Parameter:
     scan
         Values tried where the effect is not linear at its null, as the speed of a steering gear,
         or may be far from it, as a sensor of many seconds.
+    by_meaning
+        Whether its range is what it means: beyond it is another effect, as what is not weak but
+        strong, or weak on the other side.
     """
 
     start: float
@@ -111,6 +89,20 @@ class Parameter:
     high: float = math.inf
     null: float | None = 0.0
     scan: tuple[float, ...] = ()
+    by_meaning: bool = False
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A signal of one's own that an effect reads: any that the pipeline names.
+
+    Parameters
+    ----------
+    unit
+        Unit in which the effect wants it; the pipeline may state another of the same kind.
+    """
+
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -127,6 +119,8 @@ class Effect:
         States it adds, with the signal each starts from (None: from zero).
     forms
         What it returns: any of `FORMS`.
+    own
+        Signals that are in no dictionary of quantities, with the unit in which it wants them.
     """
 
     name: str
@@ -137,6 +131,7 @@ class Effect:
     forms: tuple[type, ...]
     system: System
     source: str
+    own: Mapping[str, Signal] = field(default_factory=dict)
 
     @property
     def equation(self) -> str:
@@ -152,6 +147,16 @@ class Effect:
     def tried(self) -> bool:
         """Whether there are values to try: it may be too strong for its slope at the null."""
         return any(p.scan for p in self.parameters.values())
+
+    @property
+    def bound_by_meaning(self) -> bool:
+        """Whether a value outside its range says that it is not this effect."""
+        return any(p.by_meaning for p in self.parameters.values())
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is there or not, and never in part: reversed, exchanged."""
+        return any(p.by_meaning and p.low > (p.null or 0.0) for p in self.parameters.values())
 
     @property
     def scanned(self) -> bool:
@@ -201,10 +206,10 @@ def effect(
 ) -> Callable[[Callable[..., Any]], Effect]:
     """Turn a function into an `Effect`; its signature is the declaration.
 
-    Positional arguments are signals; keyword-only arguments are parameters, written as a typical
-    value (a primed coefficient) or as a `Parameter` with its unit. In the prime system signals
-    arrive primed (v/U, rL/U) and a Force leaves primed; in SI both are SI. A Mass is primed,
-    everything else is SI.
+    Positional arguments are signals, one's own written as `tow=Signal("N")`; keyword-only
+    arguments are parameters, written as a typical value (a primed coefficient) or as a `Parameter`
+    with its unit. In the prime system signals arrive primed (v/U, rL/U) and a Force leaves primed;
+    in SI both are SI. A Mass is primed, everything else is SI.
 
     >>> @effect(source="textbook")
     ... def yaw_damping(r, *, Nr=-0.002):
@@ -227,12 +232,14 @@ def effect(
         if __debug__ and not (function.__doc__ or "").strip():  # python -OO strips them all
             raise EffectError(f"effect {name!r} has no docstring; write its equation there")
         own = dict(states or {})
-        signals, parameters = _signature(name, function, own)
+        asked = _own_signals(name, function)
+        signals, parameters = _signature(name, function, {**own, **asked})
         forms = _forms(name, function, signals, parameters, own)
         made: System = system if Force in forms or Mass in forms else "SI"
-        _check_states(name, own, made)
-        _check_readings(name, signals, forms)
-        _check_scan(name, parameters)
+        check_states(name, own, made)
+        check_readings(name, signals, forms)
+        check_scan(name, parameters)
+        check_own(name, asked, made)
         return Effect(
             name=name,
             function=function,
@@ -242,9 +249,22 @@ def effect(
             forms=forms,
             system=made,
             source=source,
+            own=asked,
         )
 
     return declare
+
+
+def _own_signals(name: str, function: Callable[..., Any]) -> dict[str, Signal]:
+    """Arguments written as a `Signal`."""
+    arguments = inspect.signature(function).parameters.values()
+    found = {a.name: a.default for a in arguments if isinstance(a.default, Signal)}
+    for known in (n for n in found if n in QUANTITIES):
+        raise EffectError(
+            f"effect {name!r}: signal {known!r} is a quantity already "
+            f"({QUANTITIES[known].meaning}); read it as it is, or choose another name"
+        )
+    return found
 
 
 def _signature(
@@ -257,7 +277,7 @@ def _signature(
             raise EffectError(
                 f"effect {name!r} asks for signal {signal!r}, which is not a quantity "
                 f"({nearest(signal, QUANTITIES)}); a parameter goes after the `*` with its "
-                "typical value"
+                f'typical value, a signal of your own is {signal}=Signal("N"), with its unit'
             )
     given = {a.name: a.default for a in arguments if a.kind is a.KEYWORD_ONLY}
     return signals, {n: _parameter(name, n, start) for n, start in given.items()}
@@ -302,14 +322,14 @@ def _forms(
             raise EffectError(
                 f"effect {name!r} returns {type(part).__name__}; expected one of {names}"
             )
-        _check_names(name, part, signals)
-        _check_numbers(name, part)
+        check_names(name, part, signals)
+        check_numbers(name, part)
     if not any(_finite(function, signals, parameters, size) for size in SIZES):
         raise EffectError(
             f"effect {name!r} returns nan or inf, whatever its signals are; look for a nan, a "
             "division by zero or a root of a negative number"
         )
-    _check_rates(name, tuple(n for part in results if isinstance(part, Rate) for n in part), own)
+    check_rates(name, tuple(n for part in results if isinstance(part, Rate) for n in part), own)
     return tuple(type(part) for part in results)
 
 
@@ -329,67 +349,3 @@ def _finite(
     parts = (result,) if isinstance(result, FORMS) else result
     numbers = (x for p in parts for x in (p if isinstance(p, Force) else p.values()))
     return bool(np.all(np.isfinite(list(numbers))))
-
-
-def _check_readings(name: str, signals: tuple[str, ...], forms: tuple[type, ...]) -> None:
-    """Accelerations follow from the forces, so only a sensor may read them; masses are constant."""
-    early = [s for s in signals if s in ACCELERATIONS]
-    if early and not set(forms) <= set(SENSORS):
-        raise EffectError(
-            f"effect {name!r} reads {early[0]!r}, which follows from the forces; only a sensor "
-            "(Measured, Delayed, Lagged) may read an acceleration: write a Mass instead"
-        )
-    if Mass in forms and (forms != (Mass,) or not set(signals) <= set(PARTICULARS)):
-        raise EffectError(
-            f"effect {name!r} gives a Mass; masses are constant: let it read no signal and give "
-            "nothing else"
-        )
-
-
-def _check_scan(name: str, parameters: Mapping[str, Parameter]) -> None:
-    """Where one parameter is scanned the others must shape the effect or be scanned too."""
-    if not any(p.scan for p in parameters.values()):
-        return
-    for parameter, p in parameters.items():
-        if not p.scan and p.null is not None:
-            raise EffectError(
-                f"effect {name!r}: parameter {parameter!r} stands beside a scanned one; give it a "
-                "scan too, or null=None"
-            )
-
-
-def _check_states(name: str, own: Mapping[str, Any], system: System) -> None:
-    if own and system == "prime":
-        raise EffectError(
-            f"effect {name!r} has a force and states of its own; a state is SI, so declare the "
-            'effect with system="SI"'
-        )
-
-
-def _check_rates(name: str, rates: tuple[str, ...], own: Mapping[str, Any]) -> None:
-    if set(rates) != set(own):
-        raise EffectError(
-            f"effect {name!r} gives the rate of {', '.join(rates) or 'nothing'}, and declares "
-            f"the states {', '.join(own) or 'none'}; they must be the same"
-        )
-
-
-def _check_numbers(name: str, part: Result) -> None:
-    for value in part if isinstance(part, Force) else part.values():
-        if not isinstance(value, int | float | np.number):
-            raise EffectError(
-                f"effect {name!r} returns {value!r} in {type(part).__name__}; expected a number"
-            )
-
-
-def _check_names(name: str, part: Result, signals: tuple[str, ...]) -> None:
-    if isinstance(part, Force):
-        return
-    mass = isinstance(part, Mass)
-    known = {*MASS_PARAMETERS} if mass else {*SIGNALS, *signals}
-    for signal in part:
-        if signal not in known:
-            raise EffectError(
-                f"effect {name!r} returns {type(part).__name__}({signal}=...), and {signal!r} is "
-                f"not a {'mass parameter' if mass else 'signal'} ({nearest(signal, known)})"
-            )

@@ -85,7 +85,7 @@ def effect_parts(
     for effect in model.effects:
         if not {Force, Rate} & set(effect.forms):
             continue
-        seen = measured_by(effect, recorded, signals)
+        seen = measured_by(model, effect, recorded, signals)
         for part in effect(values_for(model, effect, seen, theta)):
             if isinstance(part, Force):
                 yield effect, _to_SI(model, effect, part, signals)

@@ -11,9 +11,17 @@ from trialid import user_files
 from trialid.errors import ShipError, nearest
 from trialid.names.quantities import MASS_PARAMETERS
 from trialid.names.quantities import PARTICULARS as KNOWN
+from trialid.ship.actuators import Actuator, actuators_of
 
 REQUIRED: Final = ("name", "source", "system", "rudder_positive", "particulars", "mass")
-OPTIONAL: Final = ("coefficients", "coefficient_speed", "uncertainty", "antenna", "notes")
+OPTIONAL: Final = (
+    "coefficients",
+    "coefficient_speed",
+    "uncertainty",
+    "antenna",
+    "actuator",
+    "notes",
+)
 PARTICULARS: Final = ("L", "rho", "g", "nabla", "U0")
 """Those no model can do without; T and B are for the effects that ask for them."""
 SECTIONS: Final = ("particulars", "mass", "coefficients", "uncertainty", "antenna")
@@ -48,6 +56,8 @@ KEYS: Final = {
     'with `priors = "ship"` in a pipeline it holds what is fitted about these numbers.',
     "antenna": "Where the antenna of the positions stands, from the origin [m]: `x` ahead, `y` to "
     "starboard, `z` below (above: negative); zero where not given.",
+    "actuator": "A table `[[actuator]]` for each rudder, thruster, pod, tunnel and jet, where "
+    "there is more than one rudder; see the guide's page of actuators.",
     "notes": "Anything a reader should know of it.",
 }
 """What each key of a ship file means; the guide's page of keys is made of it."""
@@ -91,6 +101,8 @@ class Ship:
         Standard deviations as shares of the numbers, by name, `default` for all others.
     antenna
         Place of the receiver of positions [m]: `x` ahead, `y` to starboard, `z` below the origin.
+    actuators
+        What drives and steers her, where it is more than one rudder.
     """
 
     name: str
@@ -104,6 +116,7 @@ class Ship:
     notes: str = ""
     uncertainty: Mapping[str, float] = field(default_factory=dict)
     antenna: Mapping[str, float] = field(default_factory=dict)
+    actuators: tuple[Actuator, ...] = ()
 
     def share_off(self, name: str) -> float:
         """Standard deviation of a mass or coefficient, as a share of it."""
@@ -158,6 +171,7 @@ def read_ship(path: str | Path) -> Ship:
         notes=table.get("notes", ""),
         uncertainty=_shares(path, table),
         antenna=_arm(path, table),
+        actuators=actuators_of(table, f"ship file {path}"),
     )
 
 

@@ -4,11 +4,13 @@ SNAME (1950) without a prime on the draught: m' = m / (1/2 rho L^3), r' = r L / 
 """
 
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from typing import Final
 
 from trialid.errors import EffectError, ShipError
 from trialid.maths import Number
 from trialid.names.quantities import PARTICULARS, QUANTITIES
+from trialid.ship.actuators import rudder_signals
 from trialid.ship.effect import Effect, Force, Steered
 from trialid.ship.particulars import Ship
 
@@ -56,8 +58,8 @@ def prime_signal(name: str, value: Number, L: Number, U: Number) -> Number:
     """
     if name == "rho":
         return 2.0
-    quantity = QUANTITIES[name]
-    if quantity.length == quantity.speed == 0:
+    quantity = QUANTITIES.get(name)  # none: the angle of an actuator, or one's own signal
+    if quantity is None or quantity.length == quantity.speed == 0:
         return value
     return value * scale(-quantity.length, -quantity.speed, L, U)
 
@@ -87,17 +89,15 @@ def primed_coefficient(ship: Ship, effect: Effect, name: str) -> float:
     and so is the sign: a term odd in delta changes sign when the source counts delta to port.
     """
     value = ship.coefficients[name]
+    rudders = {"delta", *rudder_signals(ship.actuators)}
     if effect.system == "SI" or effect.parameters[name].unit != "1":
-        return -value if ship.rudder_positive == "port" and _steers_rudder(effect) else value
+        steers = bool(rudders & {*effect.acts_on(Steered)})
+        return -value if ship.rudder_positive == "port" and steers else value
     if ship.system == "dimensional":
         value *= _dimensional_ratio(ship, effect, name)
-    if ship.rudder_positive == "port" and "delta" in effect.signals:
-        value *= _rudder_parity(effect, name)
+    if ship.rudder_positive == "port" and rudders & {*effect.signals}:
+        value *= _rudder_parity(effect, name, rudders)
     return value
-
-
-def _steers_rudder(effect: Effect) -> bool:
-    return "delta" in effect.acts_on(Steered)
 
 
 def _probe(effect: Effect, name: str, signals: Mapping[str, float]) -> Force:
@@ -131,10 +131,10 @@ def _dimensional_ratio(ship: Ship, effect: Effect, name: str) -> float:
     return ratios.pop()
 
 
-def _rudder_parity(effect: Effect, name: str) -> float:
+def _rudder_parity(effect: Effect, name: str, rudders: AbstractSet[str]) -> float:
     signals = dict.fromkeys(effect.signals, 0.1)
     here = _probe(effect, name, signals)
-    there = _probe(effect, name, {**signals, "delta": -signals["delta"]})
+    there = _probe(effect, name, {n: -x if n in rudders else x for n, x in signals.items()})
     if there == Force(*(-a for a in here)):
         return -1.0
     if there == here:

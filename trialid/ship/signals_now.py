@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from trialid.maths import Number, sqrt
-from trialid.ship.effect import Delayed, Effect, Force, Steered
+from trialid.ship.effect import Delayed, Effect, Force, Rate, Steered
 from trialid.ship.model import STANDSTILL, ShipModel, late, slope
 from trialid.ship.prime import prime_parameter, prime_signal
 
@@ -51,7 +51,13 @@ def values_for(
 
 
 def measured_by(
-    effect: Effect, recorded: Mapping[str, Number], acting: Mapping[str, Number]
+    model: ShipModel, effect: Effect, recorded: Mapping[str, Number], acting: Mapping[str, Number]
 ) -> Mapping[str, Number]:
-    """What an effect sees: steering gear and sensors the recorded rudder, forces the acting one."""
-    return acting if Force in effect.forms else {**recorded, "U": acting["U"]}
+    """What an effect sees: steering gear and sensors the recorded rudder, forces the acting one.
+
+    An order that comes late comes late to the gear too.
+    """
+    if Force in effect.forms:
+        return acting
+    late_orders = model.late_inputs if Rate in effect.forms else ()
+    return {**recorded, **{n: acting[n] for n in late_orders}, "U": acting["U"]}

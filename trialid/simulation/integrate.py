@@ -182,13 +182,9 @@ def guess(model: ShipModel, trial: Trial, state: str) -> float:
     return model.ship.particulars["U0"] if state == "u" else 0.0
 
 
-IDEAL: Final = {"delta": "delta_order"}
-"""What an input follows exactly where it is not recorded itself: a perfect steering gear."""
-
-
 def record_for(trial: Trial, name: str) -> str | None:
-    """The record that serves as this input: its own, or that of what it follows."""
-    for candidate in (name, IDEAL.get(name, name)):
+    """The record that serves as this input: its own, or its order's, as of a perfect gear."""
+    for candidate in (name, f"{name}_order"):
         if candidate in trial.signals:
             return candidate
     return None
@@ -208,7 +204,8 @@ def inputs(simulator: Simulator, trial: Trial, known: Mapping[str, float]) -> Ve
         The trial lacks a signal.
     """
     model = simulator.model
-    columns = {n: _input(model, trial, n) for n in simulator.equations.inputs if n in SIGNALS}
+    shifts = {word for n in model.late_inputs for word in (late(n), slope(n))}
+    columns = {n: _input(model, trial, n) for n in simulator.equations.inputs if n not in shifts}
     for name, tau in late_by(model, known).items():
         columns[name], by_lag = delay_samples(columns[name], tau / trial.period)
         columns[late(name)] = np.full(trial.samples, tau)

@@ -6,13 +6,15 @@ from typing import Final
 import numpy as np
 
 from trialid import effects
+from trialid.effects.actuators import actuator_effects
 from trialid.errors import NotIdentifiable, PipelineError, ShipError, UnitError, nearest
 from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import ship_priors
 from trialid.names import units
-from trialid.names.quantities import PARTICULARS, SIGNALS
+from trialid.names.quantities import PARTICULARS
 from trialid.pipeline_file import Pipeline, where
 from trialid.pipeline_file.form import Described
+from trialid.pipeline_file.own_quantities import ship_quantities
 from trialid.pipeline_file.prior_section import OfTheShip
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES, ShipModel, needs_ship
@@ -29,9 +31,24 @@ LYING_STILL: Final = 0.1
 
 
 def available(pipeline: Described) -> dict[str, Effect]:
-    """The catalogue and the user's own effects, by name."""
+    """The catalogue, effects of the ship's own actuators, and the user's, by name."""
     own = [effects.from_file(path) for path in pipeline.model.effects_from]
-    return {**effects.CATALOGUE, **{n: e for found in own for n, e in found.items()}}
+    given = {n: e for found in own for n, e in found.items()}
+    return {**effects.CATALOGUE, **_of_actuators(pipeline), **given}
+
+
+def _of_actuators(pipeline: Described) -> dict[str, Effect]:
+    """Effects that the ship's actuators bring; none where her file names none."""
+    if pipeline.ship is None:
+        return {}
+    return actuator_effects(read_ship(pipeline.ship), _ordered(pipeline))
+
+
+def _ordered(pipeline: Described) -> set[str]:
+    """Signals of which the pipeline names the order."""
+    trials = pipeline.trials if isinstance(pipeline, Pipeline) else ()
+    named = {name for trial in trials for name in trial.signals}
+    return {name.removesuffix("_order") for name in named if name.endswith("_order")}
 
 
 def build_model(pipeline: Described, catalogue: Mapping[str, Effect]) -> ShipModel:
@@ -171,7 +188,8 @@ def candidates(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> dict[str,
 
 def stated_noise(pipeline: Pipeline) -> dict[str, float]:
     """Sensor figures of the pipeline, from the unit of reports to SI."""
-    return {c: x / units.shown_factor(SIGNALS[c]) for c, x in pipeline.diagnose.noise.items()}
+    known = ship_quantities(pipeline)
+    return {c: x / units.shown_factor(known[c]) for c, x in pipeline.diagnose.noise.items()}
 
 
 def check_quiet(pipeline: Pipeline, trials: tuple[Trial, ...]) -> None:
@@ -206,12 +224,13 @@ def check_moving(pipeline: Pipeline, model: ShipModel, trials: tuple[Trial, ...]
     approach = model.ship.particulars.get("U0", 0.0)
     steered = sorted(STEERED & {*pipeline.identify.outputs})
     recorded = {t.name for t in pipeline.trials if t.signals.get("u")}
+    spot = TURN_ON_THE_SPOT | {one.drive for one in model.ship.actuators}
     for trial in trials if model.states and steered else ():
         if trial.name not in recorded:
             continue
         u = np.abs(trial.signals["u"][trial.valid["u"]])
         fast = float(np.quantile(u, 0.9)) if len(u) else approach
-        if fast < LYING_STILL * approach and not TURN_ON_THE_SPOT & trial.signals.keys():
+        if fast < LYING_STILL * approach and not spot & trial.signals.keys():
             raise NotIdentifiable(
                 f"trial {trial.name!r}: the ship lies still, u is below {fast:.2g} m/s for nine "
                 f"tenths of it and U0 is {approach:.3g} m/s, so no rudder steers {steered[0]}; "

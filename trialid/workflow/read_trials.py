@@ -1,5 +1,6 @@
 """Trials of a pipeline: logs read and brought onto one clock."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -8,30 +9,31 @@ from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
 from trialid.alignment.track.antenna import at_origin
 from trialid.ingest import Aids, LogFile
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.pipeline_file.form import ClockSection
 from trialid.progress import Progress
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
 from trialid.workflow.origin import as_written
+from trialid.workflow.quantities_read import quantities_of
 
 
 def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
     """Logs of every trial, read and brought onto one clock."""
-    done = []
+    done, known = [], quantities_of(pipeline)
     for i, trial in enumerate(pipeline.trials):
         progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
-        done.append(align_trial(pipeline, trial))
+        done.append(align_trial(pipeline, trial, known))
     return tuple(done)
 
 
-def align_trial(pipeline: Pipeline, trial: TrialSection) -> Trial:
-    """Logs of one trial, read and brought onto one clock."""
-    sources = [
-        SignalSource(q, name, s.unit, s.positive, s.angle, s.delay, s.gain, s.offset, s.combine)
-        for q, s in trial.signals.items()
-        for name in s.names
-    ]
+def align_trial(
+    pipeline: Pipeline, trial: TrialSection, known: Mapping[str, Quantity] | None = None
+) -> Trial:
+    """Logs of one trial, read and brought onto one clock; `known` what its signals may be."""
+    known = quantities_of(pipeline) if known is None else known
+    sources = _sources(trial, known)
     logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
     clocks = [_log_clock(g.clock) for g in trial.logs]
     matched = [name for clock in clocks if clock and clock.match for name in clock.match]
@@ -53,6 +55,26 @@ def align_trial(pipeline: Pipeline, trial: TrialSection) -> Trial:
     valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
     remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
     return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+
+
+def _sources(trial: TrialSection, known: Mapping[str, Quantity]) -> list[SignalSource]:
+    """What each signal is read from, one for each channel."""
+    return [
+        SignalSource(
+            quantity=name,
+            channel=channel,
+            unit=s.unit,
+            positive=s.positive,
+            as_=s.angle,
+            delay=s.delay,
+            gain=s.gain,
+            offset=s.offset,
+            combine=s.combine,
+            of=None if name in SIGNALS else known[name],
+        )
+        for name, s in trial.signals.items()
+        for channel in s.names
+    ]
 
 
 def _at_origin(pipeline: Pipeline, trial: Trial) -> Trial:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc, chdtri  # scipy.stats would take another 0.4 s to import
 
+from trialid.diagnosis.force.force_terms import MOTIONS
 from trialid.diagnosis.noise.thinning import coarse
 from trialid.diagnosis.noise.whitening import whiten_columns
 from trialid.diagnosis.search.augment import Augmented
@@ -77,10 +78,13 @@ class Completeness:
 def completeness(fit: Fit, augmented: Augmented) -> Completeness | None:
     """Forward selection from the catalogue, and from the catalogue and forces of any shape.
 
-    None where there is nothing to compare, or no equation that a force acts in.
+    None where there is nothing to compare, no equation that a force acts in, or, as of a ship that
+    only goes ahead, no motion that a force could follow.
     """
-    moved = set(ROWS) & set(fit.problem.simulator.equations.states)
-    if not augmented.traces or not moved:
+    equations = fit.problem.simulator.equations
+    moved = set(ROWS) & set(equations.states)
+    follows = set(MOTIONS) & {*equations.states, *equations.inputs}
+    if not augmented.traces or not moved or not follows:
         return None
     tried = probes(coarse(fit))
     evidence = _with_colour(augmented, tried)

@@ -9,6 +9,7 @@ from trialid.export.model.fitted_model import deviation_of
 from trialid.names.quantities import MASS_PARAMETERS
 from trialid.result.fit_rows import ParameterRow
 from trialid.result.schema import Result
+from trialid.ship.actuators import actuator_tables
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import MOST_UNCERTAIN, Ship
 from trialid.ship.prime import mass_scale, primed_coefficient
@@ -108,6 +109,7 @@ def fitted_ship_text(made: FittedShip, warnings: tuple[str, ...]) -> str:
         "",
         "[uncertainty]  # one standard deviation, as a share of the number",
         *(f"{_key(n)} = {share:.4g}" for n, share in ship.uncertainty.items()),
+        *(["", *actuator_tables(ship.actuators)] if ship.actuators else []),
     ]
     return "\n".join(lines) + "\n"
 

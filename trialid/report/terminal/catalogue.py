@@ -107,7 +107,9 @@ def meaning(effect: Effect) -> str:
 
 def _purpose(title: str) -> str:
     """What a file of effects says of itself, to its first stop."""
-    module = sys.modules.get(f"trialid.effects.{title.replace(' ', '_')}")
+    file = title.replace(" ", "_")
+    places = (f"trialid.effects.{file}", f"trialid.effects.actuators.{file}")
+    module = next((sys.modules[place] for place in places if place in sys.modules), None)
     said = (inspect.getdoc(module) or "").partition("\n")[0] if module else ""
     return re.split("[:;]", said)[0].removesuffix(".")
 

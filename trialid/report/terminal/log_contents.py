@@ -51,7 +51,7 @@ def inspection(survey: Inspection, *, everything: bool = False) -> Sequence[Any]
     if known:
         parts += [_signals(known), ""]
     parts += [
-        *_choices(decisions(known, found, len(survey.files))),
+        *_choices(decisions(known, found, survey)),
         *_others(survey, everything),
         *_clocks(survey),
     ]

@@ -5,7 +5,8 @@ from typing import Final
 
 from trialid.alignment.checks import LATE, Finding
 from trialid.inspection.disagreements import COMPARED, MOST_SOURCES
-from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.drives import drives_of
+from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.relations import side
 from trialid.names import labels
 
@@ -14,14 +15,14 @@ ALIKE: Final = 0.95
 
 
 def decisions(
-    known: Mapping[str, Sequence[ChannelInspection]], found: Sequence[Finding], files: int
+    known: Mapping[str, Sequence[ChannelInspection]], found: Sequence[Finding], survey: Inspection
 ) -> Sequence[str]:
     """Several sources, none at all, no unit, a rudder's side; `known` are sources by quantity."""
     return [
         *_several(known, found),
-        *_clocks_apart(found, files),
+        *_clocks_apart(found, len(survey.files)),
         *_mends(found),
-        *_lacking(known),
+        *_lacking(known, drives_of(survey)),
         *_unitless(known),
         *_rudder(known),
     ]
@@ -68,9 +69,14 @@ def _mends(found: Sequence[Finding]) -> Iterator[str]:
             yield one.sentence if named else f"{one.sentence}; {one.mend} would mend it"
 
 
-def _lacking(known: Mapping[str, Sequence[ChannelInspection]]) -> Iterator[str]:
+def _lacking(
+    known: Mapping[str, Sequence[ChannelInspection]], drives: Sequence[ChannelInspection]
+) -> Iterator[str]:
     alive = {name for name, sources in known.items() if any(not one.constant for one in sources)}
-    if not alive & {"delta", "delta_order"}:
+    if not alive & {"delta", "delta_order"} and len(drives) == 2:
+        port, starboard = (one.key for one in drives)
+        yield f"no rudder moves; {port} and {starboard} seem to drive her: `trialid start` tries"
+    elif not alive & {"delta", "delta_order"}:
         yield "no rudder or rudder order that moves is recognised: a fit needs one"
     if not alive & {"r", "psi", "phi"}:
         yield "no yaw rate, heading or roll angle that moves is recognised: a fit needs a motion"

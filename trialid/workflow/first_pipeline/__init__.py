@@ -3,16 +3,28 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 from trialid.errors import LogError
 from trialid.inspection import Inspection
 from trialid.ship.estimate import Given, estimate
 from trialid.ship.estimate.ship_text import ship_text
 from trialid.ship.particulars import read_ship
-from trialid.workflow.first_pipeline.choice import Chosen, choose_signals, shared_signals, size_unit
+from trialid.workflow.first_pipeline.boat_choice import (
+    PORT,
+    actuator_lines,
+    boat_actuators,
+    choose,
+    is_boat,
+    named_by_ship,
+)
+from trialid.workflow.first_pipeline.choice import Chosen, shared_signals, size_unit
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 
 __all__ = ["Starter", "begun_ship", "starter"]
+
+
+STEERS: Final = frozenset(("delta", "delta_order", PORT))
 
 
 @dataclass(frozen=True)
@@ -51,7 +63,7 @@ def starter(
     LogError
         The logs hold too little, or not the same, to begin with, or the ship is not known.
     """
-    trials = _with_speeds([choose_signals(one, speed) for one in surveys], speed)
+    trials = _with_speeds([choose(one, speed) for one in surveys], speed)
     _check_shared(trials)
     if ship is None and given.length is None:
         raise LogError(
@@ -70,8 +82,13 @@ def starter(
         words = next(one.speed_words for one in trials if one.speed)
         made = estimate(replace(given, speed=u0), f"ship of {pipeline.stem}")
         files[ship], own = ship_text(made, comment(words)), made.ship
+        if is_boat(shared_signals(trials)):
+            own = replace(own, actuators=boat_actuators(trials[0].signals, own))
+            files[ship] += "\n".join(actuator_lines(own.actuators))
     else:
         own = read_ship(ship)
+        if is_boat(shared_signals(trials)):
+            trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
     trials = [size_unit(one, L, u0) for one in trials]
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
@@ -90,14 +107,14 @@ def _with_speeds(trials: list[Chosen], stated: float | None) -> list[Chosen]:
         return trials
     words = "as in the other logs"
     return [
-        one if one.speed else replace(choose_signals(one.survey, known[0]), speed_words=words)
+        one if one.speed else replace(choose(one.survey, known[0]), speed_words=words)
         for one in trials
     ]
 
 
 def _check_shared(trials: Sequence[Chosen]) -> None:
     both = shared_signals(trials)
-    for needed, words in (({"delta", "delta_order"}, "rudder"), ({"r", "psi"}, "yaw motion")):
+    for needed, words in ((STEERS, "rudder"), ({"r", "psi"}, "yaw motion")):
         if not needed & both:
             held = "; ".join(
                 f"{one.path.name}: {', '.join(sorted(one.quantities & needed))}" for one in trials

@@ -76,7 +76,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     LogError
         It holds no rudder, or no motion; the message names the channels to map by hand.
     """
-    live = {name: _live(survey, name) for name in SIGNALS}
+    live = {name: live_sources(survey, name) for name in SIGNALS}
     rudder = next((name for name in RUDDERS if live[name]), None)
     motions = [name for name in ("r", "psi", "phi") if live[name]]
     if rudder is None or not {"r", "psi"} & {*motions}:
@@ -85,14 +85,14 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
             f"{survey.path}: no moving {missing} is recognised among its {len(survey.channels)} "
             f"channels, so no pipeline can be begun; {_what_then(survey)}"
         )
-    r = _rate(live) if live["r"] else None
+    r = rate_signal(live) if live["r"] else None
     signals = [_rudder(rudder, live, r)]
     signals += [r] if r else [_plain("psi", live, "no yaw rate is logged")]
     signals += [_plain("phi", live, "")] if live["phi"] else []
-    known, words = _speed(survey, live, speed)
+    known, words = approach_speed(survey, live, speed)
     if live["u"]:
-        signals.append(_through_water(live, speed))
-    elif speed is None and (other := _instead(survey)) is not None:
+        signals.append(through_water(live, speed))
+    elif speed is None and (other := other_speed(survey)) is not None:
         signals.append(other)
     return Chosen(survey, survey.path, tuple(signals), known, words)
 
@@ -111,7 +111,7 @@ def _what_then(survey: Inspection) -> str:
 Live = dict[str, tuple[ChannelInspection, ...]]
 
 
-def _live(survey: Inspection, quantity: str) -> tuple[ChannelInspection, ...]:
+def live_sources(survey: Inspection, quantity: str) -> tuple[ChannelInspection, ...]:
     """Sources that move, and of which at least half is there."""
     return tuple(c for c in survey.sources(quantity) if not c.constant and c.missing < 0.5)
 
@@ -123,7 +123,7 @@ def _plain(quantity: str, live: Live, why: str) -> Signal:
     return Signal(quantity, source, unit, None, words + doubt, tuple(others))
 
 
-def _rate(live: Live) -> Signal:
+def rate_signal(live: Live) -> Signal:
     """The yaw rate; a heading settles its side and, where the log states none, its unit."""
     plain = _plain("r", live, "")
     heading = next((h for h in live["psi"] if not h.constant), None)
@@ -165,7 +165,7 @@ def _with_side(plain: Signal, positive: str, words: str) -> Signal:
     return dataclasses.replace(plain, positive=positive, why=f"{plain.why}; {words}")
 
 
-def _through_water(live: Live, speed: float | None) -> Signal:
+def through_water(live: Live, speed: float | None) -> Signal:
     """The speed through the water; where the log states no unit, the user's speed settles it."""
     plain = _plain("u", live, "")
     if plain.unit != OPEN or speed is None:
@@ -178,7 +178,7 @@ def _through_water(live: Live, speed: float | None) -> Signal:
     return Signal("u", plain.source, fitting[0], None, words, plain.others)
 
 
-def _instead(survey: Inspection) -> Signal | None:
+def other_speed(survey: Inspection) -> Signal | None:
     """Another speed in the place of that through the water: it falls in turns as that does."""
     for sources, words in ((_over_ground(survey), "over ground"), (_some_speed(survey), "unsaid")):
         for source in sources:
@@ -194,7 +194,9 @@ def _near(speed: float, stated: float) -> bool:
     return abs(speed - stated) <= NEAR * stated
 
 
-def _speed(survey: Inspection, live: Live, stated: float | None) -> tuple[float | None, str]:
+def approach_speed(
+    survey: Inspection, live: Live, stated: float | None
+) -> tuple[float | None, str]:
     """The approach speed [m/s], None where nothing tells it, and where it is from."""
     if stated is not None:
         return stated, "as stated"

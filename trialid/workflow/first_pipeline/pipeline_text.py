@@ -10,6 +10,7 @@ from trialid.inspection.channel_names import words
 from trialid.inspection.inspected import ChannelInspection
 from trialid.ship.particulars import Ship
 from trialid.toml_text import quote
+from trialid.workflow.first_pipeline.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
 
 HEAD: Final = """\
@@ -182,6 +183,9 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
 
 def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
+    if ship.actuators and not known & {*RUDDERS}:
+        yield from boat_model(trials, ship)
+        return
     outputs = ["r" if "r" in known else "psi", *(["phi"] if "phi" in known else [])]
     rolls, order_only = "phi" in known, "delta" not in known
     states = ["v", *(["p"] if rolls else []), "r", *(["phi"] if rolls else [])]

@@ -1,0 +1,266 @@
+"""Effects of actuators obey the laws of the catalogue: derivatives, symmetry, absence at null."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import test_effects as laws
+from boats import EFFECTS, QUANTITIES, SHIP, ship_with
+from dual import independent, slope
+from typical import draw
+
+from trialid.effects.actuators import actuator_effects
+from trialid.ship.actuators import Actuator
+from trialid.ship.effect import Effect
+from trialid.ship.model import STATES, ShipModel
+from trialid.simulation.graph import gradient
+from trialid.simulation.integrate import prepare, respond
+from trialid.simulation.reference import evaluator
+from trialid.simulation.trace import trace
+from trialid.trial import Trial
+
+EVERY = pytest.mark.parametrize("name", EFFECTS)
+SPAN = {"rad": 0.6, "rad/s": 9.0, "1": 0.9, "N": 1e7}
+
+
+def signal(name: str, rng: np.random.Generator) -> float:
+    """A value of either sign: ahead and astern, to both sides."""
+    if name in QUANTITIES:
+        span = SPAN[QUANTITIES[name].unit]
+        return float(rng.uniform(0.01, 1.0) ** 2 * span * rng.choice([-1.0, 1.0]))
+    return draw(name, rng)
+
+
+def values(effect: Effect, seed: int) -> dict[str, float]:
+    rng = np.random.default_rng([seed, sum(effect.name.encode())])
+    theta = {n: p.start * rng.uniform(0.8, 1.2) for n, p in effect.parameters.items()}
+    return {s: signal(s, rng) for s in effect.signals} | theta
+
+
+@EVERY
+def test_gradient_against_dual_numbers(name: str) -> None:
+    """By every signal and parameter, on both sides of every kink; and every argument is used."""
+    effect = EFFECTS[name]
+    nodes, symbols = laws.in_graph(effect, values(effect, 0))
+    slopes = [s for node in nodes.values() for s in gradient(node, list(symbols.values()))]
+    run = evaluator(slopes, tuple(symbols), scalar=True)
+    used = np.zeros(len(symbols))
+    for seed in range(30):
+        at = values(effect, seed)
+        found = np.reshape(run([at[n] for n in symbols]), (len(nodes), len(symbols)))
+        exact = laws.flat(effect, independent(at))
+        expected = [slope(exact[key], len(at)) for key in nodes]
+        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
+        used += np.abs(found).sum(axis=0)
+    assert [n for n, u in zip(symbols, used, strict=True) if u == 0.0] == []
+
+
+@EVERY
+def test_traced_equations_against_dual_numbers(name: str) -> None:
+    """The state derivatives of a ship with this effect alone, by states and parameters."""
+    effect = EFFECTS[name]
+    model = ShipModel(SHIP, STATES, (effect,))
+    theta = {n: p.start for n, p in model.parameters.items()}
+    free = tuple(effect.parameters)
+    eq = trace(model.with_values(theta), free, ())
+    rng = np.random.default_rng(len(name))
+    x = {s: signal(s, rng) for s in eq.states}
+    u = {s: signal(s, rng) for s in eq.inputs}
+    numbers = [*x.values(), *u.values(), *(theta[n] for n in eq.parameters)]
+    symbols = (*eq.states, *eq.inputs, *eq.parameters)
+    n_x, n_free = len(eq.states), len(eq.free)
+    J, W, G = np.zeros((n_x, n_x)), np.zeros((n_x, n_x)), np.zeros((n_x, n_free))
+    laws.fill(J, eq.J, symbols, numbers)
+    laws.fill(W, eq.W, symbols, numbers)
+    laws.fill(G, {(r, c): g for c, d in enumerate(eq.G) for r, g in d.items()}, symbols, numbers)
+    named = independent({**x, **{n: theta[n] for n in free}})
+    rates = laws.derivatives(model, {s: named[s] for s in x}, u, {**theta, **named})
+    exact = np.array([slope(rates[s], len(named)) for s in eq.states])
+    laws.check_close(J, exact[:, :n_x])
+    laws.check_close(W @ G, exact[:, [list(named).index(n) for n in eq.free]])
+
+
+@pytest.mark.parametrize(
+    "name", [n for n, e in EFFECTS.items() if "lag" not in n and 0.0 in e.nulls.values()]
+)
+def test_absent_at_null(name: str) -> None:
+    effect = EFFECTS[name]
+    for seed in range(6):
+        at = values(effect, seed) | effect.nulls
+        size = max(map(abs, values(effect, seed).values()))
+        gone = laws.flat(effect, at).values()
+        assert gone == pytest.approx([0.0] * len(gone), abs=1e-8 * size) if gone else True
+
+
+@EVERY
+def test_declaration(name: str) -> None:
+    effect = EFFECTS[name]
+    assert effect.name == name == effect.function.__name__
+    assert 10 < len(effect.equation) <= 100
+    assert effect.source
+    for parameter, p in effect.parameters.items():
+        assert p.low <= p.start <= p.high, parameter
+        assert p.start != p.null, parameter
+        assert all(p.low <= x <= p.high for x in p.scan), parameter
+
+
+MIRRORED = (
+    Actuator(name="a", kind="thruster", x=-70.0, y=-6.0, direction=0.2),
+    Actuator(name="b", kind="thruster", x=-70.0, y=6.0, direction=-0.2),
+    Actuator(name="c", kind="azimuth", x=-70.0, y=-6.0),
+    Actuator(name="d", kind="azimuth", x=-70.0, y=6.0),
+    Actuator(name="e", kind="waterjet", x=-70.0, y=-6.0),
+    Actuator(name="f", kind="waterjet", x=-70.0, y=6.0),
+    Actuator(name="g", kind="rudder", x=-70.0, y=-6.0),
+    Actuator(name="h", kind="rudder", x=-70.0, y=6.0),
+)
+PARTNERS = {a: b for a, b in zip("abcdefgh", "badcfehg", strict=True)}
+
+
+@pytest.mark.parametrize(
+    "name", ["thrusters", "azimuths", "waterjets", "rudders", "rudders_drag", "thrusters_advance"]
+)
+def test_port_for_starboard(name: str) -> None:
+    """Drives exchanged, angles exchanged and turned over: X stays, Y, K and N change sign."""
+    effect = actuator_effects(ship_with(MIRRORED))[name]
+    for seed in range(6):
+        at = values(effect, seed)
+        there = dict(at)
+        for s in effect.signals:
+            if s != "u":
+                partner = s.replace(s[0], PARTNERS[s[0]], 1)
+                turned = s.endswith("_angle") or s[0] in "gh"
+                there[partner] = -at[s] if turned else at[s]
+        here, other = effect(at)[0], effect(there)[0]
+        wanted = [here.X, -here.Y, -here.K, -here.N]
+        np.testing.assert_allclose(list(other), wanted, rtol=1e-9, atol=1e-9 * abs(here.X) + 1e-12)
+        assert here.N != 0.0
+
+
+ALONE = {
+    "thruster": {},
+    "azimuth": {"one_angle": 0.5},
+    "waterjet": {"one_angle": 0.5},
+}
+
+
+@pytest.mark.parametrize("kind", ALONE)
+@pytest.mark.parametrize("command", ["revolutions", "share", "thrust"])
+def test_a_push_ahead_on_the_port_side_turns_to_starboard(kind: Any, command: Any) -> None:
+    """And astern to port, with its own gain; numbers by hand."""
+    one = Actuator(name="one", kind=kind, x=0.0, y=-2.0, command=command)
+    [effect] = [e for n, e in actuator_effects(ship_with((one,))).items() if n == f"{kind}s"]
+    ahead, astern = effect.parameters
+    at = {"one": 3.0, "one_angle": 0.0, ahead: 5.0, astern: 4.0}
+    at = {n: at[n] for n in (*effect.signals, *effect.parameters)}
+    size = 3.0 if command == "thrust" else 9.0
+    assert effect(at)[0] == pytest.approx((5.0 * size, 0.0, 0.0, 10.0 * size))
+    assert effect(at | {"one": -3.0})[0] == pytest.approx((-4.0 * size, 0.0, 0.0, -8.0 * size))
+
+
+def test_a_pod_pushes_to_where_it_points_and_a_nozzle_aft_turns_the_ship_to_its_side() -> None:
+    aft = {"x": -5.0, "y": 0.0, "command": "thrust"}
+    ship = ship_with(
+        (
+            Actuator(name="pod", kind="azimuth", **aft),
+            Actuator(name="jet", kind="waterjet", **aft),
+        )
+    )
+    made = actuator_effects(ship)
+    pod = {"pod": 2.0, "pod_angle": np.pi / 2, "k_pod_ahead": 1.0, "k_pod_astern": 1.0}
+    assert made["azimuths"](pod)[0] == pytest.approx((0.0, 2.0, 0.0, -10.0), abs=1e-12)
+    jet = {"jet": 2.0, "jet_angle": np.pi / 6, "k_jet_ahead": 1.0, "k_jet_astern": 1.0}
+    assert made["waterjets"](jet)[0] == pytest.approx((np.sqrt(3.0), -1.0, 0.0, 5.0))
+
+
+def test_a_bow_thruster_to_starboard_turns_to_starboard_less_at_speed() -> None:
+    at = {"bow": 2.0, "u": 0.0, "k_tunnel": 3.0, "u_tunnel": 1.5}
+    assert EFFECTS["tunnels"](at)[0] == pytest.approx((0.0, 12.0, 0.0, 840.0))
+    faded, to_port = (EFFECTS["tunnels"](at | more)[0] for more in ({"u": 1.5}, {"bow": -2.0}))
+    assert faded[3] == pytest.approx(840.0 / np.e)
+    assert to_port[3] == pytest.approx(-840.0)
+
+
+def test_rudders_together_are_the_one_rudder_and_a_bow_rudder_pushes_the_other_way() -> None:
+    rudder = {"Ydelta": -0.003, "Kdelta": 0.0001, "Ndelta": 0.0015}
+    linear = laws.CATALOGUE["linear_rudder"]({"delta": 0.2, **rudder})[0]
+    two = EFFECTS["rudders"]({"rudder_port": 0.3, "rudder_stbd": 0.1, **rudder})[0]
+    assert two == pytest.approx(linear)
+    bow = replace(SHIP, actuators=(Actuator(name="bow", kind="rudder", x=60.0, y=0.0),))
+    one = actuator_effects(bow)["rudders"]({"bow": 0.2, **rudder})[0]
+    assert one == pytest.approx((0.0, -linear.Y, -linear.K, linear.N))
+
+
+def test_coefficients_of_a_file_with_port_rudders_are_turned_over_for_several_too() -> None:
+    port = replace(SHIP, rudder_positive="port", coefficients={"Ndelta": -0.0015, "Xdd": -0.002})
+    model = ShipModel(port, ("v", "r"), (EFFECTS["rudders"], EFFECTS["rudders_drag"]))
+    assert model.value("Ndelta") == 0.0015
+    assert model.value("Xdd") == -0.002
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.5, 0.8])
+def test_what_is_weak_keeps_its_share_of_the_force(kept: float) -> None:
+    """Whatever drives it: also where the thrust goes with the square."""
+    for name in ("left", "pod", "jet", "bow", "rudder_port"):
+        push = next(e for e in EFFECTS.values() if name in e.signals and e.name.endswith("s"))
+        at = values(push, 3)
+        [moved] = EFFECTS[f"{name}_weak"]({name: at[name], f"weak_{name}": 1.0 - kept})
+        still = push(at | {s: 0.0 for s in push.signals if s == name})[0]
+        whole, less = push(at)[0], push(at | {name: at[name] + moved[name]})[0]
+        expected = [c + kept * (b - c) for b, c in zip(whole, still, strict=True)]
+        assert list(less) == pytest.approx(expected, rel=1e-6, abs=1e-4 * abs(whole.N))
+
+
+def test_reversed_and_exchanged_do_what_they_say() -> None:
+    [moved] = EFFECTS["left_reversed"]({"left": 4.0, "reversed_left": 2.0})
+    assert 4.0 + moved["left"] == pytest.approx(-4.0)
+    [moved] = EFFECTS["rudder_port_rudder_stbd_exchanged"](
+        {"rudder_port": 0.1, "rudder_stbd": -0.3, "swap_rudder_port_rudder_stbd": 1.0}
+    )
+    assert 0.1 + moved["rudder_port"] == pytest.approx(-0.3)
+    assert -0.3 + moved["rudder_stbd"] == pytest.approx(0.1)
+
+
+EIGHT = (
+    Actuator(name="pod_1", kind="azimuth", x=-60.0, y=-8.0),
+    Actuator(name="pod_2", kind="azimuth", x=-60.0, y=8.0),
+    Actuator(name="pod_3", kind="azimuth", x=-20.0, y=-8.0),
+    Actuator(name="pod_4", kind="azimuth", x=-20.0, y=8.0),
+    Actuator(name="port", kind="rudder", x=-80.0, y=-4.0),
+    Actuator(name="stbd", kind="rudder", x=-80.0, y=4.0),
+    Actuator(name="bow_1", kind="tunnel", x=70.0, y=0.0, direction=np.pi / 2),
+    Actuator(name="bow_2", kind="tunnel", x=75.0, y=0.0, direction=np.pi / 2),
+)
+
+
+def eight_actuators() -> tuple[ShipModel, tuple[str, ...], Trial]:
+    """A ship with four pods, two rudders and two bow thrusters, all of them moving."""
+    ship = ship_with(EIGHT)
+    own = actuator_effects(ship)
+    hull = [laws.CATALOGUE[n] for n in ("linear_hull", "surge_resistance")]
+    names = ("rudders", "azimuths", "tunnels", "still_water_yaw")
+    model = ShipModel(ship, ("u", "v", "r"), (*hull, *(own[n] for n in names)))
+    stated = {n: p.start for e in model.effects for n, p in e.parameters.items()}
+    model = model.with_values({n: x for n, x in stated.items() if model.stated(n) is None})
+    free = ("Nv", "Nr", "Ndelta", "k_pod_ahead", "k_tunnel", "Nr0", "Xuu")
+    t = np.arange(0.0, 300.0, 0.5)
+    waves = {s: np.sin(0.02 * (i + 3) * t + i) for i, s in enumerate(model.recorded)}
+    signals = {s: 2.0 * y if s.startswith("bow") else 0.5 * y for s, y in waves.items()}
+    valid = {s: np.ones(len(t), dtype=bool) for s in signals}
+    return model, free, Trial("eight", "fit", 0.5, signals, valid)
+
+
+def test_compiled_and_numpy_agree_on_eight_actuators() -> None:
+    model, free, trial = eight_actuators()
+    values = {n: model.value(n) for n in free}
+    start = {"u": 5.0, "v": 0.1, "r": 0.001}
+    found = [
+        respond(prepare(model, free, ("u", "r"), engine), trial, values, start)
+        for engine in ("compiled", "numpy")
+    ]
+    assert found[0].departure is None
+    assert np.ptp(found[0].y[:, 1]) > 0.001
+    for compiled, plain in zip(*((one.y, one.S) for one in found), strict=True):
+        size = np.abs(plain).max(axis=0)
+        assert np.all(np.abs(compiled - plain) <= 1e-9 * size + 1e-300)

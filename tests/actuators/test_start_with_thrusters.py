@@ -1,0 +1,106 @@
+"""`trialid start` with a boat that steers by two thrusters and has no rudder."""
+
+from pathlib import Path
+
+import numpy as np
+import otter
+import pytest
+from click.testing import CliRunner
+
+import trialid
+from trialid import pipeline_file
+from trialid.cli.main import commands
+from trialid.result.json_file import read
+from trialid.workflow.run import run
+
+NEWCOMER = Path(__file__).parents[3] / "shared" / "data" / "newcomer"
+
+
+def started(folder: Path, monkeypatch: pytest.MonkeyPatch, logs: list[Path], options: str):
+    monkeypatch.chdir(folder)
+    return CliRunner().invoke(commands, ["start", *map(str, logs), *options.split()])
+
+
+def log(path: Path, *, swapped: bool = False, seed: int = 700) -> Path:
+    """The Otter's log as a table: revolutions, rate of turn, speed."""
+    t = np.arange(0.0, 90.0, 0.2)
+    sailed = otter.sail(t, otter.some_orders(t, seed))
+    rng = np.random.default_rng(seed)
+    rpm = sailed.revolutions * 60.0 / (2.0 * np.pi)
+    columns = {
+        "time_s": t,
+        "rpm_port": rpm[:, 1 if swapped else 0],
+        "rpm_starboard": rpm[:, 0 if swapped else 1],
+        "yaw_rate_degps": np.rad2deg(sailed.r) + 0.1 * rng.standard_normal(len(t)),
+        "stw_mps": sailed.u + 0.02 * rng.standard_normal(len(t)),
+    }
+    rows = (",".join(f"{x:.6f}" for x in row) for row in np.column_stack([*columns.values()]))
+    path.write_text("\n".join([",".join(columns), *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+def test_a_boat_of_two_shafts_is_begun_and_fitted(tmp_path, monkeypatch) -> None:
+    done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv")], "--length 2")
+    assert done.exit_code == 0, done.output
+    assert "side confirmed by the turn" in " ".join(done.stdout.split())
+    text = (tmp_path / "first_trial.toml").read_text(encoding="utf-8")
+    assert 'thruster_port      = { channel = "rpm_port", unit = "rpm" }' in text
+    assert 'free = ["k_ahead", "k_astern", "Xuu", "I_zz", "Nr0", "Nrar0"]' in text
+    ship = trialid.read_ship(tmp_path / "first_trial_ship.toml")
+    assert [(a.name, a.y, a.command) for a in ship.actuators] == [
+        ("thruster_port", -0.4, "revolutions"),
+        ("thruster_starboard", 0.4, "revolutions"),
+    ]
+    fit = read(tmp_path / "runs" / "first_trial" / "result.json").fit
+    assert fit.converged
+    assert fit.eps_rmsn < 0.2
+
+
+def test_sides_that_the_turn_contradicts_are_asked(tmp_path, monkeypatch) -> None:
+    done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv", swapped=True)], "--length 2")
+    assert done.exit_code == 0, done.output
+    assert "she turns towards the stronger one" in " ".join(done.stdout.split())
+    assert "Not fitted yet" in done.stderr
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_ship_file_gives_its_own_names_or_says_what_it_lacks(tmp_path, monkeypatch) -> None:
+    made = log(tmp_path / "a.csv")
+    monkeypatch.chdir(tmp_path)
+    CliRunner().invoke(commands, ["ship", "boat.toml", "--length", "2", "--quiet"])
+    done = started(tmp_path, monkeypatch, [made], "--ship boat.toml --speed 2")
+    assert done.exit_code == 2
+    assert "write an [[actuator]] for each" in done.stderr
+    with Path("boat.toml").open("a", encoding="utf-8") as ship:
+        for name, y in (("one", -0.4), ("two", 0.4)):
+            ship.write(f'[[actuator]]\nname = "{name}"\nkind = "thruster"\nat = [-1.0, {y}]\n')
+    done = started(tmp_path, monkeypatch, [made], "--ship boat.toml --speed 2")
+    assert done.exit_code == 0, done.output
+    signals = pipeline_file.load(Path("first_trial.toml")).trials[0].signals
+    assert signals["one"].channel == "rpm_port"
+
+
+@pytest.mark.real_data
+@pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
+def test_a_stranger_without_a_rudder_is_followed_to_the_noise(tmp_path, monkeypatch) -> None:
+    """By second differences of the raw channels: 0.005 rad/s at 25 Hz and 0.03 m/s at 5 Hz."""
+    logs = [NEWCOMER / f"usv{i}.mcap" for i in (1, 2)]
+    done = started(tmp_path, monkeypatch, logs, "--length 4.9 --quiet")
+    assert done.exit_code == 0, done.output
+    path = tmp_path / "first_trial.toml"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("period = 0.1 ", "period = 0.04 "), encoding="utf-8")
+    fit = run(pipeline_file.load(path)).findings.before.fit
+    assert fit.converged
+    assert fit.settings.outputs == ("u", "r")
+    channels = trialid.read(logs[0]).channels
+    x, y = (channels[f"/gps/vel:twist.linear.{axis}"].y for axis in "xy")
+    noise = [_noise(np.hypot(x, y)), _noise(channels["/imu/data:angular_velocity.z"].y)]
+    error = [fit.eps_by_output[c] * y for c, y in zip("ur", fit.problem.y_rms, strict=True)]
+    assert np.all(np.array(error) < 1.2 * np.array(noise)), (error, noise)
+    held_out = [fit.eps_check_by_output[c] / fit.eps_by_output[c] for c in "ur"]
+    assert max(held_out) < 1.1
+
+
+def _noise(y: np.ndarray) -> float:
+    return float(np.std(np.diff(y, 2)) / np.sqrt(6.0))

@@ -1,0 +1,156 @@
+"""Two rudders, one half as effective: named on its side where they moved apart, else not at all."""
+
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from boats import both, ship_with
+from click.testing import CliRunner
+
+from trialid.cli.main import commands
+from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.verdict import Verdict
+from trialid.identification.fit import identify
+from trialid.identification.problem import Settings
+from trialid.result.json_file import read
+from trialid.ship.actuators import Actuator
+from trialid.ship.model import ShipModel
+from trialid.trial import Trial
+
+TWINS = (
+    Actuator(name="port", kind="rudder", x=-80.0, y=-4.0),
+    Actuator(name="stbd", kind="rudder", x=-80.0, y=4.0),
+)
+SHIP = ship_with(TWINS)
+EFFECTS = both(SHIP)
+SPEED, NOISE = 7.3, np.deg2rad(0.01)
+NAMES = ("port", "stbd")
+NEWCOMER = Path(__file__).parents[3] / "shared" / "data" / "newcomer"
+
+
+def sway_and_yaw(mean_rudder: np.ndarray, period: float) -> np.ndarray:
+    """Rate of turn [rad/s] by the linear equations in primes, written out; (N,)."""
+    m, c, L = SHIP.mass, SHIP.coefficients, SHIP.particulars["L"]
+    inertia = np.array(
+        [
+            [m["m"] - m["Yvdot"], -m.get("Yrdot", 0.0)],
+            [-m.get("Nvdot", 0.0), m["I_zz"] - m["Nrdot"]],
+        ]
+    )
+    damping = np.array([[c["Yv"], c["Yr"] - m["m"]], [c["Nv"], c["Nr"]]])
+    A = np.linalg.solve(inertia, damping) * SPEED / L
+    b = np.linalg.solve(inertia, [c["Ydelta"], c["Ndelta"]]) * SPEED / L
+    x, r = np.zeros(2), []
+    h = period / 10.0
+    for now, after in pairwise([*mean_rudder, mean_rudder[-1]]):
+        r.append(x[1] * SPEED / L)
+        for i in range(10):  # the angle moves evenly from sample to sample
+            delta = now + (after - now) * (i + 0.5) / 10.0
+            x = x + h * (A @ (x + h / 2.0 * (A @ x + b * delta)) + b * delta)
+    return np.array(r)
+
+
+def record(seed: int, kept: tuple[float, float], apart: bool) -> Trial:
+    """Steps of both rudders, of which these shares act; each by itself where they move apart."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 900.0, 1.0)
+    angles = np.zeros((len(t), 2))
+    for start in range(20, 900, 40):
+        step = np.deg2rad(rng.uniform(-12.0, 12.0, 2))
+        angles[start:] = step if apart else step[0]
+    r = sway_and_yaw(angles @ np.array(kept) / 2.0, 1.0)
+    signals = dict(zip(NAMES, angles.T, strict=True))
+    signals["r"] = r + NOISE * rng.standard_normal(len(t))
+    signals["u"] = np.full(len(t), SPEED)
+    valid = {n: np.ones(len(t), dtype=bool) for n in signals}
+    return Trial(f"twin {seed}", "fit", 1.0, signals, valid)
+
+
+def found(seed: int, kept: tuple[float, float], apart: bool = True) -> Verdict:
+    effects = (EFFECTS["linear_hull"], EFFECTS["rudders"])
+    asked = Settings(
+        free=("Nv", "Nr", "Ydelta", "Ndelta"), outputs=("r",), nuisance=("initial_state",)
+    )
+    fit = identify((record(seed, kept, apart),), ShipModel(SHIP, ("v", "r"), effects), asked)
+    return diagnose(fit, DiagnoseSettings(candidates=EFFECTS)).verdict
+
+
+def test_the_half_rudder_is_named_and_its_healthy_twin_is_not() -> None:
+    verdict = found(500, (1.0, 0.5))
+    assert (verdict.effect, verdict.family) == ("stbd_weak", ("stbd_weak",))
+
+
+def test_rudders_that_move_as_one_do_not_tell_which_of_them_is_weak() -> None:
+    assert found(501, (1.0, 0.5), apart=False).effect is None
+
+
+@pytest.mark.study(turn=3)
+def test_one_rudder_half_as_effective_is_named_with_its_side() -> None:
+    """Forty records moved apart, half of them healthy; the side that is right, and no other."""
+    right: Counter[str] = Counter()
+    wrong = []
+    for seed in range(600, 620):
+        side = seed % 2
+        kept = (0.5, 1.0) if side == 0 else (1.0, 0.5)
+        verdict = found(seed, kept)
+        right["half"] += verdict.family == (f"{NAMES[side]}_weak",)
+        wrong += [verdict.sentence] if verdict.effect not in (None, f"{NAMES[side]}_weak") else []
+        healthy = found(seed, (1.0, 1.0))
+        right["healthy"] += healthy.effect is None
+        wrong += [healthy.sentence] if healthy.effect is not None else []
+    print(dict(right), wrong)
+    assert right["half"] >= 19
+    assert len(wrong) <= 0.02 * 40
+
+
+ACTUATORS = """
+[[actuator]]
+name = "rudder_port"
+kind = "rudder"
+at = [-46.0, -4.0]
+
+[[actuator]]
+name = "rudder_stbd"
+kind = "rudder"
+at = [-46.0, 4.0]
+"""
+SIGNALS = """
+[signals]
+rudder_port = { channel = "rudder_port_deg", unit = "deg", positive = "starboard" }
+rudder_stbd = { channel = "rudder_stbd_deg", unit = "deg", positive = "starboard" }
+r = { channel = "rot_deg_min", unit = "deg/min" }
+u = { channel = "sog_kn", unit = "kn" }
+[align]
+period = 0.5
+[model]
+states = ["v", "r"]
+effects = ["linear_hull", "rudders", "yaw_cubic_rrr"]
+[identify]
+free = ["Nv", "Nr", "Ndelta", "Nrrr"]
+outputs = ["r"]
+nuisance = ["initial_state", "bias"]
+"""
+
+
+@pytest.mark.real_data
+@pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
+def test_a_ferry_of_a_stranger_with_two_rudders(tmp_path, monkeypatch) -> None:
+    """Her rudders moved as one but for their zeros: none of them may be called weak."""
+    monkeypatch.chdir(tmp_path)
+    made = CliRunner().invoke(commands, ["ship", "ferry.toml", "--length", "96", "--quiet"])
+    assert made.exit_code == 0, made.output
+    with Path("ferry.toml").open("a", encoding="utf-8") as ship:
+        ship.write(ACTUATORS)
+    trials = [
+        f'[[trial]]\nname = "{n}"\nlogs = ["{(NEWCOMER / n).as_posix()}.csv"]\n'
+        for n in ("twin10", "twin20")
+    ]
+    Path("p.toml").write_text('ship = "ferry.toml"\n' + "".join(trials) + SIGNALS, "utf-8")
+    done = CliRunner().invoke(commands, ["run", "p.toml", "--quiet"])
+    assert done.exit_code == 0, done.output
+    result = read(tmp_path / "runs" / "p" / "result.json")
+    assert result.fit.converged
+    assert result.fit.eps_rmsn < 0.1
+    assert result.verdict.effect not in {f"rudder_{s}_weak" for s in ("port", "stbd")}

@@ -1,0 +1,85 @@
+"""A fault so large that nothing can be told from a fit without it: an actuator dead, or reversed.
+
+Slopes at such a fit say nothing, so each fault that is bound by its meaning is put into the model
+and fitted from where the first fit began, and the one that alone explains the record is named.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trialid.diagnosis.search.carry_over import Carried, own_errors
+from trialid.diagnosis.search.refit import Refit
+from trialid.diagnosis.search.score import Candidate
+from trialid.errors import TrialidError
+from trialid.identification.adequacy import why_no_fit
+from trialid.identification.fit import Fit, identify
+from trialid.progress import Progress
+from trialid.ship.effect import Effect
+from trialid.trial import Trial
+
+GROSS: Final = 0.3
+"""Error from which on slopes are not trusted: a thruster of two that is 20 % weak left 12 to 20 %
+of the motion, one that is dead or reversed 70 % and more."""
+
+EXPLAINS: Final = 0.5
+"""Share of the error that may be left with a fault that is named, ..."""
+
+ALIKE: Final = 1.2
+"""... and by how much another leaves more, to be told from it."""
+
+INSIDE: Final = 1e-3
+"""Share of its range by which a fault's value lies inside of it: at its end it is another."""
+
+
+def gross_faults(
+    fit: Fit, trials: Sequence[Trial], candidates: Mapping[str, Effect], progress: Progress
+) -> tuple[Refit, ...]:
+    """Faults that explain a record which the fit does not, the best first; mostly none."""
+    if np.isfinite(fit.eps_rmsn) and fit.eps_rmsn < GROSS and fit.converged:
+        return ()
+    present = {e.name for e in fit.model.effects}
+    faults = [e for n, e in candidates.items() if e.bound_by_meaning and n not in present]
+    found = [r for e in faults if (r := _fitted(fit, trials, e, progress)) is not None]
+    found.sort(key=lambda r: r.fit.eps_rmsn)
+    if not found or found[0].fit.eps_rmsn > EXPLAINS * fit.eps_rmsn:
+        return ()
+    return tuple(r for r in found if r.fit.eps_rmsn < ALIKE * found[0].fit.eps_rmsn)
+
+
+def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progress) -> Refit | None:
+    """The model with a fault, fitted; None where that fails or the fault is at its range's end."""
+    progress(f"trying {effect.name}", 0.68)
+    start = {n: p.start if effect.is_whole else 0.9 * p.high for n, p in effect.parameters.items()}
+    free = (*fit.settings.free, *effect.parameters)
+    try:
+        model = (fit.model + effect).with_values(start)
+        fitted = identify(trials, model, replace(fit.settings, free=free))
+    except TrialidError:  # it cannot act on this record: it is not the one
+        return None
+    if why_no_fit(fitted) is not None or not _inside(fitted, effect):
+        return None
+    carried = Carried(own_errors(fit), own_errors(fitted), 1.0)
+    candidate = Candidate(
+        effect=effect,
+        expected=start,
+        eps_predicted=fitted.eps_rmsn,
+        score=0.0,
+        p_value=np.nan,  # it was fitted, not tested
+        visibility=1.0,
+        family=(effect.name,),
+        allowed=True,
+        carried=carried,
+    )
+    return Refit(candidate, fitted, carried)
+
+
+def _inside(fit: Fit, effect: Effect) -> bool:
+    """Whether the fault is what it is called: dead is the end of weak, and belongs to it."""
+    for name, p in effect.parameters.items():
+        value, margin = fit.value(name), INSIDE * (p.high - p.low)
+        if value < p.low + margin or (effect.is_whole and value > p.high - margin):
+            return False
+    return True

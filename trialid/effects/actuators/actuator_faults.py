@@ -1,0 +1,150 @@
+"""What may be wrong with one actuator of several, each a candidate with its name in it.
+
+All act on the recorded signal before it reaches the ship, so that one fault fits every kind. The
+ranges keep them apart: what is weak has lost a share of its force, what is reversed all and more;
+its partner may not be the stronger for it, which is how port and starboard are told apart.
+"""
+
+from collections.abc import Callable, Collection, Iterator
+from itertools import combinations
+
+from trialid.effects.actuators.instances import (
+    GAIN_UNITS,
+    make_effect,
+    typical_gain,
+)
+from trialid.effects.actuators.push_kinds import Driven, Push, thrust
+from trialid.effects.actuators.pushes import turned
+from trialid.maths import Number, sqrt
+from trialid.ship.actuators import Actuator
+from trialid.ship.effect import Delayed, Effect, Force, Parameter, Steered
+from trialid.ship.particulars import Ship
+
+SOURCE = "by its letters: a share, a time, an angle; ranges by judgement"
+_REVERSED = Parameter(2.0, low=1.2, high=3.0, scan=(2.0,), by_meaning=True)
+_EXCHANGED = Parameter(1.0, low=0.7, high=1.3, scan=(1.0,), by_meaning=True)
+NOWHERE = 1e-9
+"""Keeps the slope of a root finite where an actuator has lost all of its force."""
+
+
+def fault_effects(ship: Ship, ordered: Collection[str]) -> Iterator[Effect]:
+    """Each of a ship's actuators weak, reversed, late, misaligned; alike ones exchanged.
+
+    Parameters
+    ----------
+    ordered
+        Signals of which the order is recorded.
+    """
+    for one in ship.actuators:
+        yield _weak(one)
+        yield _reversed(one)
+        yield _late(one, ordered)
+        yield _turned_angle(one) if one.angle else _turned_thrust(ship, one)
+    for one, other in combinations(ship.actuators, 2):
+        if one.kind == other.kind and one.command == other.command:
+            yield _exchanged(one, other)
+
+
+def _scaled(one: Actuator, parameter: str) -> Callable[..., Steered]:
+    """The signal scaled so that the force is 1 - parameter of what it was."""
+    square = one.kind != "rudder" and one.command != "thrust"
+
+    def scale(**values: Number) -> Steered:
+        left = 1.0 - values[parameter]
+        factor = left / sqrt(abs(left) + NOWHERE) if square else left
+        return Steered(**{one.name: (factor - 1.0) * values[one.name]})
+
+    return scale
+
+
+def _weak(one: Actuator) -> Effect:
+    return make_effect(
+        _scaled(one, f"weak_{one.name}"),
+        name=f"{one.name}_weak",
+        equation=f"force of {one.name} times 1 - weak_{one.name}: weak, dead at 1",
+        source=SOURCE,
+        signals=[one.name],
+        parameters={f"weak_{one.name}": Parameter(0.2, low=0.0, high=1.0, by_meaning=True)},
+    )
+
+
+def _reversed(one: Actuator) -> Effect:
+    return make_effect(
+        _scaled(one, f"reversed_{one.name}"),
+        name=f"{one.name}_reversed",
+        equation=f"force of {one.name} times 1 - reversed_{one.name}: the other way round at 2",
+        source=SOURCE,
+        signals=[one.name],
+        parameters={f"reversed_{one.name}": _REVERSED},
+    )
+
+
+def _late(one: Actuator, ordered: Collection[str]) -> Effect:
+    """Whatever drives or turns it, and its order, which is all there is where a lag follows it."""
+    tau = f"tau_{one.name}"
+    late_signals = [*one.signals, *(f"{s}_order" for s in one.signals if s in ordered)]
+
+    def late(**values: Number) -> Delayed:
+        return Delayed(**dict.fromkeys(late_signals, values[tau]))
+
+    return make_effect(
+        late,
+        name=f"{one.name}_late",
+        equation=f"{one.name} acts at t what is recorded at t - {tau}: a late gear or clock",
+        source=SOURCE,
+        signals=[],
+        parameters={tau: Parameter(0.5, "s", low=0.0, high=5.0)},
+    )
+
+
+def _turned_angle(one: Actuator) -> Effect:
+    skew = f"skew_{one.name}"
+
+    def misaligned(**values: Number) -> Steered:
+        return Steered(**{one.angle: values[skew]})
+
+    return make_effect(
+        misaligned,
+        name=f"{one.name}_misaligned",
+        equation=f"angle of {one.name} = angle + {skew}: its zero is not the ship's",
+        source=SOURCE,
+        signals=[],
+        parameters={skew: Parameter(0.05, "rad", low=-0.7, high=0.7)},
+    )
+
+
+def _turned_thrust(ship: Ship, one: Actuator) -> Effect:
+    """A fixed one has no angle on record: what it pushes aside is a gain of its own."""
+    aside = f"aside_{one.name}"
+
+    def misaligned(**values: Number) -> Force:
+        k = values[aside]
+        return turned(one, Push(0.0, thrust(Driven(one.command, values[one.name], 0.0, 0.0), k, k)))
+
+    size = typical_gain(ship, one.command)
+    return make_effect(
+        misaligned,
+        name=f"{one.name}_misaligned",
+        equation=f"T = {aside} n |n| to the right of {one.name}: a push askew",
+        source=SOURCE,
+        signals=[one.name],
+        parameters={aside: Parameter(0.05 * size, GAIN_UNITS[one.command])},
+    )
+
+
+def _exchanged(one: Actuator, other: Actuator) -> Effect:
+    e = f"swap_{one.name}_{other.name}"
+    pairs = [*zip(one.signals, other.signals, strict=True)]
+
+    def exchanged(**values: Number) -> Steered:
+        moved = {a: values[e] * (values[b] - values[a]) for a, b in pairs}
+        return Steered(**moved, **{b: -moved[a] for a, b in pairs})
+
+    return make_effect(
+        exchanged,
+        name=f"{one.name}_{other.name}_exchanged",
+        equation=f"{one.name} acts as {other.name} is recorded, and the other way round, at 1",
+        source="channels or cables exchanged",
+        signals=[s for pair in pairs for s in pair],
+        parameters={e: _EXCHANGED},
+    )

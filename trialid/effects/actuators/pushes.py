@@ -1,0 +1,146 @@
+"""What a ship's actuators do to her: each kind an effect that loops over its instances."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+from trialid.effects.actuators.instances import (
+    GAIN_UNITS,
+    make_effect,
+    own_name,
+    typical_drive,
+    typical_gain,
+    usual_speed,
+)
+from trialid.effects.actuators.push_kinds import F11, PUSHES, Driven, Push, PushKind
+from trialid.maths import Number, clip
+from trialid.ship.actuators import Actuator
+from trialid.ship.effect import Effect, Force, Parameter, Rate, Steered
+from trialid.ship.particulars import Ship
+
+EXACT = 12
+"""Digits of a cosine: that of 90 deg is zero."""
+
+
+def push_effects(ship: Ship) -> Iterator[Effect]:
+    """Thrust of each kind she has; lag and dead band; thrust lost to the speed."""
+    for kind, push in PUSHES.items():
+        ones = [one for one in ship.actuators if one.kind == kind]
+        if ones:
+            yield _pushes(ship, push, ones)
+            yield lag_of(push.effect, ones, 0.5)
+            yield _deadband(ship, push.effect, ones)
+        if ones and kind == "thruster":
+            yield _advance(ship, ones)
+
+
+def turned(one: Actuator, push: Push) -> Force:
+    """Force and moment on the ship of a push along the actuator's direction, from its place."""
+    ahead, aside = (round(f(one.direction), EXACT) for f in (math.cos, math.sin))
+    X = push.along * ahead - push.aside * aside
+    Y = push.along * aside + push.aside * ahead
+    return Force(X=X, Y=Y, N=one.x * Y - one.y * X)
+
+
+def driven(one: Actuator, values: Mapping[str, Number]) -> Driven:
+    """What drives one of a ship's actuators, from values by name."""
+    angle = values[one.angle] if one.angle else 0.0
+    return Driven(one.command, values[one.drive], angle, values.get("u", 0.0))
+
+
+def total(forces: Sequence[Force]) -> Force:
+    """The sum of forces."""
+    X, Y, K, N = (sum(row[1:], start=row[0]) for row in zip(*forces, strict=True))
+    return Force(X, Y, K, N)
+
+
+def _pushes(ship: Ship, kind: PushKind, ones: Sequence[Actuator]) -> Effect:
+    names = (*kind.gains, *kind.shapes)
+
+    def push(**values: Number) -> Force:
+        forces = []
+        for one in ones:
+            p = {n: values[own_name(n, one)] for n in names}
+            forces.append(turned(one, kind.force(driven(one, values), p)))
+        return total(forces)
+
+    parameters = {
+        own_name(n, one): kind.shapes.get(n)
+        or Parameter(typical_gain(ship, one.command), GAIN_UNITS[one.command], low=0.0)
+        for one in ones
+        for n in names
+    }
+    return make_effect(
+        push,
+        name=kind.effect,
+        equation=kind.equation,
+        source=kind.source,
+        signals=[*(s for one in ones for s in one.signals), *kind.reads],
+        parameters=parameters,
+    )
+
+
+def lag_of(kind: str, ones: Sequence[Actuator], typical: float) -> Effect:
+    """Each follows its order: the signal becomes a state that starts where its order starts."""
+    follows = {one.name: f"{one.name}_order" for one in ones}
+
+    def lag(**values: Number) -> Rate:
+        T = values[f"T_{kind}"]
+        return Rate(**{n: (values[order] - values[n]) / T for n, order in follows.items()})
+
+    return make_effect(
+        lag,
+        name=f"{kind}_lag",
+        equation=f"d(n)/dt = (n_order - n) / T_{kind}: {kind} follow their orders late",
+        source=F11,
+        signals=[*follows, *follows.values()],
+        parameters={
+            f"T_{kind}": Parameter(typical, "s", low=0.05, high=60.0, scan=(0.2, 1.0, 4.0)),
+        },
+        states=follows,
+    )
+
+
+def _deadband(ship: Ship, kind: str, ones: Sequence[Actuator]) -> Effect:
+    def deadband(**values: Number) -> Steered:
+        return Steered(
+            **{one.name: -clip(values[one.name], values[f"dead_{kind}"]) for one in ones}
+        )
+
+    command = ones[0].command
+    unit = {"revolutions": "rad/s", "share": "1", "thrust": "N"}[command]
+    size = typical_drive(ship, command)
+    return make_effect(
+        deadband,
+        name=f"{kind}_deadband",
+        equation=f"n = n - clip(n, dead_{kind}): small orders do nothing, large ones act less",
+        source="speed controllers of small motors: 2 to 10 % of full",
+        signals=[one.name for one in ones],
+        parameters={f"dead_{kind}": Parameter(0.05 * size, unit, low=0.0, high=0.5 * size)},
+    )
+
+
+def _advance(ship: Ship, ones: Sequence[Actuator]) -> Effect:
+    """Thrust that falls as the water comes faster; the wake is in the coefficient."""
+
+    def advance(u: Number, **values: Number) -> Force:
+        forces = []
+        for one in ones:
+            along = u * round(math.cos(one.direction), EXACT)
+            lost = values[own_name("k_advance", one)] * abs(values[one.name]) * along
+            forces.append(turned(one, Push(-lost)))
+        return total(forces)
+
+    units = {"revolutions": "N s^2/m", "share": "N s/m", "thrust": "s/m"}
+    parameters = {}
+    for one in ones:
+        half = 0.5 * typical_gain(ship, one.command) / usual_speed(ship)
+        half *= typical_drive(ship, one.command) if one.command == "revolutions" else 1.0
+        parameters[own_name("k_advance", one)] = Parameter(half, units[one.command], low=0.0)
+    return make_effect(
+        advance,
+        name="thrusters_advance",
+        equation="T = -k_advance |n| u: thrust that falls with the speed ahead, wake included",
+        source=F11,
+        signals=[*(one.name for one in ones), "u"],
+        parameters=parameters,
+    )

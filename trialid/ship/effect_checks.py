@@ -1,0 +1,90 @@
+"""What a declared effect must not do: names, numbers and forms that contradict one another."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trialid.errors import EffectError, nearest
+from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, SIGNALS
+from trialid.ship.forms import SENSORS, Force, Mass, Result
+
+if TYPE_CHECKING:
+    from trialid.ship.effect import Parameter, Signal, System
+
+
+def check_own(name: str, asked: "Mapping[str, Signal]", system: "System") -> None:
+    """Refuse signals of one's own in the prime system, which has no scale for them."""
+    if asked and system == "prime":
+        raise EffectError(
+            f"effect {name!r} reads {min(asked)!r}, a signal of one's own, which has no primed "
+            'form; declare the effect with system="SI"'
+        )
+
+
+def check_readings(name: str, signals: tuple[str, ...], forms: tuple[type, ...]) -> None:
+    """Accelerations follow from the forces, so only a sensor may read them; masses are constant."""
+    early = [s for s in signals if s in ACCELERATIONS]
+    if early and not set(forms) <= set(SENSORS):
+        raise EffectError(
+            f"effect {name!r} reads {early[0]!r}, which follows from the forces; only a sensor "
+            "(Measured, Delayed, Lagged) may read an acceleration: write a Mass instead"
+        )
+    if Mass in forms and (forms != (Mass,) or not set(signals) <= set(PARTICULARS)):
+        raise EffectError(
+            f"effect {name!r} gives a Mass; masses are constant: let it read no signal and give "
+            "nothing else"
+        )
+
+
+def check_scan(name: str, parameters: "Mapping[str, Parameter]") -> None:
+    """Where one parameter is scanned the others must shape the effect or be scanned too."""
+    if not any(p.scan for p in parameters.values()):
+        return
+    for parameter, p in parameters.items():
+        if not p.scan and p.null is not None:
+            raise EffectError(
+                f"effect {name!r}: parameter {parameter!r} stands beside a scanned one; give it a "
+                "scan too, or null=None"
+            )
+
+
+def check_states(name: str, own: Mapping[str, Any], system: "System") -> None:
+    """Refuse states beside primed forces: a state is SI."""
+    if own and system == "prime":
+        raise EffectError(
+            f"effect {name!r} has a force and states of its own; a state is SI, so declare the "
+            'effect with system="SI"'
+        )
+
+
+def check_rates(name: str, rates: tuple[str, ...], own: Mapping[str, Any]) -> None:
+    """Refuse rates of other states than those declared."""
+    if set(rates) != set(own):
+        raise EffectError(
+            f"effect {name!r} gives the rate of {', '.join(rates) or 'nothing'}, and declares "
+            f"the states {', '.join(own) or 'none'}; they must be the same"
+        )
+
+
+def check_numbers(name: str, part: Result) -> None:
+    """Refuse a result that is no number."""
+    for value in part if isinstance(part, Force) else part.values():
+        if not isinstance(value, int | float | np.number):
+            raise EffectError(
+                f"effect {name!r} returns {value!r} in {type(part).__name__}; expected a number"
+            )
+
+
+def check_names(name: str, part: Result, signals: tuple[str, ...]) -> None:
+    """Refuse results for what is no signal and no mass parameter."""
+    if isinstance(part, Force):
+        return
+    mass = isinstance(part, Mass)
+    known = {*MASS_PARAMETERS} if mass else {*SIGNALS, *signals}
+    for signal in part:
+        if signal not in known:
+            raise EffectError(
+                f"effect {name!r} returns {type(part).__name__}({signal}=...), and {signal!r} is "
+                f"not a {'mass parameter' if mass else 'signal'} ({nearest(signal, known)})"
+            )

@@ -1,0 +1,202 @@
+"""A boat that steers by two thrusters: which channels drive her, and which of them is to port."""
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from trialid.errors import LogError
+from trialid.inspection.channel_names import words
+from trialid.inspection.drives import drives_of
+from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.relations import side
+from trialid.inspection.sketch import Sketch
+from trialid.names.quantities import SIGNALS
+from trialid.ship.actuators import Actuator, Command, actuator_tables
+from trialid.ship.particulars import Ship
+from trialid.workflow.first_pipeline.choice import (
+    OPEN,
+    RUDDERS,
+    Chosen,
+    Live,
+    Signal,
+    approach_speed,
+    choose_signals,
+    live_sources,
+    other_speed,
+    rate_signal,
+    through_water,
+)
+
+PORT, STARBOARD = "thruster_port", "thruster_starboard"
+SHARE: Final = 1.05
+"""No share of full is larger; a stated thrust of a boat that moves is."""
+ARM: Final = 0.2
+"""Thrusters stand so far from the middle, over the length of a boat: 0.2 of the Otter and the
+WAM-V, 0.24 of the BlueBoat."""
+AFT: Final = -0.4
+"""And so far aft, which where both push alike tells nothing."""
+
+
+def choose(survey: Inspection, speed: float | None) -> Chosen:
+    """What to take from a log, of a ship with a rudder or of a boat with two thrusters.
+
+    `speed` [m/s] is the user's own word for the approach speed.
+
+    Raises
+    ------
+    LogError
+        It holds neither, or no motion.
+    """
+    live = {name: live_sources(survey, name) for name in SIGNALS}
+    steered = any(live[name] for name in RUDDERS)
+    if steered or not live.get("r") or len(drives_of(survey)) != 2:
+        return choose_signals(survey, speed)
+    return _choose_boat(survey, live, speed)
+
+
+def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen:
+    rate = rate_signal(live)
+    drives = _drive_signals(survey, rate)
+    speed = through_water(live, stated) if live.get("u") else velocity_speed(survey)
+    speed = speed or other_speed(survey)
+    if speed is None:
+        raise LogError(
+            f"{survey.path}: she steers by two thrusters, and no speed is recognised, which is "
+            "half of what they do; map one by hand, see `trialid inspect --all`"
+        )
+    known, told = approach_speed(survey, live, stated)
+    if known is None and speed.source.angle == "speed":
+        known = float(np.median(speed.source.sketch.y))
+        told = f"median length of {speed.source.name}"
+    return Chosen(survey, survey.path, (*drives, rate, speed), known, told)
+
+
+def _drive_signals(survey: Inspection, rate: Signal) -> list[Signal]:
+    """Both drives as signals of a pipeline, their sides held against the turn."""
+    port, starboard = drives_of(survey)
+    says = _agreement(port, starboard, rate)
+    return [_drive(PORT, port, says), _drive(STARBOARD, starboard, says)]
+
+
+def _drive(name: str, source: ChannelInspection, says: tuple[bool, str]) -> Signal:
+    fits, side_words = says
+    unit, of_unit = _unit(source)
+    if not fits:
+        unit = OPEN
+    return Signal(name, source, unit, None, f"by its name{of_unit}; {side_words}", ())
+
+
+def _unit(source: ChannelInspection) -> tuple[str, str]:
+    """The unit to write, and why."""
+    if source.unit is not None:
+        return source.unit, ""
+    if source.unit_in_name is not None:
+        return source.unit_in_name, "; unit by its name"
+    turns = [word for word in words(source.name) if word in ("rpm", "rps")]
+    if turns:
+        return turns[0], "; unit by its name"
+    largest = max(abs(source.low), abs(source.high))
+    if largest <= SHARE:
+        return "1", f"; no unit is stated, up to {largest:.3g} can only be a share of full"
+    return "N", (
+        f"; CAREFUL: no unit is stated, up to {largest:.3g} is read as newton: the gain is then of "
+        "whatever it is"
+    )
+
+
+def _agreement(
+    port: ChannelInspection, starboard: ChannelInspection, rate: Signal
+) -> tuple[bool, str]:
+    """Whether the boat turns away from the stronger one, and words for it."""
+    left, right = port.sketch, starboard.sketch
+    other = np.interp(left.t, right.t, right.y) if len(right.t) else np.zeros(len(left.t))
+    both = dataclasses.replace(port, sketch=Sketch(left.t, left.y - other))
+    found = side(both, rate.source, rate.positive or "starboard")
+    if found is None:
+        return True, "side by its name, the motion does not confirm it"
+    told = f"correlation of port less starboard with {found.by} {found.strength:+.2f}"
+    if found.side == "starboard":
+        return True, f"side confirmed by the turn: {told}"
+    return False, (
+        f"FILL IN the unit after settling this: she turns towards the stronger one ({told}): port "
+        "and starboard are exchanged, or the side of r is wrong"
+    )
+
+
+def velocity_speed(survey: Inspection) -> Signal | None:
+    """The length of a logged velocity, for want of a speed."""
+    for x in survey.channels.values():
+        stem = x.name.removesuffix(".x")
+        y = survey.channels.get(f"{stem}.y")
+        if stem == x.name or y is None or x.constant or x.unit != "m/s" or y.unit != "m/s":
+            continue
+        if len(x.sketch.t) == len(y.sketch.t):
+            course = Sketch(x.sketch.t, np.hypot(x.sketch.y, y.sketch.y))
+            taken = dataclasses.replace(x, name=stem, angle="speed", sketch=course)
+            why = "CAREFUL: the length of a velocity over ground; a current adds to it"
+            return Signal("u", taken, None, None, why, ())
+    return None
+
+
+def is_boat(signals: frozenset[str]) -> bool:
+    """Whether signals are of a boat that steers by thrusters."""
+    return {PORT, STARBOARD} <= signals
+
+
+def boat_actuators(signals: tuple[Signal, ...], ship: Ship) -> tuple[Actuator, ...]:
+    """Both thrusters of a boat, where nobody says where they stand."""
+    length = ship.particulars.get("L", 0.0)
+    units = {one.quantity: one.unit or "1" for one in signals}
+    return tuple(
+        Actuator(
+            name=name,
+            kind="thruster",
+            x=round(AFT * length, 2),
+            y=round(sign * ARM * length, 2),
+            command=_command(units[name]),
+        )
+        for name, sign in ((PORT, -1.0), (STARBOARD, 1.0))
+    )
+
+
+def _command(unit: str) -> Command:
+    if unit in ("1", "%", "percent"):
+        return "share"
+    return "thrust" if unit in ("N", "kN", OPEN) else "revolutions"
+
+
+def actuator_lines(actuators: tuple[Actuator, ...]) -> Iterator[str]:
+    """Tables for a ship file, with what was assumed."""
+    yield ""
+    yield "# ASSUMED: where the thrusters stand. Measure it: the moment goes with it, and what is"
+    yield "# found of the inertia in yaw too."
+    yield from actuator_tables(actuators)
+
+
+def named_by_ship(signals: tuple[Signal, ...], ship: Ship) -> tuple[Signal, ...]:
+    """The same signals with the names of the ship's own two thrusters.
+
+    Raises
+    ------
+    LogError
+        Her file does not name one to each side.
+    """
+    port = [a.name for a in ship.actuators if a.kind == "thruster" and a.y < 0.0]
+    starboard = [a.name for a in ship.actuators if a.kind == "thruster" and a.y > 0.0]
+    if len(port) != 1 or len(starboard) != 1:
+        raise LogError(
+            f"the log has two thrusters, and the file of ship {ship.name!r} names {len(port)} to "
+            f"port and {len(starboard)} to starboard; write an [[actuator]] for each, see "
+            "`trialid guide actuators`"
+        )
+    names = {PORT: port[0], STARBOARD: starboard[0]}
+    return tuple(
+        dataclasses.replace(one, quantity=names.get(one.quantity, one.quantity)) for one in signals
+    )
+
+
+def thrusters_among(signals: tuple[Signal, ...]) -> tuple[Signal, ...]:
+    """Those that no dictionary has: what drives her."""
+    return tuple(one for one in signals if one.quantity not in SIGNALS)

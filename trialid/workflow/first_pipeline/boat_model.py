@@ -1,0 +1,44 @@
+"""The model a boat with two thrusters begins with: surge and yaw, damped at rest too."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from trialid.effects.actuators.pushes import push_effects
+from trialid.ship.particulars import Ship
+from trialid.workflow.first_pipeline.boat_choice import thrusters_among
+from trialid.workflow.first_pipeline.choice import Chosen
+
+ASTERN: Final = 0.1
+"""Share of the largest push ahead that one astern must reach to tell a gain of its own."""
+
+
+def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
+    """Lines of `[model]` and `[identify]`."""
+    thrusters = next(one for one in push_effects(ship) if one.name == "thrusters")
+    gains = thrusters.parameters
+    astern = _goes_astern(trials)
+    free = [name for name in gains if astern or name.startswith("k_ahead")]
+    held = ", ".join(f"{n} = {p.start:.4g}" for n, p in gains.items() if n not in free)
+    yield "[model]"
+    yield 'states = ["u", "r"]  # sway is not simulated: no log of a boat like this tells it'
+    yield "# thrust k n |n| (k T where thrust is logged) at the places the ship file states"
+    yield (
+        'effects = ["thrusters", "surge_resistance", "still_water_yaw", '
+        '"still_water_yaw_quadratic"]'
+    )
+    if not astern:
+        yield f"values = {{ {held} }}  # never run astern: any number does as well"
+    yield ""
+    yield "[identify]"
+    yield "# A record of motions gives accelerations, never forces: with the mass held, gains and"
+    yield "# damping are relative to it, and the inertia in yaw to the arm of the thrusters."
+    names = ", ".join(f'"{name}"' for name in (*free, "Xuu", "I_zz", "Nr0", "Nrar0"))
+    yield f"free = [{names}]"
+    yield "bounds = { I_zz = [0.0, inf] }"
+    yield 'outputs = ["u", "r"]'
+    yield 'nuisance = ["initial_state"]  # of each trial, estimated too'
+
+
+def _goes_astern(trials: Sequence[Chosen]) -> bool:
+    ranges = [one.source for trial in trials for one in thrusters_among(trial.signals)]
+    return all(one.low < -ASTERN * one.high for one in ranges)
