@@ -11,7 +11,7 @@ from test_bad_input import trialid_
 from test_simulate import known_by
 
 from trialid.design.helm import sail, vessel
-from trialid.design.nomoto import NAMES, nomoto
+from trialid.design.steering.nomoto import NAMES, nomoto
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
 from trialid.ship.model import ShipModel

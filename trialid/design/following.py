@@ -16,8 +16,8 @@ from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.measure_slopes import Shows, measure_slopes
 from trialid.design.imo.speed_loss import speed_loss, with_speed_loss
 from trialid.design.kinds import Test
-from trialid.design.likely_spread import likely_spread
 from trialid.design.limits import Limits, excesses
+from trialid.design.prediction.likely_spread import likely_spread
 from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals

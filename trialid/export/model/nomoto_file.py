@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from trialid.design.nomoto import Nomoto
+from trialid.design.steering.nomoto import Nomoto
 from trialid.export.model.fitted_model import FittedModel
 from trialid.result.json_file import finite
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trialid.design.following import sailed_ship
-from trialid.design.nomoto import nomoto
+from trialid.design.steering.nomoto import nomoto
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from trialid.design.seen_range import seen_ranges
+from trialid.design.prediction.seen_range import seen_ranges
 from trialid.errors import TrialidError, nearest
 from trialid.export.predicted_file import predicted_columns
 from trialid.names.quantities import SIGNALS

@@ -12,7 +12,7 @@ from trialid.arrays import Vector
 from trialid.design import manoeuvres
 from trialid.design.helm import Passage
 from trialid.design.imo import measures
-from trialid.design.predicted_motion import Manoeuvre
+from trialid.design.prediction.predicted_motion import Manoeuvre
 from trialid.design.standard import DEGREES, Reading
 from trialid.errors import TrialidError, nearest
 from trialid.names import units

@@ -10,9 +10,14 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.following import GEAR, STEERED, sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
-from trialid.design.likely_spread import LikelySpread, likely_spread
-from trialid.design.predicted_motion import Manoeuvre, PredictedMotion, sail_manoeuvre, sail_orders
-from trialid.design.seen_range import beyond_words
+from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
+from trialid.design.prediction.predicted_motion import (
+    Manoeuvre,
+    PredictedMotion,
+    sail_manoeuvre,
+    sail_orders,
+)
+from trialid.design.prediction.seen_range import beyond_words
 from trialid.errors import DesignError, TrialidError
 from trialid.names import labels
 from trialid.threads import one_thread

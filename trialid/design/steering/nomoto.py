@@ -20,7 +20,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel
 from trialid.design.imo.measure_slopes import WithColumns, tried_ship, with_columns
-from trialid.design.likely_spread import LikelySpread, Range
+from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.design.standard import acts_in_calm, in_calm
 from trialid.errors import DesignError
 from trialid.simulation.graph import gradient

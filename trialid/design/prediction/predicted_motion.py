@@ -31,7 +31,7 @@ from trialid.design.imo.measure_slopes import (
     until_amidships,
     with_columns,
 )
-from trialid.design.likely_spread import LikelySpread, Range
+from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.design.standard import (
     AT_SEA,
     LENGTHS,
