@@ -110,7 +110,7 @@ def sail_manoeuvre(
     passage = _sailed(base, manoeuvre)
     short = until_amidships(passage)
     acting = [m for m in spread.missing if acts_in_calm(m.effect)]
-    moved = with_columns(base, spread.known, acting, _motions(base))
+    moved = with_columns(base, spread.known, acting, motions(base))
     outputs = moved.ship.simulator.outputs
     by = np.zeros((short.trial.samples, len(outputs), len(spread.known) + spread.width))
     if moved.places:
@@ -146,8 +146,8 @@ def sail_orders(
     """
     orders = _with_rudder(ship, orders)
     given = {*orders.signals}
-    acting = [m for m in spread.missing if _acts_under(m.effect, given)]
-    moved = with_columns(ship, spread.known, acting, _motions(ship))
+    acting = [m for m in spread.missing if acts_under(m.effect, given)]
+    moved = with_columns(ship, spread.known, acting, motions(ship))
     free = moved.ship.simulator.equations.free
     values = {n: moved.ship.model.value(n) for n in free}
     response = respond(moved.ship.simulator, orders, values, {})
@@ -158,7 +158,7 @@ def sail_orders(
     by = np.zeros((orders.samples, len(outputs), len(spread.known) + spread.width))
     by[..., moved.places] = response.S[..., : len(free)]
     for one in (m for m in acting if m.tried):
-        other = with_columns(tried_ship(ship, one), (), (), _motions(ship)).ship
+        other = with_columns(tried_ship(ship, one), (), (), motions(ship)).ship
         again = respond(other.simulator, orders, {}, {}, sensitivities=False)
         by[..., _places(spread, one)] = (again.y - response.y)[..., None]
     motion = dict(zip(outputs, response.y.T, strict=True))
@@ -184,12 +184,12 @@ def _sailed(ship: Vessel, manoeuvre: Manoeuvre) -> Passage:
     return carry_out(ship, manoeuvre.told(), STRAIGHT * one, LENGTHS * one, manoeuvre.name)
 
 
-def _motions(ship: Vessel) -> tuple[str, ...]:
+def motions(ship: Vessel) -> tuple[str, ...]:
     """What is simulated and has a name of its own; a state that an effect adds has none."""
     return tuple(s for s in ship.model.all_states if s in SIGNALS)
 
 
-def _acts_under(effect: Effect, given: set[str]) -> bool:
+def acts_under(effect: Effect, given: set[str]) -> bool:
     """Whether an effect moves a ship of which these signals are given."""
     unknown = ({*effect.signals} & AT_SEA) - given - {"psi"}
     return bool({*effect.forms} - {*SENSORS}) and not unknown

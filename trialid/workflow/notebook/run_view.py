@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from trialid.report.pictures.series_plot import Plot
+    from trialid.workflow.use.in_memory import Draws
 
 
 class RunView:
@@ -78,6 +79,35 @@ class RunView:
 
         words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
         return simulated_frame(self, words, period, inputs, anyway=anyway)
+
+    def draw(
+        self,
+        *manoeuvre: str | float,
+        number: int = 1000,
+        seed: int = 0,
+        period: float | None = None,
+        anyway: bool = False,
+        **inputs: "Sequence[float]",
+    ) -> "Draws":
+        """What ships would do that the record leaves open, drawn and sailed by the kernel.
+
+        Drawn is what the likely ranges are about: noise, what was held fixed, an effect of the
+        catalogue that may be missing. Arguments beside these as of `simulate`.
+
+        Parameters
+        ----------
+        number, seed
+            How many ships, and what they are drawn by: the same seed, the same ships.
+
+        Raises
+        ------
+        TrialidError
+            There is no such manoeuvre or input, or the fit carries no verdict.
+        """
+        from trialid.workflow.use.in_memory import drawn_ships
+
+        words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
+        return drawn_ships(self, words, period, inputs, number=number, seed=seed, anyway=anyway)
 
     @property
     def parameters(self) -> "pd.DataFrame":

@@ -64,6 +64,24 @@ def predict_orders(model: FinishedModel, table: OrderTable, name: str) -> Predic
     TrialidError
         None of them is an input of the model, or there are too many.
     """
+    ship, orders, more = ready_orders(model, table, name)
+    made = sail_orders(ship, orders, spread_of(model), model.result.fit.band, more.every)
+    return _with_words(model, name, made, more.held, more.unread)
+
+
+@dataclass(frozen=True)
+class OnClock:
+    """What became of a table of orders: samples a row, inputs held, columns that nothing reads."""
+
+    every: int
+    held: Mapping[str, float]
+    unread: Collection[str]
+
+
+def ready_orders(
+    model: FinishedModel, table: OrderTable, name: str
+) -> tuple[Vessel, Trial, OnClock]:
+    """The ship and the orders of a table on an even clock; see `predict_orders`."""
     ship, held = _ship_for(model, {*table.signals})
     inputs = {*ship.simulator.equations.inputs}
     acting = inputs | ({"delta_order"} if "delta" in inputs else set())
@@ -78,9 +96,8 @@ def predict_orders(model: FinishedModel, table: OrderTable, name: str) -> Predic
     signals = {n: np.interp(t, table.t, x) for n, x in table.signals.items()}
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
-    made = sail_orders(ship, orders, spread_of(model), model.result.fit.band, every)
     unread = {*table.signals} - inputs - {*ship.model.all_states} - STEERED
-    return _with_words(model, name, made, held, unread)
+    return ship, orders, OnClock(every, held, unread)
 
 
 def spread_of(model: FinishedModel) -> LikelySpread:
