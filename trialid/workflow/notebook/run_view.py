@@ -49,6 +49,8 @@ class RunView:
         self,
         *manoeuvre: str | float,
         period: float | None = None,
+        what_if: Mapping[str, float] | None = None,
+        without: Sequence[str] = (),
         anyway: bool = False,
         **inputs: "Sequence[float]",
     ) -> "pd.DataFrame":
@@ -57,10 +59,13 @@ class RunView:
         Parameters
         ----------
         manoeuvre
-            Its name and angles [deg]: `"zigzag", 20, 20`, `"circle", 35`.
+            Its name and angles [deg]: `"zigzag", 20, 20`, `"circle", 35`; or `"stop"`.
         period, inputs
             Or orders: the time between samples [s], and inputs by name in SI, the rudder positive
             to starboard; (N,) each.
+        what_if, without
+            Other numbers by name: a parameter, `speed` [m/s], an input that is held [SI]; and
+            effects to leave out. The words say what the record says of that.
         anyway
             Of a fit that carries no verdict, too.
 
@@ -76,9 +81,11 @@ class RunView:
             There is no such manoeuvre or input, or the fit carries no verdict.
         """
         from trialid.workflow.use.in_memory import simulated_frame
+        from trialid.workflow.use.what_if import WhatIf
 
         words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
-        return simulated_frame(self, words, period, inputs, anyway=anyway)
+        changes = WhatIf(dict(what_if or {}), tuple(without))
+        return simulated_frame(self, words, period, inputs, what_if=changes, anyway=anyway)
 
     def draw(
         self,

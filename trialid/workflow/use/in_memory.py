@@ -17,7 +17,7 @@ from trialid.names.quantities import SIGNALS
 from trialid.result.build import Findings
 from trialid.result.schema import Result
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict
-from trialid.workflow.use.orders import OrderTable, named_manoeuvre
+from trialid.workflow.use.orders import OrderTable, named_manoeuvre, stop_order
 from trialid.workflow.use.predict import (
     predict_manoeuvre,
     predict_orders,
@@ -27,6 +27,9 @@ from trialid.workflow.use.predict import (
 
 if TYPE_CHECKING:
     import pandas as pd
+
+from trialid.workflow.use.stop import predict_stop
+from trialid.workflow.use.what_if import WhatIf
 
 
 class Found(Protocol):
@@ -42,6 +45,7 @@ def simulated_frame(
     period: float | None,
     inputs: Mapping[str, Sequence[float]],
     *,
+    what_if: WhatIf,
     anyway: bool,
 ) -> "pd.DataFrame":
     """A manoeuvre by its words, or orders on a clock; see `RunView.simulate`."""
@@ -51,10 +55,13 @@ def simulated_frame(
     check_verdict(run.result, name, anyway=anyway)
     done = run.findings.before
     model = FinishedModel(name, run.result, done, seen_ranges(done.fit))
-    if words:
-        made = predict_manoeuvre(model, named_manoeuvre(words))
+    stop = stop_order(words) if words else None
+    if stop is not None:
+        made = predict_stop(model, stop, what_if)
+    elif words:
+        made = predict_manoeuvre(model, named_manoeuvre(words), what_if)
     else:
-        made = predict_orders(model, _table(period, inputs), "orders")
+        made = predict_orders(model, _table(period, inputs), "orders", what_if)
     columns = {n: x for n, _, x in predicted_columns(made.motion)}
     frame = pd.DataFrame(columns, index=pd.Index(made.motion.t, name="t"))
     frame.attrs |= {"numbers": dict(made.motion.numbers), "words": made.words}
