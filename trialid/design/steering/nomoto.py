@@ -1,4 +1,4 @@
-"""Nomoto's K and T of a fitted ship, with where each is likely to lie.
+"""Nomoto's numbers of a fitted ship, with where each is likely to lie.
 
 T dr/dt + r = K delta describes slow steering about a straight course. K is the rate of turn per
 rudder angle that a small order leads to, T the time it lags behind by: of the linearised model
@@ -6,50 +6,59 @@ dx/dt = A x + B delta, r = C x,
 
     K = -C A^-1 B,    T = -C A^-2 B / (C A^-1 B),
 
-which is T1 + T2 - T3 of the second-order model (Nomoto, Taguchi, Honda & Hirano 1957, On the
-steering qualities of ships).
+which is T1 + T2 - T3 of the second-order model r = K (1 + T3 s) / ((1 + T1 s) (1 + T2 s)) delta
+(Nomoto, Taguchi, Honda & Hirano 1957, On the steering qualities of ships). T1, T2 and T3 are those
+of sway and yaw, what else moves, as roll, following at once, and of the rudder itself.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.helm import Vessel
-from trialid.design.imo.measure_slopes import WithColumns, tried_ship, with_columns
+from trialid.design.helm import GEAR_STATE, Vessel, vessel
+from trialid.design.imo.measure_slopes import tried_ship, with_columns
 from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.design.standard import acts_in_calm, in_calm
+from trialid.design.steering.straight_course import LinearShip, StraightCourse
 from trialid.errors import DesignError
-from trialid.simulation.graph import gradient
-from trialid.simulation.reference import evaluator
 
-RUDDERS: Final = ("delta", "delta_order")
-ALONG: Final = ("u", "u_lost", "psi")
-"""States that a small turn on a straight course leaves alone, or that leave it alone."""
 STEP: Final = 1e-5
 """Share of a parameter's size that it is moved by to see what it does."""
-NAMES: Final = ("K", "T", "K_prime", "T_prime")
+FIRST: Final = ("K", "T", "K_prime", "T_prime")
+SECOND: Final = ("T1", "T2", "T3")
+NAMES: Final = (*FIRST, *SECOND)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Nomoto:
-    """K [1/s] and T [s] at a speed [m/s], and primed: K L / U, T U / L; each with its 95 % range.
+    """K [1/s] and times [s] at a speed [m/s], and primed: K L / U, T U / L; with 95 % ranges.
 
-    `stable` says whether a small disturbance dies out with the rudder amidships; where it does not
-    K and T are negative, and no rate of turn is ever steady.
+    Attributes
+    ----------
+    stable
+        Whether a small disturbance dies out with the rudder amidships; where it does not K and T
+        are negative, and no rate of turn is ever steady.
+    values
+        T1, T2 and T3 are left out where the ship does not sway, or T1 and T2 are no real numbers.
+    ship
+        The linearised ship, and the ends of the range of each entry: A (n, n, 2), B (n, 2).
     """
 
     speed: float
     values: Mapping[str, float]
     ranges: Mapping[str, Range | None] = field(default_factory=dict)
     stable: bool = True
+    ship: LinearShip
+    A_likely: Vector
+    B_likely: Vector
 
 
 def nomoto(ship: Vessel, spread: LikelySpread) -> Nomoto:
-    """K and T of a fitted ship at her approach speed, in calm deep water.
+    """Nomoto's numbers of a fitted ship at her approach speed, in calm deep water.
 
     Raises
     ------
@@ -57,71 +66,101 @@ def nomoto(ship: Vessel, spread: LikelySpread) -> Nomoto:
         No rudder steers her, or it turns nothing.
     """
     base = in_calm(ship)
+    linear = StraightCourse(base)
+    at = linear.at(linear.theta)
+    values = read(at)
+    ranges = _ranges(base, spread, at.states)
+    known = dict(zip(NAMES, ranges, strict=False))
+    entries = np.array([r or (np.nan, np.nan) for r in ranges[len(NAMES) :]])
+    split = at.A.size
+    return Nomoto(
+        speed=at.speed,
+        values=values,
+        ranges={n: known[n] for n in values},
+        stable=at.stable,
+        ship=at,
+        A_likely=entries[:split].reshape(*at.A.shape, 2),
+        B_likely=entries[split:],
+    )
+
+
+def at_speeds(ship: Vessel, spread: LikelySpread, speeds: Iterable[float]) -> tuple[Nomoto, ...]:
+    """The same at other speeds [m/s], numbers in the prime system as they are."""
+    return tuple(nomoto(_at_speed(ship, speed), spread) for speed in speeds)
+
+
+def _at_speed(ship: Vessel, speed: float) -> Vessel:
+    particulars = {**ship.model.ship.particulars, "U0": speed}
+    model = replace(ship.model, ship=replace(ship.model.ship, particulars=particulars))
+    return vessel(model, ship.period, {**ship.constants, "u": speed}, ship.rudder_rate)
+
+
+def read(ship: LinearShip) -> dict[str, float]:
+    """Nomoto's numbers of a linear ship, by name.
+
+    Raises
+    ------
+    DesignError
+        A small rudder angle leads to no steady turn, or turns nothing.
+    """
+    A, B, r = ship.A, ship.B, ship.turning
+    try:
+        once = np.linalg.solve(A, B)
+        twice = np.linalg.solve(A, once)
+    except np.linalg.LinAlgError as error:
+        raise DesignError("a small rudder angle leads to no steady turn: no K, no T") from error
+    if once[r] == 0.0:
+        raise DesignError("the rudder turns nothing on a straight course: no K, no T")
+    K, T = -once[r], -twice[r] / once[r]
+    time = ship.length / ship.speed
+    found = dict(zip(FIRST, map(float, (K, T, K * time, T / time)), strict=True))
+    if "v" in ship.states:
+        with suppress(DesignError):
+            found |= _second(ship.hull)
+    return found
+
+
+def _second(hull: LinearShip) -> dict[str, float]:
+    """T1, T2 and T3 of sway and yaw, the longer first; nothing where a pair swings."""
+    poles = np.linalg.eigvals(hull.A)
+    if np.iscomplex(poles).any() or not poles.all():
+        return {}
+    v, r = hull.states.index("v"), hull.turning
+    across = hull.A[r, v] * hull.B[v] - hull.A[v, v] * hull.B[r]
+    times = sorted(-1.0 / poles.real, key=abs, reverse=True)
+    zero = hull.B[r] / across if across else np.inf
+    return dict(zip(SECOND, map(float, (*times, zero)), strict=True))
+
+
+def _all_numbers(ship: LinearShip, states: Sequence[str]) -> Vector:
+    """Every number, then A and B of these states, whatever an effect has added to them."""
+    found = read(ship)
+    named = [found.get(n, np.nan) for n in NAMES]
+    kept = [ship.states.index(s) for s in states]
+    added = GEAR_STATE in ship.states and GEAR_STATE not in states
+    B = ship.A[:, ship.states.index(GEAR_STATE)] if added else ship.B
+    return np.concatenate([named, ship.A[np.ix_(kept, kept)].ravel(), B[kept]])
+
+
+def _ranges(base: Vessel, spread: LikelySpread, states: Sequence[str]) -> list[Range | None]:
+    """Where every number of the linear ship is likely to lie."""
     acting = [m for m in spread.missing if acts_in_calm(m.effect)]
     moved = with_columns(base, spread.known, acting)
-    point = _Straight(moved)
-    values, stable = point.read(point.theta)
-    slopes = np.zeros((len(NAMES), len(spread.known) + spread.width))
+    point = StraightCourse(moved.ship)
+    values = _all_numbers(point.at(point.theta), states)
+    slopes = np.zeros((len(values), len(spread.known) + spread.width))
     for place, name in zip(moved.places, moved.ship.simulator.equations.free, strict=True):
         size = abs(moved.ship.model.value(name)) or abs(moved.ship.model.parameters[name].start)
         step = STEP * (size or 1.0)
         with suppress(DesignError):  # in a dead band a small order does nothing: no K to compare
             up, down = (
-                point.read({**point.theta, name: point.theta[name] + s})[0] for s in (step, -step)
+                _all_numbers(point.at({**point.theta, name: point.theta[name] + s}), states)
+                for s in (step, -step)
             )
-            slopes[:, place] = (up - down) / (2.0 * step)
+            slopes[:, place] = np.nan_to_num((up - down) / (2.0 * step))
     for one in (m for m in acting if m.tried):
         with suppress(DesignError):
-            other = _Straight(with_columns(tried_ship(base, one), (), ()))
-            apart = other.read(other.theta)[0] - values
+            other = StraightCourse(with_columns(tried_ship(base, one), (), ()).ship)
+            apart = np.nan_to_num(_all_numbers(other.at(other.theta), states) - values)
             slopes[:, [len(spread.known) + c for c in one.columns]] = apart[:, None]
-    found = dict(zip(NAMES, map(float, values), strict=True))
-    ranges = dict(zip(NAMES, spread.ranges(values, slopes), strict=True))
-    speed = base.model.ship.particulars["U0"]
-    return Nomoto(speed=speed, values=found, ranges=ranges, stable=stable)
-
-
-class _Straight:
-    """A ship linearised on a straight course, for any values of her parameters."""
-
-    def __init__(self, of: WithColumns) -> None:
-        ship = of.ship
-        eq, self.model = ship.simulator.equations, ship.model
-        self.states = [s for s in eq.states if s not in ALONG]
-        table = {n.value: n for n in eq.graph.nodes if n.op == "symbol"}
-        rudder = next((d for d in RUDDERS if d in eq.inputs), None)
-        if rudder is None or rudder not in table or "r" not in self.states:
-            raise DesignError("Nomoto's K and T need a model that turns by a rudder")
-        by = [table[s] for s in self.states if s in table] + [table[rudder]]
-        self.columns = [n.value for n in by]
-        rows = [eq.f[eq.states.index(s)] for s in self.states]
-        nodes = [d for row in rows for d in gradient(row, by)]
-        self.symbols = (*eq.states, *eq.inputs, *eq.parameters)
-        self.run = evaluator(nodes, self.symbols, scalar=True)
-        self.theta = {n: self.model.value(n) for n in eq.parameters}
-        start = {"u": self.model.ship.particulars["U0"]}
-        self.point = {**dict.fromkeys(self.symbols, 0.0), **ship.constants, **start, rudder: 0.0}
-        self.rudder = rudder
-
-    def read(self, theta: Mapping[str, float]) -> tuple[Vector, bool]:
-        """K, T and both primed; whether the straight course is stable."""
-        known = {**self.point, **theta}
-        flat = np.array(self.run([float(known[s]) for s in self.symbols]))
-        whole = np.zeros((len(self.states), len(self.states) + 1))
-        for place, name in enumerate(self.columns):
-            column = -1 if name == self.rudder else self.states.index(name)
-            whole[:, column] = flat.reshape(len(self.states), -1)[:, place]
-        A, B = whole[:, :-1], whole[:, -1]
-        r = self.states.index("r")
-        try:
-            once = np.linalg.solve(A, B)
-            twice = np.linalg.solve(A, once)
-        except np.linalg.LinAlgError as error:
-            raise DesignError("a small rudder angle leads to no steady turn: no K, no T") from error
-        if once[r] == 0.0:
-            raise DesignError("the rudder turns nothing on a straight course: no K, no T")
-        K, T = -once[r], -twice[r] / once[r]
-        p = self.model.ship.particulars
-        time = p["L"] / p["U0"]
-        growing = np.linalg.eigvals(A).real.max()
-        return np.array([K, T, K * time, T / time]), bool(growing <= 0.0)
+    return spread.ranges(values, slopes)

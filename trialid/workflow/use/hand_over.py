@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.design.following import sailed_ship
-from trialid.design.steering.nomoto import nomoto
+from trialid.design.following import approach_speeds, sailed_ship
+from trialid.design.steering.nomoto import at_speeds
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
@@ -62,7 +62,7 @@ def _fmu(model: FinishedModel, name: str) -> Files:
 
 def _nomoto(model: FinishedModel, name: str) -> Files:
     del name
-    found = nomoto(sailed_ship(model.fit), spread_of(model))
+    found = at_speeds(sailed_ship(model.fit), spread_of(model), approach_speeds(model.fit))
     return {".json": text_of(nomoto_file(taken_up(model), found))}
 
 
@@ -71,7 +71,9 @@ FORMATS: Final[Mapping[str, Format]] = {
     "json": Format("plain data, with a schema", (".json",), _json),
     "c": Format("C99 with a header, no dependencies", (".c", ".h"), _c),
     "fmu": Format("FMI 2.0 for co-simulation, C source and a Linux binary", (".fmu",), _fmu),
-    "nomoto": Format("Nomoto's K and T", (".json",), _nomoto),
+    "nomoto": Format(
+        "Nomoto's K, T, T1 to T3 and the state space at each speed seen", (".json",), _nomoto
+    ),
     "python": Format("one file that needs NumPy alone", (".py",), _python),
 }
 """What a model can be written as."""
