@@ -83,7 +83,7 @@ def sail_draws(
     base = in_calm(ship)
     names = manoeuvre.reading.names
     found = np.full((len(ships.rivals), len(names)), np.nan)
-    for one in _groups(base, spread, ships, acts_in_calm):
+    for one in groups_of_ships(base, spread, ships, acts_in_calm):
         passages = _passages(one.ship, one.thetas, manoeuvre)
         for row, passage in zip(one.rows, passages, strict=True):
             numbers = _numbers(manoeuvre, passage)
@@ -103,7 +103,7 @@ def simulate_draws(
     """Motions under orders of every ship drawn, NaN behind a departure; (n, N) each."""
     given = {*orders.signals}
     found = np.full((len(ships.rivals), orders.samples, len(outputs)), np.nan)
-    for one in _groups(ship, spread, ships, lambda e: acts_under(e, given), outputs):
+    for one in groups_of_ships(ship, spread, ships, lambda e: acts_under(e, given), outputs):
         for row, theta in zip(one.rows, one.thetas, strict=True):
             found[row] = _under(one.ship, orders, theta)
         if one.tried is not None:
@@ -115,7 +115,7 @@ def simulate_draws(
 
 
 @dataclass(frozen=True)
-class _Group:
+class Group:
     """Ships of which the same is missing: one structure, a row of parameters each."""
 
     ship: Vessel
@@ -125,13 +125,14 @@ class _Group:
     share: Vector
 
 
-def _groups(
+def groups_of_ships(
     base: Vessel,
     spread: LikelySpread,
     ships: DrawnShips,
     acts: Callable[[Effect], bool],
     outputs: Sequence[str] = (),
-) -> Iterator[_Group]:
+) -> Iterator[Group]:
+    """Ships drawn, those together of which the same is missing."""
     for place in np.unique(ships.rivals).tolist():
         rows = np.flatnonzero(ships.rivals == place).astype(np.int64)
         missing = spread.missing[place] if place >= 0 else None
@@ -151,7 +152,7 @@ def _groups(
         for column, name in enumerate(parameters):
             if name in values:
                 thetas[:, column] = values[name]
-        yield _Group(ship, rows, thetas, tried, share)
+        yield Group(ship, rows, thetas, tried, share)
 
 
 def _group(

@@ -5,11 +5,14 @@ from dataclasses import dataclass
 from typing import Final
 
 from trialid.design.following import approach_speeds, sailed_ship
+from trialid.design.steering.gains import heading_gains, rate_gains
 from trialid.design.steering.nomoto import at_speeds
+from trialid.errors import TrialidError
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
 from trialid.export.model.fmu import fmu_bytes
+from trialid.export.model.gain_files import ardupilot_text, pid_file
 from trialid.export.model.json_model import model_file
 from trialid.export.model.nomoto_file import nomoto_file
 from trialid.export.model.numpy_text import numpy_text
@@ -22,12 +25,20 @@ Files = Mapping[str, str | bytes]
 
 
 @dataclass(frozen=True)
+class Wishes:
+    """What somebody who wants a file has to say, or may: bandwidth [rad/s], full rudder [rad]."""
+
+    bandwidth: float | None = None
+    full_rudder: float | None = None
+
+
+@dataclass(frozen=True)
 class Format:
     """A form of a model: how its files end, and what they hold."""
 
     words: str
     suffixes: tuple[str, ...]
-    write: Callable[[FinishedModel, str], Files]
+    write: Callable[[FinishedModel, str, Wishes], Files]
 
 
 def taken_up(model: FinishedModel) -> FittedModel:
@@ -36,34 +47,53 @@ def taken_up(model: FinishedModel) -> FittedModel:
     return fitted_model(model.fit, done.accuracy, model.result, model.seen, model.doubts)
 
 
-def _ship(model: FinishedModel, name: str) -> Files:
-    del name
+def _ship(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
     made = fitted_ship(model.fit.model, model.result)
     return {".toml": fitted_ship_text(made, model.doubts)}
 
 
-def _python(model: FinishedModel, name: str) -> Files:
-    del name
+def _python(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
     return {".py": numpy_text(taken_up(model))}
 
 
-def _json(model: FinishedModel, name: str) -> Files:
-    del name
+def _json(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
     return {".json": text_of(model_file(taken_up(model)))}
 
 
-def _c(model: FinishedModel, name: str) -> Files:
+def _c(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del wishes
     return {**c_texts(taken_up(model), name)}
 
 
-def _fmu(model: FinishedModel, name: str) -> Files:
+def _fmu(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del wishes
     return {".fmu": fmu_bytes(taken_up(model), name)}
 
 
-def _nomoto(model: FinishedModel, name: str) -> Files:
-    del name
+def _nomoto(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
     found = at_speeds(sailed_ship(model.fit), spread_of(model), approach_speeds(model.fit))
     return {".json": text_of(nomoto_file(taken_up(model), found))}
+
+
+def _ardupilot(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name
+    if wishes.full_rudder is None:
+        raise TrialidError(
+            "--as ardupilot needs the rudder angle at full steering output, which no log of a "
+            "rudder holds; add --full-rudder 35 [deg]"
+        )
+    gains = rate_gains(sailed_ship(model.fit), spread_of(model), wishes.bandwidth)
+    return {".param": ardupilot_text(taken_up(model), gains, wishes.full_rudder)}
+
+
+def _pid(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name
+    gains = heading_gains(sailed_ship(model.fit), spread_of(model), wishes.bandwidth)
+    return {".json": text_of(pid_file(taken_up(model), gains))}
 
 
 FORMATS: Final[Mapping[str, Format]] = {
@@ -74,6 +104,8 @@ FORMATS: Final[Mapping[str, Format]] = {
     "nomoto": Format(
         "Nomoto's K, T, T1 to T3 and the state space at each speed seen", (".json",), _nomoto
     ),
+    "ardupilot": Format("steering gains of ArduPilot Rover", (".param",), _ardupilot),
+    "pid": Format("a heading autopilot's gains with what they promise", (".json",), _pid),
     "python": Format("one file that needs NumPy alone", (".py",), _python),
 }
 """What a model can be written as."""
