@@ -10,6 +10,7 @@ from test_nomoto import MODEL, ship
 from test_simulate import known_by
 
 from trialid.design.following import sailed_ship
+from trialid.design.helm import vessel
 from trialid.design.steering.closed_loop import answer, hold_heading, hold_rate
 from trialid.design.steering.gains import heading_gains, rate_gains
 from trialid.design.steering.nomoto import nomoto
@@ -96,33 +97,29 @@ def test_promises_are_those_of_the_simulated_ship(gains) -> None:
     assert found.promise.ranges["overshoot"] == pytest.approx([found.promise.fitted.overshoot] * 2)
 
 
-def stepped(model: ShipModel, gains, step: float, rate: float = np.inf) -> tuple[float, float]:
+def stepped(model: ShipModel, gains, step: float) -> tuple[float, float]:
     """Overshoot and settling of the ship herself under the gains, her heading or rate stepped."""
-    from trialid.design.helm import vessel
-
-    sailed = vessel(model, 0.5, {"u": 7.33}, 1.0)
-    simulator = sailed.simulator
-    eq = simulator.equations
+    p = model.ship.particulars
+    time = p["L"] / p["U0"]
+    sailed = vessel(model, time / 48.0, {"u": p["U0"]}, 1.0)
+    eq, run, h = sailed.simulator.equations, sailed.simulator.engine, time / 96.0
     theta = np.array([sailed.model.value(n) for n in eq.parameters])
-    x, whole, delta = np.zeros(len(eq.states)), 0.0, 0.0
+    x, whole = np.zeros(len(eq.states)), 0.0
     r, psi = eq.states.index("r"), eq.states.index("psi")
-    turning = "FF" in gains
-    held, h, path = np.full((2, len(eq.inputs)), 7.33), 0.25, []
+    steered = r if "FF" in gains else psi
+    held, path = np.full((2, len(eq.inputs)), p["U0"]), []
     limit = np.full(len(x), np.inf)
-    for _ in range(int(1500.0 / h)):
-        now = x[r] if turning else x[psi]
-        e = step - now
+    for _ in range(6000):
+        e = step - x[steered]
         whole += e * h
-        asked = (
-            gains["FF"] * step + gains["P"] * e + gains["I"] * whole
-            if turning
-            else gains["Kp"] * e + gains["Ki"] * whole - gains["Kd"] * x[r]
-        )
-        delta += np.clip(asked - delta, -rate * h, rate * h)
+        if steered == r:
+            delta = gains["FF"] * step + gains["P"] * e + gains["I"] * whole
+        else:
+            delta = gains["Kp"] * e + gains["Ki"] * whole - gains["Kd"] * x[r]
         held[:, eq.inputs.index("delta")] = delta
-        X, _ = simulator.engine.simulate(theta, x, held, limit, h, 1)
+        X, _ = run.simulate(theta, x, held, limit, h, 1)
         x = X[1]
-        path.append((x[r] if turning else x[psi]) / step)
+        path.append(x[steered] / step)
     outside = np.flatnonzero(np.abs(np.array(path) - 1.0) > 0.05)
     return max(path) - 1.0, (int(outside[-1]) + 2) * h
 

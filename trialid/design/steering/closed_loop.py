@@ -108,7 +108,7 @@ def answer(loop: Controller, bandwidth: float) -> Answer:
     t = np.linspace(0.0, LONG / bandwidth, STEPS)
     drive = np.linalg.solve(shapes, loop.B * loop.forward + loop.reference) / poles
     parts = (loop.output @ shapes) * drive
-    y = (np.expm1(np.outer(t, poles)) @ parts).real
+    y = (np.exp(np.outer(t, poles)) @ parts).real - float(np.sum(parts).real)
     outside = np.flatnonzero(np.abs(y - 1.0) > BAND)
     last = int(outside[-1]) + 1 if len(outside) else 0
     phase, delay = _margins(loop, bandwidth)

@@ -8,7 +8,7 @@ Heading, by poles: Kp = w_n^2 T / K, Kd = (2 z w_n T - 1) / K, Ki = w_n Kp / 10 
 Handbook of Marine Craft Hydrodynamics and Motion Control, section 12.2), damping z of 0.8.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -32,6 +32,8 @@ NUMBER: Final = 200
 """Ships drawn that gains are tried on."""
 ENDS: Final = (2.5, 97.5)
 """Per cent of them beyond which the ends of a range lie."""
+
+FIELDS: Final = ("overshoot", "settling", "phase_margin", "delay_margin")
 
 Made = Callable[[LinearShip], Controller]
 
@@ -139,14 +141,18 @@ def _tried(
             f"{1.0 - stable:.0%} of the ships that the record leaves open would swing under gains "
             f"for {bandwidth:.3g} rad/s; ask for less by --bandwidth, or sail more trials"
         )
-    fields = ("overshoot", "settling", "phase_margin", "delay_margin")
-    ranges = {}
-    for name in fields:
-        all_values = [getattr(one, name) for one in drawn if one.stable]
-        low, high = np.percentile(all_values, ENDS, method="nearest")
-        ranges[name] = float(low), float(high)
-    promise = Promise(fitted=answer(made(linear), bandwidth), ranges=ranges, stable=stable)
+    fitted = answer(made(linear), bandwidth)
+    ranges = {n: _range(n, fitted, drawn) for n in FIELDS}
+    promise = Promise(fitted=fitted, ranges=ranges, stable=stable)
     return Gains(values=values, bandwidth=bandwidth, speed=linear.speed, promise=promise)
+
+
+def _range(name: str, fitted: Answer, drawn: Sequence[Answer]) -> tuple[float, float]:
+    """Where 95 of 100 ships lie, and the one as it was fitted."""
+    values = [float(getattr(one, name)) for one in drawn if one.stable]
+    low, high = np.percentile(values, ENDS, method="nearest")
+    own = float(getattr(fitted, name))
+    return min(float(low), own), max(float(high), own)
 
 
 def _drawn(ship: Vessel, spread: LikelySpread) -> Iterator[LinearShip]:

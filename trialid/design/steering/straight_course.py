@@ -13,7 +13,7 @@ from trialid.simulation.graph import gradient
 from trialid.simulation.reference import evaluator
 
 RUDDERS: Final = ("delta", "delta_order")
-ALONG: Final = ("u", "u_lost", "psi")
+ALONG: Final = ("u", "u_lost", "u_off", "psi")
 """States that a small turn on a straight course leaves alone, or that leave it alone."""
 
 

@@ -80,7 +80,14 @@ def _seconds(value: float) -> str:
 
 def _wrapped(words: str) -> list[str]:
     clean = " ".join(words.split())
-    return textwrap.wrap(clean, WIDE, initial_indent="# ", subsequent_indent="#   ")
+    return textwrap.wrap(
+        clean,
+        WIDE,
+        initial_indent="# ",
+        subsequent_indent="#   ",
+        break_on_hyphens=False,
+        break_long_words=False,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
