@@ -22,6 +22,7 @@ KINDS: Final = {
     "nomoto": (".json",),
     "ardupilot": (".param",),
     "pid": (".json",),
+    "gazebo": (".sdf",),
 }
 """What a model can be written as, and how the files end; `hand_over` has what they hold."""
 
@@ -37,7 +38,7 @@ FULL: Final = 90.0
     type=click.Choice([*KINDS]),
     help="ship: a ship file for a next pipeline; json: plain data; python: one file that needs "
     "NumPy alone; c: C99 with a header; fmu: FMI 2.0 for co-simulation; nomoto: K and T, state "
-    "space; ardupilot: steering gains; pid: a heading autopilot's gains.",
+    "space; ardupilot: steering gains; pid: a heading autopilot's gains; gazebo: a hull.",
 )
 @click.option(
     "--out",

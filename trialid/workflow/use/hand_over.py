@@ -13,6 +13,7 @@ from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
 from trialid.export.model.fmu import fmu_bytes
 from trialid.export.model.gain_files import ardupilot_text, pid_file
+from trialid.export.model.gazebo import gazebo_hull, gazebo_text
 from trialid.export.model.json_model import model_file
 from trialid.export.model.nomoto_file import nomoto_file
 from trialid.export.model.numpy_text import numpy_text
@@ -96,6 +97,12 @@ def _pid(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     return {".json": text_of(pid_file(taken_up(model), gains))}
 
 
+def _gazebo(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
+    made = taken_up(model)
+    return {".sdf": gazebo_text(made, gazebo_hull(model.fit, made))}
+
+
 FORMATS: Final[Mapping[str, Format]] = {
     "ship": Format("a ship file for a next pipeline", (".toml",), _ship),
     "json": Format("plain data, with a schema", (".json",), _json),
@@ -106,6 +113,7 @@ FORMATS: Final[Mapping[str, Format]] = {
     ),
     "ardupilot": Format("steering gains of ArduPilot Rover", (".param",), _ardupilot),
     "pid": Format("a heading autopilot's gains with what they promise", (".json",), _pid),
+    "gazebo": Format("Gazebo's Hydrodynamics, with what it costs", (".sdf",), _gazebo),
     "python": Format("one file that needs NumPy alone", (".py",), _python),
 }
 """What a model can be written as."""
