@@ -11,21 +11,9 @@ import click
 from trialid import temporary
 from trialid.cli.console import note, progress_bar, say
 from trialid.errors import TrialidError
+from trialid.export.model.model_kinds import KINDS
 
 FILE = click.Path(path_type=Path)
-KINDS: Final = {
-    "ship": (".toml",),
-    "json": (".json",),
-    "python": (".py",),
-    "c": (".c", ".h"),
-    "fmu": (".fmu",),
-    "nomoto": (".json",),
-    "ardupilot": (".param",),
-    "pid": (".json",),
-    "gazebo": (".sdf",),
-}
-"""What a model can be written as, and how the files end; `hand_over` has what they hold."""
-
 FULL: Final = 90.0
 """deg beyond which no rudder goes."""
 
@@ -36,9 +24,7 @@ FULL: Final = 90.0
     "--as",
     "kind",
     type=click.Choice([*KINDS]),
-    help="ship: a ship file for a next pipeline; json: plain data; python: one file that needs "
-    "NumPy alone; c: C99 with a header; fmu: FMI 2.0 for co-simulation; nomoto: K and T, state "
-    "space; ardupilot: steering gains; pid: a heading autopilot's gains; gazebo: a hull.",
+    help="; ".join(f"{name}: {kind.words}" for name, kind in KINDS.items()) + ".",
 )
 @click.option(
     "--out",
@@ -85,13 +71,13 @@ def export(
         raise click.UsageError(f"Missing {missing}.")
     places = _places(run, kind, out, force=force)
     from trialid.workflow.use.finished_model import finished_model
-    from trialid.workflow.use.hand_over import FORMATS, Wishes
+    from trialid.workflow.use.hand_over import WRITERS, Wishes
 
     wishes = Wishes(bandwidth, None if full_rudder is None else radians(_rudder(full_rudder)))
 
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         model = finished_model(run, progress, anyway=anyway)
-        made = FORMATS[kind].write(model, places[0].stem, wishes)
+        made = WRITERS[kind](model, places[0].stem, wishes)
     contents = {place: _bytes(made[place.suffix]) for place in places}
     try:
         temporary.replace_all(contents)
@@ -134,7 +120,7 @@ def _places(run: Path, kind: str, out: Path | None, *, force: bool) -> list[Path
     """
     from trialid.export import check_place
 
-    first = out or Path(f"{run.resolve().name}_{kind}{KINDS[kind][0]}")
-    places = [first.with_suffix(suffix) for suffix in KINDS[kind]]
-    check_place(first, replace=force, formats=KINDS[kind][:1], more=places[1:])
+    first = out or Path(f"{run.resolve().name}_{kind}{KINDS[kind].suffixes[0]}")
+    places = [first.with_suffix(suffix) for suffix in KINDS[kind].suffixes]
+    check_place(first, replace=force, formats=KINDS[kind].suffixes[:1], more=places[1:])
     return places

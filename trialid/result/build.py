@@ -13,6 +13,7 @@ from trialid.design.imo.observed import Overshoot
 from trialid.design.imo.turns import TurnMeasure
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
+from trialid.design.steering.nomoto import Nomoto
 from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.where.finding import Finding
@@ -42,7 +43,7 @@ from trialid.result.fit_rows import (
     StartsPart,
 )
 from trialid.result.force_series import missing_force_part
-from trialid.result.imo import UNRELIABLE, measure_rows, sailed_part, sailing_words
+from trialid.result.imo import UNRELIABLE, measure_rows, sailed_part, sailing_words, steering_rows
 from trialid.result.json_file import finite
 from trialid.result.missing_rows import missing_rows, verdict_part
 from trialid.result.schema import Result
@@ -56,7 +57,7 @@ class Findings(Diagnosis):
 
     `proposal` is None where nothing is to be told apart, `narrowing` where no effect widens a
     range. `ship` is the fitted one as she is sailed, None where no rudder steers her. `measures`,
-    `overshoots` and `turns` are there where the pipeline asks for IMO's measures.
+    `overshoots`, `turns` and `steering` are there where the pipeline asks for IMO's measures.
     """
 
     name: str
@@ -67,6 +68,7 @@ class Findings(Diagnosis):
     measures: tuple[Measure, ...] = ()
     overshoots: tuple[Overshoot, ...] = ()
     turns: tuple[TurnMeasure, ...] = ()
+    steering: Nomoto | None = None
 
 
 def result_from(found: Findings, **beside: Any) -> Result:
@@ -232,6 +234,7 @@ def _imo(found: Findings) -> ImoPart | None:
         speed_simulated="u" in found.before.fit.model.states,
         overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
         turns=tuple(TurnRow(**asdict(one)) for one in found.turns),
+        steering=() if found.steering is None else tuple(steering_rows(found.steering)),
     )
 
 

@@ -227,6 +227,16 @@ class SailedPart:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SteeringRow:
+    """One of Nomoto's numbers at the approach speed, of the ship as fitted, and its 95 % range."""
+
+    name: str
+    value: float
+    unit: str
+    likely: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class ImoPart:
     """Standard measures of MSC.137(76), and overshoots and turning circles the trials hold.
 
@@ -236,6 +246,8 @@ class ImoPart:
         How the measures were come by, in a sentence.
     doubt
         Why they are not to be relied on; empty where nothing speaks against them.
+    steering
+        Nomoto's numbers; empty where no rudder steers her.
     """
 
     measures: tuple[MeasureRow, ...] = ()
@@ -244,3 +256,4 @@ class ImoPart:
     turns: tuple[TurnRow, ...] = ()
     sailed: str = ""
     doubt: str = ""
+    steering: tuple[SteeringRow, ...] = ()

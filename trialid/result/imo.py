@@ -1,6 +1,6 @@
 """Standard measures of manoeuvring as plain data."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -8,8 +8,9 @@ import numpy as np
 from trialid.design.helm import GEAR_STATE, Vessel
 from trialid.design.imo.speed_loss import NAMES, loses_speed
 from trialid.design.standard import Measure, in_calm
+from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.names import labels
-from trialid.result.finding_rows import MeasureRow, SailedPart
+from trialid.result.finding_rows import MeasureRow, SailedPart, SteeringRow
 
 UNRELIABLE: Final = "The fit carries no verdict: none of these numbers is to be relied on."
 
@@ -60,3 +61,11 @@ def sailing_words(ship: Vessel) -> str:
         f"Sailed by simulation in calm deep water: approach at {how.speed:.3g} m/s, first to "
         f"starboard, rudder {rate}{steady}{speed}."
     )
+
+
+def steering_rows(found: Nomoto) -> Iterator[SteeringRow]:
+    """Nomoto's numbers, a row each."""
+    for name, value in found.values.items():
+        yield SteeringRow(
+            name=name, value=value, unit=UNITS.get(name, "s"), likely=found.ranges.get(name)
+        )

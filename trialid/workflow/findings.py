@@ -8,8 +8,10 @@ from trialid.design.helm import Vessel
 from trialid.design.imo import observed, turns
 from trialid.design.imo.observed import Overshoot
 from trialid.design.imo.turns import TurnMeasure
+from trialid.design.prediction.likely_spread import likely_spread
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
+from trialid.design.steering.nomoto import Nomoto, nomoto
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError
@@ -66,7 +68,18 @@ def find_out(
         measures=measures,
         overshoots=overshoots,
         turns=turned,
+        steering=_steering(found.before, ship) if pipeline.imo else None,
     )
+
+
+def _steering(done: Diagnosed, ship: Vessel | None) -> Nomoto | None:
+    """Nomoto's numbers of the fitted ship; None where she has none."""
+    off = done.doubts
+    spread = likely_spread(done.fit, done.accuracy.covariance, off.standing, off.held, off.missing)
+    try:
+        return None if ship is None else nomoto(ship, spread)
+    except DesignError:
+        return None
 
 
 def proposal(fit: Fit, verdict: Verdict, catalogue: Mapping[str, Effect]) -> Separation | None:

@@ -31,6 +31,8 @@ STEP: Final = 1e-5
 FIRST: Final = ("K", "T", "K_prime", "T_prime")
 SECOND: Final = ("T1", "T2", "T3")
 NAMES: Final = (*FIRST, *SECOND)
+UNITS: Final = {"K": "1/s", "K_prime": "1", "T_prime": "1"}
+"""Of those that are no times [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)

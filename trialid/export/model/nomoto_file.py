@@ -6,13 +6,12 @@ from typing import Final, Literal
 
 import numpy as np
 
-from trialid.design.steering.nomoto import Nomoto
+from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.export.model.fitted_model import FittedModel
 from trialid.names import labels
 from trialid.result.json_file import finite
 
 SCHEMA: Final[Literal["trialid-nomoto/1"]] = "trialid-nomoto/1"
-UNITS: Final = {"K": "1/s", "K_prime": "1", "T_prime": "1"}
 UNSTABLE: Final = (
     "The ship is not directionally stable: K and T are negative, and a small order leads to no "
     "steady turn."

@@ -33,15 +33,6 @@ class Wishes:
     full_rudder: float | None = None
 
 
-@dataclass(frozen=True)
-class Format:
-    """A form of a model: how its files end, and what they hold."""
-
-    words: str
-    suffixes: tuple[str, ...]
-    write: Callable[[FinishedModel, str, Wishes], Files]
-
-
 def taken_up(model: FinishedModel) -> FittedModel:
     """The model with all that its files say of it."""
     done = model.done
@@ -103,17 +94,17 @@ def _gazebo(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     return {".sdf": gazebo_text(made, gazebo_hull(model.fit, made))}
 
 
-FORMATS: Final[Mapping[str, Format]] = {
-    "ship": Format("a ship file for a next pipeline", (".toml",), _ship),
-    "json": Format("plain data, with a schema", (".json",), _json),
-    "c": Format("C99 with a header, no dependencies", (".c", ".h"), _c),
-    "fmu": Format("FMI 2.0 for co-simulation, C source and a Linux binary", (".fmu",), _fmu),
-    "nomoto": Format(
-        "Nomoto's K, T, T1 to T3 and the state space at each speed seen", (".json",), _nomoto
-    ),
-    "ardupilot": Format("steering gains of ArduPilot Rover", (".param",), _ardupilot),
-    "pid": Format("a heading autopilot's gains with what they promise", (".json",), _pid),
-    "gazebo": Format("Gazebo's Hydrodynamics, with what it costs", (".sdf",), _gazebo),
-    "python": Format("one file that needs NumPy alone", (".py",), _python),
+Write = Callable[[FinishedModel, str, Wishes], Files]
+
+WRITERS: Final[Mapping[str, Write]] = {
+    "ship": _ship,
+    "json": _json,
+    "python": _python,
+    "c": _c,
+    "fmu": _fmu,
+    "nomoto": _nomoto,
+    "pid": _pid,
+    "ardupilot": _ardupilot,
+    "gazebo": _gazebo,
 }
-"""What a model can be written as."""
+"""What each kind's files hold; `trialid.export.model.model_kinds` says what they are."""
