@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trialid.export.model.model_kinds import KINDS
 from trialid.names import labels
 from trialid.report.pages import page as report
 from trialid.report.pictures import bars
@@ -32,6 +33,7 @@ Plain = dict[str, Any]
 
 PARTS = (
     "title", "tabs", "about", "where", "error", "history", "verdict", "now", "missing", "model",
+    "use",
 )  # fmt: skip
 """The pieces, each under the name of its place on the page and of its template."""
 
@@ -128,6 +130,7 @@ def _context(shown: Shown) -> Plain:
         "effects": model_rows.effects(shown),
         "masses": model_rows.masses(shown),
         "nuisance": run.nuisance,
+        "kinds": KINDS,
         "addable": sorted(set(shown.catalogue) - set(shown.pipeline.model.effects)),
         "equations": {name: effect.equation for name, effect in shown.catalogue.items()},
     }
