@@ -71,8 +71,8 @@ def test_nothing_heavy_comes_before_it_is_asked_for() -> None:
     assert done.stdout.strip() == "[]"
 
 
-def test_a_run_is_the_commands_digit_for_digit(run, tmp_path: Path) -> None:
-    assert same(run.result, command("run", str(PIPELINE), "--out", str(tmp_path / "run")))
+def test_a_run_is_the_commands_digit_for_digit(run, sample_run: Path) -> None:
+    assert same(run.result, json.loads((sample_run / "result.json").read_text(encoding="utf-8")))
 
 
 def test_an_added_effect_is_the_commands_digit_for_digit(better, copy, tmp_path: Path) -> None:
@@ -127,11 +127,9 @@ def test_a_plot_is_of_the_series_and_is_saved_once(run, tmp_path: Path) -> None:
         run.plot("psi")
 
 
-@pytest.mark.study(turn=3)
-def test_a_run_is_written_as_the_command_writes_it(run, tmp_path: Path) -> None:
+def test_a_run_is_written_as_the_command_writes_it(run, sample_run: Path, tmp_path: Path) -> None:
     report = run.write(tmp_path / "here")
-    CliRunner().invoke(commands, ["run", str(PIPELINE), "--quiet", "--out", str(tmp_path / "c")])
-    assert report.read_bytes() == (tmp_path / "c" / "report.html").read_bytes()
+    assert report.read_bytes() == (sample_run / "report.html").read_bytes()
 
 
 # --- without any file

@@ -48,11 +48,6 @@ def run_folder(folder: Path) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return run_folder(tmp_path_factory.mktemp("own") / "run")
-
-
 def test_ours_is_replaced_and_what_is_not_made_again_goes(tmp_path: Path) -> None:
     put(tmp_path, {"a.txt": "1", "b/c.txt": "2"})
     put(tmp_path, {"a.txt": "3"})
@@ -142,7 +137,7 @@ COMMANDS = (
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda c: " ".join(c[:1] + c[2:]))
 def test_a_strangers_folder_is_the_same_after_every_command(
-    command: list[str], tmp_path: Path, finished: Path
+    command: list[str], tmp_path: Path, sample_run: Path
 ) -> None:
     shutil.copytree(ROOT / "pipelines", tmp_path / "pipelines")
     shutil.copytree(ROOT / "sample_data", tmp_path / "sample_data")
@@ -150,7 +145,7 @@ def test_a_strangers_folder_is_the_same_after_every_command(
     out.mkdir()
     fill(out, THEIRS)
     before = state(out)
-    named = {"pipeline": tmp_path / "pipelines" / "hidden_effect.toml", "run": finished}
+    named = {"pipeline": tmp_path / "pipelines" / "hidden_effect.toml", "run": sample_run}
     words = [word.format(**named) for word in command]
     done = CliRunner().invoke(commands, [*words, "--out", str(out)])
     if command[0] == "report":  # writes beside what is there, or says which file is in the way
@@ -162,19 +157,19 @@ def test_a_strangers_folder_is_the_same_after_every_command(
 
 
 @pytest.mark.parametrize("suffix", [".mcap", ".foxglove.json", ".plotjuggler.xml"])
-def test_a_replay_replaces_nothing_unasked(tmp_path: Path, finished: Path, suffix: str) -> None:
+def test_a_replay_replaces_nothing_unasked(tmp_path: Path, sample_run: Path, suffix: str) -> None:
     out = tmp_path / "r.mcap"
     (tmp_path / f"r{suffix}").write_text("theirs")
-    words = ["replay", str(PIPELINE), "--run", str(finished), "--fast", "--quiet", "--out"]
+    words = ["replay", str(PIPELINE), "--run", str(sample_run), "--fast", "--quiet", "--out"]
     done = CliRunner().invoke(commands, [*words, str(out)])
     assert done.exit_code == 2
     assert "add --force" in done.output
     assert [p.read_text() for p in tmp_path.iterdir()] == ["theirs"]
 
 
-def test_notes_in_a_runs_own_folder_stay(tmp_path: Path, finished: Path) -> None:
+def test_notes_in_a_runs_own_folder_stay(tmp_path: Path, sample_run: Path) -> None:
     folder = tmp_path / "run"
-    shutil.copytree(finished, folder)
+    shutil.copytree(sample_run, folder)
     fill(folder, {"notes.txt": "calm", "tables/mine.csv": "1"})
     assert CliRunner().invoke(commands, ["report", str(folder), "--quiet"]).exit_code == 0
     assert (folder / "figures" / "split.svg").exists() or any((folder / "figures").iterdir())
@@ -186,9 +181,9 @@ def test_notes_in_a_runs_own_folder_stay(tmp_path: Path, finished: Path) -> None
 
 
 @pytest.mark.study(turn=0)
-def test_a_run_folder_of_an_earlier_version_is_replaced(tmp_path: Path, finished: Path) -> None:
+def test_a_run_folder_of_an_earlier_version_is_replaced(tmp_path: Path, sample_run: Path) -> None:
     folder = tmp_path / "run"
-    shutil.copytree(finished, folder)
+    shutil.copytree(sample_run, folder)
     (folder / own_files.LIST).unlink()
     fill(folder, {"notes.txt": "calm"})
     run_folder(folder)

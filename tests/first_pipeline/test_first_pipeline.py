@@ -239,20 +239,20 @@ def test_the_period_is_what_logs_and_ship_allow(tmp_path):
 
 def test_other_sources_stand_beside_commented_out(tmp_path):
     t, delta, r, _, u = trial()
-    log = written(
-        tmp_path / "a.csv",
-        t=t,
-        rudder_in_deg=delta,
-        rot_in_deg_per_s=r,
-        yaw_rate_in_deg_per_s=r,
-        stw_in_m_per_s=u,
-    )
+    rates = dict.fromkeys(("rot_in_deg_per_s", "yaw_rate_in_deg_per_s"), r)
+    log = written(tmp_path / "a.csv", t=t, rudder_in_deg=delta, **rates, stw_in_m_per_s=u)
     begun(tmp_path, [log])
     text = (tmp_path / "p.toml").read_text()
     assert '# or r = { channel = "yaw_rate", unit = "deg/s" }  # 2 Hz' in text
-    swapped = text.replace("r     = {", "# r = {").replace("# or r =", "r =")
+    swapped = text.replace("r     = {", "# r = {").replace(
+        "# or r = { channel =", "r = { channel ="
+    )
     (tmp_path / "q.toml").write_text(swapped)
     assert pipeline_file.load(tmp_path / "q.toml").trials[0].signals["r"].channel == "yaw_rate"
+    mean = text.replace("r     = {", "# r = {").replace("# or r = { channels", "r = { channels")
+    (tmp_path / "m.toml").write_text(mean)
+    r = pipeline_file.load(tmp_path / "m.toml").trials[0].signals["r"]
+    assert r.names == ("rot", "yaw_rate")
 
 
 def test_no_rudder_no_motion_no_ship_are_one_line_each(tmp_path):

@@ -33,6 +33,7 @@ def errors(fit):
     return [p.standard_error for p in accuracy_of(fit, UNKNOWN, none).physical]
 
 
+@pytest.mark.study
 def test_estimates_scatter_by_their_standard_errors():
     """By 4 to 11 times less, where outliers counted as noise."""
     settings = replace(SETTINGS, loss="huber")

@@ -105,11 +105,10 @@ def copy(project: Path, tmp_path: Path) -> Path:
 
 
 def in_turn(documents: list[str]) -> list[Any]:
-    """What a stranger reads first each time, the other pages one after another."""
-    first = ("README",)
-    later = [d for d in documents if d not in first]
-    cases = [pytest.param(d, marks=pytest.mark.study(turn=k % 5)) for k, d in enumerate(later)]
-    return [*(d for d in first if d in documents), *cases]
+    """What a stranger reads first at each turn, the other pages one after another."""
+    later = [document for document in documents if document != "README"]
+    turns = {document: pytest.mark.study(turn=k % 5) for k, document in enumerate(later)}
+    return [pytest.param(d, marks=turns.get(d, pytest.mark.study)) for d in documents]
 
 
 @pytest.mark.parametrize("document", in_turn(with_any("sh")))

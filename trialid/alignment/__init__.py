@@ -15,6 +15,7 @@ from trialid.alignment import (
     checks,
     clock_health,
     clocks,
+    combine,
     dejitter,
     duplicate_channels,
     faults,
@@ -56,7 +57,7 @@ def align(
     recordings
         The logs of this trial; a signal may come from any of them.
     sources
-        One for each signal, which channel it is and how to read it.
+        One for each signal, or several to combine: which channel it is and how to read it.
     period
         Time between samples of the trial [s].
     window
@@ -75,7 +76,7 @@ def align(
     where = f"trial {name!r}"
     _check_sources(sources, where)
     recordings, of_clocks = log_clock.on_one_clock(recordings, log_clocks, where, repair=repair)
-    at = [f"{where}, signal {source.quantity!r}" for source in sources]
+    at = [f"{where}, signal {source.name}" for source in sources]
     logged = [frames.series(s, recordings, w) for s, w in zip(sources, at, strict=True)]
     repairs = [_repaired(one) if repair else (one, ()) for one in logged]
     logged = [one for one, _ in repairs]
@@ -85,15 +86,15 @@ def align(
     _check_epochs(series, sources, recordings, where)
     grid = clocks.common(series, period, window, where)
     series, found = _without_faults(series, sources, grid, keep or {}, at)
-    trial = antenna.with_course(_trial(name, use, recordings, series, grid, where))
+    signals = _on_grid(series, sources, grid, where)
+    trial = antenna.with_course(_trial(name, use, recordings, signals, grid))
     findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
     checks.refuse(findings, where)
     remarks = (
-        *_of_logs(recordings),
+        *_of_logs(recordings, sources),
         *of_clocks,
-        *(word for source in sources for word in seams(source.channel, recordings)),
         *(word for _, words in repairs for word in words),
-        *_of_signals(logged, series, grid),
+        *_of_signals(logged, series, sources, grid),
         *found,
         *quality.of_trial(series, grid, window),
         *_of_motions(trial, sources, where),
@@ -129,11 +130,8 @@ def _repaired(logged: Series) -> tuple[Series, tuple[str, ...]]:
 
 
 def _check_sources(sources: Sequence[SignalSource], where: str) -> None:
-    names = [source.quantity for source in sources]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise AlignmentError(f"{where}: signal {twice!r} is given twice; keep one channel for it")
-    if not names:
+    combine.check_once(sources, where)
+    if not sources:
         raise AlignmentError(f"{where}: no signals; name at least a rudder and a motion")
 
 
@@ -159,31 +157,48 @@ def _check_epochs(
     )
 
 
-def _of_logs(recordings: Sequence[Recording]) -> Iterator[str]:
+def _of_logs(recordings: Sequence[Recording], sources: Sequence[SignalSource]) -> Iterator[str]:
     for recording in recordings:
         for remark in recording.remarks:
             yield f"{recording.path.name}: {remark}"
+    for source in sources:
+        yield from seams(source.channel, recordings)
 
 
-def _of_signals(logged: Sequence[Series], series: Sequence[Series], grid: Grid) -> Iterator[str]:
+def _of_signals(
+    logged: Sequence[Series], series: Sequence[Series], sources: Sequence[SignalSource], grid: Grid
+) -> Iterator[str]:
     for raw, one in zip(logged, series, strict=True):
         yield from quality.of_clock(raw, one)
         yield from quality.of_values(one, grid)
+    yield from combine.remarks(series, sources)
+
+
+def _on_grid(
+    series: Sequence[Series], sources: Sequence[SignalSource], grid: Grid, where: str
+) -> dict[str, combine.Sampled]:
+    """Every quantity on the clock of the trial, made of one channel or of several."""
+    smooth = resample.any_faster(series, grid.period)
+    sampled = [resample.onto(one, grid, smooth=smooth) for one in series]
+    for one, (_, known) in zip(series, sampled, strict=True):
+        quality.check_valid(one, known, grid, where)
+    signals = {}
+    for quantity in dict.fromkeys(one.quantity for one in series):
+        at = [i for i, one in enumerate(series) if one.quantity == quantity]
+        parts = [sampled[i] for i in at]
+        combine.check_sides(parts, [sources[i] for i in at], grid.period, where)
+        signals[quantity.name] = combine.mean(parts, quantity)
+    return signals
 
 
 def _trial(
     name: str,
     use: Literal["fit", "check"],
     recordings: Sequence[Recording],
-    series: Sequence[Series],
+    signals: Mapping[str, combine.Sampled],
     grid: Grid,
-    where: str,
 ) -> Trial:
-    smooth = resample.any_faster(series, grid.period)
-    signals, valid = {}, {}
-    for one in series:
-        quantity = one.quantity.name
-        signals[quantity], valid[quantity] = resample.onto(one, grid, smooth=smooth)
-        quality.check_valid(one, valid[quantity], grid, where)
     logs = tuple(LogSource(str(r.path), r.sha256, r.adapter) for r in recordings)
-    return Trial(name, use, grid.period, signals, valid, logs=logs, start=grid.start)
+    values = {quantity: sampled[0] for quantity, sampled in signals.items()}
+    valid = {quantity: sampled[1] for quantity, sampled in signals.items()}
+    return Trial(name, use, grid.period, values, valid, logs=logs, start=grid.start)

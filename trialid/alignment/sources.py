@@ -42,6 +42,8 @@ class SignalSource:
         How much later than the motion the sensor stamps it [s].
     gain, offset
         The signal is gain times the logged number plus offset, in `unit`.
+    combine
+        "mean" where the quantity is the mean of several sources, each with this; else None.
     """
 
     quantity: str
@@ -52,6 +54,12 @@ class SignalSource:
     delay: float = 0.0
     gain: float = 1.0
     offset: float = 0.0
+    combine: Literal["mean"] | None = None
+
+    @property
+    def name(self) -> str:
+        """The quantity, with the channel where that alone does not tell which source it is."""
+        return f"{self.quantity!r} ({self.channel})" if self.combine else f"{self.quantity!r}"
 
 
 def find(channel: str, recordings: Sequence[Recording], where: str) -> Channel:

@@ -227,5 +227,7 @@ MASS_PARAMETERS = (
 )  # fmt: skip
 """Primed; those a ship file does not give are zero, except m, I_xx and I_zz."""
 
+POSITIONS = frozenset({"lat", "lon", "x", "y"})
+"""Where an antenna is."""
 RUDDERS = frozenset({"delta", "delta_order"})
 """Half of the literature and many loggers count the rudder to port: its side is never guessed."""

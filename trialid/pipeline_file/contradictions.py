@@ -6,7 +6,7 @@ from typing import Final
 
 from trialid.errors import UnitError, nearest
 from trialid.names import units
-from trialid.names.quantities import SIGNALS, Quantity
+from trialid.names.quantities import POSITIONS, SIGNALS, Quantity
 from trialid.pipeline_file.complaints import Problem, dotted_key
 from trialid.pipeline_file.form import ClockSection, Pipeline, SignalSource, TrialSection
 
@@ -80,6 +80,8 @@ def _signal_problems(signals: Mapping[str, SignalSource], *steps: str | int) -> 
         if name not in SIGNALS:
             yield dotted_key(*steps, name), f"unknown quantity; {_nearest_signal(name)}"
             continue
+        for key, words in _channel_problems(source, SIGNALS[name]):
+            yield dotted_key(*steps, name, key), words
         if trouble := _side_trouble(SIGNALS[name], source.positive):
             yield dotted_key(*steps, name, "positive"), trouble
         if trouble := _unit_trouble(SIGNALS[name], source.unit):
@@ -96,6 +98,23 @@ def _nearest_signal(name: str) -> str:
         if name.lower() in signal.aliases:
             return f"did you mean {own!r}?"
     return nearest(name, SIGNALS)
+
+
+def _channel_problems(source: SignalSource, quantity: Quantity) -> Iterator[Problem]:
+    """Which key says wrongly what the signal is read from, and why."""
+    if not source.names:
+        yield "channel", "missing; the pipeline needs it"
+    elif source.channel is not None:
+        if source.channels:
+            yield "channels", "channel is given too; write one of the two"
+        elif source.combine:
+            yield "combine", "one channel has nothing to be combined with; leave it out"
+    elif len({*source.channels}) < max(2, len(source.channels)):
+        yield "channels", f"write two or more, each once, got {[*source.channels]}"
+    elif source.combine is None:
+        yield "combine", 'missing; write combine = "mean" where the channels measure the same'
+    elif quantity.name in POSITIONS:
+        yield "channels", "two antennas stand in two places; take one"
 
 
 def _side_trouble(quantity: Quantity, positive: str | None) -> str:

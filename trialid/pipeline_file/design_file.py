@@ -11,17 +11,9 @@ from trialid.errors import UnitError, nearest
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file import check_form, content_of, load, table_of
+from trialid.pipeline_file.allowed_values import Count, Names, NotEmpty, Whole, Window, with_value
 from trialid.pipeline_file.complaints import Problem, dotted_key, refusal
-from trialid.pipeline_file.form import (
-    Count,
-    Described,
-    GivenValue,
-    Names,
-    NotEmpty,
-    Whole,
-    Window,
-    with_value,
-)
+from trialid.pipeline_file.form import Described, GivenValue
 from trialid.pipeline_file.named_file import Origin, ReadFile
 from trialid.pipeline_file.section import NotNegative, Number, Positive, Section
 

@@ -1,96 +1,36 @@
 """What a pipeline file may hold: frozen sections, every key and value checked where it stands."""
 
 from collections.abc import Mapping
-from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import (
-    AfterValidator,
-    AllowInfNan,
-    BeforeValidator,
-    Field,
-    PlainValidator,
-    PrivateAttr,
-    Strict,
+from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, PrivateAttr
+
+from trialid.pipeline_file.allowed_values import (
+    Bounds,
+    Delay,
+    Factor,
+    Fault,
+    Instant,
+    Names,
+    NotEmpty,
+    Nuisance,
+    Period,
+    Rounds,
+    Seconds,
+    SomeNames,
+    Unit,
+    Whole,
+    Window,
+    Zone,
+    candidate_names,
+    not_zero,
+    with_path,
+    with_value,
 )
-
-from trialid.errors import nearest
-from trialid.ingest.times.local_time import known_zone
-from trialid.names import units
 from trialid.pipeline_file.named_file import Origin, PythonFile, ReadFile, ReadLog
 from trialid.pipeline_file.prior_section import OR_SHIP, SHIP, Prior, Word
 from trialid.pipeline_file.section import NotNegative, Number, Positive, Section
-
-
-def _rising(interval: tuple[float, float]) -> tuple[float, float]:
-    low, high = interval
-    if not low < high:
-        raise ValueError(f"[{low:g}, {high:g}] runs backwards; write [low, high]")
-    return interval
-
-
-def _unit_text(unit: str) -> str:
-    if unit == "?":
-        raise ValueError("is still open; write the unit, like deg/s, m/s or kn")
-    if units.TEXT.fullmatch(unit) is None:
-        raise ValueError(f"{unit!r} is not a unit; write it like deg/s, m/s or kg*m^2")
-    return unit
-
-
-def with_value(given: Any) -> Any:
-    """A bare number as a value without a unit."""
-    return given if isinstance(given, dict) else {"value": given}
-
-
-def _with_path(given: Any) -> Any:
-    return {"path": given} if isinstance(given, str) else given
-
-
-def _not_zero(number: float) -> float:
-    if number == 0.0:
-        raise ValueError("a gain of zero leaves nothing of the signal")
-    return number
-
-
-def _countable(period: float) -> float:
-    if period < 1e-12:
-        raise ValueError(f"{period:g} s are less than any clock tells apart")
-    return period
-
-
-def _candidates(given: Any) -> Literal["all", "none"] | tuple[str, ...]:
-    if given in ("all", "none"):
-        return given
-    if isinstance(given, list) and all(isinstance(name, str) for name in given):
-        return tuple(given)
-    hint = nearest(str(given), ("all", "none"))
-    raise ValueError(f'must be "all", "none" or a list of effects, got {given!r} ({hint})')
-
-
-Count = Annotated[int, Strict(), Field(ge=1)]
-Rounds = Annotated[Count, Field(le=10_000)]
-"""Of searches, steps or shares of a sample; ten thousand of any take hours."""
-Seconds = Annotated[Number, Field(ge=-1e10, le=1e10)]
-"""Three hundred years either way: a clock that was never set lies fifty off."""
-Delay = Annotated[Number, Field(ge=-3600.0, le=3600.0)]
-"""An hour: no sensor is later, and a clock that is has an offset."""
-Period = Annotated[Positive, Field(le=1e6), AfterValidator(_countable)]
-"""So that samples can be counted; whether there are too many or too few is said with the record."""
-Factor = Annotated[Number, Field(ge=-1e15, le=1e15)]
-"""Of counts of any width to a unit; beyond, the square of a value overflows in a sum."""
-Whole = Annotated[int, Strict(), Field(ge=0)]
-Unit = Annotated[str, AfterValidator(_unit_text)]
-Names = tuple[str, ...]
-SomeNames = Annotated[Names, Field(min_length=1)]
-Zone = Annotated[str, AfterValidator(known_zone)]
-Instant = Number | datetime
-NotEmpty = Annotated[str, Field(min_length=1)]
-Window = Annotated[tuple[Seconds, Seconds], AfterValidator(_rising)]
-Limit = Annotated[Number, AllowInfNan(True)]
-Bounds = Annotated[tuple[Limit, Limit], AfterValidator(_rising)]
-Fault = Literal["range", "dropouts", "spikes", "saturation", "stuck"]
-Nuisance = Literal["initial_state", "bias", "rudder_offset", "delay", "current"]
 
 
 class SignalSource(Section):
@@ -100,11 +40,16 @@ class SignalSource(Section):
     share of full deflection, a rudder indicator that reads two degrees at midships.
     """
 
-    channel: str
+    channel: str | None = None
     """The channel's name, as `trialid inspect` lists it."""
+    channels: tuple[str, ...] = ()
+    """In place of `channel`: several that measure the same, like two rudders on one order or two
+    gyros; read alike, and combined."""
+    combine: Literal["mean"] | None = None
+    """With `channels`: how; the mean is known where all of them are."""
     unit: Unit | None = None
     """Unit of the logged numbers, like `deg/s`; left out: the one the log states."""
-    gain: Annotated[Factor, AfterValidator(_not_zero)] = 1.0
+    gain: Annotated[Factor, AfterValidator(not_zero)] = 1.0
     """What the logged number is multiplied by, in the channel's unit."""
     offset: Factor = 0.0
     """What is added after that, in the channel's unit."""
@@ -117,6 +62,11 @@ class SignalSource(Section):
     """How much later than the ship the channel shows it [s]."""
     keep: tuple[Fault, ...] = ()
     """Kinds of values that are not masked though they look like no measurement."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The channels that make up the signal, one or several."""
+        return self.channels if self.channel is None else (self.channel,)
 
 
 class ClockSection(Section):
@@ -154,7 +104,7 @@ class LogSection(Section):
     """How the log's clock lies to that of the other logs."""
 
 
-Log = Annotated[LogSection, BeforeValidator(_with_path)]
+Log = Annotated[LogSection, BeforeValidator(with_path)]
 
 
 class TrialSection(Section):
@@ -254,7 +204,7 @@ class QuietStretch(Section):
 class DiagnoseSection(Section):
     """The search for the missing effect."""
 
-    candidates: Annotated[Literal["all", "none"] | Names, PlainValidator(_candidates)] = "all"
+    candidates: Annotated[Literal["all", "none"] | Names, PlainValidator(candidate_names)] = "all"
     """Effects that may be missing: all of the catalogue, none, or a list of names."""
     noise: Mapping[str, Positive] = {}
     """Stated sensor figure by output, standard deviation in the unit reports show (deg/s, deg)."""

@@ -25,9 +25,10 @@ def sources_of(pipeline: Pipeline) -> tuple[SourceRow, ...]:
 def signals_of(pipeline: Pipeline) -> tuple[SignalRow, ...]:
     """Which channel each signal of each trial was read from."""
     return tuple(
-        SignalRow(trial=trial.name, signal=quantity, channel=source.channel)
+        SignalRow(trial=trial.name, signal=quantity, channel=channel)
         for trial in pipeline.trials
         for quantity, source in trial.signals.items()
+        for channel in source.names
     )
 
 

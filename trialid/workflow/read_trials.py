@@ -28,8 +28,9 @@ def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
 def align_trial(pipeline: Pipeline, trial: TrialSection) -> Trial:
     """Logs of one trial, read and brought onto one clock."""
     sources = [
-        SignalSource(q, s.channel, s.unit, s.positive, s.angle, s.delay, s.gain, s.offset)
+        SignalSource(q, name, s.unit, s.positive, s.angle, s.delay, s.gain, s.offset, s.combine)
         for q, s in trial.signals.items()
+        for name in s.names
     ]
     logs = [LogFile(g.path, Aids(g.template, g.dbc, g.zone)) for g in trial.logs]
     clocks = [_log_clock(g.clock) for g in trial.logs]

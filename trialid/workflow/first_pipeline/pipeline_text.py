@@ -72,6 +72,7 @@ def _trial(path: Path, name: str, trial: Chosen, *, held_out: bool) -> Iterator[
         for other in signal.others[:MOST_OTHERS]:
             words = f"# or {signal.quantity} = {{ {_source(signal, other)} }}"
             yield f"{words}  # {_facts(other)}"
+        yield from _mean(signal)
         if len(signal.others) > MOST_OTHERS:
             yield f"# and {len(signal.others) - MOST_OTHERS} more sources: `trialid inspect`"
     yield from _track(trial.survey.channels.values())
@@ -118,20 +119,42 @@ def _facts(one: ChannelInspection) -> str:
     return f"{one.rate:.3g} Hz{gaps}"
 
 
+def _mean(signal: Signal) -> Iterator[str]:
+    """The mean of the sources that are read like the chosen one, commented out."""
+    chosen = _keys(signal, signal.source)
+    alike = [
+        one.name
+        for one in signal.others
+        if {**_keys(signal, one), "channel": signal.source.name} == chosen
+    ]
+    if not alike:
+        return
+    names = ", ".join(map(quote, [signal.source.name, *alike]))
+    rest = _written({key: value for key, value in chosen.items() if key != "channel"})
+    yield f'# or {signal.quantity} = {{ channels = [{names}], combine = "mean", {rest} }}'
+
+
 def _source(signal: Signal, one: ChannelInspection) -> str:
+    return _written(_keys(signal, one))
+
+
+def _written(keys: Mapping[str, str | None]) -> str:
+    return ", ".join(f"{key} = {quote(value)}" for key, value in keys.items() if value)
+
+
+def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
     """The keys of one signal; of another source than the chosen one, its own unit."""
     own = one is signal.source
     unit = signal.unit if own else one.unit or one.unit_in_name or signal.unit
     positive = signal.positive if own else (one.guess and one.guess.positive) or signal.positive
     if signal.quantity not in RUDDERS and positive == "starboard":
         positive = None  # as the dictionary has it
-    keys: Mapping[str, str | None] = {
+    return {
         "channel": one.name,
         "as": one.angle,
         "unit": None if one.angle else unit,
         "positive": positive,
     }
-    return ", ".join(f"{key} = {quote(value)}" for key, value in keys.items() if value)
 
 
 def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:
