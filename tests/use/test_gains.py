@@ -124,7 +124,10 @@ def stepped(model: ShipModel, gains, step: float) -> tuple[float, float]:
     return max(path) - 1.0, (int(outside[-1]) + 2) * h
 
 
-def test_a_doubtful_ship_has_wider_promises_and_a_wild_one_none() -> None:
+def test_a_doubtful_ship_has_wider_promises_and_a_wild_one_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("trialid.design.steering.gains.NUMBER", 60)
     sure = rate_gains(ship(MODEL), known_by("Ndelta", 0.02 * abs(MODEL.value("Ndelta"))))
     unsure = rate_gains(ship(MODEL), known_by("Ndelta", 0.15 * abs(MODEL.value("Ndelta"))))
     for name in ("overshoot", "delay_margin"):
