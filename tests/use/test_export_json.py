@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from test_bad_input import trialid_
 
-from trialid.export.model.model_kinds import KINDS
+from trialid.names.model_kinds import KINDS
 from trialid.workflow.use.hand_over import WRITERS
 
 AS_JSON = ("--as", "json", "--out")

@@ -11,7 +11,7 @@ import click
 from trialid import temporary
 from trialid.cli.console import note, progress_bar, say
 from trialid.errors import TrialidError
-from trialid.export.model.model_kinds import KINDS
+from trialid.names.model_kinds import KINDS
 
 FILE = click.Path(path_type=Path)
 FULL: Final = 90.0

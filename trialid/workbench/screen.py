@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trialid.export.model.model_kinds import KINDS
 from trialid.names import labels
+from trialid.names.model_kinds import KINDS
 from trialid.report.pages import page as report
 from trialid.report.pictures import bars
 from trialid.report.pictures.panels import encode_floats, trial_panels

@@ -11,7 +11,7 @@ from typing import Any
 from trialid.design.prediction.seen_range import seen_ranges
 from trialid.diagnosis.diagnose import examine_fit
 from trialid.errors import PipelineError, nearest
-from trialid.export.model.model_kinds import KINDS
+from trialid.names.model_kinds import KINDS
 from trialid.progress import silent
 from trialid.threads import one_thread
 from trialid.workbench.shown import Shown

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from trialid.effects import CATALOGUE
-from trialid.export.model.model_kinds import KINDS
+from trialid.names.model_kinds import KINDS
 from trialid.result.fit_rows import ParameterRow
 from trialid.result.schema import Result
 

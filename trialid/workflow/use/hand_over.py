@@ -107,4 +107,4 @@ WRITERS: Final[Mapping[str, Write]] = {
     "ardupilot": _ardupilot,
     "gazebo": _gazebo,
 }
-"""What each kind's files hold; `trialid.export.model.model_kinds` says what they are."""
+"""What each kind's files hold; `trialid.names.model_kinds` says what they are."""
