@@ -9,7 +9,7 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
@@ -61,6 +61,18 @@ def replace_whole(path: Path) -> Iterator[Path]:
         ready = Path(folder, path.name)
         yield ready
         ready.replace(path)
+
+
+def replace_all(contents: Mapping[Path, bytes]) -> None:
+    """Write files of one folder that belong together: none takes its place before all are whole."""
+    folder = next(iter(contents)).parent
+    sweep(folder)
+    with tempfile.TemporaryDirectory(prefix=prefix(), dir=folder) as made:
+        ready = {path: Path(made, path.name) for path in contents}
+        for path, content in contents.items():
+            ready[path].write_bytes(content)
+        for path, whole in ready.items():
+            whole.replace(path)
 
 
 def write_new(path: Path, text: str) -> None:

@@ -35,7 +35,7 @@ def logged(angle, noise=0.02, ship=TRUE, stated=None):
     signals = {n: passage.trial.signals[n].copy() for n in ("delta", "n", "r", "phi")}
     u = np.full(passage.trial.samples, stated)
     if stated is None:
-        u = passage.trial.signals["u"] - passage.trial.signals.get("u_lost", 0.0)
+        u = passage.trial.signals["u"] - passage.trial.signals.get("u_off", 0.0)
         u = u + noise * np.random.default_rng(angle).standard_normal(passage.trial.samples)
     valid = {n: np.ones(passage.trial.samples, dtype=bool) for n in (*signals, "u")}
     return Trial(f"zigzag-{angle}", "fit", 0.5, {**signals, "u": u}, valid)
@@ -103,7 +103,7 @@ def test_the_track_goes_by_the_speed_that_is_left():
     ship = with_speed_loss(KEEPING, law)
     passage = carry_out(ship, zigzag(20 * D, 20 * D), 20.0, 300.0)
     signals = passage.trial.signals
-    left = 7.33 - signals["u_lost"]
+    left = 7.33 - signals["u_off"]
     assert left.min() < 6.5
     run = np.hypot(np.diff(passage.x), np.diff(passage.y)).sum()
     speeds = np.hypot(left, signals["v"])

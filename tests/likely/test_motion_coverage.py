@@ -6,8 +6,8 @@ from measures_coverage import CASES, fitted
 
 from trialid.design.following import sailed_ship, vessel_of
 from trialid.design.helm import carry_out
-from trialid.design.likely_spread import likely_spread
-from trialid.design.predicted_motion import sail_manoeuvre
+from trialid.design.prediction.likely_spread import likely_spread
+from trialid.design.prediction.predicted_motion import sail_manoeuvre
 from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, in_calm
 from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.noise.split import split

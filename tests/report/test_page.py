@@ -325,7 +325,7 @@ def test_whoever_has_no_mouse_or_no_eyes_finds_everything(html):
 def test_the_page_goes_from_the_verdict_to_what_to_do_next(html):
     order = re.findall(r'<section id="([\w-]+)"', html)
     assert order == ["verdict", "history", "trials", "error", "where", "missing", "proposed",
-                     "parameters", "next", "fit", "origin"]  # fmt: skip
+                     "parameters", "use", "next", "fit", "origin"]  # fmt: skip
 
 
 def test_hostile_names_are_text_in_every_section(result, series):

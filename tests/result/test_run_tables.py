@@ -6,7 +6,7 @@ import pytest
 from trialid.report.tables import run_tables
 from trialid.report.tables.rounded_table import Figure
 from trialid.result.change_rows import ChangePart, MovedRow, StepRow
-from trialid.result.finding_rows import CandidateRow, ImoPart, MeasureRow, OvershootRow, TurnRow
+from trialid.result.finding_rows import CandidateRow
 from trialid.result.fit_rows import (
     AccuracyPart,
     FitPart,
@@ -18,6 +18,7 @@ from trialid.result.fit_rows import (
     StabilityPart,
     TrialRow,
 )
+from trialid.result.imo_rows import ImoPart, MeasureRow, OvershootRow, TurnRow
 from trialid.result.schema import Result
 
 DEG = float(np.rad2deg(1.0))

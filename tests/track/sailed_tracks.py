@@ -10,7 +10,7 @@ from s175q import MODEL, SHAFT
 from trialid.accuracy.parameter_table import Accuracy, Subject, assess
 from trialid.design import manoeuvres
 from trialid.design.helm import carry_out, vessel
-from trialid.design.likely_spread import LikelySpread, likely_spread
+from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.search.augment import augment
 from trialid.effects import CATALOGUE

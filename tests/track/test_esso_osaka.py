@@ -7,7 +7,7 @@ import pytest
 from sailed_tracks import accuracy
 
 from trialid.design.imo.turns import find_turns, turns
-from trialid.design.likely_spread import likely_spread
+from trialid.design.prediction.likely_spread import likely_spread
 from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.search.augment import augment
 from trialid.effects import CATALOGUE

@@ -15,9 +15,9 @@ from trialid.pipeline_file.design_file import load_design
 from trialid.report.pages.folder import Finished
 from trialid.report.pages.imo_form import form, write_form
 from trialid.result import json_file
-from trialid.result.finding_rows import ImoPart, MeasureRow, TurnRow
 from trialid.result.fit_rows import ModelPart, TrialRow
 from trialid.result.imo import UNRELIABLE
+from trialid.result.imo_rows import ImoPart, MeasureRow, TurnRow
 from trialid.result.schema import Result
 from trialid.workflow.design_run import plan
 

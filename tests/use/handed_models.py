@@ -8,7 +8,7 @@ from s175q import ROOT
 from typical import wave
 
 from trialid import effects, pipeline_file
-from trialid.design.seen_range import SeenRange
+from trialid.design.prediction.seen_range import SeenRange
 from trialid.effects import CATALOGUE
 from trialid.export.model.fitted_model import FittedModel, FittedParameter
 from trialid.ship.model import ShipModel

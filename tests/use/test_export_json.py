@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from test_bad_input import trialid_
 
-from trialid.cli.export_command import KINDS
-from trialid.workflow.use.hand_over import FORMATS
+from trialid.names.model_kinds import KINDS
+from trialid.workflow.use.hand_over import WRITERS
 
 AS_JSON = ("--as", "json", "--out")
 
@@ -65,15 +65,15 @@ def test_a_fit_without_a_verdict_is_marked(run_folder: Path, tmp_path: Path) -> 
     found = written(spoilt, tmp_path / "model.json", "--anyway")
     assert not found["reliable"]
     assert found["words"][0] == "no fit: the search did not end"
-    for kind in ("c", "python", "ship"):
-        out = tmp_path / f"marked{KINDS[kind][0]}"
-        options = ("--as", kind, "--out", str(out), "--anyway")
+    for kind in ("c", "python", "ship", "nomoto", "ardupilot", "gazebo"):
+        out = tmp_path / f"marked-{kind}{KINDS[kind].suffixes[0]}"
+        options = ("--as", kind, "--out", str(out), "--anyway", *KINDS[kind].needs.split())
         trialid_("export", str(spoilt), *options)
         assert "no fit: the search did not end" in out.read_text(encoding="utf-8")
 
 
 def test_every_kind_is_one_of_the_command() -> None:
     """The command knows them by name without what writes them: it answers at once."""
-    assert {name: one.suffixes for name, one in FORMATS.items()} == KINDS
+    assert WRITERS.keys() == KINDS.keys()
     told = trialid_("export")
     assert (told.exit_code, told.stderr.count("\n")) == (2, 1)

@@ -96,4 +96,4 @@ def test_the_command_writes_it(run_folder: Path, tmp_path: Path) -> None:
     again = trialid_("export", str(run_folder), "--as", "python", "--out", str(out))
     assert (again.exit_code, again.stderr.count("\n")) == (2, 1)
     other = trialid_("export", str(run_folder), "--as", "python", "--out", str(tmp_path / "x.c"))
-    assert "writes a file that ends in .py" in other.stderr
+    assert "the suffix says the format, .py; " in other.stderr

@@ -10,11 +10,14 @@ import s175q
 from test_bad_input import trialid_
 from test_simulate import known_by
 
+from trialid.design.following import approach_speeds
 from trialid.design.helm import sail, vessel
-from trialid.design.nomoto import NAMES, nomoto
+from trialid.design.steering.nomoto import NAMES, at_speeds, nomoto
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
+from trialid.progress import silent
 from trialid.ship.model import ShipModel
+from trialid.workflow.use.finished_model import finished_model
 
 EFFECTS = ("linear_hull", "linear_rudder", "linear_roll", "heel_yaw", "yaw_drag_rar")
 MODEL = ShipModel(s175q.SHIP, ("v", "p", "r", "phi"), tuple(CATALOGUE[n] for n in EFFECTS))
@@ -74,6 +77,43 @@ def test_a_ship_that_is_not_stable_is_told():
     assert found.values["K"] < 0.0
 
 
+def test_the_second_order_is_that_of_sway_and_yaw():
+    """T1 + T2 - T3 = T without roll; the transfer function is that of A and B at any frequency."""
+    flat = ShipModel(MODEL.ship, ("v", "r"), MODEL.effects[:2])
+    found = nomoto(ship(flat), known_by("Nr", 0.0))
+    T1, T2, T3 = (found.values[n] for n in ("T1", "T2", "T3"))
+    assert found.values["T"] == pytest.approx(T1 + T2 - T3)
+    assert T1 > T2 > 0.0
+    A, B = found.ship.A, found.ship.B
+    for omega in (0.003, 0.05, 1.0):
+        s = 1j * omega
+        exact = np.linalg.solve(s * np.eye(2) - A, B)[found.ship.turning]
+        reduced = found.values["K"] * (1 + T3 * s) / ((1 + T1 * s) * (1 + T2 * s))
+        assert exact == pytest.approx(reduced, rel=1e-9)
+    geared = (flat + CATALOGUE["rudder_servo"]).with_values({"T_delta": 4.0})
+    slow = nomoto(ship(geared), known_by("Nr", 0.0)).values
+    assert [slow[n] for n in ("T1", "T2", "T3")] == pytest.approx([T1, T2, T3])
+    rolling = nomoto(ship(MODEL), known_by("Nr", 0.0)).values
+    assert rolling["T1"] + rolling["T2"] - rolling["T3"] == pytest.approx(rolling["T"], rel=0.1)
+
+
+def test_numbers_of_the_prime_system_hold_at_other_speeds():
+    plain, fast = at_speeds(ship(MODEL - "heel_yaw"), known_by("Nr", 0.0), (7.33, 14.66))
+    assert fast.values["K_prime"] == pytest.approx(plain.values["K_prime"], rel=0.02)
+    assert fast.values["K"] == pytest.approx(2.0 * plain.values["K"], rel=0.02)
+    assert fast.values["T3"] == pytest.approx(0.5 * plain.values["T3"], rel=0.02)
+
+
+def test_speeds_are_those_of_the_trials(run_folder: Path):
+    """The file's own, and another where a trial was approached at it."""
+    fit = finished_model(run_folder, silent).fit
+    assert approach_speeds(fit) == (7.33,)
+    score = fit.scores[0]
+    slow = replace(score.trial, signals={**score.trial.signals, "u": np.full(600, 5.0)}, valid={})
+    other = replace(fit, scores=(replace(score, trial=slow), *fit.scores[1:]))
+    assert approach_speeds(other) == (7.33, 5.0)
+
+
 def test_without_a_rudder_there_is_none():
     with pytest.raises(DesignError):
         nomoto(ship(MODEL - "linear_rudder"), known_by("Nr", 0.0))
@@ -84,10 +124,19 @@ def test_the_command_writes_them(run_folder: Path, tmp_path: Path):
     told = trialid_("export", str(run_folder), "--as", "nomoto", "--out", str(out))
     assert told.exit_code == 0, told.stderr
     found = json.loads(out.read_text(encoding="utf-8"))
-    assert (found["schema"], found["speed"], found["stable"]) == ("trialid-nomoto/1", 7.33, True)
-    for number in found["numbers"].values():
+    [at] = found["at"]
+    assert (found["schema"], at["speed"], at["stable"]) == ("trialid-nomoto/1", 7.33, True)
+    assert set(at["numbers"]) == {*NAMES}
+    for number in at["numbers"].values():
         low, high = number["likely"]
         assert low < number["value"] < high
+    space = at["state_space"]
+    A, B = np.array(space["A"]), np.array(space["B"])
+    assert (np.array(space["A_from"]) <= A).all()
+    assert (np.array(space["A_to"]) >= A).all()
+    r = space["states"].index("r")
+    steady = -np.linalg.solve(A, B)[r]
+    assert steady == pytest.approx(at["numbers"]["K"]["value"])
     true = nomoto(ship(replace(MODEL, effects=MODEL.effects[:3])), known_by("Nr", 0.0)).values
-    low, high = found["numbers"]["K"]["likely"]
+    low, high = at["numbers"]["K"]["likely"]
     assert low < true["K"] < high

@@ -11,11 +11,11 @@ from test_bad_input import trialid_
 
 from trialid import ingest
 from trialid.accuracy.likely import Rows, stand
-from trialid.design import predicted_motion
 from trialid.design.following import vessel_of
 from trialid.design.imo.speed_loss import NAMES
-from trialid.design.likely_spread import LikelySpread
-from trialid.design.predicted_motion import sail_manoeuvre, sail_orders
+from trialid.design.prediction import predicted_motion
+from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.design.prediction.predicted_motion import sail_manoeuvre, sail_orders
 from trialid.errors import TrialidError
 from trialid.progress import silent
 from trialid.trial import Trial

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import stdtrit  # scipy.stats would take another 0.4 s to import
 
 from trialid.arrays import Vector
@@ -144,9 +145,7 @@ class Standing:
         """
         known = self.known if slopes is None else _through(self.known, slopes)
         models = [_model(known, r) for r in (Rival("", (), ()), *self.rivals)]
-        cost = np.array([m.cost for m in models])
-        weights = np.exp(-0.5 * (cost - cost.min()) / np.array(COARSE)[:, None])
-        weights /= weights.sum(axis=1, keepdims=True)
+        weights = _weights([m.cost for m in models])
         moves, own = np.array([m.shift for m in models]), np.array([m.variance for m in models])
         shifts = weights @ moves
         about = (moves - shifts[:, None]) ** 2
@@ -157,6 +156,49 @@ class Standing:
         parts[0] = len(COARSE) * own[0]
         names = ("", *(r.name for r in self.rivals))
         return Averaged(shifts, variances, tuple(names[i] for i in parts.argmax(axis=0)))
+
+    def draw(self, number: int, rng: np.random.Generator) -> "Drawn":
+        """What might be so instead, drawn as often as each model of what is missing stands.
+
+        Each coarseness has half of the draws; a range, which embraces what both say, is wider.
+        """
+        models = [Rival("", (), ()), *self.rivals]
+        found = [_posterior(self.known, r) for r in models]
+        chances = np.mean(_weights([m.cost for m in found]), axis=0)
+        which = rng.choice(len(models), size=number, p=chances)
+        columns = np.zeros((number, self.known.moves.shape[1] - 1))
+        for m in np.unique(which):
+            rows, one = np.flatnonzero(which == m), found[m]
+            white = rng.standard_normal((len(rows), len(one.places)))
+            drawn = one.expected + white @ np.linalg.cholesky(one.covariance).T
+            columns[np.ix_(rows, np.array(one.places, dtype=int) - 1)] = drawn * one.sizes
+        return Drawn(which - 1, -columns @ self.known.moves[:, 1:].T, columns)
+
+
+def _weights(costs: Sequence[float]) -> Vector:
+    """How each model stands, by each coarseness; (len(COARSE), n), rows of sum one."""
+    cost = np.array(costs)
+    weights = np.exp(-0.5 * (cost - cost.min()) / np.array(COARSE)[:, None])
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What draws suppose, beside noise.
+
+    Attributes
+    ----------
+    rivals
+        Place of what is missing among the rivals, -1 for nothing; (n,).
+    moves
+        What the fitted parameters are off by, in their units; (n, n_theta).
+    columns
+        What was held fixed is off by, then the size of what is missing; (n, n_h + n_S).
+    """
+
+    rivals: NDArray[np.int64]
+    moves: Vector
+    columns: Vector
 
 
 def average(rows: Rows, rivals: Sequence[Rival]) -> Averaged:
@@ -221,18 +263,38 @@ class _Model:
     variance: Vector
 
 
-def _model(known: _Reduced, rival: Rival) -> _Model:
+@dataclass(frozen=True)
+class _Posterior:
+    """What the record says of the columns of a model, in sizes, and -2 log of its standing."""
+
+    places: list[int]
+    sizes: Vector
+    expected: Vector
+    covariance: Vector
+    cost: float
+
+
+def _posterior(known: _Reduced, rival: Rival) -> _Posterior:
     """What the record says if this is missing, and all that was held fixed is uncertain."""
     held = len(known.deviations)
     places = [*range(1, held + 1), *(1 + held + c for c in rival.columns)]
     sizes = np.append(known.deviations, rival.deviations)
     gram = known.gram[np.ix_(places, places)] * np.outer(sizes, sizes) / known.variance
     moment = known.gram[places, 0] * sizes / known.variance
-    covariance = np.linalg.inv(gram + np.eye(len(places)))
+    covariance = np.asarray(np.linalg.inv(gram + np.eye(len(places))), dtype=np.float64)
     expected = covariance @ moment
-    moves = known.moves[:, places] * sizes
+    found = _Posterior(places, sizes, expected, covariance, 0.0)
+    return replace(
+        found, cost=len(rival.columns) * float(np.log(known.independent)) - float(moment @ expected)
+    )
+
+
+def _model(known: _Reduced, rival: Rival) -> _Model:
+    """What that does to the parameters, or to what follows from them."""
+    found = _posterior(known, rival)
+    moves, expected = known.moves[:, found.places] * found.sizes, found.expected
     return _Model(
-        cost=len(rival.columns) * float(np.log(known.independent)) - float(moment @ expected),
+        cost=found.cost,
         shift=-moves @ expected,
-        variance=np.einsum("ij,jk,ik->i", moves, covariance, moves),
+        variance=np.einsum("ij,jk,ik->i", moves, found.covariance, moves),
     )

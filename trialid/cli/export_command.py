@@ -2,6 +2,7 @@
 
 import json
 import sys
+from math import radians
 from pathlib import Path
 from typing import Final
 
@@ -10,17 +11,11 @@ import click
 from trialid import temporary
 from trialid.cli.console import note, progress_bar, say
 from trialid.errors import TrialidError
+from trialid.names.model_kinds import KINDS
 
 FILE = click.Path(path_type=Path)
-KINDS: Final = {
-    "ship": (".toml",),
-    "json": (".json",),
-    "python": (".py",),
-    "c": (".c", ".h"),
-    "fmu": (".fmu",),
-    "nomoto": (".json",),
-}
-"""What a model can be written as, and how the files end; `hand_over` has what they hold."""
+FULL: Final = 90.0
+"""deg beyond which no rudder goes."""
 
 
 @click.command(short_help="Write the fitted model: ship file, JSON, NumPy, C, FMU.")
@@ -29,14 +24,22 @@ KINDS: Final = {
     "--as",
     "kind",
     type=click.Choice([*KINDS]),
-    help="ship: a ship file for a next pipeline; json: plain data; python: one file that needs "
-    "NumPy alone; c: C99 with a header; fmu: FMI 2.0 for co-simulation; nomoto: K and T.",
+    help="; ".join(f"{name}: {kind.words}" for name, kind in KINDS.items()) + ".",
 )
 @click.option(
     "--out",
     type=FILE,
     metavar="FILE",
     help="Where; by default the name of the run's folder and what it is, here.",
+)
+@click.option(
+    "--bandwidth",
+    type=float,
+    metavar="RAD/S",
+    help="Of gains: how fast; by default as fast as the ship (pid), or twice that (ardupilot).",
+)
+@click.option(
+    "--full-rudder", type=float, metavar="DEG", help="Of ardupilot: rudder at full output."
 )
 @click.option("--force", is_flag=True, help="Replace what is there.")
 @click.option("--anyway", is_flag=True, help="Of a fit that carries no verdict, too.")
@@ -46,6 +49,8 @@ def export(
     run: Path | None,
     kind: str | None,
     out: Path | None,
+    bandwidth: float | None,
+    full_rudder: float | None,
     force: bool,
     anyway: bool,
     quiet: bool,
@@ -64,29 +69,48 @@ def export(
     if run is None or kind is None:
         missing = "argument 'RUN_DIR'" if run is None else f"option '--as' ({', '.join(KINDS)})"
         raise click.UsageError(f"Missing {missing}.")
-    places = _places(run, kind, out, force)
+    places = _places(run, kind, out, force=force)
     from trialid.workflow.use.finished_model import finished_model
-    from trialid.workflow.use.hand_over import FORMATS
+    from trialid.workflow.use.hand_over import WRITERS, Wishes
+
+    wishes = Wishes(bandwidth, None if full_rudder is None else radians(_rudder(full_rudder)))
 
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         model = finished_model(run, progress, anyway=anyway)
-        made = FORMATS[kind].write(model, places[0].stem)
-    for place in places:
-        try:
-            with temporary.replace_whole(place) as ready:
-                content = made[place.suffix]
-                ready.write_bytes(content if isinstance(content, bytes) else content.encode())
-        except OSError as error:
-            raise TrialidError(
-                f"--out {place}: {(error.strerror or str(error)).lower()}"
-            ) from error
+        made = WRITERS[kind](model, places[0].stem, wishes)
+    contents = {place: _bytes(made[place.suffix]) for place in places}
+    try:
+        temporary.replace_all(contents)
+    except OSError as error:
+        raise TrialidError(
+            f"--out {places[0]}: {(error.strerror or str(error)).lower()}"
+        ) from error
     if not quiet:
         for words in model.doubts:
             note(words)
         say(f"Written: {', '.join(map(str, places))}")
 
 
-def _places(run: Path, kind: str, out: Path | None, force: bool) -> list[Path]:
+def _bytes(content: str | bytes) -> bytes:
+    return content if isinstance(content, bytes) else content.encode()
+
+
+def _rudder(full: float) -> float:
+    """The angle of a full rudder [deg].
+
+    Raises
+    ------
+    TrialidError
+        It is none.
+    """
+    if not 0.0 < full <= FULL:
+        raise TrialidError(
+            f"--full-rudder {full:g}: expected an angle above 0 and at most {FULL:g} deg"
+        )
+    return full
+
+
+def _places(run: Path, kind: str, out: Path | None, *, force: bool) -> list[Path]:
     """Where the files go, checked before the work.
 
     Raises
@@ -94,18 +118,9 @@ def _places(run: Path, kind: str, out: Path | None, force: bool) -> list[Path]:
     TrialidError
         One is there already, or cannot be written, or is called by another ending.
     """
-    first = out or Path(f"{run.resolve().name}_{kind}{KINDS[kind][0]}")
-    if first.suffix != KINDS[kind][0]:
-        raise TrialidError(
-            f"--out {first}: --as {kind} writes a file that ends in {KINDS[kind][0]}"
-        )
-    if not first.parent.is_dir():
-        raise TrialidError(f"--out {first}: there is no folder {first.parent}; make it first")
-    places = [first.with_suffix(suffix) for suffix in KINDS[kind]]
-    for place in places:
-        if place.is_dir():
-            raise TrialidError(f"--out {first}: {place} is a folder; name a file")
-        if (place.exists() or place.is_symlink()) and not force:
-            raise TrialidError(f"--out {first}: {place} exists; name another, or add --force")
-    temporary.check_writable(first.parent)
+    from trialid.export import check_place
+
+    first = out or Path(f"{run.resolve().name}_{kind}{KINDS[kind].suffixes[0]}")
+    places = [first.with_suffix(suffix) for suffix in KINDS[kind].suffixes]
+    check_place(first, replace=force, formats=KINDS[kind].suffixes[:1], more=places[1:])
     return places

@@ -14,10 +14,10 @@ from trialid.accuracy.likely import WIDE, Standing
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.measure_slopes import Shows, measure_slopes
-from trialid.design.imo.speed_loss import speed_loss, with_speed_loss
+from trialid.design.imo.speed_loss import APPROACH, speed_loss, with_speed_loss
 from trialid.design.kinds import Test
-from trialid.design.likely_spread import LikelySpread, likely_spread
 from trialid.design.limits import Limits, excesses
+from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
@@ -37,6 +37,9 @@ MOVED: Final = 0.25
 """Share of the rudder's range that it is clocked over: 5 of the 20 deg of a zig-zag 10/10."""
 SPIKE: Final = 3
 """Moves as quick that there have to be: a wild sample makes two."""
+
+APART: Final = 0.05
+"""Share by which approach speeds differ that are two."""
 
 WORTH_SAILING: Final = 0.9
 """A test that leaves more than this share of a width is not proposed for it."""
@@ -272,6 +275,21 @@ def sailed_ship(fit: Fit) -> Vessel:
     """
     loss = speed_loss(fit)
     return vessel_of(fit) if loss is None else with_speed_loss(vessel_of(fit), loss.values)
+
+
+def approach_speeds(fit: Fit) -> tuple[float, ...]:
+    """The approach speed of the ship's file, then those of the fitted trials that differ [m/s].
+
+    Of a trial: what its speed log shows before turns cost any, as speed lost in turns is reckoned.
+    """
+    found = [fit.model.ship.particulars["U0"]]
+    for trial in (s.trial for s in fit.scores if s.trial.use == "fit" and "u" in s.trial.signals):
+        valid = trial.valid.get("u", np.ones(trial.samples, dtype=bool))
+        logged = trial.signals["u"][valid & np.isfinite(trial.signals["u"])]
+        speed = float(np.quantile(logged, APPROACH)) if len(logged) else 0.0
+        if speed > 0.0 and all(abs(speed - x) > APART * x for x in found):
+            found.append(speed)
+    return tuple(found)
 
 
 def by_name(catalogue: Mapping[str, Effect], names: Sequence[str]) -> tuple[Effect, Effect] | None:

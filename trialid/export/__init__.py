@@ -33,8 +33,15 @@ def provenance_beside(path: Path) -> Path | None:
     return path.with_name(f"{path.name}.json") if path.suffix.lower() == ".csv" else None
 
 
-def check_place(path: Path, *, replace: bool, formats: Collection[str] = FORMATS) -> None:
+def check_place(
+    path: Path, *, replace: bool, formats: Collection[str] = FORMATS, more: Collection[Path] = ()
+) -> None:
     """Refuse, before the work, a file that cannot or should not be written.
+
+    Parameters
+    ----------
+    more
+        Files that are written with it.
 
     Raises
     ------
@@ -47,10 +54,10 @@ def check_place(path: Path, *, replace: bool, formats: Collection[str] = FORMATS
         raise TrialidError(f"--out {path}: the suffix says the format, {known}; {given}")
     if not path.parent.is_dir():
         raise TrialidError(f"--out {path}: there is no folder {path.parent}; make it first")
-    for file in (path, provenance_beside(path)):
-        if file is not None and file.is_dir():
+    for file in filter(None, (path, provenance_beside(path), *more)):
+        if file.is_dir():
             raise TrialidError(f"--out {path}: {file} is a folder; name a file")
-        if file is not None and file.exists() and not replace:
+        if (file.exists() or file.is_symlink()) and not replace:
             raise TrialidError(f"--out {path}: {file} exists; name another, or add --force")
     temporary.check_writable(path.parent)
 

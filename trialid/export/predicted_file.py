@@ -10,7 +10,7 @@ import numpy as np
 
 from trialid import export
 from trialid.arrays import Vector
-from trialid.design.predicted_motion import PredictedMotion
+from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.errors import TrialidError
 from trialid.export.tracks import About, Track, stems, write_tracks
 from trialid.names import labels

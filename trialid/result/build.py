@@ -14,6 +14,7 @@ from trialid.design.imo.observed import Overshoot
 from trialid.design.imo.turns import TurnMeasure
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
+from trialid.design.steering.nomoto import Nomoto
 from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.where.finding import Finding
@@ -23,17 +24,7 @@ from trialid.identification.fit import Fit, step_halving
 from trialid.plugins import packages
 from trialid.result.accuracy_part import accuracy_part, weighting
 from trialid.result.change_rows import ChangePart, MovedRow, Pair, StepRow
-from trialid.result.finding_rows import (
-    FindingRow,
-    ImoPart,
-    ManoeuvreRow,
-    MeasuredRow,
-    OvershootRow,
-    RestRow,
-    ShareRow,
-    TurnRow,
-    WhereElsePart,
-)
+from trialid.result.finding_rows import FindingRow, RestRow, ShareRow, WhereElsePart
 from trialid.result.fit_rows import (
     FitPart,
     IntervalPart,
@@ -45,7 +36,7 @@ from trialid.result.fit_rows import (
     StartsPart,
 )
 from trialid.result.force_series import missing_force_part
-from trialid.result.imo import UNRELIABLE, condition_rows, measure_rows, sailed_part, sailing_words
+from trialid.result.imo import imo_part, sailed_part
 from trialid.result.json_file import finite
 from trialid.result.missing_rows import missing_rows, verdict_part
 from trialid.result.schema import Result
@@ -72,6 +63,7 @@ class Findings(Diagnosis):
     turns: tuple[TurnMeasure, ...] = ()
     manoeuvres: tuple[Found, ...] = ()
     measured: tuple[Measured, ...] = ()
+    steering: Nomoto | None = None
 
 
 def result_from(found: Findings, **beside: Any) -> Result:
@@ -97,7 +89,7 @@ def result_from(found: Findings, **beside: Any) -> Result:
             not_tried=dict(found.left_out),
             missing_force=None if found.force is None else missing_force_part(found.force),
             verdict=verdict_part(found.verdict, found.proposal),
-            imo=_imo(found),
+            imo=imo_part(found),
             sailed=None if found.ship is None else sailed_part(found.ship),
             before_after=_before_after(found),
             **beside,
@@ -223,24 +215,6 @@ def _where_else(found: Where) -> WhereElsePart:
         ),
         not_examined=found.not_examined,
         questions=found.questions,
-    )
-
-
-def _imo(found: Findings) -> ImoPart | None:
-    """Standard measures, predicted; overshoots the trials hold, measured beside predicted."""
-    if not found.measures or found.ship is None:
-        return None
-    reliable = found.verdict.kind != "no fit"
-    return ImoPart(
-        measures=measure_rows(found.measures, reliable=reliable),
-        sailed=sailing_words(found.ship),
-        doubt="" if reliable else UNRELIABLE,
-        speed_simulated="u" in found.before.fit.model.states,
-        overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
-        turns=tuple(TurnRow(**asdict(one)) for one in found.turns),
-        manoeuvres=tuple(ManoeuvreRow(**asdict(one)) for one in found.manoeuvres),
-        measured=tuple(MeasuredRow(**asdict(one)) for one in found.measured),
-        conditions=tuple(condition_rows([s.trial for s in found.before.fit.scores])),
     )
 
 

@@ -1,16 +1,31 @@
 """Standard measures of manoeuvring as plain data."""
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from trialid.design.helm import GEAR_STATE, Vessel
 from trialid.design.imo.speed_loss import NAMES, loses_speed
 from trialid.design.standard import Measure, in_calm
+from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.names import labels
-from trialid.result.finding_rows import ConditionRow, MeasureRow, SailedPart
+from trialid.result.imo_rows import (
+    ConditionRow,
+    ImoPart,
+    ManoeuvreRow,
+    MeasuredRow,
+    MeasureRow,
+    OvershootRow,
+    SailedPart,
+    SteeringRow,
+    TurnRow,
+)
 from trialid.trial import Trial
+
+if TYPE_CHECKING:
+    from trialid.result.build import Findings
 
 UNRELIABLE: Final = "The fit carries no verdict: none of these numbers is to be relied on."
 
@@ -76,4 +91,31 @@ def sailing_words(ship: Vessel) -> str:
     return (
         f"Sailed by simulation in calm deep water: approach at {how.speed:.3g} m/s, first to "
         f"starboard, rudder {rate}{steady}{speed}."
+    )
+
+
+def steering_rows(found: Nomoto) -> Iterator[SteeringRow]:
+    """Nomoto's numbers, a row each."""
+    for name, value in found.values.items():
+        yield SteeringRow(
+            name=name, value=value, unit=UNITS.get(name, "s"), likely=found.ranges.get(name)
+        )
+
+
+def imo_part(found: "Findings") -> ImoPart | None:
+    """Standard measures, predicted; overshoots the trials hold, measured beside predicted."""
+    if not found.measures or found.ship is None:
+        return None
+    reliable = found.verdict.kind != "no fit"
+    return ImoPart(
+        measures=measure_rows(found.measures, reliable=reliable),
+        sailed=sailing_words(found.ship),
+        doubt="" if reliable else UNRELIABLE,
+        speed_simulated="u" in found.before.fit.model.states,
+        overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
+        turns=tuple(TurnRow(**asdict(one)) for one in found.turns),
+        manoeuvres=tuple(ManoeuvreRow(**asdict(one)) for one in found.manoeuvres),
+        measured=tuple(MeasuredRow(**asdict(one)) for one in found.measured),
+        conditions=tuple(condition_rows([s.trial for s in found.before.fit.scores])),
+        steering=() if found.steering is None else tuple(steering_rows(found.steering)),
     )

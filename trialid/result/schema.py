@@ -13,9 +13,7 @@ from trialid.result.change_rows import ChangePart, GrownRow, StepRow
 from trialid.result.finding_rows import (
     CandidateRow,
     FindingRow,
-    ImoPart,
     MissingForcePart,
-    SailedPart,
     VerdictPart,
     WhereElsePart,
 )
@@ -27,6 +25,7 @@ from trialid.result.fit_rows import (
     SplitPart,
     TrialRow,
 )
+from trialid.result.imo_rows import ImoPart, SailedPart
 
 SCHEMA: Literal["trialid-result/1"] = "trialid-result/1"
 

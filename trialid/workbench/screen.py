@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trialid.names import labels
+from trialid.names.model_kinds import KINDS
 from trialid.report.pages import page as report
 from trialid.report.pictures import bars
 from trialid.report.pictures.panels import encode_floats, trial_panels
@@ -33,7 +34,7 @@ Plain = dict[str, Any]
 
 PARTS = (
     "title", "tabs", "about", "track", "where", "error", "history", "verdict", "now", "missing",
-    "model",
+    "model", "use",
 )  # fmt: skip
 """The pieces, each under the name of its place on the page and of its template."""
 
@@ -130,6 +131,7 @@ def _context(shown: Shown) -> Plain:
         "effects": model_rows.effects(shown),
         "masses": model_rows.masses(shown),
         "nuisance": run.nuisance,
+        "kinds": KINDS,
         "addable": sorted(set(shown.catalogue) - set(shown.pipeline.model.effects)),
         "equations": {name: effect.equation for name, effect in shown.catalogue.items()},
     }

@@ -17,18 +17,20 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from trialid.errors import PipelineError, TrialidError
+from trialid.errors import TrialidError
 from trialid.report import script
 from trialid.report.pages.page import page
 from trialid.result.json_file import plain
-from trialid.workbench import guide_page, screen
+from trialid.workbench import guide_page, screen, use_routes
 from trialid.workbench.desk import Desk
 from trialid.workbench.document import Outdated
 from trialid.workbench.guard import Guard, of_this_machine
 from trialid.workbench.hand_out import copy_pipeline, write_folder
+from trialid.workbench.sent import sent_object, text_in
+from trialid.workbench.use_desk import InUse
 
 SCRIPTS: Final = tuple(
-    ["workbench", "state", "complaints", "parts", "trials", "status", "edits", "keys"]
+    ["workbench", "state", "complaints", "parts", "trials", "status", "edits", "keys", "use"]
 )
 """The modules of the page's own script."""
 
@@ -63,11 +65,12 @@ def application(desk: Desk, token: str | None = None, *, local: bool = False) ->
         Route("/api/screen", _screen),
         Route("/api/series/{index}", _series),
         Route("/api/result", _result),
+        *use_routes.ROUTES,
         *(Route(f"/api/{name}", _post(act), methods=["POST"]) for name, act in ACTS.items()),
     ]
     app = Starlette(routes=routes, exception_handlers={TrialidError: _refused})
     app.router.redirect_slashes = False
-    app.state.desk = desk
+    app.state.desk, app.state.in_use = desk, InUse()
     return Guard(app, token, local or token is None)
 
 
@@ -208,11 +211,8 @@ Act = Callable[[Desk, dict[str, Any]], dict[str, Any]]
 
 def _post(act: Act) -> Callable[[Request], Any]:
     async def answered(request: Request) -> Response:
-        try:
-            asked = await request.json()
-        except (ValueError, RecursionError):  # a thousand brackets, one in another
-            asked = None
-        if not isinstance(asked, dict):
+        asked = await sent_object(request)
+        if asked is None:
             return JSONResponse({"error": "send one JSON object", "kind": "invalid"}, 400)
         desk = _desk(request)
         said = await run_in_threadpool(act, desk, asked)
@@ -227,12 +227,12 @@ def _edit(desk: Desk, asked: dict[str, Any]) -> dict[str, Any]:
 
 
 def _undo(desk: Desk, asked: dict[str, Any]) -> dict[str, Any]:
-    desk.undo(_text(asked, "version"))
+    desk.undo(text_in(asked, "version"))
     return {}
 
 
 def _redo(desk: Desk, asked: dict[str, Any]) -> dict[str, Any]:
-    desk.redo(_text(asked, "version"))
+    desk.redo(text_in(asked, "version"))
     return {}
 
 
@@ -250,7 +250,7 @@ def _export(desk: Desk, asked: dict[str, Any]) -> dict[str, Any]:
     shown = desk.shown
     name = asked.get("name")
     if name is not None:
-        return {"files": [copy_pipeline(shown.pipeline, _text(asked, "name"))]}
+        return {"files": [copy_pipeline(shown.pipeline, text_in(asked, "name"))]}
     return {"files": write_folder(shown)}
 
 
@@ -258,13 +258,6 @@ ACTS: Final[Mapping[str, Act]] = {
     "edit": _edit, "undo": _undo, "redo": _redo, "cancel": _cancel, "again": _again,
     "export": _export,
 }  # fmt: skip
-
-
-def _text(asked: Mapping[str, Any], key: str) -> str:
-    found = asked.get(key)
-    if not isinstance(found, str):
-        raise PipelineError(f"{key}: expected text")
-    return found
 
 
 async def _refused(request: Request, error: Exception) -> Response:

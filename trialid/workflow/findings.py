@@ -7,8 +7,9 @@ from trialid.design import following
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
 from trialid.design.imo import measured, observed, turns
-from trialid.design.likely_spread import likely_spread
+from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.separation import Separation
+from trialid.design.steering.nomoto import Nomoto, nomoto
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError
@@ -61,8 +62,16 @@ def find_out(
         proposal=proposal(fit, found.verdict, catalogue),
         narrowing=narrowing_trial(found, catalogue),
         ship=ship,
-        **_imo(pipeline, found.before),
+        **_imo(pipeline, found.before, ship),
     )
+
+
+def _steering(ship: Vessel | None, spread: LikelySpread) -> Nomoto | None:
+    """Nomoto's numbers of the fitted ship; None where she has none."""
+    try:
+        return None if ship is None else nomoto(ship, spread)
+    except DesignError:
+        return None
 
 
 def proposal(fit: Fit, verdict: Verdict, catalogue: Mapping[str, Effect]) -> Separation | None:
@@ -98,7 +107,7 @@ def _ship(fit: Fit) -> Vessel | None:
         return None
 
 
-def _imo(pipeline: Pipeline, done: Diagnosed) -> dict[str, Any]:
+def _imo(pipeline: Pipeline, done: Diagnosed, ship: Vessel | None) -> dict[str, Any]:
     """IMO's measures of the fitted ship and of the trials, where the pipeline asks for them."""
     if not pipeline.imo:
         return {}
@@ -114,4 +123,5 @@ def _imo(pipeline: Pipeline, done: Diagnosed) -> dict[str, Any]:
         "turns": turns.turns(fit, errors, spread),
         "manoeuvres": measured.manoeuvres(fit),
         "measured": read,
+        "steering": _steering(ship, spread),
     }

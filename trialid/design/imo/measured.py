@@ -16,7 +16,7 @@ from trialid.arrays import Vector
 from trialid.design.imo.excursions import LATE, order_sample
 from trialid.design.imo.recognise import Recognised, recognise
 from trialid.design.imo.sailed_trial import SailedTrial, numbers, sail_trial
-from trialid.design.likely_spread import LikelySpread, Range
+from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
 from trialid.trial import Trial

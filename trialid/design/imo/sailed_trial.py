@@ -15,7 +15,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.imo.measure_slopes import SMALL, Shows
 from trialid.design.imo.speed_loss import logged_loss, speed_loss
-from trialid.design.likely_spread import LikelySpread, Range
+from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.design.standard import AT_SEA
 from trialid.effects.track import current
 from trialid.errors import DesignError, EffectError, NotIdentifiable

@@ -25,27 +25,27 @@ from trialid.trial import Trial
 
 @effect(
     source="Son & Nomoto (1982): 10 % of speed lost at 5 deg of rudder, 55 % at 35 deg",
-    states={"u_lost": None},
+    states={"u_off": None},
 )
 def logged_loss(
     u: Number,
     r: Number,
     delta: Number,
-    u_lost: Number,
+    u_off: Number,
     L: Number,
     *,
     lost_in_turns: Any = Parameter(5.0, low=0.0, high=50.0),
     lost_by_rudder: Any = Parameter(0.5, low=0.0, high=5.0),
     lost_after: Any = Parameter(5.0, low=0.5, high=100.0, null=None),
 ) -> tuple[Steered, Rate]:
-    """Speed loss: u = u - u_lost,  d(u_lost)/dt = (a (r L)^2 + b (delta u)^2 - u u_lost) / (c L).
+    """Speed loss: u = u - u_off,  d(u_off)/dt = (a (r L)^2 + b (delta u)^2 - u u_off) / (c L).
 
     a is lost_in_turns, b lost_by_rudder, c lost_after, in ship lengths. Without b the speed begins
     to fall too late: both overshoots of a 20/20 of the S-175 then come out 1 % too large, with it
     0.2 % and 0.1 %.
     """
-    fall = lost_in_turns * (r * L) ** 2 + lost_by_rudder * (delta * u) ** 2 - u * u_lost
-    return Steered(u=-u_lost), Rate(u_lost=fall / (lost_after * L))
+    fall = lost_in_turns * (r * L) ** 2 + lost_by_rudder * (delta * u) ** 2 - u * u_off
+    return Steered(u=-u_off), Rate(u_off=fall / (lost_after * L))
 
 
 NAMES: Final = tuple(logged_loss.parameters)
@@ -114,7 +114,7 @@ def loses_speed(values: Mapping[str, float]) -> bool:
 
 def with_speed_loss(ship: Vessel, values: Mapping[str, float]) -> Vessel:
     """The ship losing speed in turns; as she is where her model says how, or nothing does."""
-    if not values or {"u", "u_lost"} & {*ship.model.all_states}:
+    if not values or {"u", "u_lost", "u_off"} & {*ship.model.all_states}:
         return ship
     model = (ship.model + logged_loss).with_values(values)
     return vessel(model, ship.period, ship.constants, ship.rudder_rate)

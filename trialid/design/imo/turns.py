@@ -19,7 +19,7 @@ from trialid.design.imo.excursions import (
 )
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.sailed_trial import Numbers, numbers, sail_trial
-from trialid.design.likely_spread import LikelySpread, Range
+from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.effects.track import CURRENT
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit, of_trial

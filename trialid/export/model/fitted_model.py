@@ -8,7 +8,7 @@ import numpy as np
 
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.arrays import Vector
-from trialid.design.seen_range import SeenRange
+from trialid.design.prediction.seen_range import SeenRange
 from trialid.identification.fit import Fit
 from trialid.result.fit_rows import ParameterRow
 from trialid.result.schema import Result

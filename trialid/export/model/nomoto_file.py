@@ -1,19 +1,23 @@
-"""Nomoto's K and T as JSON, with their likely ranges and what to know of them."""
+"""Nomoto's numbers and the state space as JSON, at each speed seen, with their likely ranges."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from trialid.design.nomoto import Nomoto
+import numpy as np
+
+from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.export.model.fitted_model import FittedModel
+from trialid.names import labels
 from trialid.result.json_file import finite
 
 SCHEMA: Final[Literal["trialid-nomoto/1"]] = "trialid-nomoto/1"
-UNITS: Final = {"K": "1/s", "T": "s", "K_prime": "1", "T_prime": "1"}
 UNSTABLE: Final = (
     "The ship is not directionally stable: K and T are negative, and a small order leads to no "
     "steady turn."
 )
+
+Row = tuple[float | None, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,34 +30,83 @@ class NomotoNumber:
 
 
 @dataclass(frozen=True, kw_only=True)
+class StateSpace:
+    """dx/dt = A x + B delta for small angles, r the output; SI, with the ends of each entry."""
+
+    states: tuple[str, ...]
+    units: tuple[str, ...]
+    input: str
+    A: tuple[Row, ...]
+    B: Row
+    A_from: tuple[Row, ...]
+    A_to: tuple[Row, ...]
+    B_from: Row
+    B_to: Row
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtSpeed:
+    """T dr/dt + r = K delta, delta positive to starboard, at a speed [m/s]; and second order.
+
+    r = K (1 + T3 s) / ((1 + T1 s) (1 + T2 s)) delta, of the rudder itself.
+    """
+
+    speed: float
+    stable: bool
+    numbers: Mapping[str, NomotoNumber] = field(default_factory=dict)
+    state_space: StateSpace
+
+
+@dataclass(frozen=True, kw_only=True)
 class NomotoFile:
-    """T dr/dt + r = K delta, delta positive to starboard, at a speed [m/s]."""
+    """What `trialid export --as nomoto` writes: the approach speed first, then others seen."""
 
     schema: Literal["trialid-nomoto/1"] = SCHEMA
     name: str
     reliable: bool
     words: tuple[str, ...] = ()
     origin: Mapping[str, str] = field(default_factory=dict)
-    speed: float
-    stable: bool
-    numbers: Mapping[str, NomotoNumber] = field(default_factory=dict)
+    at: tuple[AtSpeed, ...] = ()
 
 
-def nomoto_file(made: FittedModel, found: Nomoto) -> NomotoFile:
+def nomoto_file(made: FittedModel, found: Sequence[Nomoto]) -> NomotoFile:
     """The content of the file."""
-    numbers = {
-        name: NomotoNumber(value=value, unit=UNITS[name], likely=found.ranges.get(name))
-        for name, value in found.values.items()
-    }
+    stable = all(one.stable for one in found)
     whole: NomotoFile = finite(
         NomotoFile(
             name=made.name,
             reliable=made.reliable,
-            words=made.words if found.stable else (UNSTABLE, *made.words),
+            words=made.words if stable else (UNSTABLE, *made.words),
             origin=dict(made.origin),
-            speed=found.speed,
-            stable=found.stable,
-            numbers=numbers,
+            at=tuple(_at_speed(one) for one in found),
         )
     )
     return whole
+
+
+def _at_speed(found: Nomoto) -> AtSpeed:
+    numbers = {
+        name: NomotoNumber(value=value, unit=UNITS.get(name, "s"), likely=found.ranges.get(name))
+        for name, value in found.values.items()
+    }
+    ship = found.ship
+    space = StateSpace(
+        states=ship.states,
+        units=tuple(labels.quantity(s).unit for s in ship.states),
+        input=ship.rudder,
+        A=_rows(ship.A),
+        B=_row(ship.B),
+        A_from=_rows(found.A_likely[..., 0]),
+        A_to=_rows(found.A_likely[..., 1]),
+        B_from=_row(found.B_likely[..., 0]),
+        B_to=_row(found.B_likely[..., 1]),
+    )
+    return AtSpeed(speed=found.speed, stable=found.stable, numbers=numbers, state_space=space)
+
+
+def _rows(values: np.ndarray) -> tuple[Row, ...]:
+    return tuple(_row(row) for row in values)
+
+
+def _row(values: np.ndarray) -> Row:
+    return tuple(float(x) for x in values)

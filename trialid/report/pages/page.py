@@ -10,7 +10,7 @@ from trialid.names import labels, wording
 from trialid.report.pictures import bars, error_history, force_plots, panels, where_pictures
 from trialid.report.pictures.track_picture import track_picture
 from trialid.report.script import script
-from trialid.report.tables import imo_tables, run_tables
+from trialid.report.tables import imo_tables, run_tables, use_tables
 from trialid.report.words import advice, beforehand, doubt, ranking
 from trialid.result.change_rows import ChangePart
 from trialid.result.finding_rows import CandidateRow
@@ -65,6 +65,8 @@ def page(run: Result, series: Sequence[TrialSeries], forces: Sequence[ForceSerie
             physical=list(zip(run.physical, range_bars, strict=True)),
             nuisance=run.nuisance,
             axis=axis,
+            equations=list(use_tables.equations(run)),
+            commands=list(use_tables.commands(run)),
             outputs=run_tables.outputs_of(run),
             shown_trials=_shown_trials(run, series),
             imo_found=(imo_tables.manoeuvres(run), imo_tables.manoeuvre_numbers(run)),

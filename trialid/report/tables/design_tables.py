@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 from trialid.accuracy.weak import coefficient_label
 from trialid.names.wording import DASH
 from trialid.report.terminal.terminal import Words, add_row, new_table, number, percent
-from trialid.result.finding_rows import MeasureRow
+from trialid.result.imo_rows import MeasureRow
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -7,8 +7,8 @@ from trialid.names import labels
 from trialid.names.quantities import PARTICULARS
 from trialid.report.tables import imo_tables, run_tables
 from trialid.report.tables.rounded_table import Cell, Figure, Table, percent
-from trialid.result.finding_rows import ImoPart
 from trialid.result.fit_rows import ParameterRow
+from trialid.result.imo_rows import ImoPart
 from trialid.result.schema import Result
 
 CURRENT: Final = {"V_cn": "current to the north", "V_ce": "current to the east"}

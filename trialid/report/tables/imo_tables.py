@@ -2,7 +2,7 @@
 
 from trialid.names import wording
 from trialid.report.tables.rounded_table import Cell, Figure, Table
-from trialid.result.finding_rows import (
+from trialid.result.imo_rows import (
     ImoPart,
     ManoeuvreRow,
     MeasuredRow,

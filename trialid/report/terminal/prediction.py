@@ -5,7 +5,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from trialid.design.predicted_motion import TRACK, PredictedMotion
+from trialid.design.prediction.ranged_motion import TRACK, PredictedMotion
 from trialid.names import labels
 from trialid.report.terminal.terminal import Words, add_row, new_table, number
 

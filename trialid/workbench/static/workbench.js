@@ -6,6 +6,7 @@ import { addNamed, boundsLeft, entered, isEdit, send, tick, value } from "./edit
 import { activate, goBack, shortcut, tabKey } from "./keys.js";
 import { answer, byId, state } from "./state.js";
 import { edit, hear } from "./status.js";
+import { tryManoeuvre } from "./use.js";
 import { listenToPlots, setBeside, showStretch } from "./trials.js";
 
 function pressed(event) {
@@ -24,9 +25,11 @@ function changed(event) {
 }
 
 async function submitted(event) {
-  event.preventDefault();
   const form = event.target;
+  if (form.hasAttribute("action")) return;             // a download, which leaves the page as it is
+  event.preventDefault();
   if (form.id === "export-copy") await exported({ name: form.elements.name.value.trim() });
+  else if (form.id === "try") await tryManoeuvre(form);
   else if (form.dataset.do === "add") await addNamed(form.elements.effect);
 }
 

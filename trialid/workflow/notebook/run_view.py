@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from trialid.report.pictures.series_plot import Plot
+    from trialid.workflow.use.in_memory import Draws
 
 
 class RunView:
@@ -48,6 +49,8 @@ class RunView:
         self,
         *manoeuvre: str | float,
         period: float | None = None,
+        what_if: Mapping[str, float] | None = None,
+        without: Sequence[str] = (),
         anyway: bool = False,
         **inputs: "Sequence[float]",
     ) -> "pd.DataFrame":
@@ -56,10 +59,13 @@ class RunView:
         Parameters
         ----------
         manoeuvre
-            Its name and angles [deg]: `"zigzag", 20, 20`, `"circle", 35`.
+            Its name and angles [deg]: `"zigzag", 20, 20`, `"circle", 35`; or `"stop"`.
         period, inputs
             Or orders: the time between samples [s], and inputs by name in SI, the rudder positive
             to starboard; (N,) each.
+        what_if, without
+            Other numbers by name: a parameter, `speed` [m/s], an input that is held [SI]; and
+            effects to leave out. The words say what the record says of that.
         anyway
             Of a fit that carries no verdict, too.
 
@@ -75,9 +81,40 @@ class RunView:
             There is no such manoeuvre or input, or the fit carries no verdict.
         """
         from trialid.workflow.use.in_memory import simulated_frame
+        from trialid.workflow.use.what_if import WhatIf
 
         words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
-        return simulated_frame(self, words, period, inputs, anyway=anyway)
+        changes = WhatIf(dict(what_if or {}), tuple(without))
+        return simulated_frame(self, words, period, inputs, what_if=changes, anyway=anyway)
+
+    def draw(
+        self,
+        *manoeuvre: str | float,
+        number: int = 1000,
+        seed: int = 0,
+        period: float | None = None,
+        anyway: bool = False,
+        **inputs: "Sequence[float]",
+    ) -> "Draws":
+        """What ships would do that the record leaves open, drawn and sailed by the kernel.
+
+        Drawn is what the likely ranges are about: noise, what was held fixed, an effect of the
+        catalogue that may be missing. Arguments beside these as of `simulate`.
+
+        Parameters
+        ----------
+        number, seed
+            How many ships, and what they are drawn by: the same seed, the same ships.
+
+        Raises
+        ------
+        TrialidError
+            There is no such manoeuvre or input, or the fit carries no verdict.
+        """
+        from trialid.workflow.use.in_memory import drawn_ships
+
+        words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
+        return drawn_ships(self, words, period, inputs, number=number, seed=seed, anyway=anyway)
 
     @property
     def parameters(self) -> "pd.DataFrame":

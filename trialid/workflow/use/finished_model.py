@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from trialid.design.seen_range import SeenRange, seen_ranges
+from trialid.design.prediction.seen_range import SeenRange, seen_ranges
 from trialid.diagnosis.diagnose import Diagnosed, examine_fit
 from trialid.errors import NotIdentifiable, PipelineError, TrialidError
 from trialid.identification.fit import Fit, revive

@@ -4,12 +4,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.design.following import sailed_ship
-from trialid.design.nomoto import nomoto
+from trialid.design.following import approach_speeds, sailed_ship
+from trialid.design.steering.gains import heading_gains, rate_gains
+from trialid.design.steering.nomoto import at_speeds
+from trialid.errors import TrialidError
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
 from trialid.export.model.fmu import fmu_bytes
+from trialid.export.model.gain_files import ardupilot_text, pid_file
+from trialid.export.model.gazebo import gazebo_hull, gazebo_text
 from trialid.export.model.json_model import model_file
 from trialid.export.model.nomoto_file import nomoto_file
 from trialid.export.model.numpy_text import numpy_text
@@ -22,12 +26,11 @@ Files = Mapping[str, str | bytes]
 
 
 @dataclass(frozen=True)
-class Format:
-    """A form of a model: how its files end, and what they hold."""
+class Wishes:
+    """What somebody who wants a file has to say, or may: bandwidth [rad/s], full rudder [rad]."""
 
-    words: str
-    suffixes: tuple[str, ...]
-    write: Callable[[FinishedModel, str], Files]
+    bandwidth: float | None = None
+    full_rudder: float | None = None
 
 
 def taken_up(model: FinishedModel) -> FittedModel:
@@ -36,42 +39,72 @@ def taken_up(model: FinishedModel) -> FittedModel:
     return fitted_model(model.fit, done.accuracy, model.result, model.seen, model.doubts)
 
 
-def _ship(model: FinishedModel, name: str) -> Files:
-    del name
+def _ship(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
     made = fitted_ship(model.fit.model, model.result)
     return {".toml": fitted_ship_text(made, model.doubts)}
 
 
-def _python(model: FinishedModel, name: str) -> Files:
-    del name
+def _python(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
     return {".py": numpy_text(taken_up(model))}
 
 
-def _json(model: FinishedModel, name: str) -> Files:
-    del name
+def _json(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
     return {".json": text_of(model_file(taken_up(model)))}
 
 
-def _c(model: FinishedModel, name: str) -> Files:
+def _c(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del wishes
     return {**c_texts(taken_up(model), name)}
 
 
-def _fmu(model: FinishedModel, name: str) -> Files:
+def _fmu(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del wishes
     return {".fmu": fmu_bytes(taken_up(model), name)}
 
 
-def _nomoto(model: FinishedModel, name: str) -> Files:
-    del name
-    found = nomoto(sailed_ship(model.fit), spread_of(model))
+def _nomoto(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
+    found = at_speeds(sailed_ship(model.fit), spread_of(model), approach_speeds(model.fit))
     return {".json": text_of(nomoto_file(taken_up(model), found))}
 
 
-FORMATS: Final[Mapping[str, Format]] = {
-    "ship": Format("a ship file for a next pipeline", (".toml",), _ship),
-    "json": Format("plain data, with a schema", (".json",), _json),
-    "c": Format("C99 with a header, no dependencies", (".c", ".h"), _c),
-    "fmu": Format("FMI 2.0 for co-simulation, C source and a Linux binary", (".fmu",), _fmu),
-    "nomoto": Format("Nomoto's K and T", (".json",), _nomoto),
-    "python": Format("one file that needs NumPy alone", (".py",), _python),
+def _ardupilot(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name
+    if wishes.full_rudder is None:
+        raise TrialidError(
+            "--as ardupilot needs the rudder angle at full steering output, which no log of a "
+            "rudder holds; add --full-rudder 35 [deg]"
+        )
+    gains = rate_gains(sailed_ship(model.fit), spread_of(model), wishes.bandwidth)
+    return {".param": ardupilot_text(taken_up(model), gains, wishes.full_rudder)}
+
+
+def _pid(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name
+    gains = heading_gains(sailed_ship(model.fit), spread_of(model), wishes.bandwidth)
+    return {".json": text_of(pid_file(taken_up(model), gains))}
+
+
+def _gazebo(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del name, wishes
+    made = taken_up(model)
+    return {".sdf": gazebo_text(made, gazebo_hull(model.fit, made))}
+
+
+Write = Callable[[FinishedModel, str, Wishes], Files]
+
+WRITERS: Final[Mapping[str, Write]] = {
+    "ship": _ship,
+    "json": _json,
+    "python": _python,
+    "c": _c,
+    "fmu": _fmu,
+    "nomoto": _nomoto,
+    "pid": _pid,
+    "ardupilot": _ardupilot,
+    "gazebo": _gazebo,
 }
-"""What a model can be written as."""
+"""What each kind's files hold; `trialid.names.model_kinds` says what they are."""

@@ -1,22 +1,35 @@
-"""A run in memory under orders, as a table."""
+"""A run in memory under orders, as a table, once or for thousands of ships that may be hers."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from trialid.design.seen_range import seen_ranges
+from trialid.arrays import Vector
+from trialid.design.following import sailed_ship
+from trialid.design.prediction.drawn_ships import draw_ships, sail_draws, simulate_draws
+from trialid.design.prediction.predicted_motion import motions
+from trialid.design.prediction.seen_range import seen_ranges
 from trialid.errors import TrialidError, nearest
 from trialid.export.predicted_file import predicted_columns
 from trialid.names.quantities import SIGNALS
 from trialid.result.build import Findings
 from trialid.result.schema import Result
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict
-from trialid.workflow.use.orders import OrderTable, named_manoeuvre
-from trialid.workflow.use.predict import predict_manoeuvre, predict_orders
+from trialid.workflow.use.orders import OrderTable, named_manoeuvre, stop_order
+from trialid.workflow.use.predict import (
+    predict_manoeuvre,
+    predict_orders,
+    ready_orders,
+    spread_of,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
+
+from trialid.workflow.use.stop import predict_stop
+from trialid.workflow.use.what_if import WhatIf
 
 
 class Found(Protocol):
@@ -32,6 +45,7 @@ def simulated_frame(
     period: float | None,
     inputs: Mapping[str, Sequence[float]],
     *,
+    what_if: WhatIf,
     anyway: bool,
 ) -> "pd.DataFrame":
     """A manoeuvre by its words, or orders on a clock; see `RunView.simulate`."""
@@ -41,14 +55,75 @@ def simulated_frame(
     check_verdict(run.result, name, anyway=anyway)
     done = run.findings.before
     model = FinishedModel(name, run.result, done, seen_ranges(done.fit))
-    if words:
-        made = predict_manoeuvre(model, named_manoeuvre(words))
+    stop = stop_order(words) if words else None
+    if stop is not None:
+        made = predict_stop(model, stop, what_if)
+    elif words:
+        made = predict_manoeuvre(model, named_manoeuvre(words), what_if)
     else:
-        made = predict_orders(model, _table(period, inputs), "orders")
+        made = predict_orders(model, _table(period, inputs), "orders", what_if)
     columns = {n: x for n, _, x in predicted_columns(made.motion)}
     frame = pd.DataFrame(columns, index=pd.Index(made.motion.t, name="t"))
     frame.attrs |= {"numbers": dict(made.motion.numbers), "words": made.words}
     return frame
+
+
+@dataclass(frozen=True)
+class Draws:
+    """What ships do that the record leaves open, a row a ship.
+
+    Attributes
+    ----------
+    parameters
+        Fitted and held numbers of each, and the effect that is missing from the model but there in
+        the ship, or nothing.
+    numbers
+        Standard numbers of a manoeuvre by name; NaN where a ship has none.
+    t, motion
+        Times [s] (N,), and of orders on a clock every motion by name [SI]; (n, N).
+    words
+        What to know of them.
+    """
+
+    parameters: "pd.DataFrame"
+    numbers: "pd.DataFrame"
+    t: Vector
+    motion: Mapping[str, Vector]
+    words: tuple[str, ...]
+
+
+def drawn_ships(
+    run: Found,
+    words: Sequence[str],
+    period: float | None,
+    inputs: Mapping[str, Sequence[float]],
+    *,
+    number: int,
+    seed: int,
+    anyway: bool,
+) -> Draws:
+    """A manoeuvre or orders for ships that are drawn; see `RunView.draw`."""
+    import pandas as pd
+
+    if number < 1:
+        raise TrialidError(f"number={number}: expected how many ships to draw, at least 1")
+    check_verdict(run.result, run.findings.name, anyway=anyway)
+    done = run.findings.before
+    model = FinishedModel(run.findings.name, run.result, done, seen_ranges(done.fit))
+    spread = spread_of(model)
+    if words:
+        asked = named_manoeuvre(words)
+        ship = sailed_ship(model.fit)
+        ships = draw_ships(ship, spread, number, seed)
+        numbers, t, motion = sail_draws(ship, asked, spread, ships), np.zeros(0), {}
+    else:
+        ship, orders, _ = ready_orders(model, _table(period, inputs), "orders")
+        ships = draw_ships(ship, spread, number, seed)
+        numbers, t = {}, orders.t
+        motion = simulate_draws(ship, orders, spread, ships, motions(ship))
+    missing = [m.effect.name for m in spread.missing]
+    about = {**ships.known, "missing": [missing[i] if i >= 0 else "" for i in ships.rivals]}
+    return Draws(pd.DataFrame(about), pd.DataFrame(numbers), t, motion, model.doubts)
 
 
 def _table(period: float | None, inputs: Mapping[str, Sequence[float]]) -> OrderTable:

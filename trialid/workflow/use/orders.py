@@ -12,7 +12,7 @@ from trialid.arrays import Vector
 from trialid.design import manoeuvres
 from trialid.design.helm import Passage
 from trialid.design.imo import measures
-from trialid.design.predicted_motion import Manoeuvre
+from trialid.design.prediction.predicted_motion import Manoeuvre
 from trialid.design.standard import DEGREES, Reading
 from trialid.errors import TrialidError, nearest
 from trialid.names import units
@@ -21,6 +21,9 @@ from trialid.names.quantities import SIGNALS
 REVERSALS: Final = 4
 LARGEST: Final = 90.0
 """deg beyond which no rudder goes."""
+SLOW: Final = 50.0
+"""Per cent of the approach speed at which a ship that is stopped counts as slow."""
+STOPS: Final = "stop [PER CENT of the speed left]"
 FEWEST: Final = 2
 TIME: Final = "t"
 ORDINALS: Final = ("first", "second", "third")
@@ -32,6 +35,37 @@ class OrderTable:
 
     t: Vector
     signals: Mapping[str, Vector]
+
+
+@dataclass(frozen=True)
+class Stop:
+    """The engine stopped on a straight course, until the speed has fallen to a share of itself."""
+
+    share: float
+
+    @property
+    def name(self) -> str:
+        """As tables call it."""
+        return f"stop {100.0 * self.share:g}"
+
+
+def stop_order(words: Sequence[str]) -> Stop | None:
+    """`stop` or `stop 20`: until 50, or 20 % of the speed are left; None for another manoeuvre.
+
+    Raises
+    ------
+    TrialidError
+        Its number is none.
+    """
+    if words[0] != "stop":
+        return None
+    try:
+        left = float(words[1]) if len(words) == 2 else SLOW
+    except ValueError as error:
+        raise TrialidError(f"ORDERS: {STOPS}: {error}") from error
+    if len(words) > 2 or not 0.0 < left < 100.0:
+        raise TrialidError(f"ORDERS: {' '.join(words)!r}: expected {STOPS}, more than 0, below 100")
+    return Stop(left / 100.0)
 
 
 def named_manoeuvre(words: Sequence[str]) -> Manoeuvre:
@@ -46,7 +80,8 @@ def named_manoeuvre(words: Sequence[str]) -> Manoeuvre:
     if name not in BY_NAME:
         raise TrialidError(
             f"ORDERS {name!r}: is no file and no manoeuvre; give a CSV of orders, or one of "
-            f"{'; '.join(one.usage for one in BY_NAME.values())} ({nearest(name, BY_NAME)})"
+            f"{'; '.join(one.usage for one in BY_NAME.values())}; {STOPS} "
+            f"({nearest(name, [*BY_NAME, 'stop'])})"
         )
     known = BY_NAME[name]
     try:

@@ -10,19 +10,26 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.following import GEAR, STEERED, sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
-from trialid.design.likely_spread import LikelySpread, likely_spread
-from trialid.design.predicted_motion import Manoeuvre, PredictedMotion, sail_manoeuvre, sail_orders
-from trialid.design.seen_range import beyond_words
+from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
+from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre, sail_orders
+from trialid.design.prediction.ranged_motion import PredictedMotion
+from trialid.design.prediction.seen_range import beyond_words
 from trialid.errors import DesignError, TrialidError
 from trialid.names import labels
 from trialid.threads import one_thread
 from trialid.trial import Trial
 from trialid.workflow.use.finished_model import FinishedModel
 from trialid.workflow.use.orders import OrderTable, complete_rows
+from trialid.workflow.use.what_if import (
+    AS_FITTED,
+    WhatIf,
+    change_words,
+    changed_ship,
+    known_changes,
+)
 
 LONGEST: Final = 1_000_000
 """Samples that are simulated at most."""
-NOTHING: Final[Mapping[str, float]] = MappingProxyType({})
 EVEN: Final = 1e-3
 """Share of a step by which times may differ and count as even."""
 
@@ -37,7 +44,9 @@ class Prediction:
 
 
 @one_thread
-def predict_manoeuvre(model: FinishedModel, asked: Manoeuvre) -> Prediction:
+def predict_manoeuvre(
+    model: FinishedModel, asked: Manoeuvre, what_if: WhatIf = AS_FITTED
+) -> Prediction:
     """A manoeuvre by name, as the run's standard measures are sailed.
 
     Raises
@@ -45,13 +54,16 @@ def predict_manoeuvre(model: FinishedModel, asked: Manoeuvre) -> Prediction:
     DesignError
         The model cannot be steered by a rudder.
     """
-    ship = sailed_ship(model.fit)
-    made = sail_manoeuvre(ship, asked, spread_of(model), model.result.fit.band)
-    return _with_words(model, asked.name, made)
+    ship = changed_ship(sailed_ship(model.fit), what_if)
+    spread = known_changes(spread_of(model), what_if)
+    made = sail_manoeuvre(ship, asked, spread, model.result.fit.band)
+    return with_words(model, asked.name, made, what_if)
 
 
 @one_thread
-def predict_orders(model: FinishedModel, table: OrderTable, name: str) -> Prediction:
+def predict_orders(
+    model: FinishedModel, table: OrderTable, name: str, what_if: WhatIf = AS_FITTED
+) -> Prediction:
     """Orders of a table.
 
     Raises
@@ -59,7 +71,30 @@ def predict_orders(model: FinishedModel, table: OrderTable, name: str) -> Predic
     TrialidError
         None of them is an input of the model, or there are too many.
     """
-    ship, held = _ship_for(model, {*table.signals})
+    ship, orders, more = ready_orders(model, table, name, what_if)
+    spread = known_changes(spread_of(model), what_if)
+    made = sail_orders(ship, orders, spread, model.result.fit.band, more.every)
+    return with_words(model, name, made, what_if, more)
+
+
+@dataclass(frozen=True)
+class OnClock:
+    """What became of a table of orders: samples a row, inputs held, columns that nothing reads."""
+
+    every: int
+    held: Mapping[str, float]
+    unread: Collection[str]
+
+
+ALL: Final = OnClock(1, MappingProxyType({}), ())
+"""Every input is given, and read."""
+
+
+def ready_orders(
+    model: FinishedModel, table: OrderTable, name: str, what_if: WhatIf = AS_FITTED
+) -> tuple[Vessel, Trial, OnClock]:
+    """The ship and the orders of a table on an even clock; see `predict_orders`."""
+    ship, held = _ship_for(model, {*table.signals}, what_if)
     inputs = {*ship.simulator.equations.inputs}
     acting = inputs | ({"delta_order"} if "delta" in inputs else set())
     if not {*table.signals} & acting:
@@ -73,9 +108,8 @@ def predict_orders(model: FinishedModel, table: OrderTable, name: str) -> Predic
     signals = {n: np.interp(t, table.t, x) for n, x in table.signals.items()}
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
-    made = sail_orders(ship, orders, spread_of(model), model.result.fit.band, every)
     unread = {*table.signals} - inputs - {*ship.model.all_states} - STEERED
-    return _with_words(model, name, made, held, unread)
+    return ship, orders, OnClock(every, held, unread)
 
 
 def spread_of(model: FinishedModel) -> LikelySpread:
@@ -85,7 +119,9 @@ def spread_of(model: FinishedModel) -> LikelySpread:
     return likely_spread(model.fit, covariance, off.standing, off.held, off.missing)
 
 
-def _ship_for(model: FinishedModel, given: set[str]) -> tuple[Vessel, dict[str, float]]:
+def _ship_for(
+    model: FinishedModel, given: set[str], what_if: WhatIf
+) -> tuple[Vessel, dict[str, float]]:
     """The ship, losing speed in turns where no speed is given; inputs held as in her trials."""
     fit = model.fit
     try:
@@ -95,6 +131,7 @@ def _ship_for(model: FinishedModel, given: set[str]) -> tuple[Vessel, dict[str, 
         steered = vessel(fit.model, fit.problem.trials[0].period, steady, GEAR)
     if "u" in given and "u" not in fit.model.states:
         steered = vessel(fit.model, steered.period, steered.constants, steered.rudder_rate)
+    steered = changed_ship(steered, what_if)
     needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
     return steered, {n: steered.constants[n] for n in sorted(needed) if n in steered.constants}
 
@@ -114,19 +151,20 @@ def _clock(t: Vector, longest: float) -> tuple[Vector, int]:
     return np.asarray(np.arange(max(count, 1) + 1) * period), every
 
 
-def _with_words(
+def with_words(
     model: FinishedModel,
     name: str,
     made: PredictedMotion,
-    held: Mapping[str, float] = NOTHING,
-    unread: Collection[str] = (),
+    what_if: WhatIf,
+    orders: OnClock = ALL,
 ) -> Prediction:
-    words = [*model.doubts]
+    """A prediction with every sentence that belongs beside it."""
+    words = [*model.doubts, *change_words(model, what_if)]
     words += filter(None, [beyond_words(model.seen, {**made.given, **made.motion})])
-    if unread:
-        words.append(f"Not read by the model: {', '.join(sorted(unread))}.")
-    if held:
-        listed = ", ".join(f"{n} = {labels.shown_text(n, x)}" for n, x in held.items())
+    if orders.unread:
+        words.append(f"Not read by the model: {', '.join(sorted(orders.unread))}.")
+    if orders.held:
+        listed = ", ".join(f"{n} = {labels.shown_text(n, x)}" for n, x in orders.held.items())
         words.append(f"Not among the orders, held as in the trials: {listed}.")
     if made.departure is not None:
         words.append(f"The ship leaves her model: {made.departure}; nothing is given beyond.")

@@ -32,6 +32,10 @@ class SeenRange:
         far, value = max(beyond)
         return value if far > room else float("nan")
 
+    def holds(self, value: float) -> bool:
+        """Whether a value is one of those seen, or as good as."""
+        return not np.isfinite(self.excess(np.array([value])))
+
 
 def seen_ranges(fit: Fit) -> dict[str, SeenRange]:
     """By name what the fitted trials hold: inputs as recorded, motions as the model makes them.

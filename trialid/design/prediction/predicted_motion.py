@@ -7,8 +7,7 @@ lie from a prediction, the wider of the two counts.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Final
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,10 +19,8 @@ from trialid.design.helm import (
     Vessel,
     carry_out,
     ramp,
-    track,
 )
 from trialid.design.imo.measure_slopes import (
-    SMALL,
     Shows,
     motion_slopes,
     reading_slopes,
@@ -31,7 +28,8 @@ from trialid.design.imo.measure_slopes import (
     until_amidships,
     with_columns,
 )
-from trialid.design.likely_spread import LikelySpread, Range
+from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.design.prediction.ranged_motion import PredictedMotion, Read, read_numbers, with_ranges
 from trialid.design.standard import (
     AT_SEA,
     LENGTHS,
@@ -44,13 +42,8 @@ from trialid.design.standard import (
 from trialid.errors import DesignError
 from trialid.names.quantities import SIGNALS
 from trialid.ship.effect import SENSORS, Effect
-from trialid.simulation.integrate import Departure, respond
+from trialid.simulation.integrate import respond
 from trialid.trial import Trial
-
-MOST: Final = 400
-"""Times at which ranges are worked out; between them their ends go straight."""
-TRACK: Final = ("x", "y")
-"""Ahead of and to starboard of where the ship began, along her first course [m]."""
 
 
 @dataclass(frozen=True)
@@ -60,35 +53,6 @@ class Manoeuvre:
     name: str
     told: Callable[[], Instructions]
     reading: Reading
-
-
-@dataclass(frozen=True, kw_only=True)
-class PredictedMotion:
-    """Signals of a manoeuvre [SI], and where each is likely to lie.
-
-    Attributes
-    ----------
-    given
-        Orders, rudder and other inputs; (N,) each.
-    motion
-        Simulated motions and the track; (N,) each.
-    ranges
-        Lower and upper end at 95 %, by name of a motion; (N,) each.
-    numbers
-        Standard numbers by name, each with its range; None where nobody knows.
-    remark
-        Why there are not all numbers; empty where there are.
-    departure
-        Where the ship left the domain of her model; everything ends before.
-    """
-
-    t: Vector
-    given: Mapping[str, Vector]
-    motion: Mapping[str, Vector]
-    ranges: Mapping[str, tuple[Vector, Vector]]
-    numbers: Mapping[str, tuple[float, Range | None]] = field(default_factory=dict)
-    remark: str = ""
-    departure: Departure | None = None
 
 
 def sail_manoeuvre(
@@ -110,7 +74,7 @@ def sail_manoeuvre(
     passage = _sailed(base, manoeuvre)
     short = until_amidships(passage)
     acting = [m for m in spread.missing if acts_in_calm(m.effect)]
-    moved = with_columns(base, spread.known, acting, _motions(base))
+    moved = with_columns(base, spread.known, acting, motions(base))
     outputs = moved.ship.simulator.outputs
     by = np.zeros((short.trial.samples, len(outputs), len(spread.known) + spread.width))
     if moved.places:
@@ -126,14 +90,19 @@ def sail_manoeuvre(
         other, _ = _numbers(again, manoeuvre.reading)
         apart = np.array([other.get(n, x) - x for n, x in found.items()])
         slopes[:, places] = apart[:, None]
-    made = _with_ranges(moved.ship, short.trial, by, spread, band)
+    made = with_ranges(moved.ship, short.trial, by, spread, band)
     ends = spread.ranges([*found.values()], slopes)
     numbers = {n: (x, r) for (n, x), r in zip(found.items(), ends, strict=True)}
     return replace(made, numbers=numbers, remark=remark, departure=passage.departure)
 
 
 def sail_orders(
-    ship: Vessel, orders: Trial, spread: LikelySpread, band: Mapping[str, float], every: int = 1
+    ship: Vessel,
+    orders: Trial,
+    spread: LikelySpread,
+    band: Mapping[str, float],
+    every: int = 1,
+    read: Read | None = None,
 ) -> PredictedMotion:
     """Orders written down, acting as they are written, straight between their times.
 
@@ -143,11 +112,13 @@ def sail_orders(
         Every input of the ship's equations; of a motion that is simulated, where it begins.
     every
         Samples of the orders from one that is given back to the next.
+    read
+        Numbers of the signals, the track `x` and `y` among them, that are wanted with ranges.
     """
     orders = _with_rudder(ship, orders)
     given = {*orders.signals}
-    acting = [m for m in spread.missing if _acts_under(m.effect, given)]
-    moved = with_columns(ship, spread.known, acting, _motions(ship))
+    acting = [m for m in spread.missing if acts_under(m.effect, given)]
+    moved = with_columns(ship, spread.known, acting, motions(ship))
     free = moved.ship.simulator.equations.free
     values = {n: moved.ship.model.value(n) for n in free}
     response = respond(moved.ship.simulator, orders, values, {})
@@ -158,15 +129,17 @@ def sail_orders(
     by = np.zeros((orders.samples, len(outputs), len(spread.known) + spread.width))
     by[..., moved.places] = response.S[..., : len(free)]
     for one in (m for m in acting if m.tried):
-        other = with_columns(tried_ship(ship, one), (), (), _motions(ship)).ship
+        other = with_columns(tried_ship(ship, one), (), (), motions(ship)).ship
         again = respond(other.simulator, orders, {}, {}, sensitivities=False)
         by[..., _places(spread, one)] = (again.y - response.y)[..., None]
     motion = dict(zip(outputs, response.y.T, strict=True))
     signals = {**orders.signals, **motion}
     thin = {n: np.array(x[:kept:every]) for n, x in signals.items()}
     short = Trial(orders.name, orders.use, orders.period * every, thin, {})
-    made = _with_ranges(moved.ship, short, np.nan_to_num(by[:kept:every]), spread, band)
-    return replace(made, departure=gone)
+    by = np.nan_to_num(by[:kept:every])
+    made = with_ranges(moved.ship, short, by, spread, band)
+    numbers = read_numbers(read, moved.ship, short, by, spread) if read is not None else {}
+    return replace(made, departure=gone, numbers=numbers)
 
 
 def _with_rudder(ship: Vessel, orders: Trial) -> Trial:
@@ -184,12 +157,12 @@ def _sailed(ship: Vessel, manoeuvre: Manoeuvre) -> Passage:
     return carry_out(ship, manoeuvre.told(), STRAIGHT * one, LENGTHS * one, manoeuvre.name)
 
 
-def _motions(ship: Vessel) -> tuple[str, ...]:
+def motions(ship: Vessel) -> tuple[str, ...]:
     """What is simulated and has a name of its own; a state that an effect adds has none."""
     return tuple(s for s in ship.model.all_states if s in SIGNALS)
 
 
-def _acts_under(effect: Effect, given: set[str]) -> bool:
+def acts_under(effect: Effect, given: set[str]) -> bool:
     """Whether an effect moves a ship of which these signals are given."""
     unknown = ({*effect.signals} & AT_SEA) - given - {"psi"}
     return bool({*effect.forms} - {*SENSORS}) and not unknown
@@ -219,55 +192,3 @@ def _numbers(passage: Passage, reading: Reading) -> tuple[dict[str, float], str]
         return {}, str(error)
     remark = "" if len(found) >= len(reading.names) else f"no {reading.names[len(found)]}"
     return dict(zip(reading.names, found, strict=False)), remark
-
-
-def _with_ranges(
-    ship: Vessel, trial: Trial, by: Vector, spread: LikelySpread, band: Mapping[str, float]
-) -> PredictedMotion:
-    """The signals of a trial with their ranges, from slopes of the outputs; (N, n_y, n)."""
-    outputs, n = ship.simulator.outputs, trial.samples
-    speed = ship.model.ship.particulars["U0"]
-    signals = dict(trial.signals)
-    signals |= dict(zip(TRACK, _track(trial.t, signals, speed), strict=True))
-    places = np.unique(np.linspace(0, n - 1, min(n, MOST)).round().astype(int))
-    rows = np.concatenate([by, _track_slopes(trial, outputs, by, speed)], axis=1)
-    names = (*outputs, *TRACK)
-    values = np.column_stack([signals[c] for c in names])
-    known = spread.ranges(values[places].ravel(), rows[places].reshape(-1, rows.shape[-1]))
-    ends = np.array([r or (np.nan, np.nan) for r in known]).reshape(len(places), len(names), 2)
-    ranges = {}
-    for c, name in enumerate(names):
-        wide = band.get(name, 0.0)
-        low, high = (
-            np.interp(np.arange(n), places, ends[:, c, i] - values[places, c]) for i in (0, 1)
-        )
-        lower, upper = np.minimum(low, -wide), np.maximum(high, wide)
-        ranges[name] = signals[name] + lower, signals[name] + upper
-    return PredictedMotion(
-        t=trial.t,
-        given={n: x for n, x in trial.signals.items() if n in SIGNALS and n not in outputs},
-        motion={n: signals[n] for n in names},
-        ranges=ranges,
-    )
-
-
-def _track(t: Vector, signals: Mapping[str, Vector], speed: float) -> tuple[Vector, Vector]:
-    """The track from where the ship began, along her first course."""
-    turned = {**signals, "psi": signals["psi"] - signals["psi"][0]}
-    return track(t, turned, speed)
-
-
-def _track_slopes(trial: Trial, outputs: tuple[str, ...], by: Vector, speed: float) -> Vector:
-    """Slopes of the track, by moving what is simulated a little to each side; (N, 2, n)."""
-    found = np.zeros((trial.samples, len(TRACK), by.shape[-1]))
-    scales = np.array([max(speed, SMALL) if c in ("u", "v", "U") else 1.0 for c in outputs])
-    sizes = np.max(np.abs(by) / scales[:, None], axis=(0, 1))
-    for i in np.flatnonzero(sizes):
-        step = SMALL / sizes[i]
-        ends = []
-        for side in (step, -step):
-            moved = dict(trial.signals)
-            moved |= {c: moved[c] + side * by[:, k, i] for k, c in enumerate(outputs)}
-            ends.append(np.column_stack(_track(trial.t, moved, speed)))
-        found[..., i] = (ends[0] - ends[1]) / (2.0 * step)
-    return found

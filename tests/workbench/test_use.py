@@ -1,0 +1,51 @@
+"""The model in use on the workbench: a manoeuvre tried, files handed out, what is refused."""
+
+import io
+import json
+import tomllib
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import quick
+from quick import Address, diagnosed
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Address]:
+    with quick.opened(quick.write(tmp_path_factory.mktemp("use") / "alone")) as desk:
+        diagnosed(desk)
+        with quick.serving(desk) as found:
+            yield found
+
+
+def test_a_manoeuvre_is_tried_on_the_spot(address: Address) -> None:
+    made = address.post("/api/try", {"orders": "zigzag 10 10"})
+    assert made.status == 200, made.body
+    rows = {name: (float(value), likely) for name, value, likely in made.json["rows"]}
+    value, likely = rows["first overshoot 10/10 [deg]"]
+    low, high = (float(x) for x in likely.split(" to "))
+    assert 0.0 < low <= value <= high
+    for wrong in ({"orders": "zigzg 10"}, {"orders": ""}, {"orders": 3}, [1]):
+        refused = address.post("/api/try", wrong)
+        assert refused.status == 400
+        assert "\n" not in refused.json["error"]
+
+
+def test_the_model_is_handed_out(address: Address, tmp_path: Path) -> None:
+    ship = address.get("/model/ship")
+    assert ship.headers["content-disposition"] == 'attachment; filename="model.toml"'
+    assert "uncertainty" in tomllib.loads(ship.body.decode())
+    assert json.loads(address.get("/model/nomoto").body)["schema"] == "trialid-nomoto/1"
+    with zipfile.ZipFile(io.BytesIO(address.get("/model/c").body)) as packed:
+        assert set(packed.namelist()) == {"model.c", "model.h"}
+    assert b"ATC_STR_RAT_FF," in address.get("/model/ardupilot?full_rudder=35").body
+    for wrong in ("ardupilot", "ardupilot?full_rudder=a", "word"):
+        assert address.get(f"/model/{wrong}").status == 400
+
+
+def test_the_panel_links_to_what_is_there(address: Address) -> None:
+    part = address.get("/api/screen").json["parts"]["use"]
+    assert '<a href="/model/fmu" download>' in part
+    assert 'action="/model/ardupilot"' in part

@@ -1,0 +1,134 @@
+"""A simulated motion with where it is likely to lie, and numbers read from it with theirs."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.design.helm import Vessel, track
+from trialid.design.imo.measure_slopes import SMALL
+from trialid.design.prediction.likely_spread import LikelySpread, Range
+from trialid.names.quantities import SIGNALS
+from trialid.simulation.integrate import Departure
+from trialid.trial import Trial
+
+MOST: Final = 400
+"""Times at which ranges are worked out; between them their ends go straight."""
+TRACK: Final = ("x", "y")
+"""Ahead of and to starboard of where the ship began, along her first course [m]."""
+
+Read = Callable[[Vector, Mapping[str, Vector]], dict[str, float]]
+"""Numbers by name of times [s] and signals; those it does not come to are left out."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PredictedMotion:
+    """Signals of a manoeuvre [SI], and where each is likely to lie.
+
+    Attributes
+    ----------
+    given
+        Orders, rudder and other inputs; (N,) each.
+    motion
+        Simulated motions and the track; (N,) each.
+    ranges
+        Lower and upper end at 95 %, by name of a motion; (N,) each.
+    numbers
+        Standard numbers by name, each with its range; None where nobody knows.
+    remark
+        Why there are not all numbers; empty where there are.
+    departure
+        Where the ship left the domain of her model; everything ends before.
+    """
+
+    t: Vector
+    given: Mapping[str, Vector]
+    motion: Mapping[str, Vector]
+    ranges: Mapping[str, tuple[Vector, Vector]]
+    numbers: Mapping[str, tuple[float, Range | None]] = field(default_factory=dict)
+    remark: str = ""
+    departure: Departure | None = None
+
+
+def with_ranges(
+    ship: Vessel, trial: Trial, by: Vector, spread: LikelySpread, band: Mapping[str, float]
+) -> PredictedMotion:
+    """The signals of a trial with their ranges, from slopes of the outputs; (N, n_y, n)."""
+    outputs, n = ship.simulator.outputs, trial.samples
+    speed = ship.model.ship.particulars["U0"]
+    signals = dict(trial.signals)
+    signals |= dict(zip(TRACK, _track(trial.t, signals, speed), strict=True))
+    places = np.unique(np.linspace(0, n - 1, min(n, MOST)).round().astype(int))
+    way = _slopes(
+        lambda now: np.column_stack(_track(trial.t, now, speed)), trial, outputs, by, speed
+    )
+    rows = np.concatenate([by, way], axis=1)
+    names = (*outputs, *TRACK)
+    values = np.column_stack([signals[c] for c in names])
+    known = spread.ranges(values[places].ravel(), rows[places].reshape(-1, rows.shape[-1]))
+    ends = np.array([r or (np.nan, np.nan) for r in known]).reshape(len(places), len(names), 2)
+    ranges = {}
+    for c, name in enumerate(names):
+        wide = band.get(name, 0.0)
+        low, high = (
+            np.interp(np.arange(n), places, ends[:, c, i] - values[places, c]) for i in (0, 1)
+        )
+        lower, upper = np.minimum(low, -wide), np.maximum(high, wide)
+        ranges[name] = signals[name] + lower, signals[name] + upper
+    return PredictedMotion(
+        t=trial.t,
+        given={n: x for n, x in trial.signals.items() if n in SIGNALS and n not in outputs},
+        motion={n: signals[n] for n in names},
+        ranges=ranges,
+    )
+
+
+def _track(t: Vector, signals: Mapping[str, Vector], speed: float) -> tuple[Vector, Vector]:
+    """The track from where the ship began, along her first course."""
+    turned = {**signals, "psi": signals["psi"] - signals["psi"][0]}
+    return track(t, turned, speed)
+
+
+def _slopes(
+    of: Callable[[Mapping[str, Vector]], Vector],
+    trial: Trial,
+    outputs: tuple[str, ...],
+    by: Vector,
+    speed: float,
+) -> Vector:
+    """Slopes of what follows from signals, by moving what is simulated a little to each side."""
+    found = np.zeros((*of(trial.signals).shape, by.shape[-1]))
+    scales = np.array([max(speed, SMALL) if c in ("u", "v", "U") else 1.0 for c in outputs])
+    sizes = np.max(np.abs(by) / scales[:, None], axis=(0, 1))
+    for i in np.flatnonzero(sizes):
+        step = SMALL / sizes[i]
+        ends = []
+        for side in (step, -step):
+            moved = dict(trial.signals)
+            moved |= {c: moved[c] + side * by[:, k, i] for k, c in enumerate(outputs)}
+            ends.append(of(moved))
+        found[..., i] = (ends[0] - ends[1]) / (2.0 * step)
+    return found
+
+
+def read_numbers(
+    read: Read, ship: Vessel, trial: Trial, by: Vector, spread: LikelySpread
+) -> dict[str, tuple[float, Range | None]]:
+    """Numbers of a motion with their ranges."""
+    speed = ship.model.ship.particulars["U0"]
+
+    def now(signals: Mapping[str, Vector]) -> dict[str, float]:
+        way = dict(zip(TRACK, _track(trial.t, signals, speed), strict=True))
+        return read(trial.t, {**signals, **way})
+
+    values = now(trial.signals)
+
+    def again(moved: Mapping[str, Vector]) -> Vector:
+        found = now(moved)
+        return np.array([found.get(n, x) for n, x in values.items()])
+
+    slopes = _slopes(again, trial, ship.simulator.outputs, by, speed)
+    ends = spread.ranges([*values.values()], slopes) if values else []
+    return {n: (x, r) for (n, x), r in zip(values.items(), ends, strict=True)}

@@ -1,0 +1,165 @@
+"""Gains of an autopilot from K and T, and what they promise over all that the record leaves open.
+
+Turn rate, by feed-forward and a proportional and an integral part: FF = 1 / K, and with P = (w T -
+1) / K the rate follows as fast as a lag of 1 / w, which is the bandwidth; the integral takes off
+what wind and trim leave, 25 times as slowly, for 4 % of overshoot.
+
+Heading, by poles: Kp = w_n^2 T / K, Kd = (2 z w_n T - 1) / K, Ki = w_n Kp / 10 (Fossen 2011,
+Handbook of Marine Craft Hydrodynamics and Motion Control, section 12.2), damping z of 0.8.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trialid.design.helm import Vessel
+from trialid.design.prediction.drawn_ships import draw_ships, groups_of_ships
+from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.design.standard import acts_in_calm, in_calm
+from trialid.design.steering.closed_loop import Answer, Controller, answer, hold_heading, hold_rate
+from trialid.design.steering.nomoto import read
+from trialid.design.steering.straight_course import LinearShip, StraightCourse
+from trialid.errors import DesignError
+
+SLOWER: Final = 25.0
+"""By how much the integral of a rate controller is slower than its bandwidth."""
+FASTER: Final = 2.0
+"""Bandwidth of a rate controller, where none is asked for, in 1 / T: twice as fast as the ship."""
+DAMPING: Final = 0.8
+NUMBER: Final = 200
+"""Ships drawn that gains are tried on."""
+ENDS: Final = (2.5, 97.5)
+"""Per cent of them beyond which the ends of a range lie."""
+
+FIELDS: Final = ("overshoot", "settling", "phase_margin", "delay_margin")
+
+Made = Callable[[LinearShip], Controller]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Promise:
+    """What gains do to the fitted ship, and to 95 of 100 ships that the record leaves open.
+
+    `ranges` are by the name of a field of `Answer`; `stable` is the share of ships that are.
+    """
+
+    fitted: Answer
+    ranges: Mapping[str, tuple[float, float]]
+    stable: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gains:
+    """Gains by name, of a rudder angle [rad], for a bandwidth [rad/s] at a speed [m/s]."""
+
+    values: Mapping[str, float]
+    bandwidth: float
+    speed: float
+    promise: Promise
+
+
+def rate_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = None) -> Gains:
+    """FF and P [s], I [1]: rudder by turn rate, for a bandwidth or twice that of the ship.
+
+    Raises
+    ------
+    DesignError
+        The ship is not directionally stable, too slow is asked for, or ships that the record leaves
+        open swing.
+    """
+    linear, K, T = _known(ship)
+    wanted = _asked(bandwidth, FASTER / T)
+    if wanted * T < 1.0:
+        raise DesignError(
+            f"a bandwidth of {wanted:.3g} rad/s is slower than the ship by herself, {1 / T:.3g}; "
+            "ask for more"
+        )
+    values = {"FF": 1.0 / K, "P": (wanted * T - 1.0) / K, "I": wanted**2 * T / SLOWER / K}
+    return _tried(ship, spread, linear, values, wanted, lambda one: hold_rate(one, **values))
+
+
+def heading_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = None) -> Gains:
+    """Kp [1], Ki [1/s] and Kd [s]: rudder by heading, for a bandwidth or that of the ship.
+
+    Raises
+    ------
+    DesignError
+        The ship is not directionally stable, or ships that the record leaves open swing.
+    """
+    linear, K, T = _known(ship)
+    wanted = _asked(bandwidth, 1.0 / T)
+    z2 = DAMPING**2
+    natural = wanted / np.sqrt(1.0 - 2.0 * z2 + np.sqrt(4.0 * z2 * z2 - 4.0 * z2 + 2.0))
+    Kp = natural**2 * T / K
+    Kd = max(2.0 * DAMPING * natural * T - 1.0, 0.0) / K
+    values = {"Kp": float(Kp), "Ki": float(natural * Kp / 10.0), "Kd": float(Kd)}
+    return _tried(ship, spread, linear, values, wanted, lambda one: hold_heading(one, **values))
+
+
+def _known(ship: Vessel) -> tuple[LinearShip, float, float]:
+    """The linear ship in calm water, her K and T."""
+    course = StraightCourse(in_calm(ship))
+    linear = course.at(course.theta)
+    found = read(linear)
+    if not linear.stable or found["K"] <= 0.0 or found["T"] <= 0.0:
+        raise DesignError(
+            "the ship is not directionally stable, or turns against her rudder; gains by K and T "
+            "are for one that is"
+        )
+    return linear, found["K"], found["T"]
+
+
+def _asked(bandwidth: float | None, usual: float) -> float:
+    if bandwidth is None:
+        return usual
+    if not 0.0 < bandwidth < np.inf:
+        raise DesignError(f"a bandwidth of {bandwidth:g} rad/s is none; expected more than 0")
+    return bandwidth
+
+
+def _tried(
+    ship: Vessel,
+    spread: LikelySpread,
+    linear: LinearShip,
+    values: Mapping[str, float],
+    bandwidth: float,
+    made: Made,
+) -> Gains:
+    """Gains with what they promise.
+
+    Raises
+    ------
+    DesignError
+        Too many of the ships that the record leaves open swing.
+    """
+    drawn = [answer(made(one), bandwidth) for one in _drawn(ship, spread)]
+    stable = float(np.mean([one.stable for one in drawn]))
+    if stable < ENDS[1] / 100.0:
+        raise DesignError(
+            f"{1.0 - stable:.0%} of the ships that the record leaves open would swing under gains "
+            f"for {bandwidth:.3g} rad/s; ask for less by --bandwidth, or sail more trials"
+        )
+    fitted = answer(made(linear), bandwidth)
+    ranges = {n: _range(n, fitted, drawn) for n in FIELDS}
+    promise = Promise(fitted=fitted, ranges=ranges, stable=stable)
+    return Gains(values=values, bandwidth=bandwidth, speed=linear.speed, promise=promise)
+
+
+def _range(name: str, fitted: Answer, drawn: Sequence[Answer]) -> tuple[float, float]:
+    """Where 95 of 100 ships lie, and the one as it was fitted."""
+    values = [float(getattr(one, name)) for one in drawn if one.stable]
+    low, high = np.percentile(values, ENDS, method="nearest")
+    own = float(getattr(fitted, name))
+    return min(float(low), own), max(float(high), own)
+
+
+def _drawn(ship: Vessel, spread: LikelySpread) -> Iterator[LinearShip]:
+    """Linear ships as the record leaves them open; what is known at a value tried is left out."""
+    base = in_calm(ship)
+    ships = draw_ships(base, spread, NUMBER, seed=0)
+    for one in groups_of_ships(base, spread, ships, acts_in_calm):
+        course = StraightCourse(one.ship)
+        for theta in one.thetas:
+            yield course.at(dict(zip(course.parameters, theta.tolist(), strict=True)))

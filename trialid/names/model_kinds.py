@@ -1,0 +1,28 @@
+"""What a fitted model can be written as: names, how the files end, what each is for."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A form of a model: what it is in a few words, its files' endings, what has to be said."""
+
+    words: str
+    suffixes: tuple[str, ...]
+    needs: str = ""
+
+
+KINDS: Final[Mapping[str, Kind]] = {
+    "ship": Kind("a ship file for a next pipeline", (".toml",)),
+    "json": Kind("plain data, with a schema", (".json",)),
+    "python": Kind("one file that needs NumPy alone", (".py",)),
+    "c": Kind("C99 with a header, no dependencies", (".c", ".h")),
+    "fmu": Kind("FMI 2.0 for co-simulation, C source and a Linux binary", (".fmu",)),
+    "nomoto": Kind("Nomoto's K, T, T1 to T3 and the state space", (".json",)),
+    "pid": Kind("a heading autopilot's gains with what they promise", (".json",)),
+    "ardupilot": Kind("steering gains of ArduPilot Rover", (".param",), "--full-rudder 35"),
+    "gazebo": Kind("Gazebo's Hydrodynamics, with what it costs", (".sdf",)),
+}
+"""By the word that `--as` takes."""

@@ -1,0 +1,45 @@
+"""The model in use, for a page: its equations with numbers, and what it can be handed over as."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from trialid.effects import CATALOGUE
+from trialid.names.model_kinds import KINDS
+from trialid.result.fit_rows import ParameterRow
+from trialid.result.schema import Result
+
+
+@dataclass(frozen=True)
+class EquationRow:
+    """An effect of the model, its equation where the catalogue has it, and its fitted numbers."""
+
+    effect: str
+    equation: str
+    parameters: tuple[ParameterRow, ...]
+
+
+@dataclass(frozen=True)
+class CommandRow:
+    """A command, and what it gives."""
+
+    command: str
+    words: str
+
+
+def equations(run: Result) -> Iterator[EquationRow]:
+    """A row an effect, in the order of the model."""
+    rows = {row.name: row for row in run.physical}
+    for name in run.model.effects:
+        known = CATALOGUE.get(name)
+        own = () if known is None else tuple(rows[n] for n in known.parameters if n in rows)
+        yield EquationRow(name, "" if known is None else known.equation, own)
+
+
+def commands(run: Result) -> Iterator[CommandRow]:
+    """What can be done with the run, from its own folder."""
+    marked = " --anyway" if run.verdict.kind == "no fit" else ""
+    yield CommandRow(f"trialid simulate . zigzag 20 20{marked}", "a manoeuvre with likely ranges")
+    yield CommandRow(f"trialid simulate . orders.csv{marked}", "orders of your own")
+    for name, kind in KINDS.items():
+        needs = f" {kind.needs}" if kind.needs else ""
+        yield CommandRow(f"trialid export . --as {name}{needs}{marked}", kind.words)

@@ -1,0 +1,156 @@
+"""Rows of the standard measures: predicted, and measured in the trials."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasureRow:
+    """A standard measure of the fitted ship beside what is allowed.
+
+    `remark` says why there is no value.
+    """
+
+    name: str
+    unit: str
+    value: float | None = None
+    interval: tuple[float | None, float | None] | None = None
+    allowed: float | None = None
+    kept: bool | None = None
+    manoeuvre: str = ""
+    remark: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OvershootRow:
+    """An overshoot of a trial: angles in rad, time in s."""
+
+    trial: str
+    t: float
+    rudder: float
+    measured: float
+    predicted: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurnRow:
+    """A measure of a turning circle that a trial holds: m, rudder in rad, time of the order in s.
+
+    `measured` is over the ground as recorded, `corrected` through the water by the current found,
+    each with its 95 % interval; `predicted` is of the fitted model through the water under the
+    recorded rudder, with where the true ship's is likely to lie.
+    """
+
+    trial: str
+    t: float
+    rudder: float
+    name: str
+    measured: float
+    interval: tuple[float, float]
+    corrected: float | None = None
+    corrected_interval: tuple[float, float] | None = None
+    predicted: float | None = None
+    predicted_interval: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ManoeuvreRow:
+    """A manoeuvre recognised in a trial: order and end [s], first rudder angle [rad].
+
+    `remark` says what it lacks; empty where it is whole.
+    """
+
+    trial: str
+    kind: str
+    t: float
+    end: float
+    rudder: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredRow:
+    """A number of a zig-zag, pull-out or spiral of a trial, and the fitted model's, in `unit`.
+
+    Each with its 95 %; `predicted` under the rudder as recorded.
+    """
+
+    trial: str
+    kind: str
+    t: float
+    rudder: float
+    name: str
+    unit: str
+    measured: float
+    interval: tuple[float, float]
+    predicted: float | None = None
+    predicted_interval: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConditionRow:
+    """What a signal of a trial was like, SI: its median, and where 95 % of its samples lie."""
+
+    trial: str
+    signal: str
+    median: float
+    interval: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SailedPart:
+    """How the fitted ship is sailed where she is predicted; SI.
+
+    Attributes
+    ----------
+    speed
+        Of the approach.
+    rudder_rate
+        As the trials show it; None where the model has a steering gear of its own.
+    constants
+        Recorded signals that stay as they were, by name.
+    speed_lost
+        By what numbers the logged speed fell in turns; empty where the model says itself what
+        turning costs.
+    """
+
+    speed: float
+    rudder_rate: float | None = None
+    constants: Mapping[str, float] = field(default_factory=dict)
+    speed_lost: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteeringRow:
+    """One of Nomoto's numbers at the approach speed, of the ship as fitted, and its 95 % range."""
+
+    name: str
+    value: float
+    unit: str
+    likely: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImoPart:
+    """Standard measures of MSC.137(76), and overshoots and turning circles the trials hold.
+
+    Attributes
+    ----------
+    sailed
+        How the measures were come by, in a sentence.
+    doubt
+        Why they are not to be relied on; empty where nothing speaks against them.
+    steering
+        Nomoto's numbers; empty where no rudder steers her.
+    """
+
+    measures: tuple[MeasureRow, ...] = ()
+    speed_simulated: bool = False
+    overshoots: tuple[OvershootRow, ...] = ()
+    turns: tuple[TurnRow, ...] = ()
+    conditions: tuple[ConditionRow, ...] = ()
+    manoeuvres: tuple[ManoeuvreRow, ...] = ()
+    measured: tuple[MeasuredRow, ...] = ()
+    sailed: str = ""
+    doubt: str = ""
+    steering: tuple[SteeringRow, ...] = ()

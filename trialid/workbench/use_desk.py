@@ -1,0 +1,112 @@
+"""The model on the screen in use: a manoeuvre tried, a file of it handed out."""
+
+import io
+import math
+import threading
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from trialid.design.prediction.seen_range import seen_ranges
+from trialid.diagnosis.diagnose import examine_fit
+from trialid.errors import PipelineError, nearest
+from trialid.names.model_kinds import KINDS
+from trialid.progress import silent
+from trialid.threads import one_thread
+from trialid.workbench.shown import Shown
+from trialid.workflow.build_model import available
+from trialid.workflow.findings import diagnose_settings
+from trialid.workflow.outcome import Outcome
+from trialid.workflow.use.finished_model import FinishedModel, check_verdict, revived_fit
+from trialid.workflow.use.hand_over import WRITERS, Wishes
+from trialid.workflow.use.orders import named_manoeuvre, stop_order
+from trialid.workflow.use.predict import predict_manoeuvre
+from trialid.workflow.use.stop import predict_stop
+
+
+@dataclass
+class InUse:
+    """The last model that was used, made ready once: that takes as long as its diagnosis."""
+
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _of: Outcome | None = None
+    _made: FinishedModel | None = None
+
+    def model(self, shown: Shown) -> FinishedModel:
+        """The model on the screen, ready for use.
+
+        Raises
+        ------
+        PipelineError
+            It is not known yet, or carries no verdict.
+        """
+        run = shown.run
+        if run is None:
+            raise PipelineError("this model is still being worked out; try again when it is")
+        check_verdict(run.result, shown.pipeline.path.name, anyway=False)
+        with self._lock:
+            if self._made is None or self._of is not run:
+                self._made, self._of = _ready(shown, run), run
+            return self._made
+
+
+@one_thread
+def _ready(shown: Shown, run: Outcome) -> FinishedModel:
+    where = shown.pipeline.path.name
+    fit = revived_fit(shown.pipeline, shown.trials, run.result, where)
+    how = diagnose_settings(shown.pipeline, available(shown.pipeline))
+    done, _, _ = examine_fit(fit, how, silent)
+    return FinishedModel(where, run.result, done, seen_ranges(fit))
+
+
+def try_orders(model: FinishedModel, orders: str) -> dict[str, Any]:
+    """A manoeuvre by its words, as a page shows it: its numbers with their ranges, and words.
+
+    Raises
+    ------
+    TrialidError
+        There is no such manoeuvre.
+    """
+    words = orders.split()
+    if not words:
+        raise PipelineError("write a manoeuvre, as zigzag 20 20 or circle 35")
+    stop = stop_order(words)
+    made = (
+        predict_manoeuvre(model, named_manoeuvre(words))
+        if stop is None
+        else predict_stop(model, stop)
+    )
+    rows = [
+        [name, f"{value:.4g}", "" if ends is None else f"{ends[0]:.4g} to {ends[1]:.4g}"]
+        for name, (value, ends) in made.motion.numbers.items()
+    ]
+    said = [*made.words, *([f"Not come to: {made.motion.remark}."] if made.motion.remark else ())]
+    return {"name": made.name, "rows": rows, "words": said}
+
+
+def hand_out(model: FinishedModel, kind: str, asked: Mapping[str, str]) -> tuple[str, bytes]:
+    """The name and the content of a form of the model; where it has more files, they are zipped.
+
+    Raises
+    ------
+    PipelineError
+        There is no such form, or a number that it needs is none.
+    """
+    if kind not in KINDS:
+        raise PipelineError(f"{kind!r}: is no form of a model; {nearest(kind, KINDS)}")
+    full = asked.get("full_rudder", "")
+    try:
+        rudder = math.radians(float(full)) if full else None
+    except ValueError as error:
+        raise PipelineError(f"full rudder {full!r}: expected an angle [deg]") from error
+    made = WRITERS[kind](model, "model", Wishes(full_rudder=rudder))
+    files = {f"model{s}": c if isinstance(c, bytes) else c.encode() for s, c in made.items()}
+    if len(files) == 1:
+        [(name, content)] = files.items()
+        return name, content
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, content in files.items():
+            packed.writestr(name, content)
+    return f"model-{kind}.zip", stream.getvalue()
