@@ -11,7 +11,8 @@ from scipy.special import chdtrc, chdtri  # scipy.stats would take another 0.4 s
 from trialid.diagnosis.noise.thinning import coarse
 from trialid.diagnosis.noise.whitening import whiten_columns
 from trialid.diagnosis.search.augment import Augmented
-from trialid.diagnosis.search.carry_over import Carried, left_out
+from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.projection import (
     Evidence,
     Projected,
