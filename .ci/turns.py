@@ -32,14 +32,19 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def asked(word: str, commits: Callable[[], int]) -> int | None:
-    """Give the turn asked for: `turn`, by the number of commits, or a number; None for all."""
+    """Give the turn asked for: `turn`, by the number of commits, or a number; None for all.
+
+    `short` asks for those that have no turn, at no turn.
+    """
     if not word:
         return None
+    if word == "short":
+        return TURNS
     if word == "turn":
         return commits() % TURNS
     if word.isdecimal() and int(word) < TURNS:
         return int(word)
-    raise pytest.UsageError(f"{VARIABLE}={word}: turn, 0 to {TURNS - 1}, or nothing for all")
+    raise pytest.UsageError(f"{VARIABLE}={word}: turn, 0 to {TURNS - 1}, short, or nothing for all")
 
 
 def comes_up(own: int | None, turn: int) -> bool:

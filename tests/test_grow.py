@@ -35,6 +35,7 @@ def hidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return Path("hidden.toml")
 
 
+@pytest.mark.study
 def test_the_hidden_effect_is_added_and_the_verdict_is_nothing_missing(hidden: Path) -> None:
     text = hidden.read_bytes()
     outcome = trialid_("run", str(hidden), "--auto")

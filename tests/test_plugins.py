@@ -109,6 +109,7 @@ def test_its_effect_is_in_the_catalogue(tug: dict[str, str]) -> None:
     assert "the skeg in the cross flow" in done.stdout
 
 
+@pytest.mark.study
 def test_its_export_format_is_asked_for_by_its_suffix(tug: dict[str, str], tmp_path: Path) -> None:
     out = tmp_path / "aligned.names"
     pipeline = str(ROOT / "pipelines" / "hidden_effect.toml")

@@ -59,6 +59,7 @@ def test_the_file_declares_the_effect_and_the_error_falls(hidden, tmp_path):
         assert parameter.low < after.value(name) < parameter.high
 
 
+@pytest.mark.study
 def test_an_effect_of_the_same_name_gets_another(hidden):
     _, found = hidden
     taken = replace(

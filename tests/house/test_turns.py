@@ -58,6 +58,7 @@ def test_the_long_studies_run_when_it_is_their_turn_and_the_rest_each_time(tmp_p
     assert ran(tmp_path, "") == each_time | {"test_first", "test_fourth", *cases}
     assert ran(tmp_path, "0") == each_time | {"test_first", cases[0], cases[5]}
     assert ran(tmp_path, "1") == each_time | {cases[1], cases[6]}
+    assert ran(tmp_path, "short") == each_time
     assert ran(tmp_path, "3", "-m", "study") == {"test_short", "test_fourth", cases[3]}
 
 

@@ -130,6 +130,7 @@ def test_huber_loss_shrugs_off_outliers():
     assert off_robust.max() < 0.5 * off_plain.max()
 
 
+@pytest.mark.study
 def test_two_runs_and_both_engines_agree():
     from dataclasses import replace
 

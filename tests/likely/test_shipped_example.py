@@ -30,6 +30,7 @@ def parameters(request):
     return request.getfixturevalue(request.param).result.physical
 
 
+@pytest.mark.study
 def test_every_range_holds_the_truth(parameters):
     known = TRUTH | {"GM3": HARDENING}
     outside = [p.name for p in parameters if not p.likely[0] <= known[p.name] <= p.likely[1]]

@@ -114,6 +114,7 @@ def test_a_trial_over_the_bus_is_the_trial_of_its_log(done, sent, tmp_path):
     assert taken == kept.read_text(encoding="ascii")
 
 
+@pytest.mark.study
 def test_the_bus_may_be_followed_without_a_run(done, sent):
     outcome = followed("beta", sent, done[0], "--quiet")
     assert outcome.exit_code == 0, outcome.output

@@ -10,6 +10,10 @@ from s175q import MODEL, SHAFT
 from trialid.accuracy.parameter_table import Accuracy, Subject, assess
 from trialid.design import manoeuvres
 from trialid.design.helm import carry_out, vessel
+from trialid.design.likely_spread import LikelySpread, likely_spread
+from trialid.diagnosis.may_be_off import doubts
+from trialid.diagnosis.search.augment import augment
+from trialid.effects import CATALOGUE
 from trialid.effects.track import current
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import stretches
@@ -25,6 +29,7 @@ NOISE = {"r": np.deg2rad(0.05), "psi": np.deg2rad(0.3), "x": 1.0, "y": 1.0}
 
 PERIOD, APPROACH = 2.0, 30.0
 CURRENTS = {"circle": (0.5, -0.3), "zigzag": (-0.2, 0.8)}
+MAY_BE_MISSING = ("yaw_drag_rav", "sway_drag_vav", "rudder_offset", "yaw_drag_rar")
 SETTINGS = Settings(FREE, OUTPUTS, nuisance=("initial_state", "current"))
 
 
@@ -69,3 +74,11 @@ def accuracy(fit: Fit) -> Accuracy:
     parts = stretches(fit.problem)
     residual, psi = fit.residual, fit.psi
     return assess(subjects, psi, residual, parts, fit.eps_rmsn, 0.0, level=fit.level)
+
+
+def spread(fit: Fit) -> LikelySpread:
+    """What a prediction of the fit is uncertain by, with four effects that may be missing."""
+    tried = {n: CATALOGUE[n] for n in MAY_BE_MISSING}
+    off = doubts(fit, augment(fit, tried))
+    known = accuracy(fit).covariance
+    return likely_spread(fit, known, off.standing, off.held, off.missing)

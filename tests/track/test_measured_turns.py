@@ -13,6 +13,7 @@ from sailed_tracks import (
     accuracy,
     noisy,
     sailed,
+    spread,
     trials,
 )
 
@@ -43,7 +44,7 @@ def truth(water: tuple[float, float]) -> dict[str, float]:
 
 def measured(seed: int) -> tuple[TurnMeasure, ...]:
     fit = identify([without_order(t) for t in trials(seed)], SHIP, BY_NOISE)
-    return turns(fit, {p.name: p.standard_error for p in accuracy(fit).parameters})
+    return turns(fit, {p.name: p.standard_error for p in accuracy(fit).parameters}, spread(fit))
 
 
 def test_measures_over_the_ground_and_through_the_water() -> None:
@@ -56,7 +57,31 @@ def test_measures_over_the_ground_and_through_the_water() -> None:
         assert m.corrected_interval[0] < still[name] < m.corrected_interval[1]
         assert m.interval[1] - m.interval[0] < 25.0
         assert m.predicted == pytest.approx(still[name], rel=0.005)
+        assert m.predicted_interval is not None
+        assert m.predicted_interval[0] < still[name] < m.predicted_interval[1]
+        assert m.predicted_interval[1] - m.predicted_interval[0] < 10.0
     assert abs(over["tactical diameter"] - still["tactical diameter"]) > 100.0  # what it is about
+
+
+def held_out(seed: int) -> tuple[TurnMeasure, ...]:
+    """The circle of a ship that was fitted to a zig-zag alone."""
+    rng = np.random.default_rng([12, seed])
+    zigzag, circle = (
+        without_order(noisy(sailed(n, CURRENTS[n], use), rng))
+        for n, use in (("zigzag", "fit"), ("circle", "check"))
+    )
+    fit = identify([zigzag, circle], SHIP, BY_NOISE)
+    return turns(fit, {}, spread(fit))
+
+
+def test_a_band_of_a_turn_that_was_not_fitted_is_wider_and_holds_the_truth() -> None:
+    """Fitted to 20/20: the turn of 35 deg is a guess, and the band says how much of one."""
+    still = truth(STILL)
+    fitted = {m.name: m.predicted_interval for m in measured(0)}
+    for m in held_out(0):
+        low, high = m.predicted_interval or (0.0, 0.0)
+        assert low < still[m.name] < high
+        assert high - low > 2.0 * np.ptp(fitted[m.name] or (np.inf, 0.0))
 
 
 def test_a_zigzag_holds_no_turn_and_a_turn_to_port_is_the_mirror() -> None:
@@ -89,18 +114,28 @@ def test_a_turn_out_of_another_manoeuvre_or_broken_off_is_none() -> None:
 @pytest.mark.study(turn=4)
 @one_thread
 def test_intervals_hold_the_truth() -> None:
-    """Advance more often: a ramp tells the order better than the half sample allowed for."""
+    """Advance more often: a ramp tells the order better than the half sample allowed for.
+
+    Those of the model too, which allow for four effects that are not missing.
+    """
     over, still = truth(CURRENTS["circle"]), truth(STILL)
     inside: dict[tuple[str, bool], list[bool]] = {}
+    bands: dict[tuple[str, str], list[bool]] = {}
     for seed in range(SEEDS):
-        for m in measured(seed):
+        fitted = measured(seed)
+        for m in fitted:
             assert m.corrected_interval is not None
             low, high = m.interval
             inside.setdefault((m.name, True), []).append(low < over[m.name] < high)
             low, high = m.corrected_interval
             inside.setdefault((m.name, False), []).append(low < still[m.name] < high)
+        for kind, found in (("model", fitted), ("held out", held_out(seed))):
+            for m in found:
+                low, high = m.predicted_interval or (np.nan, np.nan)
+                bands.setdefault((kind, m.name), []).append(low < still[m.name] < high)
     shares = {key: float(np.mean(x)) for key, x in inside.items()}
-    print(shares)
-    assert min(shares.values()) >= 0.9
+    models = {key: float(np.mean(x)) for key, x in bands.items()}
+    print(shares, models)
+    assert min(*shares.values(), *models.values()) >= 0.9
     sideways = [x for (name, _), x in shares.items() if name != "advance"]
     assert 0.92 <= np.mean(sideways) <= 0.98

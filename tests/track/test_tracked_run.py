@@ -90,6 +90,20 @@ def test_one_number_for_one_ship(result: Result) -> None:
     for name in ("advance", "tactical diameter"):
         row = rows[name]
         assert row.corrected_interval is not None
-        assert row.corrected_interval[0] < (standard[name] or 0.0) < row.corrected_interval[1]
+        low, high = row.corrected_interval
+        assert standard[name] == pytest.approx(row.corrected, abs=0.75 * (high - low))  # 3 errors
         assert row.predicted == pytest.approx(standard[name], rel=0.005)
     assert rows["tactical diameter"].measured < 520.0  # over the ground: the current shortens it
+
+
+def test_an_overshoot_is_told_once(result: Result) -> None:
+    """By the recorded heading, not by the integral of the rate as well."""
+    assert result.imo is not None
+    assert result.imo.overshoots == ()
+    assert [row.name for row in result.imo.measured] == [
+        f"{ordinal} overshoot" for ordinal in ("first", "second", "third")
+    ]
+    assert [row.kind for row in result.imo.manoeuvres] == ["turning circle", "zig-zag"]
+    for row in result.imo.measured:
+        assert row.predicted is not None
+        assert row.interval[0] < row.predicted < row.interval[1]

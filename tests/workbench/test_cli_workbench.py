@@ -114,6 +114,7 @@ def test_ctrl_c_ends_it_with_pages_listening(path: Path) -> None:
     assert path.read_text(encoding="utf-8") == quick.TEXT
 
 
+@pytest.mark.study
 def test_on_every_address_it_asks_for_a_token(path: Path) -> None:
     with quick.running(str(path), "--host", "0.0.0.0", "--port", "0") as bench:
         found = re.search(r"\?token=([\w-]{32,})\n", bench.said)
@@ -127,6 +128,7 @@ def test_on_every_address_it_asks_for_a_token(path: Path) -> None:
         assert other.address.get("/api/status", Cookie=cookie).status == 401
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("host", ["127.0.0.1", "127.0.0.2", "localhost", "::1", "0.0.0.0"])
 def test_the_address_it_prints_is_answered(path: Path, host: str) -> None:
     try:
@@ -140,6 +142,7 @@ def test_the_address_it_prints_is_answered(path: Path, host: str) -> None:
         assert bench.address.edit("add", effect=ADDED).status == 200
 
 
+@pytest.mark.study
 def test_two_at_once_keep_their_own_cookies(path: Path, tmp_path: Path) -> None:
     """A browser sends the cookies of every port of a host."""
     (tmp_path / "second").mkdir()

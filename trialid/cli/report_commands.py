@@ -23,14 +23,16 @@ DIFFERENT = 1
     metavar="DIR",
     help="Folder for what is written; by default the run's own, of several runs `comparison`.",
 )
+@click.option("--imo", is_flag=True, help="Instead: the form that is handed in, imo.html.")
 @click.option("--quiet", is_flag=True, help="Say nothing.")
 @click.option("--schema", is_flag=True, help="Instead: print the JSON Schema of result.json.")
-def report(runs: tuple[Path, ...], out: Path | None, quiet: bool, schema: bool) -> None:
+def report(runs: tuple[Path, ...], out: Path | None, imo: bool, quiet: bool, schema: bool) -> None:
     """Write the report of one run, or of several side by side, from their folders.
 
     Nothing is computed anew. One run: report.html, its tables as CSV, Markdown and LaTeX
     (`pdflatex tables.tex` sets them all), its figures as SVG. Several: compare.html and its tables,
-    and in a folder for each run its own report.
+    and in a folder for each run its own report. --imo, of one run: imo.html to print, its tables in
+    imo/.
     """
     if schema:
         from trialid.result.json_file import json_schema
@@ -39,7 +41,10 @@ def report(runs: tuple[Path, ...], out: Path | None, quiet: bool, schema: bool) 
         return
     if not runs:
         raise click.UsageError("Missing argument 'RUN_DIR...'.")
+    if imo and len(runs) > 1:
+        raise click.UsageError("--imo is of one run; give one RUN_DIR.")
     from trialid.report.pages.folder import read_finished, write_one, write_several
+    from trialid.report.pages.imo_form import write_form
     from trialid.result import json_file
 
     labels = run_labels(runs)
@@ -51,7 +56,7 @@ def report(runs: tuple[Path, ...], out: Path | None, quiet: bool, schema: bool) 
     _check_place(place, runs)
     try:
         if len(read) == 1:
-            page, files = write_one(read[0], place)
+            page, files = (write_form if imo else write_one)(read[0], place)
         else:
             page, files = write_several(read, place)
             for each in read:

@@ -16,7 +16,7 @@ from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.measure_slopes import Shows, measure_slopes
 from trialid.design.imo.speed_loss import speed_loss, with_speed_loss
 from trialid.design.kinds import Test
-from trialid.design.likely_spread import likely_spread
+from trialid.design.likely_spread import LikelySpread, likely_spread
 from trialid.design.limits import Limits, excesses
 from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
 from trialid.design.search import natural_roll, sail_all
@@ -251,8 +251,12 @@ def standard_measures(
     DesignError
         The model does not turn, or is not steered by a rudder.
     """
-    spread = likely_spread(fit, covariance, standing, held, missing)
-    slopes = measure_slopes(sailed_ship(fit), spread.known, missing, spread.width)
+    return measures_within(fit, likely_spread(fit, covariance, standing, held, missing))
+
+
+def measures_within(fit: Fit, spread: LikelySpread) -> tuple[Measure, ...]:
+    """IMO's measures of the fitted ship; DesignError as `standard_measures`."""
+    slopes = measure_slopes(sailed_ship(fit), spread.known, spread.missing, spread.width)
     ranges = spread.ranges([*slopes.values.values()], slopes.by)
     known = dict(zip(slopes.values, ranges, strict=True))
     return measures_of(fit.model.ship, slopes.values, slopes.remarks, known)

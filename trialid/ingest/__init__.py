@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import gzipped, signalk_log, ulog_log
+from trialid.ingest import fix_quality, gzipped, signalk_log, ulog_log
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted
 from trialid.ingest.can import can_log, canboat_log
 from trialid.ingest.mavlink import dataflash_log, tlog_log
@@ -67,10 +67,12 @@ def read(path: str | Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recor
     """Read a log of any known format; `wanted` are channel names or their beginnings, None all.
 
     Raises LogError when there is no such file, when not exactly one adapter recognises it, when
-    that adapter cannot read it, and when it can make no use of an aid.
+    that adapter cannot read it, and when it can make no use of an aid. A position that its receiver
+    calls no fix is `not available`.
     """
     place = Path(path)
-    return adapter_of(place, aids).read(place, wanted, aids)
+    found = adapter_of(place, aids).read(place, fix_quality.with_quality(wanted), aids)
+    return fix_quality.without_poor_fixes(found, wanted)
 
 
 def read_together(logs: Sequence[LogFile], wanted: Wanted = None) -> tuple[Recording, ...]:

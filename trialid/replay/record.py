@@ -49,15 +49,20 @@ def series(playback: Playback, start: int = 0) -> TrialSeries:
     played = slice(start, playback.furthest)
     names = fit.problem.simulator.equations.inputs
     return TrialSeries(
-        trial.name, trial.use, trial.t[played].copy(),
-        {n: trial.signals[n][played] for n in names if n in trial.signals},
-        tuple(
-            OutputSeries(c, playback.measured[played, i].copy(),
-                         playback.stream.y[played, i].copy(),
-                         playback.compared[played, i].copy())
+        name=trial.name,
+        use=trial.use,
+        t=trial.t[played].copy(),
+        inputs={n: trial.signals[n][played] for n in names if n in trial.signals},
+        outputs=tuple(
+            OutputSeries(
+                c,
+                playback.measured[played, i].copy(),
+                playback.stream.y[played, i].copy(),
+                playback.compared[played, i].copy(),
+            )
             for i, c in enumerate(fit.problem.outputs)
         ),
-    )  # fmt: skip
+    )
 
 
 def layout_paths(path: Path) -> list[Path]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
+from trialid.design.imo.measured import Found, Measured
 from trialid.design.imo.observed import Overshoot
 from trialid.design.imo.turns import TurnMeasure
 from trialid.design.separation import Separation
@@ -25,6 +26,8 @@ from trialid.result.change_rows import ChangePart, MovedRow, Pair, StepRow
 from trialid.result.finding_rows import (
     FindingRow,
     ImoPart,
+    ManoeuvreRow,
+    MeasuredRow,
     OvershootRow,
     RestRow,
     ShareRow,
@@ -42,7 +45,7 @@ from trialid.result.fit_rows import (
     StartsPart,
 )
 from trialid.result.force_series import missing_force_part
-from trialid.result.imo import UNRELIABLE, measure_rows, sailed_part, sailing_words
+from trialid.result.imo import UNRELIABLE, condition_rows, measure_rows, sailed_part, sailing_words
 from trialid.result.json_file import finite
 from trialid.result.missing_rows import missing_rows, verdict_part
 from trialid.result.schema import Result
@@ -55,8 +58,8 @@ class Findings(Diagnosis):
     """All that a run found.
 
     `proposal` is None where nothing is to be told apart, `narrowing` where no effect widens a
-    range. `ship` is the fitted one as she is sailed, None where no rudder steers her. `measures`,
-    `overshoots` and `turns` are there where the pipeline asks for IMO's measures.
+    range. `ship` is the fitted one as she is sailed, None where no rudder steers her. `measures`
+    and all below are there where the pipeline asks for IMO's measures.
     """
 
     name: str
@@ -67,6 +70,8 @@ class Findings(Diagnosis):
     measures: tuple[Measure, ...] = ()
     overshoots: tuple[Overshoot, ...] = ()
     turns: tuple[TurnMeasure, ...] = ()
+    manoeuvres: tuple[Found, ...] = ()
+    measured: tuple[Measured, ...] = ()
 
 
 def result_from(found: Findings, **beside: Any) -> Result:
@@ -127,6 +132,7 @@ def _model(fit: Fit) -> ModelPart:
     model = fit.model
     return ModelPart(
         ship=model.ship.name,
+        particulars=dict(model.ship.particulars),
         rudder_positive="starboard",
         states=tuple(model.states),
         effects=tuple(e.name for e in model.effects),
@@ -232,6 +238,9 @@ def _imo(found: Findings) -> ImoPart | None:
         speed_simulated="u" in found.before.fit.model.states,
         overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
         turns=tuple(TurnRow(**asdict(one)) for one in found.turns),
+        manoeuvres=tuple(ManoeuvreRow(**asdict(one)) for one in found.manoeuvres),
+        measured=tuple(MeasuredRow(**asdict(one)) for one in found.measured),
+        conditions=tuple(condition_rows([s.trial for s in found.before.fit.scores])),
     )
 
 

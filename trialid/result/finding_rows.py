@@ -189,7 +189,8 @@ class TurnRow:
     """A measure of a turning circle that a trial holds: m, rudder in rad, time of the order in s.
 
     `measured` is over the ground as recorded, `corrected` through the water by the current found,
-    each with its 95 % interval; `predicted` is of the fitted model in still water.
+    each with its 95 % interval; `predicted` is of the fitted model through the water under the
+    recorded rudder, with where the true ship's is likely to lie.
     """
 
     trial: str
@@ -201,6 +202,51 @@ class TurnRow:
     corrected: float | None = None
     corrected_interval: tuple[float, float] | None = None
     predicted: float | None = None
+    predicted_interval: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ManoeuvreRow:
+    """A manoeuvre recognised in a trial: order and end [s], first rudder angle [rad].
+
+    `remark` says what it lacks; empty where it is whole.
+    """
+
+    trial: str
+    kind: str
+    t: float
+    end: float
+    rudder: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredRow:
+    """A number of a zig-zag, pull-out or spiral of a trial, and the fitted model's, in `unit`.
+
+    Each with its 95 %; `predicted` under the rudder as recorded.
+    """
+
+    trial: str
+    kind: str
+    t: float
+    rudder: float
+    name: str
+    unit: str
+    measured: float
+    interval: tuple[float, float]
+    predicted: float | None = None
+    predicted_interval: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConditionRow:
+    """What a signal of a trial was like, SI: its median, and where 95 % of its samples lie."""
+
+    trial: str
+    signal: str
+    median: float
+    interval: tuple[float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,5 +288,8 @@ class ImoPart:
     speed_simulated: bool = False
     overshoots: tuple[OvershootRow, ...] = ()
     turns: tuple[TurnRow, ...] = ()
+    conditions: tuple[ConditionRow, ...] = ()
+    manoeuvres: tuple[ManoeuvreRow, ...] = ()
+    measured: tuple[MeasuredRow, ...] = ()
     sailed: str = ""
     doubt: str = ""

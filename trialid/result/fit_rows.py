@@ -45,9 +45,10 @@ class TrialRow:
 
 @dataclass(frozen=True, kw_only=True)
 class ModelPart:
-    """What was fitted."""
+    """What was fitted; `particulars` are the ship's, SI."""
 
     ship: str | None = None
+    particulars: Mapping[str, float] = field(default_factory=dict)
     rudder_positive: str = "starboard"
     states: tuple[str, ...] = ()
     effects: tuple[str, ...] = ()

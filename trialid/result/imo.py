@@ -1,6 +1,6 @@
 """Standard measures of manoeuvring as plain data."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -9,9 +9,26 @@ from trialid.design.helm import GEAR_STATE, Vessel
 from trialid.design.imo.speed_loss import NAMES, loses_speed
 from trialid.design.standard import Measure, in_calm
 from trialid.names import labels
-from trialid.result.finding_rows import MeasureRow, SailedPart
+from trialid.result.finding_rows import ConditionRow, MeasureRow, SailedPart
+from trialid.trial import Trial
 
 UNRELIABLE: Final = "The fit carries no verdict: none of these numbers is to be relied on."
+
+CONDITIONS: Final = ("u", "sog", "n", "n_p", "n_s", "V_aw", "gamma_aw", "h")
+"""Signals that a report of a trial asks for, where they were recorded."""
+
+
+def condition_rows(trials: Sequence[Trial]) -> Iterator[ConditionRow]:
+    """What the trials were sailed in, by what was recorded."""
+    for trial in trials:
+        for name in (n for n in CONDITIONS if n in trial.signals):
+            known = trial.signals[name][trial.valid.get(name, np.ones(trial.samples, dtype=bool))]
+            known = known[np.isfinite(known)]
+            if len(known):
+                low, median, high = (float(np.quantile(known, q)) for q in (0.025, 0.5, 0.975))
+                yield ConditionRow(
+                    trial=trial.name, signal=name, median=median, interval=(low, high)
+                )
 
 
 def measure_rows(measures: Sequence[Measure], *, reliable: bool = True) -> tuple[MeasureRow, ...]:

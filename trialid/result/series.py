@@ -13,6 +13,7 @@ import numpy as np
 from trialid.arrays import Mask, Vector
 from trialid.errors import LogError
 from trialid.names import labels
+from trialid.result.track_series import TrackSeries
 
 _OUTPUT = re.compile(r"(?P<name>.+)_predicted_[^_]+", re.DOTALL)
 _INPUT = re.compile(r"(?P<name>.+)_[^_]+", re.DOTALL)
@@ -43,15 +44,16 @@ class OutputSeries:
         return self.observed - self.predicted
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TrialSeries:
-    """One trial's clock [s], inputs and outputs in SI; (N,) each."""
+    """One trial's clock [s], inputs and outputs in SI; (N,) each; its track where it has one."""
 
     name: str
     use: Literal["fit", "check"]
     t: Vector
     inputs: Mapping[str, Vector]
     outputs: tuple[OutputSeries, ...]
+    track: TrackSeries | None = None
 
     def __post_init__(self) -> None:
         for array in (self.t, *self.inputs.values()):

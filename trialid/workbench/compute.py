@@ -177,11 +177,11 @@ def _measured(pipeline: Pipeline, trials: tuple[Trial, ...]) -> tuple[TrialSerie
     outputs = pipeline.identify.outputs
     return tuple(
         TrialSeries(
-            trial.name,
-            trial.use,
-            trial.t,
-            {n: x for n, x in trial.signals.items() if n not in outputs},
-            tuple(
+            name=trial.name,
+            use=trial.use,
+            t=trial.t,
+            inputs={n: x for n, x in trial.signals.items() if n not in outputs},
+            outputs=tuple(
                 OutputSeries(c, trial.signals[c], np.full(trial.samples, np.nan), trial.valid[c])
                 for c in outputs
                 if c in trial.signals

@@ -4,7 +4,7 @@ Numbers are written by the report's own filters, so that screen, report and term
 digits. What is known only of the model before the last change is marked as such.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from trialid.names import labels
 from trialid.report.pages import page as report
 from trialid.report.pictures import bars
 from trialid.report.pictures.panels import encode_floats, trial_panels
+from trialid.report.pictures.track_picture import track_picture
 from trialid.report.words import advice, ranking
 from trialid.result.finding_rows import FindingRow
 from trialid.result.json_file import finite
@@ -31,7 +32,8 @@ if TYPE_CHECKING:
 Plain = dict[str, Any]
 
 PARTS = (
-    "title", "tabs", "about", "where", "error", "history", "verdict", "now", "missing", "model",
+    "title", "tabs", "about", "track", "where", "error", "history", "verdict", "now", "missing",
+    "model",
 )  # fmt: skip
 """The pieces, each under the name of its place on the page and of its template."""
 
@@ -142,11 +144,13 @@ def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
     """Each trial in the order of its curves: name, use, error, remarks, signals, findings."""
     written = {trial.name: trial for trial in shown.pipeline.trials}
     names = [s.name for s in shown.series] or [*written]
+    tracks = {s.name: s.track for s in shown.series}
     for place, name in enumerate(names):
         errors = error_number.by_output(shown, name, run)
         yield {
             "place": place,
             "name": name,
+            "track": track_picture(tracks.get(name), _particulars(shown, run)),
             "use": written[name].use if name in written else "fit",
             "errors": errors,
             "error": error_number.pool_errors(errors),
@@ -154,6 +158,10 @@ def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
             "signals": [row for row in signals_of(shown.pipeline) if row.trial == name],
             "findings": _findings(run.where, name),
         }
+
+
+def _particulars(shown: Shown, run: Result) -> Mapping[str, float]:
+    return run.model.particulars if shown.model is None else shown.model.ship.particulars
 
 
 def _remarks(shown: Shown, name: str) -> Sequence[str]:

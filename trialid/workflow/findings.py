@@ -1,15 +1,14 @@
 """All that a run finds out: the diagnosis, the next trial, standard measures."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from trialid.design import following
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
-from trialid.design.imo import observed, turns
-from trialid.design.imo.observed import Overshoot
-from trialid.design.imo.turns import TurnMeasure
+from trialid.design.imo import measured, observed, turns
+from trialid.design.likely_spread import likely_spread
 from trialid.design.separation import Separation
-from trialid.design.standard import Measure
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError
@@ -54,7 +53,6 @@ def find_out(
         fit, diagnose_settings(pipeline, catalogue), progress, force=force, grown=grown
     )
     ship = _ship(found.before.fit)
-    measures, overshoots, turned = _imo(pipeline, found.before)
     progress("looking for the trial to sail next", 0.95)
     return Findings(
         **vars(found),
@@ -63,9 +61,7 @@ def find_out(
         proposal=proposal(fit, found.verdict, catalogue),
         narrowing=narrowing_trial(found, catalogue),
         ship=ship,
-        measures=measures,
-        overshoots=overshoots,
-        turns=turned,
+        **_imo(pipeline, found.before),
     )
 
 
@@ -102,15 +98,20 @@ def _ship(fit: Fit) -> Vessel | None:
         return None
 
 
-def _imo(
-    pipeline: Pipeline, done: Diagnosed
-) -> tuple[tuple[Measure, ...], tuple[Overshoot, ...], tuple[TurnMeasure, ...]]:
+def _imo(pipeline: Pipeline, done: Diagnosed) -> dict[str, Any]:
     """IMO's measures of the fitted ship and of the trials, where the pipeline asks for them."""
     if not pipeline.imo:
-        return (), (), ()
-    off = done.doubts
-    measures = following.standard_measures(
-        done.fit, done.accuracy.covariance, off.standing, off.held, off.missing
-    )
+        return {}
+    off, fit = done.doubts, done.fit
+    spread = likely_spread(fit, done.accuracy.covariance, off.standing, off.held, off.missing)
     errors = {p.name: p.standard_error for p in done.accuracy.parameters}
-    return measures, observed.overshoots(done.fit), turns.turns(done.fit, errors)
+    read = measured.manoeuvre_numbers(fit, spread)
+    by_heading = {one.trial for one in read if one.kind == "zig-zag"}
+    integrals = (one for one in observed.overshoots(fit) if one.trial not in by_heading)
+    return {
+        "measures": following.measures_within(fit, spread),
+        "overshoots": tuple(integrals),
+        "turns": turns.turns(fit, errors, spread),
+        "manoeuvres": measured.manoeuvres(fit),
+        "measured": read,
+    }

@@ -19,6 +19,7 @@ from trialid.workflow.build_model import (
     check_moving,
     settings_of,
 )
+from trialid.workflow.track_prediction import track_of
 
 
 def fit_of(
@@ -71,12 +72,15 @@ def time_series(fit: Fit) -> tuple[TrialSeries, ...]:
     names = fit.problem.simulator.equations.inputs
     return tuple(
         TrialSeries(
-            s.trial.name, s.trial.use, s.trial.t,
-            {n: s.trial.signals[n] for n in names if n in s.trial.signals},
-            tuple(
+            name=s.trial.name,
+            use=s.trial.use,
+            t=s.trial.t,
+            inputs={n: s.trial.signals[n] for n in names if n in s.trial.signals},
+            outputs=tuple(
                 OutputSeries(c, s.trial.signals[c], s.response.y[:, i], s.compared[:, i])
                 for i, c in enumerate(outputs)
             ),
+            track=track_of(fit, s),
         )
         for s in fit.scores
-    )  # fmt: skip
+    )

@@ -8,9 +8,11 @@ from pathlib import Path
 from trialid import own_files
 from trialid.report.files.overlay import write_mcap
 from trialid.report.pages.page import write_page
+from trialid.result import track_series
 from trialid.result.force_series import force_series, write_force_csv
 from trialid.result.json_file import text_of
 from trialid.result.series import write_csv
+from trialid.result.track_series import write_track_csv
 from trialid.workflow.outcome import Outcome, Run
 from trialid.workflow.run_folder import FILES, ORIGIN
 
@@ -34,6 +36,9 @@ def write(done: Run | Outcome, folder: Path) -> None:
 def _write_files(done: Run | Outcome, folder: Path) -> None:
     (folder / "result.json").write_text(text_of(done.result), encoding="utf-8")
     write_csv(folder / "series.csv", done.series)
+    tracks = [one.track for one in done.series if one.track is not None]
+    if tracks:
+        write_track_csv(folder / track_series.FILE, tracks)
     write_mcap(folder / "predicted.mcap", done.result, done.series)
     forces = force_series(done.force) if done.force is not None else ()
     if forces:

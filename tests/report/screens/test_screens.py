@@ -3,6 +3,7 @@
 import copy
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -95,7 +96,7 @@ def _shifted(trial, by):
         type(o)(o.name, o.measured.copy(), o.predicted + by, o.compared.copy())
         for o in trial.outputs
     )
-    return type(trial)(trial.name, trial.use, trial.t, trial.inputs, outputs)
+    return replace(trial, outputs=outputs)
 
 
 def _measured_otherwise(trial):
@@ -103,7 +104,7 @@ def _measured_otherwise(trial):
         type(o)(o.name, o.measured + 1.0, o.predicted.copy(), o.compared.copy())
         for o in trial.outputs
     )
-    return type(trial)(trial.name, trial.use, trial.t, trial.inputs, outputs)
+    return replace(trial, outputs=outputs)
 
 
 def tops(page: Any, *selectors: str) -> list[float]:
@@ -234,7 +235,7 @@ def test_runs_are_laid_over_one_another_where_they_saw_the_same(opened, comparis
 
 
 def test_runs_of_other_trials_are_told_in_tables_alone(result, series):
-    other = [type(t)(f"{t.name} b", t.use, t.t, t.inputs, t.outputs) for t in series]
+    other = [replace(t, name=f"{t.name} b") for t in series]
     found = {"a": series, "b": other}
     text = side_by_side.page(
         side_by_side.shown_runs({label: result_of(result) for label in found}, found)

@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.ingest.adapter import Wanted, is_wanted
-from trialid.ingest.nmea0183.nmea0183_layouts import LAYOUTS, SHAFTS, Field, Layout
+from trialid.ingest.nmea0183 import nmea0183_fields
+from trialid.ingest.nmea0183.nmea0183_layouts import SHAFTS, Field, Layout
+from trialid.ingest.nmea0183.nmea0183_receivers import SENTENCES
 from trialid.ingest.nmea0183.nmea0183_sentences import (
     Bytes,
     Mask,
@@ -76,8 +78,8 @@ def addresses(block: Sentences) -> Iterator[tuple[Places, str, str]]:
     for part, text in texts(block.data, block.field(rows, 0)):
         if not ADDRESS.fullmatch(text):
             continue
-        sentence, talker = (text, "") if text in LAYOUTS else (text[2:], text[:2])
-        known = sentence in LAYOUTS or sentence in ("XDR", "ZDA")
+        sentence, talker = (text, "") if text in SENTENCES else (text[2:], text[:2])
+        known = sentence in SENTENCES or sentence in ("XDR", "ZDA")
         if known and block.data[block.body.a[part[0]] - 1] == ord("$"):
             yield part, sentence, talker
 
@@ -115,7 +117,7 @@ def gather(
                 span=entry.value,
             )
         return
-    for layout in LAYOUTS[sentence]:
+    for layout in SENTENCES[sentence]:
         part = _of_kind(block, rows, layout)
         for device, devices in _devices(block, part, layout):
             for one in layout.fields:
@@ -165,13 +167,14 @@ def _field(block: Sentences, rows: Places, key: Key, offset: int, found: Found) 
         return
     span = block.field(rows, one.at)
     y, bad = numbers(block.data, span)
-    invalid = np.zeros(len(rows), np.bool_)
-    if one.status is not None:
-        invalid = _other(block, rows, one.status)
+    invalid = nmea0183_fields.invalid_numbers(block, rows, one)
+    if one.minutes:
+        y, lost = nmea0183_fields.whole_degrees(y)
+        bad |= lost
     if one.mark is not None:
-        bad |= _other(block, rows, one.mark)
+        bad |= nmea0183_fields.other_letters(block, rows, one.mark)
     if one.side is not None:
-        y, lost = _sided(block, rows, one.side, y)
+        y, lost = nmea0183_fields.signed_numbers(block, rows, one.side, y)
         bad |= lost
     given = np.isfinite(y)
     y[invalid | bad] = np.nan
@@ -188,26 +191,6 @@ def _field(block: Sentences, rows: Places, key: Key, offset: int, found: Found) 
             block=block,
             span=part,
         )
-
-
-def _other(block: Sentences, rows: Places, expected: tuple[int, str]) -> Mask:
-    """True where a field says something else than one of these letters; empty says nothing."""
-    letter = block.letter(rows, expected[0])
-    other = letter != 0
-    for allowed in expected[1].encode():
-        other &= letter != allowed
-    return other
-
-
-def _sided(
-    block: Sentences, rows: Places, side: tuple[int, str], y: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], Mask]:
-    """Numbers with the sign their side gives; one without a side is none, except zero."""
-    at, plus, minus = side[0], side[1][0], side[1][1]
-    letter = block.letter(rows, at)
-    sign = np.where(letter == ord(plus), 1.0, np.where(letter == ord(minus), -1.0, np.nan))
-    sign[(y == 0) & (letter == 0)] = 1.0
-    return y * sign, np.isfinite(y) & np.isnan(sign)
 
 
 def _units(block: Sentences, rows: Places, one: Field) -> list[tuple[str | None, Mask]]:

@@ -31,6 +31,11 @@ class Field:
         Field whose letter gives the sign: the first of the two plus, the second minus.
     unit_at
         Field whose letter gives the unit, by `units`.
+    fix
+        Field that says how a position was found, and the letters for a fix by satellites; an empty
+        one says nothing.
+    minutes
+        Whether the number is dddmm.mmmm, degrees and minutes.
     """
 
     name: str
@@ -45,6 +50,8 @@ class Field:
     side: Letter | None = None
     unit_at: int | None = None
     units: tuple[tuple[str, str], ...] = ()
+    fix: Letter | None = None
+    minutes: bool = False
 
 
 @dataclass(frozen=True)
@@ -262,43 +269,6 @@ LAYOUTS: Mapping[str, tuple[Layout, ...]] = {
                 ),
                 Field("speed", 5, "kn", "speed through the water", "u", mark=(6, "N")),
                 Field("speed_kmh", 7, "km/h", "speed through the water", "u", mark=(8, "K")),
-            ),
-        ),
-    ),
-    "VTG": (
-        Layout(
-            "course and speed over ground",
-            (
-                Field(
-                    "true_course", 1, "deg", "true course", status=(9, "ADEFRPMS"), mark=(2, "T")
-                ),
-                Field(
-                    "magnetic_course",
-                    3,
-                    "deg",
-                    "magnetic course",
-                    status=(9, "ADEFRPMS"),
-                    mark=(4, "M"),
-                ),
-                Field("speed", 5, "kn", "speed over ground", status=(9, "ADEFRPMS"), mark=(6, "N")),
-                Field(
-                    "speed_kmh",
-                    7,
-                    "km/h",
-                    "speed over ground",
-                    status=(9, "ADEFRPMS"),
-                    mark=(8, "K"),
-                ),
-            ),
-        ),
-    ),
-    "RMC": (
-        Layout(
-            "recommended minimum data of the receiver",
-            (
-                Field("speed", 7, "kn", "speed over ground", status=(2, "A")),
-                Field("course", 8, "deg", "true course over ground", status=(2, "A")),
-                Field("variation", 10, "deg", "magnetic variation, positive east", side=(11, "EW")),
             ),
         ),
     ),

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from trialid.ingest.adapter import Wanted, is_wanted
 from trialid.ingest.nmea2000 import nmea2000_sources
-from trialid.ingest.nmea2000.nmea2000_pgns import LAYOUTS, Field, Layout
+from trialid.ingest.nmea2000.nmea2000_pgns import LAYOUTS, POSITIONS, Field, Layout, Reference
 from trialid.recording import Channel
 
 Ints = NDArray[np.int64]
@@ -168,6 +168,11 @@ def _of_sender(
             if not is_wanted(channel, found.wanted):
                 continue
             y = _numbers(one, messages.payloads, some)
+            if layout.no_fix is not None and one.name in POSITIONS:
+                none = _no_fix(layout.no_fix, messages.payloads, some) & np.isfinite(y)
+                y[none] = np.nan
+                poor = f"{channel}: {none.sum()} of {len(y)} are no fix by satellites, left out"
+                found.remarks += [poor] if none.any() else []
             if np.isnan(y).all():
                 found.silent.append(channel)
                 continue
@@ -224,6 +229,14 @@ def _referred(
         name = reference.names.get(value, f"reference{value}")
         words = name.replace("_", " ").replace("reference", "unknown reference ")
         yield one.name.format(name), one.words.format(words), some
+
+
+def _no_fix(told: Reference, payloads: Payloads, rows: Ints) -> NDArray[np.bool_]:
+    """Where a message says that its position is none by satellites; one cut short says nothing."""
+    long = payloads.length[rows] > told.at
+    code = np.full(len(rows), told.mask)
+    code[long] = payloads.number(rows[long], told.at, 1).astype(np.int64) >> told.shift & told.mask
+    return np.isin(code, list(told.names))
 
 
 def _numbers(one: Field, payloads: Payloads, rows: Ints) -> NDArray[np.float64]:

@@ -20,6 +20,9 @@ WIND = {
     3: "true_boat",
     4: "true_water",
 }
+NO_FIX = {0: "no fix", 6: "estimated", 7: "put in", 8: "simulated", 14: "an error"}
+"""Methods by which a position is none of satellites; 15 says nothing, 1 to 5 are fixes."""
+POSITIONS = frozenset(("latitude", "longitude"))
 
 
 @dataclass(frozen=True)
@@ -63,7 +66,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Layout:
-    """A parameter group: what a message holds."""
+    """A parameter group: what a message holds; by `no_fix` its positions are none by satellites."""
 
     name: str
     words: str
@@ -71,6 +74,7 @@ class Layout:
     instance: int | None = None
     reference: Reference | None = None
     fast: bool = False
+    no_fix: Reference | None = None
 
 
 def _angle(name: str, at: int, words: str, quantity: str | None = None) -> Field:
@@ -209,8 +213,11 @@ LAYOUTS: Mapping[int, Layout] = {
         (
             Field("latitude", 7, "i8", 1e-16, "deg", "latitude, positive north", limit=90.0),
             Field("longitude", 15, "i8", 1e-16, "deg", "longitude, positive east", limit=180.0),
+            Field("satellites", 33, "u1", 1.0, "1", "satellites used"),
+            Field("hdop", 34, "i2", 1e-2, "1", "horizontal dilution of precision"),
         ),
         fast=True,
+        no_fix=Reference(31, 4, 15, NO_FIX),
     ),
     130306: Layout(
         "wind",

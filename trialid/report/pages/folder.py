@@ -1,7 +1,7 @@
 """The report of finished runs as files: pages, tables in three forms, figures."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -14,6 +14,7 @@ from trialid.report.tables.rounded_table import Table, as_csv, as_latex, as_mark
 from trialid.result.force_series import ForceSeries, read_force_csv
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries, read_csv
+from trialid.result.track_series import FILE, read_track_csv
 
 OLDER: Final = ("report.html",)
 """What a folder written by an earlier version may hold of a report's."""
@@ -37,9 +38,10 @@ def read_finished(label: str, folder: Path, result: Result) -> Finished:
     LogError
         A table of series is missing or torn.
     """
-    forces = folder / "missing_force.csv"
+    forces, tracks = folder / "missing_force.csv", read_track_csv(folder / FILE)
+    series = read_csv(folder / "series.csv")
     return Finished(
-        label, result, read_csv(folder / "series.csv"),
+        label, result, tuple(replace(one, track=tracks.get(one.name)) for one in series),
         read_force_csv(forces) if forces.exists() else (),
     )  # fmt: skip
 
@@ -57,7 +59,7 @@ def write_one(run: Finished, place: Path) -> tuple[Path, int]:
     made = {f"tables/{name}": each for name, each in tables.items()}
     drawn = figures(text, run.result, run.series)
     made |= {f"figures/{stem}.svg": each for stem, each in drawn.items()}
-    _write(place, {"report.html": text, **made})
+    write_texts(place, {"report.html": text, **made})
     return place / "report.html", len(made)
 
 
@@ -67,7 +69,7 @@ def write_several(runs: Sequence[Finished], place: Path) -> tuple[Path, int]:
     shown = side_by_side.shown_runs({run.label: run.result for run in runs}, series)
     made = table_files(side_by_side.tables(shown))
     tables = {f"tables/{name}": each for name, each in made.items()}
-    _write(place, {"compare.html": side_by_side.page(shown), **tables})
+    write_texts(place, {"compare.html": side_by_side.page(shown), **tables})
     return place / "compare.html", len(made)
 
 
@@ -81,9 +83,11 @@ def table_files(tables: Sequence[Table]) -> dict[str, str]:
     return made
 
 
-def _write(folder: Path, texts: Mapping[str, str]) -> None:
+def write_texts(
+    folder: Path, texts: Mapping[str, str], below: tuple[str, ...] = ("tables/", "figures/")
+) -> None:
     """Texts by their names below the folder; ours of an earlier report that are not made go."""
-    with own_files.replacing(folder, below=("tables/", "figures/"), older=OLDER) as work:
+    with own_files.replacing(folder, below=below, older=OLDER) as work:
         for name, text in texts.items():
             (work / name).parent.mkdir(parents=True, exist_ok=True)
             (work / name).write_text(text, encoding="utf-8")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from trialid.names import labels, wording
 from trialid.report.pictures import bars, error_history, force_plots, panels, where_pictures
+from trialid.report.pictures.track_picture import track_picture
 from trialid.report.script import script
 from trialid.report.tables import imo_tables, run_tables
 from trialid.report.words import advice, beforehand, doubt, ranking
@@ -66,6 +67,8 @@ def page(run: Result, series: Sequence[TrialSeries], forces: Sequence[ForceSerie
             axis=axis,
             outputs=run_tables.outputs_of(run),
             shown_trials=_shown_trials(run, series),
+            imo_found=(imo_tables.manoeuvres(run), imo_tables.manoeuvre_numbers(run)),
+            tracks=[track_picture(each.track, run.model.particulars) for each in series],
             plots=panels.trial_panels(series, run),
             forces=force_plots.pictures(run, forces),
             assets=assets(),

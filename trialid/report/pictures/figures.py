@@ -38,7 +38,7 @@ Row = tuple[str, Sequence[Part], str]
 
 def figures(page: str, run: Result, series: Sequence[TrialSeries]) -> dict[str, str]:
     """File stems and SVG texts: the pictures of the page, its bars, and each output's course."""
-    return {**page_pictures(page), **_bar_charts(run), **_courses(series)}
+    return {**page_pictures(page), **_bar_charts(run), **courses(series)}
 
 
 def page_pictures(page: str) -> dict[str, str]:
@@ -70,10 +70,11 @@ def _alone(section: str, head: str, body: str) -> str:
     box, label = _BOX.search(head), _LABEL.search(head)
     width, height = (float(side) for side in box.groups()) if box else (0.0, 0.0)
     words = html.unescape(label[1]) if label else ""
-    return _svg(width, height, f'<g class="{section}">{body}</g>', words)
+    return svg(width, height, f'<g class="{section}">{body}</g>', words)
 
 
-def _svg(width: float, height: float, body: str, title: str = "") -> str:
+def svg(width: float, height: float, body: str, title: str = "") -> str:
+    """A picture that stands alone, its title as a line above it."""
     room = 24.0 if title else 0.0
     head = f"<title>{_text(title)}</title>" if title else ""
     words = f'<text class="name" x="4" y="-8">{_text(title)}</text>' if title else ""
@@ -181,10 +182,10 @@ def _chart(title: str, rows: Sequence[Row]) -> str:
                 )
             x += width
         body.append(f'<text x="{x + 6:.1f}" y="{y + 15:g}">{_text(number)}</text>')
-    return _svg(left + BARS + NUMBERS, ROW * len(rows) + 6.0, "".join(body), title)
+    return svg(left + BARS + NUMBERS, ROW * len(rows) + 6.0, "".join(body), title)
 
 
-def _courses(series: Sequence[TrialSeries]) -> dict[str, str]:
+def courses(series: Sequence[TrialSeries]) -> dict[str, str]:
     """Measured, predicted and residual of every output of every trial."""
     made = {}
     for trial, stem in zip(series, stems(each.name for each in series), strict=True):
@@ -207,13 +208,13 @@ def _course(trial: TrialSeries, output: OutputSeries) -> str:
     title = f"{trial.name} ({use}): {labels.label(output.name)} [{unit}]"
     above = {"measured": output.observed * factor, "predicted": output.predicted * factor}
     panels = [(above, 0.0, HIGH), ({"residual": output.residual * factor}, HIGH + GAP, LOW)]
-    body = "".join(_panel(trial.t, lines, top, height) for lines, top, height in panels)
+    body = "".join(panel(trial.t, lines, top, height) for lines, top, height in panels)
     floor = HIGH + GAP + LOW
-    body += _clock(trial.t, floor + 14.0) + _legend(floor + 32.0)
-    return _svg(LEFT + WIDE + 10.0, floor + 40.0, f'<g class="trial">{body}</g>', title)
+    body += clock(trial.t, floor + 14.0) + _legend(floor + 32.0)
+    return svg(LEFT + WIDE + 10.0, floor + 40.0, f'<g class="trial">{body}</g>', title)
 
 
-def _panel(t: Vector, lines: Mapping[str, Vector], top: float, height: float) -> str:
+def panel(t: Vector, lines: Mapping[str, Vector], top: float, height: float) -> str:
     """Lines on one scale, its ends written beside it."""
     known = np.concatenate([x[np.isfinite(x)] for x in lines.values()])
     low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
@@ -236,7 +237,7 @@ def _across(t: Vector, at: Vector) -> Vector:
     return LEFT + WIDE * (at - t[0]) / (float(t[-1] - t[0]) or 1.0)
 
 
-def _clock(t: Vector, y: float) -> str:
+def clock(t: Vector, y: float) -> str:
     """The ends of the trial's clock."""
     if not len(t):
         return ""

@@ -2,7 +2,14 @@
 
 from trialid.names import wording
 from trialid.report.tables.rounded_table import Cell, Figure, Table
-from trialid.result.finding_rows import ImoPart, MeasureRow, OvershootRow, TurnRow
+from trialid.result.finding_rows import (
+    ImoPart,
+    ManoeuvreRow,
+    MeasuredRow,
+    MeasureRow,
+    OvershootRow,
+    TurnRow,
+)
 from trialid.result.schema import Result
 
 
@@ -48,17 +55,50 @@ def turns(run: Result) -> Table:
     rows = tuple(_turn(each) for each in (run.imo or ImoPart()).turns)
     headings = (
         *("trial", "t [s]", "rudder [deg]", "turning circle", "measured [m]", "95 % from", "to"),
-        *("without current [m]", "95 % from", "to", "model [m]"),
+        *("without current [m]", "95 % from", "to", "model [m]", "95 % from", "to"),
     )
     return Table("turns", "Turning circles in the trials", headings, rows)
 
 
 def _turn(each: TurnRow) -> tuple[Cell, ...]:
     low, high = each.corrected_interval or (None, None)
-    sizes = (each.measured, *each.interval, each.corrected, low, high, each.predicted)
+    band = each.predicted_interval or (None, None)
+    sizes = (each.measured, *each.interval, each.corrected, low, high, each.predicted, *band)
     numbers = (Figure(x, 4) for x in sizes)
     angle = Figure(_degrees(each.rudder), 3)
     return each.trial, Figure(each.t), angle, each.name, *numbers
+
+
+def manoeuvres(run: Result) -> Table:
+    """Every manoeuvre that was recognised in the trials."""
+    rows = tuple(_manoeuvre(each) for each in (run.imo or ImoPart()).manoeuvres)
+    headings = ("trial", "manoeuvre", "order [s]", "end [s]", "rudder [deg]", "remark")
+    return Table("manoeuvres", "Manoeuvres in the trials", headings, rows)
+
+
+def _manoeuvre(each: ManoeuvreRow) -> tuple[Cell, ...]:
+    times = Figure(each.t), Figure(each.end)
+    angle = Figure(_degrees(each.rudder), 3)
+    return each.trial, each.kind, *times, angle, each.remark or "whole"
+
+
+def manoeuvre_numbers(run: Result) -> Table:
+    """Numbers of zig-zags, pull-outs and spirals, of the record and of the model."""
+    rows = tuple(_measured(each) for each in (run.imo or ImoPart()).measured)
+    headings = (
+        *("trial", "manoeuvre", "t [s]", "rudder [deg]", "number", "unit"),
+        *("measured", "95 % from", "to", "model", "95 % from", "to"),
+    )
+    return Table("measured", "Zig-zags, pull-outs and spirals in the trials", headings, rows)
+
+
+def _measured(each: MeasuredRow) -> tuple[Cell, ...]:
+    unit, factor = wording.shown_unit(each.unit)
+    band = each.predicted_interval or (None, None)
+    sizes = (each.measured, *each.interval, each.predicted, *band)
+    numbers = (Figure(None if x is None else x * factor, 3) for x in sizes)
+    start = (Figure(each.t), Figure(_degrees(each.rudder), 3))
+    return each.trial, each.kind, *start, each.name, unit, *numbers
 
 
 def _degrees(angle: float) -> float:

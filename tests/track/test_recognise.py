@@ -1,0 +1,165 @@
+"""Manoeuvres found in a record, bounded right, and measured with intervals that hold the truth."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sailed_days import sail_day
+from sailed_tracks import SETTINGS, SHIP, noisy, sailed, spread
+
+from trialid.design.helm import Passage
+from trialid.design.imo import excursions, measures, recognise
+from trialid.design.imo.measured import Measured, manoeuvre_numbers, manoeuvres
+from trialid.design.imo.recognise import Recognised
+from trialid.identification.fit import Fit, identify
+from trialid.trial import Trial
+
+STILL = (0.0, 0.0)
+LENGTH, SPEED = 175.0, 7.33
+ORDER, END = 6, 10
+"""[s] By which an order and an end may be off: a gear takes so long, and a ship to stop."""
+DAYS, FIRST = 200, 1000
+
+
+def without_order(trial: Trial) -> Trial:
+    signals = {n: x for n, x in trial.signals.items() if n != "delta_order"}
+    return replace(trial, signals=signals, valid={n: trial.valid[n] for n in signals})
+
+
+def cut(trial: Trial, end: int) -> Trial:
+    signals = {n: x[:end].copy() for n, x in trial.signals.items()}
+    return replace(trial, signals=signals, valid={n: x[:end] for n, x in trial.valid.items()})
+
+
+def found(trial: Trial) -> tuple[Recognised, ...]:
+    return recognise.recognise(trial, LENGTH, SPEED)
+
+
+def seen(seed: int) -> tuple[Counter[str], Counter[str], Counter[str]]:
+    """Manoeuvres sailed, found and bounded right, and named besides, by kind.
+
+    A turn that was broken off is in none of them: it has no standard number.
+    """
+    trial, day = sail_day(seed)
+    named = [m for m in recognise.recognise(trial, day.length, day.speed) if m.kind != "turn"]
+    sailed_, right = Counter[str](), Counter[str]()
+    for kind, begin, end in day.truth:
+        if kind == "turn":
+            continue
+        sailed_[kind] += 1
+        for one in named:
+            near = abs(one.execute - begin) <= ORDER and abs(one.end - end) <= END
+            if one.kind == kind and near:
+                right[kind] += 1
+                named.remove(one)
+                break
+    return sailed_, right, Counter[str](m.kind for m in named)
+
+
+def counted(first: int, days: int) -> list[Counter[str]]:
+    each = zip(*map(seen, range(first, first + days)), strict=True)
+    return [sum(kinds, Counter[str]()) for kinds in each]
+
+
+def test_a_day_of_trials_is_told_apart() -> None:
+    whole, right, besides = counted(0, 2)
+    assert sum(whole.values()) >= 6
+    assert sum(right.values()) >= sum(whole.values()) - 1
+    assert sum(besides.values()) <= 1
+
+
+def test_a_zigzag_and_a_circle_to_either_side() -> None:
+    odd = ("delta", "delta_order", "psi", "r", "y", "v", "p", "phi")
+    for name, kind in (("zigzag", "zig-zag"), ("circle", "turning circle")):
+        trial = noisy(sailed(name, STILL), np.random.default_rng(1))
+        for side in (1.0, -1.0):
+            signals = {n: side * x if n in odd else x for n, x in trial.signals.items()}
+            [one] = found(replace(trial, signals=signals))
+            assert one.kind == kind
+            assert np.sign(one.rudder) == side
+            assert one.execute * trial.period == pytest.approx(30.0, abs=2.0 * trial.period)
+
+
+def test_what_is_broken_off_is_a_line() -> None:
+    circle = without_order(sailed("circle", STILL))
+    psi = circle.signals["psi"] - circle.signals["psi"][0]
+    [turn] = found(cut(circle, int(np.argmax(psi > np.deg2rad(120.0)))))
+    assert (turn.kind, turn.remark) == ("turn", "broken off at 119 deg of heading")
+    assert found(cut(circle, int(np.argmax(psi > np.deg2rad(60.0))))) == ()
+    zigzag = without_order(sailed("zigzag", STILL))
+    [whole] = found(zigzag)
+    first, second = whole.reversals[:2]
+    [broken] = found(cut(zigzag, second - 5))
+    assert broken.remark == "broken off after the first reversal"
+    assert found(cut(zigzag, first - 2)) == ()
+    bare = {n: x for n, x in zigzag.signals.items() if n not in ("delta", "delta_order")}
+    assert found(replace(zigzag, signals=bare)) == ()
+
+
+def fitted(seed: int) -> Fit:
+    trial = without_order(noisy(sailed("zigzag", STILL), np.random.default_rng([3, seed])))
+    return identify([trial], SHIP, replace(SETTINGS, weights={"x": 12.0, "y": 12.0, "psi": 12.0}))
+
+
+def true_overshoots() -> list[float]:
+    trial = sailed("zigzag", STILL)
+    return measures.overshoots(Passage(trial, trial.signals["x"], trial.signals["y"], None))
+
+
+def check(row: Measured, truth: float) -> tuple[bool, bool]:
+    low, high = row.predicted_interval or (np.nan, np.nan)
+    return row.interval[0] < truth < row.interval[1], low < truth < high
+
+
+def test_overshoots_with_intervals_of_record_and_model() -> None:
+    fit = fitted(0)
+    [zigzag] = manoeuvres(fit)
+    assert (zigzag.kind, zigzag.remark) == ("zig-zag", "")
+    assert zigzag.t == pytest.approx(30.0, abs=0.2)
+    rows = manoeuvre_numbers(fit, spread(fit))
+    assert [row.name for row in rows] == [f"{n} overshoot" for n in ("first", "second", "third")]
+    for row, truth in zip(rows, true_overshoots(), strict=True):
+        assert all(check(row, truth))
+        assert row.measured == pytest.approx(truth, abs=np.deg2rad(0.6))
+        assert row.interval[1] - row.interval[0] < np.deg2rad(2.5)
+
+
+@pytest.mark.study(turn=3)
+def test_days_of_trials_are_found_and_bounded_right() -> None:
+    """On days that were not looked at while it was built."""
+    whole, right, besides = counted(FIRST, DAYS)
+    share = sum(right.values()) / sum(whole.values())
+    told = f"{dict(right)} of {dict(whole)}; named besides {dict(besides)}"
+    print(f"{share:.1%} of {sum(whole.values())}: {told}")
+    assert share >= 0.98
+    assert sum(besides.values()) < 0.04 * sum(whole.values())
+
+
+@pytest.mark.study(turn=3)
+def test_half_and_twice_of_each_threshold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a threshold has no other origin: what becomes of the same days with others."""
+    for name in ("MIDSHIPS", "LEAST", "ALIKE", "STRAIGHT", "LENGTHS", "PULL_OUT", "SPARE"):
+        for by in (0.5, 2.0):
+            with monkeypatch.context() as changed:
+                for module in (excursions, recognise):
+                    if hasattr(module, name):
+                        changed.setattr(module, name, by * getattr(module, name))
+                whole, right, besides = counted(FIRST, 15)
+            told = f"{sum(right.values())} of {sum(whole.values())}"
+            print(f"{name} x {by:g}: {told}, besides {sum(besides.values())}")
+    assert sum(right.values()) > 0
+
+
+@pytest.mark.study(turn=3)
+def test_intervals_of_overshoots_hold_the_truth() -> None:
+    truth = true_overshoots()
+    inside = []
+    for seed in range(60):
+        fit = fitted(seed)
+        rows = manoeuvre_numbers(fit, spread(fit))
+        inside += [check(row, x) for row, x in zip(rows, truth, strict=True)]
+    record, model = np.mean(inside, axis=0)
+    print(f"overshoots within 95 %: record {record:.3f}, model {model:.3f} of {len(inside)}")
+    assert record > 0.92
+    assert model > 0.9

@@ -1,0 +1,259 @@
+"""What manoeuvres of a record come to, with intervals, beside the fitted model's.
+
+Angles are read from the recorded heading, through parabolas and lines that take its noise off:
+white, by third differences. Half a sample of the order is part of every interval. Headings and
+rates are those through the water: a current does not turn the ship.
+"""
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.design.imo.excursions import LATE, order_sample
+from trialid.design.imo.recognise import Recognised, recognise
+from trialid.design.imo.sailed_trial import SailedTrial, numbers, sail_trial
+from trialid.design.likely_spread import LikelySpread, Range
+from trialid.errors import DesignError
+from trialid.identification.fit import Fit
+from trialid.trial import Trial
+
+NORMAL: Final = 1.96
+STILL: Final = 6
+"""Samples before it is seen to leave that tell the angle held."""
+LAST: Final = 3
+"""The part of a held rudder, the last of so many, in which a rate of turn has settled."""
+ORDINALS: Final = ("first", "second", "third", "fourth", "fifth", "sixth")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """A manoeuvre of a trial: order and end [s], angle held [rad], and what it lacks."""
+
+    trial: str
+    kind: str
+    t: float
+    end: float
+    rudder: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """One number of a manoeuvre in `unit`, of the record and of the fitted model, with 95 %."""
+
+    trial: str
+    kind: str
+    t: float
+    rudder: float
+    name: str
+    unit: str
+    measured: float
+    interval: Range
+    predicted: float | None = None
+    predicted_interval: Range | None = None
+
+
+Value = tuple[float, float]
+"""A number and its standard error."""
+Read = Callable[[Vector, float], dict[str, Value]]
+"""What is read from headings (N,) [rad] with noise of this standard deviation."""
+
+
+def manoeuvres(fit: Fit) -> tuple[Found, ...]:
+    """Every manoeuvre in the trials of a fit, to fit and to check, by evidence."""
+    return tuple(
+        Found(
+            trial=s.trial.name,
+            kind=m.kind,
+            t=order_time(s.trial, m),
+            end=min(m.end, s.trial.samples - 1) * s.trial.period,
+            rudder=m.rudder,
+            remark=m.remark,
+        )
+        for s in fit.scores
+        for m in _recognised(fit, s.trial)
+    )
+
+
+def manoeuvre_numbers(fit: Fit, spread: LikelySpread | None) -> tuple[Measured, ...]:
+    """The numbers of every zig-zag, pull-out, spiral and stop in the trials of a fit.
+
+    Parameters
+    ----------
+    spread
+        What a prediction is uncertain by; without it there is none.
+    """
+    return tuple(row for s in fit.scores for row in _of_trial(fit, s.trial, spread))
+
+
+def _recognised(fit: Fit, trial: Trial) -> tuple[Recognised, ...]:
+    size = fit.model.ship.particulars
+    return recognise(trial, size["L"], size["U0"])
+
+
+def order_time(trial: Trial, one: Recognised) -> float:
+    """When the order was given [s]: where the rudder's way to its angle began, by that way."""
+    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    if rudder is None or one.rudder == 0.0:
+        return one.execute * trial.period
+    return order_sample(rudder[: one.end], one.execute, one.rudder) * trial.period
+
+
+def _of_trial(fit: Fit, trial: Trial, spread: LikelySpread | None) -> Iterator[Measured]:
+    found = [m for m in _recognised(fit, trial) if m.kind in READERS]
+    psi = trial.signals.get("psi")
+    if not found or psi is None:
+        return  # the integral of a rate has its bias in it, and no white noise
+    sailed = None if spread is None else sail_trial(fit, trial, spread)
+    for one in found:
+        read, unit = READERS[one.kind](trial, one), UNITS[one.kind]
+        try:
+            values = read(psi, _noise(psi[one.execute : one.end]))
+        except DesignError:
+            continue
+        predicted = _predicted(sailed, read)
+        for name, (value, error) in values.items():
+            known = predicted.get(name, (None, None))
+            yield Measured(
+                trial=trial.name,
+                kind=one.kind,
+                t=order_time(trial, one),
+                rudder=one.rudder,
+                name=name,
+                unit=unit,
+                measured=value,
+                interval=(value - NORMAL * error, value + NORMAL * error),
+                predicted=known[0],
+                predicted_interval=known[1],
+            )
+
+
+def _predicted(sailed: SailedTrial | None, read: Read) -> dict[str, tuple[float, Range | None]]:
+    if sailed is None:
+        return {}
+
+    def numbers_of(track: Mapping[str, Vector]) -> dict[str, float]:
+        return {n: x for n, (x, _) in read(track["psi"], 0.0).items()}
+
+    return numbers(sailed, numbers_of)
+
+
+def zigzag_reader(trial: Trial, one: Recognised) -> Read:
+    """Overshoots: how far the heading goes on from where the rudder was ordered over [rad]."""
+    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    assert rudder is not None
+    orders = [left_angle(rudder, k) for k in one.reversals]
+    ends = [*one.reversals[1:], one.end]
+    sides = [float(np.sign(rudder[max(k - 1, 0)])) for k in one.reversals]
+
+    def read(psi: Vector, noise: float) -> dict[str, Value]:
+        found = {}
+        legs = zip(ORDINALS, orders, ends, sides, strict=False)
+        for ordinal, at, end, side in legs:
+            peak = _peak(side * psi[int(at) : end + 1], noise)
+            if peak is None:
+                break
+            start, error, rate = _between(side * psi, at, noise)
+            late = rate / np.sqrt(12.0)
+            whole = float(np.sqrt(peak[1] ** 2 + error**2 + late**2))
+            found[f"{ordinal} overshoot"] = peak[0] - start, whole
+        return found
+
+    return read
+
+
+def left_angle(rudder: Vector, k: int) -> float:
+    """Sample, with its fraction, at which a rudder left the angle it is below from `k` on.
+
+    The way there is a ramp, by its crossing of midships; where it is a step, half a sample before.
+    """
+    before = float(np.median(rudder[max(k - STILL, 0) : max(k, 1)]))
+    over = np.flatnonzero(rudder[k:] * np.sign(before) <= 0.0)
+    across = k + int(over[0]) if len(over) else k
+    fall = abs(float(rudder[k] - rudder[across]))
+    if across == k or fall == 0.0:
+        return k - 0.5
+    ramp = fall / (across - k)
+    return float(np.clip(k - abs(before - rudder[k]) / ramp, k - LATE, k))
+
+
+def pull_out_reader(trial: Trial, one: Recognised) -> Read:
+    """The rate of turn that stays with the rudder midships [rad/s]; none of a stable ship."""
+    first = one.end - (one.end - one.execute) // LAST
+
+    def read(psi: Vector, noise: float) -> dict[str, Value]:
+        return {"residual rate of turn": _rate(psi, first, one.end, noise, trial.period)}
+
+    return read
+
+
+def spiral_reader(trial: Trial, one: Recognised) -> Read:
+    """The rate of turn that each angle settles to [rad/s]."""
+    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    assert rudder is not None
+    degrees = np.round(np.rad2deg(rudder[one.execute : one.end]))
+    edges = np.flatnonzero(np.abs(np.diff(degrees)) > 1.0) + 1
+    stops = [one.execute, *(one.execute + edges).tolist(), one.end]
+
+    def read(psi: Vector, noise: float) -> dict[str, Value]:
+        found = {}
+        for begin, end in itertools.pairwise(stops):
+            first = end - (end - begin) // LAST
+            if end - first >= 10:
+                angle = float(np.rad2deg(np.median(rudder[first:end])))
+                found[f"rate at {angle:+.0f} deg"] = _rate(psi, first, end, noise, trial.period)
+        return found
+
+    return read
+
+
+READERS: Final[Mapping[str, Callable[[Trial, Recognised], Read]]] = {
+    "zig-zag": zigzag_reader,
+    "pull-out": pull_out_reader,
+    "spiral": spiral_reader,
+}
+UNITS: Final = {"zig-zag": "rad", "pull-out": "rad/s", "spiral": "rad/s"}
+
+
+def _noise(y: Vector) -> float:
+    """Standard deviation of what is white in a smooth motion, by its third differences."""
+    return float(np.std(np.diff(y, 3))) / np.sqrt(20.0) if len(y) > 8 else 0.0
+
+
+def _peak(y: Vector, noise: float) -> Value | None:
+    """Height of a peak by a parabola about it, and its error; None where it has not come back."""
+    top = int(np.argmax(y))
+    reach = max(min(top, len(y) - 1 - top, max(len(y) // 8, 2)), 0)
+    if not 0 < top < len(y) - 1 or reach < 1:
+        return None
+    x = np.arange(-reach, reach + 1.0)
+    A = np.vander(x, 3)
+    a, b, c = np.linalg.lstsq(A, y[top - reach : top + reach + 1], rcond=None)[0]
+    if a >= 0.0:
+        return None
+    at = float(np.clip(-b / (2.0 * a), -reach, reach))
+    row = np.array([at**2, at, 1.0])
+    error = noise * float(np.sqrt(row @ np.linalg.pinv(A.T @ A) @ row))
+    return float(c + b * at + a * at**2), error
+
+
+def _between(y: Vector, at: float, noise: float, reach: int = 3) -> tuple[float, float, float]:
+    """A value between samples by a parabola, its error, and the slope a sample."""
+    first, last = max(int(at) - reach, 0), min(int(at) + reach + 2, len(y))
+    x = np.arange(first, last) - at
+    A = np.vander(x, 3)
+    _, slope, value = np.linalg.lstsq(A, y[first:last], rcond=None)[0]
+    error = noise * float(np.sqrt(np.linalg.pinv(A.T @ A)[2, 2]))
+    return float(value), error, float(abs(slope))
+
+
+def _rate(psi: Vector, first: int, end: int, noise: float, period: float) -> Value:
+    """Slope of the heading by a line and its error [rad/s]."""
+    x = period * np.arange(end - first)
+    A = np.vander(x, 2)
+    slope = float(np.linalg.lstsq(A, psi[first:end], rcond=None)[0][0])
+    return slope, noise * float(np.sqrt(np.linalg.pinv(A.T @ A)[0, 0]))

@@ -1,0 +1,179 @@
+"""The fitted ship through the water under the inputs of a trial, with where all of it may lie.
+
+What a trial holds is measured from its track; the same is read here from the track that the model
+sails under the same rudder, whether or not the fit compared a position. Ranges are as those of the
+standard measures: what the record leaves open of the parameters, of what was held fixed, and of
+what may be missing is followed to each number by its slopes.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.design.imo.measure_slopes import SMALL, Shows
+from trialid.design.imo.speed_loss import logged_loss, speed_loss
+from trialid.design.likely_spread import LikelySpread, Range
+from trialid.design.standard import AT_SEA
+from trialid.effects.track import current
+from trialid.errors import DesignError, EffectError, NotIdentifiable
+from trialid.identification.fit import Fit, of_trial
+from trialid.ship.effect import SENSORS, Effect
+from trialid.ship.model import STATES, ShipModel
+from trialid.simulation.integrate import Simulator, initial, prepare, respond
+from trialid.trial import Trial
+
+PLACE: Final = ("psi", "x", "y")
+Track = Mapping[str, Vector]
+Numbers = Callable[[Track], Mapping[str, float]]
+"""What is read from a track; DesignError where it does not come so far."""
+
+
+@dataclass(frozen=True)
+class SailedTrial:
+    """A trial as the fitted ship sails it.
+
+    Attributes
+    ----------
+    track
+        `psi` [rad], `x` and `y` [m]; (N,) each.
+    by
+        Their slopes by what is known and what may be missing; (N, 3, n).
+    others
+        Tracks with an effect at a value tried, and the columns of it.
+    """
+
+    track: Track
+    by: Vector
+    others: tuple[tuple[Track, tuple[int, ...]], ...]
+    spread: LikelySpread
+
+
+def sail_trial(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | None:
+    """The trial as the fitted ship sails it; None where she cannot, or leaves her model."""
+    try:
+        return _sailed(fit, trial, spread)
+    except (EffectError, NotIdentifiable):
+        return None  # a motion that carries her along is neither simulated nor recorded
+
+
+def _sailed(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | None:
+    base = _with_track(fit, trial)
+    values, start = of_trial(fit.problem, fit.theta, trial, fit.level)
+    acting = [m for m in spread.missing if _acts(m.effect, trial, base)]
+    linear = [m for m in acting if not m.tried]
+    model = base
+    for one in linear:
+        model = (model + one.effect).with_values(one.effect.nulls)
+    places = _places(fit, trial, spread, linear)
+    free = [n for n in places if n in model.parameters]
+    simulator = prepare(model, free, PLACE, substeps=fit.settings.substeps)
+    own = {n: values.get(n, model.value(n)) for n in free}
+    response = respond(simulator, trial, own, start)
+    if response.departure is not None or response.S is None:
+        return None
+    by = np.zeros((trial.samples, len(PLACE), len(spread.known) + spread.width))
+    for i, column in enumerate(simulator.columns):
+        if column in places:
+            by[..., places[column]] = response.S[..., i]
+    others = tuple(_tried(base, one, trial, start, spread) for one in acting if one.tried)
+    return SailedTrial(_track(response.y), by, tuple(o for o in others if o), spread)
+
+
+def sail_plainly(fit: Fit, trial: Trial) -> Track | None:
+    """The track alone as the fitted ship sails it, from the first position and heading recorded."""
+    try:
+        _, start = of_trial(fit.problem, fit.theta, trial, fit.level)
+        response = respond(_plain(_with_track(fit, trial)), trial, {}, start, sensitivities=False)
+    except (EffectError, NotIdentifiable):
+        return None
+    return None if response.departure is not None else _track(response.y)
+
+
+def _with_track(fit: Fit, trial: Trial) -> ShipModel:
+    """The fitted model with a track of its own, through the water; losing speed where none is."""
+    states = tuple(s for s in STATES if s in {*fit.model.states, *PLACE})
+    model = replace(fit.model, states=states)
+    if current.name in {e.name for e in model.effects}:
+        model = model - current.name
+    logged = "u" in trial.signals and float(np.ptp(trial.signals["u"])) > 0.0
+    loss = None if logged else speed_loss(fit)
+    return model if loss is None else (model + logged_loss).with_values(loss.values)
+
+
+def _acts(effect: Effect, trial: Trial, model: ShipModel) -> bool:
+    """Whether an effect moves the ship by what this trial holds."""
+    unknown = ({*effect.signals} & AT_SEA) - {*trial.signals} - {*model.states}
+    return bool({*effect.forms} - {*SENSORS}) and not unknown
+
+
+def _places(
+    fit: Fit, trial: Trial, spread: LikelySpread, linear: Sequence[Shows]
+) -> dict[str, int]:
+    """Place of each column of a simulator among what the spread is by."""
+    known = {n: i for i, n in enumerate(spread.known)}
+    fitted = [t.name for t in fit.problem.trials]
+    for i, x in enumerate(fit.problem.unknowns):
+        if x.trial is not None and fitted[x.trial] == trial.name:
+            known[x.column] = i
+    known.pop(initial("psi"), None)
+    for one in linear:
+        more = zip(one.parameters, one.columns, strict=True)
+        known |= {n: len(spread.known) + c for n, c in more}
+    return known
+
+
+def _tried(
+    base: ShipModel, one: Shows, trial: Trial, start: Mapping[str, float], spread: LikelySpread
+) -> tuple[Track, tuple[int, ...]] | None:
+    model = (base + one.effect).with_values({**one.effect.nulls, **one.tried})
+    response = respond(_plain(model), trial, {}, start, sensitivities=False)
+    if response.departure is not None:
+        return None
+    return _track(response.y), tuple(len(spread.known) + c for c in one.columns)
+
+
+def _plain(model: ShipModel) -> Simulator:
+    return prepare(model, (), PLACE)
+
+
+def _track(y: Vector) -> Track:
+    return dict(zip(PLACE, y.T, strict=True))
+
+
+def numbers(sailed: SailedTrial, read: Numbers) -> dict[str, tuple[float, Range | None]]:
+    """What the model comes to by name, each with its 95 % range; empty where it does not get there.
+
+    Parameters
+    ----------
+    read
+        Reads the numbers from a track; DesignError where there are none.
+    """
+    try:
+        found = read(sailed.track)
+        slopes = _slopes(sailed, read, found)
+    except DesignError:
+        return {}
+    ranges = sailed.spread.ranges([*found.values()], slopes)
+    return {n: (x, r) for (n, x), r in zip(found.items(), ranges, strict=True)}
+
+
+def _slopes(sailed: SailedTrial, read: Numbers, found: Mapping[str, float]) -> Vector:
+    """Slopes of the numbers, by moving the track a little to either side; (n_numbers, n)."""
+    by, slopes = sailed.by, np.zeros((len(found), sailed.by.shape[-1]))
+    span = max(float(np.ptp(sailed.track["x"])), float(np.ptp(sailed.track["y"])), 1.0)
+    sizes = np.max(np.abs(by) / np.array([1.0, span, span])[:, None], axis=(0, 1))
+    for i in np.flatnonzero(sizes):
+        step = SMALL / sizes[i]
+        up, down = (read(_moved(sailed.track, side * by[..., i])) for side in (step, -step))
+        slopes[:, i] = [(up[n] - down[n]) / (2.0 * step) for n in found]
+    for track, columns in sailed.others:
+        other = read(track)
+        slopes[:, list(columns)] = np.array([other[n] - x for n, x in found.items()])[:, None]
+    return slopes
+
+
+def _moved(track: Track, change: Vector) -> Track:
+    return {n: track[n] + change[:, k] for k, n in enumerate(PLACE)}
