@@ -14,7 +14,7 @@ from test_bad_input import trialid_
 
 from trialid.diagnosis.search import refit as refitted
 from trialid.diagnosis.search.backward import Worth, worth_naming
-from trialid.diagnosis.search.carry_over import Carried
+from trialid.diagnosis.search.carried import Carried, Errors
 from trialid.errors import SimulationError
 from trialid.pipeline_file import load
 from trialid.ship.effect import Force
@@ -100,15 +100,17 @@ def fit_in(world: World, effects: str) -> Any:
         raise SimulationError(f"lost with {effects} at t = 3 s")
     eps, check = world[effects]
     return SimpleNamespace(effects=effects, eps_rmsn=eps, eps_check=check, converged=True,
-                           model=SimpleNamespace(values={}))  # fmt: skip
+                           eps_by_output={"r": eps}, model=SimpleNamespace(values={}),
+                           problem=SimpleNamespace(weights=np.ones(1)))  # fmt: skip
 
 
 def with_(effects: str, more: str) -> str:
     return "".join(sorted(effects + more))
 
 
-def own_errors(fit: Any) -> tuple[float, ...]:
-    return tuple(fit.eps_rmsn**2 * ERRORS)
+def own_errors(fit: Any, weights: Any = None, times: float = 1.0) -> Errors:
+    errors = tuple(times * fit.eps_rmsn**2 * ERRORS)
+    return Errors(errors, errors)
 
 
 def candidate(name: str) -> Any:
@@ -124,8 +126,8 @@ def found_in(world: World, fit: Any, grown: bool) -> Any:
     for name in sorted(set("".join(world)) - set(fit.effects)):
         with suppress(SimulationError):
             new = fit_in(world, with_(fit.effects, name))
-            carried = Carried(own_errors(fit), own_errors(new))
-            refits.append(refitted.Refit(candidate(name), new, carried))
+            found = Carried.between(own_errors(fit), own_errors(new))
+            refits.append(refitted.Refit(candidate(name), new, found))
     named = refitted.likeliest_refit(fit, refits, 0.05)
     effect = named.candidate.effect.name if named else None
     kind = "missing" if named else "nothing missing"
@@ -155,9 +157,9 @@ def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
         for effect in own:
             rest = fit.effects.replace(effect.name, "")
             less = fit_in(world, rest) if rest in world else None
-            before = own_errors(less) if less else tuple(100.0 * np.array(own_errors(fit)))
-            carried = Carried(before, own_errors(fit))
-            made.append(Worth(effect.name, (effect.name,), less, carried))
+            before = own_errors(less) if less else own_errors(fit, times=100.0)
+            found = Carried.between(before, own_errors(fit))
+            made.append(Worth(effect.name, (effect.name,), less, found))
         return tuple(sorted(made, key=lambda w: -w.costs))
 
     stubs = {

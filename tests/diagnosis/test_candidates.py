@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from trialid.diagnosis.noise.noise_colour import colour, whiten_rows
 from trialid.diagnosis.search import p_value
 from trialid.diagnosis.search.bias import foresee_adding
-from trialid.diagnosis.search.carry_over import Carried
+from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.p_value import against_chance
 from trialid.diagnosis.search.score import Candidate, _best_of_each, _families, _in_range, rank
 from trialid.effects import CATALOGUE

@@ -9,16 +9,8 @@ from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 from scipy.signal import lfilter
 
 from trialid.diagnosis.search import backward
-from trialid.diagnosis.search.carry_over import (
-    BLOCKS,
-    WHOLE,
-    Carried,
-    LeftOut,
-    as_good,
-    lead_in_errors,
-    left_out,
-    own_errors,
-)
+from trialid.diagnosis.search.carried import Carried, as_good, lead_in_errors
+from trialid.diagnosis.search.carry_over import BLOCKS, WHOLE, LeftOut, left_out, own_errors
 from trialid.diagnosis.search.score import rank
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
@@ -59,8 +51,8 @@ def made(seed, hidden=0.0, noise=1.0, priors=None, trials=TRIALS):
         for i in range(psi.shape[1])
     )  # fmt: skip
     fit = SimpleNamespace(
-        problem=SimpleNamespace(unknowns=unknowns), at_bounds={}, level=noise,
-        theta=np.zeros(psi.shape[1]),
+        problem=SimpleNamespace(unknowns=unknowns, weights=np.ones(1)), at_bounds={}, level=noise,
+        theta=np.zeros(psi.shape[1]), eps_by_output={"r": 1.0},
     )  # fmt: skip
     return fit, residual, psi, S, tuple(parts)
 
@@ -88,13 +80,13 @@ def by_hand(fit, residual, psi, S, parts, columns):
 def test_it_is_each_block_fitted_anew_without_fitting(columns):
     record = made(1, hidden=0.5)
     found = left_out(*record)
-    np.testing.assert_allclose(found.errors(columns), by_hand(*record, columns), rtol=1e-8)
-    assert len(found.errors()) == BLOCKS
+    np.testing.assert_allclose(found.errors(columns).whole, by_hand(*record, columns), rtol=1e-8)
+    assert len(found.errors().whole) == BLOCKS
 
 
 @pytest.mark.parametrize(("trials", "blocks"), [(1, 6), (2, 6), (3, 6), (4, 8), (5, 5), (8, 8)])
 def test_five_trials_are_blocks_themselves_and_fewer_are_cut(trials, blocks):
-    assert len(left_out(*made(2, trials=trials)).errors()) == blocks
+    assert len(left_out(*made(2, trials=trials)).errors().whole) == blocks
     assert blocks >= BLOCKS or trials == WHOLE
 
 
@@ -158,9 +150,12 @@ def test_a_prior_holds_a_nuisance_as_the_fit_does():
     for i, part in enumerate(parts):
         psi[part.rows, SHARED + i * OWN] = S[part.rows, 0]  # mimics the effect in its own trial
     known = {SHARED + i * OWN: (0.0, 1e-6) for i in range(TRIALS)}
-    held = SimpleNamespace(**{**vars(fit), "problem": SimpleNamespace(unknowns=tuple(
+    unknowns = tuple(
         SimpleNamespace(name=x.name, trial=x.trial, prior=known.get(i))
-        for i, x in enumerate(fit.problem.unknowns)))})  # fmt: skip
+        for i, x in enumerate(fit.problem.unknowns)
+    )
+    problem = SimpleNamespace(unknowns=unknowns, weights=np.ones(1))
+    held = SimpleNamespace(**{**vars(fit), "problem": problem})
     assert left_out(held, residual, psi, S, parts).carried([0]).falls
     free = left_out(fit, residual, psi, S, parts).carried([0])
     assert free.ratio == pytest.approx(1.0, abs=0.01)  # rounding is all that is left of it
@@ -172,8 +167,8 @@ def test_what_lies_at_a_bound_stays_there():
     dropped = psi.copy()
     dropped[:, 0] = 0.0
     np.testing.assert_allclose(
-        left_out(at_bound, residual, psi, S, parts).errors(),
-        left_out(fit, residual, dropped, S, parts).errors(), rtol=1e-9,
+        left_out(at_bound, residual, psi, S, parts).errors().whole,
+        left_out(fit, residual, dropped, S, parts).errors().whole, rtol=1e-9,
     )  # fmt: skip
 
 
@@ -236,9 +231,9 @@ def test_foreseen_and_refitted_agree_on_what_carries_over(sailed):
     trials, fit = sailed
     ranking, _ = rank(fit, CATALOGUE)
     foreseen = {c.effect.name: c.carried for c in ranking}["quadratic_roll_damping"]
-    refitted = Carried(own_errors(fit), own_errors(with_damping(trials)))
+    refitted = Carried.between(own_errors(fit), own_errors(with_damping(trials)))
     print(f"left-out squared error x {foreseen.ratio:.3f} foreseen, {refitted.ratio:.3f} refitted")
-    assert foreseen.before == pytest.approx(own_errors(fit))
+    assert foreseen.before == pytest.approx(own_errors(fit).whole)
     assert refitted.ratio == pytest.approx(foreseen.ratio, abs=0.06)
     assert foreseen.falls
     assert refitted.falls
@@ -247,8 +242,8 @@ def test_foreseen_and_refitted_agree_on_what_carries_over(sailed):
 def test_damping_of_the_wrong_sign_makes_left_out_blocks_worse(sailed):
     trials, fit = sailed
     before = own_errors(fit)
-    assert Carried(before, own_errors(with_damping(trials, -2e-4))).ratio < 0.95
-    assert Carried(before, own_errors(with_damping(trials, +1e-5))).ratio > 1.0
+    assert Carried.between(before, own_errors(with_damping(trials, -2e-4))).ratio < 0.95
+    assert Carried.between(before, own_errors(with_damping(trials, +1e-5))).ratio > 1.0
 
 
 def test_leaving_it_out_again_costs_what_it_brought(sailed):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trialid.diagnosis.search.carry_over import Carried
+from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import HELD_OUT, Refit, best_of, objection, worse_held_out
 from trialid.ship.effect import Force, Lagged
 
@@ -22,7 +22,13 @@ def refit(name, before, after, eps=(0.10, 0.08), check=(0.2, 0.15), seen=1.0, co
         carried=SimpleNamespace(seen=seen),
     )
     old, new = (
-        SimpleNamespace(eps_rmsn=e, eps_check=c, converged=True)
+        SimpleNamespace(
+            eps_rmsn=e,
+            eps_check=c,
+            converged=True,
+            eps_by_output={"r": e},
+            problem=SimpleNamespace(weights=np.ones(1)),
+        )
         for e, c in zip(eps, check, strict=True)
     )
     new.converged = converged

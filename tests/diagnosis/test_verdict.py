@@ -1,12 +1,13 @@
 """Which of several refits is named, on made-up fits: the gates, each from both sides."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from trialid.diagnosis.noise.split import Split
-from trialid.diagnosis.search.carry_over import Carried, as_good, lead_in_errors
+from trialid.diagnosis.search.carried import Carried, as_good, lead_in_errors
 from trialid.diagnosis.search.completeness import Completeness, _Search
 from trialid.diagnosis.search.refit import Refit, best_of
 from trialid.diagnosis.verdict import decide, rivals
@@ -15,7 +16,13 @@ BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
 
 
 def fit(eps, check=None, converged=True):
-    return SimpleNamespace(eps_rmsn=eps, eps_check=check, converged=converged)
+    return SimpleNamespace(
+        eps_rmsn=eps,
+        eps_check=check,
+        converged=converged,
+        eps_by_output={"r": eps},
+        problem=SimpleNamespace(weights=np.ones(1)),
+    )
 
 
 def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=()):
@@ -135,3 +142,21 @@ def test_each_step_of_a_selection_pays_for_its_coefficient_and_for_the_search():
     assert search.gain(effects, forces) == pytest.approx(both)
     inflated = _Search(np.eye(4), z, rows, 2.0)
     assert inflated.gain([(0,)], []) == pytest.approx(z[0] ** 2 / 2.0 - np.log(rows))
+
+
+def test_where_one_output_hides_another_the_error_of_that_one_is_told():
+    """A roll known to 20 % beside a rate known to 2 %: of all outputs nobody would see it fall."""
+    before = fit(0.142, 0.15)
+    before.eps_by_output = {"r": 0.02, "phi": 0.20}
+    before.eps_check_by_output = {"r": 0.025, "phi": 0.21}
+    before.problem.weights = np.ones(2)
+    named = refit("a", 0.999, 0.1419, check=0.15)
+    named = replace(named, carried=replace(named.carried, own=(BEFORE, [0.95 * x for x in BEFORE])))
+    named.fit.eps_by_output = {"r": 0.018, "phi": 0.20}
+    named.fit.eps_check_by_output = {"r": 0.022, "phi": 0.21}
+    found = decide(before, (), [named], Split("not separable", "no route"), None, 0.05)
+    assert found.effect == "a"
+    assert "the error of r falls from 2.00% to 1.80%, on held-out trials from 2.50% to 2.20%; " in (
+        found.sentence
+    )
+    assert "of all outputs from 14.20% to 14.19%" in found.sentence

@@ -65,7 +65,7 @@ def test_the_sample_logs_give_a_pipeline_that_runs_at_once(tmp_path):
     made = begun(tmp_path, LOGS, length=175.0)
     assert made.to_fill == ()
     done = run_pipeline(pipeline_file.load(tmp_path / "p.toml"))
-    assert [t.use for t in done.result.trials] == ["fit", "fit", "fit", "check"]
+    assert [t.use for t in done.result.trials] == ["fit", "fit", "check", "fit"]
     assert done.result.fit.converged
     assert done.result.fit.eps_rmsn < 0.2
     assert done.result.verdict.kind == "missing"

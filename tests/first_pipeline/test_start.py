@@ -38,11 +38,11 @@ def test_logs_become_a_pipeline_a_ship_and_a_fit(tmp_path, monkeypatch):
     done = started(tmp_path, monkeypatch, *logs, *SHIP)
     assert done.exit_code == 0, done.output
     lines = done.stdout.splitlines()
-    assert lines[0].startswith("3 trials: zigzag-0.csv, zigzag-1.csv, zigzag-2.csv; the last")
+    assert lines[0].startswith("3 trials: zigzag-0.csv, zigzag-1.csv, zigzag-2.csv; zigzag-1.csv")
     assert len(lines) < 40
     assert max(map(len, lines)) <= 80
     asked = pipeline_file.load(tmp_path / "first_trial.toml")
-    assert [t.use for t in asked.trials] == ["fit", "fit", "check"]
+    assert [t.use for t in asked.trials] == ["fit", "check", "fit"]
     assert (tmp_path / "first_trial_ship.toml").is_file()
     result = read(tmp_path / "runs" / "first_trial" / "result.json")
     assert result.fit.eps_rmsn < 0.3
@@ -104,14 +104,18 @@ def test_a_boat_of_thrusters_is_told_what_she_is(tmp_path, monkeypatch):
 @pytest.mark.real_data
 @pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
 @pytest.mark.parametrize(
-    ("names", "length"), [(("z10", "z20", "z15"), 62), (("twin10", "twin20", "twin15"), 96)]
+    ("names", "length"), [(("z10", "z20", "z15"), 62), (("twin20", "twin10", "twin15"), 96)]
 )
 def test_a_strangers_first_logs(tmp_path, monkeypatch, names, length):
-    """A cubic yaw term is what both lack: named, or said to be significant and small."""
+    """A cubic yaw term is what both lack: it is named, or a twin the record cannot tell from it.
+
+    That of the coaster hides behind her roll, which is seen with a tenth of the precision.
+    """
     logs = [NEWCOMER / f"{name}.csv" for name in names]
     done = started(tmp_path, monkeypatch, *logs, "--length", length)
     assert done.exit_code == 0, done.output
     result = read(tmp_path / "runs" / "first_trial" / "result.json")
     assert result.fit.converged
-    assert "yaw_cubic_rrr" in result.verdict.sentence
-    assert result.verdict.effect in {None, "yaw_cubic_rrr"}
+    assert [t.name for t in result.trials if t.use == "check"] == [names[2]]
+    assert result.verdict.kind == "missing"
+    assert "yaw_cubic_rrr" in result.verdict.family

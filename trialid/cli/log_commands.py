@@ -46,7 +46,7 @@ def _options(*options: Callable[..., Any]) -> Callable[[Callable[..., None]], Ca
     click.option("--all", "everything", is_flag=True, help="Show every channel, not only those "
                  "that look like a ship's motion."),
     click.option("--init", "pipeline", type=FILE, metavar="PIPELINE.toml",
-                 help="Write a pipeline to begin with: a trial each log, the last of several held "
+                 help="Write a pipeline to begin with: a trial each log, one of several held "
                  "out."),
     click.option("--ship", type=FILE, metavar="SHIP.toml", help="With --init: the ship's file."),
     particulars_options(*OF_THE_SHIP, prefix="With --init and no --ship: her "),

@@ -51,9 +51,9 @@ def start(
 ) -> None:
     """Look into each LOG, a file or a folder, write a pipeline and a ship to begin with, and fit.
 
-    A folder of several trials is several trials, the last of all is held out. Each choice stands in
-    the pipeline with its reason; what only you can know is left open there, and then nothing is
-    fitted yet. The same by hand: `trialid inspect LOG... --init`, then `trialid run`.
+    A folder of several trials is several trials; the middle one of all is held out. Each choice
+    stands in the pipeline with its reason; what only you can know is left open there, and then
+    nothing is fitted yet. The same by hand: `trialid inspect LOG... --init`, then `trialid run`.
     """
     from trialid.workflow.first_pipeline import starter
 
@@ -73,8 +73,11 @@ def start(
 
 def _told(begun: "Starter") -> Iterator[str]:
     """What was taken from the logs, and what was written, in a few lines."""
+    from trialid.workflow.first_pipeline.held_out import held_out
+
     names = [one.path.name for one in begun.trials]
-    held = f"; the last, {names[-1]}, is held out" if len(names) > 1 else ""
+    place = held_out(begun.trials)
+    held = "" if place is None else f"; {names[place]}, the middle one by its rudder, is held out"
     yield f"{len(names)} trial{'s' * (len(names) > 1)}: {_few(names)}{held}."
     for signal in begun.trials[0].signals:
         yield f"{signal.quantity}: {signal.source.key}, {signal.why}."

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.diagnosis.search.carry_over import FALL, LARGE
+from trialid.diagnosis.search.carried import FALL, LARGE
 
 HARDLY: Final = 1.0 / float(np.sqrt(FALL)) - 1.0
 """Share of the best's error, 0.8 %, that pays for no parameter however sure it is: as for a single

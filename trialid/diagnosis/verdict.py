@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.noise.split import Split
-from trialid.diagnosis.search.carry_over import Carried, as_good
+from trialid.diagnosis.search.carried import FALL, Carried, as_good
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import (
     HELD_OUT,
@@ -215,11 +215,27 @@ def _as_good(mine: Carried, its: Carried) -> bool:
 def _missing(fit: Fit, named: Refit, others: tuple[str, ...]) -> Verdict:
     candidate = named.candidate
     alike = f"; this record cannot tell it from {', '.join(others)}" if others else ""
-    held = ""
-    if fit.eps_check is not None and named.fit.eps_check is not None:
-        held = f", on held-out trials from {fit.eps_check:.2%} to {named.fit.eps_check:.2%}"
     return Verdict(
         "missing", candidate.effect.name, (candidate.effect.name, *others),
-        f"{candidate.effect.name} is missing: with it the error falls from {fit.eps_rmsn:.2%} to "
-        f"{named.fit.eps_rmsn:.2%}{held} (p = {candidate.p_value:.2g} over the catalogue){alike}",
+        f"{candidate.effect.name} is missing: with it {_falls(fit, named.fit)} "
+        f"(p = {candidate.p_value:.2g} over the catalogue){alike}",
     )  # fmt: skip
+
+
+def _falls(before: Fit, after: Fit) -> str:
+    """How the error falls: of all outputs, or of the one that shows it where others hide it."""
+    whole = _from_to(before.eps_rmsn, after.eps_rmsn, before.eps_check, after.eps_check)
+    if (after.eps_rmsn / before.eps_rmsn) ** 2 < FALL:
+        return f"the error falls {whole}"
+    old, new = before.eps_by_output, after.eps_by_output
+    name = min(old, key=lambda output: new[output] / old[output])
+    held = (fit.eps_check_by_output.get(name) for fit in (before, after))
+    return (
+        f"the error of {name} falls {_from_to(old[name], new[name], *held)}; of all outputs {whole}"
+    )
+
+
+def _from_to(old: float, new: float, held: float | None, after: float | None) -> str:
+    said = f"from {old:.2%} to {new:.2%}"
+    both = held is not None and after is not None
+    return f"{said}, on held-out trials from {held:.2%} to {after:.2%}" if both else said

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
-from trialid.diagnosis.search.carry_over import Carried, own_errors
+from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.refit import Refit, best_of, objection, worse_held_out
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
@@ -151,8 +152,9 @@ def _ways(edit: Edit, found: Fit) -> Iterator[Edit]:
 
 def _trouble(before: Fit, up: Refit, fit: Fit, level: float) -> str:
     """What speaks against the effect as it is fitted from the file, empty where nothing does."""
-    carried = Carried(own_errors(before), own_errors(fit), up.candidate.carried.seen)
-    return objection(before, Refit(up.candidate, fit, carried), level)
+    after = own_errors(fit, levels(before))
+    found = Carried.between(own_errors(before), after, up.candidate.carried.seen)
+    return objection(before, Refit(up.candidate, fit, found), level)
 
 
 def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:

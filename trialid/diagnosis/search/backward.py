@@ -11,7 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.search.carry_over import FALL, Carried, lead_in_errors, left_out, own_errors
+from trialid.diagnosis.search.carried import FALL, Carried, Errors, lead_in_errors
+from trialid.diagnosis.search.carry_over import left_out, levels, own_errors
 from trialid.diagnosis.search.refit import worse_held_out
 from trialid.diagnosis.verdict import NAMED
 from trialid.errors import TrialidError
@@ -76,13 +77,15 @@ def worths(
     kin
         Effects that records could not separate from one: they are left out with it.
     """
-    after, found = own_errors(fit), list[Worth]()
+    after, weights, found = own_errors(fit), levels(fit), list[Worth]()
     for effect in effects:
         near = (kin or {}).get(effect.name, frozenset())
         out = [e for e in effects if e is effect or e.name in near]
         less = model_without(fit, trials, out)
-        before = own_errors(less) if less is not None else _linearly(fit, out)
-        found.append(Worth(effect.name, tuple(e.name for e in out), less, Carried(before, after)))
+        before = own_errors(less, weights) if less is not None else _linearly(fit, out)
+        found.append(
+            Worth(effect.name, tuple(e.name for e in out), less, Carried.between(before, after))
+        )
     return tuple(sorted(found, key=lambda w: -w.costs))
 
 
@@ -101,7 +104,7 @@ def model_without(fit: Fit, trials: Sequence[Trial], effects: Sequence[Effect]) 
     return found if found.converged else None
 
 
-def _linearly(fit: Fit, effects: Sequence[Effect]) -> tuple[float, ...]:
+def _linearly(fit: Fit, effects: Sequence[Effect]) -> Errors:
     """Left-out errors with the effects' parameters back at zero, the rest free, to first order."""
     own = {n for e in effects for n in e.parameters}
     mine = [i for i, x in enumerate(fit.problem.unknowns) if x.column in own]
@@ -109,8 +112,7 @@ def _linearly(fit: Fit, effects: Sequence[Effect]) -> tuple[float, ...]:
     psi[:, mine] = 0.0
     residual = fit.residual + fit.psi[:, mine] @ fit.theta[mine]
     none = np.zeros((len(residual), 0))
-    found = left_out(fit, residual, psi, none, stretches(fit.problem))
-    return tuple(map(float, found.errors()))
+    return left_out(fit, residual, psi, none, stretches(fit.problem)).errors()
 
 
 def to_drop(fit: Fit, found: Sequence[Worth]) -> Worth | None:

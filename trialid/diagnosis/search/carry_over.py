@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit  # scipy.stats would take another 0.4 s to import
 
+from trialid.diagnosis.search.carried import Carried, Errors
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import stretches
 from trialid.trial_rows import Stretch
@@ -31,98 +31,8 @@ WHOLE: Final = 5
 """Trials from which on each is a block: what is named has to hold in a trial that was not seen. The
 halves of a trial share its wind and its water, and a true effect is worse in half of them."""
 
-FALL: Final = 0.985
-"""Ratio of squared errors from which on an effect is worth a name: 0.7 % of the error itself. Half
-as strict, a speed logged half a percent wrong is named; twice as strict, weak damping is not."""
-
-LARGE: Final = 0.90
-"""Ratio of squared errors that needs no test of significance: on short or smooth records the noise
-has no colour that could be told from the effect's. With nothing hidden 0.98 is hardly reached."""
-
-FAINT: Final = 0.02
-"""Share of its trace beside the parameters at which an effect's fall counts half: a centre of
-gravity or a memory keeps less, and buys its fall with a coefficient that no ship has."""
-
-EACH: Final = 0.01
-"""What a further parameter must lower the error by, as a share of the squared error."""
-
-CHANCE: Final = 0.975
-"""Student's level beyond which the errors of two models differ by more than chance."""
-
 _SINGULAR: Final = 1e-9
 """Share of the largest eigenvalue, of columns of length one, below which nothing is seen."""
-
-
-@dataclass(frozen=True)
-class Carried:
-    """What an effect does to the error of blocks of time that did not choose its coefficient.
-
-    Attributes
-    ----------
-    before, after
-        Squared error of each block without and with the effect, parameters fitted to the others.
-    seen
-        Share of the effect's trace, the trials' own nuisances taken out, that no parameter which
-        the trials share can mimic.
-    steady
-        Whether its coefficients keep their sign whichever block is left out.
-    """
-
-    before: tuple[float, ...]
-    after: tuple[float, ...]
-    seen: float = 1.0
-    steady: bool = True
-
-    @property
-    def ratio(self) -> float:
-        """Squared error with the effect over that without; not a number where there is none."""
-        whole = sum(self.before)
-        return sum(self.after) / whole if whole > 0.0 else float("nan")
-
-    @property
-    def better(self) -> int:
-        """In how many blocks the error is smaller."""
-        return sum(new < old for old, new in zip(self.before, self.after, strict=True))
-
-    @property
-    def blocks(self) -> int:
-        """How many blocks there are."""
-        return len(self.before)
-
-    @property
-    def falls(self) -> bool:
-        """Whether so much carries over that it is worth a name, and in more than half of them.
-
-        Of what is hardly seen it must be more: other errors of the model look like it.
-        """
-        return bool(self.believed < np.log(FALL)) and 2 * self.better > self.blocks
-
-    @property
-    def log_ratio(self) -> float:
-        """Natural logarithm of the ratio; zero where there is nothing to compare."""
-        return float(np.log(max(self.ratio, 1e-300))) if self.blocks else 0.0
-
-    @property
-    def believed(self) -> float:
-        """The same by how much of the trace is seen."""
-        return self.log_ratio * self.seen / (self.seen + FAINT)
-
-    def price(self, parameters: int) -> float:
-        """What candidates are ordered by: the fall that is believed, and something a parameter."""
-        return self.believed + EACH * (parameters - 1)
-
-
-def lead_in_errors(one: Sequence[float], other: Sequence[float]) -> float:
-    """By how many of its standard errors the first list of squared errors is the smaller one."""
-    gaps = np.subtract(other, one)
-    if len(gaps) < 2:
-        return 0.0
-    return float(gaps.mean() / max(np.std(gaps, ddof=1) / np.sqrt(len(gaps)), 1e-300))
-
-
-def as_good(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Whether the second list of squared errors is not greater than the first beyond chance."""
-    return len(one) < 2 or lead_in_errors(one, other) < stdtrit(len(one) - 1, CHANCE)
 
 
 @dataclass(frozen=True)
@@ -133,8 +43,9 @@ class LeftOut:
 
     Attributes
     ----------
-    others, left
-        Of the blocks that are fitted, and of the one that is left out, the residual first;
+    others, left, own
+        Of the blocks that are fitted, and of the one that is left out, the residual first, as the
+        fit weighs outputs and with each output held against its own error;
         (blocks, 1 + n_S, 1 + n_S).
     seen
         Share of each column that shared parameters cannot mimic; (n_S,).
@@ -142,40 +53,64 @@ class LeftOut:
 
     others: Vector
     left: Vector
+    own: Vector
     seen: Vector
 
-    def errors(self, columns: Sequence[int] = ()) -> Vector:
-        """Squared error of each block with these columns fitted to the others; (blocks,)."""
-        return self._with(columns)[0]
+    def errors(self, columns: Sequence[int] = ()) -> Errors:
+        """Squared error of each block with these columns fitted to the others, and the own one."""
+        beta = self._coefficients(columns)
+        whole, own = (_left_with(left, columns, beta) for left in (self.left, self.own))
+        return Errors(whole, own)
 
     def carried(self, columns: Sequence[int]) -> Carried:
         """What these columns do to the error of blocks that did not choose their coefficients."""
-        errors, beta = self._with(columns)
-        signs = np.sign(beta)
-        return Carried(
-            tuple(map(float, self.left[:, 0, 0])), tuple(map(float, errors)),
-            float(np.mean(self.seen[list(columns)])), bool(np.all(signs == signs[:1])),
+        signs = np.sign(self._coefficients(columns))
+        return Carried.between(
+            self.errors(), self.errors(columns),
+            float(np.mean(self.seen[list(columns)])), steady=bool(np.all(signs == signs[:1])),
         )  # fmt: skip
 
-    def _with(self, columns: Sequence[int]) -> tuple[Vector, Vector]:
-        """Squared errors (blocks,) and coefficients (blocks, q)."""
+    def _coefficients(self, columns: Sequence[int]) -> Vector:
+        """Coefficients fitted to the other blocks; (blocks, q)."""
         at = [1 + c for c in columns]
         gram, moment = self.others[:, at][:, :, at], self.others[:, at, 0]
         sizes = np.sqrt(np.maximum(np.diagonal(gram, axis1=1, axis2=2), 1e-300))
         scaled = gram / (sizes[:, :, None] * sizes[:, None, :])
         inverse = np.linalg.pinv(scaled, rcond=_SINGULAR, hermitian=True) if at else scaled
-        beta = np.einsum("kij,kj->ki", inverse, moment / sizes) / sizes
-        cross, own = self.left[:, at, 0], self.left[:, at][:, :, at]
-        errors = (
-            self.left[:, 0, 0]
-            - 2.0 * np.einsum("ki,ki->k", beta, cross)
-            + np.einsum("ki,kij,kj->k", beta, own, beta)
-        )
-        return errors, beta
+        return np.asarray(np.einsum("kij,kj->ki", inverse, moment / sizes) / sizes)
+
+
+def _left_with(left: Vector, columns: Sequence[int], beta: Vector) -> tuple[float, ...]:
+    """Squared error of each block left out, with columns at these coefficients."""
+    at = [1 + c for c in columns]
+    cross, square = left[:, at, 0], left[:, at][:, :, at]
+    errors = (
+        left[:, 0, 0]
+        - 2.0 * np.einsum("ki,ki->k", beta, cross)
+        + np.einsum("ki,kij,kj->k", beta, square, beta)
+    )
+    return tuple(map(float, errors))
+
+
+def levels(fit: Fit) -> Vector:
+    """What a squared error of each output counts: the inverse of what the fit leaves there; (n_y,).
+
+    As the likelihood of noise of unknown size in each output has it. The sum over all outputs stays
+    what it is, and the user's own weights count.
+    """
+    squares = np.square(list(fit.eps_by_output.values()))
+    weights = fit.problem.weights**2
+    whole = float(weights @ squares / weights.sum())
+    return np.asarray(whole / np.maximum(squares, _SINGULAR * max(whole, 1e-300)))
 
 
 def left_out(
-    fit: Fit, residual: Vector, psi: Vector, S: Vector, parts: Sequence[Stretch]
+    fit: Fit,
+    residual: Vector,
+    psi: Vector,
+    S: Vector,
+    parts: Sequence[Stretch],
+    weights: Vector | None = None,
 ) -> LeftOut:
     """Blocks of time left out in turn, each trial's own nuisances taken out over the whole of it.
 
@@ -185,10 +120,13 @@ def left_out(
     ----------
     residual, psi, S
         Normed stacked rows, as `linearise` gives them at the fit; (M,), (M, n_theta), (M, n_S).
+    weights
+        What a squared error of each output counts by its own; `levels` of the fit unless given.
     """
+    weights = levels(fit) if weights is None else weights
     free = [i for i, x in enumerate(fit.problem.unknowns) if x.name not in fit.at_bounds]
     shared = [i for i in free if fit.problem.unknowns[i].trial is None]
-    priors, grams = prior_rows(fit), []
+    priors, grams, owns = prior_rows(fit), [], []
     pieces = _pieces(len({p.trial for p in parts}))
     for trial in dict.fromkeys(p.trial for p in parts):
         mine = [p for p in parts if p.trial == trial]
@@ -197,12 +135,17 @@ def left_out(
         X = np.column_stack([psi[rows][:, shared], residual[rows], S[rows]])
         X = take_out(psi[rows][:, own], X, priors[own], len(shared))
         block = np.concatenate([_block(p, pieces) for p in mine])
-        grams += [X[block == k].T @ X[block == k] for k in range(pieces) if np.any(block == k)]
+        weigh = np.concatenate(
+            [np.full((p.rows.stop - p.rows.start, 1), weights[p.output]) for p in mine]
+        )
+        blocks = [block == k for k in range(pieces) if np.any(block == k)]
+        grams += [X[here].T @ X[here] for here in blocks]
+        owns += [X[here].T @ (weigh * X)[here] for here in blocks]
     known = np.zeros_like(grams[0])
     at = np.arange(len(shared))
     known[at, at] = priors[shared, 0] ** 2
     known[at, len(shared)] = known[len(shared), at] = priors[shared, 0] * priors[shared, 1]
-    return _reduced(np.array(grams), known, len(shared))
+    return _reduced(np.array(grams), np.array(owns), known, len(shared))
 
 
 def prior_rows(fit: Fit) -> Vector:
@@ -215,11 +158,10 @@ def prior_rows(fit: Fit) -> Vector:
     return rows
 
 
-def own_errors(fit: Fit) -> tuple[float, ...]:
-    """Left-out squared errors of a fit about its own optimum."""
+def own_errors(fit: Fit, weights: Vector | None = None) -> Errors:
+    """Left-out squared errors of a fit about its own optimum; `weights` of another's `levels`."""
     none = np.zeros((len(fit.residual), 0))
-    found = left_out(fit, fit.residual, fit.psi, none, stretches(fit.problem))
-    return tuple(map(float, found.errors()))
+    return left_out(fit, fit.residual, fit.psi, none, stretches(fit.problem), weights).errors()
 
 
 def _pieces(trials: int) -> int:
@@ -251,7 +193,7 @@ def take_out(N: Vector, X: Vector, priors: Vector, place: int) -> Vector:
     return np.asarray(X - top @ (top.T @ X + Q[len(N) :].T @ known))
 
 
-def _reduced(grams: Vector, known: Vector, shared: int) -> LeftOut:
+def _reduced(grams: Vector, owns: Vector, known: Vector, shared: int) -> LeftOut:
     """The shared parameters, first of the columns, fitted to all blocks but one and taken out.
 
     `known` are the sums of products of their priors.
@@ -259,19 +201,24 @@ def _reduced(grams: Vector, known: Vector, shared: int) -> LeftOut:
     whole = grams.sum(axis=0)
     sizes = np.sqrt(np.maximum(np.diag(whole), 1e-300))
     lengths = np.outer(sizes, sizes)  # columns of length one
-    grams, whole, known, scale = (
-        grams / lengths, whole / lengths, known / lengths, lengths[shared:, shared:]
-    )  # fmt: skip
+    grams, owns, whole, known = (x / lengths for x in (grams, owns, whole, known))
+    scale = lengths[shared:, shared:]
     kept = np.diag(_taken(whole, shared)[0])[1:]
     seen = np.where(np.diag(whole)[shared + 1 :] > 0.0, np.maximum(kept, 0.0), 0.0)
-    others, left = [], []
-    for gram in grams:
+    others, left, by_own = [], [], []
+    for gram, own in zip(grams, owns, strict=True):
         schur, B = _taken(whole - gram + known, shared)
-        cross = B.T @ gram[:shared, shared:]
         others.append(schur * scale)
-        rest = gram[shared:, shared:] - cross - cross.T + B.T @ gram[:shared, :shared] @ B
-        left.append(rest * scale)
-    return LeftOut(np.array(others), np.array(left), seen)
+        left.append(_rest(gram, B, shared) * scale)
+        by_own.append(_rest(own, B, shared) * scale)
+    return LeftOut(np.array(others), np.array(left), np.array(by_own), seen)
+
+
+def _rest(gram: Vector, B: Vector, shared: int) -> Vector:
+    """Sums of products of a block with the shared parameters at the others' coefficients."""
+    cross = B.T @ gram[:shared, shared:]
+    inside = B.T @ gram[:shared, :shared] @ B
+    return np.asarray(gram[shared:, shared:] - cross - cross.T + inside)
 
 
 def _taken(gram: Vector, shared: int) -> tuple[Vector, Vector]:

@@ -12,7 +12,8 @@ from trialid.diagnosis.force.force_terms import MOTIONS
 from trialid.diagnosis.noise.thinning import coarse
 from trialid.diagnosis.noise.whitening import whiten_columns
 from trialid.diagnosis.search.augment import Augmented
-from trialid.diagnosis.search.carry_over import Carried, left_out
+from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.projection import (
     Evidence,
     Projected,

@@ -6,7 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.search.carry_over import EACH, FAINT, FALL, Carried, as_good, own_errors
+from trialid.diagnosis.search.carried import EACH, FAINT, FALL, Carried, as_good
+from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
@@ -40,7 +41,9 @@ def refit(
 ) -> list[Refit]:
     """Each candidate added and fitted from its expected value; those that fail are left out."""
     done = []
-    before = own_errors(fit) if candidates else ()
+    if not candidates:
+        return []
+    before, weights = own_errors(fit), levels(fit)
     for candidate in candidates:
         progress(f"trying {candidate.effect.name}")
         start = {n: _inside(candidate.effect, n, x) for n, x in candidate.expected.items()}
@@ -51,7 +54,7 @@ def refit(
             fitted = identify(trials, model, settings, near=near, smaller=fit)
         except TrialidError:  # it cannot be fitted on this record: it is not the missing one
             continue
-        after = Carried(before, own_errors(fitted), candidate.carried.seen)
+        after = Carried.between(before, own_errors(fitted, weights), candidate.carried.seen)
         done.append(Refit(candidate, fitted, after))
     return done
 
@@ -131,7 +134,8 @@ def objection(fit: Fit, refit: Refit, level: float) -> str:
 
 def falls(fit: Fit, refit: Refit) -> bool:
     """Whether the error falls by what is worth a name, where it was fitted and where not."""
-    return refit.carried.falls and 1.0 - fall(fit, refit) < FALL
+    most = max(fall(fit, refit), own_fall(fit, refit))
+    return refit.carried.falls and 1.0 - most < FALL
 
 
 def worse_held_out(before: Fit, after: Fit) -> bool:
@@ -145,3 +149,10 @@ def worse_held_out(before: Fit, after: Fit) -> bool:
 def fall(fit: Fit, refit: Refit) -> float:
     """Share of the squared error that goes with an effect."""
     return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
+
+
+def own_fall(fit: Fit, refit: Refit) -> float:
+    """The same with each output held against its own error."""
+    weights = levels(fit) * fit.problem.weights**2
+    before, after = (np.square(list(f.eps_by_output.values())) for f in (fit, refit.fit))
+    return float(1.0 - weights @ after / (weights @ before))

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
-from trialid.diagnosis.search.carry_over import LARGE, Carried, left_out
+from trialid.diagnosis.search.carried import LARGE, Carried
+from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.p_value import Chance, against_chance
 from trialid.diagnosis.search.projection import Evidence, Projected, least_squares_fall
 from trialid.identification.fit import Fit

@@ -43,7 +43,7 @@ def starter(
     given: Given,
     speed: float | None = None,
 ) -> Starter:
-    """A pipeline for logs, a trial each, the last of several held out.
+    """A pipeline for logs, a trial each, one of several held out.
 
     Parameters
     ----------

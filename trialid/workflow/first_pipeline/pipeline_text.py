@@ -12,6 +12,7 @@ from trialid.ship.particulars import Ship
 from trialid.toml_text import quote
 from trialid.workflow.first_pipeline.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+from trialid.workflow.first_pipeline.held_out import held_out
 
 HEAD: Final = """\
 # Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
@@ -48,18 +49,17 @@ def pipeline_text(
     ]
     names = _names(trials)
     for place, (name, trial) in enumerate(zip(names, trials, strict=True)):
-        held_out = several and place == len(trials) - 1
-        lines += ["", *_trial(path, name, trial, held_out=held_out)]
+        lines += ["", *_trial(path, name, trial, checks=place == held_out(trials))]
     lines += ["", *_align(trials, length, speed), "", *_model(trials, ship)]
     return "\n".join(lines) + "\n"
 
 
-def _trial(path: Path, name: str, trial: Chosen, *, held_out: bool) -> Iterator[str]:
+def _trial(path: Path, name: str, trial: Chosen, *, checks: bool) -> Iterator[str]:
     yield "[[trial]]"
     yield f"name = {quote(name)}"
     yield f"logs = [{_log(trial, path)}]"
-    if held_out:
-        yield 'use = "check"  # the last log is held out: simulated and scored, never fitted'
+    if checks:
+        yield 'use = "check"  # held out, the middle one by its rudder: scored, never fitted'
     if trial.states_speed and trial.speed is not None:
         yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
     yield f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"

@@ -1,0 +1,31 @@
+"""Which of several trials is held out: one that lies within what the others tried."""
+
+from collections.abc import Sequence
+
+from trialid.errors import UnitError
+from trialid.names import units
+from trialid.names.quantities import SIGNALS
+from trialid.workflow.first_pipeline.choice import Chosen
+
+
+def held_out(trials: Sequence[Chosen]) -> int | None:
+    """Place of the trial in the middle by how far her rudder went; None where there is but one.
+
+    The largest is fitted: it shows most of what a ship does, and a model of the smaller ones alone
+    would be asked for more than it has seen. Of an even number it is the smaller of the middle two.
+    """
+    if len(trials) < 2:
+        return None
+    order = sorted(range(len(trials)), key=lambda place: _travel(trials[place]))
+    return order[(len(trials) - 1) // 2]
+
+
+def _travel(trial: Chosen) -> float:
+    """How far the rudder went, in SI where its unit is known."""
+    rudder = trial.signals[0]
+    unit = rudder.unit or rudder.source.unit or rudder.source.unit_in_name
+    try:
+        factor = units.factor(unit, SIGNALS[rudder.quantity].unit) if unit else 1.0
+    except UnitError:  # asked for with the pipeline
+        factor = 1.0
+    return factor * (rudder.source.high - rudder.source.low)
