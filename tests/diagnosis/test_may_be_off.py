@@ -14,7 +14,7 @@ def handed_over(monkeypatch, *, tried=None, prior=None):
     given = []
     monkeypatch.setattr(tested, "stand", lambda rows, rivals: given.append((rows, rivals)))
     parameters = {"Nrar": SimpleNamespace(start=-0.0015), "Nvar": SimpleNamespace(start=0.005)}
-    effect = SimpleNamespace(name="drag", parameters=parameters)
+    effect = SimpleNamespace(name="drag", parameters=parameters, is_whole=False)
     trace = SimpleNamespace(
         effect=effect, columns=(0, 1), parameters=("Nrar", "Nvar"), tried=tried or {}
     )

@@ -30,7 +30,9 @@ def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=()):
     after = tuple(ratio * x * (1.0 + wobble * (-1) ** i) for i, x in enumerate(BEFORE))
     carried = Carried(BEFORE, after)
     candidate = SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters=tuple("abcdef"[:parameters]), forms=()),
+        effect=SimpleNamespace(
+            name=name, parameters=tuple("abcdef"[:parameters]), forms=(), bound_by_meaning=False
+        ),
         shown=lambda level: True,
         carried=carried,
         family=(name, *family),

@@ -10,7 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.search.carry_over import Carried, own_errors
+from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
@@ -61,7 +62,7 @@ def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progres
         return None
     if why_no_fit(fitted) is not None or not _inside(fitted, effect):
         return None
-    carried = Carried(own_errors(fit), own_errors(fitted), 1.0)
+    carried = Carried.between(own_errors(fit), own_errors(fitted, levels(fit)))
     candidate = Candidate(
         effect=effect,
         expected=start,

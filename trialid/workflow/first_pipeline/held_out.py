@@ -25,7 +25,7 @@ def _travel(trial: Chosen) -> float:
     rudder = trial.signals[0]
     unit = rudder.unit or rudder.source.unit or rudder.source.unit_in_name
     try:
-        factor = units.factor(unit, SIGNALS[rudder.quantity].unit) if unit else 1.0
-    except UnitError:  # asked for with the pipeline
+        factor = units.factor(unit or "", SIGNALS[rudder.quantity].unit)
+    except (UnitError, KeyError):  # asked for with the pipeline, or one of an actuator's own
         factor = 1.0
     return factor * (rudder.source.high - rudder.source.low)
