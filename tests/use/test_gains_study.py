@@ -100,7 +100,7 @@ def kept(model: ShipModel, seed: int) -> list[tuple[bool, bool]]:
     return found
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("ship", [container, small_boat, naval])
 def test_a_true_ship_is_steered_as_promised(ship) -> None:
     """Nine of ten times at the least, of 50 records: by rate and heading, overshoot, settling."""
