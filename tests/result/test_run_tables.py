@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trialid.design.imo.trial_numbers import Overshoot, TurnMeasure
 from trialid.report.tables import run_tables
 from trialid.report.tables.rounded_table import Figure
 from trialid.result.change_rows import ChangePart, MovedRow, StepRow
@@ -18,7 +19,7 @@ from trialid.result.fit_rows import (
     StabilityPart,
     TrialRow,
 )
-from trialid.result.imo_rows import ImoPart, MeasureRow, OvershootRow, TurnRow
+from trialid.result.imo_rows import ImoPart, MeasureRow
 from trialid.result.schema import Result
 
 DEG = float(np.rad2deg(1.0))
@@ -92,9 +93,9 @@ RUN = Result(
                 name="advance", unit="m", value=510.0, interval=(490.0, 530.0), allowed=787.5
             ),
         ),
-        overshoots=(OvershootRow(trial="ten", t=61.0, rudder=0.17, measured=0.10, predicted=0.13),),
+        overshoots=(Overshoot(trial="ten", t=61.0, rudder=0.17, measured=0.10, predicted=0.13),),
         turns=(
-            TurnRow(
+            TurnMeasure(
                 trial="circle",
                 t=30.0,
                 rudder=-0.61,

@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from trialid.cli.main import commands
+from trialid.design.imo.trial_numbers import TurnMeasure
 from trialid.errors import TrialidError
 from trialid.pipeline_file.design_file import load_design
 from trialid.report.pages.folder import Finished
@@ -17,7 +18,7 @@ from trialid.report.pages.imo_form import form, write_form
 from trialid.result import json_file
 from trialid.result.fit_rows import ModelPart, TrialRow
 from trialid.result.imo import UNRELIABLE
-from trialid.result.imo_rows import ImoPart, MeasureRow, TurnRow
+from trialid.result.imo_rows import ImoPart, MeasureRow
 from trialid.result.schema import Result
 from trialid.workflow.design_run import plan
 
@@ -36,7 +37,7 @@ set = { angle = 20.0, heading = 20.0 }
 """
 ROOT = Path(__file__).parents[2]
 SIZE = {"L": 175.0, "B": 25.4, "T": 8.5, "nabla": 21222.0, "U0": 7.33, "rho": 1025.0, "g": 9.81}
-TURN = TurnRow(
+TURN = TurnMeasure(
     trial="circle",
     t=30.0,
     rudder=0.6109,

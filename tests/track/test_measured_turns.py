@@ -17,7 +17,8 @@ from sailed_tracks import (
     trials,
 )
 
-from trialid.design.imo.turns import TurnMeasure, find_turns, measure, turns
+from trialid.design.imo.trial_numbers import TurnMeasure
+from trialid.design.imo.turns import find_turns, measure, turns
 from trialid.identification.fit import identify
 from trialid.threads import one_thread
 from trialid.trial import Trial

@@ -10,8 +10,9 @@ from sailed_tracks import SETTINGS, SHIP, noisy, sailed, spread
 
 from trialid.design.helm import Passage
 from trialid.design.imo import excursions, measures, recognise
-from trialid.design.imo.measured import Measured, manoeuvre_numbers, manoeuvres
+from trialid.design.imo.measured import manoeuvre_numbers, manoeuvres
 from trialid.design.imo.recognise import Recognised
+from trialid.design.imo.trial_numbers import ManoeuvreNumber
 from trialid.identification.fit import Fit, identify
 from trialid.trial import Trial
 
@@ -107,7 +108,7 @@ def true_overshoots() -> list[float]:
     return measures.overshoots(Passage(trial, trial.signals["x"], trial.signals["y"], None))
 
 
-def check(row: Measured, truth: float) -> tuple[bool, bool]:
+def check(row: ManoeuvreNumber, truth: float) -> tuple[bool, bool]:
     low, high = row.predicted_interval or (np.nan, np.nan)
     return row.interval[0] < truth < row.interval[1], low < truth < high
 

@@ -9,9 +9,7 @@ import numpy as np
 
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
-from trialid.design.imo.measured import Found, Measured
-from trialid.design.imo.observed import Overshoot
-from trialid.design.imo.turns import TurnMeasure
+from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Overshoot, TurnMeasure
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
 from trialid.design.steering.nomoto import Nomoto
@@ -61,8 +59,8 @@ class Findings(Diagnosis):
     measures: tuple[Measure, ...] = ()
     overshoots: tuple[Overshoot, ...] = ()
     turns: tuple[TurnMeasure, ...] = ()
-    manoeuvres: tuple[Found, ...] = ()
-    measured: tuple[Measured, ...] = ()
+    manoeuvres: tuple[Manoeuvre, ...] = ()
+    measured: tuple[ManoeuvreNumber, ...] = ()
     steering: Nomoto | None = None
 
 

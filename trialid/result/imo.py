@@ -1,7 +1,6 @@
 """Standard measures of manoeuvring as plain data."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -11,17 +10,7 @@ from trialid.design.imo.speed_loss import NAMES, loses_speed
 from trialid.design.standard import Measure, in_calm
 from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.names import labels
-from trialid.result.imo_rows import (
-    ConditionRow,
-    ImoPart,
-    ManoeuvreRow,
-    MeasuredRow,
-    MeasureRow,
-    OvershootRow,
-    SailedPart,
-    SteeringRow,
-    TurnRow,
-)
+from trialid.result.imo_rows import ConditionRow, ImoPart, MeasureRow, SailedPart, SteeringRow
 from trialid.trial import Trial
 
 if TYPE_CHECKING:
@@ -112,10 +101,10 @@ def imo_part(found: "Findings") -> ImoPart | None:
         sailed=sailing_words(found.ship),
         doubt="" if reliable else UNRELIABLE,
         speed_simulated="u" in found.before.fit.model.states,
-        overshoots=tuple(OvershootRow(**asdict(one)) for one in found.overshoots),
-        turns=tuple(TurnRow(**asdict(one)) for one in found.turns),
-        manoeuvres=tuple(ManoeuvreRow(**asdict(one)) for one in found.manoeuvres),
-        measured=tuple(MeasuredRow(**asdict(one)) for one in found.measured),
+        overshoots=found.overshoots,
+        turns=found.turns,
+        manoeuvres=found.manoeuvres,
+        measured=found.measured,
         conditions=tuple(condition_rows([s.trial for s in found.before.fit.scores])),
         steering=() if found.steering is None else tuple(steering_rows(found.steering)),
     )

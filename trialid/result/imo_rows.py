@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Overshoot, TurnMeasure
+
 
 @dataclass(frozen=True, kw_only=True)
 class MeasureRow:
@@ -19,72 +21,6 @@ class MeasureRow:
     kept: bool | None = None
     manoeuvre: str = ""
     remark: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class OvershootRow:
-    """An overshoot of a trial: angles in rad, time in s."""
-
-    trial: str
-    t: float
-    rudder: float
-    measured: float
-    predicted: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class TurnRow:
-    """A measure of a turning circle that a trial holds: m, rudder in rad, time of the order in s.
-
-    `measured` is over the ground as recorded, `corrected` through the water by the current found,
-    each with its 95 % interval; `predicted` is of the fitted model through the water under the
-    recorded rudder, with where the true ship's is likely to lie.
-    """
-
-    trial: str
-    t: float
-    rudder: float
-    name: str
-    measured: float
-    interval: tuple[float, float]
-    corrected: float | None = None
-    corrected_interval: tuple[float, float] | None = None
-    predicted: float | None = None
-    predicted_interval: tuple[float, float] | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class ManoeuvreRow:
-    """A manoeuvre recognised in a trial: order and end [s], first rudder angle [rad].
-
-    `remark` says what it lacks; empty where it is whole.
-    """
-
-    trial: str
-    kind: str
-    t: float
-    end: float
-    rudder: float
-    remark: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class MeasuredRow:
-    """A number of a zig-zag, pull-out or spiral of a trial, and the fitted model's, in `unit`.
-
-    Each with its 95 %; `predicted` under the rudder as recorded.
-    """
-
-    trial: str
-    kind: str
-    t: float
-    rudder: float
-    name: str
-    unit: str
-    measured: float
-    interval: tuple[float, float]
-    predicted: float | None = None
-    predicted_interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,11 +82,11 @@ class ImoPart:
 
     measures: tuple[MeasureRow, ...] = ()
     speed_simulated: bool = False
-    overshoots: tuple[OvershootRow, ...] = ()
-    turns: tuple[TurnRow, ...] = ()
+    overshoots: tuple[Overshoot, ...] = ()
+    turns: tuple[TurnMeasure, ...] = ()
     conditions: tuple[ConditionRow, ...] = ()
-    manoeuvres: tuple[ManoeuvreRow, ...] = ()
-    measured: tuple[MeasuredRow, ...] = ()
+    manoeuvres: tuple[Manoeuvre, ...] = ()
+    measured: tuple[ManoeuvreNumber, ...] = ()
     sailed: str = ""
     doubt: str = ""
     steering: tuple[SteeringRow, ...] = ()

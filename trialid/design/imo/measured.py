@@ -7,7 +7,6 @@ rates are those through the water: a current does not turn the ship.
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,7 +15,8 @@ from trialid.arrays import Vector
 from trialid.design.imo.excursions import LATE, order_sample
 from trialid.design.imo.recognise import Recognised, recognise
 from trialid.design.imo.sailed_trial import SailedTrial, numbers, sail_trial
-from trialid.design.prediction.likely_spread import LikelySpread, Range
+from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Range
+from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
 from trialid.trial import Trial
@@ -29,44 +29,16 @@ LAST: Final = 3
 ORDINALS: Final = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Found:
-    """A manoeuvre of a trial: order and end [s], angle held [rad], and what it lacks."""
-
-    trial: str
-    kind: str
-    t: float
-    end: float
-    rudder: float
-    remark: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Measured:
-    """One number of a manoeuvre in `unit`, of the record and of the fitted model, with 95 %."""
-
-    trial: str
-    kind: str
-    t: float
-    rudder: float
-    name: str
-    unit: str
-    measured: float
-    interval: Range
-    predicted: float | None = None
-    predicted_interval: Range | None = None
-
-
 Value = tuple[float, float]
 """A number and its standard error."""
 Read = Callable[[Vector, float], dict[str, Value]]
 """What is read from headings (N,) [rad] with noise of this standard deviation."""
 
 
-def manoeuvres(fit: Fit) -> tuple[Found, ...]:
+def manoeuvres(fit: Fit) -> tuple[Manoeuvre, ...]:
     """Every manoeuvre in the trials of a fit, to fit and to check, by evidence."""
     return tuple(
-        Found(
+        Manoeuvre(
             trial=s.trial.name,
             kind=m.kind,
             t=order_time(s.trial, m),
@@ -79,7 +51,7 @@ def manoeuvres(fit: Fit) -> tuple[Found, ...]:
     )
 
 
-def manoeuvre_numbers(fit: Fit, spread: LikelySpread | None) -> tuple[Measured, ...]:
+def manoeuvre_numbers(fit: Fit, spread: LikelySpread | None) -> tuple[ManoeuvreNumber, ...]:
     """The numbers of every zig-zag, pull-out, spiral and stop in the trials of a fit.
 
     Parameters
@@ -103,7 +75,7 @@ def order_time(trial: Trial, one: Recognised) -> float:
     return order_sample(rudder[: one.end], one.execute, one.rudder) * trial.period
 
 
-def _of_trial(fit: Fit, trial: Trial, spread: LikelySpread | None) -> Iterator[Measured]:
+def _of_trial(fit: Fit, trial: Trial, spread: LikelySpread | None) -> Iterator[ManoeuvreNumber]:
     found = [m for m in _recognised(fit, trial) if m.kind in READERS]
     psi = trial.signals.get("psi")
     if not found or psi is None:
@@ -118,7 +90,7 @@ def _of_trial(fit: Fit, trial: Trial, spread: LikelySpread | None) -> Iterator[M
         predicted = _predicted(sailed, read)
         for name, (value, error) in values.items():
             known = predicted.get(name, (None, None))
-            yield Measured(
+            yield ManoeuvreNumber(
                 trial=trial.name,
                 kind=one.kind,
                 t=order_time(trial, one),

@@ -1,12 +1,12 @@
 """Overshoots of the zig-zags that a record holds, measured beside those of the fitted model."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trialid.arrays import Mask, Vector
+from trialid.design.imo.trial_numbers import Overshoot
 from trialid.identification.fit import Fit, Score
 
 PLATEAU: Final = 0.7
@@ -15,20 +15,6 @@ LEAVES: Final = 0.9
 """Share of its angle below which the rudder has left it: the order was given."""
 FEWEST: Final = 2
 """Reversals from which a record is a zig-zag."""
-
-
-@dataclass(frozen=True)
-class Overshoot:
-    """How far the heading went on after a reversal of the rudder at `t` [s]; [rad].
-
-    Both are integrals of the rate of turn, with the sensor's bias in it.
-    """
-
-    trial: str
-    t: float
-    rudder: float
-    measured: float
-    predicted: float
 
 
 def overshoots(fit: Fit) -> tuple[Overshoot, ...]:
@@ -53,7 +39,13 @@ def _of_trial(score: Score, place: int) -> Iterator[Overshoot]:
         recorded = _beyond(trial.signals["r"][k : end + 1], angle, trial.period, compared)
         simulated = _beyond(score.response.y[k : end + 1, place], angle, trial.period, compared)
         if recorded is not None and simulated is not None:
-            yield Overshoot(trial.name, k * trial.period, angle, recorded, simulated)
+            yield Overshoot(
+                trial=trial.name,
+                t=k * trial.period,
+                rudder=angle,
+                measured=recorded,
+                predicted=simulated,
+            )
 
 
 def _reversals(rudder: Vector) -> list[tuple[int, float]]:

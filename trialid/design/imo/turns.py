@@ -19,7 +19,8 @@ from trialid.design.imo.excursions import (
 )
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.sailed_trial import Numbers, numbers, sail_trial
-from trialid.design.prediction.likely_spread import LikelySpread, Range
+from trialid.design.imo.trial_numbers import Range, TurnMeasure
+from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.effects.track import CURRENT
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit, of_trial
@@ -51,34 +52,6 @@ class Turn:
     begin: int
     end: int
     course: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class TurnMeasure:
-    """One measure of a turn [m]; None where there is nothing to know it from.
-
-    Attributes
-    ----------
-    measured, interval
-        As recorded, over the ground, with its 95 %: noise of position and heading, and half a
-        sample of the order.
-    corrected, corrected_interval
-        The same through the water, by the current that the fit found, with its error.
-    predicted, predicted_interval
-        Of the fitted model through the water, under the rudder as recorded, and where the true
-        ship's is likely to lie.
-    """
-
-    trial: str
-    t: float
-    rudder: float
-    name: str
-    measured: float
-    interval: tuple[float, float]
-    corrected: float | None = None
-    corrected_interval: tuple[float, float] | None = None
-    predicted: float | None = None
-    predicted_interval: Range | None = None
 
 
 @dataclass(frozen=True)

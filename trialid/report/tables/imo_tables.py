@@ -1,15 +1,9 @@
 """The tables of the standard measures of a run, and of the overshoots its trials hold."""
 
+from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Overshoot, TurnMeasure
 from trialid.names import wording
 from trialid.report.tables.rounded_table import Cell, Figure, Table
-from trialid.result.imo_rows import (
-    ImoPart,
-    ManoeuvreRow,
-    MeasuredRow,
-    MeasureRow,
-    OvershootRow,
-    TurnRow,
-)
+from trialid.result.imo_rows import ImoPart, MeasureRow
 from trialid.result.schema import Result
 
 
@@ -45,7 +39,7 @@ def overshoots(run: Result) -> Table:
     return Table("overshoots", "Overshoots in the trials", headings, rows)
 
 
-def _overshoot(each: OvershootRow) -> tuple[Cell, ...]:
+def _overshoot(each: Overshoot) -> tuple[Cell, ...]:
     angles = (_degrees(x) for x in (each.rudder, each.measured, each.predicted))
     return each.trial, Figure(each.t), *(Figure(x, 3) for x in angles)
 
@@ -60,7 +54,7 @@ def turns(run: Result) -> Table:
     return Table("turns", "Turning circles in the trials", headings, rows)
 
 
-def _turn(each: TurnRow) -> tuple[Cell, ...]:
+def _turn(each: TurnMeasure) -> tuple[Cell, ...]:
     low, high = each.corrected_interval or (None, None)
     band = each.predicted_interval or (None, None)
     sizes = (each.measured, *each.interval, each.corrected, low, high, each.predicted, *band)
@@ -76,7 +70,7 @@ def manoeuvres(run: Result) -> Table:
     return Table("manoeuvres", "Manoeuvres in the trials", headings, rows)
 
 
-def _manoeuvre(each: ManoeuvreRow) -> tuple[Cell, ...]:
+def _manoeuvre(each: Manoeuvre) -> tuple[Cell, ...]:
     times = Figure(each.t), Figure(each.end)
     angle = Figure(_degrees(each.rudder), 3)
     return each.trial, each.kind, *times, angle, each.remark or "whole"
@@ -92,7 +86,7 @@ def manoeuvre_numbers(run: Result) -> Table:
     return Table("measured", "Zig-zags, pull-outs and spirals in the trials", headings, rows)
 
 
-def _measured(each: MeasuredRow) -> tuple[Cell, ...]:
+def _measured(each: ManoeuvreNumber) -> tuple[Cell, ...]:
     unit, factor = wording.shown_unit(each.unit)
     band = each.predicted_interval or (None, None)
     sizes = (each.measured, *each.interval, each.predicted, *band)
