@@ -52,6 +52,11 @@ def heading(trial: Trial) -> Vector | None:
     return np.concatenate([[0.0], np.cumsum((r[1:] + r[:-1]) / 2.0) * trial.period])
 
 
+def rudder_of(trial: Trial) -> Vector | None:
+    """The rudder's order, or its angle where no order is recorded [rad]; (N,)."""
+    return trial.signals.get("delta_order", trial.signals.get("delta"))
+
+
 class SteeredRecord:
     """A trial's rudder and heading, cut into excursions; `clock` samples make a ship length."""
 

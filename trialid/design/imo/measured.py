@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.imo.excursions import LATE, order_sample
+from trialid.design.imo.excursions import LATE, order_sample, rudder_of
 from trialid.design.imo.recognise import Recognised, recognise
 from trialid.design.imo.sailed_trial import SailedTrial, numbers, sail_trial
 from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Range
@@ -52,7 +52,7 @@ def manoeuvres(fit: Fit) -> tuple[Manoeuvre, ...]:
 
 
 def manoeuvre_numbers(fit: Fit, spread: LikelySpread | None) -> tuple[ManoeuvreNumber, ...]:
-    """The numbers of every zig-zag, pull-out, spiral and stop in the trials of a fit.
+    """The numbers of every zig-zag, pull-out and spiral in the trials of a fit.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def _recognised(fit: Fit, trial: Trial) -> tuple[Recognised, ...]:
 
 def order_time(trial: Trial, one: Recognised) -> float:
     """When the order was given [s]: where the rudder's way to its angle began, by that way."""
-    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    rudder = rudder_of(trial)
     if rudder is None or one.rudder == 0.0:
         return one.execute * trial.period
     return order_sample(rudder[: one.end], one.execute, one.rudder) * trial.period
@@ -115,8 +115,11 @@ def _predicted(sailed: SailedTrial | None, read: Read) -> dict[str, tuple[float,
 
 
 def zigzag_reader(trial: Trial, one: Recognised) -> Read:
-    """Overshoots: how far the heading goes on from where the rudder was ordered over [rad]."""
-    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    """The first six overshoots: how far the heading goes on from where the rudder was ordered over.
+
+    In rad. A leg that does not come back has none, and ends them.
+    """
+    rudder = rudder_of(trial)
     assert rudder is not None
     orders = [left_angle(rudder, k) for k in one.reversals]
     ends = [*one.reversals[1:], one.end]
@@ -165,7 +168,7 @@ def pull_out_reader(trial: Trial, one: Recognised) -> Read:
 
 def spiral_reader(trial: Trial, one: Recognised) -> Read:
     """The rate of turn that each angle settles to [rad/s]."""
-    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    rudder = rudder_of(trial)
     assert rudder is not None
     degrees = np.round(np.rad2deg(rudder[one.execute : one.end]))
     edges = np.flatnonzero(np.abs(np.diff(degrees)) > 1.0) + 1

@@ -25,6 +25,7 @@ from trialid.design.imo.excursions import (
     given_back,
     heading,
     is_held,
+    rudder_of,
 )
 from trialid.trial import Trial
 
@@ -82,7 +83,7 @@ def recognise(trial: Trial, length: float, speed: float) -> tuple[Recognised, ..
         Of the ship [m] and of her approach [m/s]: her own clock.
     """
     psi = heading(trial)
-    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    rudder = rudder_of(trial)
     if psi is None or rudder is None:
         return ()
     found = SteeredRecord(trial, rudder, psi, max(round(length / speed / trial.period), 10))

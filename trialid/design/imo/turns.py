@@ -16,6 +16,7 @@ from trialid.design.imo.excursions import (
     given_back,
     is_held,
     order_sample,
+    rudder_of,
 )
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.sailed_trial import Numbers, numbers, sail_trial
@@ -64,7 +65,7 @@ class Water:
 
 def find_turns(trial: Trial) -> Iterator[Turn]:
     """Turns of 180 deg and more by a rudder held to one side, out of a straight course."""
-    rudder = trial.signals.get("delta_order", trial.signals.get("delta"))
+    rudder = rudder_of(trial)
     if rudder is None or not {*NEEDED} <= {*trial.signals}:
         return
     record = SteeredRecord(trial, rudder, trial.signals["psi"], APPROACH)

@@ -175,8 +175,7 @@ def _words(made: FittedModel, hull: GazeboHull) -> Iterator[str]:
         "is the buoyancy plugin's: give it a hull with the GM of the model. Heave, pitch and the "
         "list below are to be given beside it."
     )
-    large = [r for r, a in (("Y", "v"),) if -hull.added.get((r, a), 0.0) > hull.mass["m"]]
-    if large:
+    if -hull.added.get(("Y", "v"), 0.0) > hull.mass["m"]:
         said.append("NOTE Added mass above the ship's own may make the plugin unstable.")
     for words in said:
         clean = escape(" ".join(words.split())).replace("--", "- -")
