@@ -21,7 +21,7 @@ def started(folder: Path, monkeypatch: pytest.MonkeyPatch, logs: list[Path], opt
     return CliRunner().invoke(commands, ["start", *map(str, logs), *options.split()])
 
 
-def log(path: Path, *, swapped: bool = False, seed: int = 700) -> Path:
+def log(path: Path, *, swapped: bool = False, seed: int = 700, drive: str = "rpm") -> Path:
     """The Otter's log as a table: revolutions, rate of turn, speed."""
     t = np.arange(0.0, 90.0, 0.2)
     sailed = otter.sail(t, otter.some_orders(t, seed))
@@ -29,8 +29,8 @@ def log(path: Path, *, swapped: bool = False, seed: int = 700) -> Path:
     rpm = sailed.revolutions * 60.0 / (2.0 * np.pi)
     columns = {
         "time_s": t,
-        "rpm_port": rpm[:, 1 if swapped else 0],
-        "rpm_starboard": rpm[:, 0 if swapped else 1],
+        f"{drive}_port": rpm[:, 1 if swapped else 0],
+        f"{drive}_starboard": rpm[:, 0 if swapped else 1],
         "yaw_rate_degps": np.rad2deg(sailed.r) + 0.1 * rng.standard_normal(len(t)),
         "stw_mps": sailed.u + 0.02 * rng.standard_normal(len(t)),
     }
@@ -62,6 +62,21 @@ def test_sides_that_the_turn_contradicts_are_asked(tmp_path, monkeypatch) -> Non
     assert "she turns towards the stronger one" in " ".join(done.stdout.split())
     assert "Not fitted yet" in done.stderr
     assert not (tmp_path / "runs").exists()
+
+
+def test_a_unit_that_nothing_tells_is_asked(tmp_path, monkeypatch) -> None:
+    """Counts of an engine may be anything; what is called a thrust is read as one, with care."""
+    made = log(tmp_path / "a.csv", drive="engine")
+    done = started(tmp_path, monkeypatch, [made], "--length 2")
+    assert done.exit_code == 0, done.output
+    assert "FILL IN its unit" in " ".join(done.stdout.split())
+    assert not (tmp_path / "runs").exists()
+    text = (tmp_path / "first_trial.toml").read_text(encoding="utf-8")
+    assert 'thruster_port      = { channel = "engine_port", unit = "?" }' in text
+    (tmp_path / "named").mkdir()
+    made = log(tmp_path / "named" / "a.csv", drive="thrust")
+    done = started(tmp_path / "named", monkeypatch, [made], "--length 2")
+    assert "CAREFUL: a thrust by its name" in " ".join(done.stdout.split())
 
 
 def test_a_ship_file_gives_its_own_names_or_says_what_it_lacks(tmp_path, monkeypatch) -> None:

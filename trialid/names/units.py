@@ -42,6 +42,10 @@ def factor(unit: str, si: str) -> float:
     3.141593
     >>> factor("kN", "N"), round(factor("kN", "m/s"), 6)  # of a speed it is knots
     (1000.0, 0.514444)
+    >>> factor("rpm", "N")
+    Traceback (most recent call last):
+        ...
+    trialid.errors.UnitError: unit 'rpm' cannot become 'N'; units that can: N
     >>> factor("deg", "m/s")
     Traceback (most recent call last):
         ...
@@ -63,7 +67,7 @@ def factor(unit: str, si: str) -> float:
     except pint.UndefinedUnitError as error:
         raise UnitError(f"unit {unit!r} is not known ({nearest(unit, COMMON)})") from error
     except pint.DimensionalityError as error:
-        able = ", ".join(sorted(c for c in COMMON if _fits(c, si)))
+        able = ", ".join(sorted(c for c in COMMON if _fits(c, si))) or si
         raise UnitError(f"unit {unit!r} cannot become {si!r}; units that can: {able}") from error
     except (ValueError, ArithmeticError) as error:  # arithmetic in it: s/0, "s 5", nan
         raise UnitError(f"unit {unit!r} cannot be understood; write it like deg/s") from error

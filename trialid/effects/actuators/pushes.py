@@ -13,7 +13,7 @@ from trialid.effects.actuators.instances import (
 )
 from trialid.effects.actuators.push_kinds import F11, PUSHES, Driven, Push, PushKind
 from trialid.maths import Number, clip
-from trialid.ship.actuators import Actuator
+from trialid.ship.actuators import COMMANDS, Actuator
 from trialid.ship.effect import Effect, Force, Parameter, Rate, Steered
 from trialid.ship.particulars import Ship
 
@@ -28,7 +28,8 @@ def push_effects(ship: Ship) -> Iterator[Effect]:
         if ones:
             yield _pushes(ship, push, ones)
             yield lag_of(push.effect, ones, 0.5)
-            yield _deadband(ship, push.effect, ones)
+            if len({one.command for one in ones}) == 1:  # else they have no band in common
+                yield _deadband(ship, push.effect, ones)
         if ones and kind == "thruster":
             yield _advance(ship, ones)
 
@@ -107,8 +108,7 @@ def _deadband(ship: Ship, kind: str, ones: Sequence[Actuator]) -> Effect:
         )
 
     command = ones[0].command
-    unit = {"revolutions": "rad/s", "share": "1", "thrust": "N"}[command]
-    size = typical_drive(ship, command)
+    unit, size = COMMANDS[command], typical_drive(ship, command)
     return make_effect(
         deadband,
         name=f"{kind}_deadband",

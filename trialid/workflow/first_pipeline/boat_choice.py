@@ -100,9 +100,14 @@ def _unit(source: ChannelInspection) -> tuple[str, str]:
     largest = max(abs(source.low), abs(source.high))
     if largest <= SHARE:
         return "1", f"; no unit is stated, up to {largest:.3g} can only be a share of full"
-    return "N", (
-        f"; CAREFUL: no unit is stated, up to {largest:.3g} is read as newton: the gain is then of "
-        "whatever it is"
+    if "thrust" in words(source.name):
+        return "N", (
+            f"; CAREFUL: a thrust by its name, and no unit is stated: up to {largest:.3g} is read "
+            "as newton, and the gain is of whatever it is"
+        )
+    return OPEN, (
+        f"; FILL IN its unit: nothing tells what up to {largest:.3g} is; where it is no thrust, "
+        "its command in the ship file too"
     )
 
 
