@@ -20,6 +20,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "python": Kind("one file that needs NumPy alone", (".py",)),
     "c": Kind("C99 with a header, no dependencies", (".c", ".h")),
     "fmu": Kind("FMI 2.0 for co-simulation, C source and a Linux binary", (".fmu",)),
+    "modelica": Kind("one Modelica model that reads like the equations", (".mo",)),
     "nomoto": Kind("Nomoto's K, T, T1 to T3 and the state space", (".json",)),
     "pid": Kind("a heading autopilot's gains with what they promise", (".json",)),
     "ardupilot": Kind("steering gains of ArduPilot Rover", (".param",), "--full-rudder 35"),

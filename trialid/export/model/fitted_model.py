@@ -10,6 +10,7 @@ from trialid.accuracy.parameter_table import Accuracy
 from trialid.arrays import Vector
 from trialid.design.prediction.seen_range import SeenRange
 from trialid.identification.fit import Fit
+from trialid.names import labels
 from trialid.result.fit_rows import ParameterRow
 from trialid.result.schema import Result
 from trialid.ship.model import ShipModel, late, slope
@@ -79,6 +80,19 @@ class FittedModel:
         """Inputs a user gives: not those by which a late one was shifted."""
         made = {n for s in self.model.late_inputs for n in (late(s), slope(s))}
         return tuple(n for n in self.equations.inputs if n not in made)
+
+    @property
+    def starts(self) -> dict[str, float]:
+        """Where states and inputs begin: straight ahead at the approach speed, engines as seen."""
+        found = {}
+        for name in (*self.equations.states, *self.inputs):
+            seen = self.seen.get(name)
+            middle = 0.0 if seen is None else 0.5 * (seen.low + seen.high)
+            held = name in self.inputs and labels.quantity(name).mirror > 0
+            found[name] = middle if held else 0.0
+            if name == "u":
+                found[name] = self.model.ship.particulars["U0"]
+        return found
 
 
 def fitted_model(

@@ -75,7 +75,7 @@ def fmu_source(made: FittedModel, low: str, guid: str) -> str:
     texts = c_texts(made, low)
     model = texts[".c"].replace(f'#include "{low}.h"\n', texts[".h"])
     eq = made.equations
-    start = [*_starts(made).values(), *(0.0 for _ in eq.outputs)]
+    start = [*made.starts.values(), *(0.0 for _ in eq.outputs)]
     start += [p.value for p in made.parameters]
     given = {
         "NX": len(eq.states),
@@ -94,19 +94,6 @@ def fmu_source(made: FittedModel, low: str, guid: str) -> str:
 def _guid(made: FittedModel, low: str) -> str:
     digest = hashlib.sha256(f"{low}{VERSION}{text_of(model_file(made))}".encode()).digest()
     return "{" + str(uuid.UUID(bytes=digest[:16])) + "}"
-
-
-def _starts(made: FittedModel) -> dict[str, float]:
-    """Where states and inputs begin: straight ahead at the approach speed, engines as seen."""
-    found = {}
-    for name in (*made.equations.states, *made.inputs):
-        seen = made.seen.get(name)
-        middle = 0.0 if seen is None else 0.5 * (seen.low + seen.high)
-        held = name in made.inputs and labels.quantity(name).mirror > 0
-        found[name] = middle if held else 0.0
-        if name == "u":
-            found[name] = made.model.ship.particulars["U0"]
-    return found
 
 
 def _linux_binary(source: str) -> bytes | None:
@@ -219,7 +206,7 @@ def _variables(made: FittedModel) -> Iterator[tuple[str, str]]:
 
 def _signals(made: FittedModel) -> Iterator[tuple[str, str, str, str]]:
     """Kind, name, words and number of states, inputs and what the sensors show."""
-    starts = _starts(made)
+    starts = made.starts
     for name, start in starts.items():
         known = labels.quantity(name)
         kind = "input" if name in made.inputs else "state"

@@ -15,6 +15,7 @@ from trialid.export.model.fmu import fmu_bytes
 from trialid.export.model.gain_files import ardupilot_text, pid_file
 from trialid.export.model.gazebo import gazebo_hull, gazebo_text
 from trialid.export.model.json_model import model_file
+from trialid.export.model.modelica_text import modelica_text
 from trialid.export.model.nomoto_file import nomoto_file
 from trialid.export.model.numpy_text import numpy_text
 from trialid.result.json_file import text_of
@@ -65,6 +66,11 @@ def _fmu(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     return {".fmu": fmu_bytes(taken_up(model), name)}
 
 
+def _modelica(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del wishes
+    return {".mo": modelica_text(taken_up(model), name)}
+
+
 def _nomoto(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name, wishes
     found = at_speeds(sailed_ship(model.fit), spread_of(model), approach_speeds(model.fit))
@@ -102,6 +108,7 @@ WRITERS: Final[Mapping[str, Write]] = {
     "python": _python,
     "c": _c,
     "fmu": _fmu,
+    "modelica": _modelica,
     "nomoto": _nomoto,
     "pid": _pid,
     "ardupilot": _ardupilot,
