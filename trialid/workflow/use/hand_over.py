@@ -1,7 +1,9 @@
 """A finished run's model as files: which there are, and what each holds."""
 
+import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from io import BytesIO
 from typing import Final
 
 from trialid.design.following import approach_speeds, sailed_ship
@@ -11,7 +13,8 @@ from trialid.errors import TrialidError
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
-from trialid.export.model.fmu import fmu_bytes
+from trialid.export.model.fmu.binaries import platform_words
+from trialid.export.model.fmu.fmu_file import fmu_bytes
 from trialid.export.model.gain_files import ardupilot_text, pid_file
 from trialid.export.model.gazebo import gazebo_hull, gazebo_text
 from trialid.export.model.json_model import model_file
@@ -63,7 +66,12 @@ def _c(model: FinishedModel, name: str, wishes: Wishes) -> Files:
 
 def _fmu(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del wishes
-    return {".fmu": fmu_bytes(taken_up(model), name)}
+    return {".fmu": fmu_bytes(taken_up(model), name, everywhere=True)}
+
+
+def _fmu3(model: FinishedModel, name: str, wishes: Wishes) -> Files:
+    del wishes
+    return {".fmu": fmu_bytes(taken_up(model), name, "3.0", everywhere=True)}
 
 
 def _modelica(model: FinishedModel, name: str, wishes: Wishes) -> Files:
@@ -108,6 +116,7 @@ WRITERS: Final[Mapping[str, Write]] = {
     "python": _python,
     "c": _c,
     "fmu": _fmu,
+    "fmu3": _fmu3,
     "modelica": _modelica,
     "nomoto": _nomoto,
     "pid": _pid,
@@ -115,3 +124,12 @@ WRITERS: Final[Mapping[str, Write]] = {
     "gazebo": _gazebo,
 }
 """What each kind's files hold; `trialid.names.model_kinds` says what they are."""
+
+
+def beside_words(files: Files) -> str | None:
+    """What to say of files that were made, where they are not all that they could be."""
+    unit = files.get(".fmu")
+    if not isinstance(unit, bytes):
+        return None
+    with zipfile.ZipFile(BytesIO(unit)) as packed:
+        return platform_words(packed.namelist())
