@@ -10,10 +10,11 @@ from trialid.accuracy.parameter_table import Accuracy
 from trialid.arrays import Vector
 from trialid.design.prediction.seen_range import SeenRange
 from trialid.identification.fit import Fit
-from trialid.names import labels
+from trialid.names.quantities import Quantity
 from trialid.result.fit_rows import ParameterRow
 from trialid.result.schema import Result
 from trialid.ship.model import ShipModel, late, slope
+from trialid.ship.quantity_of import quantity_of
 from trialid.simulation.trace import Equations, trace
 from trialid.version import VERSION
 
@@ -81,6 +82,10 @@ class FittedModel:
         made = {n for s in self.model.late_inputs for n in (late(s), slope(s))}
         return tuple(n for n in self.equations.inputs if n not in made)
 
+    def quantity(self, name: str) -> Quantity:
+        """What a state, an input or an output is."""
+        return quantity_of(self.model, name)
+
     @property
     def starts(self) -> dict[str, float]:
         """Where states and inputs begin: straight ahead at the approach speed, engines as seen."""
@@ -88,7 +93,7 @@ class FittedModel:
         for name in (*self.equations.states, *self.inputs):
             seen = self.seen.get(name)
             middle = 0.0 if seen is None else 0.5 * (seen.low + seen.high)
-            held = name in self.inputs and labels.quantity(name).mirror > 0
+            held = name in self.inputs and self.quantity(name).mirror > 0
             found[name] = middle if held else 0.0
             if name == "u":
                 found[name] = self.model.ship.particulars["U0"]

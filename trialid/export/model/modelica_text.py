@@ -11,7 +11,6 @@ from typing import Final
 from trialid.export.model.c_text import WRAP
 from trialid.export.model.equation_steps import Program, Writer, own_name, program
 from trialid.export.model.fitted_model import FittedModel, FittedParameter
-from trialid.names import labels
 
 FUNCTIONS: Final = {"arctan": "atan"}
 UNSEEN: Final = "unseen"
@@ -87,17 +86,19 @@ def _sure(p: FittedParameter) -> str:
 def _signals(made: FittedModel) -> Iterator[str]:
     """Inputs, states and what the sensors show, with units, beginnings and meanings."""
     for name in made.inputs:
-        yield _signal("input", name, f"start={made.starts[name]!r}")
+        yield _signal(made, "input", name, f"start={made.starts[name]!r}")
     for name in made.equations.states:
-        yield _signal("output", name, f"start={made.starts[name]!r}, fixed=true")
+        yield _signal(made, "output", name, f"start={made.starts[name]!r}, fixed=true")
     for name in made.equations.outputs:
-        yield _signal("output", name, "", "_sensor", ", as its sensor shows it")
+        yield _signal(made, "output", name, "", "_sensor", ", as its sensor shows it")
     if _ends(made):
         yield f'  output Boolean {UNSEEN} "{BEYOND}";'
 
 
-def _signal(kind: str, name: str, more: str, end: str = "", words: str = "") -> str:
-    known = labels.quantity(name)
+def _signal(
+    made: FittedModel, kind: str, name: str, more: str, end: str = "", words: str = ""
+) -> str:
+    known = made.quantity(name)
     told = ", ".join(filter(None, [f'unit="{_unit(known.unit)}"', more]))
     return f'  {kind} Real {own_name(name)}{end}({told}) "{_text(known.meaning + words)}";'
 

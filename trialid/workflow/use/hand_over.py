@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from io import BytesIO
 from typing import Final
 
-from trialid.design.following import approach_speeds, sailed_ship
+from trialid.design.following import STEERED, approach_speeds, sailed_ship
+from trialid.design.helm import Vessel
 from trialid.design.steering.gains import heading_gains, rate_gains
 from trialid.design.steering.nomoto import at_speeds
 from trialid.errors import TrialidError
@@ -79,9 +80,27 @@ def _modelica(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     return {".mo": modelica_text(taken_up(model), name)}
 
 
+def _by_rudder(model: FinishedModel) -> Vessel:
+    """The ship, steered by a rudder.
+
+    Raises
+    ------
+    TrialidError
+        She is steered by something else, of which there is no K and no T.
+    """
+    if STEERED & {*model.fit.model.recorded}:
+        return sailed_ship(model.fit)
+    drives = [a.name for a in model.fit.model.ship.actuators]
+    steered = f"; this model is steered by {', '.join(drives)}" if drives else ""
+    raise TrialidError(
+        f"{model.where}: K, T and gains are those of a rudder angle{steered}; export her as "
+        "fmu, c, python or modelica and design her heading control with that"
+    )
+
+
 def _nomoto(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name, wishes
-    found = at_speeds(sailed_ship(model.fit), spread_of(model), approach_speeds(model.fit))
+    found = at_speeds(_by_rudder(model), spread_of(model), approach_speeds(model.fit))
     return {".json": text_of(nomoto_file(taken_up(model), found))}
 
 
@@ -92,13 +111,13 @@ def _ardupilot(model: FinishedModel, name: str, wishes: Wishes) -> Files:
             "--as ardupilot needs the rudder angle at full steering output, which no log of a "
             "rudder holds; add --full-rudder 35 [deg]"
         )
-    gains = rate_gains(sailed_ship(model.fit), spread_of(model), wishes.bandwidth)
+    gains = rate_gains(_by_rudder(model), spread_of(model), wishes.bandwidth)
     return {".param": ardupilot_text(taken_up(model), gains, wishes.full_rudder)}
 
 
 def _pid(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name
-    gains = heading_gains(sailed_ship(model.fit), spread_of(model), wishes.bandwidth)
+    gains = heading_gains(_by_rudder(model), spread_of(model), wishes.bandwidth)
     return {".json": text_of(pid_file(taken_up(model), gains))}
 
 

@@ -6,7 +6,6 @@ from typing import Final, Literal
 from xml.sax.saxutils import quoteattr
 
 from trialid.export.model.fitted_model import FittedModel
-from trialid.names import labels
 
 UNSEEN: Final = "unseen"
 BASE: Final[Mapping[str, str]] = {
@@ -65,11 +64,11 @@ def variables_of(made: FittedModel) -> list[Variable]:
     """States, inputs, what sensors show, parameters, and the flag, in the order of the C arrays."""
     found = []
     for name, start in made.starts.items():
-        known = labels.quantity(name)
+        known = made.quantity(name)
         kind: Literal["input", "state"] = "input" if name in made.inputs else "state"
         found.append(Variable(kind, name, known.meaning, known.unit, start))
     for name in made.equations.outputs:
-        known = labels.quantity(name)
+        known = made.quantity(name)
         words = f"{known.meaning}, as its sensor shows it"
         found.append(Variable("output", f"{name}_sensor", words, known.unit))
     for p in made.parameters:
