@@ -1,12 +1,11 @@
 """All that an export of a fitted model says: equations, values, how sure, where from, how far."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from trialid.accuracy.parameter_table import Accuracy
 from trialid.arrays import Vector
 from trialid.design.prediction.seen_range import SeenRange
 from trialid.identification.fit import Fit
@@ -102,20 +101,23 @@ class FittedModel:
 
 def fitted_model(
     fit: Fit,
-    accuracy: Accuracy,
+    unknowns: Sequence[str],
+    covariance: Vector,
     result: Result,
     seen: Mapping[str, SeenRange],
     words: tuple[str, ...],
 ) -> FittedModel:
-    """The model of a fit, ready to be written; `words` are what to know of it."""
+    """The model of a fit, ready to be written; `words` are what to know of it.
+
+    `covariance` is that of the unknowns by noise; (n, n).
+    """
     model = fit.model
     equations = trace(model, (), fit.problem.outputs)
     rows = {row.name: row for row in result.physical}
     parameters = tuple(_parameter(model, n, rows.get(n)) for n in equations.parameters)
-    names = [p.name for p in accuracy.parameters]
     fitted = [p for p in parameters if p.fitted]
-    places = [names.index(p.name) for p in fitted]
-    noise = accuracy.covariance[np.ix_(places, places)]
+    places = [unknowns.index(p.name) for p in fitted]
+    noise = covariance[np.ix_(places, places)]
     return FittedModel(
         name=result.pipeline,
         model=model,

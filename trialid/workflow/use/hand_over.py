@@ -41,7 +41,9 @@ class Wishes:
 def taken_up(model: FinishedModel) -> FittedModel:
     """The model with all that its files say of it."""
     done = model.done
-    return fitted_model(model.fit, done.accuracy, model.result, model.seen, model.doubts)
+    unknowns = [p.name for p in done.accuracy.parameters]
+    covariance = done.accuracy.covariance
+    return fitted_model(model.fit, unknowns, covariance, model.result, model.seen, model.doubts)
 
 
 def _ship(model: FinishedModel, name: str, wishes: Wishes) -> Files:
