@@ -66,6 +66,18 @@ def test_there_is_one_for_each_system(version: Fmi, tmp_path: Path) -> None:
         assert all(b"_" + call + b"\0" in binary for binary in apple.values())
 
 
+@wheel
+def test_without_a_compiler_of_the_system_s_own_the_wheel_makes_linux_too(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(binaries, "_own_compiler", lambda: None)
+    content = fmu_bytes(handed(cases(tmp_path)["shipped"]), "ferry", everywhere=True)
+    with zipfile.ZipFile(io.BytesIO(content)) as packed:
+        assert packed.read("binaries/linux64/ferry.so")[:4] == b"\x7fELF"
+        folders = {n.split("/")[1] for n in packed.namelist() if "binaries" in n}
+    assert folders == {"linux64", "win64", "darwin64"}
+
+
 def test_what_there_is_none_for_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(binaries, "has_cross_compiler", lambda: False)
     assert platform_words(["binaries/linux64/ferry.so", "sources/ferry.c"]) == (

@@ -42,7 +42,8 @@ TARGETS: Final = (
     Target("x86_64-macos", "darwin64", "x86_64-darwin", ".dylib"),
     Target("aarch64-macos", "darwin64", "aarch64-darwin", ".dylib"),
 )
-LINUX: Final = Target("x86_64-linux", "linux64", "x86_64-linux", ".so")
+LINUX: Final = Target("x86_64-linux-gnu.2.17", "linux64", "x86_64-linux", ".so")
+"""With the oldest glibc that is still about, where the wheel's compiler makes it."""
 
 
 def has_cross_compiler() -> bool:
@@ -70,7 +71,8 @@ def binaries(source: str, low: str, version: str, *, everywhere: bool) -> dict[s
     commands: list[tuple[Target, Sequence[str]]] = [(LINUX, [own])] if own else []
     if everywhere and has_cross_compiler():
         zig = [sys.executable, "-m", "ziglang", "cc", *SAME]
-        commands += [(target, [*zig, "-target", target.name]) for target in TARGETS]
+        others = TARGETS if own else (LINUX, *TARGETS)
+        commands += [(target, [*zig, "-target", target.name]) for target in others]
     for target, command in commands:
         folder = target.fmi2 if version == "2.0" else target.fmi3
         made = _compiled(source, target, command)
