@@ -15,7 +15,7 @@ from trialid.report.pages.page import VERDICTS, environment
 from trialid.report.pictures.figures import courses
 from trialid.report.pictures.input_course import input_courses
 from trialid.report.pictures.track_picture import TrackPicture, track_picture
-from trialid.report.tables import form_tables
+from trialid.report.tables import form_tables, imo_tables
 from trialid.report.tables.rounded_table import Cell, numeric
 
 OPEN: Final = (
@@ -60,6 +60,7 @@ def form(run: Finished) -> str:
             tracks=_tracks(run),
             pictures=_pictures(run),
             blanks=OPEN,
+            corrections=imo_tables.corrections(result),
             cell=_cell,
         )
     )

@@ -23,6 +23,7 @@ def tables(run: Result) -> tuple[Table, ...]:
         imo_tables.measures(run),
         imo_tables.manoeuvres(run),
         imo_tables.turns(run),
+        imo_tables.track_numbers(run),
         imo_tables.manoeuvre_numbers(run),
         imo_tables.overshoots(run),
         validity(run),
