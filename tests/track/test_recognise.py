@@ -159,6 +159,31 @@ def test_overshoots_with_intervals_of_record_and_model() -> None:
         assert row.interval[1] - row.interval[0] < np.deg2rad(2.5)
 
 
+def test_a_pull_out_that_was_ended_too_early_has_no_number() -> None:
+    """A rate that dies with 40 s: nothing of it stays, but 75 s after midships some is left."""
+    t = np.arange(0.0, 800.0)
+    rate = 0.01 * (np.clip(t - 100.0, 0.0, 300.0) > 0.0) * np.exp(-np.clip(t - 400.0, 0, None) / 40)
+    rudder = np.where((t > 100) & (t < 400), np.deg2rad(20.0), 0.0)
+    psi = np.cumsum(rate) + np.deg2rad(0.1) * np.random.default_rng(6).standard_normal(800)
+    signals = {"delta": rudder, "psi": psi}
+    trial = Trial("out", "fit", 1.0, signals, {n: np.ones(800, bool) for n in signals})
+    whole, early = (found(x)[-1] for x in (trial, cut(trial, 475)))
+    assert (whole.kind, whole.remark) == ("pull-out", "")
+    assert (early.kind, early.remark) == ("pull-out", "the rate of turn had not settled")
+    [row] = heading_numbers(trial, [whole], None)
+    assert row.interval[0] < 0.0001
+    assert list(heading_numbers(cut(trial, 475), [early], None)) == []
+
+
+def test_reversals_at_unequal_headings_are_told_as_that() -> None:
+    zigzag = without_order(sailed("zigzag", STILL))
+    [whole] = found(zigzag)
+    late = zigzag.signals["psi"].copy()
+    late[whole.reversals[1] - 5 :] += np.deg2rad(9.0)
+    [uneven] = found(replace(zigzag, signals={**zigzag.signals, "psi": late}))
+    assert uneven.remark == "the second reversal is at another change of heading"
+
+
 def test_every_overshoot_of_a_long_zigzag_is_measured() -> None:
     """Ten reversals at 10 deg of a heading that swings by 20: each goes 10 deg too far."""
     t = np.arange(0.0, 1400.0, 1.0)

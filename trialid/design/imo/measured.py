@@ -13,6 +13,7 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.imo.excursions import LATE, order_sample, rudder_of
+from trialid.design.imo.recognise import UNSETTLED
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.sailed_trial import SailedTrial, numbers
 from trialid.design.imo.track_numbers import white_noise
@@ -47,7 +48,7 @@ def heading_numbers(
     psi = trial.signals.get("psi")
     if psi is None:
         return  # the integral of a rate has its bias in it, and no white noise
-    for one in (m for m in found if m.kind in READERS):
+    for one in (m for m in found if m.kind in READERS and m.remark != UNSETTLED):
         read, unit = READERS[one.kind](trial, one), UNITS[one.kind]
         try:
             values = read(psi, white_noise(psi[one.execute : one.end]))

@@ -38,6 +38,10 @@ PULL_OUT: Final = 3.0
 """Ship lengths of midships after a turn: a rate that is not to stay has fallen by then. On
 the days that `excursions` speaks of, by twice of it 64 of 71 manoeuvres are found, by half all but
 one as here."""
+SETTLED: Final = 0.05
+"""Share of the rate of turn before, by which it may still change: she would fall by less than that
+again. A compass of 0.2 deg noise alone makes it 1.6 % over two ship lengths of 20 s."""
+UNSETTLED: Final = "the rate of turn had not settled"
 ROUND, SPARE = float(np.deg2rad(5.0)), float(np.deg2rad(0.7))
 """Angles that are ordered, and by how much helmsman, compass and rudder are off them: by half of it
 one name less is wrong on those days, by twice two more are."""
@@ -120,9 +124,18 @@ def _zigzags(record: SteeredRecord, free: Sequence[Excursion]) -> Iterator[Recog
             rudder=run[0].angle,
             course=course,
             reversals=tuple(given_back(record, a, b.begin) for a, b in itertools.pairwise(run)),
-            remark="broken off after the first reversal" if len(run) == 2 else "",
+            remark=_lacks(record, run, free[place + 2 : place + 3]),
         )
         place += len(run)
+
+
+def _lacks(record: SteeredRecord, run: Sequence[Excursion], rest: Sequence[Excursion]) -> str:
+    """Why a zig-zag has no second reversal: there was none, or not at that change of heading."""
+    if len(run) > 2:
+        return ""
+    if rest and reverses(record, run[-1], rest[0], run[0].angle):
+        return "the second reversal is at another change of heading"
+    return "broken off after the first reversal"
 
 
 def _round(record: SteeredRecord, run: Sequence[Excursion], course: float) -> bool:
@@ -172,7 +185,20 @@ def _pull_outs(record: SteeredRecord, free: Sequence[Excursion]) -> Iterator[Rec
                 end=end,
                 rudder=one.angle,
                 course=float(record.psi[one.end - 1]),
+                remark="" if _settled(record, one, end) else UNSETTLED,
             )
+
+
+def _settled(record: SteeredRecord, one: Excursion, end: int) -> bool:
+    """Whether the rate of turn changes no more, from the second third of a pull-out to the last."""
+    execute = given_back(record, one, one.end)
+    third = (end - execute) // 3
+    middle, last = (
+        float(np.polyfit(np.arange(third), record.psi[k - third : k], 1)[0])
+        for k in (end - third, end)
+    )
+    before = record.psi[execute] - record.psi[max(execute - record.clock, 0)]
+    return bool(abs(last - middle) <= SETTLED * abs(before) / record.clock)
 
 
 def _goes_on(record: SteeredRecord, one: Excursion, begin: int) -> bool:

@@ -15,8 +15,10 @@ from trialid.names import wording
 from trialid.result.track_series import TrackSeries, Way
 
 WIDTH: Final = 340.0
-TALLEST, LOWEST = 460.0, 150.0
+TALLEST, LOWEST = 500.0, 196.0
 MARGIN: Final = 26.0
+HEAD: Final = 46.0
+"""Above the track: arrows."""
 FOOT: Final = 60.0
 """Below the track: scale, legend, current and wind."""
 POINTS: Final = 800
@@ -27,6 +29,8 @@ HULL: Final = ((0.5, 0.0), (0.3, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.3, -0.5))
 """Ahead in lengths, to starboard in beams."""
 SLOWEST: Final = 0.005
 """m/s of current below which an arrow would say nothing."""
+CALM: Final = 0.1
+"""m/s of wind below which it has no direction: an anemometer tells no less."""
 
 
 @dataclass(frozen=True)
@@ -51,11 +55,12 @@ class Line:
 class TrackPicture:
     """What the template draws; `current` and `wind` are where they go [deg] from north, or None.
 
-    `way` is how much of the height the track takes, `per_metre` px of it a metre.
+    `way` is how much of the height the track takes, below `head`; `per_metre` px of it a metre.
     """
 
     label: str
     height: float
+    head: float
     way: float
     measured: tuple[Line, ...]
     predicted: tuple[Line, ...]
@@ -89,7 +94,8 @@ def track_picture(
     return TrackPicture(
         label=f"Track of {track.trial}, north up, {bar:g} m to the bar",
         height=height,
-        way=height - FOOT,
+        head=HEAD,
+        way=height - HEAD - FOOT,
         measured=tuple(_lines(track.t, track.measured, to_page)),
         predicted=tuple(_lines(track.t, track.predicted, to_page)),
         outlines=tuple(_outline(track.measured, k, hull, to_page) for k in at),
@@ -99,7 +105,7 @@ def track_picture(
         scale_words=f"{bar:g} m",
         current=_arrow(track.current),
         current_words=_current_words(track.current),
-        wind=_arrow(track.wind),
+        wind=_arrow(track.wind, CALM),
         wind_words=_wind_words(track.wind),
         predicted_words="predicted" if track.over_ground else "predicted, through the water",
     )
@@ -125,8 +131,8 @@ def _frame(points: Vector, length: float) -> tuple[_Frame, float, float]:
     reach = 0.6 * length
     tall, wide = north - south + 2.0 * reach, east - west + 2.0 * reach
     room = WIDTH - 2.0 * MARGIN
-    scale = min(room / max(wide, 1e-6), (TALLEST - 2.0 * MARGIN - FOOT) / max(tall, 1e-6))
-    height = max(tall * scale + 2.0 * MARGIN + FOOT, LOWEST)
+    scale = min(room / max(wide, 1e-6), (TALLEST - 2.0 * MARGIN - HEAD - FOOT) / max(tall, 1e-6))
+    height = max(tall * scale + 2.0 * MARGIN + HEAD + FOOT, LOWEST)
     left = MARGIN + (room - wide * scale) / 2.0
     return _Frame(north + reach, west - reach, scale, left), height, scale
 
@@ -186,9 +192,9 @@ def _round_length(most: float) -> float:
     return float(max(m for m in (ten, 2.0 * ten, 5.0 * ten) if m <= most * (1.0 + 1e-9)))
 
 
-def _arrow(current: Sequence[float] | None) -> float | None:
-    """Where the water goes, clockwise from north [deg]; None where it is still or not known."""
-    if current is None or float(np.hypot(current[0], current[1])) < SLOWEST:
+def _arrow(current: Sequence[float] | None, least: float = SLOWEST) -> float | None:
+    """Where water or air goes, clockwise from north [deg]; None where it is still or not known."""
+    if current is None or float(np.hypot(current[0], current[1])) < least:
         return None
     return float(np.degrees(np.arctan2(current[1], current[0])) % 360.0)
 
@@ -205,7 +211,7 @@ def _current_words(current: Sequence[float] | None) -> str:
 
 def _wind_words(wind: Sequence[float] | None) -> str:
     """Winds are called by where they come from."""
-    towards = _arrow(wind)
+    towards = _arrow(wind, CALM)
     if wind is None or towards is None:
         return "wind not recorded" if wind is None else "no wind"
     speed = float(np.hypot(wind[0], wind[1]))

@@ -10,7 +10,8 @@ from trialid.result.schema import Result
 
 ON_TRACK: Final = ("Williamson turn", "stop")
 CORRECTED: Final = {
-    "current": "Corrected for current: through the water, by the current that the fit found.",
+    "current": "Corrected for current: through the water, by the current that the fit found "
+    "(a trial held out finds its own, without an interval).",
     "wind": "Corrected for wind: less what the model drifts by it under the recorded rudder.",
 }
 UNCORRECTED: Final = {
@@ -75,7 +76,10 @@ def _corrected(each: TurnMeasure | ManoeuvreNumber, factor: float) -> tuple[Cell
     """As recorded, corrected and for what, and the model's, each with its interval."""
     nothing = None, None
     measured, corrected, predicted = (
-        tuple(Figure(None if x is None else x * factor, 4) for x in (value, *(ends or nothing)))
+        tuple(
+            Figure(None if x is None else x * factor, 4 if factor == 1.0 else 3)
+            for x in (value, *(ends or nothing))
+        )
         for value, ends in (
             (each.measured, each.interval),
             (each.corrected, each.corrected_interval),
