@@ -1,8 +1,10 @@
 """Manoeuvres found in a record, bounded right, and measured with intervals that hold the truth."""
 
+import sys
 import time
 from collections import Counter
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from sailed_days import sail_day
 from sailed_tracks import SETTINGS, SHIP, noisy, sailed, spread
 
 from trialid.design.helm import Passage
-from trialid.design.imo import excursions, measures, recognise
+from trialid.design.imo import excursions, measures, recognise, spirals, stops, williamson
 from trialid.design.imo.measured import heading_numbers
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.trial_measures import measure_trials
@@ -23,6 +25,10 @@ LENGTH, SPEED = 175.0, 7.33
 ORDER, END = 6, 10
 """[s] By which an order and an end may be off: a gear takes so long, and a ship to stop."""
 DAYS, FIRST = 200, 3000
+THRESHOLDS = (
+    *("MIDSHIPS", "LEAST", "ALIKE", "STRAIGHT", "LENGTHS", "PULL_OUT", "SPARE"),
+    *("AWAY", "NEAR", "SETTLES", "KEPT"),
+)
 
 
 def without_order(trial: Trial) -> Trial:
@@ -216,10 +222,12 @@ def test_days_of_trials_are_found_and_bounded_right() -> None:
 @pytest.mark.study(turn=3)
 def test_half_and_twice_of_each_threshold(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a threshold has no other origin: what becomes of the same days with others."""
-    for name in ("MIDSHIPS", "LEAST", "ALIKE", "STRAIGHT", "LENGTHS", "PULL_OUT", "SPARE"):
-        for by in (0.5, 2.0):
+    modules = (excursions, recognise, spirals, stops, williamson)
+    monkeypatch.setattr(sys.modules[__name__], "sail_day", cache(sail_day))
+    for name in THRESHOLDS:
+        for by in (0.5, 1.0, 2.0):
             with monkeypatch.context() as changed:
-                for module in (excursions, recognise):
+                for module in modules:
                     if hasattr(module, name):
                         changed.setattr(module, name, by * getattr(module, name))
                 whole, right, besides = counted(FIRST, 15)

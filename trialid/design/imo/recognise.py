@@ -36,15 +36,14 @@ from trialid.trial import Trial
 
 PULL_OUT: Final = 3.0
 """Ship lengths of midships after a turn: a rate that is not to stay has fallen by then. On
-the days that `excursions` speaks of, by twice of it 64 of 71 manoeuvres are found, by half all but
-one as here."""
+the days that `excursions` speaks of, by twice of it 63 of 65 manoeuvres are found, by half all."""
 SETTLED: Final = 0.05
 """Share of the rate of turn before, by which it may still change: she would fall by less than that
 again. A compass of 0.2 deg noise alone makes it 1.6 % over two ship lengths of 20 s."""
 UNSETTLED: Final = "the rate of turn had not settled"
 ROUND, SPARE = float(np.deg2rad(5.0)), float(np.deg2rad(0.7))
-"""Angles that are ordered, and by how much helmsman, compass and rudder are off them: by half of it
-one name less is wrong on those days, by twice two more are."""
+"""Angles that are ordered, and by how much helmsman, compass and rudder are off them. Half and
+twice change nothing on those days."""
 QUARTER: Final = np.pi / 2.0
 
 
