@@ -10,6 +10,8 @@ from sailed_tracks import FREE, OUTPUTS, accuracy, noisy, sailed, spread
 
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.recognition import Recognised
+from trialid.design.imo.stop_numbers import stop_reader
+from trialid.design.imo.track_numbers import Around, track_numbers
 from trialid.design.imo.trial_measures import TrialMeasures, measure_trials
 from trialid.design.imo.trial_numbers import ManoeuvreNumber
 from trialid.identification.fit import identify
@@ -138,6 +140,22 @@ def test_numbers_of_the_record_and_of_the_model(name: str) -> None:
         assert row.corrected_for == "current"
         assert all(inside(row, truth[row.name])), row.name
     assert max(abs(r.measured - truth[r.name]) for r in rows) > 50.0  # the current's part
+
+
+def test_a_stop_whose_log_has_a_hole_is_read_from_the_track() -> None:
+    trial = sailed_stop()
+    [one] = found(trial)
+    reader = stop_reader(one, 91.0, 12, trial.samples)
+    assert reader is not None
+    whole = track_numbers(reader, trial, Around())
+    lost = {n: x.copy() for n, x in trial.valid.items()}
+    lost["u"][one.end - 20 :] = False
+    log = np.where(lost["u"], trial.signals["u"], 99.0)
+    holed = replace(trial, signals={**trial.signals, "u": log}, valid=lost)
+    for name, row in track_numbers(reader, holed, Around()).items():
+        assert row["measured"] == pytest.approx(whole[name]["measured"], abs=2.0)
+        assert row["predicted"] is None
+        assert "corrected" not in row
 
 
 @pytest.mark.study(turn=3)

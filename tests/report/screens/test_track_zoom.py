@@ -56,6 +56,10 @@ def test_the_track_shows_the_stretch_that_the_plots_show(opened, result, series)
     closer = before["width"] / after["width"]
     assert closer > 2.0
     assert after["bar"] / after["metres"] == pytest.approx(scale * closer, rel=0.02)
+    seen = page.locator("#trial-0 .way [data-at]:visible")
+    times = [float(each.get_attribute("data-at")) for each in seen.all()]
+    assert times
+    assert all(begin <= t <= end for t in times)
     plots.press("0")
     assert page.evaluate(PART) == []
     assert page.evaluate(DRAWN) == before

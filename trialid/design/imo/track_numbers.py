@@ -82,7 +82,7 @@ def track_numbers(reader: TrackReader, trial: Trial, around: Around) -> dict[str
     DesignError
         The record does not come so far.
     """
-    track = {n: trial.signals[n][reader.span] for n in LOGGED if n in trial.signals}
+    track = {n: trial.signals[n][reader.span] for n in LOGGED if _is_read(trial, n, reader.span)}
     t = trial.t[reader.span]
     plain, spread = reader.read(track, t, 0.0), _spread(reader, t, track, trial.period, None)
     through = {n: (x, spread.get(n)) for n, x in plain.items()}
@@ -103,6 +103,11 @@ def track_numbers(reader: TrackReader, trial: Trial, around: Around) -> dict[str
             known = _without_wind(through.get(name), around, off.get(name))
             found[name] = {**ends, **known, "predicted": own[0], "predicted_interval": own[1]}
     return found
+
+
+def _is_read(trial: Trial, name: str, span: slice) -> bool:
+    """Whether a signal is there; a log of the speed only where it is so throughout."""
+    return name in trial.signals and (name != "u" or bool(trial.valid[name][span].all()))
 
 
 def _through(
