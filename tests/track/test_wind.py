@@ -68,11 +68,10 @@ def noisy(trial: Trial, rng: np.random.Generator) -> Trial:
     return replace(trial, signals={n: x + added.get(n, 0.0) for n, x in trial.signals.items()})
 
 
-def measured(seed: int, *, windy: bool = True) -> TrialMeasures:
+def measured(seed: int) -> TrialMeasures:
     rng = np.random.default_rng([31, seed])
     logs = [noisy(blown(n), rng) for n in WATERS]
-    settings = SETTINGS if windy else replace(SETTINGS, free=FREE)
-    fit = identify(logs, WINDY if windy else SHIP, settings)
+    fit = identify(logs, WINDY, SETTINGS)
     errors = {p.name: p.standard_error for p in accuracy(fit).parameters}
     return measure_trials(fit, errors, spread(fit))
 
@@ -88,12 +87,6 @@ def test_less_current_and_wind_it_is_the_ship_in_calm() -> None:
             assert low < calm[m.name] < high
             assert high - low < 40.0
     assert max(abs(wind[m.name] - calm[m.name]) for m in rows) > 60.0  # what it is about
-
-
-def test_a_model_without_wind_corrects_for_none() -> None:
-    """The wind goes into its current and its coefficients; the page says that it is not off."""
-    for m in measured(0, windy=False).turns:
-        assert m.corrected_for == "current"
 
 
 @pytest.mark.study(turn=1)
