@@ -8,8 +8,10 @@ import pytest
 from sailed_tracks import FREE, NOISE, OUTPUTS, SHIP, accuracy, sailed, spread
 
 from trialid.design.imo.recognise import recognise
+from trialid.design.imo.sailed_trial import is_wind
 from trialid.design.imo.trial_measures import TrialMeasures, measure_trials
 from trialid.design.imo.turns import find_turns, measure
+from trialid.diagnosis.search.freed import free_coefficient
 from trialid.effects import CATALOGUE
 from trialid.effects.track import current
 from trialid.identification.fit import identify
@@ -87,6 +89,17 @@ def test_less_current_and_wind_it_is_the_ship_in_calm() -> None:
             assert low < calm[m.name] < high
             assert high - low < 40.0
     assert max(abs(wind[m.name] - calm[m.name]) for m in rows) > 60.0  # what it is about
+
+
+def test_what_is_wind_and_what_is_not() -> None:
+    """What frees a held coefficient has its own name, and blows no less."""
+    steady = {"F_N": 0.001, "F_E": 0.0, "x_wind": 0.05, "z_wind": 0.05}
+    windy = (SHIP + CATALOGUE["steady_wind"]).with_values(steady)
+    assert is_wind(free_coefficient(windy, "x_wind"))
+    assert is_wind(free_coefficient(WINDY, "z_aw"))
+    known = {n for n, e in CATALOGUE.items() if is_wind(e)}
+    assert known == {"steady_wind", *(n for n in CATALOGUE if n.startswith("apparent_wind"))}
+    assert not is_wind(free_coefficient(WINDY, "Nphi"))
 
 
 @pytest.mark.study(turn=1)

@@ -71,8 +71,9 @@ def has_wind(model: ShipModel) -> bool:
 
 
 def is_wind(effect: Effect) -> bool:
-    """Whether an effect is by the wind: recorded on board, or steady and unseen."""
-    return effect.name == steady_wind.name or bool({"V_aw", "gamma_aw"} & {*effect.signals})
+    """Whether an effect is by the wind, recorded or unseen; so is what frees a part of one."""
+    steady = {*effect.parameters} & {*steady_wind.parameters}
+    return bool(steady or {"V_aw", "gamma_aw"} & {*effect.signals})
 
 
 def _sailed(fit: Fit, trial: Trial, spread: LikelySpread, windy: bool) -> SailedTrial | None:
