@@ -146,3 +146,16 @@ def test_signal_k_counts_to_starboard(path, quantity, side):
     unit, known, positive = PATHS[path]
     assert (known, positive) == (quantity, side)
     assert units.factor(unit, SIGNALS[quantity].unit) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "field"),
+    [
+        ("sensor_msgs/msg/Imu", "angular_velocity.w"),
+        ("geometry_msgs/msg/Twist", "linear.north"),
+        ("geometry_msgs/msg/Twist", "angular.yJfloat64"),
+    ],
+)
+def test_a_type_that_a_log_defines_otherwise_has_no_meaning(kind: str, field: str) -> None:
+    found = field_meaning(Source("/imu", "cdr", kind), field)
+    assert (found.quantity, found.unit) == (None, None)

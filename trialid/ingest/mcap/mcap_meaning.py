@@ -132,12 +132,13 @@ def ros_kind(kind: str) -> str:
 
 def _ros(topic: str, kind: str, field: str, plain: Meaning) -> Meaning:
     before, _, axis = field.rpartition(".")
-    if kind == "sensor_msgs/Imu" and before == "angular_velocity":
+    if kind == "sensor_msgs/Imu" and before == "angular_velocity" and axis in RATES:
         return _along(RATES[axis], topic, plain)
     twist = TWISTS.get(kind)
     if twist is not None and before in (f"{twist}linear", f"{twist}angular"):
         axes = SPEEDS if before.endswith("linear") else RATES
-        return _along(axes[axis], topic, plain)
+        if axis in axes:  # a log may define the type otherwise than ROS does
+            return _along(axes[axis], topic, plain)
     units = UNITS.get(kind, {})
     unit = units.get(field) or units.get(before) or units.get(field.partition("[")[0])
     return Meaning(plain.description, unit)
