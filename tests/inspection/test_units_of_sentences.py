@@ -157,5 +157,5 @@ def test_signal_k_counts_to_starboard(path, quantity, side):
     ],
 )
 def test_a_type_that_a_log_defines_otherwise_has_no_meaning(kind: str, field: str) -> None:
-    found = field_meaning(Source("/imu", "cdr", kind), field)
+    found = field_meaning(Source("/imu", "cdr", SimpleNamespace(name=kind)), field)
     assert (found.quantity, found.unit) == (None, None)
