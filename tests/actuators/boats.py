@@ -13,7 +13,7 @@ S175Q = Path(__file__).parents[2] / "sample_data" / "ships" / "s175q.toml"
 
 EVERY_KIND = (
     Actuator(name="rudder_port", kind="rudder", x=-80.0, y=-4.0),
-    Actuator(name="rudder_stbd", kind="rudder", x=-80.0, y=4.0),
+    Actuator(name="rudder_stbd", kind="rudder", x=-80.0, y=4.0, behind="right"),
     Actuator(name="left", kind="thruster", x=-75.0, y=-6.0),
     Actuator(name="right", kind="thruster", x=-75.0, y=6.0, direction=0.1, own=True),
     Actuator(name="pod", kind="azimuth", x=-78.0, y=0.0, command="share"),

@@ -112,18 +112,28 @@ MIRRORED = (
     Actuator(name="d", kind="azimuth", x=-70.0, y=6.0),
     Actuator(name="e", kind="waterjet", x=-70.0, y=-6.0),
     Actuator(name="f", kind="waterjet", x=-70.0, y=6.0),
-    Actuator(name="g", kind="rudder", x=-70.0, y=-6.0),
-    Actuator(name="h", kind="rudder", x=-70.0, y=6.0),
+    Actuator(name="g", kind="rudder", x=-70.0, y=-6.0, behind="a"),
+    Actuator(name="h", kind="rudder", x=-70.0, y=6.0, behind="b"),
 )
 PARTNERS = {a: b for a, b in zip("abcdefgh", "badcfehg", strict=True)}
 
 
 @pytest.mark.parametrize(
-    "name", ["thrusters", "azimuths", "waterjets", "rudders", "rudders_drag", "thrusters_advance"]
+    "name",
+    [
+        "thrusters",
+        "azimuths",
+        "waterjets",
+        "rudders",
+        "rudders_drag",
+        "rudders_race",
+        "thrusters_advance",
+    ],
 )
 def test_port_for_starboard(name: str) -> None:
     """Drives exchanged, angles exchanged and turned over: X stays, Y, K and N change sign."""
     effect = actuator_effects(ship_with(MIRRORED))[name]
+    turning = 0
     for seed in range(6):
         at = values(effect, seed)
         there = dict(at)
@@ -135,7 +145,8 @@ def test_port_for_starboard(name: str) -> None:
         here, other = effect(at)[0], effect(there)[0]
         wanted = [here.X, -here.Y, -here.K, -here.N]
         np.testing.assert_allclose(list(other), wanted, rtol=1e-9, atol=1e-9 * abs(here.X) + 1e-12)
-        assert here.N != 0.0
+        turning += here.N != 0.0
+    assert turning >= 3  # a screw that backs has no race
 
 
 ALONE = {
@@ -190,6 +201,14 @@ def test_rudders_together_are_the_one_rudder_and_a_bow_rudder_pushes_the_other_w
     bow = replace(SHIP, actuators=(Actuator(name="bow", kind="rudder", x=60.0, y=0.0),))
     one = actuator_effects(bow)["rudders"]({"bow": 0.2, **rudder})[0]
     assert one == pytest.approx((0.0, -linear.Y, -linear.K, linear.N))
+
+
+def test_a_rudder_in_a_race_acts_at_rest_and_not_behind_a_screw_that_backs() -> None:
+    at = {"rudder_stbd": 0.5, "right": 3.0, "k_race": 2.0}
+    F = 2.0 * 9.0 * np.sin(0.5)
+    X, Y = -F * np.sin(0.5), -F * np.cos(0.5)
+    assert EFFECTS["rudders_race"](at)[0] == pytest.approx((X, Y, 0.0, -80.0 * Y - 4.0 * X))
+    assert EFFECTS["rudders_race"](at | {"right": -3.0})[0] == pytest.approx((0.0, 0.0, 0.0, 0.0))
 
 
 def test_coefficients_of_a_file_with_port_rudders_are_turned_over_for_several_too() -> None:

@@ -29,6 +29,7 @@ KEYS: Final = {
     "command": "What its signal is: `revolutions` (thrust k n |n|), `share` of the full ones "
     "(likewise), or a stated `thrust`; a rudder's is its angle.",
     "own": "Whether it has parameters of its own, `k_ahead_NAME`, where others of its kind share.",
+    "behind": "Of a rudder: the name of the thruster in whose race it stands.",
 }
 """What each key of an `[[actuator]]` means; the guide's page of keys is made of it."""
 
@@ -47,6 +48,8 @@ class Actuator:
         What its signal is; of a rudder, whose signal is its angle, without meaning.
     own
         Whether its parameters are its own and not shared with its kind.
+    behind
+        Of a rudder, the thruster in whose race it stands; empty where in none.
     """
 
     name: str
@@ -56,6 +59,7 @@ class Actuator:
     direction: float = 0.0
     command: Command = "revolutions"
     own: bool = False
+    behind: str = ""
 
     @property
     def angle(self) -> str:
@@ -125,6 +129,7 @@ def actuators_of(table: Mapping[str, Any], where: str) -> tuple[Actuator, ...]:
     made = tuple(_actuator(row, f"{where}: actuator[{i}]") for i, row in enumerate(rows))
     _check_names(made, where)
     _check_shared(made, where)
+    _check_races(made, where)
     return made
 
 
@@ -136,7 +141,7 @@ def _actuator(row: Mapping[str, Any], where: str) -> Actuator:
         if key not in row:
             raise ShipError(f"{where}: {key!r} is missing; {_plain(KEYS[key])}")
     kind = _one_of(row["kind"], KINDS, f"{where}: kind")
-    full = {"command": "revolutions", "own": False, **row}
+    full = {"command": "revolutions", "own": False, "behind": "", **row}
     full = {"direction": 90.0 if kind == "tunnel" else 0.0, **full}
     _check_row(row, full, where)
     return Actuator(
@@ -147,6 +152,7 @@ def _actuator(row: Mapping[str, Any], where: str) -> Actuator:
         direction=math.radians(full["direction"]),
         command=_one_of(full["command"], tuple(COMMANDS), f"{where}: command"),
         own=full["own"],
+        behind=full["behind"],
     )
 
 
@@ -155,6 +161,8 @@ def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> N
     name, at = row["name"], row["at"]
     if row["kind"] == "rudder" and "command" in row:
         raise ShipError(f"{where}: a rudder has no command, its signal is its angle; leave it out")
+    if row["kind"] != "rudder" and "behind" in row:
+        raise ShipError(f"{where}: only a rudder stands in a race; leave 'behind' out")
     if not isinstance(name, str) or not NAME.fullmatch(name):
         raise ShipError(f"{where}: name = {name!r}; {_plain(KEYS['name'])}")
     if not isinstance(full["own"], bool):
@@ -178,6 +186,8 @@ def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
         if one.kind != "rudder":
             yield f'command = "{one.command}"'
         yield f"own = {str(one.own).lower()}"
+        if one.behind:
+            yield f'behind = "{one.behind}"'
         yield ""
 
 
@@ -225,3 +235,21 @@ def _check_shared(made: Sequence[Actuator], where: str) -> None:
                 f"{where}: the {kind}s share their parameters, and their commands are "
                 f"{' and '.join(commands)}; write own = true to those that differ"
             )
+
+
+def _check_races(made: Sequence[Actuator], where: str) -> None:
+    """A race is that of a thruster of this ship, and rudders that share it share its unit."""
+    screws = {one.name: one for one in made if one.kind == "thruster"}
+    behind = [one for one in made if one.behind]
+    for one in behind:
+        if one.behind not in screws:
+            raise ShipError(
+                f"{where}: actuator {one.name!r}: behind = {one.behind!r} is no thruster of this "
+                f"ship; {nearest(one.behind, screws)}"
+            )
+    commands = sorted({screws[one.behind].command for one in behind if not one.own})
+    if len(commands) > 1:
+        raise ShipError(
+            f"{where}: the rudders share k_race, and the commands of their thrusters are "
+            f"{' and '.join(commands)}; write own = true to those that differ"
+        )
