@@ -37,7 +37,13 @@ def test_actuators_are_read(tmp_path: Path) -> None:
 
 
 def test_what_is_written_reads_back_as_it_was(tmp_path: Path) -> None:
-    text = ONE + "direction = 7.5\nown = true\n" + BOW + AFT + 'behind = "left"\n'
+    text = (
+        ONE
+        + "direction = 7.5\nown = true\nlimit = 900.0\nrate = 60.0\n"
+        + BOW
+        + AFT
+        + 'behind = "left"\n'
+    )
     first = ship(tmp_path, text).actuators
     again = ship(tmp_path, "\n".join(actuator_tables(first))).actuators
     assert again == first
@@ -65,6 +71,7 @@ def test_their_signals_have_units_and_sides(tmp_path: Path) -> None:
         (ONE.replace('"left"', '"left_angle"'), "a name does not end in _order or _angle"),
         (ONE + ONE, "signal 'left' is there twice"),
         (ONE + 'command = "rpm"\n', "command = 'rpm'; expected one of revolutions, share, thrust"),
+        (ONE + "limit = 0\n", "limit = 0; write a number above zero"),
         (ONE + "own = 1\n", "own = 1; write true or false"),
         (ONE + 'direction = "aft"\n', "write degrees from ahead, clockwise"),
         (ONE.replace("thruster", "rudder") + 'command = "share"\n', "a rudder has no command"),

@@ -3,10 +3,11 @@
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, get_args
 
 from trialid.errors import ShipError, nearest
+from trialid.names import units
 from trialid.names.quantities import QUANTITIES, Quantity
 
 Kind = Literal["rudder", "thruster", "azimuth", "tunnel", "waterjet"]
@@ -30,6 +31,9 @@ KEYS: Final = {
     "(likewise), or a stated `thrust`; a rudder's is its angle.",
     "own": "Whether it has parameters of its own, `k_ahead_NAME`, where others of its kind share.",
     "behind": "Of a rudder: the name of the thruster in whose race it stands.",
+    "limit": "The most that is ordered of it to either side: revolutions [rpm], share, thrust [N], "
+    "a rudder's angle [deg]; designed tests keep to it.",
+    "rate": "How much of that it follows its order by in a second; designed tests count with it.",
 }
 """What each key of an `[[actuator]]` means; the guide's page of keys is made of it."""
 
@@ -50,6 +54,9 @@ class Actuator:
         Whether its parameters are its own and not shared with its kind.
     behind
         Of a rudder, the thruster in whose race it stands; empty where in none.
+    limit, rate
+        The most that is ordered of it [SI], and how fast it follows [SI/s]; infinite where nobody
+        says.
     """
 
     name: str
@@ -60,6 +67,13 @@ class Actuator:
     command: Command = "revolutions"
     own: bool = False
     behind: str = ""
+    limit: float = math.inf
+    rate: float = math.inf
+
+    @property
+    def unit(self) -> str:
+        """Unit of what is ordered of it: its drive, or a rudder's angle."""
+        return "rad" if self.kind == "rudder" else COMMANDS[self.command]
 
     @property
     def angle(self) -> str:
@@ -110,6 +124,14 @@ def _positive(one: Actuator, *, is_angle: bool) -> str:
     return "along its direction"
 
 
+def thruster_pair(actuators: Iterable[Actuator]) -> tuple[Actuator, Actuator] | None:
+    """The thruster to port and the one to starboard; None where there is not one of each."""
+    thrusters = [one for one in actuators if one.kind == "thruster"]
+    port = [one for one in thrusters if one.y < 0.0]
+    starboard = [one for one in thrusters if one.y > 0.0]
+    return (port[0], starboard[0]) if len(port) == len(starboard) == 1 else None
+
+
 def rudder_signals(actuators: Iterable[Actuator]) -> frozenset[str]:
     """Angles of rudders, as fed back and as ordered."""
     return frozenset(n for n, q in actuator_quantities(actuators).items() if q.steers)
@@ -142,9 +164,10 @@ def _actuator(row: Mapping[str, Any], where: str) -> Actuator:
             raise ShipError(f"{where}: {key!r} is missing; {_plain(KEYS[key])}")
     kind = _one_of(row["kind"], KINDS, f"{where}: kind")
     full = {"command": "revolutions", "own": False, "behind": "", **row}
+    full = {"limit": math.inf, "rate": math.inf, **full}
     full = {"direction": 90.0 if kind == "tunnel" else 0.0, **full}
     _check_row(row, full, where)
-    return Actuator(
+    one = Actuator(
         name=row["name"],
         kind=kind,
         x=float(row["at"][0]),
@@ -154,6 +177,8 @@ def _actuator(row: Mapping[str, Any], where: str) -> Actuator:
         own=full["own"],
         behind=full["behind"],
     )
+    size = units.factor(SHOWN[one.unit], one.unit)
+    return replace(one, limit=size * full["limit"], rate=size * full["rate"])
 
 
 def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> None:
@@ -173,6 +198,13 @@ def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> N
         raise ShipError(
             f"{where}: direction = {full['direction']!r}; write degrees from ahead, clockwise"
         )
+    for key in ("limit", "rate"):
+        _check_size(row, key, where)
+
+
+def _check_size(row: Mapping[str, Any], key: str, where: str) -> None:
+    if key in row and not (_is_number(row[key]) and row[key] > 0.0):
+        raise ShipError(f"{where}: {key} = {row[key]!r}; write a number above zero")
 
 
 def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
@@ -188,6 +220,9 @@ def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
         yield f"own = {str(one.own).lower()}"
         if one.behind:
             yield f'behind = "{one.behind}"'
+        for key, value in (("limit", one.limit), ("rate", one.rate)):
+            if math.isfinite(value):
+                yield f"{key} = {value * units.factor(one.unit, SHOWN[one.unit])!r}"
         yield ""
 
 
