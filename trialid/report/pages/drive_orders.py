@@ -7,8 +7,8 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.helm import Passage
-from trialid.names import units
-from trialid.ship.actuators import SHOWN, Actuator
+from trialid.names import labels, units
+from trialid.ship.actuators import SHOWN, actuator_quantities
 
 HEADING = "psi"
 STEADY = 1e-9
@@ -37,20 +37,9 @@ def orders(passage: Passage) -> list[DriveOrder]:
 def _order(passage: Passage, k: int) -> DriveOrder:
     signals = passage.trial.signals
     drives = {one.name: float(signals[f"{one.name}_order"][k]) for one in passage.driven}
-    words = ", ".join(f"{one.name} {order_words(one, drives[one.name])}" for one in passage.driven)
+    known = actuator_quantities(passage.driven)
+    words = ", ".join(f"{n} {labels.command_text(known[n], x)}" for n, x in drives.items())
     return DriveOrder(float(passage.trial.t[k]), drives, float(signals[HEADING][k]), words)
-
-
-def order_words(one: Actuator, value: float) -> str:
-    """An order as it is called out: 900 rpm, -35 % of full, 40 N.
-
-    >>> order_words(Actuator(name="left", kind="thruster", x=0.0, y=-1.0, command="share"), -0.35)
-    '-35 %'
-    """
-    if one.unit == "1":
-        return f"{100.0 * value:.3g} %"
-    unit = SHOWN[one.unit]
-    return f"{value * units.factor(one.unit, unit):.4g} {unit}"
 
 
 def courses(passage: Passage) -> Iterator[tuple[str, Vector]]:
