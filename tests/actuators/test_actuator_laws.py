@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import test_effects as laws
-from boats import EFFECTS, QUANTITIES, SHIP, ship_with
+from boats import EFFECTS, QUANTITIES, SHIP, eight_actuators, ship_with
 from dual import independent, slope
 from typical import draw
 
@@ -18,7 +18,6 @@ from trialid.simulation.graph import gradient
 from trialid.simulation.integrate import prepare, respond
 from trialid.simulation.reference import evaluator
 from trialid.simulation.trace import trace
-from trialid.trial import Trial
 
 EVERY = pytest.mark.parametrize("name", EFFECTS)
 SPAN = {"rad": 0.6, "rad/s": 9.0, "1": 0.9, "N": 1e7}
@@ -239,35 +238,6 @@ def test_reversed_and_exchanged_do_what_they_say() -> None:
     )
     assert 0.1 + moved["rudder_port"] == pytest.approx(-0.3)
     assert -0.3 + moved["rudder_stbd"] == pytest.approx(0.1)
-
-
-EIGHT = (
-    Actuator(name="pod_1", kind="azimuth", x=-60.0, y=-8.0),
-    Actuator(name="pod_2", kind="azimuth", x=-60.0, y=8.0),
-    Actuator(name="pod_3", kind="azimuth", x=-20.0, y=-8.0),
-    Actuator(name="pod_4", kind="azimuth", x=-20.0, y=8.0),
-    Actuator(name="port", kind="rudder", x=-80.0, y=-4.0),
-    Actuator(name="stbd", kind="rudder", x=-80.0, y=4.0),
-    Actuator(name="bow_1", kind="tunnel", x=70.0, y=0.0, direction=np.pi / 2),
-    Actuator(name="bow_2", kind="tunnel", x=75.0, y=0.0, direction=np.pi / 2),
-)
-
-
-def eight_actuators() -> tuple[ShipModel, tuple[str, ...], Trial]:
-    """A ship with four pods, two rudders and two bow thrusters, all of them moving."""
-    ship = ship_with(EIGHT)
-    own = actuator_effects(ship)
-    hull = [laws.CATALOGUE[n] for n in ("linear_hull", "surge_resistance")]
-    names = ("rudders", "azimuths", "tunnels", "still_water_yaw")
-    model = ShipModel(ship, ("u", "v", "r"), (*hull, *(own[n] for n in names)))
-    stated = {n: p.start for e in model.effects for n, p in e.parameters.items()}
-    model = model.with_values({n: x for n, x in stated.items() if model.stated(n) is None})
-    free = ("Nv", "Nr", "Ndelta", "k_pod_ahead", "k_tunnel", "Nr0", "Xuu")
-    t = np.arange(0.0, 300.0, 0.5)
-    waves = {s: np.sin(0.02 * (i + 3) * t + i) for i, s in enumerate(model.recorded)}
-    signals = {s: 2.0 * y if s.startswith("bow") else 0.5 * y for s, y in waves.items()}
-    valid = {s: np.ones(len(t), dtype=bool) for s in signals}
-    return model, free, Trial("eight", "fit", 0.5, signals, valid)
 
 
 def test_compiled_and_numpy_agree_on_eight_actuators() -> None:
