@@ -68,7 +68,7 @@ def test_their_signals_have_units_and_sides(tmp_path: Path) -> None:
         (ONE.replace("-1.0]", '"a"]'), "write [metres ahead, metres to starboard]"),
         (ONE.replace('"left"', '"Left"'), "name = 'Left'; Its name"),
         (ONE.replace('"left"', '"n"'), "actuator 'n' has the name of a quantity"),
-        (ONE.replace('"left"', '"left_angle"'), "a name does not end in _order or _angle"),
+        (ONE.replace('"left"', '"left_angle"'), "a name does not end in _order, _angle or _bucket"),
         (ONE + ONE, "signal 'left' is there twice"),
         (ONE + 'command = "rpm"\n', "command = 'rpm'; expected one of revolutions, share, thrust"),
         (ONE + "limit = 0\n", "limit = 0; write a number above zero"),

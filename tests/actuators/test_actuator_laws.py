@@ -20,7 +20,7 @@ from trialid.simulation.reference import evaluator
 from trialid.simulation.trace import trace
 
 EVERY = pytest.mark.parametrize("name", EFFECTS)
-SPAN = {"rad": 0.6, "rad/s": 9.0, "1": 0.9, "N": 1e7}
+SPAN = {"rad": 0.6, "rad/s": 9.0, "1": 0.9, "N": 3e7}
 
 
 def signal(name: str, rng: np.random.Generator) -> float:
@@ -182,6 +182,24 @@ def test_a_pod_pushes_to_where_it_points_and_a_nozzle_aft_turns_the_ship_to_its_
     assert made["azimuths"](pod)[0] == pytest.approx((0.0, 2.0, 0.0, -10.0), abs=1e-12)
     jet = {"jet": 2.0, "jet_angle": np.pi / 6, "k_jet_ahead": 1.0, "k_jet_astern": 1.0}
     assert made["waterjets"](jet)[0] == pytest.approx((np.sqrt(3.0), -1.0, 0.0, 5.0))
+
+
+def test_a_bucket_takes_the_jet_away_and_turns_it_back() -> None:
+    jet = {"jet": 10.0, "jet_angle": 0.2, "k_jet_ahead": 2.0, "k_jet_astern": 1.0}
+    X, Y, _, N = EFFECTS["waterjets"](jet)[0]
+    at = {"jet": 10.0, "jet_angle": 0.2, "jet_bucket": 0.5, "k_bucket": 3.0}
+    taken = EFFECTS["waterjets_bucket"](at)[0]
+    assert pytest.approx((-0.75 * X, -0.75 * Y, -0.75 * N)) == (taken.X, taken.Y, taken.N)
+    astern = EFFECTS["waterjets_bucket"](at | {"jet_bucket": 1.0})[0]
+    assert X + astern.X < 0.0
+    assert EFFECTS["waterjets_bucket"](at | {"jet": -10.0})[0] == pytest.approx((0.0,) * 4)
+
+
+def test_no_more_comes_of_an_order_than_a_drive_can() -> None:
+    [moved] = EFFECTS["azimuths_saturation"]({"pod": 0.9, "n_full_azimuths": 0.7})
+    assert 0.9 + moved["pod"] == pytest.approx(0.7)
+    [moved] = EFFECTS["azimuths_saturation"]({"pod": -0.6, "n_full_azimuths": 0.7})
+    assert moved["pod"] == 0.0
 
 
 def test_a_bow_thruster_to_starboard_turns_to_starboard_less_at_speed() -> None:

@@ -20,7 +20,7 @@ COMMANDS: Final = {"revolutions": "rad/s", "share": "1", "thrust": "N"}
 """What drives an actuator, and its unit."""
 SHOWN: Final = {"rad": "deg", "rad/s": "rpm", "1": "1", "N": "N"}
 NAME: Final = re.compile(r"[a-z][a-z0-9_]*")
-ENDINGS: Final = ("_order", "_angle")
+ENDINGS: Final = ("_order", "_angle", "_bucket")
 
 KEYS: Final = {
     "name": "needed. Its name, and that of its signal in a trial; small letters, digits and `_`.",
@@ -83,6 +83,11 @@ class Actuator:
         return f"{self.name}_angle" if self.kind in TURNED else ""
 
     @property
+    def bucket(self) -> str:
+        """The signal of a jet's bucket, which turns it back."""
+        return f"{self.name}_bucket"
+
+    @property
     def drive(self) -> str:
         """The signal of what drives it, empty of a rudder."""
         return "" if self.kind == "rudder" else self.name
@@ -114,6 +119,9 @@ def _quantities(one: Actuator) -> Iterable[Quantity]:
                 mirror=-1 if is_angle else 1,
                 steers=one.kind == "rudder",
             )
+    if one.kind == "waterjet":
+        words = f"bucket of the waterjet {one.name}, 0 open, 1 all of the jet turned back"
+        yield Quantity(one.bucket, one.bucket, "1", "1", words)
 
 
 def _positive(one: Actuator, *, is_angle: bool) -> str:
@@ -251,8 +259,8 @@ def _check_names(made: Sequence[Actuator], where: str) -> None:
             )
         if one.name.endswith(ENDINGS):
             raise ShipError(
-                f"{where}: actuator {one.name!r}: a name does not end in _order or _angle, which "
-                "its signals do"
+                f"{where}: actuator {one.name!r}: a name does not end in "
+                "_order, _angle or _bucket, which its signals do"
             )
         for signal in one.signals:
             if signal in taken:
