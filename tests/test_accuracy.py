@@ -92,6 +92,7 @@ def ar1(seed, n, rho):
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.8, 0.95])
+@pytest.mark.study(turn="each")
 def test_coloured_covariance_against_400_repeats(rho):
     """A slow signal in AR(1) noise: the sandwich is right where the white formula is far off."""
     n = 3000

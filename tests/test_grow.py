@@ -19,7 +19,7 @@ from trialid.errors import SimulationError
 from trialid.pipeline_file import load
 from trialid.ship.effect import Force
 from trialid.workflow import grow
-from trialid.workflow.edit_model import Edit
+from trialid.workflow.edit_pipeline import Edit
 
 ROOT = Path(__file__).parent.parent
 ADDED = "righting_arm_cubic"

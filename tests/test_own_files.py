@@ -167,6 +167,7 @@ def test_a_replay_replaces_nothing_unasked(tmp_path: Path, sample_run: Path, suf
     assert [p.read_text() for p in tmp_path.iterdir()] == ["theirs"]
 
 
+@pytest.mark.study(turn=4)
 def test_notes_in_a_runs_own_folder_stay(tmp_path: Path, sample_run: Path) -> None:
     folder = tmp_path / "run"
     shutil.copytree(sample_run, folder)

@@ -11,8 +11,8 @@ import pytest
 from trialid.errors import DesignError, TrialidError
 from trialid.pipeline_file import load
 from trialid.pipeline_file.design_file import load_design
-from trialid.workflow.design_folder import write
-from trialid.workflow.design_run import Plan, plan
+from trialid.workflow.design.design_folder import write
+from trialid.workflow.design.design_run import Plan, plan
 
 BOAT = """
 name = "boat"

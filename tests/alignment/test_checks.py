@@ -70,13 +70,9 @@ def false_alarms(seeds):
     return wrong, remarked
 
 
-def test_no_healthy_record_is_refused():
-    assert false_alarms(range(28)) == ([], [])
-
-
 @pytest.mark.study(turn=0)
-def test_no_healthy_record_of_many_is_refused():
-    assert false_alarms(range(28, 420)) == ([], [])
+def test_no_healthy_record_is_refused():
+    assert false_alarms(range(420)) == ([], [])
 
 
 def shares(seeds, quantity, spoil, kind):
@@ -94,6 +90,7 @@ def shares(seeds, quantity, spoil, kind):
 
 
 @pytest.mark.parametrize("fault", FACTORS)
+@pytest.mark.study(turn="each")
 def test_a_rate_of_turn_in_another_unit(fault):
     """What is left are ships on a straight course with a coarse compass, and slow sensors."""
     refused, right = shares(range(28), "r", lambda y: y * FACTORS[fault], "unit")
@@ -109,6 +106,7 @@ def test_a_rate_of_turn_positive_to_port():
 
 @pytest.mark.parametrize(("spoil", "kind"), [(lambda y: -y, "sign"), (lambda y: DEG * y, "unit")],
                          ids=["sign", "unit"])  # fmt: skip
+@pytest.mark.study(turn="each")
 def test_a_roll_rate_in_another_unit_or_to_port(spoil, kind):
     refused, right = shares(range(28), "p", spoil, kind)
     assert refused > 0.75
@@ -152,6 +150,7 @@ def test_a_late_rate_of_turn_is_remarked_with_its_seconds(zigzag, delay):
     assert any("later than the slope of psi" in words for words in aligned(late).remarks)
 
 
+@pytest.mark.study(turn=4)
 def test_a_smoothed_rate_of_turn_is_never_an_error():
     """Two poles of 5 s take 90 % off the waves of a small boat; a unit would be no excuse."""
     from scipy.signal import lfilter

@@ -18,8 +18,9 @@ from typing import Final
 from unittest import mock
 
 from hidden_effects import DEFAULTS, EVERY, settings_of
+from hidden_scenarios import guessed
 from hidden_tables import table
-from hidden_truth import Scenario, guessed, record
+from hidden_truth import Scenario, record
 
 from trialid.diagnosis.search import carry_over, score
 from trialid.diagnosis.search.completeness import WORTH, Completeness, completeness

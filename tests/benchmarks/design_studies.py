@@ -38,7 +38,7 @@ from trialid.report.files.design_data import of_test
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.trial import Trial
-from trialid.workflow.design_run import Plan, plan
+from trialid.workflow.design.design_run import Plan, plan
 
 Vector = NDArray[np.float64]
 

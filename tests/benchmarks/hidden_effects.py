@@ -24,7 +24,7 @@ from itertools import product
 from pathlib import Path
 from typing import Final
 
-from hidden_scenarios import SCENARIOS, TYPICAL
+from hidden_scenarios import SCENARIOS, TYPICAL, guessed
 from hidden_score import plainness
 from hidden_tables import FULL, SHORT, Row, report, thresholds, write
 from hidden_truth import (
@@ -33,7 +33,6 @@ from hidden_truth import (
     OUTPUTS,
     TRIAL_SETS,
     Scenario,
-    guessed,
     record,
     restored,
     without,
@@ -43,6 +42,7 @@ from trialid.diagnosis.diagnose import DiagnoseSettings, worth_a_name
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.completeness import completeness
+from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.search.refit import Refit, refit_best
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.diagnosis.verdict import Verdict, decide
@@ -79,8 +79,8 @@ DEFAULTS: Final = DiagnoseSettings()
 
 SHORT_NOISES: Final = ("white", "process")
 
-Task = tuple[str, str, str, int]
-"""Scenario, noise, trial set, seed."""
+Task = tuple[str, str, str, int, float]
+"""Scenario, noise, trial set, seed, by which share at most what is held fixed is off."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,8 @@ def diagnosed(
     with watch("fit"):
         fit = fit_model.fit_with_progress(tuple(trials), model, settings, lambda words, share: None)
     with watch("rank"):
-        ranking, augmented = rank(fit, CATALOGUE, asked.family_cos, asked.level)
+        candidates = {**CATALOGUE, **candidates_to_free(fit)}
+        ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
@@ -149,11 +150,11 @@ def true_candidate(
 @one_thread
 def run(task: Task) -> Row:
     """One record made, diagnosed and judged."""
-    name, noise, trial_set, seed = task
+    name, noise, trial_set, seed, fixed_off = task
     scenario, watch = EVERY[name], Stopwatch()
     with watch("simulate"):
         trials = record(scenario, noise, trial_set, seed)
-    model = guessed(scenario, seed)
+    model = guessed(scenario, seed, fixed_off)
     row = Row(name, scenario.group, noise, trial_set, seed)
     try:
         done = diagnosed(trials, model, settings_of(model), watch)
@@ -166,11 +167,12 @@ def run(task: Task) -> Row:
             values = {n: true.value(n) for n in done.fit.settings.free}
             plain, fall = plainness(done.fit, trials, restored(scenario, true), values)
             row = row.also(plain=plain, fall=fall)
-    return judged(row, scenario, done).also(seconds=watch.seconds)
+    right = {*scenario.right, *(candidates_to_free(done.fit) if fixed_off else ())}
+    return judged(row, scenario, right, done).also(seconds=watch.seconds)
 
 
-def judged(row: Row, scenario: Scenario, done: Diagnosis) -> Row:
-    """What the diagnosis said beside what is true."""
+def judged(row: Row, scenario: Scenario, right: set[str], done: Diagnosis) -> Row:
+    """What the diagnosis said beside what is true, and what is `right` to name."""
     verdict, named, family = done.verdict, done.named, done.verdict.family
     found = true_candidate(scenario, done.ranking)
     if found is not None:
@@ -185,11 +187,11 @@ def judged(row: Row, scenario: Scenario, done: Diagnosis) -> Row:
     if tried is not None:
         row = row.also(tried=tried.candidate.effect.name, eps_tried=tried.fit.eps_rmsn,
                        eps_check_tried=tried.fit.eps_check)  # fmt: skip
-    effect = CATALOGUE[verdict.effect] if verdict.effect else None
+    effect = named.candidate.effect if named is not None else None
     return row.also(
         kind=verdict.kind, name=verdict.effect or "", family=family,
         exact=verdict.effect in scenario.exact,
-        right=bool({verdict.effect, *family} & scenario.right),
+        right=bool({verdict.effect, *family} & right),
         physical=effect is not None and Force in effect.forms,
         eps=done.fit.eps_rmsn, eps_check=done.fit.eps_check,
     )  # fmt: skip
@@ -199,7 +201,7 @@ def tasks(asked: argparse.Namespace) -> list[Task]:
     """Every run that is asked for, in the order of the tables."""
     seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
     return [
-        (name, noise, trial_set, seed)
+        (name, noise, trial_set, seed, asked.fixed_off)
         for trial_set, noise, name, seed in product(
             asked.trials, asked.noise, asked.scenarios, seeds
         )
@@ -251,6 +253,9 @@ def options() -> argparse.Namespace:
     )
     parser.add_argument("--noise", type=_names(NOISES), help="with commas")
     parser.add_argument("--trials", type=_names(tuple(TRIAL_SETS)), help="with commas")
+    parser.add_argument(
+        "--fixed-off", type=float, default=0.0, help="share by which what is held fixed is off"
+    )
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--out", type=Path, help="FILE.md or FILE.csv")
     asked = parser.parse_args()

@@ -1,4 +1,4 @@
-"""What the hidden-effects benchmark hides, as data: the effect, its size, and what counts as right.
+"""What the hidden-effects benchmark hides: the effect, its size, what counts as right, the start.
 
 Sizes are those of published ships (the S-175 where it has the term) or of sensor practice; none is
 chosen so that it can be seen: whether it can, `hidden_score` says run by run. Only what is made up
@@ -10,21 +10,26 @@ from typing import Final
 
 from hidden_truth import (
     DEG,
+    FREE,
     MODEL,
     OUTPUTS,
+    START_ERROR,
     Gear,
     Group,
     Scenario,
     backlash,
     deadband,
+    generator,
     limited,
     servo,
+    without,
 )
 
 from trialid.diagnosis.search.augment import linear_parameters
 from trialid.effects import CATALOGUE
 from trialid.maths import sin, tanh
 from trialid.ship.effect import Effect, Force, Mass, Rate, Steered, effect
+from trialid.ship.model import ShipModel
 
 TWINS: Final = (
     {"yaw_drag_rar", "yaw_cubic_rrr"},
@@ -218,3 +223,22 @@ TYPICAL: Final[Mapping[str, Scenario]] = {
     s.name: s for s in map(_typical, CATALOGUE) if s is not None and s.name not in SCENARIOS
 }
 """What else the catalogue holds: an effect is hidden the day it is listed."""
+
+
+def guessed(scenario: Scenario, seed: int, fixed_off: float = 0.0) -> ShipModel:
+    """The model a person starts the fit from: right in its form, its free values somewhat off.
+
+    What is held fixed is off by up to the share `fixed_off`.
+    """
+    model, n = without(scenario), scenario.name
+    rest = tuple(
+        p for e in model.effects for p in e.parameters if p not in FREE and model.stated(p)
+    )
+    off = [
+        *generator(seed, n, "start").uniform(-START_ERROR, START_ERROR, len(FREE)),
+        *generator(seed, n, "fixed").uniform(-fixed_off, fixed_off, len(rest)),
+    ]
+    names = (*FREE, *rest)
+    return model.with_values(
+        {p: model.value(p) * (1.0 + x) for p, x in zip(names, off, strict=True)}
+    )

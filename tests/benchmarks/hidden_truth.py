@@ -141,15 +141,6 @@ def without(scenario: Scenario) -> ShipModel:
     return model
 
 
-def guessed(scenario: Scenario, seed: int) -> ShipModel:
-    """The model a person starts the fit from: right in its form, its free values somewhat off."""
-    model = without(scenario)
-    off = generator(seed, scenario.name, "start").uniform(-START_ERROR, START_ERROR, len(FREE))
-    return model.with_values(
-        {n: model.value(n) * (1.0 + x) for n, x in zip(FREE, off, strict=True)}
-    )
-
-
 def restored(scenario: Scenario, model: ShipModel) -> ShipModel:
     """A model with what is hidden put back at its true size."""
     for effect in scenario.effects:

@@ -16,8 +16,8 @@ from trialid.own_files import LIST
 from trialid.pipeline_file import load
 from trialid.pipeline_file.design_file import load_design
 from trialid.toml_text import quote
-from trialid.workflow.design_folder import write
-from trialid.workflow.design_run import plan
+from trialid.workflow.design.design_folder import write
+from trialid.workflow.design.design_run import plan
 
 ROOT = Path(__file__).parents[2]
 ODD = "<script>alert('a & b \N{SHIP}')</script>\n[[trial]]"

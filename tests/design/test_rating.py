@@ -51,6 +51,7 @@ def test_the_numbers_of_an_independent_implementation(amplitude):
     assert pytest.approx(other["R"], rel=0.01) == found.R
 
 
+@pytest.mark.study(turn=1)
 def test_expected_errors_are_those_of_many_fits():
     """Sixty noisy records fitted: the scatter of each parameter is what was expected."""
     free = ("Nv", "Nr", "Ndelta", "Yv", "Ydelta")

@@ -51,7 +51,7 @@ def test_a_value_may_lie_outside_its_range_by_two_and_a_half_errors(size, allowe
     """Rows of a hundred squares: a coefficient is known to 0.1, and may be from 0 to 1."""
     rows = SimpleNamespace(gram=np.array([[100.0]]), moment=np.array([100.0 * size]))
     evidence = SimpleNamespace(white=rows, inflation=1.0)
-    effect = SimpleNamespace(parameters={"a": Parameter(0.5, low=0.0, high=1.0)})
+    effect = SimpleNamespace(parameters={"a": Parameter(0.5, low=0.0, high=1.0)}, nulls={"a": 0.0})
     trace = SimpleNamespace(effect=effect, columns=(0,), parameters=("a",))
     assert _in_range(evidence, trace) is allowed
     # rows that are a quarter as many as they seem: twice the error

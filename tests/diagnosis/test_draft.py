@@ -83,6 +83,7 @@ def test_nothing_missing_and_no_shape_draft_nothing():
     assert "\n" not in why_none(nothing) + why_none(shapeless)
 
 
+@pytest.mark.study(turn=4)
 def test_series_are_read_as_written(hidden, tmp_path):
     series = force_series(hidden[1])
     write_force_csv(tmp_path / "missing_force.csv", series)

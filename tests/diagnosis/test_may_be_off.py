@@ -7,6 +7,7 @@ import pytest
 
 from trialid.diagnosis import may_be_off as tested
 from trialid.diagnosis.may_be_off import doubts
+from trialid.diagnosis.search.augment import Trace
 
 
 def handed_over(monkeypatch, *, tried=None, prior=None):
@@ -14,10 +15,8 @@ def handed_over(monkeypatch, *, tried=None, prior=None):
     given = []
     monkeypatch.setattr(tested, "stand", lambda rows, rivals: given.append((rows, rivals)))
     parameters = {"Nrar": SimpleNamespace(start=-0.0015), "Nvar": SimpleNamespace(start=0.005)}
-    effect = SimpleNamespace(name="drag", parameters=parameters, is_whole=False)
-    trace = SimpleNamespace(
-        effect=effect, columns=(0, 1), parameters=("Nrar", "Nvar"), tried=tried or {}
-    )
+    effect = SimpleNamespace(name="drag", parameters=parameters, is_whole=False, held=None)
+    trace = Trace(effect, (0, 1), ("Nrar", "Nvar"), tried or {})
     ship = SimpleNamespace(value=lambda name: -0.004, ship=SimpleNamespace(share_off=lambda n: 0.1))
     problem = SimpleNamespace(
         simulator=SimpleNamespace(model=ship),

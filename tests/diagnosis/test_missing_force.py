@@ -52,6 +52,7 @@ def test_noise_has_no_force():
         assert "no force" in found.sentence
 
 
+@pytest.mark.study(turn=2)
 def test_an_outer_force_is_found_with_its_course_and_follows_no_signal():
     fit, forces = fit_of("N", 3)
     found = missing_force(fit)

@@ -53,6 +53,7 @@ def routes_of(fit, stated=None):
 
 @pytest.mark.parametrize("kind", [white, waves])
 @pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.study(turn="each")
 def test_noise_and_model_part_are_found_within_15_percent(kind, seed):
     clean = CLEAN[True]
     trials = noisy(clean, kind, seed)
@@ -81,6 +82,7 @@ def test_noise_alone_gives_a_model_part_whose_interval_holds_zero(kind):
         assert route.undermodelling_interval[0] == 0.0, route.method
 
 
+@pytest.mark.study(turn=2)
 def test_after_the_effect_is_added_the_model_part_falls_and_the_noise_stays():
     trials = noisy(CLEAN[True], waves, 5)
     before, _ = routes_of(identify(trials, MODEL, FIT))
@@ -90,6 +92,7 @@ def test_after_the_effect_is_added_the_model_part_falls_and_the_noise_stays():
     assert after.undermodelling_interval[0] == 0.0
 
 
+@pytest.mark.study(turn=3)
 def test_a_repeated_manoeuvre_is_trusted_most():
     clean = CLEAN[True]
     again = Trial("again", "fit", 0.5, clean[0].signals, clean[0].valid)

@@ -31,7 +31,11 @@ def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=()):
     carried = Carried(BEFORE, after)
     candidate = SimpleNamespace(
         effect=SimpleNamespace(
-            name=name, parameters=tuple("abcdef"[:parameters]), forms=(), bound_by_meaning=False
+            name=name,
+            parameters=tuple("abcdef"[:parameters]),
+            forms=(),
+            bound_by_meaning=False,
+            held=None,
         ),
         shown=lambda level: True,
         carried=carried,

@@ -50,6 +50,7 @@ def only(findings, output, kind):
 
 
 @pytest.mark.parametrize("kind", [white, waves])
+@pytest.mark.study(turn="each")
 def test_noise_alone_gives_no_finding(kind):
     counts = [bool(found(record(seed, kind)).findings) for seed in range(6)]
     assert sum(counts) <= 1

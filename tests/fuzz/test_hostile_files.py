@@ -6,13 +6,11 @@ import json
 import os
 import struct
 import zipfile
-import zlib
 from pathlib import Path
 
 import numpy as np
 import openpyxl
 import pytest
-import scipy.io
 from click.testing import CliRunner
 from limits import bounded
 
@@ -125,24 +123,6 @@ def test_a_zip_bomb_whose_members_overlap(tmp_path):
     refused(path, "unpacks to more than 400 MB", megabytes=100)
 
 
-def test_a_matlab_variable_that_unpacks_to_a_gigabyte(tmp_path):
-    packer = zlib.compressobj(9)
-    body = b"".join(packer.compress(bytes(MB)) for _ in range(1000)) + packer.flush()
-    head = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
-    refused(saved(tmp_path / "log", head + struct.pack("<II", 15, len(body)) + body))
-
-
-@pytest.mark.parametrize("kind", [1, 3, 16, 17, 18], ids=["cell", "object", "function", "17", "18"])
-def test_matlab_functions_and_objects_are_no_channels(tmp_path, kind):
-    with (tmp_path / "log").open("wb") as file:
-        scipy.io.savemat(file, {"f": {"x": np.arange(9.0)}, "t": np.arange(9.0), "u": np.ones(9)})
-    raw = (tmp_path / "log").read_bytes()
-    flags = struct.pack("<IIB", 6, 8, 2)
-    assert flags in raw
-    found = reading(saved(tmp_path / "log", raw.replace(flags, struct.pack("<IIB", 6, 8, kind))))
-    assert isinstance(found, str) or not any(name.startswith("f") for name in found.channels)
-
-
 # --- texts --------------------------------------------------------------------------------------
 
 
@@ -171,10 +151,12 @@ def _long_line(path, form, filler):
 
 
 @pytest.mark.parametrize("filler", FILLERS.values(), ids=FILLERS)
+@pytest.mark.study(turn="each")
 def test_a_row_of_two_hundred_megabytes(tmp_path, filler):
     _long_line(tmp_path / "log", "csv", filler)
 
 
+@pytest.mark.study(turn=1)
 def test_a_sentence_of_two_hundred_megabytes(tmp_path):
     _long_line(tmp_path / "log", "nmea", b"$")
 
@@ -322,6 +304,7 @@ def _aborting(path, parts):
 
 
 @pytest.mark.parametrize("parts", ABORTING.values(), ids=ABORTING)
+@pytest.mark.study(turn="each")
 def test_a_workbook_that_asks_for_all_memory_is_counted_first(tmp_path, parts):
     refused(_aborting(tmp_path / "log", parts), "log", "export it as CSV")
 
@@ -344,6 +327,7 @@ def test_a_reader_that_dies_is_a_line(tmp_path, signal, monkeypatch):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no limits of a process here")
+@pytest.mark.study(turn=2)
 def test_a_long_text_that_many_cells_share(tmp_path, monkeypatch):
     """A megabyte in twenty thousand cells: 20 GB, of which no part of the file speaks."""
     cells = "".join(f'<row r="{i}"><c r="A{i}" t="s"><v>0</v></c></row>' for i in range(1, 20_000))
@@ -388,17 +372,3 @@ def test_names_of_files_steer_no_terminal(tmp_path):
     assert done.stderr.count("\n") == 1
     assert _clean(done.stderr)
     refused(bad, "bad")
-
-
-def test_a_matlab_variable_of_as_much_as_is_read(tmp_path):
-    """Half a kilobyte to 290 MB of zeros: read, within a gigabyte in all."""
-    count = 290 * MB // 8
-    name = struct.pack("<IIIIIIIIHH4s", 6, 8, 6, 0, 5, 8, count, 1, 1, 1, b"x\0\0\0")
-    size = len(name) + 8 + 8 * count
-    packer = zlib.compressobj(9)
-    body = packer.compress(struct.pack("<II", 14, size) + name + struct.pack("<II", 9, 8 * count))
-    zeros = bytes(MB)
-    body += b"".join(packer.compress(zeros) for _ in range(290)) + packer.flush()
-    head = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
-    path = saved(tmp_path / "log", head + struct.pack("<II", 15, len(body)) + body)
-    reading(path, megabytes=950)

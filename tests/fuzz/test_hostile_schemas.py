@@ -152,6 +152,7 @@ JSON = {
 
 
 @pytest.mark.parametrize("payload", JSON.values(), ids=JSON)
+@pytest.mark.study(turn="each")
 def test_nests_of_json(tmp_path, payload):
     read_both(log_of(tmp_path / "log", "json", None, payload))
 

@@ -102,6 +102,7 @@ def on_a_terminal(words, folder):
     ],
     ids=lambda words: " ".join(words[::2]).encode("unicode_escape").decode(),
 )  # fmt: skip
+@pytest.mark.study(turn="each")
 def test_names_steer_no_terminal(tmp_path, words):
     table(tmp_path, NAME)
     sent = on_a_terminal(words, tmp_path)
@@ -118,6 +119,7 @@ def test_colours_of_ours_are_still_there(tmp_path):
 
 @pytest.mark.parametrize("columns", ["0", "1", "7", "-3", "x", "100000"])
 @pytest.mark.parametrize("command", ["inspect", "effects"])
+@pytest.mark.study(turn="each")
 def test_a_terminal_of_any_width(tmp_path, command, columns):
     table(tmp_path)
     done = subprocess.run(

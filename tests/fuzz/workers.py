@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from judge import Verdict, harmed, judged, truth
+from limits import LONGEST_WAIT, MOST_SECONDS
 from seed_logs import SeedLog
 
-PATIENCE = 30.0
+PATIENCE = 1.5 * LONGEST_WAIT * MOST_SECONDS
 """Seconds after which a process is stopped; code that is not Python hears no alarm."""
 MOST_ADDRESSES = 6_000_000_000
 """Bytes a process may ask for, so that the machine survives what the test finds."""

@@ -164,6 +164,7 @@ def test_without_priors_nothing_is_said_of_them():
     assert all(r.prior is None and r.prior_share is None for r in found.physical)
 
 
+@pytest.mark.study(turn=3)
 def test_priors_that_are_drawn_about_the_truth_are_seldom_contradicted():
     """Ten files from which ships scatter as they say: no word against any."""
     rng, said = np.random.default_rng(11), 0

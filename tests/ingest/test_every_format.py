@@ -107,6 +107,7 @@ def steepest(name):
 
 
 @pytest.mark.parametrize("form", FORMATS, ids=lambda form: form.name)
+@pytest.mark.study(turn="each")
 def test_the_same_series_and_the_same_fit(form, tmp_path):
     """Ours: at most 0.50 of the resolution; 0.04 standard errors, of MAVLink's rudder 0.09.
 

@@ -75,18 +75,20 @@ def test_a_damaged_file_is_refused_or_gives_what_is_intact(logs, share, tmp_path
     ("body", "words"),
     [
         ("import os; os.abort()", "the reader broke down on it"),
-        ("import time; time.sleep(60)", "did not come back in 3 s"),
+        ("import time; time.sleep(60)", "did not come back in 2 s"),
+        ("while True: pass", "did not come to an end"),
         ("x = bytearray(1 << 36)", "MemoryError|the reader gave up"),
     ],
 )
 def test_a_reader_that_breaks_down_is_one_line(logs, tmp_path, monkeypatch, body, words):
     """It runs beside: here a package that does harm stands in the place of asammdf."""
     (tmp_path / "evil" / "asammdf").mkdir(parents=True)
-    bound = "import trialid.ingest.can.mf4_child as c; c._bound(2000)"
+    bound = "import trialid.ingest.can.mf4_child as c; c._bound(2000, 1)"
     (tmp_path / "evil" / "asammdf" / "__init__.py").write_text(f"{bound}\n{body}\n")
     monkeypatch.syspath_prepend(str(tmp_path / "evil"))
     if "sleep" in body:
-        monkeypatch.setattr(mf4, "LEAST_S", 3.0)
+        monkeypatch.setattr(mf4, "LEAST_S", 1.0)
+        monkeypatch.setattr(mf4, "LONGEST_WAIT", 1.0)
     with pytest.raises(LogError, match=words):
         read(logs[1])
 

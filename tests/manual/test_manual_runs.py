@@ -154,6 +154,7 @@ def test_what_is_left_of_a_block() -> None:
     assert to_run(f"a\n{SAMPLE}\nb \\\n  c\n") == "a\nb    c"
 
 
+@pytest.mark.study(turn=3)
 def test_a_command_that_fails_is_found(project: Path) -> None:
     with pytest.raises(AssertionError, match="no such pipeline"):
         shell(project, "trialid run nothing.toml | cat")

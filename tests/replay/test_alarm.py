@@ -100,6 +100,7 @@ def replayed(folder, lost, onset, seed, rudders):
 
 
 @pytest.mark.parametrize(("lost", "onset"), [(0.3, 600.0), (0.5, 620.0)])
+@pytest.mark.study(turn="each")
 def test_an_effect_that_sets_in_halfway_is_found_within_ten_seconds(tmp_path, rudders, lost, onset):
     """And nothing is in the first half."""
     playback = replayed(tmp_path, lost, onset, 0, rudders)

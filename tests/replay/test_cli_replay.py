@@ -69,6 +69,7 @@ def test_the_band_is_that_of_the_run(done, tmp_path):
 
 @pytest.mark.parametrize("trial", ["before", "halfway"])
 @pytest.mark.parametrize("start", [0.0, 333.0])
+@pytest.mark.study(turn="each")
 def test_the_recording_holds_the_runs_numbers_bit_for_bit(done, trial, start):
     pipeline, run = done
     out = pipeline.parent / f"{trial}-{start:g}.mcap"

@@ -17,6 +17,7 @@ from trialid.workflow.structures.compare_structures import compare_structures
 # --- what is kept -------------------------------------------------------------------------------
 
 
+@pytest.mark.study(turn=4)
 def test_an_interrupted_comparison_goes_on_and_ends_the_same(
     done, turning, tmp_path, count
 ) -> None:

@@ -20,7 +20,7 @@ from trialid.result.fit_rows import ModelPart, TrialRow
 from trialid.result.imo import UNRELIABLE
 from trialid.result.imo_rows import ImoPart, MeasureRow
 from trialid.result.schema import Result
-from trialid.workflow.design_run import plan
+from trialid.workflow.design.design_run import plan
 
 DESIGN = """
 name = "what next"

@@ -89,6 +89,7 @@ def test_it_says_where_it_is_and_edits_the_file(path: Path) -> None:
     assert load(path).model.effects[-1] == ADDED
 
 
+@pytest.mark.study(turn=2)
 def test_the_next_port_is_taken_where_the_usual_one_is(path: Path) -> None:
     with contextlib.ExitStack() as stack:
         with contextlib.suppress(OSError):  # something else has it: as good

@@ -1,7 +1,7 @@
 """The loop by hand: every edit in the file, fitted as the command line fits, and taken back."""
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import quick
 from click.testing import CliRunner
+from held import Gate, Looks
 from quick import ADDED, OTHER, SPARE, diagnosed, edit, opened, settled, until
 
 from trialid.cli import main
@@ -33,27 +34,6 @@ def _quick_looks(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
     return quick.write(tmp_path)
-
-
-class Gate:
-    """Holds a computation where it examines its fit: for as long as a test likes."""
-
-    def __init__(self) -> None:
-        self.open = threading.Event()
-        self.reached = threading.Event()
-        self.open.set()
-
-    def examine(self, *arguments: Any) -> Any:
-        self.reached.set()
-        assert self.open.wait(quick.LONGEST)
-        return EXAMINE(*arguments)
-
-    def close(self) -> None:
-        self.open.clear()
-        self.reached.clear()
-
-
-EXAMINE = compute.examine
 
 
 @pytest.fixture
@@ -160,6 +140,7 @@ def test_add_and_drop_as_the_command_line_does(tmp_path: Path) -> None:
     assert still_alone(screen)
 
 
+@pytest.mark.study(turn=2)
 def test_undo_and_redo_show_again_what_was_known(path: Path, monkeypatch: Any) -> None:
     with opened(path) as desk:
         diagnosed(desk)
@@ -245,6 +226,7 @@ def test_cancel_when_nothing_is_done(path: Path) -> None:
     assert path.read_bytes() != text
 
 
+@pytest.mark.study(turn=1)
 def test_what_is_stopped_without_an_edit_is_said(path: Path, gate: Gate) -> None:
     """An undo that is cancelled leaves the file as it is: the screen then says what it shows."""
     with opened(path) as desk:
@@ -269,6 +251,7 @@ def test_what_is_stopped_without_an_edit_is_said(path: Path, gate: Gate) -> None
         assert result(desk) == run(load(path)).result
 
 
+@pytest.mark.study(turn=1)
 def test_a_second_edit_during_a_refit_keeps_both(path: Path, gate: Gate) -> None:
     with opened(path) as desk:
         diagnosed(desk)
@@ -288,6 +271,7 @@ def test_a_second_edit_during_a_refit_keeps_both(path: Path, gate: Gate) -> None
         assert result(desk) == run(load(path)).result
 
 
+@pytest.mark.study(turn=1)
 def test_cancel_of_the_second_edit_keeps_the_first(path: Path, gate: Gate) -> None:
     with opened(path) as desk:
         diagnosed(desk)
@@ -322,6 +306,7 @@ def test_an_edit_that_cannot_be_fitted_is_taken_back(path: Path) -> None:
     assert steps(path) == [("as written", None), ("added", ADDED)]
 
 
+@pytest.mark.study(turn=3)
 def test_an_effect_of_ones_own_that_needs_better_starts(tmp_path: Path) -> None:
     """What the search begins from is in the file then, and undone with the edit it belongs to."""
     path = quick.write(tmp_path)
@@ -391,6 +376,7 @@ def test_an_edit_made_elsewhere_is_taken_over(path: Path) -> None:
         diagnosed(desk)
 
 
+@pytest.mark.study(turn=4)
 def test_an_edit_made_elsewhere_ends_a_refit(path: Path, gate: Gate) -> None:
     with opened(path) as desk:
         diagnosed(desk)
@@ -408,6 +394,7 @@ def test_an_edit_made_elsewhere_ends_a_refit(path: Path, gate: Gate) -> None:
 
 
 @pytest.mark.parametrize("broken", ["[model", "name = 3\n", None])
+@pytest.mark.study(turn="each")
 def test_a_broken_file_keeps_the_screen(path: Path, broken: str | None) -> None:
     text = path.read_text(encoding="utf-8")
     with opened(path) as desk:
@@ -442,6 +429,7 @@ def test_a_file_mended_to_what_it_was(path: Path) -> None:
         diagnosed(desk)
 
 
+@pytest.mark.study(turn=1)
 def test_an_effect_file_edited_broken_and_mended(tmp_path: Path) -> None:
     path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
     with opened(path) as desk:
@@ -467,6 +455,7 @@ def test_an_effect_file_edited_broken_and_mended(tmp_path: Path) -> None:
         assert result(desk).fit == first.fit
 
 
+@pytest.mark.study(turn=3)
 def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
     """The file is as it was before the edit; what cannot be fitted now is, once it is mended."""
     path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
@@ -508,26 +497,7 @@ def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: An
         assert result(desk) == run(load(path)).result
 
 
-class Looks:
-    """Looks at the files of one pipeline that see nothing new for a while; others look on."""
-
-    def __init__(self, watched: Callable[..., Any], path: Path) -> None:
-        self.watched_, self.path, self.still, self.last = watched, path, False, None
-
-    def watched(self, recipe: Any) -> Any:
-        if recipe.path != self.path:
-            return self.watched_(recipe)
-        if not self.still or self.last is None:
-            self.last = self.watched_(recipe)
-        return self.last
-
-    def stop(self) -> None:
-        self.still = True
-
-    def go(self) -> None:
-        self.still = False
-
-
+@pytest.mark.study(turn=4)
 def test_a_file_edited_while_it_is_taken_over(path: Path, monkeypatch: Any) -> None:
     """The second of two edits elsewhere, made while the first is being read, is seen too."""
     text = path.read_bytes()
@@ -550,6 +520,7 @@ def test_a_file_edited_while_it_is_taken_over(path: Path, monkeypatch: Any) -> N
         assert result(desk) == run(load(path)).result
 
 
+@pytest.mark.study(turn=2)
 def test_a_log_that_grew_is_not_shown_as_it_was(path: Path) -> None:
     """An undo shows again what was known, but not of another record."""
     log = path.with_name("log.csv")

@@ -12,7 +12,7 @@ from trialid.pipeline_file import load
 from trialid.result.series import OutputSeries
 from trialid.ship.model import ShipModel
 from trialid.workbench.shown import Shown
-from trialid.workflow import edit_model
+from trialid.workflow import edit_model, edit_pipeline
 from trialid.workflow.build_model import available, build_model
 from trialid.workflow.fit_model import fit_of, time_series
 from trialid.workflow.read_trials import align_trials
@@ -84,7 +84,7 @@ def opened(path):
 def turned(path):
     """The effect added to a pipeline, stage by stage."""
     before = opened(path)
-    edit = edit_model.add_to_pipeline(before.pipeline, ADDED)
+    edit = edit_pipeline.add_to_pipeline(before.pipeline, ADDED)
     foreseen = edit_model.foresee_edit(edit, before.fit)
     edit, fit = edit_model.fit_edited(edit, before.trials, foreseen, quiet)
     run = examine(edit.after, before.trials, quiet, fit).outcome

@@ -34,8 +34,8 @@ def design(design: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     folder = out or Path("designs", design.stem)
     own_files.check_folder(folder, ("design.json", "bridge.html"), "design")
     from trialid.report.tables.design_tables import tables
-    from trialid.workflow.design_folder import write
-    from trialid.workflow.design_run import plan
+    from trialid.workflow.design.design_folder import write
+    from trialid.workflow.design.design_run import plan
 
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         made = plan(pipeline, progress)

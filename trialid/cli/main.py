@@ -213,13 +213,8 @@ def _change(
     """Add or drop an effect, and show what it changed."""
     asked, folder = open_pipeline(pipeline, out)
     temporary.check_writable(pipeline.parent, "place for the pipeline")
-    from trialid.workflow.edit_model import (
-        add_to_pipeline,
-        carry_out,
-        commit,
-        difference_words,
-        drop_from_pipeline,
-    )
+    from trialid.workflow.edit_model import carry_out, commit
+    from trialid.workflow.edit_pipeline import add_to_pipeline, difference_words, drop_from_pipeline
 
     edit = (add_to_pipeline if step == "added" else drop_from_pipeline)(asked, effect)
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:

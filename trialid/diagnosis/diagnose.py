@@ -12,6 +12,7 @@ from trialid.diagnosis.noise.split import Split, split
 from trialid.diagnosis.prediction_band import prediction_band
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.completeness import Completeness, completeness
+from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.search.gross_fault import gross_faults
 from trialid.diagnosis.search.refit import Refit, refit_best
 from trialid.diagnosis.search.score import Candidate, rank
@@ -181,7 +182,8 @@ def examine_fit(
 ) -> tuple[Diagnosed, tuple[Candidate, ...], Augmented]:
     """The split, the accuracy that follows from it, and the ranking that both rest on."""
     progress("looking for what is missing", 0.65)
-    ranking, augmented = rank(fit, asked.candidates, asked.family_cos, asked.level)
+    candidates = {**asked.candidates, **candidates_to_free(fit)}
+    ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
     return Diagnosed(fit, best, routes, doubts(fit, augmented)), ranking, augmented
 

@@ -1,15 +1,18 @@
 """By how much every parameter of a fit may be off, by all that its model may lack or hold wrong."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trialid.accuracy.likely import WIDE, Averaged, Rival, Rows, Standing, stand
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.identification.fit import Fit
+
+Vector = NDArray[np.float64]
 
 SMALLEST: Final = 1e-12
 """Typical size of a parameter whose effect calls nothing typical."""
@@ -43,22 +46,34 @@ def may_be_off(fit: Fit, augmented: Augmented) -> Averaged:
 def doubts(fit: Fit, augmented: Augmented) -> Doubts:
     """What the rows of a fit say of the catalogue and of the model as it is.
 
-    What is there whole or not at all has no size that could be small and unseen: it is left out.
+    What is there whole or not at all has no size that could be small and unseen: it is left out,
+    and so is the freeing of what was held fixed, which counts with its own uncertainty.
     """
     ship = fit.problem.simulator.model
     deviations = [abs(ship.value(n)) * ship.ship.share_off(n) for n in augmented.held]
+    S, traces = _may_be_missing(augmented)
     rows = Rows(
         residual=augmented.residual,
         psi=augmented.psi,
         priors=prior_rows(fit),
         held=augmented.H,
         deviations=np.array(deviations),
-        S=augmented.S,
+        S=S,
         level=fit.level,
     )
-    traces = tuple(t for t in augmented.traces if not t.effect.is_whole)
     standing = stand(rows, [_rival(t) for t in traces])
     return Doubts(standing, augmented.held, traces)
+
+
+def _may_be_missing(augmented: Augmented) -> tuple[Vector, tuple[Trace, ...]]:
+    """The traces that count, and their columns alone."""
+    kept, columns = list[Trace](), list[int]()
+    for trace in augmented.traces:
+        if not trace.effect.is_whole and trace.effect.held is None:
+            first = len(columns)
+            columns += trace.columns
+            kept.append(replace(trace, columns=tuple(range(first, len(columns)))))
+    return augmented.S[:, columns], tuple(kept)
 
 
 def _rival(trace: Trace) -> Rival:

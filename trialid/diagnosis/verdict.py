@@ -217,9 +217,17 @@ def _missing(fit: Fit, named: Refit, others: tuple[str, ...]) -> Verdict:
     alike = f"; this record cannot tell it from {', '.join(others)}" if others else ""
     return Verdict(
         "missing", candidate.effect.name, (candidate.effect.name, *others),
-        f"{candidate.effect.name} is missing: with it {_falls(fit, named.fit)} "
+        f"{_what(named)} {_falls(fit, named.fit)} "
         f"(p = {candidate.p_value:.2g} over the catalogue){alike}",
     )  # fmt: skip
+
+
+def _what(named: Refit) -> str:
+    """What is named: an effect that the model lacks, or a coefficient held where it is not."""
+    name, held = named.candidate.effect.name, named.candidate.effect.held
+    if held is None:
+        return f"{name} is missing: with it"
+    return f"{name} is held at {held:.3g}: freed, to {named.fit.estimates[name]:.3g},"
 
 
 def _falls(before: Fit, after: Fit) -> str:

@@ -22,6 +22,7 @@ from trialid.identification.output_error import (
 )
 from trialid.identification.own_start import own_start, starts_of
 from trialid.identification.problem import Settings, pose_problem
+from trialid.identification.smaller import point_of_smaller
 from trialid.identification.weighing import level_of
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure, Response, respond
@@ -222,26 +223,17 @@ def _searched(
 ) -> Fit:
     """The best end of all starts, with the steps as they are."""
     problem = pose_problem(trials, model, settings, near)
-    embedded = None if smaller is None else _within(problem, smaller)
+    embedded = (
+        None
+        if smaller is None
+        else point_of_smaller(problem, smaller.estimates, smaller.problem.simulator.model)
+    )
     arrival = arrive(problem, settings, progress, embedded)
     if not arrival.best.began:
         raise SimulationError(_why_no_start(problem))
     fit = _finish(model, problem, trials, settings, arrival.best, (arrival.same, arrival.tried))
     rivals = arrival.rival_GM or (() if smaller is None else smaller.rival_GM)
     return replace(fit, told=arrival.told, rival_GM=rivals)
-
-
-def _within(problem: Problem, smaller: Fit) -> Vector | None:
-    """The optimum of a smaller model as a point of a larger one; None where it is none."""
-    known = smaller.estimates
-    point = []
-    for x in problem.unknowns:
-        parameter = problem.simulator.model.parameters.get(x.column)
-        absent = x.start if parameter is None else parameter.null
-        if x.name not in known and absent is None:
-            return None
-        point.append(known.get(x.name, absent))
-    return np.array(point, dtype=float)
 
 
 @one_thread

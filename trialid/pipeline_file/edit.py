@@ -93,6 +93,17 @@ def fix_parameter(text: str, name: str) -> tuple[str, tuple[str, ...]]:
     return _without_words(without_item(text, FREE, name), (PRIORS, BOUNDS), [name])
 
 
+def hold_parameter(text: str, name: str) -> tuple[str, tuple[str, ...]]:
+    """The same, and without the start that came with its being freed: it is the ship file's again.
+
+    Raises
+    ------
+    PipelineError
+        As `add_effect`.
+    """
+    return fix_parameter(_without_start(text, name), name)
+
+
 def set_bounds(text: str, name: str, bounds: tuple[float, float] | None) -> str:
     """The pipeline with these bounds of a parameter, or with none.
 

@@ -238,7 +238,8 @@ def _before_after(found: Findings) -> ChangePart | None:
     if found.after is None or found.verdict.effect is None:
         return None
     before, after = found.before, found.after
-    effect = next(e for e in after.fit.model.effects if e.name == found.verdict.effect)
+    tried = (r.candidate.effect for r in found.refits)
+    effect = next(e for e in tried if e.name == found.verdict.effect)
     checks = before.fit.eps_check, after.fit.eps_check
     return ChangePart(
         effect=effect.name,

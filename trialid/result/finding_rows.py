@@ -70,7 +70,10 @@ class CandidateParameterRow:
 
 @dataclass(frozen=True, kw_only=True)
 class CandidateRow:
-    """An effect that was tried, in the order of the ranking."""
+    """An effect that was tried, in the order of the ranking.
+
+    `held` is of a coefficient of the model that would be freed: the value it is held at.
+    """
 
     rank: int
     effect: str
@@ -90,6 +93,7 @@ class CandidateRow:
     sign_kept: bool | None = None
     verdict: str = ""
     sentence: str = ""
+    held: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -45,6 +45,7 @@ def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Diagnosis) -> 
         sign_kept=c.carried.steady,
         verdict=_standing(c, found),
         sentence=_sentence(c, refit, found),
+        held=c.effect.held,
     )
 
 
@@ -83,10 +84,15 @@ def _sentence(c: Candidate, refit: Fit | None, found: Diagnosis) -> str:
     eps = found.before.fit.eps_rmsn
     if c.visibility <= VISIBLE:
         return f"{c.effect.name} leaves no trace here that the free parameters could not leave too"
+    who = (
+        c.effect.name
+        if c.effect.held is None
+        else f"{c.effect.name}, freed from {c.effect.held:.3g},"
+    )
     said = f"would bring the error from {eps:.2%} to {c.eps_predicted:.2%}{_chance(c)}"
     if refit is not None:
         said += f"; fitted, it brings it to {refit.eps_rmsn:.2%}"
-    return f"{c.effect.name} {said}"
+    return f"{who} {said}"
 
 
 def verdict_part(v: Verdict, proposal: Separation | None) -> VerdictPart:

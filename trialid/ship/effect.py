@@ -12,9 +12,7 @@ import numpy as np
 
 from trialid.errors import EffectError, nearest
 from trialid.maths import Number
-from trialid.names.quantities import (
-    QUANTITIES,
-)
+from trialid.names.quantities import QUANTITIES
 from trialid.ship.effect_checks import (
     check_names,
     check_numbers,
@@ -120,7 +118,9 @@ class Effect:
     forms
         What it returns: any of `FORMS`.
     own
-        Signals that are in no dictionary of quantities, with the unit in which it wants them.
+        Signals that are in no dictionary, with their units.
+    held
+        Value of the coefficient that it frees, one of the model's; None for an effect of its own.
     """
 
     name: str
@@ -132,6 +132,7 @@ class Effect:
     system: System
     source: str
     own: Mapping[str, Signal] = field(default_factory=dict)
+    held: float | None = None
 
     @property
     def equation(self) -> str:
@@ -312,13 +313,12 @@ def _forms(
         result = function(**values)
     except (ArithmeticError, TypeError, NameError, AttributeError, ValueError) as error:
         raise EffectError(f"effect {name!r} cannot be evaluated: {error}") from error
+    names = ", ".join(form.__name__ for form in FORMS)
     results = result if isinstance(result, tuple) and not isinstance(result, Force) else (result,)
     if not results:
-        names = ", ".join(form.__name__ for form in FORMS)
         raise EffectError(f"effect {name!r} returns nothing; expected one of {names}")
     for part in results:
         if not isinstance(part, FORMS):
-            names = ", ".join(form.__name__ for form in FORMS)
             raise EffectError(
                 f"effect {name!r} returns {type(part).__name__}; expected one of {names}"
             )

@@ -60,6 +60,8 @@ class ShipModel:
                 )
 
     def __add__(self, effect: Effect) -> "ShipModel":
+        if effect.held is not None:  # its coefficient is there
+            return self
         return replace(self, effects=(*self.effects, effect))
 
     def __sub__(self, name: str) -> "ShipModel":

@@ -21,7 +21,8 @@ from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Shown
 from trialid.workflow import history
 from trialid.workflow.build_model import available, build_model
-from trialid.workflow.edit_model import Edit, fit_edited, foresee_edit, proposed_steps, set_beside
+from trialid.workflow.edit_model import fit_edited, foresee_edit, proposed_steps, set_beside
+from trialid.workflow.edit_pipeline import Edit
 from trialid.workflow.fit_model import fit_of, time_series
 from trialid.workflow.outcome import Outcome
 from trialid.workflow.quantities_read import quantities_of

@@ -23,7 +23,7 @@ from trialid.workbench.watch import Files, source_states, watch_list
 from trialid.workbench.wishes import Granted, between, grant, understood
 from trialid.workflow import history
 from trialid.workflow.build_model import available
-from trialid.workflow.edit_model import Edit
+from trialid.workflow.edit_pipeline import Edit
 from trialid.workflow.outcome import Outcome
 
 KEPT: Final = 12

@@ -125,7 +125,7 @@ def _context(shown: Shown) -> Plain:
         "split": replace(bars.split_bars(run)[0], length=100.0),
         "trials": list(_trials(shown, run)),
         "steps": step_rows.steps(shown, run),
-        "heading": report.VERDICTS.get(run.verdict.kind or "", "No verdict"),
+        "heading": report.heading(run),
         "advised": _advised(run),
         "ranked": ranking.ranking(run),
         "effects": model_rows.effects(shown),

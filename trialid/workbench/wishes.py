@@ -19,7 +19,7 @@ from trialid.errors import PipelineError, TrialidError, nearest
 from trialid.pipeline_file import Pipeline, read
 from trialid.pipeline_file.edit import fix_parameter, set_bounds, set_free, set_use, set_value
 from trialid.workflow.build_model import available, build_model, check_bounds, settings_of
-from trialid.workflow.edit_model import Edit, add_to_pipeline, drop_from_pipeline
+from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
 
 
 class Wish(BaseModel):

@@ -4,32 +4,32 @@ Nothing is written before all is computed; then the run's folder, the pipeline f
 and one line more in the history.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from trialid import user_files
 from trialid.diagnosis.search.bias import Foreseen, foresee_adding, foresee_dropping
-from trialid.errors import PipelineError, TrialidError, nearest
+from trialid.errors import PipelineError, TrialidError
 from trialid.identification.fit import Fit
-from trialid.pipeline_file import Pipeline, read, where
-from trialid.pipeline_file.edit import add_effect, drop_effect, start_at
+from trialid.pipeline_file import Pipeline, read
+from trialid.pipeline_file.edit import start_at
 from trialid.pipeline_file.rewrite import rewriting
 from trialid.progress import Progress
 from trialid.result import json_file
 from trialid.result.change_rows import StepRow
 from trialid.result.schema import Result
-from trialid.ship.effect import Effect
 from trialid.threads import one_thread
 from trialid.trial import Trial
 from trialid.version import VERSION
 from trialid.workflow import history
 from trialid.workflow.build_model import available
 from trialid.workflow.compare import compare_models
+from trialid.workflow.edit_pipeline import Edit
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.origin import sources_of
 from trialid.workflow.outcome import Run
@@ -48,100 +48,12 @@ AS_BEFORE: Final = 1e-9
 
 
 @dataclass(frozen=True)
-class Edit:
-    """A pipeline before and after an effect was added or dropped, not yet written.
-
-    `step` is `added` or `dropped`; `taken_out` says in words what the user had written for the
-    effect's parameters.
-    """
-
-    step: Literal["added", "dropped"]
-    effect: Effect
-    before: Pipeline
-    after: Pipeline
-    taken_out: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
 class Changed:
     """A changed model, examined; `steps` are what the history file lacks."""
 
     edit: Edit
     run: Run
     steps: tuple[StepRow, ...]
-
-
-def add_to_pipeline(pipeline: Pipeline, name: str) -> Edit:
-    """The pipeline with an effect more, its parameters free.
-
-    An effect that the model had before gets back those parameters that were free then.
-
-    Raises
-    ------
-    PipelineError
-        It is there already, there is no such effect, or the file would not be a pipeline.
-    """
-    if name in pipeline.model.effects:
-        raise PipelineError(f"{where(pipeline, 'model.effects')}: {name!r} is there already")
-    catalogue = available(pipeline)
-    if name not in catalogue:
-        hint = nearest(name, catalogue)
-        hint = hint if hint.startswith("did") else "`trialid effects` lists what there is"
-        raise PipelineError(
-            f"{where(pipeline, 'model.effects')}: there is no effect {name!r}; {hint}"
-        )
-    effect = catalogue[name]
-    steps, _ = history.read(pipeline.path)
-    free = history.free_before(steps, name, tuple(effect.parameters))
-    new = [n for n in free if n not in pipeline.identify.free]
-    after, _ = _edited(pipeline, lambda text: (add_effect(text, name, new), ()))
-    return Edit("added", effect, pipeline, after)
-
-
-def drop_from_pipeline(pipeline: Pipeline, name: str) -> Edit:
-    """The pipeline with an effect less, and without what it says of the effect's parameters.
-
-    Raises
-    ------
-    PipelineError
-        It is not there, or the file would not be a pipeline.
-    """
-    if name not in pipeline.model.effects:
-        raise PipelineError(
-            f"{where(pipeline, 'model.effects')}: {name!r} is not there; "
-            f"{nearest(name, pipeline.model.effects)}"
-        )
-    catalogue = available(pipeline)
-    if name not in catalogue:
-        raise PipelineError(
-            f"{where(pipeline, 'model.effects')}: there is no effect {name!r}; "
-            f"{nearest(name, catalogue)}"
-        )
-    own = tuple(catalogue[name].parameters)
-    after, said = _edited(pipeline, lambda text: drop_effect(text, name, own))
-    return Edit("dropped", catalogue[name], pipeline, after, said)
-
-
-def _edited(
-    pipeline: Pipeline, change: Callable[[str], tuple[str, tuple[str, ...]]]
-) -> tuple[Pipeline, tuple[str, ...]]:
-    try:
-        text, said = change(pipeline.text)
-    except PipelineError as error:
-        raise PipelineError(f"{pipeline.path}: {error}") from error
-    return read(text.encode("utf-8"), pipeline.path), said
-
-
-def difference_words(edit: Edit) -> str:
-    """What is different in the file, in words: `effects + static_list, free + a_0`."""
-    old, new = edit.before, edit.after
-    sign = "+" if edit.step == "added" else "-"
-    free = set(old.identify.free) ^ set(new.identify.free)
-    words = [f"effects {sign} {edit.effect.name}"]
-    words += [f"free {sign} {n}" for n in edit.effect.parameters if n in free]
-    fresh = [n for n in new.model.values if n not in old.model.values]
-    words += [f"values.{n} = {new.model.values[n].value:g} (start)" for n in fresh]
-    return ", ".join(words)
 
 
 @one_thread

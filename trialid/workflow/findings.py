@@ -11,6 +11,7 @@ from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.separation import Separation
 from trialid.design.steering.nomoto import Nomoto, nomoto
 from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
+from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
@@ -76,7 +77,7 @@ def _steering(ship: Vessel | None, spread: LikelySpread) -> Nomoto | None:
 
 def proposal(fit: Fit, verdict: Verdict, catalogue: Mapping[str, Effect]) -> Separation | None:
     """The trial that would tell apart what this record cannot."""
-    pair = following.by_name(catalogue, verdict.family)
+    pair = following.by_name({**catalogue, **candidates_to_free(fit)}, verdict.family)
     return None if pair is None else following.next_trial(fit, pair, _noise(fit))
 
 

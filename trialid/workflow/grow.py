@@ -23,13 +23,8 @@ from trialid.ship.effect import Effect
 from trialid.trial import Trial
 from trialid.workflow import history
 from trialid.workflow.build_model import available
-from trialid.workflow.edit_model import (
-    Edit,
-    add_to_pipeline,
-    drop_from_pipeline,
-    proposed_steps,
-    started_at,
-)
+from trialid.workflow.edit_model import proposed_steps, started_at
+from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.outcome import Run
 from trialid.workflow.read_trials import align_trials

@@ -247,6 +247,7 @@ def test_runs_of_other_trials_are_told_in_tables_alone(result, series):
 # --- on paper ---------------------------------------------------------------------------------
 
 
+@pytest.mark.study(turn=2)
 def test_paper_has_the_candidates_that_matter_and_no_buttons(opened, result, series):
     run = copy.deepcopy(result)
     run["missing"] += [

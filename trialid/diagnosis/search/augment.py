@@ -94,6 +94,8 @@ def candidates_for(
 
 
 def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, Effect]) -> str:
+    if effect.held is not None:
+        return ""
     if not effect.scanned and not linear_parameters(effect):
         return "nothing in it can be zero"
     if trouble := why_unusable(model, trial, effect):
@@ -136,8 +138,11 @@ def _varies(trial: Trial, signal: str) -> bool:
 
 
 def linear_parameters(effect: Effect) -> tuple[str, ...]:
-    """The parameters by which it is scored: those at which zero means that it is absent."""
-    return () if effect.scanned else tuple(n for n, p in effect.parameters.items() if p.null == 0.0)
+    """The parameters by which it is scored: at zero it is absent, or as it is held."""
+    if effect.scanned:
+        return ()
+    absent = effect.held or 0.0
+    return tuple(n for n, p in effect.parameters.items() if p.null == absent)
 
 
 def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
@@ -220,17 +225,17 @@ def _linear(
     columns = tuple(p for e in effects for p in linear_parameters(e))
     model = model.with_values({n: x for e in effects for n, x in e.nulls.items()})
     held = fixed_coefficients(fit)
-    free = (*problem.simulator.equations.free, *columns, *held)
+    every = tuple(dict.fromkeys((*columns, *held)))  # a coefficient that might be freed is in both
+    free = (*problem.simulator.equations.free, *every)
     substeps = problem.simulator.substeps
     simulator = prepare(model, free, problem.outputs, fit.settings.engine, substeps)
-    values = [*np.zeros(len(columns)), *(base.value(n) for n in held)]
-    point = linearise(widened_problem(problem, simulator, (*columns, *held)),
-                      np.append(fit.theta, values))  # fmt: skip
+    point = linearise(widened_problem(problem, simulator, every),
+                      np.append(fit.theta, [model.value(n) for n in every]))  # fmt: skip
     if isinstance(point, Departure):
         return point
     residual, psi = point
-    first, last = len(fit.theta), len(fit.theta) + len(columns)
-    return residual, psi[:, :first], psi[:, first:last], psi[:, last:]
+    psi, rest = np.split(psi, [len(fit.theta)], axis=1)
+    return residual, psi, rest[:, : len(columns)], rest[:, [every.index(n) for n in held]]
 
 
 def _scanned(

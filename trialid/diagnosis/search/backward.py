@@ -94,7 +94,7 @@ def model_without(fit: Fit, trials: Sequence[Trial], effects: Sequence[Effect]) 
     own = {n for e in effects for n in e.parameters}
     model = fit.model
     for effect in effects:
-        model = model - effect.name
+        model = model - effect.name if effect.held is None else model.with_values(effect.nulls)
     settings = replace(fit.settings, free=tuple(n for n in fit.settings.free if n not in own))
     near = {n: x for n, x in fit.estimates.items() if n not in own}
     try:
@@ -105,12 +105,16 @@ def model_without(fit: Fit, trials: Sequence[Trial], effects: Sequence[Effect]) 
 
 
 def _linearly(fit: Fit, effects: Sequence[Effect]) -> Errors:
-    """Left-out errors with the effects' parameters back at zero, the rest free, to first order."""
-    own = {n for e in effects for n in e.parameters}
+    """Left-out errors with the effects' parameters where they were, the rest free, to first order.
+
+    That is zero, or the value at which a coefficient was held.
+    """
+    own = {n: e.nulls[n] if e.held is not None else 0.0 for e in effects for n in e.parameters}
     mine = [i for i, x in enumerate(fit.problem.unknowns) if x.column in own]
     psi = fit.psi.copy()
     psi[:, mine] = 0.0
-    residual = fit.residual + fit.psi[:, mine] @ fit.theta[mine]
+    back = fit.theta[mine] - [own[fit.problem.unknowns[i].column] for i in mine]
+    residual = fit.residual + fit.psi[:, mine] @ back
     none = np.zeros((len(residual), 0))
     return left_out(fit, residual, psi, none, stretches(fit.problem)).errors()
 

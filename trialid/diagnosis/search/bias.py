@@ -62,7 +62,8 @@ def _by_trace(fit: Fit, augmented: Augmented, trace: Trace) -> Foreseen:
     visible = S - psi @ shift
     sizes = np.maximum(np.linalg.norm(S, axis=0), 1e-300)
     beta = np.linalg.lstsq(visible / sizes, residual, rcond=1e-10)[0] / sizes
-    slopes = dict(zip(trace.parameters, map(float, beta), strict=True)) if not trace.tried else {}
+    nulls = trace.effect.nulls
+    slopes = {n: nulls[n] + float(x) for n, x in zip(trace.parameters, beta, strict=False)}
     typical = {n: p.start for n, p in trace.effect.parameters.items()}
     return Foreseen(
         _named(fit.problem.unknowns, -shift @ beta),
@@ -87,9 +88,11 @@ def foresee_dropping(fit: Fit, effect: Effect) -> Foreseen | str:
     which = [names.index(n) if n in names else len(names) + fixed.index(n) for n in linear]
     residual, psi, S = _with_priors(fit, residual, every[:, kept], every[:, which], theirs)
     shift = _mimicked(psi, S)
-    step = -np.array([fit.model.value(n) for n in linear])  # back to zero, which is their null
+    step = np.array([effect.nulls[n] - fit.model.value(n) for n in linear])
     left = residual - (S - psi @ shift) @ step
-    return Foreseen(_named(theirs, -shift @ step), dict.fromkeys(linear, 0.0), _eps(fit, left))
+    return Foreseen(
+        _named(theirs, -shift @ step), {n: effect.nulls[n] for n in linear}, _eps(fit, left)
+    )
 
 
 def _columns(fit: Fit, parameters: Sequence[str]) -> tuple[Vector, Vector] | Departure:

@@ -170,7 +170,7 @@ def _in_range(evidence: Evidence, trace: Trace) -> bool:
     errors = np.sqrt(evidence.inflation * np.diag(inverse)) / sizes
     return all(
         parameters[n].low - OUTSIDE * e <= x <= parameters[n].high + OUTSIDE * e
-        for n, x, e in zip(trace.parameters, beta, errors, strict=True)
+        for (n, x), e in zip(_values(trace, beta).items(), errors, strict=True)
     )
 
 
@@ -180,7 +180,13 @@ def _explained(rows: Projected, trace: Trace) -> tuple[dict[str, float], float]:
         [i] = trace.columns
         return dict(trace.tried), float(2.0 * rows.moment[i] - rows.gram[i, i])
     beta, fall = least_squares_fall(rows, trace.columns)
-    return dict(zip(trace.parameters, map(float, beta), strict=True)), fall
+    return _values(trace, beta), fall
+
+
+def _values(trace: Trace, beta: Vector) -> dict[str, float]:
+    """The parameters, by how far they are from where the effect is absent or held."""
+    nulls = trace.effect.nulls
+    return {n: nulls[n] + float(x) for n, x in zip(trace.parameters, beta, strict=True)}
 
 
 def _best_of_each(made: Sequence[Candidate]) -> list[Candidate]:

@@ -6,11 +6,13 @@ a process of its own, within bounds of memory and time.
 """
 
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import zipfile
 from collections.abc import Mapping
+from math import ceil
 from pathlib import Path
 from typing import Any, Final
 
@@ -28,7 +30,9 @@ LEAST_MB, TIMES = 2_000, 40
 """Memory the reader may take: 2 GB of addresses, which it takes by being loaded, and 40 times the
 file, which packs 3 to 10 times and is held as numbers and as messages."""
 LEAST_S, BYTES_PER_S = 60.0, 100_000.0
-"""Time it may take; a frame of 20 packed bytes takes 15 us, a tenth of that."""
+"""Time of the processor it may take; a frame of 20 packed bytes takes 15 us, a tenth of that."""
+LONGEST_WAIT = 10.0
+"""Times as long by the clock: other processes may have the processor, or it waits for nothing."""
 
 
 def is_mf4(head: bytes) -> bool:
@@ -59,21 +63,21 @@ def frames(path: Path, zone: str | None, tally: Tally) -> tuple[Frames, str]:
 def _columns(path: Path) -> tuple[Mapping[str, NDArray[Any]], str]:
     """What the reader wrote, and why it stopped early, if it did."""
     megabytes = LEAST_MB + TIMES * path.stat().st_size // 1_000_000
-    seconds = LEAST_S + path.stat().st_size / BYTES_PER_S
+    seconds = ceil(LEAST_S + path.stat().st_size / BYTES_PER_S)
     with tempfile.TemporaryDirectory(prefix="trialid-mf4-") as folder:
         out = Path(folder, "frames.npz")
         module = "trialid.ingest.can.mf4_child"
         command = [sys.executable, "-P", "-W", "ignore", "-m", module]
-        command += [str(path.resolve()), str(out), str(megabytes)]
+        command += [str(path.resolve()), str(out), str(megabytes), str(seconds)]
         known = os.pathsep.join(one for one in sys.path if one)
         try:
             done = subprocess.run(
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                stderr=subprocess.PIPE, timeout=seconds, env={**os.environ, "PYTHONPATH": known},
-                check=False,
+                stderr=subprocess.PIPE, timeout=LONGEST_WAIT * seconds, check=False,
+                env={**os.environ, "PYTHONPATH": known},
             )  # fmt: skip
         except subprocess.TimeoutExpired:
-            return {}, f"the reader did not come back in {seconds:.0f} s"
+            return {}, f"the reader did not come back in {LONGEST_WAIT * seconds:.0f} s"
         except OSError as error:
             return {}, f"the reader cannot be started, {error.strerror}"
         return _written(out), _trouble(done)
@@ -92,7 +96,8 @@ def _trouble(done: "subprocess.CompletedProcess[bytes]") -> str:
     if done.returncode == 0:
         return ""
     if done.returncode < 0:
-        return "the reader broke down on it"
+        late = done.returncode == -getattr(signal, "SIGXCPU", 0)
+        return "the reader did not come to an end" if late else "the reader broke down on it"
     lines = [one.strip() for one in done.stderr.decode("utf-8", "replace").splitlines()]
     told = [one for one in lines if one and ": " in one and "Exception ignored" not in one]
     return (told or ["the reader gave up"])[-1][:120]

@@ -3,7 +3,7 @@
 asammdf, which that reader takes, unpacks blocks by what they state of themselves: on a damaged file
 it may end the process, fill the memory or never come back. So it runs where that harms nobody.
 
-python -m trialid.ingest.can.mf4_child LOG.mf4 FRAMES.npz MEGABYTES
+python -m trialid.ingest.can.mf4_child LOG.mf4 FRAMES.npz MEGABYTES SECONDS
 """
 
 import sys
@@ -23,9 +23,9 @@ DATA, ERROR, REMOTE = 0, 1, 2
 """What a frame is."""
 
 
-def main(log: Path, out: Path, megabytes: int) -> None:
+def main(log: Path, out: Path, megabytes: int, seconds: int) -> None:
     """Write the frames there are, also those before the place where the file is damaged."""
-    _bound(megabytes)
+    _bound(megabytes, seconds)
     import can
 
     parts = [_of(())]
@@ -38,13 +38,15 @@ def main(log: Path, out: Path, megabytes: int) -> None:
         np.savez(out, allow_pickle=False, **columns)
 
 
-def _bound(megabytes: int) -> None:
-    """No more memory than this, where the system can refuse it."""
+def _bound(megabytes: int, seconds: int) -> None:
+    """No more memory and time of the processor than this, where the system can refuse it."""
     if sys.platform != "win32":
         import resource
 
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        resource.setrlimit(resource.RLIMIT_AS, (megabytes * 1_000_000, hard))
+        limits = ((resource.RLIMIT_AS, megabytes * 1_000_000), (resource.RLIMIT_CPU, seconds))
+        for what, most in limits:
+            _, hard = resource.getrlimit(what)
+            resource.setrlimit(what, (most, hard))
 
 
 def _of(block: "tuple[can.Message, ...]") -> dict[str, NDArray[Any]]:
@@ -75,4 +77,4 @@ def _kind(message: "can.Message") -> int:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4]))

@@ -1,6 +1,6 @@
 """A run as a card in a notebook: the verdict, the error and its parts, the parameters."""
 
-from trialid.report.pages.page import VERDICTS, environment
+from trialid.report.pages.page import environment, heading
 from trialid.report.pictures import bars
 from trialid.report.tables import run_tables
 from trialid.report.words import doubt
@@ -12,7 +12,7 @@ def card(run: Result) -> str:
     template = environment().get_template("card.html.j2")
     return template.render(
         run=run,
-        heading=VERDICTS.get(run.verdict.kind or "", "No verdict"),
+        heading=heading(run),
         bar=bars.split_bars(run)[0],
         outputs=run_tables.outputs_of(run),
         doubt=doubt.doubtful(run.physical),

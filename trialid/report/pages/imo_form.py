@@ -11,7 +11,7 @@ from typing import Final
 from trialid.errors import TrialidError
 from trialid.names import wording
 from trialid.report.pages.folder import Finished, table_files, write_texts
-from trialid.report.pages.page import VERDICTS, environment
+from trialid.report.pages.page import environment, heading
 from trialid.report.pictures.figures import courses
 from trialid.report.pictures.input_course import input_courses
 from trialid.report.pictures.track_picture import TrackPicture, track_picture
@@ -55,7 +55,7 @@ def form(run: Finished) -> str:
         .get_template("imo_form.html.j2")
         .render(
             run=result,
-            heading=VERDICTS.get(result.verdict.kind or "", "No verdict"),
+            heading=heading(result),
             tables=[(table, numeric(table)) for table in form_tables.tables(result)],
             tracks=_tracks(run),
             pictures=_pictures(run),

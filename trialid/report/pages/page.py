@@ -32,6 +32,17 @@ VERDICTS = {
 }
 """What the kinds of verdict are called at the top of the page."""
 
+HELD = "A coefficient is held at another value than the ship's"
+"""... and where what is named is of an effect that the model has."""
+
+
+def heading(run: Result) -> str:
+    """What the verdict is called at the top of a page."""
+    named = _named(run)
+    if named is not None and named.held is not None:
+        return HELD
+    return VERDICTS.get(run.verdict.kind or "", "No verdict")
+
 
 def write_page(
     path: str | Path,
@@ -53,7 +64,7 @@ def page(run: Result, series: Sequence[TrialSeries], forces: Sequence[ForceSerie
             run=run,
             no_check=_no_check(run),
             named=_named(run),
-            heading=VERDICTS.get(run.verdict.kind or "", "No verdict"),
+            heading=heading(run),
             done=_done(run),
             proposed=_proposed(run),
             descent=error_history.error_history(run),

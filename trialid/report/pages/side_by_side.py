@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trialid.names import labels, wording
-from trialid.report.pages.page import VERDICTS, assets, environment
+from trialid.report.pages.page import assets, environment, heading
 from trialid.report.pictures.overlays import overlays
 from trialid.report.tables import run_tables
 from trialid.report.tables.rounded_table import Cell, Figure, Table, numeric, percent
@@ -59,7 +59,7 @@ def _verdicts(runs: Sequence[Shown]) -> Table:
     rows = tuple(
         (
             each.label, each.run.pipeline or "", each.run.version or "",
-            VERDICTS.get(each.run.verdict.kind or "", "No verdict"),
+            heading(each.run),
             each.run.verdict.effect or "", each.run.verdict.sentence or "",
         )
         for each in runs

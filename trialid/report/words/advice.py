@@ -92,15 +92,18 @@ def _missing(run: Result) -> Iterable[Advice]:
     effect = run.verdict.effect
     if not effect:
         return
+    held = any(row.effect == effect and row.held is not None for row in run.missing)
+    todo = "Free the coefficient in" if held else "Put the effect into"
     yield Advice(
-        "Put the effect into the pipeline and fit again; the report then shows before and after. "
+        f"{todo} the pipeline and fit again; the report then shows before and after. "
         "What is added, trialid drop takes out again.",
         command(run, "add", effect),
     )
-    yield Advice(
-        "Read what it stands for, and whether your ship can have it:",
-        shlex.join(["trialid", "effects", effect]),
-    )
+    if not held:
+        yield Advice(
+            "Read what it stands for, and whether your ship can have it:",
+            shlex.join(["trialid", "effects", effect]),
+        )
     others = [name for name in run.verdict.family if name != effect]
     for name in others[:RIVALS]:
         yield Advice(

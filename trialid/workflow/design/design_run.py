@@ -39,8 +39,8 @@ from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.version import VERSION
-from trialid.workflow import design_imo
 from trialid.workflow.build_model import available, build_model, settings_of
+from trialid.workflow.design import design_imo
 
 Progress = Callable[[str, float | None], None]
 

@@ -14,8 +14,8 @@ from trialid.report.pages import bridge
 from trialid.report.pages.bridge import file_name
 from trialid.ship.actuators import actuator_quantities
 from trialid.toml_text import quote
-from trialid.workflow import design_run as plans
-from trialid.workflow.design_run import Plan, Rated
+from trialid.workflow.design import design_run as plans
+from trialid.workflow.design.design_run import Plan, Rated
 
 LOG = "log-of-{}.mcap"
 """Where the pipeline that is handed over looks for the log: the name is the crew's to give."""
