@@ -5,11 +5,15 @@ and one of them reversed. What the motors make of a share of full is k s |s| wit
 at full; the log knows the pulse widths only.
 """
 
+import sys
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 import otter
+
+sys.path.append(str(Path(__file__).parents[1] / "ingest"))
+
 import write_dataflash as w
 
 LEFT: Final = {"FUNCTION": 73, "MIN": 1100, "TRIM": 1480, "MAX": 1900, "REVERSED": 0}

@@ -5,11 +5,11 @@ pulse widths mean; NMEA 2000 says which engine is to port.
 """
 
 import struct
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+import skid_steer
 from click.testing import CliRunner
 
 from trialid.cli.main import commands
@@ -17,10 +17,6 @@ from trialid.ingest import read
 from trialid.inspection import inspect_log
 from trialid.inspection.drives import drives_of
 from trialid.result.json_file import read as result_of
-
-sys.path.append(str(Path(__file__).parents[1] / "ingest"))
-
-import skid_steer
 
 
 def test_shares_come_back_from_pulse_widths_with_their_own_ends(tmp_path: Path) -> None:
