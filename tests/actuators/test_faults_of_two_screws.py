@@ -1,8 +1,8 @@
 """A ship with two screws and a rudder behind each: which of the four is at fault, and how.
 
 Her rudders tell themselves apart by the races they stand in: exchanged, one stuck; a screw a fifth
-weak. Her truth is a programme of its own (`three_ships.py`); seeds from 2200 up were never looked
-at while building.
+weak. Her truth is a programme of its own (`three_ships.py`); the
+seeds of the studies were never looked at while building.
 """
 
 import dataclasses
@@ -61,7 +61,7 @@ def test_rudders_exchanged_are_named_where_their_races_differ() -> None:
 @pytest.mark.parametrize(
     ("faults", "seeds"),
     [
-        pytest.param(("", "exchanged"), range(2210, 2220), marks=pytest.mark.study(turn=1)),
+        pytest.param(("", "exchanged"), range(2240, 2250), marks=pytest.mark.study(turn=1)),
         pytest.param(("weak", "stuck"), range(2220, 2230), marks=pytest.mark.study(turn=3)),
     ],
 )
