@@ -349,16 +349,8 @@ def test_parts_of_the_result_agree(finished: Finished) -> None:
 
 
 def test_the_folder_is_whole(finished: Finished) -> None:
-    names = {
-        own_files.LIST,
-        "pipeline.toml",
-        "predicted.mcap",
-        "report.html",
-        "result.json",
-        "run.json",
-        "series.csv",
-    }
-    assert {path.name for path in finished.folder.iterdir()} == names
+    names = "pipeline.toml predicted.mcap report.html result.json run.json series.csv standing.npz"
+    assert {path.name for path in finished.folder.iterdir()} == {own_files.LIST, *names.split()}
     assert (finished.folder / "pipeline.toml").read_bytes() == finished.pipeline.read_bytes()
     assert finished.result["pipeline"] in {finished.pipeline.name, load(finished.pipeline).name}
     for trial in finished.result["trials"]:

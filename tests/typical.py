@@ -3,6 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.accuracy.likely import Rows, stand
+from trialid.design.imo.speed_loss import NAMES
+from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.names.quantities import QUANTITIES
 
 KNOWN = {
@@ -37,3 +40,20 @@ def wave(name: str, t: NDArray[np.float64], seed: int) -> NDArray[np.float64]:
     rng = np.random.default_rng([seed, sum(name.encode())])
     phase, rate = rng.uniform(0.0, 6.0), rng.uniform(0.1, 0.3)
     return 0.5 * (low + high) + 0.4 * (high - low) * np.sin(rate * t + phase)
+
+
+def known_by(name: str, deviation: float) -> LikelySpread:
+    """One parameter of this deviation, and nothing else that is uncertain."""
+    nothing = np.zeros((9, 0))
+    rows = Rows(
+        residual=np.ones(9),
+        psi=np.ones((9, 1)),
+        priors=np.zeros((1, 2)),
+        held=nothing,
+        deviations=np.zeros(0),
+        S=nothing,
+        level=1.0,
+    )
+    covariance = np.zeros((1 + len(NAMES),) * 2)
+    covariance[0, 0] = deviation**2
+    return LikelySpread((name,), (), (), covariance, stand(rows, []))

@@ -1,5 +1,6 @@
 """Coefficients held fixed are candidates: what is in the model can be wrong too."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -8,12 +9,12 @@ from click.testing import CliRunner
 
 import trialid as ti
 from trialid.cli.main import commands
-from trialid.diagnosis.search.freed import FARTHEST, candidates_to_free, free_coefficient
+from trialid.diagnosis.search.freed import candidates_to_free, free_coefficient
 from trialid.names.quantities import MASS_PARAMETERS
 from trialid.report.pages.page import HELD, heading
 from trialid.report.words.advice import advice
-from trialid.ship.model import ShipModel
-from trialid.ship.particulars import UNCERTAIN, read_ship
+from trialid.ship.model import STATES, ShipModel
+from trialid.ship.particulars import read_ship
 
 TEXT = (s175q.ROOT / "pipelines" / "hidden_effect.toml").read_text(encoding="utf-8")
 SHIP = read_ship(s175q.ROOT / "sample_data" / "ships" / "s175q.toml")
@@ -84,10 +85,13 @@ def test_masses_and_what_is_sought_are_no_candidates(run) -> None:
     assert all(name in fit.model.parameters for name in found)
 
 
-def test_a_coefficient_is_not_wrong_by_more_than_the_ship_file_says() -> None:
-    """Thrice its deviation; what would need more is something else."""
-    model = ShipModel(SHIP, ("v", "r"), (ti.CATALOGUE["linear_hull"],))
-    value, off = SHIP.coefficients["Nr"], FARTHEST * UNCERTAIN
-    parameter = free_coefficient(model, "Nr").parameters["Nr"]
-    assert (parameter.low, parameter.high) == pytest.approx((value * (1 + off), value * (1 - off)))
-    assert free_coefficient(model, "Nr").held == value == parameter.null
+def test_it_begins_where_it_is_held_and_keeps_the_effects_own_range() -> None:
+    model = ShipModel(SHIP, STATES, (ti.CATALOGUE["linear_roll"],))
+    effect = free_coefficient(model, "Kp")
+    value, parameter = SHIP.coefficients["Kp"], effect.parameters["Kp"]
+    assert (effect.held, parameter.null, parameter.start) == (value, value, value)
+    assert (parameter.low, parameter.high) == (-math.inf, 0.0)
+    assert model + effect is model
+    signals = dict.fromkeys(effect.signals, 1.0)
+    [twice], [once] = (effect({**signals, "Kp": times * value}) for times in (2.0, 1.0))
+    assert pytest.approx(value) == twice.K - once.K

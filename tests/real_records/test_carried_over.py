@@ -12,6 +12,7 @@ import pytest
 from real_record import DATA, HERE, added, stages
 from test_kvlcc2_zigzag import RECORDS as ZIGZAGS
 from test_kvlcc2_zigzag import columns, in_ship
+from turns import TURNS
 
 from trialid import pipeline_file
 from trialid.diagnosis.search.backward import worth_naming
@@ -30,6 +31,11 @@ WIND = {"apparent_wind", "apparent_wind_yaw", "steady_wind"}
 
 def of_a_clock(name):
     return name.startswith(("lag_", "delay_", "clock_", "bias_", "scale_"))
+
+
+def moves_the_ship(name):
+    """Whether an effect is of the ship; a coefficient that is held fixed, and freed, is."""
+    return name not in CATALOGUE or of_the_ship(CATALOGUE[name])
 
 
 def held_out(done):
@@ -132,13 +138,17 @@ def on_the_pond(folder, held):
     return path
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("part", range(TURNS))
 @pytest.mark.xfail(strict=False, reason="a goal: not met yet on every split and base")
-def test_the_wind_is_named_whatever_is_held_out(pond):
-    """Ours: see the printed table; a wind effect first, no clock named, the error never rises."""
+def test_the_wind_is_named_whatever_is_held_out(pond, part):
+    """A wind effect first, no clock named, the error never rises, and ends at 35 of 43 %.
+
+    Every fifth of the 21 choices of the two.
+    """
     logs = sorted(p.stem for p in pond.glob("*.csv"))
     first, errors, clocks = [], [], []
-    for held in combinations(logs, 2):
+    for held in list(combinations(logs, 2))[part::TURNS]:
         done = stages(on_the_pond(pond, held), {})
         tell(" ".join(held), done)
         first.append(done[0].run.result.verdict.effect)
@@ -147,8 +157,8 @@ def test_the_wind_is_named_whatever_is_held_out(pond):
     begun, ended = np.mean([e[0] for e in errors]), np.mean([e[-1] for e in errors])
     print(f"held out {begun:.1%} to {ended:.1%}; first: {first}; of a clock: {clocks}")
     assert all(e == sorted(e, reverse=True) for e in errors)
-    assert sum(n in WIND for n in first) >= 20
-    assert ended <= 0.35
+    assert all(n in WIND for n in first)
+    assert ended <= 0.35 / 0.43 * begun
     assert clocks == []
 
 
@@ -191,19 +201,20 @@ def held_in_the_basin(basin, held, effects=(), free=()):
     return path
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("part", range(TURNS))
 @pytest.mark.xfail(strict=False, reason="a goal: not met yet on every split and base")
-def test_a_force_is_named_whatever_is_held_out(basin):
-    """All 21 choices of the two, from the linear model: 12.2 of 28.3 % was reached once."""
+def test_a_force_is_named_whatever_is_held_out(basin, part):
+    """Every fifth of 21 choices of the two, from the linear model: 12.2 of 28.3 % was reached."""
     logs = sorted(p.stem for p in basin.glob("Z_*.csv"))
     ended = []
-    for held in combinations(logs, 2):
+    for held in list(combinations(logs, 2))[part::TURNS]:
         done = stages(held_in_the_basin(basin, held), {})
         tell(" ".join(held), done)
         errors = held_out(done)
         ended.append(errors[-1] / errors[0])
         assert errors == sorted(errors, reverse=True)
-        assert of_the_ship(CATALOGUE[done[0].run.result.verdict.effect])
+        assert moves_the_ship(done[0].run.result.verdict.effect)
         assert not any(map(of_a_clock, names_said(done)))
     print(f"held-out error at the end over that at the beginning: {np.round(ended, 2)}")
     assert np.median(ended) <= 12.2 / 28.3
@@ -216,7 +227,7 @@ def test_from_another_base_the_first_name_is_a_force(basin, base):
     done = stages(held_in_the_basin(basin, ("Z_10_10_S", "Z_20_10_S"), *BASES[base]), {})
     tell(base, done)
     first = done[0].run.result.verdict.effect
-    assert first is None or of_the_ship(CATALOGUE[first])
+    assert first is None or moves_the_ship(first)
     assert not any(map(of_a_clock, names_said(done)))
 
 

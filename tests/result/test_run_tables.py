@@ -198,7 +198,7 @@ def test_candidates_foreseen_fitted_and_held_out():
 def test_a_turning_circle_stands_over_the_ground_and_through_the_water():
     found = row("turns")
     assert found["measured [m]"] == 523.0
-    assert found["without current [m]"] == 502.0
+    assert found["corrected [m]"] == 502.0
     assert found["model [m]"] == 501.0
     assert found["rudder [deg]"] == pytest.approx(-34.95, abs=0.01)
 

@@ -123,6 +123,22 @@ class Day:
             if self.u > 0.85 * self.speed:
                 break
 
+    def williamson(self) -> None:
+        """Out by 60 deg, round, steered on to the reciprocal course and kept for three lengths."""
+        side, psi, begin = self.rng.choice([-1.0, 1.0]), self.psi, self.now
+        angle = self.rng.choice([25.0, 30.0, 35.0]) * DEG
+        away, short = self.rng.uniform(50, 70) * DEG, self.rng.uniform(15, 40) * DEG
+        self.until(side * angle, lambda: side * (self.psi - psi) > away)
+        goal, span = psi - side * np.pi, round(3.0 * self.length / self.speed)
+        self.until(-side * angle, lambda: side * (goal - self.psi) > -short)
+        eased = self.now
+        for _ in range(1500):
+            self.keep(goal, 1)
+            kept = np.array([row[5] for row in self.rows[max(eased, self.now - span) :]])
+            if len(kept) == span and np.abs(kept - self.psi).max() <= 3.0 * DEG:
+                break
+        self.truth.append(("Williamson turn", begin, self.now))
+
     def harbour(self) -> None:
         """Rudder about, courses changed, speed taken off: nothing that has a name."""
         for _ in range(int(self.rng.integers(2, 7))):
@@ -140,7 +156,7 @@ class Day:
                     self.step(float(self.rng.uniform(-4, 4) * DEG), float(shaft))
 
 
-def sail_day(seed: int) -> tuple[Trial, Day]:
+def sail_day(seed: int, choice: int = 6) -> tuple[Trial, Day]:
     """Three to six manoeuvres of any kind in any order, harbour movements before and between."""
     rng = np.random.default_rng([77, seed])
     length = rng.uniform(80.0, 280.0)
@@ -148,9 +164,9 @@ def sail_day(seed: int) -> tuple[Trial, Day]:
     day = Day(rng=rng, length=length, speed=speed, T=0.25 * length / speed * 5.0)
     day.K = rng.uniform(0.8, 1.6) * speed / length
     day.a = 0.1 * (length / speed) * 4.0
-    kinds = [day.turning_circle, day.zigzag, day.pull_out, day.spiral, day.stop]
+    kinds = [day.turning_circle, day.zigzag, day.pull_out, day.spiral, day.stop, day.williamson]
     day.harbour()
-    for kind in rng.choice(5, int(rng.integers(3, 7))):
+    for kind in rng.choice(choice, int(rng.integers(3, 7))):
         day.settle()
         kinds[kind]()
         for _ in range(5):

@@ -18,7 +18,7 @@ from trialid.report.pages.imo_form import form, write_form
 from trialid.result import json_file
 from trialid.result.fit_rows import ModelPart, TrialRow
 from trialid.result.imo import UNRELIABLE
-from trialid.result.imo_rows import ImoPart, MeasureRow
+from trialid.result.imo_rows import ConditionRow, ImoPart, MeasureRow
 from trialid.result.schema import Result
 from trialid.workflow.design.design_run import plan
 
@@ -85,6 +85,21 @@ def test_its_numbers_are_those_of_the_run(tmp_path: Path) -> None:
     assert "S175 &lt;b&gt;" in text
     assert "no fit" not in text
     assert not re.search(r"<script|https?://", text)
+
+
+@pytest.mark.parametrize("causes", ["", "current", "wind", "current and wind"])
+def test_the_page_says_what_is_corrected_for_and_what_not(causes: str) -> None:
+    assert RESULT.imo is not None
+    turn = replace(TURN, corrected=500.0, corrected_for=causes)
+    wind = ConditionRow(trial="circle", signal="V_aw", median=5.0, interval=(4.0, 6.0))
+    told = form(
+        finished(replace(RESULT, imo=replace(RESULT.imo, turns=(turn,), conditions=(wind,))))
+    )
+    for cause in ("current", "wind"):
+        assert (f"Corrected for {cause}:" in told) == (cause in causes)
+        assert (f"Not corrected for {cause}:" in told) == (cause not in causes)
+    assert ("The wind was recorded: an effect of it" in told) == ("wind" not in causes)
+    assert "holds by how much the same test differs on another day" in told
 
 
 def test_a_fit_without_a_verdict_says_so_first(tmp_path: Path) -> None:

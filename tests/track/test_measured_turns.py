@@ -17,8 +17,10 @@ from sailed_tracks import (
     trials,
 )
 
+from trialid.design.imo.recognise import recognise
+from trialid.design.imo.trial_measures import measure_trials
 from trialid.design.imo.trial_numbers import TurnMeasure
-from trialid.design.imo.turns import find_turns, measure, turns
+from trialid.design.imo.turns import Turn, find_turns, measure
 from trialid.identification.fit import identify
 from trialid.threads import one_thread
 from trialid.trial import Trial
@@ -34,18 +36,24 @@ def without_order(trial: Trial) -> Trial:
     return replace(trial, signals=signals, valid={n: trial.valid[n] for n in signals})
 
 
+def found_in(trial: Trial) -> list[Turn]:
+    size = SHIP.ship.particulars
+    return list(find_turns(trial, recognise(trial, size["L"], size["U0"])))
+
+
 @cache
 def truth(water: tuple[float, float]) -> dict[str, float]:
     """Of the track without noise, from the instant at which the rudder began to move."""
     trial = without_order(sailed("circle", water))
-    [turn] = find_turns(trial)
+    [turn] = found_in(trial)
     assert turn.t == pytest.approx(APPROACH, abs=0.01)
     return measure(replace(turn, t=APPROACH), trial.t, trial.signals)
 
 
 def measured(seed: int) -> tuple[TurnMeasure, ...]:
     fit = identify([without_order(t) for t in trials(seed)], SHIP, BY_NOISE)
-    return turns(fit, {p.name: p.standard_error for p in accuracy(fit).parameters}, spread(fit))
+    errors = {p.name: p.standard_error for p in accuracy(fit).parameters}
+    return measure_trials(fit, errors, spread(fit)).turns
 
 
 def test_measures_over_the_ground_and_through_the_water() -> None:
@@ -72,7 +80,7 @@ def held_out(seed: int) -> tuple[TurnMeasure, ...]:
         for n, use in (("zigzag", "fit"), ("circle", "check"))
     )
     fit = identify([zigzag, circle], SHIP, BY_NOISE)
-    return turns(fit, {}, spread(fit))
+    return measure_trials(fit, {}, spread(fit)).turns
 
 
 def test_a_band_of_a_turn_that_was_not_fitted_is_wider_and_holds_the_truth() -> None:
@@ -87,29 +95,29 @@ def test_a_band_of_a_turn_that_was_not_fitted_is_wider_and_holds_the_truth() -> 
 
 def test_a_zigzag_holds_no_turn_and_a_turn_to_port_is_the_mirror() -> None:
     rng = np.random.default_rng(2)
-    assert list(find_turns(noisy(sailed("zigzag", STILL), rng))) == []
+    assert (found_in(noisy(sailed("zigzag", STILL), rng))) == []
     trial = sailed("circle", STILL, course=0.0)
     odd = ("delta", "delta_order", "psi", "r", "y")
     port = replace(trial, signals={n: -x if n in odd else x for n, x in trial.signals.items()})
-    [a], [b] = find_turns(trial), find_turns(port)
+    [a], [b] = found_in(trial), found_in(port)
     assert b.rudder == pytest.approx(-a.rudder)
     assert measure(b, port.t, port.signals) == pytest.approx(measure(a, trial.t, trial.signals))
 
 
 def test_a_turn_out_of_another_manoeuvre_or_broken_off_is_none() -> None:
     trial = sailed("circle", STILL)
-    [turn] = find_turns(trial)
+    [turn] = found_in(trial)
     late = {n: x[turn.begin + 5 :] for n, x in trial.signals.items()}
     cut = replace(
         trial, signals=late, valid={n: x[turn.begin + 5 :] for n, x in trial.valid.items()}
     )
-    assert list(find_turns(cut)) == []
+    assert (found_in(cut)) == []
     stop = int(np.argmax(trial.signals["psi"] - turn.course > np.deg2rad(150.0)))
     short = {n: x[:stop] for n, x in trial.signals.items()}
-    assert list(find_turns(replace(trial, signals=short))) == []
+    assert (found_in(replace(trial, signals=short))) == []
     lost = {n: x.copy() for n, x in trial.valid.items()}
     lost["x"][turn.begin + 10 : turn.begin + 60] = False
-    assert list(find_turns(replace(trial, valid=lost))) == []
+    assert (found_in(replace(trial, valid=lost))) == []
 
 
 @pytest.mark.study(turn=4)

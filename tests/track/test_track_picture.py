@@ -14,7 +14,8 @@ from trialid.identification.problem import Settings
 from trialid.report.pages.page import environment
 from trialid.report.pictures.track_picture import track_picture
 from trialid.result.track_series import TrackSeries, Way, read_track_csv, write_track_csv
-from trialid.workflow.track_prediction import track_of
+from trialid.trial import Trial
+from trialid.workflow.track_prediction import track_of, true_wind
 
 SIZE = {"L": 100.0, "B": 20.0}
 
@@ -42,16 +43,20 @@ def points(text: str) -> np.ndarray:
 def test_one_scale_north_up_and_east_to_the_right() -> None:
     drawn = track_picture(eastward(), SIZE)
     assert drawn is not None
+    assert [line.times for line in drawn.measured] == ["0,1,2,3,4", "6,7,8,9,10,11,12,13,14,15"]
     assert len(drawn.measured) == 2  # a gap is none of the track
-    first, second = map(points, drawn.measured)
+    first, second = (points(line.points) for line in drawn.measured)
     scale = drawn.scale / 200.0
     assert drawn.scale_words == "200 m"
     assert first[-1] - first[0] == pytest.approx([400.0 * scale, 0.0], abs=0.2)
     assert second[-1] - second[0] == pytest.approx([400.0 * scale, -500.0 * scale], abs=0.2)
-    [model] = map(points, drawn.predicted)
+    [model] = (points(line.points) for line in drawn.predicted)
     assert model[0] - first[0] == pytest.approx([0.0, 50.0 * scale], abs=0.2)
-    assert points(" ".join(drawn.measured)).min() > 0.0
-    assert points(" ".join(drawn.measured)).max(axis=0)[1] < drawn.height - 40.0
+    assert points(" ".join(line.points for line in drawn.measured)).min() > 0.0
+    assert (
+        points(" ".join(line.points for line in drawn.measured)).max(axis=0)[1]
+        < drawn.height - 40.0
+    )
 
 
 def test_the_ship_is_drawn_to_scale_with_her_bow_ahead() -> None:
@@ -59,7 +64,7 @@ def test_the_ship_is_drawn_to_scale_with_her_bow_ahead() -> None:
     assert drawn is not None
     hull, scale = points(drawn.outlines[0]), drawn.scale / 200.0
     assert np.ptp(hull, axis=0) == pytest.approx([100.0 * scale, 20.0 * scale], abs=0.2)
-    middle = points(drawn.measured[0])[0]
+    middle = points(drawn.measured[0].points)[0]
     assert hull[0] - middle == pytest.approx([50.0 * scale, 0.0], abs=0.2)
     north = points(drawn.outlines[-1])
     assert north[0][1] == north[:, 1].min()
@@ -84,9 +89,35 @@ def test_the_arrow_goes_where_the_water_goes() -> None:
     assert track_picture(None) is None
 
 
+def test_the_wind_is_drawn_where_it_goes_and_called_by_where_it_comes_from() -> None:
+    drawn = track_picture(replace(eastward(), wind=(0.0, 8.0)), SIZE)
+    assert drawn is not None
+    assert (drawn.wind, drawn.wind_words) == (90.0, "mean wind 8.0 m/s from 270°")
+    unknown = track_picture(eastward(), SIZE)
+    assert unknown is not None
+    assert (unknown.wind, unknown.wind_words) == (None, "wind not recorded")
+
+
+def test_the_true_wind_is_the_one_on_board_less_her_own_way() -> None:
+    """Air that comes from the west at 12 m/s, on a ship that goes and looks all round."""
+    t = np.arange(0.0, 300.0, 1.0)
+    psi = 0.3 + t / 60.0
+    x, y = np.cumsum(6.0 * np.cos(psi)), np.cumsum(6.0 * np.sin(psi))
+    north, east = -np.gradient(x), 12.0 - np.gradient(y)
+    signals = {
+        **{"x": x, "y": y, "psi": psi, "V_aw": np.hypot(north, east)},
+        "gamma_aw": np.arctan2(-east, -north) - psi,
+    }
+    trial = Trial("round", "fit", 1.0, signals, {n: np.ones(300, bool) for n in signals})
+    assert true_wind(trial) == pytest.approx((0.0, 12.0), abs=1e-9)
+    still = {n: x for n, x in signals.items() if n != "V_aw"}
+    assert true_wind(replace(trial, signals=still)) is None
+
+
 def test_what_a_folder_keeps_is_what_was_drawn(tmp_path: Path) -> None:
     file = tmp_path / "track.csv"
-    whole, unknown = eastward(), replace(eastward(None), trial="x", over_ground=False)
+    whole = replace(eastward(), wind=(-6.0, 8.0))
+    unknown = replace(eastward(None), trial="x", over_ground=False)
     write_track_csv(file, [whole, unknown])
     found = read_track_csv(file)
     assert track_picture(found["east"], SIZE) == track_picture(whole, SIZE)

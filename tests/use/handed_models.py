@@ -12,7 +12,7 @@ from trialid.design.prediction.seen_range import SeenRange
 from trialid.effects import CATALOGUE
 from trialid.export.model.fitted_model import FittedModel, FittedParameter
 from trialid.ship.model import ShipModel
-from trialid.simulation.integrate import prepare, respond
+from trialid.simulation.integrate import domain, prepare, respond
 from trialid.simulation.trace import trace
 from trialid.trial import Trial
 from trialid.workflow.build_model import available, build_model
@@ -29,6 +29,7 @@ def squall(v, phi, *, Ysq=-0.002, Nsq=Parameter(0.0004, low=-1.0, high=1.0)):
     return Force(Y=Ysq * tanh(9.0 * v) * exp(-phi * phi), N=Nsq * clip(v, 0.05))
 """
 SAMPLES, PERIOD = 600, 0.5
+STEERED = frozenset({"delta", "delta_order"})
 TIGHT = 1e-12
 
 
@@ -120,6 +121,16 @@ def by_kernel(made: FittedModel, u: np.ndarray) -> tuple[np.ndarray, np.ndarray,
     assert response.departure is None
     assert made.equations.states == simulator.equations.states
     return response.states[0], response.states, response.y
+
+
+def sailed_by_kernel(made: FittedModel, rudder: float, steps: int) -> np.ndarray:
+    """The state so many steps on, inputs held, from where an FMU begins; (n_x,)."""
+    simulator = prepare(made.model, (), tuple(made.equations.outputs))
+    starts = made.starts | dict.fromkeys(STEERED & {*made.inputs}, rudder)
+    x, u = (np.array([starts[n] for n in names]) for names in (made.equations.states, made.inputs))
+    theta = np.array([p.value for p in made.parameters])
+    held = np.tile(u, (steps + 1, 1))
+    return simulator.engine.simulate(theta, x, held, domain(made.model), PERIOD, 1)[0][-1]
 
 
 def largest_difference(found: np.ndarray, expected: np.ndarray) -> float:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import s175q
-from test_simulate import known_by
+from typical import known_by
 
 from trialid.accuracy.likely import Rival, Rows, stand
 from trialid.design.helm import carry_out, vessel

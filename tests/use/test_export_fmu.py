@@ -11,10 +11,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from handed_models import NAMES, PERIOD, TIGHT, Case, cases, handed, inputs_of
+from handed_models import NAMES, PERIOD, TIGHT, Case, cases, handed, inputs_of, sailed_by_kernel
+from handed_models import largest_difference as apart
 from test_bad_input import trialid_
 
-from trialid.export.model.fmu import fmu_bytes, fmu_source
+from trialid.export.model.equation_steps import own_name
+from trialid.export.model.fmu.fmu_file import fmu_bytes, fmu_source
 from trialid.simulation.integrate import domain, prepare
 
 GCC = shutil.which("gcc") or shutil.which("cc")
@@ -121,16 +123,16 @@ def test_its_numbers_are_the_kernel_s(name: str, tmp_path: Path) -> None:
     x = np.array([7.33 if s == "u" else 0.0 for s in states])
     driver.put(dict(zip(states, x.tolist(), strict=True)))
     run, limit, largest = simulator.engine, domain(made.model), np.zeros(len(states))
-    apart = np.zeros(len(states))
+    off = np.zeros(len(states))
     for k, row in enumerate(u):
         assert driver.put(dict(zip(made.inputs, row.tolist(), strict=True))) == OK
         assert driver.step(2.0 * PERIOD * k, 2.0 * PERIOD) == OK
         both = np.array([row, row])
         x = run.simulate(theta, x, both, limit, 2.0 * PERIOD, 2)[0][1]
-        apart = np.maximum(apart, np.abs(x - driver.get(list(states))))
+        off = np.maximum(off, np.abs(x - driver.get(list(states))))
         largest = np.maximum(largest, np.abs(x))
     assert largest.min() > 0.0
-    assert (apart / largest).max() < TIGHT
+    assert (off / largest).max() < TIGHT
 
 
 @compiled
@@ -188,3 +190,33 @@ def test_an_importer_takes_it(run_folder: Path, tmp_path: Path) -> None:
         path = tmp_path / "case.fmu"
         path.write_bytes(fmu_bytes(handed(cases(tmp_path)[name]), "case"))
         assert validate_fmu(str(path)) == [], name
+
+
+@compiled
+def test_another_importer_sails_it_to_the_same_numbers(tmp_path: Path) -> None:
+    """libcosim, on the FMI Library: what the kernel makes of a rudder that is held."""
+    pytest.importorskip("libcosimpy")
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimManipulator import CosimManipulator
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    log_output_level(CosimLogLevel.ERROR)
+    for name in NAMES:
+        made = handed(cases(tmp_path)[name])
+        path = tmp_path / f"{own_name(name)}.fmu"
+        path.write_bytes(fmu_bytes(made, "case"))
+        sailing = CosimExecution.from_step_size(step_size=PERIOD * 1e9)
+        ship = sailing.add_local_slave(CosimLocalSlave(str(path), "ferry"))
+        helm, log = CosimManipulator.create_override(), CosimObserver.create_last_value()
+        sailing.add_manipulator(helm)
+        sailing.add_observer(log)
+        at = {n: i for i, n in enumerate((*made.equations.states, *made.inputs))}
+        rudder = next(
+            i for n, i in at.items() if n in ("delta", "delta_order") and n in made.inputs
+        )
+        helm.slave_real_values(ship, [rudder], [0.2])
+        sailing.step(120)
+        found = log.last_real_values(ship, [at[n] for n in made.equations.states])
+        assert apart(np.array([found]), sailed_by_kernel(made, 0.2, 120)[None]) < TIGHT, name

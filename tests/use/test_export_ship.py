@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -9,9 +10,15 @@ import s175q
 from test_bad_input import trialid_
 
 from trialid.effects import CATALOGUE
-from trialid.export.model.fitted_ship import _file_factor, fitted_ship, fitted_ship_text
+from trialid.export.model.fitted_ship import (
+    FittedShip,
+    _file_factor,
+    fitted_ship,
+    fitted_ship_text,
+)
 from trialid.result.fit_rows import AccuracyPart, ParameterRow
 from trialid.result.schema import Result
+from trialid.ship.actuators import Actuator
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import Ship, read_ship
 
@@ -89,3 +96,41 @@ def test_a_ship_of_another_system_keeps_it(tmp_path: Path) -> None:
     assert back.value("Yv") == model.value("Yv")
     assert read_ship(path).coefficients["Ndelta"] < 0.0
     assert _file_factor(model, "Ndelta") < 0.0
+
+
+def test_everything_a_ship_file_can_say_is_said_again(tmp_path: Path) -> None:
+    """Every field of a ship, none at what is taken where the file is silent."""
+    ship = Ship(
+        name='a "ferry"',
+        source="a book, 2019",
+        system="prime",
+        rudder_positive="port",
+        particulars={"L": 96.5, "rho": 1025.0, "g": 9.81, "nabla": 3560.0, "U0": 8.2, "T": 3.1},
+        mass={"m": 0.00792, "I_zz": 0.000456},
+        coefficients={"Yv": -0.0119, "a part's own": 1.0 / 3.0},
+        coefficient_speed=7.3,
+        notes="weighed\nin dock",
+        uncertainty={"default": 0.1, "m": 0.0, "Yv": 0.123456789},
+        antenna={"x": -12.25, "y": 0.1, "z": -17.0},
+        actuators=(
+            Actuator(name="port", kind="azimuth", x=-40.0, y=-3.0, direction=0.3, own=True),
+            Actuator(name="bow", kind="tunnel", x=41.0, y=0.0, direction=1.6, command="share"),
+        ),
+    )
+    silent = {f.name: f.default_factory() for f in fields(Ship) if callable(f.default_factory)}
+    silent |= {f.name: f.default for f in fields(Ship) if f.name not in silent}
+    assert all(getattr(ship, name) != default for name, default in silent.items())
+    path = tmp_path / "ferry.toml"
+    path.write_text(fitted_ship_text(FittedShip(ship, {}), ()), encoding="utf-8")
+    assert read_ship(path) == ship
+
+
+def test_what_the_pipeline_states_of_the_ship_goes_with_her() -> None:
+    """A number of her hull that no file had; of a sensor nothing."""
+    effects = tuple(CATALOGUE[n] for n in ("linear_hull", "yaw_cubic_rrr", "bias_r"))
+    model = ShipModel(s175q.SHIP, ("v", "r"), effects).with_values({"Nrrr": -0.002, "b_r": 0.01})
+    made = fitted_ship(model, Result())
+    before = s175q.SHIP.coefficients
+    assert {*made.ship.coefficients} - {*before} == {"Nrrr"} - {*before}
+    assert made.ship.coefficients["Nrrr"] == -0.002
+    assert made.words["Nrrr"] == "as the pipeline states it"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from test_bad_input import trialid_
 from test_nomoto import MODEL, ship
-from test_simulate import known_by
+from typical import known_by
 
 from trialid.design.following import sailed_ship
 from trialid.design.helm import vessel

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import s175q
 from test_bad_input import trialid_
-from test_simulate import known_by
+from typical import known_by
 
 from trialid.design.following import approach_speeds
 from trialid.design.helm import sail, vessel

@@ -8,13 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from test_bad_input import trialid_
+from typical import known_by
 
 from trialid import ingest
-from trialid.accuracy.likely import Rows, stand
 from trialid.design.following import vessel_of
-from trialid.design.imo.speed_loss import NAMES
 from trialid.design.prediction import predicted_motion
-from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.predicted_motion import sail_manoeuvre, sail_orders
 from trialid.errors import TrialidError
 from trialid.progress import silent
@@ -30,23 +28,6 @@ ZIGZAG = ("zigzag", "20", "20")
 @pytest.fixture(scope="module")
 def model(run_folder: Path) -> FinishedModel:
     return finished_model(run_folder, silent)
-
-
-def known_by(name: str, deviation: float) -> LikelySpread:
-    """One parameter of this deviation, and nothing else that is uncertain."""
-    nothing = np.zeros((9, 0))
-    rows = Rows(
-        residual=np.ones(9),
-        psi=np.ones((9, 1)),
-        priors=np.zeros((1, 2)),
-        held=nothing,
-        deviations=np.zeros(0),
-        S=nothing,
-        level=1.0,
-    )
-    covariance = np.zeros((1 + len(NAMES),) * 2)
-    covariance[0, 0] = deviation**2
-    return LikelySpread((name,), (), (), covariance, stand(rows, []))
 
 
 # --- numbers ------------------------------------------------------------------------------------

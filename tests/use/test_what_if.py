@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import s175q
 from test_bad_input import trialid_
-from test_simulate import known_by
+from typical import known_by
 
 from trialid.design.helm import carry_out, vessel
 from trialid.design.imo import measures
@@ -164,6 +164,9 @@ def test_a_ship_that_is_given_her_speed_is_not_stopped(model: FinishedModel) -> 
     plain = vessel(surging() - "propeller_thrust", 0.5, {"u": 7.0}, 0.05)
     with pytest.raises(DesignError, match="no effect of this model reads a shaft"):
         sail_stop(plain, 0.5, known_by("Xuu", 0.0), {})
+    shaft = vessel(surging(), 0.5, {"u": 7.33, "n": 5.0}, 0.05)
+    with pytest.raises(DesignError, match="knows n ahead alone"):
+        sail_stop(shaft, 0.0, known_by("Xuu", 0.0), {}, astern=True)
     for wrong in (["stop", "a"], ["stop", "0"], ["stop", "20", "3"]):
         with pytest.raises(TrialidError):
             stop_order(wrong)

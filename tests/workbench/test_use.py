@@ -27,6 +27,13 @@ def test_a_manoeuvre_is_tried_on_the_spot(address: Address) -> None:
     value, likely = rows["first overshoot 10/10 [deg]"]
     low, high = (float(x) for x in likely.split(" to "))
     assert 0.0 < low <= value <= high
+    picture = made.json["picture"]
+    titles = [p["title"] for p in picture["panels"]]
+    assert titles[0] == "rudder angle δ"
+    assert {"yaw rate r", "heading ψ"} <= {*titles}
+    assert all(p["line"] and p["band"] for p in picture["panels"][1:])
+    assert picture["panels"][0]["band"] == ""
+    assert len(picture["track"]["boxes"]) == 8
     for wrong in ({"orders": "zigzg 10"}, {"orders": ""}, {"orders": 3}, [1]):
         refused = address.post("/api/try", wrong)
         assert refused.status == 400

@@ -133,7 +133,7 @@ class Standing:
     Made from the rows once; they are not needed again.
     """
 
-    known: "_Reduced"
+    known: "Reduced"
     rivals: tuple[Rival, ...]
 
     def average(self, slopes: Vector | None = None) -> Averaged:
@@ -212,7 +212,7 @@ def stand(rows: Rows, rivals: Sequence[Rival]) -> Standing:
 
 
 @dataclass(frozen=True)
-class _Reduced:
+class Reduced:
     """Sums of products with the fitted parameters taken out; the residual first, then the held.
 
     `moves` is what the parameters, or what follows from them, do per unit of each column, with its
@@ -226,7 +226,7 @@ class _Reduced:
     independent: float
 
 
-def _through(known: _Reduced, slopes: Vector) -> _Reduced:
+def _through(known: Reduced, slopes: Vector) -> Reduced:
     """The same for quantities that follow from parameters, from what is held and what is added."""
     fitted = len(known.moves)
     moves = slopes[:, :fitted] @ known.moves
@@ -234,7 +234,7 @@ def _through(known: _Reduced, slopes: Vector) -> _Reduced:
     return replace(known, moves=moves)
 
 
-def _reduce(rows: Rows) -> _Reduced:
+def _reduce(rows: Rows) -> Reduced:
     slopes, gaps = rows.priors.T
     sizes = np.sqrt(np.sum(rows.psi**2, axis=0) + slopes**2)
     sizes = np.where(sizes > 0.0, sizes, 1.0)
@@ -249,7 +249,7 @@ def _reduce(rows: Rows) -> _Reduced:
     gram = left.T @ left + beside.T @ beside
     variance = max(rows.level**2, 1e-30)
     squares = float(rows.residual @ rows.residual)
-    return _Reduced(
+    return Reduced(
         gram, answer / sizes[:, None], rows.deviations, variance, max(squares / variance, 1.0)
     )
 
@@ -274,7 +274,7 @@ class _Posterior:
     cost: float
 
 
-def _posterior(known: _Reduced, rival: Rival) -> _Posterior:
+def _posterior(known: Reduced, rival: Rival) -> _Posterior:
     """What the record says if this is missing, and all that was held fixed is uncertain."""
     held = len(known.deviations)
     places = [*range(1, held + 1), *(1 + held + c for c in rival.columns)]
@@ -289,7 +289,7 @@ def _posterior(known: _Reduced, rival: Rival) -> _Posterior:
     )
 
 
-def _model(known: _Reduced, rival: Rival) -> _Model:
+def _model(known: Reduced, rival: Rival) -> _Model:
     """What that does to the parameters, or to what follows from them."""
     found = _posterior(known, rival)
     moves, expected = known.moves[:, found.places] * found.sizes, found.expected

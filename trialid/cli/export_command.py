@@ -71,7 +71,7 @@ def export(
         raise click.UsageError(f"Missing {missing}.")
     places = _places(run, kind, out, force=force)
     from trialid.workflow.use.finished_model import finished_model
-    from trialid.workflow.use.hand_over import WRITERS, Wishes
+    from trialid.workflow.use.hand_over import WRITERS, Wishes, beside_words
 
     wishes = Wishes(bandwidth, None if full_rudder is None else radians(_rudder(full_rudder)))
 
@@ -86,7 +86,7 @@ def export(
             f"--out {places[0]}: {(error.strerror or str(error)).lower()}"
         ) from error
     if not quiet:
-        for words in model.doubts:
+        for words in filter(None, (*model.doubts, beside_words(made))):
             note(words)
         say(f"Written: {', '.join(map(str, places))}")
 

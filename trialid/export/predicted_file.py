@@ -26,9 +26,9 @@ Write = Callable[[Path, str, PredictedMotion, Mapping[str, Any]], None]
 def predicted_columns(made: PredictedMotion) -> Iterator[tuple[str, str, Vector]]:
     """Name, unit and values of every column: orders, motions, and the ends of their ranges."""
     for name, values in made.given.items():
-        yield name, labels.quantity(name).unit, values
+        yield name, made.quantities[name].unit, values
     for name, values in made.motion.items():
-        unit = METRES.get(name) or labels.quantity(name).unit
+        unit = METRES.get(name) or made.quantities[name].unit
         yield name, unit, values
         for end, one in zip(ENDS, made.ranges[name], strict=True):
             yield f"{name}_{end}", unit, one

@@ -205,7 +205,7 @@ class DiagnoseSection(Section):
     """The search for the missing effect."""
 
     candidates: Annotated[Literal["all", "none"] | Names, PlainValidator(candidate_names)] = "all"
-    """Effects that may be missing: all of the catalogue, none, or a list of names."""
+    """Effects that may be missing: all of the catalogue and what is held fixed, none, or a list."""
     noise: Mapping[str, Positive] = {}
     """Stated sensor figure by output, standard deviation in the unit reports show (deg/s, deg)."""
     refit: Whole = 4

@@ -27,6 +27,7 @@ export function trialOf(data, index, heights = HEIGHTS, beside = true, hidden = 
 export function fill(trial, article) {
   article.querySelector(".panels").replaceChildren(...trial.plots.map(place));
   trial.told = article.querySelector(".window");
+  trial.track = trial.track || (() => article.querySelector("svg.track"));
 }
 
 export function build(trial, article, title) {

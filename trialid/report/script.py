@@ -10,6 +10,7 @@ MODULES: Final = (
     "plots/numbers.js",
     "plots/sizes.js",
     "plots/painting.js",
+    "plots/track.js",
     "plots/zoom.js",
     "plots/drawings.js",
     "plots/chart.js",

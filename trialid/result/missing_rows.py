@@ -71,7 +71,7 @@ def _standing(c: Candidate, found: Diagnosis) -> str:
     if not c.allowed:
         return "unphysical"
     if c.worth_a_name(0.05):
-        return "stands out"
+        return "stands out" if c.p_value < 0.05 else "lowers the error"
     return "significant and small" if c.shown(0.05) else "no evidence"
 
 

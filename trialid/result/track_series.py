@@ -16,11 +16,12 @@ FILE: Final = "track.csv"
 PLACE: Final = ("x", "y", "psi")
 UNITS: Final = {"x": "m", "y": "m", "psi": "rad"}
 CURRENT: Final = ("V_cn_m/s", "V_ce_m/s")
+WIND: Final = ("V_wn_m/s", "V_we_m/s")
 GROUND: Final = "predicted_over"
 HEADINGS: Final = (
     *("trial", "t_s"),
     *(f"{n}_{role}_{UNITS[n]}" for role in ("measured", "predicted") for n in PLACE),
-    *(*CURRENT, GROUND),
+    *(*CURRENT, *WIND, GROUND),
 )
 
 
@@ -56,6 +57,9 @@ class TrackSeries:
         water; NaN where she does not sail it.
     current
         Speed of the water to the north and to the east [m/s]; None where the fit knows none.
+    wind
+        Mean of the air's speed over the ground to the north and to the east [m/s], by what was
+        recorded on board; None where it was not.
     """
 
     trial: str
@@ -63,6 +67,7 @@ class TrackSeries:
     measured: Way
     predicted: Way
     current: tuple[float, float] | None = None
+    wind: tuple[float, float] | None = None
     over_ground: bool = False
 
 
@@ -72,12 +77,12 @@ def write_track_csv(path: Path, tracks: Sequence[TrackSeries]) -> None:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(HEADINGS)
         for one in tracks:
-            water = ["", ""] if one.current is None else list(one.current)
+            moving = [x for way in (one.current, one.wind) for x in way or ("", "")]
             over = "ground" if one.over_ground else "water"
             columns = [one.t, *one.measured.columns, *one.predicted.columns]
             for row in np.column_stack(columns).tolist():
                 numbers = ("" if math.isnan(x) else x for x in row)
-                writer.writerow([one.trial, *numbers, *water, over])
+                writer.writerow([one.trial, *numbers, *moving, over])
 
 
 def read_track_csv(path: Path) -> dict[str, TrackSeries]:
@@ -107,12 +112,17 @@ def _track(name: str, rows: Sequence[Sequence[str]]) -> TrackSeries:
     first = 1 + 1 + 2 * len(PLACE)
     y = np.array([[float(x or "nan") for x in row[1:first]] for row in rows])
     measured, predicted = (Way(*y[:, at : at + 3].T) for at in (1, 4))
-    north, east, over = rows[0][first:]
+    *moving, over = rows[0][first:]
+    current, wind = (
+        (float(north), float(east)) if north and east else None
+        for north, east in (moving[:2], moving[2:])
+    )
     return TrackSeries(
         trial=name,
         t=y[:, 0],
         measured=measured,
         predicted=predicted,
-        current=(float(north), float(east)) if north and east else None,
+        current=current,
+        wind=wind,
         over_ground=over == "ground",
     )

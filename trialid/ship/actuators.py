@@ -222,7 +222,7 @@ def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
         yield f'name = "{one.name}"'
         yield f'kind = "{one.kind}"'
         yield f"at = [{one.x!r}, {one.y!r}]  # m ahead, m to starboard"
-        yield f"direction = {math.degrees(one.direction)!r}"
+        yield f"direction = {_degrees(one.direction)!r}"
         if one.kind != "rudder":
             yield f'command = "{one.command}"'
         yield f"own = {str(one.own).lower()}"
@@ -232,6 +232,17 @@ def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
             if math.isfinite(value):
                 yield f"{key} = {value * units.factor(one.unit, SHOWN[one.unit])!r}"
         yield ""
+
+
+def _degrees(angle: float) -> float:
+    """The angle [deg] of which `math.radians` makes this one, short where it can be.
+
+    >>> _degrees(math.radians(-359.7)), _degrees(math.radians(7.5))
+    (-359.7, 7.5)
+    """
+    near = math.degrees(angle)
+    tried = (float(f"{near:.12g}"), near, *(math.nextafter(near, e) for e in (-1e9, 1e9)))
+    return next((degrees for degrees in tried if math.radians(degrees) == angle), near)
 
 
 def _plain(words: str) -> str:

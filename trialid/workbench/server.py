@@ -30,7 +30,18 @@ from trialid.workbench.sent import sent_object, text_in
 from trialid.workbench.use_desk import InUse
 
 SCRIPTS: Final = tuple(
-    ["workbench", "state", "complaints", "parts", "trials", "status", "edits", "keys", "use"]
+    [
+        "workbench",
+        "state",
+        "complaints",
+        "parts",
+        "trials",
+        "status",
+        "edits",
+        "keys",
+        "use",
+        "tried",
+    ]
 )
 """The modules of the page's own script."""
 

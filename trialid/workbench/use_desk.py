@@ -5,7 +5,7 @@ import math
 import threading
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from trialid.design.prediction.seen_range import seen_ranges
@@ -13,6 +13,7 @@ from trialid.diagnosis.diagnose import examine_fit
 from trialid.errors import PipelineError, nearest
 from trialid.names.model_kinds import KINDS
 from trialid.progress import silent
+from trialid.report.pictures.prediction_picture import prediction_picture
 from trialid.threads import one_thread
 from trialid.workbench.shown import Shown
 from trialid.workflow.build_model import available
@@ -61,7 +62,7 @@ def _ready(shown: Shown, run: Outcome) -> FinishedModel:
 
 
 def try_orders(model: FinishedModel, orders: str) -> dict[str, Any]:
-    """A manoeuvre by its words, as a page shows it: its numbers with their ranges, and words.
+    """A manoeuvre by its words, as a page shows it: numbers with their ranges, words, pictures.
 
     Raises
     ------
@@ -82,7 +83,8 @@ def try_orders(model: FinishedModel, orders: str) -> dict[str, Any]:
         for name, (value, ends) in made.motion.numbers.items()
     ]
     said = [*made.words, *([f"Not come to: {made.motion.remark}."] if made.motion.remark else ())]
-    return {"name": made.name, "rows": rows, "words": said}
+    picture = asdict(prediction_picture(made.motion))
+    return {"name": made.name, "rows": rows, "words": said, "picture": picture}
 
 
 def hand_out(model: FinishedModel, kind: str, asked: Mapping[str, str]) -> tuple[str, bytes]:

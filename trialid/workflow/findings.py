@@ -6,7 +6,8 @@ from typing import Any
 from trialid.design import following
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
-from trialid.design.imo import measured, observed, turns
+from trialid.design.imo import observed
+from trialid.design.imo.trial_measures import measure_trials
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.separation import Separation
 from trialid.design.steering.nomoto import Nomoto, nomoto
@@ -33,6 +34,7 @@ def diagnose_settings(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> Di
     asked = pipeline.diagnose
     return DiagnoseSettings(
         candidates=candidates(pipeline, catalogue),
+        held=asked.candidates == "all",
         family_cos=asked.family_cos,
         level=asked.level,
         refit=asked.refit,
@@ -115,14 +117,14 @@ def _imo(pipeline: Pipeline, done: Diagnosed, ship: Vessel | None) -> dict[str, 
     off, fit = done.doubts, done.fit
     spread = likely_spread(fit, done.accuracy.covariance, off.standing, off.held, off.missing)
     errors = {p.name: p.standard_error for p in done.accuracy.parameters}
-    read = measured.manoeuvre_numbers(fit, spread)
-    by_heading = {one.trial for one in read if one.kind == "zig-zag"}
+    found = measure_trials(fit, errors, spread)
+    by_heading = {one.trial for one in found.numbers if one.kind == "zig-zag"}
     integrals = (one for one in observed.overshoots(fit) if one.trial not in by_heading)
     return {
         "measures": following.measures_within(fit, spread),
         "overshoots": tuple(integrals),
-        "turns": turns.turns(fit, errors, spread),
-        "manoeuvres": measured.manoeuvres(fit),
-        "measured": read,
+        "turns": found.turns,
+        "manoeuvres": found.manoeuvres,
+        "measured": found.numbers,
         "steering": _steering(ship, spread),
     }

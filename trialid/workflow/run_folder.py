@@ -11,7 +11,7 @@ from trialid.pipeline_file import Pipeline, sources
 ORIGIN: Final = "trialid-run/1"
 FILES: Final = (
     "report.html", "result.json", "series.csv", "predicted.mcap", "missing_force.csv",
-    "track.csv", "pipeline.toml", "run.json",
+    "track.csv", "pipeline.toml", "run.json", "standing.npz",
 )  # fmt: skip
 """What a run writes."""
 

@@ -13,6 +13,7 @@ from trialid.result.track_series import PLACE, TrackSeries, Way
 from trialid.trial import Trial
 
 POSITION: Final = ("x", "y")
+APPARENT: Final = ("V_aw", "gamma_aw", "psi")
 
 
 def track_of(fit: Fit, score: Score) -> TrackSeries | None:
@@ -35,8 +36,27 @@ def track_of(fit: Fit, score: Score) -> TrackSeries | None:
         measured=Way(*(_seen(trial, n) for n in PLACE)),
         predicted=Way(*((predicted or {}).get(n, lost) for n in PLACE)),
         current=None if known[0] is None or known[1] is None else (known[0], known[1]),
+        wind=true_wind(trial),
         over_ground=simulated,
     )
+
+
+def true_wind(trial: Trial) -> tuple[float, float] | None:
+    """Mean wind over the ground, to the north and to the east [m/s]; None where none was recorded.
+
+    The wind on board, turned by the heading, with the ship's own speed over the ground added.
+    """
+    if not {*POSITION, *APPARENT} <= {*trial.signals}:
+        return None
+    seen = np.all([trial.valid[n] for n in (*POSITION, *APPARENT)], axis=0)
+    speed, angle, psi = (trial.signals[n] for n in APPARENT)
+    from_there = angle + psi
+    relative = (-speed * np.cos(from_there), -speed * np.sin(from_there))
+    own = (np.gradient(trial.signals[n], trial.period) for n in POSITION)
+    whole = [(air + ship)[seen] for air, ship in zip(relative, own, strict=True)]
+    if not seen.any() or not np.isfinite(whole).all():
+        return None
+    return float(np.mean(whole[0])), float(np.mean(whole[1]))
 
 
 def _seen(trial: Trial, name: str) -> Vector:

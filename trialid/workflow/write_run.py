@@ -15,6 +15,8 @@ from trialid.result.series import write_csv
 from trialid.result.track_series import write_track_csv
 from trialid.workflow.outcome import Outcome, Run
 from trialid.workflow.run_folder import FILES, ORIGIN
+from trialid.workflow.use import kept_standing
+from trialid.workflow.use.kept_standing import standing_bytes
 
 
 def write(done: Run | Outcome, folder: Path) -> None:
@@ -34,7 +36,8 @@ def write(done: Run | Outcome, folder: Path) -> None:
 
 
 def _write_files(done: Run | Outcome, folder: Path) -> None:
-    (folder / "result.json").write_text(text_of(done.result), encoding="utf-8")
+    result = text_of(done.result).encode()
+    (folder / "result.json").write_bytes(result)
     write_csv(folder / "series.csv", done.series)
     tracks = [one.track for one in done.series if one.track is not None]
     if tracks:
@@ -45,6 +48,16 @@ def _write_files(done: Run | Outcome, folder: Path) -> None:
         write_force_csv(folder / "missing_force.csv", forces)
     write_page(folder / "report.html", done.result, done.series, forces)
     (folder / "pipeline.toml").write_bytes(done.pipeline.content)
+    standing = _standing(done, result)
+    if standing is not None:
+        (folder / kept_standing.FILE).write_bytes(standing)
+
+
+def _standing(done: Run | Outcome, result: bytes) -> bytes | None:
+    """What makes taking the run up quick; None with effects that may change unseen."""
+    if isinstance(done, Outcome) or done.pipeline.model.effects_from:
+        return None
+    return standing_bytes(done.findings.before, result)
 
 
 def _write_origin(done: Run | Outcome, work: Path, folder: Path) -> None:

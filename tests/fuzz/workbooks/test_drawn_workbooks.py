@@ -32,6 +32,7 @@ def test_some_drawn_workbooks(tmp_path):
     check(tmp_path, 1, 60)
 
 
-@pytest.mark.study(turn=2)
-def test_many_drawn_workbooks(tmp_path):
-    check(tmp_path, 2, 4000)
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", range(2, 7))
+def test_many_drawn_workbooks(tmp_path, seed):
+    check(tmp_path, seed, 800)

@@ -1,10 +1,7 @@
 """The pages on screens of any width and on paper, before the system's chromium."""
 
 import copy
-import shutil
-from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,11 +11,6 @@ from trialid.report.pages import side_by_side
 from trialid.report.pages.page import page as page_of
 from trialid.result.json_file import result_of
 
-playwright = pytest.importorskip("playwright.sync_api")
-CHROMIUM = shutil.which("chromium")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs chromium")
-
-ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking"]
 WIDTHS = (390, 1024, 1366)
 """A phone, a tablet, a laptop."""
 
@@ -38,39 +30,6 @@ EMPTY = """() => [...document.querySelectorAll(".cards article")].map((card) => 
   return (box.bottom - last.bottom) / box.height;
 })"""
 """Share of each card that is empty below what stands in it."""
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with playwright.sync_playwright() as play:
-        opened = play.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield opened
-        opened.close()
-
-
-@pytest.fixture
-def opened(browser: Any, tmp_path: Path) -> Iterator[Any]:
-    """Opens a text as a page of a width; no page may ask for anything or make an error."""
-    wrong: list[str] = []
-
-    def show(text: str, width: int) -> Any:
-        path = tmp_path / "page.html"
-        path.write_text(text, encoding="utf-8")
-        touch = {"has_touch": True, "is_mobile": True} if width < 500 else {}
-        size = {"width": width, "height": 20_000}  # plots are drawn where they are seen
-        page = browser.new_context(viewport=size, accept_downloads=True, **touch).new_page()
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("console", lambda said: said.type == "error" and wrong.append(said.text))
-        page.on("request", lambda each: each.url.startswith("http") and wrong.append(each.url))
-        page.goto(path.as_uri())
-        page.set_default_timeout(10_000)
-        page.locator(".panels canvas").first.wait_for()
-        return page
-
-    yield show
-    for context in browser.contexts:
-        context.close()
-    assert wrong == []
 
 
 @pytest.fixture

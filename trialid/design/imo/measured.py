@@ -6,19 +6,19 @@ rates are those through the water: a current does not turn the ship.
 """
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.imo.excursions import LATE, order_sample, rudder_of
-from trialid.design.imo.recognise import Recognised, recognise
-from trialid.design.imo.sailed_trial import SailedTrial, numbers, sail_trial
-from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Range
-from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.design.imo.recognise import UNSETTLED
+from trialid.design.imo.recognition import Recognised
+from trialid.design.imo.sailed_trial import SailedTrial, numbers
+from trialid.design.imo.track_numbers import white_noise
+from trialid.design.imo.trial_numbers import ManoeuvreNumber, Range
 from trialid.errors import DesignError
-from trialid.identification.fit import Fit
 from trialid.trial import Trial
 
 NORMAL: Final = 1.96
@@ -27,7 +27,7 @@ STILL: Final = 6
 LAST: Final = 3
 """The part of a held rudder, the last of so many, in which a rate of turn has settled."""
 ORDINALS: Final = ("first", "second", "third", "fourth", "fifth", "sixth")
-
+"""In words as the criteria have them; what comes after is counted."""
 
 Value = tuple[float, float]
 """A number and its standard error."""
@@ -35,56 +35,23 @@ Read = Callable[[Vector, float], dict[str, Value]]
 """What is read from headings (N,) [rad] with noise of this standard deviation."""
 
 
-def manoeuvres(fit: Fit) -> tuple[Manoeuvre, ...]:
-    """Every manoeuvre in the trials of a fit, to fit and to check, by evidence."""
-    return tuple(
-        Manoeuvre(
-            trial=s.trial.name,
-            kind=m.kind,
-            t=order_time(s.trial, m),
-            end=min(m.end, s.trial.samples - 1) * s.trial.period,
-            rudder=m.rudder,
-            remark=m.remark,
-        )
-        for s in fit.scores
-        for m in _recognised(fit, s.trial)
-    )
-
-
-def manoeuvre_numbers(fit: Fit, spread: LikelySpread | None) -> tuple[ManoeuvreNumber, ...]:
-    """The numbers of every zig-zag, pull-out and spiral in the trials of a fit.
+def heading_numbers(
+    trial: Trial, found: Sequence[Recognised], sailed: SailedTrial | None
+) -> Iterator[ManoeuvreNumber]:
+    """The numbers of every zig-zag, pull-out and spiral of a trial.
 
     Parameters
     ----------
-    spread
-        What a prediction is uncertain by; without it there is none.
+    sailed
+        The trial as the fitted ship sails it; without it nothing is predicted.
     """
-    return tuple(row for s in fit.scores for row in _of_trial(fit, s.trial, spread))
-
-
-def _recognised(fit: Fit, trial: Trial) -> tuple[Recognised, ...]:
-    size = fit.model.ship.particulars
-    return recognise(trial, size["L"], size["U0"])
-
-
-def order_time(trial: Trial, one: Recognised) -> float:
-    """When the order was given [s]: where the rudder's way to its angle began, by that way."""
-    rudder = rudder_of(trial)
-    if rudder is None or one.rudder == 0.0:
-        return one.execute * trial.period
-    return order_sample(rudder[: one.end], one.execute, one.rudder) * trial.period
-
-
-def _of_trial(fit: Fit, trial: Trial, spread: LikelySpread | None) -> Iterator[ManoeuvreNumber]:
-    found = [m for m in _recognised(fit, trial) if m.kind in READERS]
     psi = trial.signals.get("psi")
-    if not found or psi is None:
+    if psi is None:
         return  # the integral of a rate has its bias in it, and no white noise
-    sailed = None if spread is None else sail_trial(fit, trial, spread)
-    for one in found:
+    for one in (m for m in found if m.kind in READERS and m.remark != UNSETTLED):
         read, unit = READERS[one.kind](trial, one), UNITS[one.kind]
         try:
-            values = read(psi, _noise(psi[one.execute : one.end]))
+            values = read(psi, white_noise(psi[one.execute : one.end]))
         except DesignError:
             continue
         predicted = _predicted(sailed, read)
@@ -104,6 +71,17 @@ def _of_trial(fit: Fit, trial: Trial, spread: LikelySpread | None) -> Iterator[M
             )
 
 
+def order_time(trial: Trial, one: Recognised) -> float:
+    """When the order was given [s]: where the rudder's way to its angle began, by that way.
+
+    Of a stop half a sample before the shaft was seen to have left its revolutions.
+    """
+    rudder = rudder_of(trial)
+    if rudder is None or one.rudder == 0.0:
+        return (one.execute - 0.5) * trial.period
+    return order_sample(rudder[: one.end], one.execute, one.rudder) * trial.period
+
+
 def _predicted(sailed: SailedTrial | None, read: Read) -> dict[str, tuple[float, Range | None]]:
     if sailed is None:
         return {}
@@ -115,9 +93,9 @@ def _predicted(sailed: SailedTrial | None, read: Read) -> dict[str, tuple[float,
 
 
 def zigzag_reader(trial: Trial, one: Recognised) -> Read:
-    """The first six overshoots: how far the heading goes on from where the rudder was ordered over.
+    """Every overshoot: how far the heading goes on from where the rudder was ordered over [rad].
 
-    In rad. A leg that does not come back has none, and ends them.
+    A leg that does not come back has none, and ends them.
     """
     rudder = rudder_of(trial)
     assert rudder is not None
@@ -127,18 +105,31 @@ def zigzag_reader(trial: Trial, one: Recognised) -> Read:
 
     def read(psi: Vector, noise: float) -> dict[str, Value]:
         found = {}
-        legs = zip(ORDINALS, orders, ends, sides, strict=False)
-        for ordinal, at, end, side in legs:
+        legs = zip(orders, ends, sides, strict=True)
+        for place, (at, end, side) in enumerate(legs):
             peak = _peak(side * psi[int(at) : end + 1], noise)
             if peak is None:
                 break
             start, error, rate = _between(side * psi, at, noise)
             late = rate / np.sqrt(12.0)
             whole = float(np.sqrt(peak[1] ** 2 + error**2 + late**2))
-            found[f"{ordinal} overshoot"] = peak[0] - start, whole
+            found[f"{ordinal(place)} overshoot"] = peak[0] - start, whole
         return found
 
     return read
+
+
+def ordinal(place: int) -> str:
+    """The word for a place counted from 0.
+
+    >>> ordinal(0), ordinal(6), ordinal(10), ordinal(20), ordinal(21)
+    ('first', '7th', '11th', '21st', '22nd')
+    """
+    if place < len(ORDINALS):
+        return ORDINALS[place]
+    number = place + 1
+    ending = "th" if 10 < number % 100 < 14 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return f"{number}{ending}"
 
 
 def left_angle(rudder: Vector, k: int) -> float:
@@ -192,11 +183,6 @@ READERS: Final[Mapping[str, Callable[[Trial, Recognised], Read]]] = {
     "spiral": spiral_reader,
 }
 UNITS: Final = {"zig-zag": "rad", "pull-out": "rad/s", "spiral": "rad/s"}
-
-
-def _noise(y: Vector) -> float:
-    """Standard deviation of what is white in a smooth motion, by its third differences."""
-    return float(np.std(np.diff(y, 3))) / np.sqrt(20.0) if len(y) > 8 else 0.0
 
 
 def _peak(y: Vector, noise: float) -> Value | None:

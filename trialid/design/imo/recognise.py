@@ -4,17 +4,17 @@ The rudder is cut into excursions, from where it leaves midships to where it com
 One that was held through 180 deg is a turning circle; some of opposite sides and one angle, each
 given at one change of heading, are a zig-zag; a rudder that stays midships after a long turn is a
 pull-out; angles that go down by steps from one side to the other are a spiral; a shaft that turns
-astern while the ship has way is a stop. Whatever is none of these has no name.
+astern while the ship has way is a stop; a turn out, round to the other side and steady on the
+reciprocal course is a Williamson turn. Whatever is none of these has no name.
 """
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
-from trialid.arrays import Vector
+from trialid.arrays import Mask
 from trialid.design.imo.excursions import (
     ALIKE,
     HELD,
@@ -25,53 +25,26 @@ from trialid.design.imo.excursions import (
     given_back,
     heading,
     is_held,
+    reverses,
     rudder_of,
 )
+from trialid.design.imo.recognition import Recognised
+from trialid.design.imo.spirals import find_spirals
+from trialid.design.imo.stops import find_stops
+from trialid.design.imo.williamson import find_williamson_turns
 from trialid.trial import Trial
-
-Kind = Literal["turning circle", "turn", "zig-zag", "pull-out", "spiral", "stop"]
 
 PULL_OUT: Final = 3.0
 """Ship lengths of midships after a turn: a rate that is not to stay has fallen by then. On
-the days that `excursions` speaks of, by twice of it 64 of 71 manoeuvres are found, by half all but
-one as here."""
+the days that `excursions` speaks of, by twice of it 63 of 65 manoeuvres are found, by half all."""
+SETTLED: Final = 0.05
+"""Share of the rate of turn before, by which it may still change: she would fall by less than that
+again. A compass of 0.2 deg noise alone makes it 1.6 % over two ship lengths of 20 s."""
+UNSETTLED: Final = "the rate of turn had not settled"
 ROUND, SPARE = float(np.deg2rad(5.0)), float(np.deg2rad(0.7))
-"""Angles that are ordered, and by how much helmsman, compass and rudder are off them: by half of it
-one name less is wrong on those days, by twice two more are."""
-SLOWEST_GEAR: Final = 2.0 * 6.0 / (65.0 / 28.0)
-"""[s] Twice what SOLAS leaves a gear for the 6 deg about midships: 65 deg in 28 s."""
-RECENT: Final = 200
-"""Samples that tell where a rudder is held."""
-STEPS: Final = 5
-"""Angles of a spiral at least, of both sides."""
-WAY: Final = 0.1
-"""Share of the approach speed at which a ship is stopped."""
+"""Angles that are ordered, and by how much helmsman, compass and rudder are off them. Half and
+twice change nothing on those days."""
 QUARTER: Final = np.pi / 2.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Recognised:
-    """A manoeuvre: samples from the order on, `end` one past the last.
-
-    Attributes
-    ----------
-    reversals
-        Samples at which the rudder was ordered over, of a zig-zag; else empty.
-    rudder
-        First angle held [rad], zero for a stop.
-    course
-        Mean heading before the order [rad].
-    remark
-        What it lacks; empty where it is whole.
-    """
-
-    kind: Kind
-    execute: int
-    end: int
-    rudder: float
-    course: float
-    reversals: tuple[int, ...] = ()
-    remark: str = ""
 
 
 def recognise(trial: Trial, length: float, speed: float) -> tuple[Recognised, ...]:
@@ -86,20 +59,42 @@ def recognise(trial: Trial, length: float, speed: float) -> tuple[Recognised, ..
     rudder = rudder_of(trial)
     if psi is None or rudder is None:
         return ()
-    found = SteeredRecord(trial, rudder, psi, max(round(length / speed / trial.period), 10))
-    steered = [*_spirals(found)]
-    free = [e for e in found.excursions if not any(m.execute <= e.begin < m.end for m in steered)]
-    steered += _zigzags(found, free)
-    free = [e for e in free if not any(m.execute <= e.begin < m.end for m in steered)]
-    steered += _turns(found, free)
-    steered += [*_pull_outs(found, free), *_stops(found, steered)]
-    return tuple(sorted(steered, key=lambda m: m.execute))
+    record = SteeredRecord(trial, rudder, psi, samples_a_length(trial, length, speed))
+    found = list(find_spirals(record))
+    for search in (find_williamson_turns, _zigzags):
+        found += search(record, _free(record, found))
+    free = _free(record, found)
+    found += _turns(record, free)
+    found += [*_pull_outs(record, free), *find_stops(record, _taken(record, found))]
+    return tuple(sorted(found, key=lambda m: m.execute))
+
+
+def samples_a_length(trial: Trial, length: float, speed: float) -> int:
+    """Samples in which the ship runs her length, 10 at least."""
+    return max(round(length / speed / trial.period), 10)
+
+
+def _free(record: SteeredRecord, found: Sequence[Recognised]) -> list[Excursion]:
+    """What the rudder did besides the manoeuvres found."""
+    taken = _taken(record, found)
+    return [e for e in record.excursions if not taken[e.begin]]
+
+
+def _taken(record: SteeredRecord, found: Sequence[Recognised]) -> Mask:
+    """The samples of manoeuvres; (N,)."""
+    taken = np.zeros(len(record.psi), dtype=bool)
+    for one in found:
+        taken[one.execute : one.end] = True
+    return taken
 
 
 def _turns(record: SteeredRecord, free: Sequence[Excursion]) -> Iterator[Recognised]:
     for one in free:
-        turned, course = record.turned(one), record.straight(one.begin)
-        if not is_held(one) or course is None or turned < QUARTER:
+        turned = record.turned(one)
+        if turned < QUARTER or not is_held(one):
+            continue
+        course = record.straight(one.begin)
+        if course is None:
             continue
         short = f"broken off at {np.rad2deg(turned):.0f} deg of heading"
         yield Recognised(
@@ -116,8 +111,8 @@ def _zigzags(record: SteeredRecord, free: Sequence[Excursion]) -> Iterator[Recog
     """Runs of excursions to alternate sides, of one angle, given at one change of heading."""
     place = 0
     while place < len(free):
-        run = _run(record, free, place)
-        course = record.straight(free[place].begin)
+        course = record.straight(free[place].begin) if is_held(free[place]) else None
+        run = [] if course is None else _run(record, free, place, course)
         if len(run) < 2 or course is None or (len(run) == 2 and not _round(record, run, course)):
             place += 1
             continue
@@ -128,55 +123,60 @@ def _zigzags(record: SteeredRecord, free: Sequence[Excursion]) -> Iterator[Recog
             rudder=run[0].angle,
             course=course,
             reversals=tuple(given_back(record, a, b.begin) for a, b in itertools.pairwise(run)),
-            remark="broken off after the first reversal" if len(run) == 2 else "",
+            remark=_lacks(record, run, free[place + 2 : place + 3]),
         )
         place += len(run)
 
 
-def _round(record: SteeredRecord, run: Sequence[Excursion], course: float) -> bool:
-    """Whether rudder and change of heading are numbers that a crew is told: 10 and 10, 20 and 20.
+def _lacks(record: SteeredRecord, run: Sequence[Excursion], rest: Sequence[Excursion]) -> str:
+    """Why a zig-zag has no second reversal: there was none, or not at that change of heading."""
+    if len(run) > 2:
+        return ""
+    if rest and reverses(record, run[-1], rest[0], run[0].angle):
+        return "the second reversal is at another change of heading"
+    return "broken off after the first reversal"
 
-    One reversal alone is also what a helmsman does who meets a turn.
+
+def _round(record: SteeredRecord, run: Sequence[Excursion], course: float) -> bool:
+    """Whether rudder and change of heading are one number that a crew is told: 10/10, 20/20.
+
+    One reversal alone is also what a helmsman does who meets a turn: two numbers that are round,
+    each by itself, come to that by chance one time in nine.
     """
     k = given_back(record, run[0], run[1].begin)
     change, late = abs(record.psi[k] - course), 2.0 * abs(record.psi[k] - record.psi[k - 1])
+    told = ROUND * round(abs(run[0].angle) / ROUND)
     spares = ((change, SPARE + late), (abs(run[0].angle), SPARE))
-    return all(abs(x - ROUND * round(x / ROUND)) <= spare for x, spare in spares)
+    return all(abs(x - told) <= spare for x, spare in spares)
 
 
-def _run(record: SteeredRecord, free: Sequence[Excursion], place: int) -> list[Excursion]:
+def _run(
+    record: SteeredRecord, free: Sequence[Excursion], place: int, course: float
+) -> list[Excursion]:
     """The longest zig-zag that begins with an excursion; that alone where there is none."""
-    run = [free[place]]
-    course = record.straight(run[0].begin)
-    if course is None or not is_held(run[0]):
-        return run
-    reached: list[float] = []
-    for one in free[place + 1 :]:
-        last = run[-1]
+    run, usual = [free[place]], 0.0
+    for k in range(place + 1, len(free)):
+        last, one = run[-1], free[k]
+        if not reverses(record, last, one, run[0].angle):
+            break
         change = abs(record.psi[given_back(record, last, one.begin)] - course)
-        near = (one.begin - last.end) * record.trial.period <= SLOWEST_GEAR
-        alike = abs(abs(one.angle) - abs(run[0].angle)) <= ALIKE * abs(run[0].angle)
-        usual = reached[0] if reached else change
+        usual = usual or change
         even = abs(change - usual) <= max(ALIKE * usual, STRAIGHT) and change > STRAIGHT
-        if not (near and alike and even and one.angle * last.angle < 0.0 and change < QUARTER):
+        if not even or change >= QUARTER or (one.held < HELD and k < len(free) - 1):
             break
-        if one.held < HELD and one is not free[-1]:
-            break
-        reached.append(change)
         run.append(one)
     return run
 
 
 def _pull_outs(record: SteeredRecord, free: Sequence[Excursion]) -> Iterator[Recognised]:
     """Midships after a turn with the rudder held, and left alone."""
+    rest = np.abs(record.rudder) > MIDSHIPS / 2.0
+    away, came = (np.append(np.flatnonzero(x), len(rest)) for x in (rest, ~rest))
     for one in free:
-        if not is_held(one) or record.turned(one) < QUARTER:
+        if record.turned(one) < QUARTER or not is_held(one):
             continue
-        away = np.flatnonzero(np.abs(record.rudder[one.end :]) > MIDSHIPS / 2.0)
-        came = np.flatnonzero(np.abs(record.rudder[one.end :]) <= MIDSHIPS / 2.0)
-        begin = one.end + (int(came[0]) if len(came) else 0)
-        later = away[away > begin - one.end]
-        end = one.end + int(later[0]) if len(later) else len(record.rudder)
+        begin = int(came[np.searchsorted(came, one.end)])
+        end = int(away[np.searchsorted(away, begin)])
         if end - begin >= round(PULL_OUT * record.clock) and _goes_on(record, one, begin):
             yield Recognised(
                 kind="pull-out",
@@ -184,7 +184,20 @@ def _pull_outs(record: SteeredRecord, free: Sequence[Excursion]) -> Iterator[Rec
                 end=end,
                 rudder=one.angle,
                 course=float(record.psi[one.end - 1]),
+                remark="" if _settled(record, one, end) else UNSETTLED,
             )
+
+
+def _settled(record: SteeredRecord, one: Excursion, end: int) -> bool:
+    """Whether the rate of turn changes no more, from the second third of a pull-out to the last."""
+    execute = given_back(record, one, one.end)
+    third = (end - execute) // 3
+    middle, last = (
+        float(np.polyfit(np.arange(third), record.psi[k - third : k], 1)[0])
+        for k in (end - third, end)
+    )
+    before = record.psi[execute] - record.psi[max(execute - record.clock, 0)]
+    return bool(abs(last - middle) <= SETTLED * abs(before) / record.clock)
 
 
 def _goes_on(record: SteeredRecord, one: Excursion, begin: int) -> bool:
@@ -194,98 +207,3 @@ def _goes_on(record: SteeredRecord, one: Excursion, begin: int) -> bool:
     before = side * (record.psi[execute] - record.psi[max(execute - clock, 0)])
     after = side * (record.psi[min(begin + clock, len(record.psi) - 1)] - record.psi[begin])
     return bool(after > 0.1 * before)
-
-
-def _spirals(record: SteeredRecord) -> Iterator[Recognised]:
-    """Angles held one after another that go down by steps through midships to the other side."""
-    levels = list(_levels(record))
-    place = 0
-    while place < len(levels):
-        run = [levels[place]]
-        for begin, end, angle in levels[place + 1 :]:
-            down = (run[-1][2] - angle) * np.sign(run[0][2])
-            if down <= MIDSHIPS / 3.0 or begin - run[-1][1] > record.clock:
-                break
-            run.append((begin, end, angle))
-        if len(run) >= STEPS and run[0][2] * run[-1][2] < 0.0:
-            first = _left_midships(record, run[0][0])
-            yield Recognised(
-                kind="spiral",
-                execute=first,
-                end=run[-1][1],
-                rudder=run[0][2],
-                course=float(record.psi[first]),
-            )
-            place += len(run)
-        else:
-            place += 1
-
-
-def _left_midships(record: SteeredRecord, k: int) -> int:
-    """The sample after which the rudder went over to where it is at a later one."""
-    side = np.sign(record.rudder[k])
-    while k > 0 and record.rudder[k - 1] * side > MIDSHIPS / 2.0:
-        k -= 1
-    return k
-
-
-def _levels(record: SteeredRecord) -> Iterator[tuple[int, int, float]]:
-    """Stretches of at least two ship lengths in which the rudder stays within a degree."""
-    rudder, begin = record.rudder, 0
-    summed = np.concatenate([[0.0], np.cumsum(rudder)]).tolist()
-    for k in range(1, len(rudder) + 1):
-        first = max(begin, k - RECENT)
-        if k < len(rudder):
-            usual = (summed[k] - summed[first]) / (k - first)
-            if abs(rudder[k] - usual) <= MIDSHIPS / 3.0:
-                continue
-        if k - begin >= 2 * record.clock:
-            yield begin, k, float(np.median(rudder[begin:k]))
-        begin = k
-
-
-def _stops(record: SteeredRecord, steered: Sequence[Recognised]) -> Iterator[Recognised]:
-    """The shaft astern while the ship has way, until she has none."""
-    n, u = record.trial.signals.get("n"), record.trial.signals.get("u", _over_ground(record.trial))
-    if n is None or u is None:
-        return
-    ahead = float(np.quantile(n, 0.9))
-    begun = np.flatnonzero((n[1:] < 0.0) & (n[:-1] >= 0.0)) + 1
-    for k in begun.tolist():
-        approach = float(np.mean(u[max(k - record.clock, 0) : k]))
-        if ahead <= 0.0 or approach <= 0.5 * float(np.quantile(u, 0.9)):
-            continue
-        stopped = np.flatnonzero(u[k:] <= WAY * approach)
-        turning = np.flatnonzero(n[k:] >= 0.0)
-        end = k + int(stopped[0]) if len(stopped) else len(u)
-        if any(m.execute <= k < m.end for m in steered):
-            continue
-        if len(turning) and k + int(turning[0]) < end:
-            end = k + int(turning[0])
-        execute = _left_ahead(n, k)
-        whole = len(stopped) > 0 and end == k + int(stopped[0])
-        yield Recognised(
-            kind="stop",
-            execute=execute,
-            end=end,
-            rudder=0.0,
-            course=float(np.mean(record.psi[max(execute - record.clock, 0) : execute + 1])),
-            remark="" if whole else "broken off before she stopped",
-        )
-
-
-def _left_ahead(n: Vector, k: int) -> int:
-    """The sample at which the shaft left its revolutions ahead."""
-    usual = float(np.median(n[max(k - 400, 0) : k]))
-    while k > 0 and n[k - 1] < (1.0 - ALIKE / 3.0) * usual:
-        k -= 1
-    return k
-
-
-def _over_ground(trial: Trial) -> Vector | None:
-    """Speed over the ground [m/s]; None where no position is recorded."""
-    if "sog" in trial.signals:
-        return trial.signals["sog"]
-    if not {"x", "y"} <= {*trial.signals}:
-        return None
-    return np.hypot(*(np.gradient(trial.signals[c], trial.period) for c in ("x", "y")))

@@ -17,6 +17,7 @@ from trialid.design.imo.measure_slopes import SMALL, Shows
 from trialid.design.imo.speed_loss import logged_loss, speed_loss
 from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.design.standard import AT_SEA
+from trialid.effects.environment import steady_wind
 from trialid.effects.track import current
 from trialid.errors import DesignError, EffectError, NotIdentifiable
 from trialid.identification.fit import Fit, of_trial
@@ -51,18 +52,38 @@ class SailedTrial:
     spread: LikelySpread
 
 
-def sail_trial(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | None:
-    """The trial as the fitted ship sails it; None where she cannot, or leaves her model."""
+def sail_trial(
+    fit: Fit, trial: Trial, spread: LikelySpread, *, windy: bool = True
+) -> SailedTrial | None:
+    """The trial as the fitted ship sails it; None where she cannot, or leaves her model.
+
+    Not `windy`: as she would have sailed it without the wind that her model has.
+    """
     try:
-        return _sailed(fit, trial, spread)
+        return _sailed(fit, trial, spread, windy)
     except (EffectError, NotIdentifiable):
         return None  # a motion that carries her along is neither simulated nor recorded
 
 
-def _sailed(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | None:
+def has_wind(model: ShipModel) -> bool:
+    """Whether there is any wind in a model."""
+    return any(is_wind(e) for e in model.effects)
+
+
+def is_wind(effect: Effect) -> bool:
+    """Whether an effect is by the wind, recorded or unseen; so is what frees a part of one."""
+    steady = {*effect.parameters} & {*steady_wind.parameters}
+    return bool(steady or {"V_aw", "gamma_aw"} & {*effect.signals})
+
+
+def _sailed(fit: Fit, trial: Trial, spread: LikelySpread, windy: bool) -> SailedTrial | None:
     base = _with_track(fit, trial)
     values, start = of_trial(fit.problem, fit.theta, trial, fit.level)
     acting = [m for m in spread.missing if _acts(m.effect, trial, base)]
+    if not windy:
+        acting = [m for m in acting if not is_wind(m.effect)]
+        for effect in (e for e in base.effects if is_wind(e)):
+            base = base - effect.name
     linear = [m for m in acting if not m.tried]
     model = base
     for one in linear:
@@ -158,6 +179,31 @@ def numbers(sailed: SailedTrial, read: Numbers) -> dict[str, tuple[float, Range 
         return {}
     ranges = sailed.spread.ranges([*found.values()], slopes)
     return {n: (x, r) for (n, x), r in zip(found.items(), ranges, strict=True)}
+
+
+@dataclass(frozen=True)
+class Drift:
+    """What the wind does to a number: without it less with it, and where 95 % of that lies."""
+
+    value: float
+    range: Range | None
+
+
+def drift(windy: SailedTrial | None, calm: SailedTrial, read: Numbers) -> dict[str, Drift]:
+    """What is to be added to the numbers of a record to take the wind off, by the model.
+
+    Empty where the model does not get there with the wind or without.
+    """
+    if windy is None:
+        return {}
+    try:
+        with_wind, without = read(windy.track), read(calm.track)
+        by = _slopes(calm, read, without) - _slopes(windy, read, with_wind)
+    except DesignError:
+        return {}
+    values = [x - with_wind[n] for n, x in without.items()]
+    each = zip(without, values, calm.spread.ranges(values, by), strict=True)
+    return {n: Drift(x, r) for n, x, r in each}
 
 
 def _slopes(sailed: SailedTrial, read: Numbers, found: Mapping[str, float]) -> Vector:

@@ -23,9 +23,11 @@ class Manoeuvre:
 
 @dataclass(frozen=True, kw_only=True)
 class ManoeuvreNumber:
-    """A number of a zig-zag, pull-out or spiral in `unit`, and the fitted model's, each with 95 %.
+    """A number of a manoeuvre that is no turning circle, in `unit`, and the fitted model's.
 
-    `predicted` is under the rudder as recorded; None where nothing is known to predict it from.
+    Each with its 95 %. `predicted` is under the rudder as recorded; None where nothing is known to
+    predict it from. What is read from the track is corrected as that of a turn is; headings and
+    rates need it for no current, and are not corrected for wind.
     """
 
     trial: str
@@ -36,6 +38,9 @@ class ManoeuvreNumber:
     unit: str
     measured: float
     interval: Range
+    corrected: float | None = None
+    corrected_interval: Range | None = None
+    corrected_for: str = ""
     predicted: float | None = None
     predicted_interval: Range | None = None
 
@@ -64,10 +69,11 @@ class TurnMeasure:
         As recorded, over the ground, with its 95 %: noise of position and heading, and half a
         sample of the order.
     corrected, corrected_interval
-        The same through the water, by the current that the fit found, with its error.
+        The same without what `corrected_for` names: through the water by the current that the fit
+        found, and less what the fitted model drifts by the wind, where it has one.
     predicted, predicted_interval
-        Of the fitted model through the water, under the rudder as recorded, and where the true
-        ship's is likely to lie.
+        Of the fitted model through the water, without the wind where it has one, under the rudder
+        as recorded, and where the true ship's is likely to lie.
     """
 
     trial: str
@@ -78,5 +84,6 @@ class TurnMeasure:
     interval: Range
     corrected: float | None = None
     corrected_interval: Range | None = None
+    corrected_for: str = ""
     predicted: float | None = None
     predicted_interval: Range | None = None

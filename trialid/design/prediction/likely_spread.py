@@ -47,8 +47,8 @@ class LikelySpread:
 
     @property
     def width(self) -> int:
-        """Columns of what may be missing."""
-        return sum(len(m.columns) for m in self.missing)
+        """Columns of what may be missing, also of what is there whole or not at all."""
+        return self.standing.known.moves.shape[1] - 1 - len(self.held)
 
     def ranges(self, values: Sequence[float] | Vector, by: Vector) -> list[Range | None]:
         """The 95 % range of each number; None where nobody knows.

@@ -10,7 +10,9 @@ from trialid.arrays import Vector
 from trialid.design.helm import Vessel, track
 from trialid.design.imo.measure_slopes import SMALL
 from trialid.design.prediction.likely_spread import LikelySpread, Range
-from trialid.names.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS, Quantity
+from trialid.ship.actuators import actuator_quantities
+from trialid.ship.quantity_of import quantity_of
 from trialid.simulation.integrate import Departure
 from trialid.trial import Trial
 
@@ -35,6 +37,8 @@ class PredictedMotion:
         Simulated motions and the track; (N,) each.
     ranges
         Lower and upper end at 95 %, by name of a motion; (N,) each.
+    quantities
+        What orders and motions are, by name.
     numbers
         Standard numbers by name, each with its range; None where nobody knows.
     remark
@@ -47,6 +51,7 @@ class PredictedMotion:
     given: Mapping[str, Vector]
     motion: Mapping[str, Vector]
     ranges: Mapping[str, tuple[Vector, Vector]]
+    quantities: Mapping[str, Quantity] = field(default_factory=dict)
     numbers: Mapping[str, tuple[float, Range | None]] = field(default_factory=dict)
     remark: str = ""
     departure: Departure | None = None
@@ -77,11 +82,14 @@ def with_ranges(
         )
         lower, upper = np.minimum(low, -wide), np.maximum(high, wide)
         ranges[name] = signals[name] + lower, signals[name] + upper
+    named = {*SIGNALS, *actuator_quantities(ship.model.ship.actuators)}
+    given = [n for n in trial.signals if n in named and n not in outputs]
     return PredictedMotion(
         t=trial.t,
-        given={n: x for n, x in trial.signals.items() if n in SIGNALS and n not in outputs},
+        given={n: trial.signals[n] for n in given},
         motion={n: signals[n] for n in names},
         ranges=ranges,
+        quantities={n: quantity_of(ship.model, n) for n in (*given, *outputs)},
     )
 
 

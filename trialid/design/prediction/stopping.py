@@ -1,31 +1,28 @@
-"""The engine stopped: how far the ship runs on, where the model simulates her speed.
-
-A crash stop, the shaft astern, is not predicted: the propellers of the catalogue are those of a
-shaft that turns ahead, and trials that hold one astern are rare.
-"""
+"""The engine stopped, or ordered astern: how far the ship runs on, where her speed is simulated."""
 
 import functools
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel
+from trialid.design.prediction.engine_orders import astern_orders, engine_of
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.predicted_motion import sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, in_calm
-from trialid.errors import DesignError
 from trialid.trial import Trial
-
-SHAFTS: Final = ("n", "n_p", "n_s")
-"""Inputs that are zero where the engine is stopped."""
 
 
 def sail_stop(
-    ship: Vessel, share: float, spread: LikelySpread, band: Mapping[str, float]
+    ship: Vessel,
+    share: float,
+    spread: LikelySpread,
+    band: Mapping[str, float],
+    *,
+    astern: bool = False,
 ) -> PredictedMotion:
     """The engine stopped on a straight course in calm deep water, until the speed has fallen.
 
@@ -33,45 +30,28 @@ def sail_stop(
     ----------
     share
         Of the approach speed, that is left at the end.
+    astern
+        Ordered as fast astern as ahead on the approach, instead: a crash stop.
 
     Raises
     ------
     DesignError
-        The model does not simulate the speed, or nothing in it is a shaft.
+        The model does not simulate the speed, nothing drives her, or nothing known drives astern.
     """
     base = in_calm(ship)
-    shafts, start = _shafts(base), round(STRAIGHT * STEPS)
+    engine, start = engine_of(base), round(STRAIGHT * STEPS)
     samples = round(LENGTHS * STEPS) + 1
     signals = {n: np.full(samples, x) for n, x in base.constants.items() if n != "u"}
     signals |= {n: np.zeros(samples) for n in ("delta", "delta_order")}
-    for name in shafts:
-        signals[name][start:] = 0.0
-    orders = Trial("stop", "check", base.period, signals, {})
+    orders = astern_orders(base, engine) if astern else dict.fromkeys(engine.approach, 0.0)
+    for name, order in orders.items():
+        ahead = engine.approach[name]
+        signals[engine.feedback[name]] = np.full(samples, ahead)
+        signals[name] = np.where(np.arange(samples) < start, ahead, order)
+    given = Trial("stop", "check", base.period, signals, {})
     read = functools.partial(_numbers, start, share)
-    made = sail_orders(base, orders, spread, band, read=read)
+    made = sail_orders(base, given, spread, band, read=read)
     return _until_slow(made, share, start)
-
-
-def _shafts(ship: Vessel) -> tuple[str, ...]:
-    """Inputs that push the ship.
-
-    Raises
-    ------
-    DesignError
-        There are none, or they would change nothing.
-    """
-    if "u" not in ship.model.states:
-        raise DesignError(
-            "stop: this model is given its speed and does not simulate it; put u "
-            "among its states, with effects such as propeller_thrust and surge_resistance"
-        )
-    shafts = tuple(n for n in SHAFTS if n in ship.simulator.equations.inputs)
-    if not shafts:
-        raise DesignError(
-            "stop: no effect of this model reads a shaft's speed "
-            f"({', '.join(SHAFTS)}), so there is nothing to stop; add propeller_thrust"
-        )
-    return shafts
 
 
 def _numbers(start: int, share: float, t: Vector, now: Mapping[str, Vector]) -> dict[str, float]:

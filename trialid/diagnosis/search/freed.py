@@ -2,17 +2,12 @@
 
 from dataclasses import replace
 from functools import partial, update_wrapper
-from typing import Final
 
 from trialid.diagnosis.search.augment import fixed_coefficients
 from trialid.identification.fit import Fit
 from trialid.names.quantities import MASS_PARAMETERS
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
-
-FARTHEST: Final = 3.0
-"""Deviations of the ship file's by which a coefficient may be held wrong: what lies farther off is
-something else, for which this coefficient stands in."""
 
 
 def candidates_to_free(fit: Fit) -> dict[str, Effect]:
@@ -31,17 +26,7 @@ def free_coefficient(model: ShipModel, name: str) -> Effect:
     others = {n: model.value(n) for n in owner.parameters if n != name}
     function = update_wrapper(partial(owner.function, **others), owner.function)
     function.__doc__ = f"{name} of {owner.name}: {owner.equation}"
-    known = owner.parameters[name]
-    off = FARTHEST * abs(value) * model.ship.share_off(name)
-    parameter = replace(
-        known,
-        start=value,
-        null=value,
-        low=max(known.low, value - off),
-        high=min(known.high, value + off),
-        scan=(),
-        by_meaning=True,
-    )
+    parameter = replace(owner.parameters[name], start=value, null=value, scan=())
     return replace(
         owner,
         name=name,

@@ -85,11 +85,8 @@ def _inside(effect: Effect, name: str, value: float) -> float:
 
 
 def _settings_with(settings: Settings, effect: Effect) -> Settings:
-    """The effect's parameters free; a coefficient of the model's within what frees it."""
-    new = {n: p for n, p in effect.parameters.items() if n not in settings.free}
-    bounds = {n: (p.low, p.high) for n, p in new.items() if effect.held is not None}
-    free = (*settings.free, *new)
-    return replace(settings, free=free, bounds={**bounds, **settings.bounds})
+    new = tuple(p for p in effect.parameters if p not in settings.free)
+    return replace(settings, free=(*settings.free, *new))
 
 
 def likeliest_refit(

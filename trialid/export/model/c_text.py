@@ -7,7 +7,6 @@ from typing import Any, Final
 
 from trialid.export.model.equation_steps import Program, Writer, own_name, program
 from trialid.export.model.fitted_model import FittedModel
-from trialid.names import labels
 from trialid.simulation.integrate import domain
 
 WIDE: Final = 98
@@ -168,7 +167,7 @@ def _lists(made: FittedModel) -> str:
         "outputs": tuple(made.equations.outputs),
     }
     for group, names in groups.items():
-        each = [f"{n} [{labels.quantity(n).unit}]" for n in names]
+        each = [f"{n} [{made.quantity(n).unit}]" for n in names]
         lines += [*_comment(f"{group}: {', '.join(each)}", "/* ")]
         lines[-1] += " */"
     return "\n".join(lines)

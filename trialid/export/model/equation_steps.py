@@ -32,8 +32,24 @@ C_WORDS: Final = (
 C_FUNCTIONS: Final = (
     "fabs sqrt sin cos exp tanh atan fmin fmax copysign y0 y1 yn j0 j1 jn gamma NAN INFINITY"
 )
-OURS: Final = "np state inputs parameters rates outputs found"
-RESERVED: Final = frozenset(f"{C_WORDS} {C_FUNCTIONS} {OURS}".split())
+MODELICA_WORDS: Final = (
+    "algorithm and annotation block class connect connector constant constrainedby der discrete "
+    "each elseif elsewhen encapsulated end enumeration equation expandable external false final "
+    "flow function impure initial inner input loop model not operator or outer output package "
+    "parameter partial protected public pure record redeclare replaceable stream then true type "
+    "when within"
+)
+MODELICA_FUNCTIONS: Final = (
+    "abs acos asin assert atan2 cardinality ceil change cosh cross delay diagonal div edge fill "
+    "floor homotopy identity inStream integer linspace log log10 matrix max min mod ndims noEvent "
+    "ones outerProduct pre product reinit rem sample scalar semiLinear sign sinh size skew smooth "
+    "spatialDistribution sum symmetric tan terminal terminate time transpose vector zeros Boolean "
+    "Integer Real String"
+)
+OURS: Final = "np state inputs parameters rates outputs found unseen"
+RESERVED: Final = frozenset(
+    f"{C_WORDS} {C_FUNCTIONS} {MODELICA_WORDS} {MODELICA_FUNCTIONS} {OURS}".split()
+)
 """What no step may be called in any of the languages."""
 
 

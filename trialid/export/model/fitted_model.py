@@ -1,18 +1,19 @@
 """All that an export of a fitted model says: equations, values, how sure, where from, how far."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from trialid.accuracy.parameter_table import Accuracy
 from trialid.arrays import Vector
 from trialid.design.prediction.seen_range import SeenRange
 from trialid.identification.fit import Fit
+from trialid.names.quantities import Quantity
 from trialid.result.fit_rows import ParameterRow
 from trialid.result.schema import Result
 from trialid.ship.model import ShipModel, late, slope
+from trialid.ship.quantity_of import quantity_of
 from trialid.simulation.trace import Equations, trace
 from trialid.version import VERSION
 
@@ -80,23 +81,43 @@ class FittedModel:
         made = {n for s in self.model.late_inputs for n in (late(s), slope(s))}
         return tuple(n for n in self.equations.inputs if n not in made)
 
+    def quantity(self, name: str) -> Quantity:
+        """What a state, an input or an output is."""
+        return quantity_of(self.model, name)
+
+    @property
+    def starts(self) -> dict[str, float]:
+        """Where states and inputs begin: straight ahead at the approach speed, engines as seen."""
+        found = {}
+        for name in (*self.equations.states, *self.inputs):
+            seen = self.seen.get(name)
+            middle = 0.0 if seen is None else 0.5 * (seen.low + seen.high)
+            held = name in self.inputs and self.quantity(name).mirror > 0
+            found[name] = middle if held else 0.0
+            if name == "u":
+                found[name] = self.model.ship.particulars["U0"]
+        return found
+
 
 def fitted_model(
     fit: Fit,
-    accuracy: Accuracy,
+    unknowns: Sequence[str],
+    covariance: Vector,
     result: Result,
     seen: Mapping[str, SeenRange],
     words: tuple[str, ...],
 ) -> FittedModel:
-    """The model of a fit, ready to be written; `words` are what to know of it."""
+    """The model of a fit, ready to be written; `words` are what to know of it.
+
+    `covariance` is that of the unknowns by noise; (n, n).
+    """
     model = fit.model
     equations = trace(model, (), fit.problem.outputs)
     rows = {row.name: row for row in result.physical}
     parameters = tuple(_parameter(model, n, rows.get(n)) for n in equations.parameters)
-    names = [p.name for p in accuracy.parameters]
     fitted = [p for p in parameters if p.fitted]
-    places = [names.index(p.name) for p in fitted]
-    noise = accuracy.covariance[np.ix_(places, places)]
+    places = [unknowns.index(p.name) for p in fitted]
+    noise = covariance[np.ix_(places, places)]
     return FittedModel(
         name=result.pipeline,
         model=model,

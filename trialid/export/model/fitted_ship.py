@@ -10,6 +10,7 @@ from trialid.names.quantities import MASS_PARAMETERS
 from trialid.result.fit_rows import ParameterRow
 from trialid.result.schema import Result
 from trialid.ship.actuators import actuator_tables
+from trialid.ship.forms import Force, Mass, Rate
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import MOST_UNCERTAIN, Ship
 from trialid.ship.prime import mass_scale, primed_coefficient
@@ -39,7 +40,8 @@ def fitted_ship(model: ShipModel, result: Result) -> FittedShip:
     rows = {row.name: row for row in result.physical}
     mass, coefficients = dict(model.ship.mass), dict(model.ship.coefficients)
     shares, words = dict(model.ship.uncertainty), dict[str, str]()
-    for name in (n for n in model.values if n in rows or n in coefficients or n in mass):
+    hers = {*rows, *coefficients, *mass, *_of_the_ship(model)}
+    for name in (n for n in model.values if n in hers):
         before = (mass if name in MASS_PARAMETERS else coefficients).get(name)
         factor = _file_factor(model, name)
         value = model.value(name) / factor
@@ -57,6 +59,12 @@ def fitted_ship(model: ShipModel, result: Result) -> FittedShip:
     ship = replace(model.ship, mass=mass, coefficients=coefficients, uncertainty=shares)
     ship = replace(ship, source=source, notes=notes)
     return FittedShip(ship, words)
+
+
+def _of_the_ship(model: ShipModel) -> set[str]:
+    """Parameters of what acts on the ship, not of what only records her."""
+    acting = (e for e in model.effects if {Force, Mass, Rate} & {*e.forms})
+    return {n for e in acting for n in e.parameters}
 
 
 def _file_factor(model: ShipModel, name: str) -> float:
@@ -82,7 +90,7 @@ def _share(row: ParameterRow) -> float:
     deviation = deviation_of(row)
     if deviation is None or not row.value:
         return MOST_UNCERTAIN
-    return min(deviation / abs(row.value), MOST_UNCERTAIN)
+    return min(float(f"{deviation / abs(row.value):.4g}"), MOST_UNCERTAIN)
 
 
 def fitted_ship_text(made: FittedShip, warnings: tuple[str, ...]) -> str:
@@ -96,7 +104,7 @@ def fitted_ship_text(made: FittedShip, warnings: tuple[str, ...]) -> str:
         f"notes = {quote(ship.notes)}",
         f"system = {quote(ship.system)}",
         f"rudder_positive = {quote(ship.rudder_positive)}",
-        *([f"coefficient_speed = {ship.coefficient_speed!r}"] * (ship.system == "dimensional")),
+        f"coefficient_speed = {ship.coefficient_speed!r}",
         "",
         "[particulars]",
         *_rows(ship.particulars, {}),
@@ -108,7 +116,8 @@ def fitted_ship_text(made: FittedShip, warnings: tuple[str, ...]) -> str:
         *_rows(ship.coefficients, made.words),
         "",
         "[uncertainty]  # one standard deviation, as a share of the number",
-        *(f"{_key(n)} = {share:.4g}" for n, share in ship.uncertainty.items()),
+        *_rows(ship.uncertainty, {}),
+        *(["", "[antenna]", *_rows(ship.antenna, {})] if ship.antenna else []),
         *(["", *actuator_tables(ship.actuators)] if ship.actuators else []),
     ]
     return "\n".join(lines) + "\n"

@@ -7,7 +7,6 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from trialid.export.model.fitted_model import FittedModel
-from trialid.names import labels
 from trialid.result.json_file import finite, json_schema
 
 SCHEMA: Final[Literal["trialid-model/1"]] = "trialid-model/1"
@@ -115,7 +114,7 @@ def model_file(made: FittedModel) -> ModelFile:
 def _signals(made: FittedModel, names: tuple[str, ...]) -> tuple[ModelSignal, ...]:
     found = []
     for name in names:
-        known, seen = labels.quantity(name), made.seen.get(name)
+        known, seen = made.quantity(name), made.seen.get(name)
         ends = None if seen is None else (seen.low, seen.high)
         found.append(ModelSignal(name=name, unit=known.unit, meaning=known.meaning, seen=ends))
     return tuple(found)

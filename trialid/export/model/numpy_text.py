@@ -7,7 +7,6 @@ from typing import Any, Final
 
 from trialid.export.model.equation_steps import Program, Writer, own_name, program
 from trialid.export.model.fitted_model import FittedModel
-from trialid.names import labels
 
 WIDE: Final = 96
 DEEP: Final = " " * 8
@@ -84,7 +83,7 @@ def _facts(made: FittedModel) -> Iterator[str]:
         yield from _wrapped(f"NOTE {words}")
     yield ""
     for name in (*made.equations.states, *made.inputs):
-        known = labels.quantity(name)
+        known = made.quantity(name)
         yield from _wrapped(f"{name} [{known.unit}]: {known.meaning}")
     yield ""
     yield from _wrapped(

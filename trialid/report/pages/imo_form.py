@@ -15,7 +15,7 @@ from trialid.report.pages.page import environment, heading
 from trialid.report.pictures.figures import courses
 from trialid.report.pictures.input_course import input_courses
 from trialid.report.pictures.track_picture import TrackPicture, track_picture
-from trialid.report.tables import form_tables
+from trialid.report.tables import form_tables, imo_tables
 from trialid.report.tables.rounded_table import Cell, numeric
 
 OPEN: Final = (
@@ -41,7 +41,7 @@ def write_form(run: Finished, place: Path) -> tuple[Path, int]:
             f"{run.label}: holds no standard measures; write imo = true into its pipeline, above "
             "the first section, and run it again (a model that no rudder steers has none)"
         )
-    made = table_files(form_tables.tables(run.result))
+    made = table_files(form_tables.tables(run.result, _winds(run)))
     texts = {"imo.html": form(run), **{f"imo/{name}": each for name, each in made.items()}}
     write_texts(place, texts, below=("imo/",))
     return place / "imo.html", len(made)
@@ -56,13 +56,19 @@ def form(run: Finished) -> str:
         .render(
             run=result,
             heading=heading(result),
-            tables=[(table, numeric(table)) for table in form_tables.tables(result)],
+            tables=[(table, numeric(table)) for table in form_tables.tables(result, _winds(run))],
             tracks=_tracks(run),
             pictures=_pictures(run),
             blanks=OPEN,
+            corrections=imo_tables.corrections(result),
             cell=_cell,
         )
     )
+
+
+def _winds(run: Finished) -> dict[str, tuple[float, float]]:
+    tracks = {one.name: one.track for one in run.series}
+    return {name: track.wind for name, track in tracks.items() if track and track.wind}
 
 
 def _tracks(run: Finished) -> list[tuple[str, TrackPicture]]:

@@ -1,4 +1,6 @@
-/* The window of a trial: all its panels show the same stretch of time. */
+/* The window of a trial: all its panels show the same stretch of time, and so does its track. */
+
+import { followTrack } from "./track.js";
 
 const KEYS = { ArrowLeft: "earlier", ArrowRight: "later", "+": "closer", "=": "closer", "-": "wider", "0": "all" };
 
@@ -30,6 +32,8 @@ export function isAll(trial) {
 export function tell(trial) {
   const { min, max } = trial.window;
   trial.told.textContent = isAll(trial) ? "" : min.toFixed(1) + " s to " + max.toFixed(1) + " s";
+  const track = trial.track && trial.track();
+  if (track) followTrack(track, min, max, isAll(trial));
 }
 
 /* A stretch with half as much again on either side. */

@@ -1,10 +1,23 @@
 """The tables of the standard measures of a run, and of the overshoots its trials hold."""
 
+from typing import Final
+
 from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Overshoot, TurnMeasure
 from trialid.names import wording
 from trialid.report.tables.rounded_table import Cell, Figure, Table
 from trialid.result.imo_rows import ImoPart, MeasureRow
 from trialid.result.schema import Result
+
+ON_TRACK: Final = ("Williamson turn", "stop")
+CORRECTED: Final = {
+    "current": "Corrected for current: through the water, by the current that the fit found "
+    "(a trial held out finds its own, without an interval).",
+    "wind": "Corrected for wind: less what the model drifts by it under the recorded rudder.",
+}
+UNCORRECTED: Final = {
+    "current": "Not corrected for current: the fit finds none.",
+    "wind": "Not corrected for wind: the model has none in it.",
+}
 
 
 def measures(run: Result) -> Table:
@@ -45,22 +58,71 @@ def _overshoot(each: Overshoot) -> tuple[Cell, ...]:
 
 
 def turns(run: Result) -> Table:
-    """Every measure of a turning circle in the trials, over the ground and through the water."""
+    """Every measure of a turning circle in the trials, as recorded, corrected, and the model's."""
     rows = tuple(_turn(each) for each in (run.imo or ImoPart()).turns)
     headings = (
         *("trial", "t [s]", "rudder [deg]", "turning circle", "measured [m]", "95 % from", "to"),
-        *("without current [m]", "95 % from", "to", "model [m]", "95 % from", "to"),
+        *("corrected [m]", "95 % from", "to", "corrected for", "model [m]", "95 % from", "to"),
     )
     return Table("turns", "Turning circles in the trials", headings, rows)
 
 
 def _turn(each: TurnMeasure) -> tuple[Cell, ...]:
-    low, high = each.corrected_interval or (None, None)
-    band = each.predicted_interval or (None, None)
-    sizes = (each.measured, *each.interval, each.corrected, low, high, each.predicted, *band)
-    numbers = (Figure(x, 4) for x in sizes)
     angle = Figure(_degrees(each.rudder), 3)
-    return each.trial, Figure(each.t), angle, each.name, *numbers
+    return each.trial, Figure(each.t), angle, each.name, *_corrected(each, 1.0)
+
+
+def _corrected(each: TurnMeasure | ManoeuvreNumber, factor: float) -> tuple[Cell, ...]:
+    """As recorded, corrected and for what, and the model's, each with its interval."""
+    nothing = None, None
+    measured, corrected, predicted = (
+        tuple(
+            Figure(None if x is None else x * factor, 4 if factor == 1.0 else 3)
+            for x in (value, *(ends or nothing))
+        )
+        for value, ends in (
+            (each.measured, each.interval),
+            (each.corrected, each.corrected_interval),
+            (each.predicted, each.predicted_interval),
+        )
+    )
+    return (*measured, *corrected, each.corrected_for or "nothing", *predicted)
+
+
+def track_numbers(run: Result) -> Table:
+    """Numbers of Williamson turns and stops, read from the track as those of turns are."""
+    found = (run.imo or ImoPart()).measured
+    rows = tuple(_on_track(each) for each in found if each.kind in ON_TRACK)
+    headings = (
+        *("trial", "manoeuvre", "t [s]", "number", "unit", "measured", "95 % from", "to"),
+        *("corrected", "95 % from", "to", "corrected for", "model", "95 % from", "to"),
+    )
+    return Table("track_numbers", "Williamson turns and stops in the trials", headings, rows)
+
+
+def _on_track(each: ManoeuvreNumber) -> tuple[Cell, ...]:
+    unit, factor = wording.shown_unit(each.unit)
+    start = each.trial, each.kind, Figure(each.t), each.name, unit
+    return (*start, *_corrected(each, factor))
+
+
+def further_tables(run: Result) -> tuple[Table, ...]:
+    """What was recognised, and its numbers besides those of turning circles."""
+    return manoeuvres(run), track_numbers(run), manoeuvre_numbers(run)
+
+
+def corrections(run: Result) -> str:
+    """What the numbers read from tracks are corrected for and what not, in sentences."""
+    imo = run.imo or ImoPart()
+    words = [each.corrected_for for each in imo.turns]
+    words += [each.corrected_for for each in imo.measured if each.kind in ON_TRACK]
+    causes = {cause for each in words for cause in each.split(" and ")}
+    seen = "wind" not in causes and any(each.signal == "V_aw" for each in imo.conditions)
+    told = [words for cause, words in CORRECTED.items() if cause in causes]
+    told += [words for cause, words in UNCORRECTED.items() if cause not in causes]
+    if seen:
+        told.append("The wind was recorded: an effect of it, as apparent_wind, can be fitted.")
+    return " ".join(told)
 
 
 def manoeuvres(run: Result) -> Table:
@@ -78,7 +140,8 @@ def _manoeuvre(each: Manoeuvre) -> tuple[Cell, ...]:
 
 def manoeuvre_numbers(run: Result) -> Table:
     """Numbers of zig-zags, pull-outs and spirals, of the record and of the model."""
-    rows = tuple(_measured(each) for each in (run.imo or ImoPart()).measured)
+    found = (run.imo or ImoPart()).measured
+    rows = tuple(_measured(each) for each in found if each.kind not in ON_TRACK)
     headings = (
         *("trial", "manoeuvre", "t [s]", "rudder [deg]", "number", "unit"),
         *("measured", "95 % from", "to", "model", "95 % from", "to"),

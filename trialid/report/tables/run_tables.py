@@ -20,7 +20,8 @@ def tables(run: Result) -> tuple[Table, ...]:
         _parameters(run), _nuisance(run), _weak(run), _levers(run), _split(run), _history(run),
         _change(run), _validation(run), _missing(run), _force(run), imo_tables.measures(run),
         imo_tables.overshoots(run),
-        imo_tables.turns(run), imo_tables.manoeuvres(run), imo_tables.manoeuvre_numbers(run),
+        imo_tables.turns(run), imo_tables.track_numbers(run), imo_tables.manoeuvres(run),
+        imo_tables.manoeuvre_numbers(run),
         _logs(run), _signals(run),
     )  # fmt: skip
     return tuple(table for table in made if table.rows)

@@ -22,6 +22,7 @@ FOLLOWING: Final = 6
 BEST_OF_NONE: Final = 3
 """Candidates shown where the record speaks for none."""
 
+WORTH: Final = ("stands out", "lowers the error")
 NOTHING: Final = "no evidence"
 HIDDEN: Final = "not visible"
 IMPOSSIBLE: Final = "unphysical"
@@ -84,7 +85,7 @@ def ranking(run: Result) -> Ranking:
     rows = run.missing
     able = [row for row in rows if row.verdict not in (HIDDEN, IMPOSSIBLE)]
     fitted = [row for row in able if row.eps_rmsn_refitted is not None][:LEADING]
-    heads = fitted or [row for row in able if row.verdict == "stands out"][:3]
+    heads = fitted or [row for row in able if row.verdict in WORTH][:3]
     rest = [row for row in able if not any(row is head for head in heads)]
     followers = [row for row in rest if row.verdict != NOTHING][:FOLLOWING]
     if not heads and not followers:

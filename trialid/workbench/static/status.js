@@ -3,7 +3,7 @@
 import { complain } from "./complaints.js";
 import { replace } from "./parts.js";
 import { answer, byId, keyed, partOf, state } from "./state.js";
-import { choose, follow } from "./trials.js";
+import { choose, follow, followAgain } from "./trials.js";
 
 const AGAIN = 1000;                   // ms until the parts are asked for again
 
@@ -80,6 +80,7 @@ function show(parts) {
   Object.assign(state.html, parts);
   if (changed.includes("title")) document.title = partOf("title").querySelector("h1").textContent + " \u2013 trialid";
   choose(state.trial);
+  followAgain();
   complain();
 }
 

@@ -81,6 +81,7 @@ function heightsFor(panels) {
 
 function drawTrial(data, index) {
   const trial = plots.trialOf(data, index, heightsFor(data.panels), state.beside, state.hidden);
+  trial.track = () => trackOf(trial.name);
   state.drawn.trial = trial;
   document.querySelector("#trial .tools").hidden = false;
   const kept = state.windows.get(trial.name);
@@ -100,6 +101,15 @@ function fillSignals(trial) {
   const menu = document.querySelector("#trial .signals");
   const choose = () => choosePanels(trial, state.hidden);
   fillMenu(menu, signalsOf([trial]), state.hidden, choose);
+}
+
+const trackOf = (name) => [...document.querySelectorAll("[data-of]")]
+  .filter((each) => each.dataset.of === name).map((each) => each.querySelector("svg.track")).find(Boolean);
+
+/* What was put in place of the old shows the stretch that the plots show. */
+export function followAgain() {
+  const trial = shownTrial();
+  if (trial && trial.told) tell(trial);
 }
 
 const shownTrial = () => (state.drawn && state.drawn.trial) || null;

@@ -1,6 +1,7 @@
 /* The model in use: a manoeuvre tried on the spot. What comes back goes in as text. */
 
 import { answer, byId } from "./state.js";
+import { pictures } from "./tried.js";
 
 export async function tryManoeuvre(form) {
   const told = byId("tried");
@@ -17,7 +18,7 @@ function show(place, made) {
   table.append(row(["", "value", "likely"], "th"), ...made.rows.map((each) => row(each, "td")));
   const name = document.createElement("h3");
   name.textContent = made.name;
-  place.replaceChildren(name, table, ...made.words.map((words) => paragraph(words, "note")));
+  place.replaceChildren(name, table, pictures(made.picture), ...made.words.map((words) => paragraph(words, "note")));
 }
 
 function row(cells, kind) {

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from trialid.design.prediction.seen_range import SeenRange, seen_ranges
-from trialid.diagnosis.diagnose import Diagnosed, examine_fit
+from trialid.diagnosis.diagnose import examine_fit
 from trialid.errors import NotIdentifiable, PipelineError, TrialidError
 from trialid.identification.fit import Fit, revive
 from trialid.pipeline_file import Pipeline
@@ -18,7 +18,8 @@ from trialid.trial import Trial
 from trialid.workflow.build_model import available, build_model, settings_of
 from trialid.workflow.findings import diagnose_settings
 from trialid.workflow.read_trials import align_trials
-from trialid.workflow.repeat import earlier
+from trialid.workflow.repeat import Earlier, earlier
+from trialid.workflow.use.kept_standing import Known, standing_of
 
 NO_FIT: Final = "no fit"
 """The verdict of a fit that nothing may be built on."""
@@ -38,7 +39,7 @@ class FinishedModel:
 
     where: str
     result: Result
-    done: Diagnosed
+    done: Known
     seen: dict[str, SeenRange]
 
     @property
@@ -84,12 +85,20 @@ def finished_model(folder: Path, progress: Progress, *, anyway: bool = False) ->
             f"{folder}: compares sensors alone; nothing is simulated that could be put under "
             "orders or handed over"
         )
+    done = _known(run, progress)
+    return FinishedModel(str(folder), run.result, done, seen_ranges(done.fit))
+
+
+def _known(run: Earlier, progress: Progress) -> Known:
+    """The fit of a run with how sure it is: as its folder keeps it, or worked out again."""
+    catalogue = available(run.pipeline)
+    kept = standing_of(run.folder, catalogue)
+    if kept is not None:
+        return kept.of(revived_fit(run.pipeline, kept.trials, run.result, str(run.folder)))
     progress("reading", 0.1)
     trials = align_trials(run.pipeline, progress)
-    fit = revived_fit(run.pipeline, trials, run.result, str(folder))
-    how = diagnose_settings(run.pipeline, available(run.pipeline))
-    done, _, _ = examine_fit(fit, how, progress)
-    return FinishedModel(str(folder), run.result, done, seen_ranges(fit))
+    fit = revived_fit(run.pipeline, trials, run.result, str(run.folder))
+    return examine_fit(fit, diagnose_settings(run.pipeline, catalogue), progress)[0]
 
 
 def check_verdict(result: Result, where: str, *, anyway: bool) -> None:

@@ -23,7 +23,8 @@ LARGEST: Final = 90.0
 """deg beyond which no rudder goes."""
 SLOW: Final = 50.0
 """Per cent of the approach speed at which a ship that is stopped counts as slow."""
-STOPS: Final = "stop [PER CENT of the speed left]"
+ASTERN: Final = "astern"
+STOPS: Final = "stop [PER CENT of the speed left] [astern]"
 FEWEST: Final = 2
 TIME: Final = "t"
 ORDINALS: Final = ("first", "second", "third")
@@ -39,18 +40,24 @@ class OrderTable:
 
 @dataclass(frozen=True)
 class Stop:
-    """The engine stopped on a straight course, until the speed has fallen to a share of itself."""
+    """The engine stopped on a straight course, until the speed has fallen to a share of itself.
+
+    `astern`: ordered astern instead, as a crash stop is.
+    """
 
     share: float
+    astern: bool = False
 
     @property
     def name(self) -> str:
         """As tables call it."""
-        return f"stop {100.0 * self.share:g}"
+        return f"stop {100.0 * self.share:g}{f' {ASTERN}' if self.astern else ''}"
 
 
 def stop_order(words: Sequence[str]) -> Stop | None:
-    """`stop` or `stop 20`: until 50, or 20 % of the speed are left; None for another manoeuvre.
+    """`stop` or `stop 20`: until 50, or 20 % of the speed are left; `stop astern`: until none is.
+
+    None for another manoeuvre.
 
     Raises
     ------
@@ -59,13 +66,15 @@ def stop_order(words: Sequence[str]) -> Stop | None:
     """
     if words[0] != "stop":
         return None
+    astern = words[-1] == ASTERN
+    numbers = words[1:-1] if astern else words[1:]
     try:
-        left = float(words[1]) if len(words) == 2 else SLOW
+        left = float(numbers[0]) if len(numbers) == 1 else (0.0 if astern else SLOW)
     except ValueError as error:
         raise TrialidError(f"ORDERS: {STOPS}: {error}") from error
-    if len(words) > 2 or not 0.0 < left < 100.0:
+    if len(numbers) > 1 or not (0.0 < left < 100.0 or (astern and left == 0.0)):
         raise TrialidError(f"ORDERS: {' '.join(words)!r}: expected {STOPS}, more than 0, below 100")
-    return Stop(left / 100.0)
+    return Stop(left / 100.0, astern)
 
 
 def named_manoeuvre(words: Sequence[str]) -> Manoeuvre:

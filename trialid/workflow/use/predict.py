@@ -15,6 +15,7 @@ from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.seen_range import beyond_words
 from trialid.errors import DesignError, TrialidError
+from trialid.identification.fit import Fit
 from trialid.names import labels
 from trialid.threads import one_thread
 from trialid.trial import Trial
@@ -119,18 +120,22 @@ def spread_of(model: FinishedModel) -> LikelySpread:
     return likely_spread(model.fit, covariance, off.standing, off.held, off.missing)
 
 
+def ready_ship(fit: Fit) -> Vessel:
+    """The fitted ship, losing speed in turns; as she is where no rudder steers her."""
+    try:
+        return sailed_ship(fit)
+    except DesignError:
+        steady = steady_inputs(fit)
+        return vessel(fit.model, fit.problem.trials[0].period, steady, GEAR)
+
+
 def _ship_for(
     model: FinishedModel, given: set[str], what_if: WhatIf
 ) -> tuple[Vessel, dict[str, float]]:
     """The ship, losing speed in turns where no speed is given; inputs held as in her trials."""
-    fit = model.fit
-    try:
-        steered = sailed_ship(fit)
-    except DesignError:
-        steady = steady_inputs(fit)
-        steered = vessel(fit.model, fit.problem.trials[0].period, steady, GEAR)
-    if "u" in given and "u" not in fit.model.states:
-        steered = vessel(fit.model, steered.period, steered.constants, steered.rudder_rate)
+    steered = ready_ship(model.fit)
+    if "u" in given and "u" not in model.fit.model.states:
+        steered = vessel(model.fit.model, steered.period, steered.constants, steered.rudder_rate)
     steered = changed_ship(steered, what_if)
     needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
     return steered, {n: steered.constants[n] for n in sorted(needed) if n in steered.constants}

@@ -6,19 +6,6 @@ The names and types are those of the standard (FMI 2.0.4, `fmi2TypesPlatform.h`,
 from typing import Final
 
 TYPES: Final = """\
-#include <math.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#if defined(_WIN32)
-#define EXPORT __declspec(dllexport)
-#elif defined(__GNUC__)
-#define EXPORT __attribute__((visibility("default")))
-#else
-#define EXPORT
-#endif
-
 typedef void *fmi2Component, *fmi2ComponentEnvironment, *fmi2FMUstate;
 typedef unsigned int fmi2ValueReference;
 typedef double fmi2Real;
@@ -37,36 +24,14 @@ typedef struct {
   void (*stepFinished)(fmi2ComponentEnvironment, fmi2Status);
   fmi2ComponentEnvironment environment;
 } fmi2CallbackFunctions;
+typedef fmi2CallbackFunctions Listener;
 """
 
-INTERFACE: Final = """\
-enum { NX = $NX, NU = $NU, NY = $NY, NP = $NP, ALL = NX + NU + NY + NP, FLAG = ALL };
-
-/* Values by their references: states, inputs, what sensors show, parameters. */
-typedef struct {
-  double values[ALL + 1], time;
-  int unseen, begun, told;
-  fmi2CallbackFunctions calls;
-  char name[128];
-} Instance;
-
-static const double start[ALL + 1] = {$START};
-
-static void reset(Instance *m) {
-  memcpy(m->values, start, sizeof start);
-  m->time = 0.0;
-  m->unseen = m->begun = m->told = 0;
-}
-
-static void say(Instance *m, fmi2Status status, const char *category, const char *words) {
-  if (m->calls.logger)
-    m->calls.logger(m->calls.environment, m->name, status, category, "%s", words);
-}
-
-static void refresh(Instance *m) {
-  double *v = m->values;
-  ${LOW}_outputs(v, v + NX, v + NX + NU + NY, v + NX + NU);
-  if (m->begun) m->unseen |= ${LOW}_unseen(v, v + NX);
+CALLS: Final = """\
+static void say(Instance *m, int status, const char *words) {
+  const char *category = status == FAILED ? "logStatusError" : "logStatusWarning";
+  if (m->listener.logger)
+    m->listener.logger(m->listener.environment, m->name, (fmi2Status)status, category, "%s", words);
 }
 
 EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
@@ -82,12 +47,8 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
                                      fmi2String resources, const fmi2CallbackFunctions *calls,
                                      fmi2Boolean visible, fmi2Boolean logging) {
   (void)resources; (void)visible; (void)logging;
-  if (type != fmi2CoSimulation || !guid || strcmp(guid, "$GUID")) return NULL;
-  Instance *m = calloc(1, sizeof *m);
-  if (!m) return NULL;
-  if (calls) m->calls = *calls;
-  if (name) strncpy(m->name, name, sizeof m->name - 1);
-  reset(m);
+  Instance *m = type == fmi2CoSimulation ? instance(name, guid) : NULL;
+  if (m && calls) m->listener = *calls;
   return m;
 }
 
@@ -116,27 +77,12 @@ EXPORT fmi2Status fmi2Reset(fmi2Component c) {
 
 EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n,
                               fmi2Real to[]) {
-  Instance *m = c;
-  refresh(m);
-  for (size_t i = 0; i < n; i++) {
-    if (r[i] >= ALL) return fmi2Error;
-    to[i] = m->values[r[i]];
-  }
-  return fmi2OK;
+  return (fmi2Status)get(c, r, n, to);
 }
 
 EXPORT fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n,
                               const fmi2Real from[]) {
-  Instance *m = c;
-  for (size_t i = 0; i < n; i++) {
-    if (r[i] >= ALL || (r[i] >= NX + NU && r[i] < NX + NU + NY)) return fmi2Error;
-    if (!isfinite(from[i])) {
-      say(m, fmi2Error, "logStatusError", "an input or a parameter is no finite number");
-      return fmi2Error;
-    }
-  }
-  for (size_t i = 0; i < n; i++) m->values[r[i]] = from[i];
-  return fmi2OK;
+  return (fmi2Status)put(c, r, n, from);
 }
 
 EXPORT fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference r[], size_t n,
@@ -168,10 +114,7 @@ FIXED(fmi2Boolean, Boolean)
 FIXED(fmi2String, String)
 
 EXPORT fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *kept) {
-  if (!*kept) *kept = malloc(sizeof(Instance));
-  if (!*kept) return fmi2Error;
-  memcpy(*kept, c, sizeof(Instance));
-  return fmi2OK;
+  return (fmi2Status)keep(c, kept);
 }
 
 EXPORT fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate kept) {
@@ -225,26 +168,8 @@ EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueR
 }
 
 EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real at, fmi2Real length, fmi2Boolean no_back) {
-  Instance *m = c;
-  double *v = m->values, *u = v + NX;
-  int substeps = (int)ceil(length / $PERIOD - 1e-9);
   (void)no_back;
-  int told = ${LOW}_step(v, u, u, v + NX + NU + NY, length, substeps < 1 ? 1 : substeps);
-  if (told & (${UP}_WRONG | ${UP}_DIVERGED)) {
-    say(m, fmi2Error, "logStatusError", told & ${UP}_WRONG
-        ? "an input or the step is no number to go on"
-        : "the ship left what the equations are for; the state is as before the step");
-    return fmi2Error;
-  }
-  m->begun = 1;
-  m->time = at + length;
-  refresh(m);
-  if (m->unseen && !m->told) {
-    m->told = 1;
-    say(m, fmi2Warning, "logStatusWarning",
-        "beyond what the trials held: from here on the model is a guess");
-  }
-  return fmi2OK;
+  return (fmi2Status)advance(c, at, length);
 }
 
 EXPORT fmi2Status fmi2CancelStep(fmi2Component c) { (void)c; return fmi2Error; }

@@ -1,0 +1,122 @@
+"""The Otter stopped and ordered astern by an identified model, against another programme's boat."""
+
+from dataclasses import replace
+
+import numpy as np
+import otter
+import pytest
+from otter_model import TRUTH, fitted, model, record
+from test_bad_input import trialid_
+from test_start_with_thrusters import log, started
+from typical import known_by
+
+from trialid.design.helm import vessel
+from trialid.design.prediction.engine_orders import astern_orders, engine_of
+from trialid.design.prediction.stopping import sail_stop
+from trialid.design.standard import in_calm
+from trialid.errors import DesignError, TrialidError
+from trialid.ship.model import ShipModel
+from trialid.workflow.use.orders import Stop, stop_order
+
+SPEED = 1.0
+KNOWN = known_by("Xu0", 0.0)
+
+
+def boat(one: ShipModel):
+    return vessel(one, 0.1, {"u": SPEED, "left_order": 40.0, "right_order": 20.0}, 0.05)
+
+
+@pytest.fixture(scope="module")
+def identified() -> ShipModel:
+    return fitted(record(1050)).model
+
+
+def of_the_boat(share: float, *, astern: bool) -> tuple[float, float]:
+    """Seconds and metres that the true boat takes from her approach until so much is left."""
+    ahead = np.sqrt(-otter.XU * SPEED / (2.0 * otter.AHEAD))
+    step, begun = 0.05, 160
+    t = np.arange(240) * step
+    orders = np.where(np.arange(len(t))[:, None] < begun, ahead, -ahead * astern) * np.ones((1, 2))
+    u = otter.sail(t, orders).u
+    assert u[begun - 1] == pytest.approx(SPEED, rel=2e-3)
+    slow = int(np.flatnonzero(u[begun:] <= share * SPEED)[0])
+    last = float(np.interp(-share * SPEED, -u[begun : begun + slow + 1], np.arange(slow + 1)))
+    return (last + 0.5) * step, float(np.trapezoid(u[begun - 1 : begun + slow])) * step
+
+
+@pytest.mark.parametrize(("share", "astern"), [(0.0, True), (0.5, False)])
+def test_the_identified_boat_stops_as_the_true_one(
+    identified: ShipModel, share: float, astern: bool
+) -> None:
+    """Time and head reach within 3 % and a step, from orders that hold her speed, straight on."""
+    made = sail_stop(boat(identified), share, KNOWN, {}, astern=astern)
+    time, reach = of_the_boat(share, astern=astern)
+    found = {name: value for name, (value, _) in made.numbers.items()}
+    assert found["time to that speed [s]"] == pytest.approx(time, rel=0.03, abs=0.03)
+    assert found["head reach [m]"] == pytest.approx(reach, rel=0.03, abs=0.03)
+    print(share, astern, found, time, reach)
+    assert found["lateral deviation [m]"] == pytest.approx(0.0, abs=1e-6)
+    assert made.given["left_order"][0] > 0.0
+    assert (made.given["left_order"][-1] < 0.0) == astern
+
+
+def truth() -> ShipModel:
+    return model().with_values(TRUTH)
+
+
+def test_more_is_ordered_astern_than_nothing() -> None:
+    """A crash stop is shorter than a stop, as fast astern as ahead, and holds her speed before."""
+    base = in_calm(boat(truth()))
+    engine = engine_of(base)
+    ahead = np.sqrt(-otter.XU * SPEED / (2.0 * otter.AHEAD))
+    assert [*engine.approach] == ["left_order", "right_order"]
+    assert [*engine.approach.values()] == pytest.approx([ahead, ahead], rel=1e-6)
+    assert astern_orders(base, engine) == {n: -x for n, x in engine.approach.items()}
+    reach = {
+        a: sail_stop(boat(truth()), 0.5, KNOWN, {}, astern=a).numbers["head reach [m]"][0]
+        for a in (True, False)
+    }
+    assert reach[True] < 0.7 * reach[False]
+
+
+def test_what_is_not_known_astern_is_refused() -> None:
+    dead = boat(truth().with_values({"k_astern": 0.0}))
+    with pytest.raises(DesignError, match="push nothing astern in this model"):
+        sail_stop(dead, 0.0, KNOWN, {}, astern=True)
+    mixed = replace(truth().ship.actuators[0], command="thrust", own=True)
+    ship = replace(truth().ship, actuators=(mixed, truth().ship.actuators[1]))
+    other = boat(truth())
+    other = replace(other, model=replace(other.model, ship=ship))
+    with pytest.raises(DesignError, match="not driven by one kind of order"):
+        engine_of(other)
+
+
+def test_the_words_of_a_crash_stop() -> None:
+    assert stop_order(["stop", "astern"]) == Stop(0.0, True)
+    assert stop_order(["stop", "20", "astern"]) == Stop(0.2, True)
+    assert Stop(0.0, True).name == "stop 0 astern"
+    for wrong in (["stop", "astern", "20"], ["stop", "0"], ["stop", "100", "astern"]):
+        with pytest.raises(TrialidError):
+            stop_order(wrong)
+
+
+def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
+    """Stopped, ordered astern, handed over with the units of her thrusters; gains are refused."""
+    done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv")], "--length 2")
+    assert done.exit_code == 0, done.output
+    run = "runs/first_trial"
+    told = trialid_("simulate", run, "stop", "astern", "--out", "stop.csv")
+    assert told.exit_code == 0, told.output
+    header, first, *_, last = (tmp_path / "stop.csv").read_text(encoding="utf-8").splitlines()
+    place = header.split(",").index("thruster_port[rad/s]")
+    ahead, astern = (float(line.split(",")[place]) for line in (first, last))
+    assert ahead == pytest.approx(-astern)
+    assert ahead > 0.0
+    assert "head reach" in told.stdout
+    for kind in ("pid", "nomoto"):
+        refused = trialid_("export", run, "--as", kind)
+        assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+        assert "steered by thruster_port, thruster_starboard; export her" in refused.stderr
+    assert trialid_("export", run, "--as", "modelica", "--out", "boat.mo").exit_code == 0
+    text = (tmp_path / "boat.mo").read_text(encoding="utf-8")
+    assert 'input Real thruster_port(unit="rad/s", start=' in text

@@ -1,0 +1,116 @@
+"""Turning numbers less the wind: what the same ship would have done in calm air."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from sailed_tracks import FREE, NOISE, OUTPUTS, SHIP, accuracy, sailed, spread
+
+from trialid.design.imo.recognise import recognise
+from trialid.design.imo.sailed_trial import is_wind
+from trialid.design.imo.trial_measures import TrialMeasures, measure_trials
+from trialid.design.imo.turns import find_turns, measure
+from trialid.diagnosis.search.freed import free_coefficient
+from trialid.effects import CATALOGUE
+from trialid.effects.track import current
+from trialid.identification.fit import identify
+from trialid.identification.problem import Settings
+from trialid.simulation.integrate import prepare, respond
+from trialid.trial import Trial
+
+TRUTH = {"C_aw": 0.00008, "N_aw": 0.000004, "z_aw": 0.05, "N_2aw": 0.0}
+WINDY = (SHIP + CATALOGUE["apparent_wind"] + CATALOGUE["apparent_wind_yaw"]).with_values(TRUTH)
+WATERS = {"circle": (0.3, -0.2), "zigzag": (0.0, 0.4)}
+AIR = (-9.0, 10.0)
+"""m/s to the north and to the east: a wind of 13.5 m/s from the north-west."""
+SETTINGS = Settings(
+    (*FREE, "C_aw", "N_aw"),
+    OUTPUTS,
+    weights={"x": 12.0, "y": 12.0, "psi": 12.0},
+    nuisance=("initial_state", "current"),
+)
+
+
+def apparent(y: np.ndarray, names: list[str]) -> dict[str, np.ndarray]:
+    """What an anemometer on board reads of the wind over the ground."""
+    psi, north, east = (y[:, names.index(n)] for n in ("psi", "x", "y"))
+    air_n = AIR[0] - np.gradient(north, 2.0)
+    air_e = AIR[1] - np.gradient(east, 2.0)
+    return {
+        "V_aw": np.hypot(air_n, air_e),
+        "gamma_aw": np.unwrap(np.arctan2(-air_e, -air_n) - psi),
+    }
+
+
+@cache
+def blown(name: str) -> Trial:
+    """A manoeuvre of calm air under the same rudder in the wind; what is read goes with it."""
+    calm = sailed(name, WATERS[name])
+    inputs = {n: calm.signals[n] for n in ("delta", "n")}
+    air = {n: np.zeros(calm.samples) for n in ("V_aw", "gamma_aw")}
+    true = (WINDY + current).with_values(dict(zip(("V_cn", "V_ce"), WATERS[name], strict=True)))
+    model = prepare(true, (), OUTPUTS)
+    for _ in range(6):  # the apparent wind depends on how she goes, and she on it
+        blank = Trial(name, "fit", 2.0, {**inputs, **air}, {})
+        y = respond(model, blank, {}, {"psi": 0.7}, sensitivities=False).y
+        air = apparent(y, [*OUTPUTS])
+    signals = {**inputs, **air, **{c: y[:, i].copy() for i, c in enumerate(OUTPUTS)}}
+    return Trial(name, "fit", 2.0, signals, {n: np.ones(len(y), dtype=bool) for n in signals})
+
+
+def measures_of(trial: Trial) -> dict[str, float]:
+    [turn] = find_turns(trial, recognise(trial, 175.0, 7.33))
+    return measure(replace(turn, t=30.0), trial.t, trial.signals)
+
+
+def noisy(trial: Trial, rng: np.random.Generator) -> Trial:
+    sizes = {**NOISE, "V_aw": 0.3, "gamma_aw": np.deg2rad(2.0)}
+    added = {n: s * rng.standard_normal(trial.samples) for n, s in sizes.items()}
+    return replace(trial, signals={n: x + added.get(n, 0.0) for n, x in trial.signals.items()})
+
+
+def measured(seed: int) -> TrialMeasures:
+    rng = np.random.default_rng([31, seed])
+    logs = [noisy(blown(n), rng) for n in WATERS]
+    fit = identify(logs, WINDY, SETTINGS)
+    errors = {p.name: p.standard_error for p in accuracy(fit).parameters}
+    return measure_trials(fit, errors, spread(fit))
+
+
+def test_less_current_and_wind_it_is_the_ship_in_calm() -> None:
+    calm, wind = measures_of(sailed("circle", (0.0, 0.0))), measures_of(blown("circle"))
+    rows = measured(0).turns
+    assert [m.name for m in rows] == ["advance", "transfer", "tactical diameter"]
+    for m in rows:
+        assert m.corrected_for == "current and wind"
+        assert m.interval[0] < wind[m.name] < m.interval[1]
+        for low, high in (m.corrected_interval or (0.0, 0.0), m.predicted_interval or (0.0, 0.0)):
+            assert low < calm[m.name] < high
+            assert high - low < 40.0
+    assert max(abs(wind[m.name] - calm[m.name]) for m in rows) > 60.0  # what it is about
+
+
+def test_what_is_wind_and_what_is_not() -> None:
+    """What frees a held coefficient has its own name, and blows no less."""
+    steady = {"F_N": 0.001, "F_E": 0.0, "x_wind": 0.05, "z_wind": 0.05}
+    windy = (SHIP + CATALOGUE["steady_wind"]).with_values(steady)
+    assert is_wind(free_coefficient(windy, "x_wind"))
+    assert is_wind(free_coefficient(WINDY, "z_aw"))
+    known = {n for n, e in CATALOGUE.items() if is_wind(e)}
+    assert known == {"steady_wind", *(n for n in CATALOGUE if n.startswith("apparent_wind"))}
+    assert not is_wind(free_coefficient(WINDY, "Nphi"))
+
+
+@pytest.mark.study(turn=1)
+def test_corrected_intervals_hold_the_calm_truth() -> None:
+    calm, inside = measures_of(sailed("circle", (0.0, 0.0))), []
+    for seed in range(1, 25):
+        for m in measured(seed).turns:
+            low, high = m.corrected_interval or (np.nan, np.nan)
+            least, most = m.predicted_interval or (np.nan, np.nan)
+            inside.append((low < calm[m.name] < high, least < calm[m.name] < most))
+    record, model = np.mean(inside, axis=0)
+    print(f"less current and wind within 95 %: record {record:.3f}, model {model:.3f}")
+    assert record >= 0.9
+    assert model >= 0.9

@@ -1,0 +1,160 @@
+"""All that the manoeuvres of a fit's trials come to; each trial is searched and sailed once."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from trialid.design.imo.measured import READERS, heading_numbers, order_time
+from trialid.design.imo.recognise import recognise, samples_a_length
+from trialid.design.imo.recognition import Recognised
+from trialid.design.imo.sailed_trial import has_wind, sail_trial
+from trialid.design.imo.stop_numbers import stop_reader
+from trialid.design.imo.track_numbers import Around, TrackReader, Water, track_numbers
+from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, TurnMeasure
+from trialid.design.imo.turns import NEEDED, Turn, find_turns, is_seen, turn_reader
+from trialid.design.imo.williamson_numbers import williamson_reader
+from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.effects.track import CURRENT
+from trialid.errors import DesignError
+from trialid.identification.fit import Fit, of_trial
+from trialid.trial import Trial
+
+ON_TRACK: Final = ("turning circle", "Williamson turn", "stop")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrialMeasures:
+    """What was recognised in the trials of a fit, to fit and to check, and its numbers."""
+
+    manoeuvres: tuple[Manoeuvre, ...] = ()
+    numbers: tuple[ManoeuvreNumber, ...] = ()
+    turns: tuple[TurnMeasure, ...] = ()
+
+
+def measure_trials(
+    fit: Fit, errors: Mapping[str, float], spread: LikelySpread | None = None
+) -> TrialMeasures:
+    """The manoeuvres of every trial of a fit, and every number of them.
+
+    Parameters
+    ----------
+    errors
+        Standard errors of the unknowns by name.
+    spread
+        What a prediction is uncertain by; without it there is none.
+    """
+    each = [_of_trial(fit, s.trial, errors, spread) for s in fit.scores]
+    return TrialMeasures(
+        manoeuvres=tuple(x for one in each for x in one.manoeuvres),
+        numbers=tuple(x for one in each for x in one.numbers),
+        turns=tuple(x for one in each for x in one.turns),
+    )
+
+
+def _of_trial(
+    fit: Fit, trial: Trial, errors: Mapping[str, float], spread: LikelySpread | None
+) -> TrialMeasures:
+    size = fit.model.ship.particulars
+    found = recognise(trial, size["L"], size["U0"])
+    clock = samples_a_length(trial, size["L"], size["U0"])
+    around = _around(fit, trial, errors, spread, {m.kind for m in found})
+    circles = [(turn, turn_reader(turn, clock)) for turn in find_turns(trial, found)]
+    readers = [(m, r) for m in found if (r := _reader(trial, m, clock)) is not None]
+    return TrialMeasures(
+        manoeuvres=tuple(_manoeuvre(trial, m) for m in found),
+        numbers=(
+            *heading_numbers(trial, found, around.sailed),
+            *_track_numbers(fit, trial, readers, around),
+        ),
+        turns=tuple(_turn_measures(trial, circles, around)),
+    )
+
+
+def _manoeuvre(trial: Trial, one: Recognised) -> Manoeuvre:
+    return Manoeuvre(
+        trial=trial.name,
+        kind=one.kind,
+        t=order_time(trial, one),
+        end=min(one.end, trial.samples - 1) * trial.period,
+        rudder=one.rudder,
+        remark=one.remark,
+    )
+
+
+def _around(
+    fit: Fit,
+    trial: Trial,
+    errors: Mapping[str, float],
+    spread: LikelySpread | None,
+    kinds: set[str],
+) -> Around:
+    """What acts on a trial, as far as the manoeuvres in it need it."""
+    if not kinds & {*ON_TRACK, *READERS}:
+        return Around()
+    sailed = None if spread is None else sail_trial(fit, trial, spread)
+    if not kinds & {*ON_TRACK}:
+        return Around(sailed=sailed)
+    calm = None
+    if spread is not None and sailed is not None and has_wind(fit.model):
+        calm = sail_trial(fit, trial, spread, windy=False)
+    return Around(water=_water(fit, trial, errors), sailed=sailed, calm=calm)
+
+
+def _water(fit: Fit, trial: Trial, errors: Mapping[str, float]) -> Water | None:
+    values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
+    if not {*CURRENT} <= {*values}:
+        return None
+    north, east = (values[n] for n in CURRENT)
+    own = [errors.get(f"{n} [{trial.name}]") for n in CURRENT]
+    known = None if own[0] is None or own[1] is None else (own[0], own[1])
+    return Water((north, east), known)
+
+
+def _reader(trial: Trial, one: Recognised, clock: int) -> TrackReader | None:
+    """What reads a Williamson turn or a stop, where its track was seen."""
+    if not {*NEEDED} <= {*trial.signals}:
+        return None
+    order = order_time(trial, one)
+    reader = None
+    if one.kind == "Williamson turn":
+        reader = williamson_reader(one, order, clock)
+    if one.kind == "stop":
+        reader = stop_reader(one, order, clock, trial.samples)
+    return reader if reader is not None and is_seen(trial, reader.span) else None
+
+
+def _track_numbers(
+    fit: Fit,
+    trial: Trial,
+    readers: Sequence[tuple[Recognised, TrackReader]],
+    around: Around,
+) -> Iterator[ManoeuvreNumber]:
+    own_speed = "u" in fit.model.states
+    for one, reader in readers:
+        known = around if own_speed or one.kind != "stop" else Around(water=around.water)
+        try:
+            rows = track_numbers(reader, trial, known)
+        except DesignError:
+            continue  # the noise of the heading took the last degree
+        for name, fields in rows.items():
+            yield ManoeuvreNumber(
+                trial=trial.name,
+                kind=one.kind,
+                t=reader.order,
+                rudder=one.rudder,
+                name=name,
+                unit=reader.units[name],
+                **fields,
+            )
+
+
+def _turn_measures(
+    trial: Trial, circles: Sequence[tuple[Turn, TrackReader]], around: Around
+) -> Iterator[TurnMeasure]:
+    for turn, reader in circles:
+        try:
+            rows = track_numbers(reader, trial, around)
+        except DesignError:
+            continue  # the noise of the heading took the last degree
+        for name, fields in rows.items():
+            yield TurnMeasure(trial=trial.name, t=turn.t, rudder=turn.rudder, name=name, **fields)
