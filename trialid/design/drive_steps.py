@@ -5,7 +5,7 @@ which none is larger than one keeps to it.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -70,3 +70,11 @@ def _checked(pair: Pair | None) -> Pair:
                 "share; write limit = the most that may be ordered of it"
             )
     return pair
+
+
+def thruster_pair(actuators: Iterable[Actuator]) -> tuple[Actuator, Actuator] | None:
+    """The thruster to port and the one to starboard; None where there is not one of each."""
+    thrusters = [one for one in actuators if one.kind == "thruster"]
+    port = [one for one in thrusters if one.y < 0.0]
+    starboard = [one for one in thrusters if one.y > 0.0]
+    return (port[0], starboard[0]) if len(port) == len(starboard) == 1 else None

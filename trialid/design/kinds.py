@@ -12,7 +12,6 @@ import numpy as np
 from trialid.design import drive_steps, manoeuvres, signals
 from trialid.design.helm import Instructions, Passage, Vessel, carry_out
 from trialid.errors import DesignError, nearest
-from trialid.ship.actuators import thruster_pair
 
 Value = float | tuple[float, ...]
 """One number, or one for each step; SI."""
@@ -96,7 +95,7 @@ def sail(test: Test, vessel: Vessel, roll_frequency: float) -> Passage:
     if missing:
         raise DesignError(f"test {test.name or test.kind!r}: {missing[0]!r} is not given")
     told = {n: value for n, value in values.items() if value is not None}
-    pair = thruster_pair(vessel.model.ship.actuators)
+    pair = drive_steps.thruster_pair(vessel.model.ship.actuators)
     waters = Waters(vessel.period, test.duration - test.approach, roll_frequency, pair)
     return carry_out(
         vessel, kind.build(told, waters), test.approach, test.duration, test.name or test.kind

@@ -55,8 +55,7 @@ class Actuator:
     behind
         Of a rudder, the thruster in whose race it stands; empty where in none.
     limit, rate
-        The most that is ordered of it [SI], and how fast it follows [SI/s]; infinite where nobody
-        says.
+        The most that is ordered of it [SI], and how fast it follows [SI/s]; infinite: not said.
     """
 
     name: str
@@ -84,7 +83,7 @@ class Actuator:
 
     @property
     def bucket(self) -> str:
-        """The signal of a jet's bucket, which turns it back."""
+        """The signal of a jet's bucket."""
         return f"{self.name}_bucket"
 
     @property
@@ -130,14 +129,6 @@ def _positive(one: Actuator, *, is_angle: bool) -> str:
     if is_angle:
         return "turns the ship to starboard"
     return "along its direction"
-
-
-def thruster_pair(actuators: Iterable[Actuator]) -> tuple[Actuator, Actuator] | None:
-    """The thruster to port and the one to starboard; None where there is not one of each."""
-    thrusters = [one for one in actuators if one.kind == "thruster"]
-    port = [one for one in thrusters if one.y < 0.0]
-    starboard = [one for one in thrusters if one.y > 0.0]
-    return (port[0], starboard[0]) if len(port) == len(starboard) == 1 else None
 
 
 def rudder_signals(actuators: Iterable[Actuator]) -> frozenset[str]:
