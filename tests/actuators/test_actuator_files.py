@@ -18,6 +18,7 @@ particulars = { L = 10.0, nabla = 10.0, rho = 1000.0, g = 9.81, U0 = 3.0 }
 mass = { m = 0.01, I_zz = 0.0006 }
 """
 ONE = '[[actuator]]\nname = "left"\nkind = "thruster"\nat = [-4.0, -1.0]\n'
+AFT = '[[actuator]]\nname = "aft"\nkind = "rudder"\nat = [-5, 0]\n'
 BOW = '[[actuator]]\nname = "bow"\nkind = "tunnel"\nat = [4, 0]\ncommand = "share"\n'
 
 
@@ -36,15 +37,21 @@ def test_actuators_are_read(tmp_path: Path) -> None:
 
 
 def test_what_is_written_reads_back_as_it_was(tmp_path: Path) -> None:
-    first = ship(tmp_path, ONE + "direction = 7.5\nown = true\n" + BOW).actuators
+    text = (
+        ONE
+        + "direction = 7.5\nown = true\nlimit = 900.0\nrate = 60.0\n"
+        + BOW
+        + AFT
+        + 'behind = "left"\n'
+    )
+    first = ship(tmp_path, text).actuators
     again = ship(tmp_path, "\n".join(actuator_tables(first))).actuators
     assert again == first
 
 
 def test_their_signals_have_units_and_sides(tmp_path: Path) -> None:
     pod = '[[actuator]]\nname = "pod"\nkind = "azimuth"\nat = [0, 0]\ncommand = "thrust"\n'
-    rudder = '[[actuator]]\nname = "aft"\nkind = "rudder"\nat = [-5, 0]\n'
-    found = actuator_quantities(ship(tmp_path, ONE + pod + rudder).actuators)
+    found = actuator_quantities(ship(tmp_path, ONE + pod + AFT).actuators)
     units = {n: q.unit for n, q in found.items() if "_order" not in n}
     assert units == {"left": "rad/s", "pod": "N", "pod_angle": "rad", "aft": "rad"}
     assert [n for n, q in found.items() if q.steers] == ["aft", "aft_order"]
@@ -61,12 +68,15 @@ def test_their_signals_have_units_and_sides(tmp_path: Path) -> None:
         (ONE.replace("-1.0]", '"a"]'), "write [metres ahead, metres to starboard]"),
         (ONE.replace('"left"', '"Left"'), "name = 'Left'; Its name"),
         (ONE.replace('"left"', '"n"'), "actuator 'n' has the name of a quantity"),
-        (ONE.replace('"left"', '"left_angle"'), "a name does not end in _order or _angle"),
+        (ONE.replace('"left"', '"left_angle"'), "a name does not end in _order, _angle or _bucket"),
         (ONE + ONE, "signal 'left' is there twice"),
         (ONE + 'command = "rpm"\n', "command = 'rpm'; expected one of revolutions, share, thrust"),
+        (ONE + "limit = 0\n", "limit = 0; write a number above zero"),
         (ONE + "own = 1\n", "own = 1; write true or false"),
         (ONE + 'direction = "aft"\n', "write degrees from ahead, clockwise"),
         (ONE.replace("thruster", "rudder") + 'command = "share"\n', "a rudder has no command"),
+        (ONE + 'behind = "bow"\n', "only a rudder stands in a race; leave 'behind' out"),
+        (AFT + 'behind = "lift"\n' + ONE, "behind = 'lift' is no thruster of this ship; did you"),
         (ONE + BOW.replace("tunnel", "thruster"), "the thrusters share their parameters, and"),
         ("[actuator]\n", "write a table [[actuator]] for each"),
     ],

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import test_effects as laws
-from boats import EFFECTS, QUANTITIES, SHIP, ship_with
+from boats import EFFECTS, QUANTITIES, SHIP, eight_actuators, ship_with
 from dual import independent, slope
 from typical import draw
 
@@ -18,10 +18,9 @@ from trialid.simulation.graph import gradient
 from trialid.simulation.integrate import prepare, respond
 from trialid.simulation.reference import evaluator
 from trialid.simulation.trace import trace
-from trialid.trial import Trial
 
 EVERY = pytest.mark.parametrize("name", EFFECTS)
-SPAN = {"rad": 0.6, "rad/s": 9.0, "1": 0.9, "N": 1e7}
+SPAN = {"rad": 0.6, "rad/s": 9.0, "1": 0.9, "N": 3e7}
 
 
 def signal(name: str, rng: np.random.Generator) -> float:
@@ -112,18 +111,28 @@ MIRRORED = (
     Actuator(name="d", kind="azimuth", x=-70.0, y=6.0),
     Actuator(name="e", kind="waterjet", x=-70.0, y=-6.0),
     Actuator(name="f", kind="waterjet", x=-70.0, y=6.0),
-    Actuator(name="g", kind="rudder", x=-70.0, y=-6.0),
-    Actuator(name="h", kind="rudder", x=-70.0, y=6.0),
+    Actuator(name="g", kind="rudder", x=-70.0, y=-6.0, behind="a"),
+    Actuator(name="h", kind="rudder", x=-70.0, y=6.0, behind="b"),
 )
 PARTNERS = {a: b for a, b in zip("abcdefgh", "badcfehg", strict=True)}
 
 
 @pytest.mark.parametrize(
-    "name", ["thrusters", "azimuths", "waterjets", "rudders", "rudders_drag", "thrusters_advance"]
+    "name",
+    [
+        "thrusters",
+        "azimuths",
+        "waterjets",
+        "rudders",
+        "rudders_drag",
+        "rudders_race",
+        "thrusters_advance",
+    ],
 )
 def test_port_for_starboard(name: str) -> None:
     """Drives exchanged, angles exchanged and turned over: X stays, Y, K and N change sign."""
     effect = actuator_effects(ship_with(MIRRORED))[name]
+    turning = 0
     for seed in range(6):
         at = values(effect, seed)
         there = dict(at)
@@ -135,7 +144,8 @@ def test_port_for_starboard(name: str) -> None:
         here, other = effect(at)[0], effect(there)[0]
         wanted = [here.X, -here.Y, -here.K, -here.N]
         np.testing.assert_allclose(list(other), wanted, rtol=1e-9, atol=1e-9 * abs(here.X) + 1e-12)
-        assert here.N != 0.0
+        turning += here.N != 0.0
+    assert turning >= 3  # a screw that backs has no race
 
 
 ALONE = {
@@ -174,6 +184,24 @@ def test_a_pod_pushes_to_where_it_points_and_a_nozzle_aft_turns_the_ship_to_its_
     assert made["waterjets"](jet)[0] == pytest.approx((np.sqrt(3.0), -1.0, 0.0, 5.0))
 
 
+def test_a_bucket_takes_the_jet_away_and_turns_it_back() -> None:
+    jet = {"jet": 10.0, "jet_angle": 0.2, "k_jet_ahead": 2.0, "k_jet_astern": 1.0}
+    X, Y, _, N = EFFECTS["waterjets"](jet)[0]
+    at = {"jet": 10.0, "jet_angle": 0.2, "jet_bucket": 0.5, "k_bucket": 3.0}
+    taken = EFFECTS["waterjets_bucket"](at)[0]
+    assert pytest.approx((-0.75 * X, -0.75 * Y, -0.75 * N)) == (taken.X, taken.Y, taken.N)
+    astern = EFFECTS["waterjets_bucket"](at | {"jet_bucket": 1.0})[0]
+    assert X + astern.X < 0.0
+    assert EFFECTS["waterjets_bucket"](at | {"jet": -10.0})[0] == pytest.approx((0.0,) * 4)
+
+
+def test_no_more_comes_of_an_order_than_a_drive_can() -> None:
+    [moved] = EFFECTS["azimuths_saturation"]({"pod": 0.9, "n_full_azimuths": 0.7})
+    assert 0.9 + moved["pod"] == pytest.approx(0.7)
+    [moved] = EFFECTS["azimuths_saturation"]({"pod": -0.6, "n_full_azimuths": 0.7})
+    assert moved["pod"] == 0.0
+
+
 def test_a_bow_thruster_to_starboard_turns_to_starboard_less_at_speed() -> None:
     at = {"bow": 2.0, "u": 0.0, "k_tunnel": 3.0, "u_tunnel": 1.5}
     assert EFFECTS["tunnels"](at)[0] == pytest.approx((0.0, 12.0, 0.0, 840.0))
@@ -190,6 +218,14 @@ def test_rudders_together_are_the_one_rudder_and_a_bow_rudder_pushes_the_other_w
     bow = replace(SHIP, actuators=(Actuator(name="bow", kind="rudder", x=60.0, y=0.0),))
     one = actuator_effects(bow)["rudders"]({"bow": 0.2, **rudder})[0]
     assert one == pytest.approx((0.0, -linear.Y, -linear.K, linear.N))
+
+
+def test_a_rudder_in_a_race_acts_at_rest_and_not_behind_a_screw_that_backs() -> None:
+    at = {"rudder_stbd": 0.5, "right": 3.0, "k_race": 2.0}
+    F = 2.0 * 9.0 * np.sin(0.5)
+    X, Y = -F * np.sin(0.5), -F * np.cos(0.5)
+    assert EFFECTS["rudders_race"](at)[0] == pytest.approx((X, Y, 0.0, -80.0 * Y - 4.0 * X))
+    assert EFFECTS["rudders_race"](at | {"right": -3.0})[0] == pytest.approx((0.0, 0.0, 0.0, 0.0))
 
 
 def test_coefficients_of_a_file_with_port_rudders_are_turned_over_for_several_too() -> None:
@@ -220,35 +256,6 @@ def test_reversed_and_exchanged_do_what_they_say() -> None:
     )
     assert 0.1 + moved["rudder_port"] == pytest.approx(-0.3)
     assert -0.3 + moved["rudder_stbd"] == pytest.approx(0.1)
-
-
-EIGHT = (
-    Actuator(name="pod_1", kind="azimuth", x=-60.0, y=-8.0),
-    Actuator(name="pod_2", kind="azimuth", x=-60.0, y=8.0),
-    Actuator(name="pod_3", kind="azimuth", x=-20.0, y=-8.0),
-    Actuator(name="pod_4", kind="azimuth", x=-20.0, y=8.0),
-    Actuator(name="port", kind="rudder", x=-80.0, y=-4.0),
-    Actuator(name="stbd", kind="rudder", x=-80.0, y=4.0),
-    Actuator(name="bow_1", kind="tunnel", x=70.0, y=0.0, direction=np.pi / 2),
-    Actuator(name="bow_2", kind="tunnel", x=75.0, y=0.0, direction=np.pi / 2),
-)
-
-
-def eight_actuators() -> tuple[ShipModel, tuple[str, ...], Trial]:
-    """A ship with four pods, two rudders and two bow thrusters, all of them moving."""
-    ship = ship_with(EIGHT)
-    own = actuator_effects(ship)
-    hull = [laws.CATALOGUE[n] for n in ("linear_hull", "surge_resistance")]
-    names = ("rudders", "azimuths", "tunnels", "still_water_yaw")
-    model = ShipModel(ship, ("u", "v", "r"), (*hull, *(own[n] for n in names)))
-    stated = {n: p.start for e in model.effects for n, p in e.parameters.items()}
-    model = model.with_values({n: x for n, x in stated.items() if model.stated(n) is None})
-    free = ("Nv", "Nr", "Ndelta", "k_pod_ahead", "k_tunnel", "Nr0", "Xuu")
-    t = np.arange(0.0, 300.0, 0.5)
-    waves = {s: np.sin(0.02 * (i + 3) * t + i) for i, s in enumerate(model.recorded)}
-    signals = {s: 2.0 * y if s.startswith("bow") else 0.5 * y for s, y in waves.items()}
-    valid = {s: np.ones(len(t), dtype=bool) for s in signals}
-    return model, free, Trial("eight", "fit", 0.5, signals, valid)
 
 
 def test_compiled_and_numpy_agree_on_eight_actuators() -> None:

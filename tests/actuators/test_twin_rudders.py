@@ -52,15 +52,21 @@ def sway_and_yaw(mean_rudder: np.ndarray, period: float) -> np.ndarray:
     return np.array(r)
 
 
-def record(seed: int, kept: tuple[float, float], apart: bool) -> Trial:
-    """Steps of both rudders, of which these shares act; each by itself where they move apart."""
+def record(seed: int, kept: tuple[float, float], apart: bool, stuck: int | None = None) -> Trial:
+    """Steps of both rudders, of which these shares act; each by itself where they move apart.
+
+    The rudder that is `stuck` stays at an angle of 2 to 8 deg, and the log shows its order.
+    """
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 900.0, 1.0)
     angles = np.zeros((len(t), 2))
     for start in range(20, 900, 40):
         step = np.deg2rad(rng.uniform(-12.0, 12.0, 2))
         angles[start:] = step if apart else step[0]
-    r = sway_and_yaw(angles @ np.array(kept) / 2.0, 1.0)
+    acting = angles.copy()
+    if stuck is not None:
+        acting[:, stuck] = np.deg2rad(rng.uniform(2.0, 8.0)) * rng.choice([-1.0, 1.0])
+    r = sway_and_yaw(acting @ np.array(kept) / 2.0, 1.0)
     signals = dict(zip(NAMES, angles.T, strict=True))
     signals["r"] = r + NOISE * rng.standard_normal(len(t))
     signals["u"] = np.full(len(t), SPEED)
@@ -68,12 +74,14 @@ def record(seed: int, kept: tuple[float, float], apart: bool) -> Trial:
     return Trial(f"twin {seed}", "fit", 1.0, signals, valid)
 
 
-def found(seed: int, kept: tuple[float, float], apart: bool = True) -> Verdict:
+def found(
+    seed: int, kept: tuple[float, float] = (1.0, 1.0), apart: bool = True, stuck: int | None = None
+) -> Verdict:
     effects = (EFFECTS["linear_hull"], EFFECTS["rudders"])
     asked = Settings(
         free=("Nv", "Nr", "Ydelta", "Ndelta"), outputs=("r",), nuisance=("initial_state",)
     )
-    fit = identify((record(seed, kept, apart),), ShipModel(SHIP, ("v", "r"), effects), asked)
+    fit = identify((record(seed, kept, apart, stuck),), ShipModel(SHIP, ("v", "r"), effects), asked)
     return diagnose(fit, DiagnoseSettings(candidates=EFFECTS)).verdict
 
 
@@ -103,6 +111,22 @@ def test_one_rudder_half_as_effective_is_named_with_its_side() -> None:
     print(dict(right), wrong)
     assert right["half"] >= 19
     assert len(wrong) <= 0.02 * 40
+
+
+@pytest.mark.study(turn=2)
+def test_one_rudder_stuck_is_named_with_its_side() -> None:
+    """Twenty records; a name of the other side or of another cause is a wrong one."""
+    right, wrong = 0, []
+    for seed in range(640, 660):
+        own = NAMES[seed % 2]
+        verdict = found(seed, stuck=seed % 2)
+        if verdict.effect == f"{own}_stuck":
+            right += 1
+        elif verdict.effect is not None:
+            wrong.append(f"{seed}: {verdict.sentence}")
+    print(right, wrong)
+    assert right >= 0.95 * 20
+    assert wrong == []
 
 
 ACTUATORS = """

@@ -88,5 +88,26 @@ def test_what_is_missing_is_said():
 
     assert "no SERVOn_FUNCTION parameter" in words()
     assert "is 26 (GroundSteering) or 21 (Rudder)" in words(FUNCTION=73)
-    assert "1 ThrottleLeft" in words(FUNCTION=73)
+    assert "output 1 (ThrottleLeft): no share of full, SERVO1_MIN" in words(FUNCTION=73)
     assert "SERVO1_TRIM, SERVO1_REVERSED not in the log" in words(FUNCTION=21, MIN=1, MAX=2)
+
+
+def test_motors_of_a_skid_steered_boat_are_outputs_of_their_own():
+    names = [f"SERVO{n}_FUNCTION" for n in (1, 2, 3, 4)]
+    values = np.array([73, 26, 74, 70.0])
+    found = servo_deflection.outputs(
+        servo_deflection.parameters(names, np.zeros(4, np.int64), values)
+    )
+    assert {n: (one.field, one.steers) for n, one in found.items()} == {
+        1: ("throttle_left", False),
+        2: ("deflection", True),
+        3: ("throttle_right", False),
+        4: ("throttle", False),
+    }
+
+
+def test_a_motor_whose_sign_is_a_relay_has_no_share():
+    names = ["SERVO1_FUNCTION", "MOT_PWM_TYPE"]
+    history = servo_deflection.parameters(names, np.zeros(2, np.int64), np.array([73, 3.0]))
+    assert servo_deflection.outputs(history) == {}
+    assert "a relay turns the motors round" in " / ".join(servo_deflection.remarks(history, {}))

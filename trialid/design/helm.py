@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask
+from trialid.design.drive_commands import Drive
 from trialid.errors import DesignError
 from trialid.names.quantities import POSITION
+from trialid.ship.actuators import Actuator, rudder_signals
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure, Simulator, prepare, respond
 from trialid.trial import Trial
@@ -58,7 +60,7 @@ class Follow:
 Look = Callable[[], Motion]
 """What the ship has done from the start of the trial up to now."""
 
-Instructions = Generator[Hold | Follow, Look, None]
+Instructions = Generator[Hold | Follow | Drive, Look, None]
 """Yields what to do; is sent a look at the ship when it is done."""
 
 
@@ -97,12 +99,15 @@ class Passage:
         Track from where the trial began, ahead and to starboard of the approach course [m]; (N,).
     departure
         Where the ship left the domain of her model; the trial ends before it. None: nowhere.
+    driven
+        Actuators that were commanded, where it was not the rudder.
     """
 
     trial: Trial
     x: Vector
     y: Vector
     departure: Departure | None
+    driven: tuple[Actuator, ...] = ()
 
 
 def vessel(
@@ -137,14 +142,33 @@ def carry_out(
     orders = np.zeros(samples)
     at = min(round(approach / vessel.period), samples)
     told = next(instructions, None)
+    if isinstance(told, Drive):
+        return _driven(vessel, told, at, samples, name)
     while told is not None and at < samples:
+        assert not isinstance(told, Drive)  # a test commands either the rudder or the drives
         at = _obeyed(vessel, orders, at, told)
         look = functools.partial(sail, vessel, orders[: at + 1].copy())
         try:
             told = instructions.send(look)
         except StopIteration:
             break
-    return _passage(vessel, orders, name)
+    return _passage(vessel, _sail(vessel, orders), name)
+
+
+def _driven(vessel: Vessel, told: Drive, at: int, samples: int, name: str) -> Passage:
+    """Sail with drives commanded by the clock; what is commanded last is held."""
+    known = {one.name: one for one in vessel.model.ship.actuators}
+    given = {n: np.zeros(samples) for n in rudder_signals(known.values())}
+    for drive, order in told.courses(at, samples).items():
+        given[f"{drive}_order"] = order
+        if drive not in vessel.model.all_states:
+            given[drive] = _following(order, known[drive].rate * vessel.period)
+    return _passage(vessel, _run(vessel, given), name, tuple(known[n] for n in told.commands))
+
+
+def _following(order: Vector, step: float) -> Vector:
+    """What a drive does of its order; all of it where nobody says how fast it follows."""
+    return ramp(order, step) if math.isfinite(step) else order
 
 
 def _obeyed(vessel: Vessel, orders: Vector, at: int, told: Hold | Follow) -> int:
@@ -189,12 +213,25 @@ def _sail(vessel: Vessel, orders: Vector) -> tuple[dict[str, Vector], Departure 
     model = vessel.model
     if GEAR_STATE not in model.all_states:
         given["delta"] = ramp(orders, vessel.rudder_rate * vessel.period)
-    given |= {c: np.full(len(orders), value) for c, value in vessel.constants.items()}
-    blank = Trial("sailed", "fit", vessel.period, given, {})
+    for one in model.ship.actuators:
+        if one.kind == "rudder":  # several rudders move as one
+            given[f"{one.name}_order"] = orders
+            rate = min(one.rate, vessel.rudder_rate)
+            if one.name not in model.all_states:
+                given[one.name] = ramp(orders, rate * vessel.period)
+    return _run(vessel, given)
+
+
+def _run(vessel: Vessel, given: Mapping[str, Vector]) -> tuple[dict[str, Vector], Departure | None]:
+    """Every signal of the ship under given ones, what stays constant beside them."""
+    model = vessel.model
+    count = len(next(iter(given.values())))
+    still = {c: np.full(count, value) for c, value in vessel.constants.items() if c not in given}
+    blank = Trial("sailed", "fit", vessel.period, {**given, **still}, {})
     response = respond(vessel.simulator, blank, {}, {}, sensitivities=False)
     states = dict(zip(model.all_states, response.states.T, strict=True))
     speed = {} if "u" in states else {"U": response.y[:, 0]}
-    return {"t": blank.t, **given, **states, **speed}, response.departure
+    return {"t": blank.t, **given, **still, **states, **speed}, response.departure
 
 
 def ramp(orders: Vector, step: float) -> Vector:
@@ -216,8 +253,13 @@ def ramp(orders: Vector, step: float) -> Vector:
     return followed
 
 
-def _passage(vessel: Vessel, orders: Vector, name: str) -> Passage:
-    signals, departure = _sail(vessel, orders)
+def _passage(
+    vessel: Vessel,
+    sailed: tuple[dict[str, Vector], Departure | None],
+    name: str,
+    driven: tuple[Actuator, ...] = (),
+) -> Passage:
+    signals, departure = sailed
     if departure is not None:
         kept = max(round(departure.t / vessel.period), 2)
         signals = {c: values[:kept] for c, values in signals.items()}
@@ -225,7 +267,7 @@ def _passage(vessel: Vessel, orders: Vector, name: str) -> Passage:
     x, y = track(t, signals, vessel.model.ship.particulars["U0"])
     arrays = {c: np.array(values) for c, values in signals.items()}
     valid = {c: np.ones(len(t), dtype=bool) for c in arrays}
-    return Passage(Trial(name, "fit", vessel.period, arrays, valid), x, y, departure)
+    return Passage(Trial(name, "fit", vessel.period, arrays, valid), x, y, departure, driven)
 
 
 def track(t: Vector, motion: Motion, speed: float) -> tuple[Vector, Vector]:

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.design import manoeuvres, signals
+from trialid.design import drive_steps, manoeuvres, signals
 from trialid.design.helm import Instructions, Passage, Vessel, carry_out
 from trialid.errors import DesignError, nearest
 
@@ -43,6 +43,12 @@ class Waters:
     period: float
     duration: float
     roll_frequency: float
+    thrusters: drive_steps.Pair | None = None
+
+    @property
+    def samples(self) -> int:
+        """Of the test without its approach."""
+        return round(self.duration / self.period) + 1
 
 
 Builder = Callable[[Mapping[str, Value], Waters], Instructions]
@@ -89,7 +95,8 @@ def sail(test: Test, vessel: Vessel, roll_frequency: float) -> Passage:
     if missing:
         raise DesignError(f"test {test.name or test.kind!r}: {missing[0]!r} is not given")
     told = {n: value for n, value in values.items() if value is not None}
-    waters = Waters(vessel.period, test.duration - test.approach, roll_frequency)
+    pair = drive_steps.thruster_pair(vessel.model.ship.actuators)
+    waters = Waters(vessel.period, test.duration - test.approach, roll_frequency, pair)
     return carry_out(
         vessel, kind.build(told, waters), test.approach, test.duration, test.name or test.kind
     )
@@ -157,7 +164,7 @@ def _steps(v: Mapping[str, Value], w: Waters) -> Instructions:
 
 
 def _multisine(v: Mapping[str, Value], w: Waters) -> Instructions:
-    t = np.asarray(np.arange(round(w.duration / w.period) + 1) * w.period)
+    t = np.asarray(np.arange(w.samples) * w.period)
     omega = 2.0 * np.pi / np.asarray(_many(v["periods"]))
     sizes, phases = _many(v["sizes"]), np.resize(_many(v["phases"]), len(omega))
     wave = signals.multisine(t, 1.0, np.resize(sizes, len(omega)), omega, phases)
@@ -180,8 +187,20 @@ def _binary(v: Mapping[str, Value], w: Waters) -> Instructions:
     )
 
 
+def _differential(v: Mapping[str, Value], w: Waters) -> Instructions:
+    return drive_steps.differential_steps(
+        w.thrusters, _many(v["ahead"]), _many(v["differences"]), _many(v["lengths"]), w.samples
+    )
+
+
+def _spins(v: Mapping[str, Value], w: Waters) -> Instructions:
+    return drive_steps.spins(w.thrusters, _many(v["turning"]), _many(v["lengths"]), w.samples)
+
+
 ANGLE: Final = Variable("deg")
 PERIOD: Final = Variable("s", positive=True)
+SHARES: Final = Variable("1", many=True)
+LENGTHS: Final = Variable("1", many=True, default=(1.0,), positive=True)
 TURN: Final = Variable("deg", default=3.0 * np.pi)
 
 KINDS: Final[Mapping[str, Kind]] = {
@@ -229,7 +248,7 @@ KINDS: Final[Mapping[str, Kind]] = {
         "step sequence",
         {
             "angles": Variable("deg", many=True),
-            "lengths": Variable("1", many=True, default=(1.0,), positive=True),
+            "lengths": LENGTHS,
         },
         _steps,
     ),
@@ -253,5 +272,15 @@ KINDS: Final[Mapping[str, Kind]] = {
         },
         _binary,
     ),
+    "differential_steps": Kind(
+        "differential steps",
+        {
+            "ahead": Variable("1", many=True, default=(0.5,)),
+            "differences": SHARES,
+            "lengths": LENGTHS,
+        },
+        _differential,
+    ),
+    "spins": Kind("spins", {"turning": SHARES, "lengths": LENGTHS}, _spins),
 }
 """Every manoeuvre there is, by its name in files."""

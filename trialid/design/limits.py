@@ -8,6 +8,8 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.helm import Passage
+from trialid.names import units
+from trialid.ship.actuators import SHOWN, Actuator
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,8 @@ class Limits:
         Sea room ahead of where the test begins, to each side and astern [m].
     duration
         [s], approach included.
+    rudders
+        Rudders of a ship with several, each with a limit of its own.
     """
 
     rudder: float | None = None
@@ -35,6 +39,7 @@ class Limits:
     speed_loss: float | None = None
     room: tuple[float, float, float] | None = None
     duration: float | None = None
+    rudders: tuple[Actuator, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -69,12 +74,13 @@ def _found(passage: Passage, limits: Limits, speed: float) -> Iterator[Excess]:
     degrees = np.rad2deg(1.0)
     if passage.departure is not None:
         yield Excess("model", np.inf, 1.0, passage.departure.t, str(passage.departure))
-    order = np.abs(signals["delta_order"])
-    yield from _over("rudder", order, t, limits.rudder, degrees, "deg of rudder are ordered")
-    rate = np.maximum(needed_rates(signals["delta_order"], passage.trial.period), _runs(passage))
-    yield from _over(
-        "rudder rate", rate, t, limits.rudder_rate, degrees, "deg/s of rudder are asked for"
-    )
+    if not passage.driven:
+        yield from _of_rudder(passage, limits)
+    for one in passage.driven or limits.rudders:
+        order, shown = np.abs(signals[f"{one.name}_order"]), SHOWN[one.unit]
+        words = f"{'' if shown == '1' else shown + ' '}of {one.name} are ordered"
+        size = units.factor(one.unit, shown)
+        yield from _over(one.name, order, t, one.limit, size, words.strip())
     if "phi" in signals:
         roll = np.abs(signals["phi"])
         yield from _over("heel", roll, t, limits.heel, degrees, "deg of heel are reached")
@@ -90,6 +96,17 @@ def _found(passage: Passage, limits: Limits, speed: float) -> Iterator[Excess]:
     if limits.duration is not None and t[-1] > limits.duration + passage.trial.period:
         words = f"it takes {t[-1]:.0f} s, {limits.duration:.0f} s are allowed"
         yield Excess("duration", float(t[-1]), limits.duration, limits.duration, words)
+
+
+def _of_rudder(passage: Passage, limits: Limits) -> Iterator[Excess]:
+    signals, t = passage.trial.signals, passage.trial.t
+    degrees = np.rad2deg(1.0)
+    order = np.abs(signals["delta_order"])
+    yield from _over("rudder", order, t, limits.rudder, degrees, "deg of rudder are ordered")
+    rate = np.maximum(needed_rates(signals["delta_order"], passage.trial.period), _runs(passage))
+    yield from _over(
+        "rudder rate", rate, t, limits.rudder_rate, degrees, "deg/s of rudder are asked for"
+    )
 
 
 def needed_rates(orders: Vector, period: float) -> Vector:

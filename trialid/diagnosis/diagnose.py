@@ -13,7 +13,7 @@ from trialid.diagnosis.prediction_band import prediction_band
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.completeness import Completeness, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
-from trialid.diagnosis.search.gross_fault import gross_faults
+from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, refit_best
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.diagnosis.trust import accuracy_of
@@ -115,6 +115,8 @@ def diagnose(
     refits = tuple(
         refit_best(fit, trials, worth, asked.refit, asked.level, lambda words: progress(words, 0.7))
     )
+    if faults := whole_faults(fit, trials, asked.candidates, refits, progress):
+        return _gross(fit, before, augmented, faults, asked)
     whole = _whole(fit, augmented)
     fits = [r.fit for r in refits]
     before = _bounded(before, fits, whole)

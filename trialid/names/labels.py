@@ -80,6 +80,17 @@ def shown_text(name: str, value: float | None) -> str:
     return f"{wording.number(value * shown_factor(name), 3)} {shown_unit(name)}"
 
 
+def command_text(command: Quantity, value: float) -> str:
+    """What an actuator is told, in SI, as it is called out; a share in per cent.
+
+    >>> command_text(Quantity("left", "left", "1", "1", ""), -0.35)
+    '-35 %'
+    """
+    if command.shown == "1":
+        return f"{100.0 * value:.3g} %"
+    return f"{value * units.shown_factor(command):.4g} {command.shown}"
+
+
 def unit_word(unit: str) -> str:
     """A unit as part of a column or field name.
 
@@ -89,21 +100,22 @@ def unit_word(unit: str) -> str:
     return unit.replace("/", "p").replace("^", "").replace("*", "")
 
 
-def column(name: str, role: str = "") -> str:
-    """A CSV header: the quantity, what it is of it, the SI unit.
+def column(name: str, role: str = "", unit: str | None = None) -> str:
+    """A CSV header: the quantity, what it is of it, the SI unit, the dictionary's where not given.
 
-    >>> column("delta"), column("r", "measured")
-    ('delta_rad', 'r_measured_radps')
+    >>> column("delta"), column("r", "measured"), column("left", unit="rad/s")
+    ('delta_rad', 'r_measured_radps', 'left_radps')
     """
-    return "_".join(part for part in (name, role, unit_word(quantity(name).unit)) if part)
+    known = quantity(name).unit if unit is None else unit
+    return "_".join(part for part in (name, role, unit_word(known)) if part)
 
 
-def message_field(name: str) -> str:
-    """A protobuf field: the spoken name and the SI unit.
+def message_field(name: str, unit: str | None = None) -> str:
+    """A protobuf field: the spoken name and the SI unit, the dictionary's where none is given.
 
-    >>> message_field("r"), message_field("delta")
-    ('yaw_rate_radps', 'rudder_rad')
+    >>> message_field("r"), message_field("delta"), message_field("left", "N")
+    ('yaw_rate_radps', 'rudder_rad', 'left_N')
     """
-    unit = quantity(name).unit
+    unit = quantity(name).unit if unit is None else unit
     words = (_FIELDS.get(name, name), "" if unit == "1" else unit_word(unit))
     return re.sub(r"\W", "_", "_".join(word for word in words if word), flags=re.ASCII)

@@ -80,4 +80,6 @@ def _fits(unit: str, si: str) -> bool:
 
 def shown_factor(quantity: Quantity) -> float:
     """What to multiply an SI number by to show it in the unit reports use."""
+    if quantity.shown == quantity.unit:
+        return 1.0
     return 1.0 / factor(quantity.shown, quantity.unit)

@@ -15,6 +15,7 @@ from trialid.pipeline_file.allowed_values import Count, Names, NotEmpty, Whole, 
 from trialid.pipeline_file.complaints import Problem, dotted_key, refusal
 from trialid.pipeline_file.form import Described, GivenValue
 from trialid.pipeline_file.named_file import Origin, ReadFile
+from trialid.pipeline_file.own_quantities import ship_quantities
 from trialid.pipeline_file.section import NotNegative, Number, Positive, Section
 
 MOST: Final = 200_000
@@ -280,13 +281,14 @@ def _of_gear(pipeline: DesignFile) -> list[Problem]:
 
 def _of_signals(pipeline: DesignFile) -> list[Problem]:
     found: list[Problem] = []
+    known = ship_quantities(pipeline)
     for name, given in pipeline.at_sea.constant.items():
         key = dotted_key("at_sea", "constant", name)
-        if name not in SIGNALS:
-            found.append((key, f"unknown quantity; {nearest(name, SIGNALS)}"))
+        if name not in known:
+            found.append((key, f"unknown quantity; {nearest(name, known)}"))
         elif given.unit is not None:
             try:
-                units.factor(given.unit, SIGNALS[name].unit)
+                units.factor(given.unit, known[name].unit)
             except UnitError as error:
                 found.append((dotted_key("at_sea", "constant", name, "unit"), str(error)))
     for name in pipeline.noise:

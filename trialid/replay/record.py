@@ -62,6 +62,7 @@ def series(playback: Playback, start: int = 0) -> TrialSeries:
             )
             for i, c in enumerate(fit.problem.outputs)
         ),
+        units=fit.model.own_units,
     )
 
 

@@ -12,6 +12,7 @@ from trialid.names import labels
 from trialid.replay.clock import Pace
 from trialid.replay.closing_words import band_words
 from trialid.replay.playback import Playback
+from trialid.ship.actuators import actuator_quantities
 
 if TYPE_CHECKING:
     from rich.console import Console, Group
@@ -70,8 +71,9 @@ def draw(playback: Playback, pace: Pace) -> "Group":
     events = [e for e in playback.events() if e.t <= place * playback.trial.period][-LAST:]
     told = [(f"{e.t:8.1f} s  {harmless(e.words)}", "red" if e.warning else "") for e in events]
     lines = [Text(words, style) for words, style in told] or [Text("no alarm")]
-    if said := _about(playback, place):
-        lines.insert(0, Text(said))
+    for said in (_about(playback, place), _commands(playback, place)):
+        if said:
+            lines.insert(0, Text(harmless(said)))
     return Group(Text(harmless(_heading(playback, pace, place))), table, *lines)
 
 
@@ -110,6 +112,13 @@ def _about(playback: Playback, place: int) -> str:
     outside = [c for c, e in errors if c in half and e > half[c]]
     now = f" (now outside: {', '.join(outside)})" if outside else ""
     return band_words(half) + now
+
+
+def _commands(playback: Playback, place: int) -> str:
+    """What each of the ship's actuators is told or does just now; empty for a single rudder."""
+    known, signals = actuator_quantities(playback.fit.model.ship.actuators), playback.trial.signals
+    told = [n for n in playback.fit.problem.simulator.equations.inputs if n in known]
+    return ", ".join(f"{n} {labels.command_text(known[n], signals[n][place])}" for n in told)
 
 
 def _deviations(ratio: float) -> str:

@@ -4,7 +4,7 @@ import csv
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -13,10 +13,14 @@ import numpy as np
 from trialid.arrays import Mask, Vector
 from trialid.errors import LogError
 from trialid.names import labels
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.result.track_series import TrackSeries
+from trialid.ship.actuators import SHOWN
 
 _OUTPUT = re.compile(r"(?P<name>.+)_predicted_[^_]+", re.DOTALL)
-_INPUT = re.compile(r"(?P<name>.+)_[^_]+", re.DOTALL)
+_INPUT = re.compile(r"(?P<name>.+)_(?P<unit>[^_]+)", re.DOTALL)
+WORDS = {labels.unit_word(unit): unit for unit in SHOWN}
+"""Units of actuators by how a header writes them; another one stays as it is written."""
 KEYS = ("trial", "use", "t_s")
 
 
@@ -46,7 +50,10 @@ class OutputSeries:
 
 @dataclass(frozen=True, kw_only=True)
 class TrialSeries:
-    """One trial's clock [s], inputs and outputs in SI; (N,) each; its track where it has one."""
+    """One trial's clock [s], inputs and outputs in SI; (N,) each; its track where it has one.
+
+    `units` are those of inputs that no dictionary has: of an actuator, or of one's own.
+    """
 
     name: str
     use: Literal["fit", "check"]
@@ -54,6 +61,14 @@ class TrialSeries:
     inputs: Mapping[str, Vector]
     outputs: tuple[OutputSeries, ...]
     track: TrackSeries | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def quantity(self, name: str) -> Quantity:
+        """What an input is: the dictionary's entry, or its name and unit."""
+        if name in SIGNALS or name not in self.units:
+            return labels.quantity(name)
+        unit = self.units[name]
+        return Quantity(name, name, unit, SHOWN.get(unit, unit), name)
 
     def __post_init__(self) -> None:
         for array in (self.t, *self.inputs.values()):
@@ -84,7 +99,10 @@ def _columns(trial: TrialSeries) -> dict[str, Sequence[object]]:
         "use": [trial.use] * samples,
         "t_s": _fields(trial.t),
     }
-    columns |= {labels.column(name): _fields(values) for name, values in trial.inputs.items()}
+    columns |= {
+        labels.column(name, unit=trial.quantity(name).unit): _fields(values)
+        for name, values in trial.inputs.items()
+    }
     for output in trial.outputs:
         columns[labels.column(output.name, "measured")] = _fields(output.observed)
         columns[labels.column(output.name, "predicted")] = _fields(output.predicted)
@@ -134,13 +152,17 @@ def _trial(columns: Mapping[str, Sequence[str]], path: str) -> TrialSeries:
     roles = ("measured", "predicted", "residual")
     spent = {labels.column(output, role) for output in outputs for role in roles}
     others = [each for each in present if each not in spent]
-    inputs = [match["name"] for each in others if (match := _INPUT.fullmatch(each))]
+    inputs = {match["name"]: match for each in others if (match := _INPUT.fullmatch(each))}
+    own = {n: WORDS.get(m["unit"], m["unit"]) for n, m in inputs.items() if n not in SIGNALS}
     return TrialSeries(
         name=columns["trial"][0],
         use="check" if columns["use"][0] == "check" else "fit",
         t=_values(columns, "t_s", path),
-        inputs={name: _values(columns, labels.column(name), path) for name in inputs},
+        inputs={
+            name: _values(columns, labels.column(name, unit=own.get(name)), path) for name in inputs
+        },
         outputs=tuple(_output(columns, name, path) for name in outputs),
+        units=own,
     )
 
 

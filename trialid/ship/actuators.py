@@ -3,10 +3,11 @@
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, get_args
 
 from trialid.errors import ShipError, nearest
+from trialid.names import units
 from trialid.names.quantities import QUANTITIES, Quantity
 
 Kind = Literal["rudder", "thruster", "azimuth", "tunnel", "waterjet"]
@@ -19,7 +20,7 @@ COMMANDS: Final = {"revolutions": "rad/s", "share": "1", "thrust": "N"}
 """What drives an actuator, and its unit."""
 SHOWN: Final = {"rad": "deg", "rad/s": "rpm", "1": "1", "N": "N"}
 NAME: Final = re.compile(r"[a-z][a-z0-9_]*")
-ENDINGS: Final = ("_order", "_angle")
+ENDINGS: Final = ("_order", "_angle", "_bucket")
 
 KEYS: Final = {
     "name": "needed. Its name, and that of its signal in a trial; small letters, digits and `_`.",
@@ -29,6 +30,10 @@ KEYS: Final = {
     "command": "What its signal is: `revolutions` (thrust k n |n|), `share` of the full ones "
     "(likewise), or a stated `thrust`; a rudder's is its angle.",
     "own": "Whether it has parameters of its own, `k_ahead_NAME`, where others of its kind share.",
+    "behind": "Of a rudder: the name of the thruster in whose race it stands.",
+    "limit": "The most that is ordered of it to either side: revolutions [rpm], share, thrust [N], "
+    "a rudder's angle [deg]; designed tests keep to it.",
+    "rate": "How much of that it follows its order by in a second; designed tests count with it.",
 }
 """What each key of an `[[actuator]]` means; the guide's page of keys is made of it."""
 
@@ -47,6 +52,10 @@ class Actuator:
         What its signal is; of a rudder, whose signal is its angle, without meaning.
     own
         Whether its parameters are its own and not shared with its kind.
+    behind
+        Of a rudder, the thruster in whose race it stands; empty where in none.
+    limit, rate
+        The most that is ordered of it [SI], and how fast it follows [SI/s]; infinite: not said.
     """
 
     name: str
@@ -56,6 +65,14 @@ class Actuator:
     direction: float = 0.0
     command: Command = "revolutions"
     own: bool = False
+    behind: str = ""
+    limit: float = math.inf
+    rate: float = math.inf
+
+    @property
+    def unit(self) -> str:
+        """Unit of what is ordered of it: its drive, or a rudder's angle."""
+        return "rad" if self.kind == "rudder" else COMMANDS[self.command]
 
     @property
     def angle(self) -> str:
@@ -63,6 +80,11 @@ class Actuator:
         if self.kind == "rudder":
             return self.name
         return f"{self.name}_angle" if self.kind in TURNED else ""
+
+    @property
+    def bucket(self) -> str:
+        """The signal of a jet's bucket."""
+        return f"{self.name}_bucket"
 
     @property
     def drive(self) -> str:
@@ -96,6 +118,9 @@ def _quantities(one: Actuator) -> Iterable[Quantity]:
                 mirror=-1 if is_angle else 1,
                 steers=one.kind == "rudder",
             )
+    if one.kind == "waterjet":
+        words = f"bucket of the waterjet {one.name}, 0 open, 1 all of the jet turned back"
+        yield Quantity(one.bucket, one.bucket, "1", "1", words)
 
 
 def _positive(one: Actuator, *, is_angle: bool) -> str:
@@ -125,6 +150,7 @@ def actuators_of(table: Mapping[str, Any], where: str) -> tuple[Actuator, ...]:
     made = tuple(_actuator(row, f"{where}: actuator[{i}]") for i, row in enumerate(rows))
     _check_names(made, where)
     _check_shared(made, where)
+    _check_races(made, where)
     return made
 
 
@@ -136,10 +162,11 @@ def _actuator(row: Mapping[str, Any], where: str) -> Actuator:
         if key not in row:
             raise ShipError(f"{where}: {key!r} is missing; {_plain(KEYS[key])}")
     kind = _one_of(row["kind"], KINDS, f"{where}: kind")
-    full = {"command": "revolutions", "own": False, **row}
+    full = {"command": "revolutions", "own": False, "behind": "", **row}
+    full = {"limit": math.inf, "rate": math.inf, **full}
     full = {"direction": 90.0 if kind == "tunnel" else 0.0, **full}
     _check_row(row, full, where)
-    return Actuator(
+    one = Actuator(
         name=row["name"],
         kind=kind,
         x=float(row["at"][0]),
@@ -147,7 +174,10 @@ def _actuator(row: Mapping[str, Any], where: str) -> Actuator:
         direction=math.radians(full["direction"]),
         command=_one_of(full["command"], tuple(COMMANDS), f"{where}: command"),
         own=full["own"],
+        behind=full["behind"],
     )
+    size = units.factor(SHOWN[one.unit], one.unit)
+    return replace(one, limit=size * full["limit"], rate=size * full["rate"])
 
 
 def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> None:
@@ -155,6 +185,8 @@ def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> N
     name, at = row["name"], row["at"]
     if row["kind"] == "rudder" and "command" in row:
         raise ShipError(f"{where}: a rudder has no command, its signal is its angle; leave it out")
+    if row["kind"] != "rudder" and "behind" in row:
+        raise ShipError(f"{where}: only a rudder stands in a race; leave 'behind' out")
     if not isinstance(name, str) or not NAME.fullmatch(name):
         raise ShipError(f"{where}: name = {name!r}; {_plain(KEYS['name'])}")
     if not isinstance(full["own"], bool):
@@ -165,6 +197,13 @@ def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> N
         raise ShipError(
             f"{where}: direction = {full['direction']!r}; write degrees from ahead, clockwise"
         )
+    for key in ("limit", "rate"):
+        _check_size(row, key, where)
+
+
+def _check_size(row: Mapping[str, Any], key: str, where: str) -> None:
+    if key in row and not (_is_number(row[key]) and row[key] > 0.0):
+        raise ShipError(f"{where}: {key} = {row[key]!r}; write a number above zero")
 
 
 def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
@@ -178,6 +217,11 @@ def actuator_tables(actuators: Iterable[Actuator]) -> Iterator[str]:
         if one.kind != "rudder":
             yield f'command = "{one.command}"'
         yield f"own = {str(one.own).lower()}"
+        if one.behind:
+            yield f'behind = "{one.behind}"'
+        for key, value in (("limit", one.limit), ("rate", one.rate)):
+            if math.isfinite(value):
+                yield f"{key} = {value * units.factor(one.unit, SHOWN[one.unit])!r}"
         yield ""
 
 
@@ -217,8 +261,8 @@ def _check_names(made: Sequence[Actuator], where: str) -> None:
             )
         if one.name.endswith(ENDINGS):
             raise ShipError(
-                f"{where}: actuator {one.name!r}: a name does not end in _order or _angle, which "
-                "its signals do"
+                f"{where}: actuator {one.name!r}: a name does not end in "
+                "_order, _angle or _bucket, which its signals do"
             )
         for signal in one.signals:
             if signal in taken:
@@ -236,3 +280,21 @@ def _check_shared(made: Sequence[Actuator], where: str) -> None:
                 f"{where}: the {kind}s share their parameters, and their commands are "
                 f"{' and '.join(commands)}; write own = true to those that differ"
             )
+
+
+def _check_races(made: Sequence[Actuator], where: str) -> None:
+    """A race is that of a thruster of this ship, and rudders that share it share its unit."""
+    screws = {one.name: one for one in made if one.kind == "thruster"}
+    behind = [one for one in made if one.behind]
+    for one in behind:
+        if one.behind not in screws:
+            raise ShipError(
+                f"{where}: actuator {one.name!r}: behind = {one.behind!r} is no thruster of this "
+                f"ship; {nearest(one.behind, screws)}"
+            )
+    commands = sorted({screws[one.behind].command for one in behind if not one.own})
+    if len(commands) > 1:
+        raise ShipError(
+            f"{where}: the rudders share k_race, and the commands of their thrusters are "
+            f"{' and '.join(commands)}; write own = true to those that differ"
+        )

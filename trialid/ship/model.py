@@ -7,6 +7,7 @@ from typing import Final
 
 from trialid.errors import EffectError, ShipError, nearest
 from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, POSITION
+from trialid.ship.actuators import actuator_quantities
 from trialid.ship.effect import (
     Delayed,
     Effect,
@@ -86,6 +87,12 @@ class ShipModel:
     def all_states(self) -> tuple[str, ...]:
         """The motions simulated and the states that effects add."""
         return (*self.states, *(s for e in self.effects for s in e.states))
+
+    @cached_property
+    def own_units(self) -> dict[str, str]:
+        """Units of signals that no dictionary has: of the ship's actuators, of one's own."""
+        own = {n: signal.unit for e in self.effects for n, signal in e.own.items()}
+        return {n: q.unit for n, q in actuator_quantities(self.ship.actuators).items()} | own
 
     @cached_property
     def recorded(self) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 from trialid.diagnosis.search.bias import Foreseen
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
+from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file import Pipeline
 from trialid.result.change_rows import StepRow
 from trialid.result.schema import Result
@@ -24,6 +25,7 @@ from trialid.workflow.edit_model import fit_edited, foresee_edit, proposed_steps
 from trialid.workflow.edit_pipeline import Edit
 from trialid.workflow.fit_model import fit_of, time_series
 from trialid.workflow.outcome import Outcome
+from trialid.workflow.quantities_read import quantities_of
 from trialid.workflow.run import examine
 
 UNKNOWN = "the model before was not fitted"
@@ -176,6 +178,7 @@ def _alike(one: tuple[Trial, ...], other: tuple[Trial, ...]) -> bool:
 def _measured(pipeline: Pipeline, trials: tuple[Trial, ...]) -> tuple[TrialSeries, ...]:
     """The series before there is a prediction."""
     outputs = pipeline.identify.outputs
+    units = {name: q.unit for name, q in quantities_of(pipeline).items() if name not in SIGNALS}
     return tuple(
         TrialSeries(
             name=trial.name,
@@ -187,6 +190,7 @@ def _measured(pipeline: Pipeline, trials: tuple[Trial, ...]) -> tuple[TrialSerie
                 for c in outputs
                 if c in trial.signals
             ),
+            units=units,
         )
         for trial in trials
     )

@@ -81,6 +81,7 @@ def time_series(fit: Fit) -> tuple[TrialSeries, ...]:
                 for i, c in enumerate(outputs)
             ),
             track=track_of(fit, s),
+            units=fit.model.own_units,
         )
         for s in fit.scores
     )

@@ -7,6 +7,7 @@ a ship with one rudder stays what it was.
 from collections.abc import Collection
 
 from trialid.effects.actuators.actuator_faults import fault_effects
+from trialid.effects.actuators.jet_bucket import bucket_effects
 from trialid.effects.actuators.many_rudders import rudder_effects
 from trialid.effects.actuators.pushes import push_effects
 from trialid.effects.actuators.standstill import standstill_effects
@@ -29,6 +30,7 @@ def actuator_effects(ship: Ship, ordered: Collection[str] = ()) -> dict[str, Eff
     made = (
         *rudder_effects(ship),
         *push_effects(ship),
+        *bucket_effects(ship),
         *standstill_effects(ship),
         *fault_effects(ship, ordered),
     )

@@ -22,13 +22,15 @@ from trialid.ship.particulars import Ship
 
 SOURCE = "by its letters: a share, a time, an angle; ranges by judgement"
 _REVERSED = Parameter(2.0, low=1.2, high=3.0, scan=(2.0,), by_meaning=True)
+_STUCK = Parameter(1.0, low=0.8, high=1.2, scan=(1.0,), by_meaning=True)
+_HELD = Parameter(0.05, "rad", low=-1.6, high=1.6, null=None)
 _EXCHANGED = Parameter(1.0, low=0.7, high=1.3, scan=(1.0,), by_meaning=True)
 NOWHERE = 1e-9
 """Keeps the slope of a root finite where an actuator has lost all of its force."""
 
 
 def fault_effects(ship: Ship, ordered: Collection[str]) -> Iterator[Effect]:
-    """Each of a ship's actuators weak, reversed, late, misaligned; alike ones exchanged.
+    """Each of a ship's actuators weak, reversed, late, misaligned, stuck; alike ones exchanged.
 
     Parameters
     ----------
@@ -40,6 +42,8 @@ def fault_effects(ship: Ship, ordered: Collection[str]) -> Iterator[Effect]:
         yield _reversed(one)
         yield _late(one, ordered)
         yield _turned_angle(one) if one.angle else _turned_thrust(ship, one)
+        if one.angle:
+            yield _stuck(one)
     for one, other in combinations(ship.actuators, 2):
         if one.kind == other.kind and one.command == other.command:
             yield _exchanged(one, other)
@@ -110,6 +114,23 @@ def _turned_angle(one: Actuator) -> Effect:
         source=SOURCE,
         signals=[],
         parameters={skew: Parameter(0.05, "rad", low=-0.7, high=0.7)},
+    )
+
+
+def _stuck(one: Actuator) -> Effect:
+    """Its angle stays, whatever the record shows: an order, or a feedback that is torn off."""
+    stuck, held = f"stuck_{one.name}", f"held_{one.name}"
+
+    def stays(**values: Number) -> Steered:
+        return Steered(**{one.angle: values[stuck] * (values[held] - values[one.angle])})
+
+    return make_effect(
+        stays,
+        name=f"{one.name}_stuck",
+        equation=f"angle of {one.name} = {held} at {stuck} = 1: it does not move",
+        source=SOURCE,
+        signals=[one.angle],
+        parameters={stuck: _STUCK, held: _HELD},
     )
 
 

@@ -1,10 +1,14 @@
-"""Several rudders: together they act as the one of `linear_rudder`, each with its share."""
+"""Several rudders: together they act as the one of `linear_rudder`, each with its share.
+
+Behind a screw a rudder also has the race of it, which is there when the ship lies still.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from trialid.effects.actuators.instances import make_effect, own_name
-from trialid.effects.actuators.pushes import lag_of, total
-from trialid.maths import Number
+from trialid.effects.actuators.instances import GAIN_UNITS, make_effect, own_name, typical_gain
+from trialid.effects.actuators.push_kinds import Driven, Push, thrust
+from trialid.effects.actuators.pushes import lag_of, total, turned
+from trialid.maths import Number, cos, sin
 from trialid.ship.actuators import Actuator
 from trialid.ship.effect import Effect, Force, Parameter
 from trialid.ship.particulars import Ship
@@ -13,6 +17,7 @@ BK99 = "Blanke & Knudsen (1999), section 4"
 SN82 = "Son & Nomoto (1982), container ship S-175"
 LINEAR = {"Ydelta": -0.003, "Kdelta": 0.0001, "Ndelta": 0.0015}
 DRAG = "Xdd"
+RACE = "k_race"
 
 
 def rudder_effects(ship: Ship) -> Iterator[Effect]:
@@ -22,6 +27,8 @@ def rudder_effects(ship: Ship) -> Iterator[Effect]:
         yield _side_force(ones)
         yield _drag(ship, ones)
         yield lag_of("rudders", ones, 1.0)
+    if behind := [one for one in ones if one.behind]:
+        yield _race(ship, behind)
 
 
 def _share(one: Actuator, ones: Sequence[Actuator]) -> float:
@@ -71,4 +78,35 @@ def _drag(ship: Ship, ones: Sequence[Actuator]) -> Effect:
         signals=[one.name for one in ones],
         parameters=parameters,
         system="prime",
+    )
+
+
+def _race(ship: Ship, ones: Sequence[Actuator]) -> Effect:
+    """The part of u_R^2 that a screw running ahead adds; one running astern adds none."""
+    screws = {one.name: one for one in ship.actuators}
+
+    def race(**values: Number) -> Force:
+        forces = []
+        for one in ones:
+            screw, delta = screws[one.behind], values[one.name]
+            by = Driven(screw.command, values[screw.name], 0.0, 0.0)
+            normal = thrust(by, values[own_name(RACE, one)], 0.0) * sin(delta)
+            forces.append(turned(one, Push(-normal * sin(delta), -normal * cos(delta))))
+        return total(forces)
+
+    parameters: Mapping[str, Parameter] = {
+        own_name(RACE, one): Parameter(
+            typical_gain(ship, screws[one.behind].command),
+            GAIN_UNITS[screws[one.behind].command],
+            low=0.0,
+        )
+        for one in ones
+    }
+    return make_effect(
+        race,
+        name="rudders_race",
+        equation="F_N = k_race n^2 sin(delta), n ahead: each rudder in the race of its own screw",
+        source=f"{SN82}: u_R^2 = u_P^2 + 8 k_R K_T (n D_P)^2 / pi, its second part",
+        signals=[s for one in ones for s in (one.name, one.behind)],
+        parameters=parameters,
     )

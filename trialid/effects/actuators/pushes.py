@@ -30,6 +30,7 @@ def push_effects(ship: Ship) -> Iterator[Effect]:
             yield lag_of(push.effect, ones, 0.5)
             if len({one.command for one in ones}) == 1:  # else they have no band in common
                 yield _deadband(ship, push.effect, ones)
+                yield _saturation(ship, push.effect, ones)
         if ones and kind == "thruster":
             yield _advance(ship, ones)
 
@@ -116,6 +117,27 @@ def _deadband(ship: Ship, kind: str, ones: Sequence[Actuator]) -> Effect:
         source="speed controllers of small motors: 2 to 10 % of full",
         signals=[one.name for one in ones],
         parameters={f"dead_{kind}": Parameter(0.05 * size, unit, low=0.0, high=0.5 * size)},
+    )
+
+
+def _saturation(ship: Ship, kind: str, ones: Sequence[Actuator]) -> Effect:
+    full = f"n_full_{kind}"
+
+    def saturation(**values: Number) -> Steered:
+        return Steered(
+            **{one.name: clip(values[one.name], values[full]) - values[one.name] for one in ones}
+        )
+
+    command = ones[0].command
+    stated = [one.limit for one in ones if math.isfinite(one.limit)]
+    size = min(stated, default=typical_drive(ship, command))
+    return make_effect(
+        saturation,
+        name=f"{kind}_saturation",
+        equation=f"n = clip(n, {full}): no more comes of an order than the drive can",
+        source=F11,
+        signals=[one.name for one in ones],
+        parameters={full: Parameter(0.5 * size, COMMANDS[command], low=0.05 * size, null=None)},
     )
 
 

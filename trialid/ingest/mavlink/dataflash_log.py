@@ -2,11 +2,12 @@
 
 A channel is `ATT:Roll`, and `IMU/0:GyrZ` where one message comes from several devices. All stamps
 are the autopilot's own TimeUS, from its start; `servo/1:deflection` is what a rudder servo was
-ordered. Texts are no channels, nor are the parameters and the log's own descriptions.
+ordered, `servo/3:throttle_left` what a motor was. Texts are no channels, nor are the parameters and
+the log's own descriptions.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import timedelta
 from pathlib import Path
 from typing import Any
@@ -293,29 +294,19 @@ def _parameters(log: Log) -> servo_deflection.Parameters:
 
 
 def _deflections(log: Log, wanted: Wanted) -> tuple[dict[str, Channel], dict[int, str]]:
-    """Channels of what rudder servos were ordered, and their names by output."""
+    """Channels of what rudder servos and motors were ordered, and their names by output."""
     known, channels, names = _parameters(log), {}, {}
-    for n, function in servo_deflection.rudder_outputs(known).items():
+    for n, output in servo_deflection.outputs(known).items():
         number = _message_of(log, n)
         if number is None or servo_deflection.missing_parameters(known, n):
             continue
-        names[n] = f"servo/{n}:deflection"
+        names[n] = f"servo/{n}:{output.field}"
         one = log.known[number]
         if is_wanted(names[n], wanted):
             t, good = log.times(number)
             pwm = log.gathered.column(number, one.columns.index(f"C{n}")).astype(np.float64)
-            y = servo_deflection.deflection(pwm[good], t[good], n, known)
-            words = servo_deflection.description(n, function)
-            channels[names[n]] = Channel(
-                name=names[n],
-                t=t[good],
-                y=y,
-                unit=None,
-                clock=_clock(one),
-                description=words,
-                quantity="delta_order",
-                positive="starboard",
-            )
+            made = output.channel(names[n], t[good], pwm[good], n, known)
+            channels[names[n]] = replace(made, clock=_clock(one))
     return channels, names
 
 

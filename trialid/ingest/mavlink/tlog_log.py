@@ -3,11 +3,13 @@
 A channel is `ATTITUDE/1/1:roll`, with the system and component that sent it, then the instance of
 the device where it is not 0: `BATTERY_STATUS/1/1/1:current_battery`. What a sender says after it
 restarted is in channels of their own, `ATTITUDE/1/1/boot2:roll`. `servo/1/1/3:deflection` is what
-rudder servo 3 of the autopilot 1/1 was ordered. Texts are no channels, nor are parameters.
+rudder servo 3 of the autopilot 1/1 was ordered, `servo/1/1/1:throttle_left` what a motor was. Texts
+are no channels, nor are parameters.
 """
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -211,37 +213,26 @@ def _parameters(log: Log, sender: Sender, start: int) -> servo_deflection.Parame
 def _deflections(
     log: Log, sender: Sender, wanted: Wanted
 ) -> tuple[dict[str, Channel], dict[int, str]]:
-    """Channels of what rudder servos were ordered, and their names by output."""
+    """Channels of what rudder servos and motors were ordered, and their names by output."""
     said = log.messages(sender, log.number(SERVO_MESSAGE))
     starts, table = sender.starts(said.rows), said.table
     channels: dict[str, Channel] = {}
     names: dict[int, str] = {}
     for start in np.unique(starts).tolist():
         known = _parameters(log, sender, start)
-        for n, function in servo_deflection.rudder_outputs(known).items():
-            port, output = divmod(n - 1, SERVOS_A_PORT)
+        for n, output in servo_deflection.outputs(known).items():
+            port, place = divmod(n - 1, SERVOS_A_PORT)
             part = np.flatnonzero((starts == start) & (table["port"] == port))
             boot = f"/boot{start + 1}" if start else ""
             if servo_deflection.missing_parameters(known, n) or not len(part):
                 continue
-            name = f"servo/{sender.name}/{n}{boot}:deflection"
+            name = f"servo/{sender.name}/{n}{boot}:{output.field}"
             names.setdefault(n, name)
             if is_wanted(name, wanted):
-                t = said.sent.t[part]
-                pwm = table[f"servo{output + 1}_raw"][part].astype(np.float64)
-                y = servo_deflection.deflection(pwm, t, n, known)
-                words = servo_deflection.description(n, function)
-                channels[name] = Channel(
-                    name=name,
-                    t=t,
-                    y=y,
-                    unit=None,
-                    clock=said.sent.clock,
-                    description=words,
-                    quantity="delta_order",
-                    positive="starboard",
-                    received=said.received[part],
-                )
+                pwm = table[f"servo{place + 1}_raw"][part].astype(np.float64)
+                made = output.channel(name, said.sent.t[part], pwm, n, known)
+                received = said.received[part]
+                channels[name] = replace(made, clock=said.sent.clock, received=received)
     return channels, names
 
 

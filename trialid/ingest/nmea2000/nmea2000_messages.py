@@ -154,7 +154,8 @@ def _of_group(number: int, layout: Layout, messages: Messages, rows: Ints, found
             if instance is None:
                 _of_sender(layout, place, told, messages, few, found)
             else:
-                words = f"{told}, instance {instance}"
+                known = layout.instances.get(instance)
+                words = f"{told}, instance {instance}" + (f" ({known})" if known else "")
                 _of_sender(layout, f"{place}/{instance}", words, messages, few, found)
 
 
@@ -243,7 +244,11 @@ def _numbers(one: Field, payloads: Payloads, rows: Ints) -> NDArray[np.float64]:
     """Physical numbers; NaN for codes that say there is none, and past the limit."""
     raw = payloads.number(rows, one.at, one.size)
     bits = 8 * one.size
-    if one.kind[0] == "u":
+    if one.bits:
+        raw &= np.uint64(2**one.bits - 1)
+        missing = raw == 2**one.bits - 1
+        y = raw.astype(np.float64) * one.step
+    elif one.kind[0] == "u":
         missing = raw > np.uint64(2**bits - 1 - UNAVAILABLE)
         y = raw.astype(np.float64) * one.step
     else:

@@ -6,7 +6,7 @@ Layouts, units and signs are those of the public description of the bus by the c
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 HALF_TURN = 3.1416
@@ -20,6 +20,8 @@ WIND = {
     3: "true_boat",
     4: "true_water",
 }
+ENGINES = {0: "single engine or port", 1: "starboard engine"}
+"""Which engine an instance is."""
 NO_FIX = {0: "no fix", 6: "estimated", 7: "put in", 8: "simulated", 14: "an error"}
 """Methods by which a position is none of satellites; 15 says nothing, 1 to 5 are fixes."""
 POSITIONS = frozenset(("latitude", "longitude"))
@@ -29,8 +31,9 @@ POSITIONS = frozenset(("latitude", "longitude"))
 class Field:
     """One number of a message: `kind` is i or u and the count of its bytes, from byte `at`.
 
-    Beyond `limit` to either side a number is none: half a turn, the poles. `{}` in the name stands
-    for the reference the message states: true, magnetic, apparent.
+    With `bits` it is the lowest of them, and none where all are set. Beyond `limit` to either side
+    a number is none: half a turn, the poles. `{}` in the name stands for the reference the message
+    states: true, magnetic, apparent.
     """
 
     name: str
@@ -42,6 +45,7 @@ class Field:
     quantity: str | None = None
     positive: Literal["starboard", "port"] | None = None
     limit: float = math.inf
+    bits: int = 0
 
     @property
     def size(self) -> int:
@@ -66,7 +70,10 @@ class Reference:
 
 @dataclass(frozen=True)
 class Layout:
-    """A parameter group: what a message holds; by `no_fix` its positions are none by satellites."""
+    """A parameter group: what a message holds; by `no_fix` its positions are none by satellites.
+
+    `instances` are words for the numbers of its devices, where the bus says what they are.
+    """
 
     name: str
     words: str
@@ -75,6 +82,7 @@ class Layout:
     reference: Reference | None = None
     fast: bool = False
     no_fix: Reference | None = None
+    instances: Mapping[int, str] = field(default_factory=dict)
 
 
 def _angle(name: str, at: int, words: str, quantity: str | None = None) -> Field:
@@ -171,8 +179,25 @@ LAYOUTS: Mapping[int, Layout] = {
     127488: Layout(
         "engine",
         "engine parameters, rapid update",
-        (Field("speed", 1, "u2", 0.25, "rpm", "speed of the engine, not of the shaft"),),
+        (
+            Field(
+                "speed",
+                1,
+                "u2",
+                0.25,
+                "rpm",
+                "speed of the engine without sign, not of the shaft",
+            ),
+        ),
         instance=0,
+        instances=ENGINES,
+    ),
+    127493: Layout(
+        "transmission",
+        "transmission parameters",
+        (Field("gear", 1, "u1", 1.0, "1", "gear: 0 ahead, 1 neutral, 2 astern", bits=2),),
+        instance=0,
+        instances=ENGINES,
     ),
     128259: Layout(
         "speed",

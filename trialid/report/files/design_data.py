@@ -10,8 +10,7 @@ from trialid.design.kinds import KINDS, Test, Value
 from trialid.design.rating import ParameterRating, Rating
 from trialid.design.search import Outcome
 from trialid.design.separation import Separation
-from trialid.names.quantities import SIGNALS
-from trialid.report.pages import bridge_orders
+from trialid.report.pages import bridge_orders, drive_orders
 
 SCHEMA: Final = "trialid-design/1"
 
@@ -79,16 +78,27 @@ def _expected(passage: Passage) -> dict[str, Any]:
             "starboard": float(passage.y.max()),
             "port": float(-passage.y.min()),
         },
-        "orders": [
-            {
-                "t": o.t,
-                "angle": o.angle,
-                "heading": o.heading,
-                "words": bridge_orders.order_words(o.angle),
-            }
-            for o in bridge_orders.orders(trial.t, signals["delta_order"], signals["psi"])
-        ],
+        "orders": _orders(passage),
     }
+
+
+def _orders(passage: Passage) -> list[dict[str, Any]]:
+    """Every change of what is ordered: an angle [rad] of the rudder, or of each drive [SI]."""
+    if passage.driven:
+        return [
+            {"t": o.t, "drives": dict(o.drives), "heading": o.heading, "words": o.words}
+            for o in drive_orders.orders(passage)
+        ]
+    signals, trial = passage.trial.signals, passage.trial
+    return [
+        {
+            "t": o.t,
+            "angle": o.angle,
+            "heading": o.heading,
+            "words": bridge_orders.order_words(o.angle),
+        }
+        for o in bridge_orders.orders(trial.t, signals["delta_order"], signals["psi"])
+    ]
 
 
 def of_test(test: Test) -> dict[str, Any]:
@@ -130,11 +140,6 @@ def of_separation(found: Separation | None) -> dict[str, Any] | None:
         "programme": [of_test(t) for t in found.programme],
         "sentence": found.sentence,
     }
-
-
-def shown_unit(quantity: str) -> str:
-    """The unit reports show a quantity in."""
-    return SIGNALS[quantity].shown
 
 
 def finite(number: float) -> float | None:

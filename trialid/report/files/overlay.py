@@ -66,7 +66,10 @@ def _edges(trial: TrialSeries, band: Mapping[str, float]) -> Iterator[tuple[str,
 
 
 def _inputs(trial: TrialSeries) -> dict[str, Vector]:
-    return {labels.message_field(name): values for name, values in trial.inputs.items()}
+    return {
+        labels.message_field(name, trial.quantity(name).unit): values
+        for name, values in trial.inputs.items()
+    }
 
 
 def _manifest(result: Result) -> dict[str, str]:

@@ -13,7 +13,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.helm import Passage
 from trialid.design.limits import Limits
-from trialid.report.pages import bridge_orders
+from trialid.report.pages import bridge_orders, drive_orders
 from trialid.report.pages.bridge_orders import clock
 
 WIDTH, HEIGHT, MARGIN = 640.0, 170.0, 42.0
@@ -55,6 +55,7 @@ class Sheet:
     orders: tuple[tuple[str, str, str], ...]
     left_out: int
     sentences: tuple[str, ...]
+    driven: bool
     expect: tuple[tuple[str, str], ...]
     lines: tuple[Line, ...]
     track: Track
@@ -78,12 +79,7 @@ def page(design: Mapping[str, Any], sheets: Sequence[Sheet], aborts: Sequence[st
 
 def sheet(test: Mapping[str, Any], passage: Passage, limits: Limits) -> Sheet:
     """One test, in words and pictures."""
-    trial, signals = passage.trial, passage.trial.signals
-    told = bridge_orders.orders(trial.t, signals["delta_order"], signals["psi"])
-    rows = tuple(
-        (clock(o.t), bridge_orders.order_words(o.angle), f"{np.rad2deg(o.heading):+.0f}")
-        for o in told
-    )
+    rows = tuple((clock(t), words, f"{np.rad2deg(psi):+.0f}") for t, words, psi in _told(passage))
     kept = rows[: bridge_orders.MOST]
     return Sheet(
         name=test["name"] or test["what"],
@@ -91,12 +87,23 @@ def sheet(test: Mapping[str, Any], passage: Passage, limits: Limits) -> Sheet:
         orders=kept,
         left_out=len(rows) - len(kept),
         sentences=tuple(bridge_orders.sentences(test["kind"], test["numbers"])),
+        driven=bool(passage.driven),
         expect=tuple(_expected(passage)),
         lines=tuple(_lines(passage, limits)),
         track=_track(passage),
         approach=test["approach"],
         duration=clock(test["duration"]),
     )
+
+
+def _told(passage: Passage) -> Iterator[tuple[float, str, float]]:
+    """When what is ordered, and the heading expected then [rad]."""
+    if passage.driven:
+        yield from ((o.t, o.words, o.heading) for o in drive_orders.orders(passage))
+        return
+    signals = passage.trial.signals
+    for o in bridge_orders.orders(passage.trial.t, signals["delta_order"], signals["psi"]):
+        yield o.t, bridge_orders.order_words(o.angle), o.heading
 
 
 def aborts(limits: Limits) -> list[str]:
@@ -116,11 +123,18 @@ def aborts(limits: Limits) -> list[str]:
 
 
 def order_csv(passage: Passage) -> str:
-    """The orders by time: seconds from the start, degrees, starboard positive."""
+    """The orders by time: seconds from the start, degrees to starboard, or drives in SI."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["t[s]", "rudder_order[deg]", "order"])
     trial = passage.trial
+    if passage.driven:
+        units_of = [f"{one.name}_order[{one.unit}]" for one in passage.driven]
+        writer.writerow(["t[s]", *units_of, "order"])
+        for told in drive_orders.orders(passage):
+            values = (f"{x:.4f}" for x in told.drives.values())
+            writer.writerow([f"{told.t:.3f}", *values, told.words])
+        return text.getvalue()
+    writer.writerow(["t[s]", "rudder_order[deg]", "order"])
     ordered = trial.signals["delta_order"]
     places = np.concatenate([[0], np.flatnonzero(np.diff(ordered)) + 1])
     for k in places:
@@ -160,7 +174,11 @@ def _expected(passage: Passage) -> Iterator[tuple[str, str]]:
 def _lines(passage: Passage, limits: Limits) -> Iterator[Line]:
     trial, signals = passage.trial, passage.trial.signals
     degrees = float(np.rad2deg(1.0))
-    yield _line("rudder order [deg, starboard up]", trial.t, signals["delta_order"] * degrees, None)
+    for title, values in drive_orders.courses(passage):
+        yield _line(title, trial.t, values, None)
+    if not passage.driven:
+        order = signals["delta_order"] * degrees
+        yield _line("rudder order [deg, starboard up]", trial.t, order, None)
     yield _line("heading from the course [deg]", trial.t, signals["psi"] * degrees, None)
     if "phi" in signals:
         limit = None if limits.heel is None else limits.heel * degrees
@@ -180,7 +198,7 @@ def _line(title: str, t: Vector, y: Vector, limit: float | None) -> Line:
 
     places = np.unique(np.linspace(0, len(t) - 1, min(len(t), POINTS)).round().astype(int))
     points = [f"{across(float(t[k])):.1f},{down(float(y[k])):.1f}" for k in places]
-    ticks = tuple((down(v), f"{v:g}") for v in _round_values(low, high, 4))
+    ticks = tuple((down(v), f"{v + 0.0:g}") for v in _round_values(low, high, 4))
     times = tuple((across(s), clock(s)) for s in _round_values(0.0, float(t[-1]), 6, _MINUTES))
     shown = [] if limit is None else [x for x in (limit, -limit) if low < x < high]
     return Line(title, "M" + " L".join(points), ticks, times, tuple(down(x) for x in shown))

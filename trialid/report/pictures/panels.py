@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.names import labels
+from trialid.names import labels, units
 from trialid.result.finding_rows import FindingRow
 from trialid.result.schema import Result
 from trialid.result.series import OutputSeries, TrialSeries
@@ -49,13 +49,14 @@ def input_panels(trial: TrialSeries) -> Iterator[Panel]:
         yield {
             "kind": "input",
             "title": labels.meaning(names[0]),
-            "unit": labels.shown_unit(names[0]),
-            "lines": [_line(name, trial.inputs[name]) for name in names],
+            "unit": trial.quantity(names[0]).shown,
+            "lines": [_line(trial, name) for name in names],
         }
 
 
-def _line(name: str, values: Vector) -> dict[str, str]:
-    return {"label": labels.symbol(name), "data": encode_floats(values * labels.shown_factor(name))}
+def _line(trial: TrialSeries, name: str) -> dict[str, str]:
+    shown = trial.inputs[name] * units.shown_factor(trial.quantity(name))
+    return {"label": labels.symbol(name), "data": encode_floats(shown)}
 
 
 def _output(output: OutputSeries, trial: TrialSeries, run: Result) -> Panel:

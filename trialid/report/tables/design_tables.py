@@ -87,7 +87,7 @@ def _numbers(test: Mapping[str, Any]) -> str:
 
 def _short(test: Mapping[str, Any]) -> str:
     told = []
-    for name in ("angle", "heading", "angles", "rates", "period", "turn"):
+    for name in ("angle", "heading", "angles", "rates", "period", "turn", "differences", "turning"):
         value = test["numbers"].get(name)
         if isinstance(value, list):
             told.append(f"{len(value)} {name}")

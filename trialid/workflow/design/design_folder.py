@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from trialid import own_files
+from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file.design_file import DesignFile
-from trialid.report.files import design_data
 from trialid.report.pages import bridge
 from trialid.report.pages.bridge import file_name
+from trialid.ship.actuators import actuator_quantities
 from trialid.toml_text import quote
 from trialid.workflow.design import design_run as plans
 from trialid.workflow.design.design_run import Plan, Rated
@@ -67,10 +68,14 @@ def _pipeline(plan: Plan, folder: Path, rated: Rated, stems: Sequence[str]) -> s
             f"logs = {toml([LOG.format(stem)])}",
         ]
     lines += ["", "[signals]"]
-    wanted = ["delta", *pipeline.identify.outputs, *plan.ship.vessel.constants]
+    model = plan.ship.vessel.model
+    known = SIGNALS | actuator_quantities(model.ship.actuators)
+    # what is ordered of a drive stands for what it does where the model has no lag
+    moving = [n for n in plans.steering(plan) if n in model.recorded] or ["delta"]
+    wanted = [*moving, *pipeline.identify.outputs, *plan.ship.vessel.constants]
     for signal in dict.fromkeys([*wanted, "u"]):
-        side = ', positive = "starboard"' if signal == "delta" else ""
-        unit = design_data.shown_unit(signal)
+        side = ', positive = "starboard"' if known[signal].steers else ""
+        unit = known[signal].shown
         lines.append(f'{signal} = {{ channel = "NAME IT", unit = "{unit}"{side} }}')
     lines += [
         "",

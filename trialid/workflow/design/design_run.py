@@ -8,9 +8,10 @@ from typing import Any, Final
 import numpy as np
 
 from trialid.design import signals
-from trialid.design.helm import Passage, vessel
+from trialid.design.helm import vessel
 from trialid.design.kinds import KINDS, Test, Value
 from trialid.design.limits import Limits
+from trialid.design.ordered_signals import late_orders, ordered_signals
 from trialid.design.rating import Goal, Noise, goal
 from trialid.design.search import (
     Found,
@@ -27,12 +28,13 @@ from trialid.design.separation import Separation, likeness, rivals, separate
 from trialid.errors import DesignError, PipelineError, UnitError, nearest
 from trialid.identification.problem import Settings, with_starts
 from trialid.names import units
-from trialid.names.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import where
 from trialid.pipeline_file.design_file import DesignFile, Numbers, TestSection
 from trialid.pipeline_file.finished_run import FinishedRun, finished_run
 from trialid.pipeline_file.form import GivenValue
 from trialid.report.files import design_data
+from trialid.ship.actuators import actuator_quantities
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
@@ -152,7 +154,7 @@ def _rated(
         raise DesignError(f"{pipeline.path}: test {name!r}: {error}") from error
     _check_visible(pipeline, name, came, ships[0].goal)
     lines = [r for test in tests for r in _of_lines(test, ships[0])]
-    late = [r for passage in came.passages for r in _of_late(passage)]
+    late = [r for passage in came.passages for r in late_orders(passage)]
     return Rated(name, tests, came, found, (*lines, *late))
 
 
@@ -185,20 +187,6 @@ def _of_lines(test: Test, ship: Ship) -> list[str]:
             "show there; another duration avoids it"
         )
     return said
-
-
-def _of_late(passage: Passage) -> list[str]:
-    """Orders that the rudder does not reach before the next: it is tested, and not as written."""
-    orders, delta = (passage.trial.signals[n] for n in ("delta_order", "delta"))
-    last = np.flatnonzero(np.diff(orders))  # the last samples of all orders but the last
-    moved = np.abs(np.diff(delta, prepend=delta[0]))
-    late = np.abs(orders[last] - delta[last]) > moved.max() + 1e-9  # a step of the gear is no delay
-    if not late.any():
-        return []
-    return [
-        f"the rudder does not reach {late.sum()} of {len(last)} orders before the next; what is "
-        "rated is what it does"
-    ]
 
 
 def _ships(pipeline: DesignFile, catalogue: Mapping[str, Effect]) -> list[Ship]:
@@ -247,11 +235,9 @@ def _full(pipeline: DesignFile, model: ShipModel, catalogue: Mapping[str, Effect
 
 
 def _ship(pipeline: DesignFile, run: FinishedRun, model: ShipModel, full: ShipModel) -> Ship:
-    at_sea = pipeline.at_sea
+    at_sea, known = pipeline.at_sea, SIGNALS | actuator_quantities(full.ship.actuators)
     constants = {n: x for n, x in run.constants.items() if n in full.recorded} | {
-        name: _si(
-            pipeline, f"at_sea.constant.{name}", given, SIGNALS[name].unit, SIGNALS[name].shown
-        )
+        name: _si(pipeline, f"at_sea.constant.{name}", given, known[name].unit, known[name].shown)
         for name, given in at_sea.constant.items()
     }
     ready = vessel(full, at_sea.period, constants, run.gear_rate(at_sea.rudder_rate))
@@ -289,6 +275,7 @@ def _limits(pipeline: DesignFile, model: ShipModel) -> Limits:
         rudder_rate=None if r.rudder_rate is None else r.rudder_rate * degrees,
         heel=None if r.heel is None else r.heel * degrees,
         speed_loss=r.speed_loss, room=r.room, duration=r.duration,
+        rudders=tuple(one for one in model.ship.actuators if one.kind == "rudder"),
     )  # fmt: skip
 
 
@@ -359,17 +346,17 @@ def _without_bias(settings: Settings) -> Settings:
     return replace(settings, nuisance=kept)
 
 
+def steering(plan: Plan) -> dict[str, Quantity]:
+    """What the tests order, and what comes of it, by the signal's name."""
+    return ordered_signals([p for rated in plan.rated for p in rated.outcome.passages])
+
+
 def _recorded(plan: Plan) -> list[str]:
     """What the crew must record, in words."""
-    names = [
-        "delta_order",
-        "delta",
-        *plan.pipeline.identify.outputs,
-        *plan.ship.vessel.constants,
-        "psi",
-        "u",
-    ]
-    return [SIGNALS[n].meaning.partition(",")[0] for n in dict.fromkeys(names)]
+    known = SIGNALS | steering(plan)
+    outputs, still = plan.pipeline.identify.outputs, plan.ship.vessel.constants
+    names = [*steering(plan), *outputs, *(n for n in still if n in known), "psi", "u"]
+    return [known[n].meaning.partition(",")[0] for n in dict.fromkeys(names)]
 
 
 def plain(plan: Plan) -> dict[str, Any]:

@@ -85,7 +85,12 @@ def _drive(name: str, source: ChannelInspection, says: tuple[bool, str]) -> Sign
     unit, of_unit = _unit(source)
     if not fits:
         unit = OPEN
-    return Signal(name, source, unit, None, f"by its name{of_unit}; {side_words}", ())
+    if "without sign" in source.description:
+        of_unit += (
+            "; CAREFUL: without sign, thrust astern counts as ahead: hold it against the gear"
+        )
+    told = "by its parameters" if "by its parameters" in source.description else "by its name"
+    return Signal(name, source, unit, None, f"{told}{of_unit}; {side_words}", ())
 
 
 def _unit(source: ChannelInspection) -> tuple[str, str]:

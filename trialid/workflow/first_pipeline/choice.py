@@ -214,7 +214,8 @@ def approach_speed(
 def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
         unit = one.unit or one.unit_in_name
-        if unit and not one.constant and channel_names.over_ground(one.name, unit):
+        told = (one.name, one.description)  # a format knows what its `Spd` is
+        if unit and not one.constant and any(channel_names.over_ground(w, unit) for w in told):
             yield one
 
 
