@@ -88,12 +88,13 @@ def test_intervals_hold_nineteen_truths_of_twenty() -> None:
     assert min(held[n] for n in TRUTH) >= 0.8 * len(STUDIED)
 
 
-@pytest.mark.study(turn=2)
-def test_faults_are_named_on_their_side_and_no_other() -> None:
-    """Ten records of each: the name that is right, alone; a wrong name in at most 2 of 100."""
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("first", range(0, 10, 2))
+def test_faults_are_named_on_their_side_and_no_other(first: int) -> None:
+    """Two records of each at a turn: the name that is right, alone, and no wrong one."""
     right: Counter[str] = Counter()
     wrong: list[str] = []
-    for seed in STUDIED[:10]:
+    for seed in STUDIED[first : first + 2]:
         for fault in FAULTS:
             found = verdict(seed, fault)
             if found.effect == effect_of(fault, seed) and len(found.family) <= 1:
@@ -101,8 +102,8 @@ def test_faults_are_named_on_their_side_and_no_other() -> None:
             elif found.effect is not None:
                 wrong.append(f"{seed} {fault or 'nothing'}: {found.sentence}")
     print(dict(right), wrong)
-    assert sum(right.values()) >= 0.9 * 10 * len(FAULTS)
-    assert len(wrong) <= 0.02 * 10 * len(FAULTS)
+    assert sum(right.values()) >= 0.85 * 2 * len(FAULTS)
+    assert wrong == []
 
 
 def test_the_model_states_none_of_what_is_sought() -> None:
