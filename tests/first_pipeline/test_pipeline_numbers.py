@@ -65,6 +65,7 @@ def test_noise_for_a_proposed_trial_is_in_the_outputs_units(monkeypatch):
     given = []
     monkeypatch.setattr(findings.following, "by_name", lambda catalogue, names: ("a", "b"))
     monkeypatch.setattr(findings.following, "next_trial", lambda *asked: given.append(asked))
+    monkeypatch.setattr(findings, "candidates_to_free", lambda fit: {})
     fit = SimpleNamespace(
         problem=SimpleNamespace(outputs=("r", "phi"), y_rms=np.array([0.006, 0.03])),
         eps_by_output={"r": 0.5, "phi": 0.1},
