@@ -48,7 +48,9 @@ def run(wrong: Path):
 def test_what_is_held_wrong_is_named_and_said(run) -> None:
     verdict = run.result.verdict
     assert (verdict.kind, verdict.effect) == ("missing", "Kdelta")
-    assert verdict.sentence.startswith("Kdelta is held at 8.67e-05: freed, to 9.9e-05, the error")
+    assert verdict.sentence.startswith(
+        "Kdelta is held at 8.67e-05; freed, it is 9.9e-05 and the error"
+    )
     row = run.result.missing[0]
     assert row.held == pytest.approx(0.88 * SHIP.coefficients["Kdelta"])
     assert row.equation.startswith("Kdelta of linear_rudder: ")

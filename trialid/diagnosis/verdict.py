@@ -227,7 +227,7 @@ def _what(named: Refit) -> str:
     name, held = named.candidate.effect.name, named.candidate.effect.held
     if held is None:
         return f"{name} is missing: with it"
-    return f"{name} is held at {held:.3g}: freed, to {named.fit.estimates[name]:.3g},"
+    return f"{name} is held at {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
 
 
 def _falls(before: Fit, after: Fit) -> str:
