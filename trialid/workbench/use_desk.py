@@ -20,9 +20,10 @@ from trialid.workflow.build_model import available
 from trialid.workflow.findings import diagnose_settings
 from trialid.workflow.outcome import Outcome
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict, revived_fit
-from trialid.workflow.use.hand_over import WRITERS, Wishes
+from trialid.workflow.use.hand_over import WRITERS
 from trialid.workflow.use.orders import named_manoeuvre, stop_order
 from trialid.workflow.use.predict import predict_manoeuvre
+from trialid.workflow.use.steering import Wishes
 from trialid.workflow.use.stop import predict_stop
 
 
