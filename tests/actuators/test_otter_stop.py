@@ -1,6 +1,8 @@
 """The Otter stopped and ordered astern by an identified model, against another programme's boat."""
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import otter
@@ -101,7 +103,7 @@ def test_the_words_of_a_crash_stop() -> None:
 
 
 def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
-    """Stopped, ordered astern, handed over with the units of her thrusters; gains are refused."""
+    """Stopped, ordered astern, handed over with the units of her thrusters; gains by both."""
     done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv")], "--length 2")
     assert done.exit_code == 0, done.output
     run = "runs/first_trial"
@@ -113,10 +115,51 @@ def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
     assert ahead == pytest.approx(-astern)
     assert ahead > 0.0
     assert "head reach" in told.stdout
+    check_gains(tmp_path, run)
+    one_side = tuple(replace(a, y=0.4) for a in truth().ship.actuators)
+    aside = boat(replace(truth(), ship=replace(truth().ship, actuators=one_side)))
+    monkeypatch.setattr("trialid.workflow.use.steering.ready_ship", lambda _: aside)
     for kind in ("pid", "nomoto"):
-        refused = trialid_("export", run, "--as", kind)
+        refused = trialid_("export", run, "--as", kind, "--out", "none.json")
         assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
-        assert "steered by thruster_port, thruster_starboard; export her" in refused.stderr
+        assert "one to starboard; this model is steered by left_order, right_o" in refused.stderr
     assert trialid_("export", run, "--as", "modelica", "--out", "boat.mo").exit_code == 0
     text = (tmp_path / "boat.mo").read_text(encoding="utf-8")
     assert 'input Real thruster_port(unit="rad/s", start=' in text
+
+
+def check_gains(folder: Path, run: str) -> None:
+    """Files say what is ordered; gains are of a share of the full command, which has to be said."""
+    assert trialid_("export", run, "--as", "nomoto", "--out", "nomoto.json").exit_code == 0
+    at = json.loads((folder / "nomoto.json").read_text(encoding="utf-8"))["at"][0]
+    assert "thruster_port = cruise + delta, thruster_starboard = cruise - delta" in at["order"]
+    assert (at["numbers"]["K"]["unit"], at["numbers"]["K"]["value"] > 0.0) == ("1", True)
+    command = ("export", run, "--as", "ardupilot", "--out", "boat.param")
+    for words, told in (
+        ([], "add --full-command 1000 [rpm]"),
+        (["--full-rudder", "35"], "say instead their command at full output"),
+        (["--full-command", "10"], "of both thrusters that hold"),
+        (["--full-command", "nan"], "expected a number above 0"),
+    ):
+        refused = trialid_(*command, *words)
+        assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+        assert told in refused.stderr
+    assert trialid_(*command, "--full-command", "1000").exit_code == 0
+    text = (folder / "boat.param").read_text(encoding="utf-8")
+    values = dict(x.split(",") for x in text.splitlines() if not x.startswith("#"))
+    full = 1000.0 * 2.0 * np.pi / 60.0
+    assert float(values["ATC_STR_RAT_FF"]) * full * at["numbers"]["K"]["value"] == pytest.approx(
+        1.0, rel=1e-5
+    )
+    assert (values["MOT_THST_EXPO"], "MOT_SPD_SCA_BASE" in values) == ("0", False)
+    assert "SERVOn_FUNCTION 73 for thruster_port and 74 for thruster_starboard" in text
+    assert max(map(len, text.splitlines())) <= 100
+    to = str(folder / "pid.json")
+    told = trialid_(*command[:2], "--as", "pid", "--full-command", "1000", *("--out", to))
+    assert told.exit_code == 0, told.stderr
+    pid = json.loads((folder / "pid.json").read_text(encoding="utf-8"))
+    assert pid["range"] == pytest.approx(full)
+    assert "thruster_port = cruise + s * range" in pid["order"]
+    K, T = (at["numbers"][n]["value"] for n in ("K", "T"))
+    natural = pid["bandwidth"] / np.sqrt(1 - 2 * 0.64 + np.sqrt(4 * 0.64**2 - 4 * 0.64 + 2))
+    assert pid["Kp"] * full == pytest.approx(natural**2 * T / K)

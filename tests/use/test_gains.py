@@ -26,7 +26,7 @@ CERTAIN = known_by("Nr", 0.0)
 
 def first_order(K: float, T: float) -> LinearShip:
     A, B = np.array([[-1.0 / T]]), np.array([K / T])
-    return LinearShip(states=("r",), A=A, B=B, rudder="delta", speed=1.0, length=1.0)
+    return LinearShip(states=("r",), A=A, B=B, speed=1.0, length=1.0)
 
 
 def test_a_loop_without_an_integral_is_a_lag() -> None:
@@ -64,9 +64,7 @@ def test_the_delay_margin_is_where_the_loop_swings() -> None:
         A[1:, 1:], B[1:] = states, drive
         A[0, 1:] = 0.05 / 30.0 * pass_through(n)
         B[0] = 0.05 / 30.0 * (-1.0) ** n
-        late = LinearShip(
-            states=("r", *map(str, range(n))), A=A, B=B, rudder="delta", speed=1.0, length=1.0
-        )
+        late = LinearShip(states=("r", *map(str, range(n))), A=A, B=B, speed=1.0, length=1.0)
         assert answer(hold_heading(late, 6.0, 0.03, 60.0), 0.1).stable == stable
 
 

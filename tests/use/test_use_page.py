@@ -53,3 +53,14 @@ def test_without_a_verdict_commands_ask_for_more(result: Result) -> None:
     spoilt = replace(result, verdict=replace(result.verdict, kind="no fit"))
     assert all("--anyway" in row.command for row in commands(spoilt))
     assert not any("--anyway" in row.command for row in commands(result))
+
+
+def test_the_command_for_an_autopilot_asks_for_what_steers(result: Result) -> None:
+    """A full rudder; the full command where thrusters steer and no rudder does."""
+    steered = [row.command for row in commands(result)]
+    assert "trialid export . --as ardupilot --full-rudder 35" in steered
+    model = replace(result.model, effects=("thrusters",), inputs=("left_order", "right_order"))
+    by_both = [row.command for row in commands(replace(result, model=model))]
+    assert "trialid export . --as ardupilot --full-command 1000" in by_both
+    mixed = replace(model, inputs=("delta", *model.inputs))
+    assert [row.command for row in commands(replace(result, model=mixed))] == steered

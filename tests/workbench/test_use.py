@@ -48,7 +48,8 @@ def test_the_model_is_handed_out(address: Address, tmp_path: Path) -> None:
     with zipfile.ZipFile(io.BytesIO(address.get("/model/c").body)) as packed:
         assert set(packed.namelist()) == {"model.c", "model.h"}
     assert b"ATC_STR_RAT_FF," in address.get("/model/ardupilot?full_rudder=35").body
-    for wrong in ("ardupilot", "ardupilot?full_rudder=a", "word"):
+    wrongs = ("ardupilot?full_rudder=a", "ardupilot?full_rudder=-5", "ardupilot?full_command=1000")
+    for wrong in ("ardupilot", *wrongs, "word"):
         assert address.get(f"/model/{wrong}").status == 400
 
 

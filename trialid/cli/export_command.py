@@ -2,7 +2,8 @@
 
 import json
 import sys
-from math import radians
+from collections.abc import Mapping
+from math import inf, radians
 from pathlib import Path
 from typing import Final
 
@@ -41,6 +42,12 @@ FULL: Final = 90.0
 @click.option(
     "--full-rudder", type=float, metavar="DEG", help="Of ardupilot: rudder at full output."
 )
+@click.option(
+    "--full-command",
+    type=float,
+    metavar="NUMBER",
+    help="Of ardupilot and pid, two thrusters: command at full output [rpm, N or share].",
+)
 @click.option("--force", is_flag=True, help="Replace what is there.")
 @click.option("--anyway", is_flag=True, help="Of a fit that carries no verdict, too.")
 @click.option("--quiet", is_flag=True, help="No progress, and no words about what was written.")
@@ -51,6 +58,7 @@ def export(
     out: Path | None,
     bandwidth: float | None,
     full_rudder: float | None,
+    full_command: float | None,
     force: bool,
     anyway: bool,
     quiet: bool,
@@ -71,24 +79,35 @@ def export(
         raise click.UsageError(f"Missing {missing}.")
     places = _places(run, kind, out, force=force)
     from trialid.workflow.use.finished_model import finished_model
-    from trialid.workflow.use.hand_over import WRITERS, Wishes, beside_words
+    from trialid.workflow.use.hand_over import WRITERS, beside_words
+    from trialid.workflow.use.steering import Wishes
 
-    wishes = Wishes(bandwidth, None if full_rudder is None else radians(_rudder(full_rudder)))
+    rudder = None if full_rudder is None else radians(_rudder(full_rudder))
+    wishes = Wishes(bandwidth, rudder, _command(full_command))
 
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         model = finished_model(run, progress, anyway=anyway)
         made = WRITERS[kind](model, places[0].stem, wishes)
-    contents = {place: _bytes(made[place.suffix]) for place in places}
-    try:
-        temporary.replace_all(contents)
-    except OSError as error:
-        raise TrialidError(
-            f"--out {places[0]}: {(error.strerror or str(error)).lower()}"
-        ) from error
+    _write({place: _bytes(made[place.suffix]) for place in places})
     if not quiet:
         for words in filter(None, (*model.doubts, beside_words(made))):
             note(words)
         say(f"Written: {', '.join(map(str, places))}")
+
+
+def _write(contents: Mapping[Path, bytes]) -> None:
+    """Write the files together.
+
+    Raises
+    ------
+    TrialidError
+        One of them cannot be written.
+    """
+    try:
+        temporary.replace_all(contents)
+    except OSError as error:
+        why = (error.strerror or str(error)).lower()
+        raise TrialidError(f"--out {next(iter(contents))}: {why}") from error
 
 
 def _bytes(content: str | bytes) -> bytes:
@@ -107,6 +126,19 @@ def _rudder(full: float) -> float:
         raise TrialidError(
             f"--full-rudder {full:g}: expected an angle above 0 and at most {FULL:g} deg"
         )
+    return full
+
+
+def _command(full: float | None) -> float | None:
+    """The command of a thruster at full output.
+
+    Raises
+    ------
+    TrialidError
+        It is none.
+    """
+    if full is not None and not 0.0 < full < inf:
+        raise TrialidError(f"--full-command {full:g}: expected a number above 0")
     return full
 
 

@@ -7,11 +7,15 @@ from typing import Final
 
 @dataclass(frozen=True)
 class Kind:
-    """A form of a model: what it is in a few words, its files' endings, what has to be said."""
+    """A form of a model: what it is in a few words, its files' endings, what has to be said.
+
+    What has to be said of a boat that thrusters steer is another thing.
+    """
 
     words: str
     suffixes: tuple[str, ...]
     needs: str = ""
+    needs_by_thrusters: str = ""
 
 
 KINDS: Final[Mapping[str, Kind]] = {
@@ -24,7 +28,12 @@ KINDS: Final[Mapping[str, Kind]] = {
     "modelica": Kind("one Modelica model that reads like the equations", (".mo",)),
     "nomoto": Kind("Nomoto's K, T, T1 to T3 and the state space", (".json",)),
     "pid": Kind("a heading autopilot's gains with what they promise", (".json",)),
-    "ardupilot": Kind("steering gains of ArduPilot Rover", (".param",), "--full-rudder 35"),
+    "ardupilot": Kind(
+        "steering gains of ArduPilot Rover",
+        (".param",),
+        "--full-rudder 35",
+        "--full-command 1000",
+    ),
     "gazebo": Kind("Gazebo's Hydrodynamics, with what it costs", (".sdf",)),
 }
 """By the word that `--as` takes."""

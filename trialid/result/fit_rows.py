@@ -57,6 +57,11 @@ class ModelPart:
     outputs: tuple[str, ...] = ()
     nuisance: tuple[str, ...] = ()
 
+    @property
+    def by_thrusters(self) -> bool:
+        """Whether thrusters steer and no rudder does."""
+        return "thrusters" in self.effects and not {"delta", "delta_order"} & {*self.inputs}
+
 
 @dataclass(frozen=True, kw_only=True)
 class IterationRow:

@@ -20,9 +20,10 @@ from trialid.workflow.build_model import available
 from trialid.workflow.findings import diagnose_settings
 from trialid.workflow.outcome import Outcome
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict, revived_fit
-from trialid.workflow.use.hand_over import WRITERS, Wishes
+from trialid.workflow.use.hand_over import WRITERS
 from trialid.workflow.use.orders import named_manoeuvre, stop_order
 from trialid.workflow.use.predict import predict_manoeuvre
+from trialid.workflow.use.steering import Wishes
 from trialid.workflow.use.stop import predict_stop
 
 
@@ -97,12 +98,9 @@ def hand_out(model: FinishedModel, kind: str, asked: Mapping[str, str]) -> tuple
     """
     if kind not in KINDS:
         raise PipelineError(f"{kind!r}: is no form of a model; {nearest(kind, KINDS)}")
-    full = asked.get("full_rudder", "")
-    try:
-        rudder = math.radians(float(full)) if full else None
-    except ValueError as error:
-        raise PipelineError(f"full rudder {full!r}: expected an angle [deg]") from error
-    made = WRITERS[kind](model, "model", Wishes(full_rudder=rudder))
+    rudder, command = _positive(asked, "full_rudder"), _positive(asked, "full_command")
+    angle = None if rudder is None else math.radians(rudder)
+    made = WRITERS[kind](model, "model", Wishes(full_rudder=angle, full_command=command))
     files = {f"model{s}": c if isinstance(c, bytes) else c.encode() for s, c in made.items()}
     if len(files) == 1:
         [(name, content)] = files.items()
@@ -112,3 +110,21 @@ def hand_out(model: FinishedModel, kind: str, asked: Mapping[str, str]) -> tuple
         for name, content in files.items():
             packed.writestr(name, content)
     return f"model-{kind}.zip", stream.getvalue()
+
+
+def _positive(asked: Mapping[str, str], name: str) -> float | None:
+    """A number of a form, None where it is left empty.
+
+    Raises
+    ------
+    PipelineError
+        It is none above zero.
+    """
+    given = asked.get(name, "")
+    try:
+        number = float(given) if given else None
+    except ValueError:
+        number = math.nan
+    if number is not None and not 0.0 < number < math.inf:
+        raise PipelineError(f"{name.replace('_', ' ')} {given!r}: expected a number above 0")
+    return number

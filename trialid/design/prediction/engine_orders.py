@@ -4,7 +4,7 @@ A shaft `n` is one that turns ahead: the catalogue has no propeller for it that 
 `[[actuator]]` has a gain of its own astern, so it can be ordered so.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -115,10 +115,16 @@ def _holding(ship: Vessel, feedback: Mapping[str, str]) -> float:
     def rate(order: float) -> float:
         return _push(ship, feedback, dict.fromkeys(feedback, order))
 
-    most = next((1e-3 * 2.0**k for k in range(DOUBLINGS) if rate(1e-3 * 2.0**k) > 0.0), None)
-    if most is None or rate(0.0) >= 0.0:
+    order = holding_order(rate)
+    if order is None:
         raise DesignError(
             f"stop: no order of {', '.join(feedback)} holds the approach speed of "
             f"{ship.model.ship.particulars['U0']:g} m/s in this model; give the orders as a CSV"
         )
-    return float(brentq(rate, 0.0, most))
+    return order
+
+
+def holding_order(rate: Callable[[float], float]) -> float | None:
+    """The order that holds a speed, of du/dt [m/s^2] by the order; None where none does."""
+    most = next((1e-3 * 2.0**k for k in range(DOUBLINGS) if rate(1e-3 * 2.0**k) > 0.0), None)
+    return None if most is None or rate(0.0) >= 0.0 else float(brentq(rate, 0.0, most))

@@ -1,6 +1,7 @@
 """A linear ship under a controller: how a step is answered, and how far from swinging the loop is.
 
-The loop is broken at the rudder: k (sI - A)^-1 B is what comes back of a rudder angle.
+Delta is what steers, a rudder angle or a difference of thrusters; the loop is broken there:
+k (sI - A)^-1 B is what comes back of an order.
 """
 
 from dataclasses import dataclass
@@ -30,9 +31,9 @@ class Controller:
     A, B
         Ship and controller without feedback; (n, n), (n,).
     reference, back, output
-        How a reference drives the states, what goes back to the rudder, what is steered; (n,).
+        How a reference drives the states, what goes back to the order, what is steered; (n,).
     forward
-        Rudder by reference.
+        Order by reference.
     """
 
     A: Vector
@@ -56,7 +57,7 @@ class Answer:
     phase_margin
         Least, at every frequency where the loop's gain is one [rad].
     delay_margin
-        By how much later the rudder may act until the loop swings [s]; inf: by any time.
+        By how much later the order may act until the loop swings [s]; inf: by any time.
     """
 
     stable: bool
@@ -64,6 +65,12 @@ class Answer:
     settling: float
     phase_margin: float
     delay_margin: float
+
+
+SWINGS: Final = Answer(
+    stable=False, overshoot=np.inf, settling=np.inf, phase_margin=np.nan, delay_margin=0.0
+)
+"""That of a loop that is not stable."""
 
 
 def hold_rate(ship: LinearShip, P: float, I: float, FF: float) -> Controller:  # noqa: E741
@@ -102,9 +109,7 @@ def answer(loop: Controller, bandwidth: float) -> Answer:
     closed = loop.A - np.outer(loop.B, loop.back)
     poles, shapes = np.linalg.eig(closed)
     if poles.real.max() >= 0.0:
-        return Answer(
-            stable=False, overshoot=np.inf, settling=np.inf, phase_margin=np.nan, delay_margin=0.0
-        )
+        return SWINGS
     t = np.linspace(0.0, LONG / bandwidth, STEPS)
     drive = np.linalg.solve(shapes, loop.B * loop.forward + loop.reference) / poles
     parts = (loop.output @ shapes) * drive

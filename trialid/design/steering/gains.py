@@ -6,6 +6,8 @@ what wind and trim leave, 25 times as slowly, for 4 % of overshoot.
 
 Heading, by poles: Kp = w_n^2 T / K, Kd = (2 z w_n T - 1) / K, Ki = w_n Kp / 10 (Fossen 2011,
 Handbook of Marine Craft Hydrodynamics and Motion Control, section 12.2), damping z of 0.8.
+
+What is ordered is what steers the ship: a rudder angle, or half the difference of two thrusters.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,7 +20,14 @@ from trialid.design.helm import Vessel
 from trialid.design.prediction.drawn_ships import draw_ships, groups_of_ships
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.standard import acts_in_calm, in_calm
-from trialid.design.steering.closed_loop import Answer, Controller, answer, hold_heading, hold_rate
+from trialid.design.steering.closed_loop import (
+    SWINGS,
+    Answer,
+    Controller,
+    answer,
+    hold_heading,
+    hold_rate,
+)
 from trialid.design.steering.nomoto import read
 from trialid.design.steering.straight_course import LinearShip, StraightCourse
 from trialid.errors import DesignError
@@ -52,16 +61,16 @@ class Promise:
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
-    """Gains by name, of a rudder angle [rad], for a bandwidth [rad/s] at a speed [m/s]."""
+    """Gains by name, of an order that steers a linear ship [SI], for a bandwidth [rad/s]."""
 
     values: Mapping[str, float]
     bandwidth: float
-    speed: float
+    ship: LinearShip
     promise: Promise
 
 
 def rate_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = None) -> Gains:
-    """FF and P [s], I [1]: rudder by turn rate, for a bandwidth or twice that of the ship.
+    """FF and P [s], I [1]: order by turn rate, for a bandwidth or twice that of the ship.
 
     Raises
     ------
@@ -81,7 +90,7 @@ def rate_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = Non
 
 
 def heading_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = None) -> Gains:
-    """Kp [1], Ki [1/s] and Kd [s]: rudder by heading, for a bandwidth or that of the ship.
+    """Kp [1], Ki [1/s] and Kd [s]: order by heading, for a bandwidth or that of the ship.
 
     Raises
     ------
@@ -105,7 +114,7 @@ def _known(ship: Vessel) -> tuple[LinearShip, float, float]:
     found = read(linear)
     if not linear.stable or found["K"] <= 0.0 or found["T"] <= 0.0:
         raise DesignError(
-            "the ship is not directionally stable, or turns against her rudder; gains by K and T "
+            "the ship is not directionally stable, or turns against her order; gains by K and T "
             "are for one that is"
         )
     return linear, found["K"], found["T"]
@@ -132,19 +141,23 @@ def _tried(
     Raises
     ------
     DesignError
-        Too many of the ships that the record leaves open swing.
+        Too many of the ships that the record leaves open swing, or hold no speed.
     """
-    drawn = [answer(made(one), bandwidth) for one in _drawn(ship, spread)]
+    drawn = [
+        SWINGS if one is None else answer(made(one), bandwidth) for one in _drawn(ship, spread)
+    ]
     stable = float(np.mean([one.stable for one in drawn]))
+    unheld = ", or hold no speed," if linear.steered_by.thrusters else ""
     if stable < ENDS[1] / 100.0:
         raise DesignError(
-            f"{1.0 - stable:.0%} of the ships that the record leaves open would swing under gains "
-            f"for {bandwidth:.3g} rad/s; ask for less by --bandwidth, or sail more trials"
+            f"{1.0 - stable:.0%} of the ships that the record leaves open would swing{unheld} "
+            f"under gains for {bandwidth:.3g} rad/s; ask for less by --bandwidth, or sail more "
+            "trials"
         )
     fitted = answer(made(linear), bandwidth)
     ranges = {n: _range(n, fitted, drawn) for n in FIELDS}
     promise = Promise(fitted=fitted, ranges=ranges, stable=stable)
-    return Gains(values=values, bandwidth=bandwidth, speed=linear.speed, promise=promise)
+    return Gains(values=values, bandwidth=bandwidth, ship=linear, promise=promise)
 
 
 def _range(name: str, fitted: Answer, drawn: Sequence[Answer]) -> tuple[float, float]:
@@ -155,11 +168,17 @@ def _range(name: str, fitted: Answer, drawn: Sequence[Answer]) -> tuple[float, f
     return min(float(low), own), max(float(high), own)
 
 
-def _drawn(ship: Vessel, spread: LikelySpread) -> Iterator[LinearShip]:
-    """Linear ships as the record leaves them open; what is known at a value tried is left out."""
+def _drawn(ship: Vessel, spread: LikelySpread) -> Iterator[LinearShip | None]:
+    """Linear ships as the record leaves them open, None where no command holds the speed.
+
+    What is known at a value tried is left out.
+    """
     base = in_calm(ship)
     ships = draw_ships(base, spread, NUMBER, seed=0)
     for one in groups_of_ships(base, spread, ships, acts_in_calm):
         course = StraightCourse(one.ship)
         for theta in one.thetas:
-            yield course.at(dict(zip(course.parameters, theta.tolist(), strict=True)))
+            try:
+                yield course.at(dict(zip(course.parameters, theta.tolist(), strict=True)))
+            except DesignError:
+                yield None

@@ -1,14 +1,15 @@
 """Nomoto's numbers of a fitted ship, with where each is likely to lie.
 
-T dr/dt + r = K delta describes slow steering about a straight course. K is the rate of turn per
-rudder angle that a small order leads to, T the time it lags behind by: of the linearised model
+T dr/dt + r = K delta describes slow steering about a straight course. Delta is a rudder angle, or
+half the difference of the commands of two thrusters [SI] (`steered_by`). K is the rate of turn per
+order that a small order leads to, T the time it lags behind by: of the linearised model
 dx/dt = A x + B delta, r = C x,
 
     K = -C A^-1 B,    T = -C A^-2 B / (C A^-1 B),
 
 which is T1 + T2 - T3 of the second-order model r = K (1 + T3 s) / ((1 + T1 s) (1 + T2 s)) delta
 (Nomoto, Taguchi, Honda & Hirano 1957, On the steering qualities of ships). T1, T2 and T3 are those
-of sway and yaw, what else moves, as roll, following at once, and of the rudder itself.
+of sway and yaw, what else moves, as roll, following at once, and of what acts itself.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,7 +20,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.helm import GEAR_STATE, Vessel, vessel
+from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.measure_slopes import tried_ship, with_columns
 from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.design.standard import acts_in_calm, in_calm
@@ -42,7 +43,7 @@ class Nomoto:
     Attributes
     ----------
     stable
-        Whether a small disturbance dies out with the rudder amidships; where it does not K and T
+        Whether a small disturbance dies out without an order; where it does not K and T
         are negative, and no rate of turn is ever steady.
     values
         T1, T2 and T3 are left out where the ship does not sway, or T1 and T2 are no real numbers.
@@ -65,7 +66,7 @@ def nomoto(ship: Vessel, spread: LikelySpread) -> Nomoto:
     Raises
     ------
     DesignError
-        No rudder steers her, or it turns nothing.
+        Neither a rudder nor two thrusters steer her, or they turn nothing.
     """
     base = in_calm(ship)
     linear = StraightCourse(base)
@@ -103,16 +104,16 @@ def read(ship: LinearShip) -> dict[str, float]:
     Raises
     ------
     DesignError
-        A small rudder angle leads to no steady turn, or turns nothing.
+        A small order leads to no steady turn, or turns nothing.
     """
     A, B, r = ship.A, ship.B, ship.turning
     try:
         once = np.linalg.solve(A, B)
         twice = np.linalg.solve(A, once)
     except np.linalg.LinAlgError as error:
-        raise DesignError("a small rudder angle leads to no steady turn: no K, no T") from error
+        raise DesignError("a small steering order leads to no steady turn: no K, no T") from error
     if once[r] == 0.0:
-        raise DesignError("the rudder turns nothing on a straight course: no K, no T")
+        raise DesignError("a steering order turns nothing on a straight course: no K, no T")
     K, T = -once[r], -twice[r] / once[r]
     time = ship.length / ship.speed
     found = dict(zip(FIRST, map(float, (K, T, K * time, T / time)), strict=True))
@@ -139,9 +140,7 @@ def _all_numbers(ship: LinearShip, states: Sequence[str]) -> Vector:
     found = read(ship)
     named = [found.get(n, np.nan) for n in NAMES]
     kept = [ship.states.index(s) for s in states]
-    added = GEAR_STATE in ship.states and GEAR_STATE not in states
-    B = ship.A[:, ship.states.index(GEAR_STATE)] if added else ship.B
-    return np.concatenate([named, ship.A[np.ix_(kept, kept)].ravel(), B[kept]])
+    return np.concatenate([named, ship.A[np.ix_(kept, kept)].ravel(), ship.driven(states)[kept]])
 
 
 def _ranges(base: Vessel, spread: LikelySpread, states: Sequence[str]) -> list[Range | None]:

@@ -1,8 +1,8 @@
 """Gains of an autopilot as files: ArduPilot's steering parameters, and PID as JSON.
 
 ArduPilot Rover (libraries/APM_Control/AR_AttitudeControl, documentation of ATC_STR_RAT_*): FF, P
-and I turn a rate [rad/s], its error and the integral of that into a steering output from -1 to 1;
-above MOT_SPD_SCA_BASE the output is scaled by that speed over the ship's own. One is full rudder.
+and I turn a rate [rad/s], its error and the integral of that into a steering output from -1 to 1.
+One is full rudder, or full command of two thrusters (`order_words`).
 """
 
 import textwrap
@@ -14,35 +14,33 @@ import numpy as np
 
 from trialid.design.steering.gains import Gains
 from trialid.export.model.fitted_model import FittedModel
+from trialid.export.model.order_words import ardupilot_output, limits_words, order_words
 from trialid.result.json_file import finite
 
 SCHEMA: Final[Literal["trialid-pid/1"]] = "trialid-pid/1"
-SCALED_FROM: Final = 1.0
-"""m/s, ArduPilot's MOT_SPD_SCA_BASE where nobody has changed it."""
 DOCUMENTED: Final = {"FF": 3.0, "P": 2.0, "I": 2.0}
 """Largest value of each in ArduPilot's documentation."""
 WIDE: Final = 96
 
 
-def ardupilot_text(made: FittedModel, gains: Gains, full_rudder: float) -> str:
+def ardupilot_text(made: FittedModel, gains: Gains, full: float) -> str:
     """A `.param` file of steering rate gains.
 
     Parameters
     ----------
-    full_rudder
-        Rudder angle at a steering output of one [rad].
+    full
+        Rudder angle at a steering output of one [rad], or command of a thruster [SI].
     """
-    share = full_rudder * min(SCALED_FROM / gains.speed, 1.0)
-    values = {n: x / share for n, x in gains.values.items()}
+    output = ardupilot_output(gains, full)
+    values = {n: x / output.share for n, x in gains.values.items()}
     lines = [*_wrapped(f"{made.name}: steering of ArduPilot Rover, for the model that was fitted")]
     for key, words in made.origin.items():
         lines += _wrapped(f"{key.replace('_', ' ')}: {words}")
     for words in made.words:
         lines += _wrapped(f"NOTE {words}")
     lines += _wrapped(
-        f"Full output is {np.rad2deg(full_rudder):.4g} deg of rudder, as --full-rudder says; above "
-        f"{SCALED_FROM:g} m/s output is scaled by that speed over the ship's. For a bandwidth of "
-        f"{gains.bandwidth:.3g} rad/s at {gains.speed:.3g} m/s."
+        f"{output.words} For a bandwidth of {gains.bandwidth:.3g} rad/s at "
+        f"{gains.ship.speed:.3g} m/s."
     )
     for words in promises(gains, "turn rate"):
         lines += _wrapped(words)
@@ -53,7 +51,7 @@ def ardupilot_text(made: FittedModel, gains: Gains, full_rudder: float) -> str:
                 "documentation, which is for small vehicles; a ground station may warn."
             )
     lines += [f"ATC_STR_RAT_{name},{value:.6g}" for name, value in values.items()]
-    lines += ["ATC_STR_RAT_D,0", f"MOT_SPD_SCA_BASE,{SCALED_FROM:g}"]
+    lines += ["ATC_STR_RAT_D,0", *(f"{n},{x:g}" for n, x in output.parameters.items())]
     return "\n".join(lines) + "\n"
 
 
@@ -71,7 +69,7 @@ def promises(gains: Gains, what: str) -> Iterator[str]:
         f"{np.rad2deg(ends['phase_margin'][0]):.0f} likely; gear, sensor and computer may be late "
         f"by less than {_seconds(ends['delay_margin'][0])} together."
     )
-    yield "A rudder that cannot go so fast or so far, wind and waves are not in that."
+    yield limits_words(gains.ship)
 
 
 def _seconds(value: float) -> str:
@@ -105,8 +103,9 @@ class Margin:
 class PidFile:
     """delta = Kp (psi_d - psi) + Ki integral (psi_d - psi) - Kd r; SI, delta to starboard.
 
-    `promise` holds overshoot [share of a small step], settling to 5 % [s], phase margin [rad] and
-    delay margin [s].
+    `order` says what delta is; `cruise` and `range` are commands of two thrusters [SI], where those
+    steer. `promise` holds overshoot [share of a small step], settling to 5 % [s], phase margin
+    [rad] and delay margin [s].
     """
 
     schema: Literal["trialid-pid/1"] = SCHEMA
@@ -116,14 +115,19 @@ class PidFile:
     origin: Mapping[str, str] = field(default_factory=dict)
     speed: float
     bandwidth: float
+    order: str
+    cruise: float | None = None
+    range: float | None = None
     Kp: float
     Ki: float
     Kd: float
     promise: Mapping[str, Margin] = field(default_factory=dict)
 
 
-def pid_file(made: FittedModel, gains: Gains) -> PidFile:
-    """The content of the file."""
+def pid_file(made: FittedModel, gains: Gains, full: float) -> PidFile:
+    """The content of the file, for a rudder angle (full is 1) or a share of a full command [SI]."""
+    twin = bool(gains.ship.steered_by.thrusters)
+    values = {n: x / full for n, x in gains.values.items()}
     fitted = asdict(gains.promise.fitted)
     promise = {n: Margin(value=fitted[n], likely=r) for n, r in gains.promise.ranges.items()}
     whole: PidFile = finite(
@@ -132,11 +136,14 @@ def pid_file(made: FittedModel, gains: Gains) -> PidFile:
             reliable=made.reliable,
             words=(*made.words, *promises(gains, "heading")),
             origin=dict(made.origin),
-            speed=gains.speed,
+            speed=gains.ship.speed,
             bandwidth=gains.bandwidth,
-            Kp=gains.values["Kp"],
-            Ki=gains.values["Ki"],
-            Kd=gains.values["Kd"],
+            order=order_words(gains.ship, full),
+            cruise=gains.ship.held if twin else None,
+            range=full if twin else None,
+            Kp=values["Kp"],
+            Ki=values["Ki"],
+            Kd=values["Kd"],
             promise=promise,
         )
     )

@@ -8,10 +8,16 @@ import numpy as np
 
 from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.export.model.fitted_model import FittedModel
+from trialid.export.model.order_words import nomoto_words
 from trialid.names import labels
 from trialid.result.json_file import finite
 
 SCHEMA: Final[Literal["trialid-nomoto/1"]] = "trialid-nomoto/1"
+UNITS_OF_THRUSTERS: Final[Mapping[str, Mapping[str, str]]] = {
+    "revolutions": {"K": "1", "K_prime": "s", "T_prime": "1"},
+    "share": UNITS,
+    "thrust": {"K": "1/(N s)", "K_prime": "1/N", "T_prime": "1"},
+}
 UNSTABLE: Final = (
     "The ship is not directionally stable: K and T are negative, and a small order leads to no "
     "steady turn."
@@ -48,11 +54,13 @@ class StateSpace:
 class AtSpeed:
     """T dr/dt + r = K delta, delta positive to starboard, at a speed [m/s]; and second order.
 
-    r = K (1 + T3 s) / ((1 + T1 s) (1 + T2 s)) delta, of the rudder itself.
+    r = K (1 + T3 s) / ((1 + T1 s) (1 + T2 s)) delta, of the rudder or the thrusters themselves;
+    `order` says what delta is.
     """
 
     speed: float
     stable: bool
+    order: str
     numbers: Mapping[str, NomotoNumber] = field(default_factory=dict)
     state_space: StateSpace
 
@@ -86,14 +94,14 @@ def nomoto_file(made: FittedModel, found: Sequence[Nomoto]) -> NomotoFile:
 
 def _at_speed(found: Nomoto) -> AtSpeed:
     numbers = {
-        name: NomotoNumber(value=value, unit=UNITS.get(name, "s"), likely=found.ranges.get(name))
+        name: NomotoNumber(value=value, unit=_unit(name, found), likely=found.ranges.get(name))
         for name, value in found.values.items()
     }
     ship = found.ship
     space = StateSpace(
         states=ship.states,
         units=tuple(labels.quantity(s).unit for s in ship.states),
-        input=ship.rudder,
+        input=ship.steered_by.name,
         A=_rows(ship.A),
         B=_row(ship.B),
         A_from=_rows(found.A_likely[..., 0]),
@@ -101,7 +109,20 @@ def _at_speed(found: Nomoto) -> AtSpeed:
         B_from=_row(found.B_likely[..., 0]),
         B_to=_row(found.B_likely[..., 1]),
     )
-    return AtSpeed(speed=found.speed, stable=found.stable, numbers=numbers, state_space=space)
+    return AtSpeed(
+        speed=found.speed,
+        stable=found.stable,
+        order=nomoto_words(ship),
+        numbers=numbers,
+        state_space=space,
+    )
+
+
+def _unit(name: str, found: Nomoto) -> str:
+    """Of a number: K is a rate of turn by a rudder angle or by the command of a thruster."""
+    thrusters = found.ship.steered_by.thrusters
+    per = UNITS_OF_THRUSTERS[thrusters[0].command] if thrusters else UNITS
+    return per.get(name, "s")
 
 
 def _rows(values: np.ndarray) -> tuple[Row, ...]:

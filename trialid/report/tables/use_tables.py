@@ -41,5 +41,6 @@ def commands(run: Result) -> Iterator[CommandRow]:
     yield CommandRow(f"trialid simulate . zigzag 20 20{marked}", "a manoeuvre with likely ranges")
     yield CommandRow(f"trialid simulate . orders.csv{marked}", "orders of your own")
     for name, kind in KINDS.items():
-        needs = f" {kind.needs}" if kind.needs else ""
-        yield CommandRow(f"trialid export . --as {name}{needs}{marked}", kind.words)
+        needs = kind.needs_by_thrusters if run.model.by_thrusters else kind.needs
+        said = f" {needs}" if needs else ""
+        yield CommandRow(f"trialid export . --as {name}{said}{marked}", kind.words)

@@ -2,15 +2,12 @@
 
 import zipfile
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from io import BytesIO
 from typing import Final
 
-from trialid.design.following import STEERED, approach_speeds, sailed_ship
-from trialid.design.helm import Vessel
+from trialid.design.following import approach_speeds
 from trialid.design.steering.gains import heading_gains, rate_gains
 from trialid.design.steering.nomoto import at_speeds
-from trialid.errors import TrialidError
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
@@ -25,17 +22,10 @@ from trialid.export.model.numpy_text import numpy_text
 from trialid.result.json_file import text_of
 from trialid.workflow.use.finished_model import FinishedModel
 from trialid.workflow.use.predict import spread_of
+from trialid.workflow.use.steering import Wishes, check_full, full_order, steered_ship
 
 Files = Mapping[str, str | bytes]
 """By the suffix that follows the name of what is written."""
-
-
-@dataclass(frozen=True)
-class Wishes:
-    """What somebody who wants a file has to say, or may: bandwidth [rad/s], full rudder [rad]."""
-
-    bandwidth: float | None = None
-    full_rudder: float | None = None
 
 
 def taken_up(model: FinishedModel) -> FittedModel:
@@ -82,45 +72,28 @@ def _modelica(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     return {".mo": modelica_text(taken_up(model), name)}
 
 
-def _by_rudder(model: FinishedModel) -> Vessel:
-    """The ship, steered by a rudder.
-
-    Raises
-    ------
-    TrialidError
-        She is steered by something else, of which there is no K and no T.
-    """
-    if STEERED & {*model.fit.model.recorded}:
-        return sailed_ship(model.fit)
-    drives = [a.name for a in model.fit.model.ship.actuators]
-    steered = f"; this model is steered by {', '.join(drives)}" if drives else ""
-    raise TrialidError(
-        f"{model.where}: K, T and gains are those of a rudder angle{steered}; export her as "
-        "fmu, c, python or modelica and design her heading control with that"
-    )
-
-
 def _nomoto(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name, wishes
-    found = at_speeds(_by_rudder(model), spread_of(model), approach_speeds(model.fit))
+    found = at_speeds(steered_ship(model), spread_of(model), approach_speeds(model.fit))
     return {".json": text_of(nomoto_file(taken_up(model), found))}
 
 
 def _ardupilot(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name
-    if wishes.full_rudder is None:
-        raise TrialidError(
-            "--as ardupilot needs the rudder angle at full steering output, which no log of a "
-            "rudder holds; add --full-rudder 35 [deg]"
-        )
-    gains = rate_gains(_by_rudder(model), spread_of(model), wishes.bandwidth)
-    return {".param": ardupilot_text(taken_up(model), gains, wishes.full_rudder)}
+    ship = steered_ship(model)
+    full = full_order(model, ship, wishes, of_autopilot=True)
+    gains = rate_gains(ship, spread_of(model), wishes.bandwidth)
+    check_full(gains.ship, full)
+    return {".param": ardupilot_text(taken_up(model), gains, full)}
 
 
 def _pid(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name
-    gains = heading_gains(_by_rudder(model), spread_of(model), wishes.bandwidth)
-    return {".json": text_of(pid_file(taken_up(model), gains))}
+    ship = steered_ship(model)
+    full = full_order(model, ship, wishes)
+    gains = heading_gains(ship, spread_of(model), wishes.bandwidth)
+    check_full(gains.ship, full)
+    return {".json": text_of(pid_file(taken_up(model), gains, full))}
 
 
 def _gazebo(model: FinishedModel, name: str, wishes: Wishes) -> Files:
