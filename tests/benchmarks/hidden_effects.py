@@ -2,6 +2,7 @@ r"""Hide one effect after the other in a simulated ship and count how well the d
 
     PYTHONPATH=. python tests/benchmarks/hidden_effects.py              # all of it, for the record
     PYTHONPATH=. python tests/benchmarks/hidden_effects.py --short      # what CI runs
+    PYTHONPATH=. python tests/benchmarks/hidden_effects.py --short --fixed-off 0.15  # held off
     PYTHONPATH=. python tests/benchmarks/hidden_effects.py --seeds 4 --noise white \
         --scenarios yaw_drag_rar,nothing --jobs 2 --out first.md
 
