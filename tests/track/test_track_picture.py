@@ -161,3 +161,15 @@ def test_the_picture_is_sound_and_escapes_the_name() -> None:
     assert "<b>" not in page
     assert "NaN" not in page
     assert "nan" not in re.sub(r"[a-z]nan[a-z]", "", page)
+
+
+def test_a_file_from_before_there_was_a_wind_is_read(tmp_path: Path) -> None:
+    """Its two columns come last, so that what was written without them is the same but for them."""
+    one = replace(eastward(), current=(0.1, -0.2), wind=(3.0, 4.0), over_ground=True)
+    file = tmp_path / "track.csv"
+    write_track_csv(file, [one])
+    assert read_track_csv(file)["east"].wind == (3.0, 4.0)
+    lines = file.read_text(encoding="utf-8").splitlines()
+    file.write_text("\n".join(line.rsplit(",", 2)[0] for line in lines) + "\n", encoding="utf-8")
+    found = read_track_csv(file)["east"]
+    assert (found.current, found.wind, found.over_ground) == ((0.1, -0.2), None, True)

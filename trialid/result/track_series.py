@@ -21,8 +21,10 @@ GROUND: Final = "predicted_over"
 HEADINGS: Final = (
     *("trial", "t_s"),
     *(f"{n}_{role}_{UNITS[n]}" for role in ("measured", "predicted") for n in PLACE),
-    *(*CURRENT, *WIND, GROUND),
+    *(*CURRENT, GROUND, *WIND),
 )
+BEFORE_WIND: Final = HEADINGS[: -len(WIND)]
+"""What a run had that knew of no wind."""
 
 
 @dataclass(frozen=True)
@@ -77,12 +79,12 @@ def write_track_csv(path: Path, tracks: Sequence[TrackSeries]) -> None:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(HEADINGS)
         for one in tracks:
-            moving = [x for way in (one.current, one.wind) for x in way or ("", "")]
+            water, air = (way or ("", "") for way in (one.current, one.wind))
             over = "ground" if one.over_ground else "water"
             columns = [one.t, *one.measured.columns, *one.predicted.columns]
             for row in np.column_stack(columns).tolist():
                 numbers = ("" if math.isnan(x) else x for x in row)
-                writer.writerow([one.trial, *numbers, *moving, over])
+                writer.writerow([one.trial, *numbers, *water, over, *air])
 
 
 def read_track_csv(path: Path) -> dict[str, TrackSeries]:
@@ -98,7 +100,7 @@ def read_track_csv(path: Path) -> dict[str, TrackSeries]:
     try:
         with path.open(newline="", encoding="utf-8") as stream:
             headings, *rows = csv.reader(stream)
-        if tuple(headings) != HEADINGS:
+        if tuple(headings) not in (HEADINGS, BEFORE_WIND):
             raise ValueError(f"its columns are not {', '.join(HEADINGS[:4])} and so on")
         found: dict[str, list[list[str]]] = {}
         for row in rows:
@@ -112,10 +114,9 @@ def _track(name: str, rows: Sequence[Sequence[str]]) -> TrackSeries:
     first = 1 + 1 + 2 * len(PLACE)
     y = np.array([[float(x or "nan") for x in row[1:first]] for row in rows])
     measured, predicted = (Way(*y[:, at : at + 3].T) for at in (1, 4))
-    *moving, over = rows[0][first:]
+    north, east, over, *air = rows[0][first:]
     current, wind = (
-        (float(north), float(east)) if north and east else None
-        for north, east in (moving[:2], moving[2:])
+        (float(way[0]), float(way[1])) if all(way) and way else None for way in ((north, east), air)
     )
     return TrackSeries(
         trial=name,
