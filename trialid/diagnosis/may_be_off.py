@@ -5,14 +5,12 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trialid.accuracy.likely import WIDE, Averaged, Rival, Rows, Standing, stand
+from trialid.arrays import Vector
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.identification.fit import Fit
-
-Vector = NDArray[np.float64]
 
 SMALLEST: Final = 1e-12
 """Typical size of a parameter whose effect calls nothing typical."""

@@ -3,12 +3,10 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trialid.arrays import Vector
 from trialid.identification.output_error import Problem, Unknown
 from trialid.ship.model import ShipModel
-
-Vector = NDArray[np.float64]
 
 
 def point_of_smaller(

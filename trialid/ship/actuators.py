@@ -162,9 +162,9 @@ def _actuator(row: Mapping[str, Any], where: str) -> Actuator:
         if key not in row:
             raise ShipError(f"{where}: {key!r} is missing; {_plain(KEYS[key])}")
     kind = _one_of(row["kind"], KINDS, f"{where}: kind")
-    full = {"command": "revolutions", "own": False, "behind": "", **row}
-    full = {"limit": math.inf, "rate": math.inf, **full}
-    full = {"direction": 90.0 if kind == "tunnel" else 0.0, **full}
+    usual = {"command": "revolutions", "own": False, "behind": "", "limit": math.inf}
+    usual |= {"rate": math.inf, "direction": 90.0 if kind == "tunnel" else 0.0}
+    full = {**usual, **row}
     _check_row(row, full, where)
     one = Actuator(
         name=row["name"],
