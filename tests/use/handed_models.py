@@ -1,5 +1,7 @@
 """Models that are handed over in the tests, and what the kernel makes of them."""
 
+import shutil
+import subprocess
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,6 +19,8 @@ from trialid.simulation.trace import trace
 from trialid.trial import Trial
 from trialid.workflow.build_model import available, build_model
 
+GCC = shutil.which("gcc") or shutil.which("cc")
+STRICT = ["-std=c99", "-g", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wshadow"]
 PIPELINE = pipeline_file.load(ROOT / "pipelines" / "hidden_effect.toml")
 SHIPPED = build_model(PIPELINE, available(PIPELINE))
 OWN = """\
@@ -137,3 +141,18 @@ def largest_difference(found: np.ndarray, expected: np.ndarray) -> float:
     """Over all columns, as a share of the largest value of each."""
     sizes = np.max(np.abs(expected), axis=0)
     return float(np.max(np.abs(found - expected) / np.where(sizes > 0.0, sizes, 1.0)))
+
+
+def run_sanitized(folder: Path, source: str, main: str) -> tuple[int, str]:
+    """How the program `main`, which includes `ferry.c`, ended, and what it or the compiler said."""
+    (folder / "ferry.c").write_text(source, encoding="utf-8")
+    (folder / "main.c").write_text(main, encoding="utf-8")
+    for sanitized in (["-fsanitize=address,undefined", "-fno-sanitize-recover"], []):
+        command = [GCC, *STRICT, *sanitized, "main.c", "-lm", "-o", "run"]
+        told = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+        if told.returncode == 0:
+            break
+    if (told.returncode, told.stderr) != (0, ""):
+        return told.returncode, told.stderr
+    done = subprocess.run([folder / "run"], capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr

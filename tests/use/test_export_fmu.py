@@ -2,8 +2,6 @@
 
 import ctypes
 import io
-import shutil
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -11,7 +9,18 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from handed_models import NAMES, PERIOD, TIGHT, Case, cases, handed, inputs_of, sailed_by_kernel
+from handed_models import (
+    GCC,
+    NAMES,
+    PERIOD,
+    TIGHT,
+    Case,
+    cases,
+    handed,
+    inputs_of,
+    run_sanitized,
+    sailed_by_kernel,
+)
 from handed_models import largest_difference as apart
 from test_bad_input import trialid_
 
@@ -19,8 +28,6 @@ from trialid.export.model.equation_steps import own_name
 from trialid.export.model.fmu.fmu_file import fmu_bytes, fmu_source
 from trialid.simulation.integrate import domain, prepare
 
-GCC = shutil.which("gcc") or shutil.which("cc")
-STRICT = ["-std=c99", "-g", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wshadow"]
 OK, ERROR = 0, 3
 compiled = pytest.mark.skipif(GCC is None or sys.platform != "linux", reason="no C compiler here")
 
@@ -139,16 +146,7 @@ def test_its_numbers_are_the_kernel_s(name: str, tmp_path: Path) -> None:
 def test_nothing_of_it_is_out_of_bounds(tmp_path: Path) -> None:
     """Every call, with the address and undefined-behaviour sanitizers where there are any."""
     source = fmu_source(handed(cases(tmp_path)["shipped"]), "ferry", "{x}")
-    (tmp_path / "ferry.c").write_text(source, encoding="utf-8")
-    (tmp_path / "main.c").write_text(ALONE, encoding="utf-8")
-    for sanitized in (["-fsanitize=address,undefined", "-fno-sanitize-recover"], []):
-        command = [GCC, *STRICT, *sanitized, "main.c", "-lm", "-o", "run"]
-        told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        if told.returncode == 0:
-            break
-    assert (told.returncode, told.stderr) == (0, "")
-    done = subprocess.run([tmp_path / "run"], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert run_sanitized(tmp_path, source, ALONE) == (0, "")
 
 
 def test_it_says_what_it_is(tmp_path: Path) -> None:

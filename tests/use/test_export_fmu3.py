@@ -1,8 +1,6 @@
 """The FMU of FMI 3.0: valid, the kernel's numbers, nothing out of bounds, every call there."""
 
 import io
-import shutil
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -10,14 +8,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from handed_models import PERIOD, TIGHT, cases, handed, sailed_by_kernel
+from handed_models import GCC, PERIOD, TIGHT, cases, handed, run_sanitized, sailed_by_kernel
 from handed_models import largest_difference as apart
 from test_bad_input import trialid_
 
 from trialid.export.model.fmu.fmu_file import fmu_bytes, fmu_source
 
-GCC = shutil.which("gcc") or shutil.which("cc")
-STRICT = ["-std=c99", "-g", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wshadow"]
 pytestmark = pytest.mark.skipif(GCC is None or sys.platform != "linux", reason="no C compiler here")
 
 ALONE = r"""
@@ -66,16 +62,7 @@ int main(void) {
 def test_nothing_of_it_is_out_of_bounds(tmp_path: Path) -> None:
     """Every call that does something, with the sanitizers where there are any."""
     source = fmu_source(handed(cases(tmp_path)["shipped"]), "ferry", "{x}", "3.0")
-    (tmp_path / "ferry.c").write_text(source, encoding="utf-8")
-    (tmp_path / "main.c").write_text(ALONE, encoding="utf-8")
-    for sanitized in (["-fsanitize=address,undefined", "-fno-sanitize-recover"], []):
-        command = [GCC, *STRICT, *sanitized, "main.c", "-lm", "-o", "run"]
-        told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        if told.returncode == 0:
-            break
-    assert (told.returncode, told.stderr) == (0, "")
-    done = subprocess.run([tmp_path / "run"], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert run_sanitized(tmp_path, source, ALONE) == (0, "")
 
 
 @pytest.mark.parametrize("name", ["shipped", "a gear with a state", "surge and heading"])
