@@ -1,12 +1,20 @@
 """Values a quantity may take on a moving ship, for tests that ask for any signal there is."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.accuracy.likely import Rows, stand
 from trialid.design.imo.speed_loss import NAMES
-from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
+from trialid.diagnosis.may_be_off import doubts
+from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.search.augment import augment
+from trialid.diagnosis.trust import accuracy_of
+from trialid.identification.fit import Fit
 from trialid.names.quantities import QUANTITIES
+from trialid.ship.effect import Effect
 
 KNOWN = {
     "u": (5.0, 9.0), "n": (5.0, 9.0), "U": (5.0, 9.0), "U0": (7.0, 8.0), "L": (170.0, 180.0),
@@ -57,3 +65,12 @@ def known_by(name: str, deviation: float) -> LikelySpread:
     covariance = np.zeros((1 + len(NAMES),) * 2)
     covariance[0, 0] = deviation**2
     return LikelySpread((name,), (), (), covariance, stand(rows, []))
+
+
+def spread_of(fit: Fit, candidates: Mapping[str, Effect]) -> LikelySpread:
+    """What predictions of a fit are uncertain by, of these effects one may be missing."""
+    augmented = augment(fit, candidates)
+    off = doubts(fit, augmented)
+    parts, _ = split(fit, augmented, {})
+    covariance = accuracy_of(fit, parts, off.averaged).covariance
+    return likely_spread(fit, covariance, off.standing, off.held, off.missing)

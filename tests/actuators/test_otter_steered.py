@@ -9,17 +9,12 @@ import numpy as np
 import otter
 import pytest
 from otter_model import CANDIDATES, TRUTH, fitted, model, record
-from typical import known_by
+from typical import known_by, spread_of
 
 from trialid.design.helm import vessel
-from trialid.design.prediction.likely_spread import likely_spread
 from trialid.design.steering.gains import heading_gains, rate_gains
 from trialid.design.steering.nomoto import nomoto
 from trialid.design.steering.steered_by import steered_by
-from trialid.diagnosis.may_be_off import doubts
-from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.trust import accuracy_of
 from trialid.errors import DesignError
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
@@ -133,11 +128,7 @@ def test_what_does_not_steer_so_is_refused() -> None:
 def kept(seed: int) -> list[tuple[bool, bool]]:
     """Whether overshoot and settling of the true boat are as promised, by either gains."""
     fit = fitted(record(seed, duration=45.0))
-    augmented = augment(fit, {n: CANDIDATES[n] for n in MISSING})
-    off = doubts(fit, augmented)
-    parts, _ = split(fit, augmented, {})
-    covariance = accuracy_of(fit, parts, off.averaged).covariance
-    spread = likely_spread(fit, covariance, off.standing, off.held, off.missing)
+    spread = spread_of(fit, {n: CANDIDATES[n] for n in MISSING})
     found = []
     for gains in (rate_gains, heading_gains):
         made = gains(ready_ship(fit), spread)

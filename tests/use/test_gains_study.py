@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 import s175q
 from test_gains import stepped
+from typical import spread_of
 
 from trialid.design.following import sailed_ship
 from trialid.design.helm import carry_out, vessel
 from trialid.design.manoeuvres import zigzag
-from trialid.design.prediction.likely_spread import likely_spread
 from trialid.design.steering.gains import heading_gains, rate_gains
-from trialid.diagnosis.may_be_off import doubts
-from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.trust import accuracy_of
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -84,11 +80,7 @@ def kept(model: ShipModel, seed: int) -> list[tuple[bool, bool]]:
     """Whether overshoot and settling of the true ship are as promised, by either gains."""
     trials = [record(model, angle, seed) for angle in (10.0, 20.0)]
     fit = identify(trials, model, Settings(FREE, ("r", "phi"), nuisance=("initial_state",)))
-    augmented = augment(fit, {n: CATALOGUE[n] for n in MISSING})
-    off = doubts(fit, augmented)
-    parts, _ = split(fit, augmented, {})
-    covariance = accuracy_of(fit, parts, off.averaged).covariance
-    spread = likely_spread(fit, covariance, off.standing, off.held, off.missing)
+    spread = spread_of(fit, {n: CATALOGUE[n] for n in MISSING})
     found = []
     for gains in (rate_gains, heading_gains):
         made = gains(sailed_ship(fit), spread)
