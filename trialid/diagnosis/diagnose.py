@@ -35,7 +35,7 @@ class DiagnoseSettings:
     ----------
     candidates
         Effects to try, by name.
-    held
+    coefficients
         Whether coefficients that the model holds fixed are tried too.
     noise
         Stated sensor figures by output [SI].
@@ -44,7 +44,7 @@ class DiagnoseSettings:
     """
 
     candidates: Mapping[str, Effect] = field(default_factory=lambda: CATALOGUE)
-    held: bool = True
+    coefficients: bool = True
     family_cos: float = 0.95
     level: float = 0.05
     refit: int = 4
@@ -187,7 +187,7 @@ def examine_fit(
 ) -> tuple[Diagnosed, tuple[Candidate, ...], Augmented]:
     """The split, the accuracy that follows from it, and the ranking that both rest on."""
     progress("looking for what is missing", 0.65)
-    candidates = {**asked.candidates, **(candidates_to_free(fit) if asked.held else {})}
+    candidates = {**asked.candidates, **(candidates_to_free(fit) if asked.coefficients else {})}
     ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
     return Diagnosed(fit, best, routes, doubts(fit, augmented)), ranking, augmented

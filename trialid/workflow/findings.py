@@ -34,7 +34,7 @@ def diagnose_settings(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> Di
     asked = pipeline.diagnose
     return DiagnoseSettings(
         candidates=candidates(pipeline, catalogue),
-        held=asked.candidates == "all",
+        coefficients=asked.candidates == "all",
         family_cos=asked.family_cos,
         level=asked.level,
         refit=asked.refit,
