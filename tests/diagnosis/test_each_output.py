@@ -1,11 +1,13 @@
-"""What carries over with each output held against its own error: a coarse one hides no other."""
+"""What carries over: a coarse output hides no other, and blocks alone are believed where alike."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import wilcoxon
 from test_carry_over import ROWS, made
 
+from trialid.diagnosis.search.carried import Carried, signed_rank_p
 from trialid.diagnosis.search.carry_over import left_out, levels
 
 
@@ -44,3 +46,27 @@ def test_levels_hold_each_output_against_its_own_error():
     squares = levels(fit) * np.square([0.02, 0.2]) * fit.problem.weights**2
     assert squares[1] == pytest.approx(9.0 * squares[0])
     assert squares.sum() == pytest.approx(0.02**2 + 9.0 * 0.2**2)
+
+
+@pytest.mark.parametrize("blocks", [1, 3, 6, 11, 21])
+def test_signed_ranks_are_those_of_an_independent_hand(blocks: int) -> None:
+    rng = np.random.default_rng(blocks)
+    for shift in (-0.5, 0.0, 0.7):
+        gaps = rng.normal(shift, 1.0, blocks)
+        theirs = wilcoxon(gaps, alternative="greater", method="exact").pvalue
+        assert signed_rank_p(gaps) == pytest.approx(theirs)
+
+
+def test_blocks_without_any_change_show_nothing() -> None:
+    assert signed_rank_p([]) == 1.0
+    assert signed_rank_p([0.0] * 6) == 1.0
+
+
+def test_one_block_s_trouble_is_not_large_and_a_fall_in_every_block_is() -> None:
+    before = (1.0, 1.1, 0.9, 1.2, 0.8, 9.0)
+    one = Carried(before, (1.1, 1.2, 0.8, 1.3, 0.9, 5.0))
+    each = Carried(before, tuple(0.8 * b for b in before))
+    assert one.ratio < 0.75 < each.ratio
+    assert not one.large
+    assert each.large
+    assert not Carried(before, tuple(0.97 * b for b in before)).large

@@ -8,11 +8,14 @@ import csv
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from test_carried_over import ESSO, PIPELINE, SHIP
 
+from trialid.cli.main import commands
 from trialid.design.following import standard_measures
 from trialid.diagnosis.diagnose import DiagnoseSettings, examine_fit
 from trialid.pipeline_file import load
+from trialid.result.json_file import read
 from trialid.workflow.build_model import available
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.read_trials import align_trials
@@ -82,3 +85,16 @@ def test_the_circles_that_were_sailed_lie_in_the_ranges(measures):
     low, high = measures["advance"].interval
     assert low < sailed[:, 0].mean() < high
     assert high < 2.0 * low
+
+
+def test_without_their_wind_no_effect_has_a_name(tmp_path, monkeypatch):
+    """Four trials a person would begin with: a tenth of the error is mended by a dozen effects."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ship.toml").write_text(SHIP, encoding="utf-8")
+    logs = [str(record) for record in sorted(ESSO.glob("turn*.csv"))]
+    done = CliRunner().invoke(commands, ["start", *logs, "--ship", "ship.toml"])
+    assert done.exit_code == 0, done.output
+    result = read(tmp_path / "runs" / "first_trial" / "result.json")
+    print(result.verdict.sentence)
+    assert result.verdict.kind == "cannot tell"
+    assert "cannot tell what" in result.verdict.sentence

@@ -57,7 +57,8 @@ def decide(
 
     An effect is named only if its score stands out over the whole catalogue, its refitted value
     is physical, held-out trials do not speak against it, and no force of another shape explains
-    far more. In a model that has `grown` by effects already it must be worth a tenth.
+    far more; and where the blocks left out alone show it, only if none as good differs in trace. In
+    a model that has `grown` by effects already it must be worth a tenth.
     """
     named = likeliest_refit(fit, refits, level, grown)
     if whole is not None and (whole.outdoes(named.carried) if named else whole.gap):
@@ -69,7 +70,7 @@ def decide(
     if named is not None and (share := _explained(fit, named, parts)) < SHARE:
         return Verdict("not in catalogue", None, (), _little(named, share, parts))
     if named is not None:
-        return _missing(fit, named, rivals(named, ranking, refits))
+        return _missing_or_one_of(fit, named, ranking, refits, level)
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
     return _unnamed(parts, whole, small)
 
@@ -220,6 +221,35 @@ def _missing(fit: Fit, named: Refit, others: tuple[str, ...]) -> Verdict:
         f"{_what(named)} {_falls(fit, named.fit)} "
         f"(p = {candidate.p_value:.2g} over the catalogue){alike}",
     )  # fmt: skip
+
+
+def _missing_or_one_of(
+    fit: Fit, named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit], level: float
+) -> Verdict:
+    """A name, unless blocks alone speak for it, and for what is unlike it as well."""
+    others = rivals(named, ranking, refits)
+    if not {*others} <= {*named.candidate.family} and _faint(named, others, ranking, level):
+        return Verdict("cannot tell", None, (), _one_of(fit, named, others))
+    return _missing(fit, named, others)
+
+
+def _faint(
+    named: Refit, others: tuple[str, ...], ranking: Sequence[Candidate], level: float
+) -> bool:
+    """Whether no effect that may be meant stands out against the noise: blocks alone show them."""
+    meant = {named.candidate.effect.name, *others}
+    return all(c.p_value >= level for c in ranking if c.effect.name in meant)
+
+
+def _one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
+    """Something is missing by the blocks alone, and effects unlike each other mend it."""
+    freed = " freed" if named.candidate.effect.held is not None else ""
+    return (
+        f"something is missing, but this record cannot tell what: with "
+        f"{named.candidate.effect.name}{freed} {_falls(fit, named.fit)}, and as well it may be "
+        f"{', '.join(others)}; against the noise none stands out "
+        f"(p = {named.candidate.p_value:.2g} over the catalogue)"
+    )
 
 
 def _what(named: Refit) -> str:

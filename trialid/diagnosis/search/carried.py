@@ -7,13 +7,19 @@ from typing import Final, Self
 import numpy as np
 from scipy.special import stdtrit  # scipy.stats would take another 0.4 s to import
 
+from trialid.arrays import Vector
+
 FALL: Final = 0.985
 """Ratio of squared errors from which on an effect is worth a name: 0.7 % of the error itself. Half
 as strict, a speed logged half a percent wrong is named; twice as strict, weak damping is not."""
 
 LARGE: Final = 0.90
-"""Ratio of squared errors that needs no test of significance: on short or smooth records the noise
-has no colour that could be told from the effect's. With nothing hidden 0.98 is hardly reached."""
+"""Ratio of squared errors that needs no test of the noise, where the blocks agree: on short or
+smooth records the noise has no colour that could be told from the effect's. With nothing hidden
+0.98 is hardly reached; by the trouble of a single block, with much else wrong, any ratio is."""
+
+ALIKE: Final = 0.05
+"""Level of Wilcoxon's signed ranks from which on blocks agree: of six all but the least."""
 
 FAINT: Final = 0.02
 """Share of its trace beside the parameters at which an effect's fall counts half: a centre of
@@ -93,6 +99,12 @@ class Carried:
         )
 
     @property
+    def large(self) -> bool:
+        """Whether the error falls by far too much for chance, and blocks alike."""
+        falls = np.subtract(self.before, self.after)
+        return self.ratio < LARGE and signed_rank_p(falls) < ALIKE
+
+    @property
     def log_ratio(self) -> float:
         """Natural logarithm of the ratio; zero where there is nothing to compare."""
         return float(np.log(max(self.ratio, 1e-300))) if self.blocks else 0.0
@@ -115,6 +127,20 @@ def _ratio(before: Sequence[float], after: Sequence[float]) -> float:
 def _better(before: Sequence[float], after: Sequence[float]) -> int:
     """In how many blocks the error is smaller."""
     return sum(new < old for old, new in zip(before, after, strict=True))
+
+
+def signed_rank_p(gaps: Sequence[float] | Vector) -> float:
+    """Chance of signed ranks at least so high where either sign is as likely; one where none is.
+
+    Source: Wilcoxon (1945), Individual comparisons by ranking methods, Biometrics Bull 1; exact, by
+    the number of subsets of the ranks with each sum.
+    """
+    order = np.argsort(np.abs(gaps), kind="stable")
+    above = int(np.sum(1 + np.flatnonzero(np.asarray(gaps)[order] > 0.0)))
+    ways = np.ones(1)
+    for rank in range(1, len(order) + 1):
+        ways = np.r_[ways, np.zeros(rank)] + np.r_[np.zeros(rank), ways]
+    return float(ways[above:].sum() / ways.sum())
 
 
 def lead_in_errors(one: Sequence[float], other: Sequence[float]) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
-from trialid.diagnosis.search.carried import LARGE, Carried
+from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.p_value import Chance, against_chance
 from trialid.diagnosis.search.projection import Evidence, Projected, least_squares_fall
@@ -78,8 +78,8 @@ class Candidate:
         return self.carried.price(len(self.effect.parameters))
 
     def shown(self, level: float) -> bool:
-        """Whether it is there: against chance, or because the error falls by far too much."""
-        return self.allowed and (self.p_value < level or self.carried.ratio < LARGE)
+        """Whether it is there: by the test, or by the blocks left out, one like the other."""
+        return self.allowed and (self.p_value < level or self.carried.large)
 
     def worth_a_name(self, level: float) -> bool:
         """Whether it is there and so much of it carries over that somebody would notice."""
