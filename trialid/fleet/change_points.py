@@ -1,12 +1,16 @@
 """Changes of a ship's parameters in the course of her voyages: a step or a drift, and when.
 
-The estimates of a parameter lie about one level, each within its likely range, until something
-changes: from voyage k on they lie at another level (a step), or leave it evenly (a drift). Such
-courses are fitted by weighted least squares. What one takes off the sum of squares, over what is
-left, follows Fisher's F where nothing changes; the scatter counts as it is found, and never less
-than the likely ranges say. The best course, or the best two at once, count as found where even the
-best of all that were tried, over all parameters and ships of the fleet, would be as good by chance
-in one fleet of twenty (Bonferroni). The voyages' errors are taken to be independent.
+The estimates of a parameter scatter about one level until something changes: from voyage k on they
+lie at another level (a step), or leave it evenly (a drift). Such courses are fitted by least
+squares, each voyage weighted by its likely range. What one takes off the sum of squares, over what
+is left, follows Fisher's F where nothing changes; the scatter counts as it is found, and never less
+than the noise leaves. The best course, or the best two at once, count as found where even the best
+of all that were tried, over all parameters and ships of the fleet, would be as good by chance in
+one fleet of twenty (Bonferroni). The voyages' errors are taken to be independent.
+
+What a model lacks pushes its parameters alike in like trials. Where trials are sailed otherwise
+from some voyage on, that push may change as far as the likely ranges go: only a change that exceeds
+them is surely one of the ship, and each says whether it does.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -40,12 +44,23 @@ Course = tuple[Form, int]
 
 
 @dataclass(frozen=True)
-class Record:
-    """One parameter of one ship: estimates, and the deviations their likely ranges stand for."""
+class Estimates:
+    """Estimates of one parameter by voyage, (n,).
 
-    rows: tuple[FittedRow, ...]
+    Attributes
+    ----------
+    deviation
+        Standard deviations that the likely ranges stand for: how the voyages are weighted.
+    least
+        The least variance of a weighted estimate, that of the noise alone.
+    """
+
     x: Vector
     deviation: Vector
+    least: float = 0.0
+
+    def __len__(self) -> int:
+        return len(self.x)
 
 
 @dataclass(frozen=True)
@@ -63,21 +78,26 @@ def changes(runs: Iterable[RunRow], fitted: Iterable[FittedRow]) -> Iterator[Cha
     """Every change in a fleet's records, ship by ship; runs that carry no verdict have no say."""
     sound = {row.run for row in runs if row.failure is None and row.verdict != "no fit"}
     records = list(_records(row for row in fitted if row.run in sound))
-    for record in records:
-        for found in find_changes(record.x, record.deviation, LEVEL / len(records)):
-            yield _row(record, found, len(records))
+    for rows in records:
+        estimates = _estimates(rows)
+        for found in find_changes(estimates, LEVEL / len(records)):
+            yield _row(rows, estimates, found, len(records))
 
 
-def _records(fitted: Iterable[FittedRow]) -> Iterator[Record]:
-    """The records that are long enough: voyages of one ship, done in one way."""
+def _records(fitted: Iterable[FittedRow]) -> Iterator[list[FittedRow]]:
+    """The records that are long enough: one parameter of one ship, done in one way, by voyage."""
     courses: dict[tuple[object, ...], list[FittedRow]] = {}
     for row in fitted:
         if row.kind == "physical" and row.value is not None and _deviation(row) > 0.0:
             courses.setdefault((row.ship, *row.varied, row.parameter), []).append(row)
-    for rows in courses.values():
-        if len(rows) >= FEWEST:
-            x = np.array([row.value for row in rows], dtype=float)
-            yield Record(tuple(rows), x, np.array([_deviation(row) for row in rows]))
+    yield from (rows for rows in courses.values() if len(rows) >= FEWEST)
+
+
+def _estimates(rows: Sequence[FittedRow]) -> Estimates:
+    x = np.array([row.value for row in rows], dtype=float)
+    deviation = np.array([_deviation(row) for row in rows])
+    noise = np.array([row.standard_error or 0.0 for row in rows])
+    return Estimates(x, deviation, float(np.median((noise / deviation) ** 2)))
 
 
 def _deviation(row: FittedRow) -> float:
@@ -88,38 +108,28 @@ def _deviation(row: FittedRow) -> float:
     return wide if np.isfinite(wide) else 0.0
 
 
-def find_changes(x: Vector, deviation: Vector, level: float) -> tuple[Found, ...]:
-    """The changes of one record, in their order.
-
-    Parameters
-    ----------
-    x, deviation
-        Estimates by voyage and their standard deviations, (n,).
-    level
-        How often something may be found in a record without any change.
-    """
-    tried = courses_of(len(x))
-    most = min(MOST, len(x) // EITHER_SIDE - 2)
+def find_changes(y: Estimates, level: float) -> tuple[Found, ...]:
+    """The changes of one record, in their order; `level`: how often there are some by chance."""
+    tried = courses_of(len(y))
+    most = min(MOST, len(y) // EITHER_SIDE - 2)
     chosen: list[Course] = []
-    while more := _next(x, deviation, chosen, level, most - len(chosen)):
-        chosen = _dated_anew(x, deviation, [*chosen, *more], tried)
-    chosen = _worth_keeping(x, deviation, chosen, level)
+    while more := _next(y, chosen, level, most - len(chosen)):
+        chosen = _dated_anew(y, [*chosen, *more], tried)
+    chosen = _worth_keeping(y, chosen, level)
     chosen.sort(key=lambda course: course[1])
-    return tuple(_found(x, deviation, chosen, i, len(tried)) for i in range(len(chosen)))
+    return tuple(_found(y, chosen, i, len(tried)) for i in range(len(chosen)))
 
 
-def _next(
-    x: Vector, deviation: Vector, chosen: Sequence[Course], level: float, most: int
-) -> list[Course]:
+def _next(y: Estimates, chosen: Sequence[Course], level: float, most: int) -> list[Course]:
     """The best course beside those chosen, else the best two at once; none where it is chance."""
-    tried = [each for each in courses_of(len(x)) if each not in chosen]
-    columns, target = _beside(x, deviation, chosen, tried)
+    tried = [each for each in courses_of(len(y)) if each not in chosen]
+    columns, target = _beside(y, chosen, tried)
     products, lengths = columns.T @ target, columns.T @ columns
     own = np.maximum(np.diag(lengths), TINY)
     alone = products**2 / own
-    freedom = len(x) - len(chosen) - 2
+    freedom = len(y) - len(chosen) - 2
     best, whole = int(np.argmax(alone)), float(target @ target)
-    if most >= 1 and _chance(alone[best], whole, 1, freedom) * len(tried) <= level / 2.0:
+    if most >= 1 and _chance(y, alone[best], whole, 1, freedom) * len(tried) <= level / 2.0:
         return [tried[best]]
     area = np.outer(own, own) - lengths**2
     area[area < TINY * np.outer(own, own)] = np.inf  # two that are one
@@ -127,39 +137,37 @@ def _next(
     both = (np.outer(products**2, own) + np.outer(own, products**2) - cross) / area
     i, j = (int(k) for k in np.unravel_index(np.argmax(both), both.shape))
     pairs = len(tried) * (len(tried) - 1) / 2.0
-    if most >= 2 and _chance(both[i, j], whole, 2, freedom - 1) * pairs <= level / 2.0:
+    if most >= 2 and _chance(y, both[i, j], whole, 2, freedom - 1) * pairs <= level / 2.0:
         return [tried[i], tried[j]]
     return []
 
 
 def _beside(
-    x: Vector, deviation: Vector, chosen: Sequence[Course], tried: Sequence[Course]
+    y: Estimates, chosen: Sequence[Course], tried: Sequence[Course]
 ) -> tuple[Vector, Vector]:
     """Columns of the courses tried and the estimates, weighted, without what is explained."""
-    known, _ = np.linalg.qr(_columns(deviation, chosen, level=True))
-    columns, target = _columns(deviation, tried), x / deviation
+    known, _ = np.linalg.qr(_columns(y, chosen, level=True))
+    columns, target = _columns(y, tried), y.x / y.deviation
     return columns - known @ (known.T @ columns), target - known @ (known.T @ target)
 
 
-def _columns(deviation: Vector, courses: Sequence[Course], level: bool = False) -> Vector:
-    ones = [np.ones(len(deviation))] if level else []
-    made = [*ones, *(column(each, len(deviation)) for each in courses)]
-    return np.reshape(made, (len(made), len(deviation))).T / deviation[:, None]
+def _columns(y: Estimates, courses: Sequence[Course], level: bool = False) -> Vector:
+    ones = [np.ones(len(y))] if level else []
+    made = [*ones, *(column(each, len(y)) for each in courses)]
+    return np.reshape(made, (len(made), len(y))).T / y.deviation[:, None]
 
 
-def _chance(gain: float, whole: float, courses: int, freedom: int) -> float:
+def _chance(y: Estimates, gain: float, whole: float, courses: int, freedom: int) -> float:
     """How often chance takes so much off a sum of squares by so many courses."""
-    scatter = max(1.0, (whole - gain) / freedom)  # never less than the likely ranges say
+    scatter = max(y.least, (whole - gain) / freedom, TINY)
     return float(f.sf(gain / courses / scatter, courses, freedom))
 
 
-def _worth_keeping(
-    x: Vector, deviation: Vector, chosen: list[Course], level: float
-) -> list[Course]:
+def _worth_keeping(y: Estimates, chosen: list[Course], level: float) -> list[Course]:
     """Those that the others do not make needless, the most needless left out first."""
-    tried = len(courses_of(len(x)))
+    tried = len(courses_of(len(y)))
     while chosen:
-        worth = [_p_value(x, deviation, chosen, i, tried) for i in range(len(chosen))]
+        worth = [_p_value(y, chosen, i, tried) for i in range(len(chosen))]
         worst = int(np.argmax(worth))
         if worth[worst] <= level:
             break
@@ -187,63 +195,55 @@ def column(course: Course, voyages: int) -> Vector:
     return np.clip((at - first + 1.0) / (voyages - first), 0.0, None)
 
 
-def _left(x: Vector, deviation: Vector, chosen: Sequence[Course]) -> float:
+def _left(y: Estimates, chosen: Sequence[Course]) -> float:
     """The sum of squares that these courses leave."""
-    _, target = _beside(x, deviation, chosen, [])
+    _, target = _beside(y, chosen, [])
     return float(target @ target)
 
 
-def _best(
-    x: Vector, deviation: Vector, chosen: Sequence[Course], tried: Sequence[Course]
-) -> Course | None:
+def _best(y: Estimates, chosen: Sequence[Course], tried: Sequence[Course]) -> Course | None:
     """The course that leaves least beside those that are chosen."""
     open_ = [each for each in tried if each not in chosen]
-    return min(open_, key=lambda each: _left(x, deviation, [*chosen, each]), default=None)
+    return min(open_, key=lambda each: _left(y, [*chosen, each]), default=None)
 
 
-def _dated_anew(
-    x: Vector, deviation: Vector, chosen: list[Course], tried: Sequence[Course]
-) -> list[Course]:
+def _dated_anew(y: Estimates, chosen: list[Course], tried: Sequence[Course]) -> list[Course]:
     """Each change dated again with the others as they stand, until none moves."""
     for _ in range(SWEEPS):
         before = list(chosen)
         for i in range(len(chosen)):
             others = chosen[:i] + chosen[i + 1 :]
-            chosen[i] = _best(x, deviation, others, tried) or chosen[i]
+            chosen[i] = _best(y, others, tried) or chosen[i]
         if chosen == before:
             break
     return chosen
 
 
-def _p_value(
-    x: Vector, deviation: Vector, chosen: Sequence[Course], place: int, tried: int
-) -> float:
+def _p_value(y: Estimates, chosen: Sequence[Course], place: int, tried: int) -> float:
     """How often chance makes as much of one of these, the best of all that were tried."""
-    whole = _left(x, deviation, [*chosen[:place], *chosen[place + 1 :]])
-    gain = whole - _left(x, deviation, chosen)
-    return min(1.0, tried * _chance(gain, whole, 1, len(x) - len(chosen) - 1))
+    whole = _left(y, [*chosen[:place], *chosen[place + 1 :]])
+    gain = whole - _left(y, chosen)
+    return min(1.0, tried * _chance(y, gain, whole, 1, len(y) - len(chosen) - 1))
 
 
-def _found(x: Vector, deviation: Vector, chosen: Sequence[Course], place: int, tried: int) -> Found:
-    columns = _columns(deviation, chosen, level=True)
-    sizes = np.linalg.lstsq(columns, x / deviation, rcond=None)[0]
-    scatter = max(1.0, _left(x, deviation, chosen) / (len(x) - len(sizes)))
+def _found(y: Estimates, chosen: Sequence[Course], place: int, tried: int) -> Found:
+    columns = _columns(y, chosen, level=True)
+    sizes = np.linalg.lstsq(columns, y.x / y.deviation, rcond=None)[0]
+    scatter = max(y.least, TINY, _left(y, chosen) / (len(y) - len(sizes)))
     others = [*chosen[:place], *chosen[place + 1 :]]
     return Found(
         course=chosen[place],
         size=float(sizes[1 + place]),
         level=float(sizes[0]),
-        p_value=_p_value(x, deviation, chosen, place, tried),
-        ends=_ends(x, deviation, others, chosen[place][0], scatter),
+        p_value=_p_value(y, chosen, place, tried),
+        ends=_ends(y, others, chosen[place][0], scatter),
     )
 
 
-def _ends(
-    x: Vector, deviation: Vector, others: Sequence[Course], form: Form, scatter: float
-) -> tuple[int, int]:
+def _ends(y: Estimates, others: Sequence[Course], form: Form, scatter: float) -> tuple[int, int]:
     """The least range of voyages that holds 95 % of the likelihood of when it begins."""
-    tried = [each for each in courses_of(len(x)) if each[0] == form and each not in others]
-    left = np.array([_left(x, deviation, [*others, each]) for each in tried]) / scatter
+    tried = [each for each in courses_of(len(y)) if each[0] == form and each not in others]
+    left = np.array([_left(y, [*others, each]) for each in tried]) / scatter
     likelihood = np.exp(-0.5 * (left - left.min()))
     order = np.argsort(-likelihood)
     held = np.cumsum(likelihood[order]) / likelihood.sum()
@@ -252,8 +252,10 @@ def _ends(
     return min(first), max(first)
 
 
-def _row(record: Record, found: Found, records: int) -> ChangeRow:
-    (form, first), rows = found.course, record.rows
+def _row(rows: Sequence[FittedRow], y: Estimates, found: Found, records: int) -> ChangeRow:
+    form, first = found.course
+    wide = NORMAL * y.deviation
+    open_ = np.hypot(np.median(wide[:first]), np.median(wide[first:]))
     return ChangeRow(
         ship=rows[0].ship,
         parameter=rows[0].parameter,
@@ -266,4 +268,5 @@ def _row(record: Record, found: Found, records: int) -> ChangeRow:
         size=found.size,
         relative=found.size / abs(found.level) if found.level else None,
         p_value=min(1.0, records * found.p_value),
+        beyond_likely=bool(abs(found.size) > open_),
     )

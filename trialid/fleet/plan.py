@@ -7,12 +7,13 @@ from datetime import date
 from pathlib import Path
 from typing import Final
 
-from trialid.errors import PipelineError, TrialidError
+from trialid.errors import PipelineError, TrialidError, nearest
 from trialid.export.tracks import stems
 from trialid.fleet.pipeline_changes import Change, changed_text, move_files, put_files
 from trialid.fleet.task import PIPELINES, Hash, Task, file_hash, files_of, key_of
 from trialid.fleet.variations import variations
-from trialid.pipeline_file import Pipeline, load, read
+from trialid.pipeline_file import Pipeline, load, read, where
+from trialid.pipeline_file.complaints import dotted_key
 from trialid.pipeline_file.fleet_file import FleetFile, FleetShip, matches
 from trialid.result.fleet_rows import RunLabel
 
@@ -44,7 +45,7 @@ def plan(fleet: FleetFile, folder: Path) -> tuple[Task, ...]:
         The template itself is wrong.
     """
     if fleet.template is not None:
-        load(fleet.template)
+        _check_files(fleet, load(fleet.template))
     asked = [run for begun in voyages(fleet) for run in _asked(fleet, begun, folder)]
     names = stems(run.label.run for run in asked)
     hash_of = file_hash()
@@ -52,6 +53,14 @@ def plan(fleet: FleetFile, folder: Path) -> tuple[Task, ...]:
         _task(replace(run, label=replace(run.label, run=name)), folder, hash_of)
         for run, name in zip(asked, names, strict=True)
     )
+
+
+def _check_files(fleet: FleetFile, template: Pipeline) -> None:
+    names = [trial.name for trial in template.trials]
+    for name in fleet.files:
+        if name not in names:
+            key = where(fleet, dotted_key("files", name))
+            raise PipelineError(f"{key}: the template has no such trial; {nearest(name, names)}")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -49,7 +49,7 @@ class VarySection(Section):
     effects."""
     seed: tuple[Whole, ...] = ()
     """A run for each of these seeds, in place of `identify.seed`."""
-    bootstrap: Annotated[Rounds, Field(ge=0)] | None = None
+    bootstrap: Rounds | None = None
     """The run as written, and so many whose fitted trials are drawn from its own, with
     replacement."""
     bootstrap_seed: Whole = 0

@@ -120,3 +120,6 @@ class ChangeRow:
     """The same as a share of the level before."""
     p_value: float
     """How often a fleet without any change shows this much in any parameter of any ship."""
+    beyond_likely: bool
+    """Whether it is more than the likely ranges before and after leave open; where it is not,
+    trials sailed otherwise can show the same through what the model lacks."""

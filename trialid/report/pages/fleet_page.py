@@ -70,7 +70,7 @@ def _missing(runs: Sequence[RunRow]) -> Table:
 def _changes(changes: Sequence[ChangeRow]) -> Table:
     headings = (
         *("ship", "parameter", "what", "from voyage", "date", "between, 95 %", "size", "unit"),
-        *("of the level [%]", "p over the fleet"),
+        *("of the level [%]", "p over the fleet", "exceeds likely ranges"),
     )
     return Table("changes", "Changes", headings, tuple(map(_change, changes)))
 
@@ -81,6 +81,7 @@ def _change(row: ChangeRow) -> tuple[Cell, ...]:
     return (
         *(row.ship, row.parameter, row.form, row.voyage, when, f"{row.earliest} to {row.latest}"),
         *(Figure(row.size * factor, 3), unit, percent(row.relative), Figure(row.p_value, 2)),
+        "yes" if row.beyond_likely else "no",
     )
 
 
