@@ -129,6 +129,19 @@ def test_a_change_within_the_likely_ranges_says_so() -> None:
     assert list(dated(large, "GM", "step")) == [25]
 
 
+@pytest.mark.parametrize("unit", [1e-9, 1e9])
+def test_the_unit_of_a_parameter_makes_no_difference(unit: float) -> None:
+    runs, fitted = fleet(3, drift=0.2, step=-0.2)
+    keys = ("value", "standard_error", "likely_low", "likely_high")
+    scaled = [
+        FittedRow(**{**vars(row), **{key: unit * getattr(row, key) for key in keys}})
+        for row in fitted
+    ]
+    for one, other in zip(changes(runs, fitted), changes(runs, scaled), strict=True):
+        assert (one.parameter, one.form, one.voyage) == (other.parameter, other.form, other.voyage)
+        assert other.size == pytest.approx(unit * one.size)
+
+
 def test_runs_without_a_fit_have_no_say() -> None:
     runs, fitted = fleet(3, step=-0.2)
     poor = [RunRow(**{**vars(row), "verdict": "no fit"}) for row in runs]

@@ -14,7 +14,7 @@ them is surely one of the ship, and each says whether it does.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -79,9 +79,10 @@ def changes(runs: Iterable[RunRow], fitted: Iterable[FittedRow]) -> Iterator[Cha
     sound = {row.run for row in runs if row.failure is None and row.verdict != "no fit"}
     records = list(_records(row for row in fitted if row.run in sound))
     for rows in records:
-        estimates = _estimates(rows)
+        estimates, unit = _estimates(rows)
         for found in find_changes(estimates, LEVEL / len(records)):
-            yield _row(rows, estimates, found, len(records))
+            row = _row(rows, estimates, found, len(records))
+            yield replace(row, size=row.size * unit)
 
 
 def _records(fitted: Iterable[FittedRow]) -> Iterator[list[FittedRow]]:
@@ -93,11 +94,14 @@ def _records(fitted: Iterable[FittedRow]) -> Iterator[list[FittedRow]]:
     yield from (rows for rows in courses.values() if len(rows) >= FEWEST)
 
 
-def _estimates(rows: Sequence[FittedRow]) -> Estimates:
+def _estimates(rows: Sequence[FittedRow]) -> tuple[Estimates, float]:
+    """Estimates in units of their usual deviation, and that unit."""
     x = np.array([row.value for row in rows], dtype=float)
     deviation = np.array([_deviation(row) for row in rows])
     noise = np.array([row.standard_error or 0.0 for row in rows])
-    return Estimates(x, deviation, float(np.median((noise / deviation) ** 2)))
+    unit = float(np.median(deviation))
+    least = float(np.median((noise / deviation) ** 2))
+    return Estimates(x / unit, deviation / unit, least), unit
 
 
 def _deviation(row: FittedRow) -> float:
