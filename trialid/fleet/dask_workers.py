@@ -45,6 +45,7 @@ def connect(on: str, jobs: int | None, tasks: int) -> Iterator[Any]:
         where: Any = on
         if on == LOCAL:
             number = min(jobs or os.cpu_count() or 1, max(tasks, 1))
+            stack.enter_context(_without_profile())
             where = stack.enter_context(
                 distributed.LocalCluster(
                     n_workers=number,
@@ -75,6 +76,13 @@ def _distributed() -> Any:
             "pip install 'trialid[batch]'"
         ) from error
     return distributed
+
+
+def _without_profile() -> Any:
+    """Dask's own look into the workers every 10 ms left out: it takes their time and memory."""
+    from dask import config
+
+    return config.set({"distributed.worker.profile.enabled": False})
 
 
 def _described_cluster(path: Path) -> Any:

@@ -11,6 +11,7 @@ from trialid.errors import TrialidError
 from trialid.fleet.rows_of_run import fitted_rows, run_row
 from trialid.pipeline_file import read
 from trialid.result.fleet_rows import FittedRow, RunLabel, RunRow
+from trialid.threads import one_thread
 from trialid.version import VERSION
 from trialid.workflow.run import run
 from trialid.workflow.write_run import run_files
@@ -58,6 +59,7 @@ class OtherVersion(Exception):
     """A worker has another version than the one that planned the run."""
 
 
+@one_thread
 def do_run(parcel: Parcel) -> Done:
     """Do a run; a mistake of the input is its failure, in one line, and no error."""
     if parcel.version != VERSION:
