@@ -171,7 +171,8 @@ def report(ships: int, jobs: int, folder: Path) -> str:
     dask = taken(folder, "dask", workers.compute)
     warm = time.perf_counter() - workers.ready
     alone = taken(folder, "alone", one_by_one)
-    same = contents(folder / "dask") == contents(folder / "alone")
+    one, other = contents(folder / "dask"), contents(folder / "alone")
+    different = [name for name in {**one, **other} if one.get(name) != other.get(name)]
     over = overhead(folder)
     rows = [
         ("runs", f"{ships}, {sum(r.failure is not None for r in dask.batch.runs)} failed"),
@@ -192,7 +193,7 @@ def report(ships: int, jobs: int, folder: Path) -> str:
             "memory of this process, first and last run [MB]",
             f"{dask.memory[0]:.0f}, {dask.memory[-1]:.0f}",
         ),
-        ("same bytes", "yes" if same else "NO"),
+        ("files that differ", ", ".join(different[:5]) or f"none of {len(one)}"),
         ("names", names(dask.batch, hides)),
     ]
     return heading(ships) + "".join(f"| {a} | {b} |\n" for a, b in rows)
