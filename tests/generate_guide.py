@@ -23,12 +23,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parent / "manual"))
 
 import claims
 from guide_of_estimates import ship_estimates
+from guide_of_fleets import fleet_columns
 
 from trialid.design.kinds import KINDS
 from trialid.guide import TOPICS
 from trialid.names.quantities import MASS_PARAMETERS, PARTICULARS, SIGNALS
 from trialid.pipeline_file.design_file import DesignFile
-from trialid.pipeline_file.form import Described, Pipeline
+from trialid.pipeline_file.fleet_file import FleetFile
+from trialid.pipeline_file.form import Pipeline, Written
 from trialid.pipeline_file.prior_section import Word
 from trialid.pipeline_file.section import Section
 from trialid.ship import actuators, particulars
@@ -92,7 +94,7 @@ def form(whole: type[Section], besides: Iterable[str] = ()) -> str:
 def _about(section: type[Section]) -> str:
     """What a table is; the top of a file the page itself tells."""
     text = " ".join((section.__doc__ or "").split())
-    return "" if issubclass(section, Described) else f"{textwrap.fill(text, WIDTH)}\n\n"
+    return "" if issubclass(section, Written) else f"{textwrap.fill(text, WIDTH)}\n\n"
 
 
 def _tables(section: type[Section], path: str) -> Iterator[tuple[type[Section], str]]:
@@ -188,7 +190,7 @@ def _plain(annotation: Any) -> str:
         return "table"
     return {
         str: "text", float: "number", int: "whole number", bool: "true or false", Path: "path",
-        datetime.datetime: "date",
+        datetime.datetime: "date", datetime.date: "date",
     }[annotation]  # fmt: skip
 
 
@@ -273,6 +275,8 @@ PARTS: Final[Mapping[str, Callable[[], str]]] = {
     "keys of a design": lambda: form(DesignFile, besides=("model", "identify")),
     "keys of a ship": ship,
     "keys of an actuator": actuator,
+    "keys of a fleet": lambda: form(FleetFile),
+    "columns of a fleet": lambda: fleet_columns(items),
     "signals": signals,
     "manoeuvres": manoeuvres,
     "claims": claimed,

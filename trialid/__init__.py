@@ -11,6 +11,7 @@ from trialid.version import VERSION
 if TYPE_CHECKING:
     from trialid.alignment import SignalSource, align
     from trialid.effects import CATALOGUE
+    from trialid.fleet.fleet_view import batch
     from trialid.identification.fit import Fit
     from trialid.ingest import read
     from trialid.result.schema import Result
@@ -35,6 +36,7 @@ __all__ = [
     "Trial",
     "__version__",
     "align",
+    "batch",
     "diagnose",
     "effect",
     "identify",
@@ -63,6 +65,7 @@ _HOMES: Final = {
     "run": "workflow.notebook.front",
     "simulate": "workflow.notebook.front",
     "structures": "workflow.notebook.structures_view",
+    "batch": "fleet.fleet_view",
     "Fit": "identification.fit",
     "Result": "result.schema",
 }

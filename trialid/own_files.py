@@ -71,6 +71,21 @@ def check_folder(folder: Path, names: tuple[str, ...], what: str) -> None:
     check(folder, names)
 
 
+def check_all_ours(folder: Path, option: str = "--out") -> None:
+    """Refuse to take away a folder that holds anything but unchanged files of ours.
+
+    Raises
+    ------
+    TrialidError
+        In one line: the file, and what to do.
+    """
+    ours = _ours(folder)
+    for path in _files(folder):
+        name = path.relative_to(folder).as_posix()
+        if name != LIST:
+            _check(folder, name, ours, option)
+
+
 @contextmanager
 def replacing(
     folder: Path,

@@ -52,13 +52,18 @@ def blocks(document: str) -> Iterator[Block]:
 
 def sample_project(folder: Path) -> str:
     """Samples and pipelines, a `trialid` of this interpreter, the sample run; what it printed."""
+    lay_out(folder)
+    return shell(folder, SAMPLE)
+
+
+def lay_out(folder: Path) -> None:
+    """Samples and pipelines, and a `trialid` of this interpreter."""
     for name in ("pipelines", "sample_data"):
         shutil.copytree(ROOT / name, folder / name)
     shim = folder / "bin" / "trialid"
     shim.parent.mkdir()
     shim.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m trialid "$@"\n', encoding="utf-8")
     shim.chmod(shim.stat().st_mode | stat.S_IXUSR)
-    return shell(folder, SAMPLE)
 
 
 def shell(folder: Path, commands: str) -> str:

@@ -31,8 +31,10 @@ from trialid.pipeline_file.design_file import load_design
 from trialid.report.terminal.terminal import SCREEN
 from trialid.ship.particulars import read_ship
 
-FILES = ("toml", "toml part", "toml ship", "toml design")
-KINDS = ("sh", "python", "python front-door", "text", PRINTED, *FILES)
+FILES = ("toml", "toml part", "toml ship", "toml design", "toml fleet")
+BATCH = ("sh batch", "python batch")
+"""What needs Dask and DuckDB: `test_batch_page` runs it."""
+KINDS = ("sh", "python", "python front-door", "text", "yaml", PRINTED, *BATCH, *FILES)
 ONE_SCREEN = re.compile(r"trialid (?:run|add|drop|design) [^\n]*\n?")
 """A block of one command whose answer is one screen."""
 

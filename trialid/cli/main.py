@@ -40,13 +40,13 @@ from trialid.cli.effects_command import effects
 from trialid.cli.export_command import export
 from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
+from trialid.cli.many import batch, structures
 from trialid.cli.one_line_errors import WRONG_INPUT, OneLineErrors
 from trialid.cli.replay_command import replay
 from trialid.cli.report_commands import DIFFERENT, repeat_run, report
 from trialid.cli.ship_command import ship
 from trialid.cli.simulate_command import simulate
 from trialid.cli.start_command import start
-from trialid.cli.structures_command import structures
 from trialid.cli.workbench_command import workbench
 from trialid.version import VERSION
 
@@ -175,7 +175,7 @@ def drop(pipeline: Path, effect: str, out: Path | None, as_json: bool, quiet: bo
 
 
 OF_LOGS = (inspect, align, start, ship, replay)
-OF_MODELS = (effects, design, report, simulate, export, structures)
+OF_MODELS = (effects, design, report, simulate, export, structures, batch)
 for command in (*OF_LOGS, *OF_MODELS, demo, workbench, guide):
     commands.add_command(command)
 

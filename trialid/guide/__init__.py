@@ -18,6 +18,7 @@ TOPICS: Final = {
     "effects": "what a model is made of, and how to write an effect of your own",
     "verdicts": "what the four verdicts mean, and how each is reached",
     "structures": "whole models compared by leaving out each trial",
+    "batch": "a fleet: many ships and voyages, on many cores; what changed",
     "accuracy": "how far off a parameter may be: what each column means",
     "nomenclature": "letters, units and signs",
     "track": "positions, the current",

@@ -9,15 +9,21 @@ from trialid.errors import PipelineError, nearest
 LISTED_AT_MOST: Final = 8
 """How many file names an error lists before it only counts them."""
 
-Kind = Literal["pipeline", "design", "ship"]
+Kind = Literal["pipeline", "design", "ship", "fleet"]
 
-MARKS: Final[Mapping[Kind, str]] = {"pipeline": "trial", "design": "test", "ship": "particulars"}
+MARKS: Final[Mapping[Kind, str]] = {
+    "pipeline": "trial",
+    "design": "test",
+    "ship": "particulars",
+    "fleet": "fleet",
+}
 """The table that only a file of this kind has."""
 
 MEANT: Final[Mapping[Kind, str]] = {
     "pipeline": "is a pipeline; to fit it: trialid run {}",
     "design": "is a design of tests; to rate them: trialid design {}",
     "ship": "is the file of a ship; a pipeline names it: ship = {!r}",
+    "fleet": "is a fleet; to fit its runs: trialid batch {}",
 }
 
 

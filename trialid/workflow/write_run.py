@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import tempfile
 from pathlib import Path
 
 from trialid import own_files
@@ -33,6 +34,15 @@ def write(done: Run | Outcome, folder: Path) -> None:
     with own_files.replacing(folder, older=FILES) as work:
         _write_files(done, work)
         _write_origin(done, work, folder)
+
+
+def run_files(done: Run | Outcome, folder: Path) -> dict[str, bytes]:
+    """What `write` writes into a folder, by name, for whoever brings it there."""
+    with tempfile.TemporaryDirectory() as made:
+        work = Path(made)
+        _write_files(done, work)
+        _write_origin(done, work, folder)
+        return {path.name: path.read_bytes() for path in sorted(work.iterdir())}
 
 
 def _write_files(done: Run | Outcome, folder: Path) -> None:

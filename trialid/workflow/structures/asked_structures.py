@@ -69,10 +69,14 @@ def asked_structures(
     return tuple(found), left_out
 
 
-def _lists(
-    pipeline: Pipeline, trials: Sequence[Trial], catalogue: Mapping[str, Effect]
-) -> tuple[dict[str, Names], dict[str, str]]:
-    """All effects of each structure: what no list names stays in every one."""
+def written_structures(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> dict[str, Names]:
+    """All effects of each structure of `[structures]`: what no list names stays in every one.
+
+    Raises
+    ------
+    PipelineError
+        A list names what is no effect.
+    """
     own, given = pipeline.model.effects, pipeline.structures
     for name, effects in given.items():
         for i, effect in enumerate(effects):
@@ -80,10 +84,18 @@ def _lists(
                 place = where(pipeline, dotted_key("structures", name, i))
                 known = nearest(effect, catalogue)
                 raise PipelineError(f"{place}: there is no effect {effect!r}; {known}")
-    if given:
-        told = {n for effects in given.values() for n in effects}
-        base = tuple(n for n in own if n not in told)
-        return {name: (*base, *effects) for name, effects in given.items()}, {}
+    told = {n for effects in given.values() for n in effects}
+    base = tuple(n for n in own if n not in told)
+    return {name: (*base, *effects) for name, effects in given.items()}
+
+
+def _lists(
+    pipeline: Pipeline, trials: Sequence[Trial], catalogue: Mapping[str, Effect]
+) -> tuple[dict[str, Names], dict[str, str]]:
+    """All effects of each structure, and why usual ones are left out."""
+    own = pipeline.model.effects
+    if given := written_structures(pipeline, catalogue):
+        return given, {}
     usual, left_out = usual_structures(pipeline.model.states, own, _speed(pipeline, trials))
     base = tuple(n for n in own if n not in TELLING)
     lists = {name: (*base, *effects) for name, effects in usual.items()}
@@ -117,6 +129,13 @@ def _check_usable(
 def _structure(
     pipeline: Pipeline, name: str, effects: Names, catalogue: Mapping[str, Effect]
 ) -> Structure:
+    """The pipeline with these effects, ready to be fitted."""
+    varied = with_effects(pipeline, effects, catalogue)
+    model = build_model(varied, catalogue)
+    return Structure(name, model, settings_of(varied, model))
+
+
+def with_effects(pipeline: Pipeline, effects: Names, catalogue: Mapping[str, Effect]) -> Pipeline:
     """The pipeline with these effects: its own keep what is free in them, of others all is."""
     own, asked = pipeline.model, pipeline.identify
     new = [p for n in effects if n not in own.effects for p in catalogue[n].parameters]
@@ -127,11 +146,9 @@ def _structure(
         "priors": {n: x for n, x in asked.priors.items() if n not in gone},
         "bounds": {n: x for n, x in asked.bounds.items() if n not in gone},
     }
-    varied = pipeline.model_copy(
+    return pipeline.model_copy(
         update={
             "model": own.model_copy(update=model),
             "identify": asked.model_copy(update=identify),
         }
     )
-    model_of_it = build_model(varied, catalogue)
-    return Structure(name, model_of_it, settings_of(varied, model_of_it))

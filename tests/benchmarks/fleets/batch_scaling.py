@@ -1,0 +1,229 @@
+r"""How a batch scales: generated ships by Dask on the cores of this machine, against one process.
+
+    PYTHONPATH=. python tests/benchmarks/fleets/batch_scaling.py --ships 60 --out fleet.md
+
+Ships of drawn sizes, a third each logged as CSV, MCAP and Parquet; two thirds have an effect that
+the fitted model lacks, and the names given are counted. The same runs are done in this process one
+after another, then by Dask; both must give the same bytes. Processor seconds are told beside those
+of the clock: where others share the machine, only they compare.
+"""
+
+import argparse
+import os
+import resource
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "fleet"))
+
+from generated_fleet import (
+    FORMATS,
+    ROOT,
+    contents,
+    drawn_ship,
+    one_by_one,
+    template,
+    write_voyage,
+)
+
+from trialid.fleet.batch import Batch, batch
+from trialid.fleet.dask_workers import connect, results
+from trialid.fleet.do_run import Done, do_run
+from trialid.fleet.plan import plan
+from trialid.fleet.rows_of_run import run_row
+from trialid.pipeline_file.fleet_file import load_fleet
+
+HIDDEN: Final = {
+    None: {},
+    "righting_arm_cubic": {"GM3": 3.2},
+    "quadratic_roll_damping": {"Kpap": -2e-5},
+}
+"""What the ships have in turn, and how much of it."""
+FREE: Final = '["Nr", "Ndelta", "Kp", "GM", "Xuu"]'
+
+
+@dataclass(frozen=True, kw_only=True)
+class Taken:
+    """One way of doing the runs: seconds of clock and of this process, and its memory [MB]."""
+
+    seconds: float
+    cpu: float
+    batch: Batch
+    memory: list[float]
+
+
+def generated(folder: Path, ships: int) -> dict[str, str | None]:
+    """The fleet's files; what each ship hides, by her name."""
+    text, hides = "", {}
+    for n in range(ships):
+        ship = drawn_ship(folder, n)
+        form, hidden = FORMATS[n % 3], list(HIDDEN)[(n // 3) % 3]
+        place = folder / form / f"ship-{n}"
+        write_voyage(place, ship, n, form, values=HIDDEN[hidden], hidden=hidden)
+        path = template(folder, ship.name, f"{form}/ship-{n}", form, free=FREE, candidates='"all"')
+        path.rename(folder / f"pipeline-{n}.toml")
+        text += f'[fleet.ship-{n}]\npipelines = "pipeline-{n}.toml"\n'
+        hides[f"ship-{n}"] = hidden
+    (folder / "fleet.toml").write_text(text, encoding="utf-8")
+    return hides
+
+
+def taken(folder: Path, name: str, compute: Callable[..., object]) -> Taken:
+    """A batch with its time and its memory."""
+    memory: list[float] = []
+
+    def measured(tasks, packed):
+        for task, done in compute(tasks, packed):
+            memory.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+            yield task, done
+
+    begun, before = time.perf_counter(), time.process_time()
+    done = batch(load_fleet(folder / "fleet.toml"), folder / name, measured)
+    seconds, cpu = time.perf_counter() - begun, time.process_time() - before
+    return Taken(seconds=seconds, cpu=cpu, batch=done, memory=memory)
+
+
+class Workers:
+    """Warm workers: when they were ready, their processor seconds, their memory as they go [MB]."""
+
+    def __init__(self, jobs: int) -> None:
+        self.jobs, self.ready, self.cpu = jobs, 0.0, 0.0
+        self.memory: list[int] = []
+
+    def compute(self, tasks, packed):
+        """Runs by Dask."""
+        with connect("local", self.jobs, len(tasks)) as client:
+            client.run(import_all)
+            before = sum(client.run(time.process_time).values())
+            self.ready = time.perf_counter()
+            for place, (task, done) in enumerate(results(client, tasks, packed)):
+                if place % max(len(tasks) // 8, 1) == 0:
+                    self.memory.append(max(client.run(rss).values()))
+                yield task, done
+            self.cpu = sum(client.run(time.process_time).values()) - before
+
+
+def import_all() -> None:
+    """Import what a run needs, so that a worker is warm."""
+    assert do_run
+    import trialid.workflow.write_run  # noqa: F401
+
+
+def rss() -> int:
+    """The memory of this process [MB]."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") // 10**6
+
+
+def overhead(folder: Path) -> float:
+    """Processor seconds a run takes beside the run: planned, sent, brought back, kept, told."""
+    begun: list[float] = []
+
+    def compute(tasks, packed):
+        with connect("local", 1, len(tasks)) as client:
+            client.run(import_all)
+            begun.append(time.process_time() - sum(client.run(time.process_time).values()))
+            for task in tasks:
+                yield task, client.submit(nothing, packed(task), pure=False).result()
+            begun.append(sum(client.run(time.process_time).values()))
+
+    before = time.process_time()
+    fleet = load_fleet(folder / "fleet.toml")
+    tasks = plan(fleet, folder / "nothing")
+    planned = time.process_time() - before
+    batch(fleet, folder / "nothing", compute)
+    return (planned + time.process_time() - begun[0] + begun[1]) / len(tasks)
+
+
+def nothing(parcel) -> Done:
+    """A run that does nothing, with the files of one: a megabyte."""
+    from trialid.result.schema import Result
+
+    return Done(row=run_row(parcel.label, parcel.key, Result()), files={"series.csv": bytes(10**6)})
+
+
+def names(done: Batch, hides: dict[str, str | None]) -> str:
+    """What was named, for ships that hide something and for those that hide nothing."""
+    counted: Counter[str] = Counter()
+    for row in done.runs:
+        hidden = hides[row.ship]
+        family = (row.family or "").split(", ")
+        if row.verdict != "missing":
+            counted["none named, " + ("something hidden" if hidden else "nothing hidden")] += 1
+        else:
+            counted["named right" if hidden in family else "named wrong"] += 1
+    return ", ".join(f"{words}: {number}" for words, number in sorted(counted.items()))
+
+
+def report(ships: int, jobs: int, folder: Path) -> str:
+    """The table of a fleet of so many ships."""
+    hides = generated(folder, ships)
+    workers = Workers(jobs)
+    dask = taken(folder, "dask", workers.compute)
+    warm = time.perf_counter() - workers.ready
+    alone = taken(folder, "alone", one_by_one)
+    one, other = contents(folder / "dask"), contents(folder / "alone")
+    different = [name for name in {**one, **other} if one.get(name) != other.get(name)]
+    over = overhead(folder)
+    rows = [
+        ("runs", f"{ships}, {sum(r.failure is not None for r in dask.batch.runs)} failed"),
+        ("one process", f"{alone.seconds:.1f} s of clock, {alone.cpu:.1f} s of processor"),
+        (
+            f"Dask, {jobs} warm workers",
+            f"{warm:.1f} s of clock, {workers.cpu:.1f} s of processor in them, {dask.cpu:.1f} s "
+            "in scheduler and client together",
+        ),
+        (
+            "throughput over workers times one process, by the clock",
+            f"{alone.seconds / warm / jobs:.2f}",
+        ),
+        ("the same by processor seconds", f"{alone.cpu / (workers.cpu + dask.cpu):.2f}"),
+        ("a run's overhead, processor", f"{1e3 * over:.0f} ms"),
+        ("largest worker as they go [MB]", ", ".join(map(str, workers.memory))),
+        (
+            "memory of this process, first and last run [MB]",
+            f"{dask.memory[0]:.0f}, {dask.memory[-1]:.0f}",
+        ),
+        ("files that differ", ", ".join(different[:5]) or f"none of {len(one)}"),
+        ("names", names(dask.batch, hides)),
+    ]
+    return heading(ships) + "".join(f"| {a} | {b} |\n" for a, b in rows)
+
+
+def heading(ships: int) -> str:
+    """What was run, where."""
+    command = f"python tests/benchmarks/fleets/batch_scaling.py --ships {ships}"
+    git = ["git", "rev-parse", "--short", "HEAD"]
+    commit = subprocess.run(git, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    return (
+        f"# Batches\n\n`{command}`, commit {commit.strip()},\n{os.cpu_count()} cores, load "
+        f"{os.getloadavg()[1]:.1f} (others share them).\n\n| | |\n| :--- | :--- |\n"
+    )
+
+
+def main() -> None:
+    """Run, print, write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--ships", type=int, default=60)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--out", type=Path)
+    asked = parser.parse_args()
+    np.seterr(all="ignore")
+    with TemporaryDirectory() as place:
+        text = report(asked.ships, asked.jobs, Path(place))
+    print(text)
+    if asked.out is not None:
+        asked.out.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

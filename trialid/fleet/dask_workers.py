@@ -1,0 +1,174 @@
+"""Workers by Dask: on this machine, behind a scheduler's address, or as a file describes them."""
+
+import logging
+import os
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from importlib import import_module
+from itertools import islice
+from pathlib import Path
+from typing import Any, Final
+
+from trialid.errors import TrialidError, reason_of
+from trialid.fleet.do_run import Done, OtherVersion, Parcel, do_run, failure_row
+from trialid.fleet.task import Task
+from trialid.user_files import text
+
+BACKLOG: Final = 64
+"""Runs sent ahead of those that are done, beside two for each thread: contents take memory."""
+ANSWER: Final = "20s"
+"""How long a scheduler is waited for."""
+LOCAL: Final = "local"
+
+Pack = Callable[[Task], Parcel]
+
+
+@contextmanager
+def connect(on: str, jobs: int | None, tasks: int) -> Iterator[Any]:
+    """A client of the workers that were asked for; those of this machine stop at the end.
+
+    Parameters
+    ----------
+    on
+        `local`, the address of a scheduler, or a YAML file with `module`, `class` and `kwargs` of a
+        cluster, as dask-ctl has them.
+    jobs
+        Worker processes on this machine; a core each where nothing is said.
+
+    Raises
+    ------
+    TrialidError
+        Dask is not installed, no scheduler answers, or the file is none.
+    """
+    distributed = _distributed()
+    with ExitStack() as stack:
+        where: Any = on
+        if on == LOCAL:
+            number = min(jobs or os.cpu_count() or 1, max(tasks, 1))
+            stack.enter_context(_without_profile())
+            where = stack.enter_context(
+                distributed.LocalCluster(
+                    n_workers=number,
+                    threads_per_worker=1,
+                    host="127.0.0.1",
+                    dashboard_address="127.0.0.1:0",
+                    silence_logs=logging.CRITICAL,
+                )
+            )
+        elif "://" not in on:
+            where = stack.enter_context(_described_cluster(Path(on)))
+        try:
+            client = stack.enter_context(distributed.Client(where, timeout=ANSWER))
+        except (OSError, ValueError) as error:
+            raise TrialidError(
+                f"--on {on}: no scheduler answers there ({reason_of(error)}); start one by: "
+                "dask scheduler"
+            ) from error
+        yield client
+
+
+def _distributed() -> Any:
+    try:
+        import distributed
+    except ImportError as error:
+        raise TrialidError(
+            "a batch needs Dask, which is not installed; install it by: "
+            "pip install 'trialid[batch]'"
+        ) from error
+    return distributed
+
+
+def _without_profile() -> Any:
+    """Dask's own look into the workers every 10 ms left out: it takes their time and memory."""
+    from dask import config
+
+    return config.set({"distributed.worker.profile.enabled": False})
+
+
+def _described_cluster(path: Path) -> Any:
+    """The cluster that a YAML file describes.
+
+    Raises
+    ------
+    TrialidError
+        In one line: the file, the key, and what was expected.
+    """
+    import yaml
+
+    try:
+        found = yaml.safe_load(text(path))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        said = "write local, tcp://HOST:PORT or a YAML file"
+        raise TrialidError(f"--on {path}: cannot be read ({reason_of(error)}); {said}") from error
+    if not isinstance(found, dict) or not {"module", "class"} <= found.keys():
+        raise TrialidError(
+            f"--on {path}: lacks module and class of a cluster; see: trialid guide batch"
+        )
+    try:
+        made = getattr(import_module(found["module"]), found["class"])
+        return made(*found.get("args", ()), **found.get("kwargs", {}))
+    except (ImportError, AttributeError, TypeError, ValueError) as error:
+        raise TrialidError(
+            f"--on {path}: {found['module']}.{found['class']} cannot be made ({reason_of(error)})"
+        ) from error
+
+
+def check_threads(client: Any) -> None:
+    """Refuse workers of several threads: a run takes one process, and they would share it.
+
+    Raises
+    ------
+    TrialidError
+        In one line, with what to do.
+    """
+    for worker, threads in client.nthreads().items():
+        if threads > 1:
+            raise TrialidError(
+                f"--on: worker {worker} has {threads} threads; start workers by: "
+                "dask worker --nthreads 1"
+            )
+
+
+def results(client: Any, tasks: Iterable[Task], pack: Pack) -> Iterator[tuple[Task, Done]]:
+    """Every run with what came of it, as they are done.
+
+    Raises
+    ------
+    TrialidError
+        The scheduler is lost.
+    """
+    pool: Any = _distributed().as_completed()
+    waiting, todo = dict[str, Task](), iter(tasks)
+
+    def send(some: Iterable[Task]) -> None:
+        for task in some:
+            future = client.submit(
+                do_run, pack(task), key=f"{task.label.run}-{task.key}", pure=False
+            )
+            waiting[future.key] = task
+            pool.add(future)
+
+    send(islice(todo, BACKLOG + 2 * sum(client.nthreads().values())))
+    for future in pool:
+        task = waiting.pop(future.key)
+        yield task, _done(task, future)
+        del future
+        send(islice(todo, 1))
+
+
+def _done(task: Task, future: Any) -> Done:
+    """What came of a run; that of a worker's own trouble is not kept, and done anew next time."""
+    if future.status == "finished":
+        found: Done = future.result()
+        return found
+    if future.status != "error":
+        raise TrialidError("the scheduler is lost; what was done is kept: give the command again")
+    error = future.exception()
+    name = type(error).__name__
+    if name == "KilledWorker":
+        said = "its workers died, each of several that tried it; out of memory?"
+    elif isinstance(error, OtherVersion | OSError | ImportError):
+        said = reason_of(error)
+    else:
+        said = f"this is a bug in trialid, not a mistake of yours: {name}: {error}"
+    return Done(row=failure_row(task.label, task.key, str(TrialidError(said))), kept=False)

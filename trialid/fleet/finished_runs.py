@@ -1,0 +1,96 @@
+"""The folders of a fleet's runs: each there whole or not at all, and found again by its key."""
+
+import json
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+from trialid import own_files, temporary
+from trialid.errors import TrialidError
+from trialid.fleet.do_run import Done
+from trialid.result.fleet_rows import FittedRow, RunLabel, RunRow
+from trialid.result.json_file import plain, read_object, row_of
+
+NAME: Final = "fleet_run.json"
+"""In a run's folder: its key and its rows, or its failure."""
+SCHEMA: Final = "trialid-fleet-run/1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kept:
+    """What is read back of a run that was done: its rows."""
+
+    row: RunRow
+    fitted: tuple[FittedRow, ...] = ()
+
+    def under(self, label: RunLabel) -> "Kept":
+        """The rows as a plan labels them: a date may have been stated since the run was done."""
+        own = vars(label)
+        fitted = tuple(replace(row, **own) for row in self.fitted)
+        return Kept(row=replace(self.row, **own), fitted=fitted)
+
+
+def kept_run(folder: Path, key: str) -> Kept | None:
+    """The rows of a run that was done of these very inputs; None where it is to be done."""
+    try:
+        found = read_object(folder / NAME, "")
+        if found.pop("schema", None) != SCHEMA:
+            return None
+        kept = row_of(Kept, found)
+    except TrialidError:
+        return None
+    return kept if kept.row.key == key else None
+
+
+def keep_run(done: Done, folder: Path) -> None:
+    """A run's folder, there at one stroke; an earlier one of other inputs makes way for it.
+
+    Raises
+    ------
+    TrialidError
+        The earlier folder holds what is not ours; it is left as it is.
+    OSError
+        There is no room, or no right to write.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    rows = {"schema": SCHEMA, **plain(Kept(row=done.row, fitted=done.fitted))}
+    text = json.dumps(rows, indent=1, default=str, allow_nan=False) + "\n"
+    with _aside(folder.parent) as work:
+        whole = work / folder.name
+        with own_files.replacing(whole) as inside:
+            for name, content in {**done.files, NAME: text.encode()}.items():
+                (inside / name).write_bytes(content)
+        if folder.exists():
+            own_files.check_all_ours(folder)
+            folder.rename(work / "earlier")
+        whole.rename(folder)
+
+
+@contextmanager
+def _aside(parent: Path) -> Iterator[Path]:
+    """A folder beside those of the runs for what is on its way; swept if it is left behind."""
+    temporary.sweep(parent)
+    work = Path(tempfile.mkdtemp(prefix=temporary.prefix(), dir=parent))
+    try:
+        yield work
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+
+def write_pipelines(texts: Mapping[str, bytes], folder: Path) -> None:
+    """The pipelines that a fleet makes, where they are not there already.
+
+    Raises
+    ------
+    TrialidError
+        One of that name is not ours, or was changed by hand; nothing is written.
+    """
+    if all((folder / n).is_file() and (folder / n).read_bytes() == x for n, x in texts.items()):
+        return
+    with own_files.replacing(folder) as work:
+        for name, content in texts.items():
+            (work / name).write_bytes(content)

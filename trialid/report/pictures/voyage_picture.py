@@ -1,0 +1,102 @@
+"""A parameter over voyages or ships: estimates with likely ranges, and where it changed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from trialid.names import wording
+from trialid.result.fleet_rows import ChangeRow, FittedRow
+
+WIDE = 560.0
+HIGH = 120.0
+MARGIN = 4.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Whisker:
+    """One run: where it stands, its estimate and its likely range; and what a pointer is told."""
+
+    x: float
+    y: float
+    low: float | None
+    high: float | None
+    words: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mark:
+    """A change: where it begins, and its words."""
+
+    x: float
+    words: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class VoyagePicture:
+    """What the page draws: places in a box of `WIDE` by `HIGH`, the scale's ends in words."""
+
+    parameter: str
+    unit: str
+    top: str
+    bottom: str
+    first: str
+    last: str
+    whiskers: tuple[Whisker, ...]
+    marks: tuple[Mark, ...]
+
+
+def voyage_picture(
+    parameter: str, rows: Sequence[FittedRow], names: Sequence[str], changes: Sequence[ChangeRow]
+) -> VoyagePicture:
+    """The picture of a parameter; each of `rows` has a value, `names` are those of the axis.
+
+    The scale holds every estimate, and likely ranges as far as they are not very wide.
+    """
+    unit, factor = wording.shown_unit(rows[0].unit)
+    bottom, top = _scale(rows)
+    voyages = [row.voyage for row in rows]
+
+    def down(value: float) -> float:
+        share = (top - value) / (top - bottom)
+        return MARGIN + (HIGH - 2.0 * MARGIN) * min(max(share, 0.0), 1.0)
+
+    return VoyagePicture(
+        parameter=parameter,
+        unit=unit,
+        top=wording.number(top * factor, 3),
+        bottom=wording.number(bottom * factor, 3),
+        first=names[0],
+        last=names[-1],
+        whiskers=tuple(
+            Whisker(
+                x=_across(place, len(rows)),
+                y=down(row.value or 0.0),
+                low=None if row.likely_low is None else down(row.likely_low),
+                high=None if row.likely_high is None else down(row.likely_high),
+                words=f"{row.run}: {wording.number((row.value or 0.0) * factor)} {unit}",
+            )
+            for place, row in enumerate(rows)
+        ),
+        marks=tuple(
+            Mark(
+                x=_across(voyages.index(each.voyage) - 0.5, len(rows)),
+                words=f"{each.form} from {each.voyage}",
+            )
+            for each in changes
+        ),
+    )
+
+
+def _across(place: float, count: int) -> float:
+    return WIDE * (place + 0.5) / count
+
+
+def _scale(rows: Sequence[FittedRow]) -> tuple[float, float]:
+    """The ends of the scale: all estimates, and ranges up to four times their spread around."""
+    values = [row.value or 0.0 for row in rows]
+    low, high = min(values), max(values)
+    spread = (high - low) or abs(high) or 1.0
+    ends = [end for row in rows for end in (row.likely_low, row.likely_high) if end is not None]
+    return (
+        min([low, *(max(end, low - 2.0 * spread) for end in ends)]),
+        max([high, *(min(end, high + 2.0 * spread) for end in ends)]) or low + spread,
+    )
