@@ -8,7 +8,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from three_models import CARGO, CASES, FERRY, SUPPLY, Case
+from three_models import CARGO, CASES, FERRY, RACES, SUPPLY, Case
 
 STUDIED = range(2000, 2040)
 
@@ -44,7 +44,7 @@ def test_parameters_come_back(case: Case) -> None:
     "case",
     [
         pytest.param(one, id=one.name, marks=pytest.mark.study(turn=turn))
-        for one, turn in ((FERRY, 1), (CARGO, 2), (SUPPLY, 3))
+        for one, turn in ((RACES, 0), (FERRY, 1), (CARGO, 2), (SUPPLY, 3))
     ],
 )
 def test_intervals_hold_nineteen_truths_of_twenty(case: Case) -> None:

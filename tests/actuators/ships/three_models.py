@@ -1,7 +1,7 @@
 """The models a user would write of `three_ships`, and what comes back of their truths."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import three_ships as truth
@@ -153,6 +153,17 @@ FERRY = Case(
         "C_D": truth.FERRY.C_D,
     },
 )
+RACES = replace(
+    FERRY,
+    name="ferry of races",
+    push=truth.pods_in_races,
+    effects=(*FERRY.effects, "azimuths_strut", "azimuths_race"),
+    sought={
+        **FERRY.sought,
+        **{f"k_strut{own}": truth.STRUT for own in ("", "_pod_4")},
+        **{f"k_lost{own}": truth.LOST for own in ("", "_pod_4")},
+    },
+)
 CARGO = Case(
     name="cargo",
     hull=truth.CARGO,
@@ -224,4 +235,4 @@ SUPPLY = Case(
     },
     speed=2.0,
 )
-CASES = (FERRY, CARGO, SUPPLY)
+CASES = (FERRY, RACES, CARGO, SUPPLY)
