@@ -106,6 +106,32 @@ def test_faults_are_named_on_their_side_and_no_other(first: int) -> None:
     assert wrong == []
 
 
+HELD_BACK = {"saturated": "thrusters_saturation", "deadband": "thrusters_deadband"}
+
+
+@pytest.mark.study
+def test_drives_that_are_never_asked_for_more_than_they_can_are_not_named(monkeypatch) -> None:
+    monkeypatch.setattr(otter_model, "SATURATED", 1.01 * otter.N_MAX)
+    assert verdict(1105, "saturated", 60.0).kind == "nothing missing"
+
+
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("first", range(1200, 1210, 2))
+def test_what_holds_drives_back_is_named(first: int) -> None:
+    """Two records of each at a turn; twenty of each were named right, none wrong."""
+    right, wrong = 0, []
+    for seed in (first, first + 1):
+        for fault, name in HELD_BACK.items():
+            found = verdict(seed, fault)
+            right += found.effect == name and len(found.family) <= 1
+            wrong += (
+                [f"{seed} {fault}: {found.sentence}"] if found.effect not in (None, name) else []
+            )
+    print(right, wrong)
+    assert right >= 3
+    assert wrong == []
+
+
 def test_the_model_states_none_of_what_is_sought() -> None:
     """Started as a new user would: no value of a free parameter is known to the model."""
     assert [n for n in TRUTH if otter_model.model().stated(n) is not None] == []
