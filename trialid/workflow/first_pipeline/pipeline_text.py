@@ -14,7 +14,7 @@ from trialid.ship.particulars import Ship
 from trialid.toml_text import quote
 from trialid.workflow.first_pipeline.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
-from trialid.workflow.first_pipeline.held_out import held_out
+from trialid.workflow.first_pipeline.held_out import held_out, middle_by
 
 HEAD: Final = """\
 # Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
@@ -57,11 +57,12 @@ def pipeline_text(
 
 
 def _trial(path: Path, name: str, trial: Chosen, *, checks: bool) -> Iterator[str]:
+    by = middle_by([trial])
     yield "[[trial]]"
     yield f"name = {quote(name)}"
     yield f"logs = [{_log(trial, path)}]"
     if checks:
-        yield 'use = "check"  # held out, the middle one by its rudder: scored, never fitted'
+        yield f'use = "check"  # held out, the middle one by {by}: scored, never fitted'
     if trial.states_speed and trial.speed is not None:
         yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
     yield f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
