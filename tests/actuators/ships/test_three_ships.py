@@ -5,10 +5,15 @@ while building.
 """
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from three_models import CARGO, CASES, FERRY, RACES, SUPPLY, Case
+
+from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.effects import CATALOGUE
+from trialid.effects.actuators import actuator_effects
 
 STUDIED = range(2000, 2040)
 
@@ -29,6 +34,21 @@ def test_she_turns_to_the_side_of_her_bow_thruster_and_of_her_rudders() -> None:
     arm = -N / Y
     assert arm == pytest.approx(49.0, rel=1e-6)
     assert Y < 0.0 < N
+
+
+@pytest.mark.study(turn=4)
+def test_no_fault_of_a_pod_is_named_where_the_model_lacks_all_resistance() -> None:
+    """Two pods exchanged would leave a sixth of an error of seven, and explain nothing."""
+    lacking = ("cross_flow_drag", "still_water_surge", "surge_resistance")
+    known = ("C_D", "Xu0", "Xuu")
+    bare = replace(
+        FERRY,
+        effects=tuple(n for n in FERRY.effects if n not in lacking),
+        sought={n: x for n, x in FERRY.sought.items() if n not in known},
+    )
+    candidates = {**CATALOGUE, **actuator_effects(bare.ship)}
+    found = diagnose(bare.fitted(25001), DiagnoseSettings(candidates=candidates)).verdict
+    assert (found.kind, found.effect) == ("no fit", None)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
