@@ -10,27 +10,14 @@ import otter
 import otter_model
 import pytest
 from otter_model import CANDIDATES, TRUTH, fitted, record
+from typical import distances
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
-from trialid.diagnosis.may_be_off import may_be_off
-from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict
 
 STUDIED = range(1000, 1040)
 FAULTS = ("", "weak", "half", "dead", "reversed", "late", "exchanged")
 SIDES = ("left", "right")
-
-
-def distances(seed: int, duration: float) -> dict[str, float]:
-    """How many standard errors each parameter is off its truth."""
-    fit = fitted(record(seed, duration=duration))
-    assert fit.converged
-    augmented = augment(fit, {})
-    parts, _ = split(fit, augmented, {})
-    rows = accuracy_of(fit, parts, may_be_off(fit, augmented)).physical
-    return {r.name: (r.value - TRUTH[r.name]) / r.standard_error for r in rows}
 
 
 def verdict(seed: int, fault: str, duration: float = 120.0) -> Verdict:
@@ -58,7 +45,11 @@ def test_the_truth_turns_as_its_facts_say() -> None:
 
 def test_parameters_come_back_from_two_orders_speed_and_rate_of_turn() -> None:
     """Twelve intervals; fewer than nine of them hold by chance once in five hundred."""
-    found = [abs(z) < 1.96 for seed in (1100, 1101) for z in distances(seed, 80.0).values()]
+    found = [
+        abs(z) < 1.96
+        for seed in (1100, 1101)
+        for z in distances(fitted(record(seed, duration=80.0)), TRUTH).values()
+    ]
     assert len(found) == 12
     assert sum(found) >= 9
 
@@ -81,7 +72,8 @@ def test_a_dead_thruster_is_named_although_nothing_fits_without_it() -> None:
 def test_intervals_hold_nineteen_truths_of_twenty() -> None:
     held: Counter[str] = Counter()
     for seed in STUDIED:
-        held.update(n for n, z in distances(seed, 200.0).items() if abs(z) < 1.96)
+        errors = distances(fitted(record(seed, duration=200.0)), TRUTH)
+        held.update(n for n, z in errors.items() if abs(z) < 1.96)
     share = sum(held.values()) / (len(STUDIED) * len(TRUTH))
     print(f"{share:.1%} of {len(STUDIED) * len(TRUTH)} intervals hold: {dict(held)}")
     assert 0.90 < share <= 0.99

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from three_models import CARGO, CASES, FERRY, RACES, SUPPLY, Case
+from typical import distances
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.effects import CATALOGUE
@@ -54,7 +55,7 @@ def test_no_fault_of_a_pod_is_named_where_the_model_lacks_all_resistance() -> No
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_parameters_come_back(case: Case) -> None:
     """Fewer than six of eight intervals hold by chance once in a hundred and fifty."""
-    found = case.distances(case.fitted(2100))
+    found = distances(case.fitted(2100), case.sought)
     held = sum(abs(z) < 1.96 for z in found.values())
     assert held >= len(case.sought) - 2, found
     assert np.abs([*found.values()]).max() < 4.0
@@ -72,7 +73,7 @@ def test_intervals_hold_nineteen_truths_of_twenty(case: Case) -> None:
     held: Counter[str] = Counter()
     fits = [fit for seed in STUDIED if (fit := case.fitted(seed)).converged]
     for fit in fits:
-        held.update(n for n, z in case.distances(fit).items() if abs(z) < 1.96)
+        held.update(n for n, z in distances(fit, case.sought).items() if abs(z) < 1.96)
     count = len(fits) * len(case.sought)
     share = sum(held.values()) / count
     print(f"{case.name}, {len(fits)} fits: {share:.1%} of {count} intervals hold: {dict(held)}")

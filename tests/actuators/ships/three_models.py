@@ -7,10 +7,6 @@ import numpy as np
 import three_ships as truth
 from numpy.typing import NDArray
 
-from trialid.diagnosis.may_be_off import may_be_off
-from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.trust import accuracy_of
 from trialid.effects import CATALOGUE
 from trialid.effects.actuators import actuator_effects
 from trialid.identification.fit import Fit, identify
@@ -107,14 +103,6 @@ class Case:
         """The fit of one trial, begun at typical values."""
         asked = Settings(free=(*self.sought,), outputs=self.outputs, nuisance=("initial_state",))
         return identify((self.record(seed),), self.model(), asked)
-
-    def distances(self, fit: Fit) -> dict[str, float]:
-        """How many standard errors each parameter is off its truth."""
-        assert fit.converged
-        augmented = augment(fit, {})
-        parts, _ = split(fit, augmented, {})
-        rows = accuracy_of(fit, parts, may_be_off(fit, augmented)).physical
-        return {r.name: (r.value - self.sought[r.name]) / r.standard_error for r in rows}
 
 
 def _primed(hull: truth.Hull, force: float) -> float:
