@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from trialid.accuracy.likely import Rows, stand
 from trialid.design.imo.speed_loss import NAMES
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
-from trialid.diagnosis.may_be_off import doubts
+from trialid.diagnosis.may_be_off import doubts, may_be_off
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.trust import accuracy_of
@@ -74,3 +74,12 @@ def spread_of(fit: Fit, candidates: Mapping[str, Effect]) -> LikelySpread:
     parts, _ = split(fit, augmented, {})
     covariance = accuracy_of(fit, parts, off.averaged).covariance
     return likely_spread(fit, covariance, off.standing, off.held, off.missing)
+
+
+def distances(fit: Fit, truth: Mapping[str, float]) -> dict[str, float]:
+    """How many standard errors each physical parameter of a fit is off its truth."""
+    assert fit.converged
+    augmented = augment(fit, {})
+    parts, _ = split(fit, augmented, {})
+    rows = accuracy_of(fit, parts, may_be_off(fit, augmented)).physical
+    return {r.name: (r.value - truth[r.name]) / r.standard_error for r in rows}

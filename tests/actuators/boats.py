@@ -21,6 +21,7 @@ EVERY_KIND = (
     Actuator(name="left", kind="thruster", x=-75.0, y=-6.0),
     Actuator(name="right", kind="thruster", x=-75.0, y=6.0, direction=0.1, own=True),
     Actuator(name="pod", kind="azimuth", x=-78.0, y=0.0, command="share"),
+    Actuator(name="pod_fwd", kind="azimuth", x=40.0, y=3.0, command="share"),
     Actuator(name="jet", kind="waterjet", x=-80.0, y=2.0, command="thrust"),
     Actuator(name="bow", kind="tunnel", x=70.0, y=0.0, direction=1.5707963267948966),
 )

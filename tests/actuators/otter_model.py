@@ -29,6 +29,8 @@ TRUTH: Final = dict(
         strict=True,
     )
 )
+SATURATED, DEAD = 0.65 * otter.N_MAX, 0.05 * otter.N_MAX
+"""Revolutions [rad/s] beyond which drives give none, and below which."""
 ORDERED: Final = ("left_order", "right_order")
 
 SHIP: Final = Ship(
@@ -95,7 +97,8 @@ def record(seed: int, fault: str = "", side: int = 0, duration: float = 120.0) -
     ----------
     fault
         `weak` (a fifth of its thrust is gone), `half`, `dead`, `reversed`, `late` (0.5 s) of the
-        thruster on this side, or both `exchanged`; the log shows the orders all the same.
+        thruster on this side, or both `exchanged`, `saturated` (at 0.65 of full) or with a
+        `deadband` (of 0.05); the log shows the orders all the same.
     """
     t = np.arange(0.0, duration, PERIOD)
     orders = otter.some_orders(t, seed)
@@ -107,6 +110,10 @@ def record(seed: int, fault: str = "", side: int = 0, duration: float = 120.0) -
         acting[5:, side], acting[:5, side] = orders[:-5, side], 0.0
     elif fault == "exchanged":
         acting = orders[:, ::-1]
+    elif fault == "saturated":
+        acting = np.clip(orders, -SATURATED, SATURATED)
+    elif fault == "deadband":
+        acting = orders - np.clip(orders, -DEAD, DEAD)
     sailed = otter.sail(t, acting, (weak[0], weak[1]))
     rng = np.random.default_rng([seed, 1])
     noisy = {c: y + NOISE[c] * rng.standard_normal(len(t)) for c, y in _motions(sailed).items()}

@@ -122,6 +122,8 @@ PARTNERS = {a: b for a, b in zip("abcdefgh", "badcfehg", strict=True)}
     [
         "thrusters",
         "azimuths",
+        "azimuths_race",
+        "azimuths_strut",
         "waterjets",
         "rudders",
         "rudders_drag",
@@ -137,7 +139,9 @@ def test_port_for_starboard(name: str) -> None:
         at = values(effect, seed)
         there = dict(at)
         for s in effect.signals:
-            if s != "u":
+            if s in ("v", "r"):
+                there[s] = -at[s]
+            elif s != "u":
                 partner = s.replace(s[0], PARTNERS[s[0]], 1)
                 turned = s.endswith("_angle") or s[0] in "gh"
                 there[partner] = -at[s] if turned else at[s]
@@ -195,11 +199,15 @@ def test_a_bucket_takes_the_jet_away_and_turns_it_back() -> None:
     assert EFFECTS["waterjets_bucket"](at | {"jet": -10.0})[0] == pytest.approx((0.0,) * 4)
 
 
-def test_no_more_comes_of_an_order_than_a_drive_can() -> None:
-    [moved] = EFFECTS["azimuths_saturation"]({"pod": 0.9, "n_full_azimuths": 0.7})
-    assert 0.9 + moved["pod"] == pytest.approx(0.7)
-    [moved] = EFFECTS["azimuths_saturation"]({"pod": -0.6, "n_full_azimuths": 0.7})
-    assert moved["pod"] == 0.0
+@pytest.mark.parametrize(("order", "held", "passed"), [(0.9, 0.7, 0.7), (-0.6, -0.6, -0.4)])
+def test_no_more_comes_of_an_order_than_a_drive_can(order, held, passed) -> None:
+    """And of a small one nothing: 0.2 of each are lost in the dead band."""
+    at = {"pod": order, "pod_fwd": 0.1}
+    [moved] = EFFECTS["azimuths_saturation"](at | {"n_full_azimuths": 0.7})
+    assert (order + moved["pod"], moved["pod_fwd"]) == (pytest.approx(held), 0.0)
+    [moved] = EFFECTS["azimuths_deadband"](at | {"dead_azimuths": 0.2})
+    assert order + moved["pod"] == pytest.approx(passed if order < 0.0 else 0.7)
+    assert 0.1 + moved["pod_fwd"] == 0.0
 
 
 def test_a_bow_thruster_to_starboard_turns_to_starboard_less_at_speed() -> None:

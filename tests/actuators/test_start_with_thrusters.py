@@ -101,7 +101,7 @@ def test_a_ship_file_gives_its_own_names_or_says_what_it_lacks(tmp_path, monkeyp
 def test_a_stranger_without_a_rudder_is_followed_to_the_noise(tmp_path, monkeypatch) -> None:
     """By second differences of the raw channels: 0.005 rad/s at 25 Hz and 0.03 m/s at 5 Hz."""
     logs = [NEWCOMER / f"usv{i}.mcap" for i in (1, 2)]
-    done = started(tmp_path, monkeypatch, logs, "--length 4.9 --quiet")
+    done = started(tmp_path, monkeypatch, logs, "--length 4.9")
     assert done.exit_code == 0, done.output
     path = tmp_path / "first_trial.toml"
     text = path.read_text(encoding="utf-8")
@@ -114,6 +114,15 @@ def test_a_stranger_without_a_rudder_is_followed_to_the_noise(tmp_path, monkeypa
     noise = [_noise(np.hypot(x, y)), _noise(channels["/imu/data:angular_velocity.z"].y)]
     error = [fit.eps_by_output[c] * y for c, y in zip("ur", fit.problem.y_rms, strict=True)]
     assert np.all(np.array(error) < 1.2 * np.array(noise)), (error, noise)
+    said = " ".join([done.output, (tmp_path / "runs/first_trial/report.html").read_text("utf-8")])
+    wrong = [
+        "same rudder",
+        "rudder record repeats",
+        "rudder at rest",
+        "rudder angle,",
+        "its rudder",
+    ]
+    assert [words for words in wrong if words in said] == []
     held_out = [fit.eps_check_by_output[c] / fit.eps_by_output[c] for c in "ur"]
     assert max(held_out) < 1.1
 

@@ -9,6 +9,7 @@ import pytest
 from boats import both, ship_with
 from click.testing import CliRunner
 
+import trialid
 from trialid.cli.main import commands
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.diagnosis.verdict import Verdict
@@ -156,6 +157,43 @@ free = ["Nv", "Nr", "Ndelta", "Nrrr"]
 outputs = ["r"]
 nuisance = ["initial_state", "bias"]
 """
+
+
+def logged(path: Path) -> Path:
+    """A record of both as a table; the rudder to port counts to port."""
+    trial = record(520, (1.0, 1.0), apart=True)
+    columns = {
+        "time_s": np.arange(900.0),
+        "rudder_port_deg": -np.rad2deg(trial.signals["port"]),
+        "rudder_stbd_deg": np.rad2deg(trial.signals["stbd"]),
+        "yaw_rate_degps": np.rad2deg(trial.signals["r"]),
+    }
+    rows = (",".join(f"{x:.6f}" for x in row) for row in np.column_stack([*columns.values()]))
+    path.write_text("\n".join([",".join(columns), *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+def test_start_writes_a_row_for_each_rudder_and_says_what_the_turn_shows(tmp_path, monkeypatch):
+    """How each turns the ship is measured; which is to port no motion of alike ones shows."""
+    monkeypatch.chdir(tmp_path)
+    given = [str(logged(tmp_path / "a.csv")), "--speed", "14.2"]
+    done = CliRunner().invoke(commands, ["inspect", *given, "--init", "p.toml", "--length", "175"])
+    assert done.exit_code == 0, done.output
+    text = Path("p.toml").read_text(encoding="utf-8")
+    assert (
+        'rudder_port      = { channel = "rudder_port_deg", unit = "deg", positive = "port" }'
+        in text
+    )
+    assert '"rudder_stbd_deg", unit = "deg", positive = "starboard" }' in text
+    assert "the motion does not show which is to port" in text
+    ship = trialid.read_ship("p_ship.toml")
+    assert [(a.name, a.kind, a.x < 0.0, a.y < 0.0) for a in ship.actuators] == [
+        ("rudder_port", "rudder", True, True),
+        ("rudder_starboard", "rudder", True, False),
+    ]
+    CliRunner().invoke(commands, ["ship", "one.toml", "--length", "175", "--quiet"])
+    CliRunner().invoke(commands, ["inspect", *given, "--init", "one_p.toml", "--ship", "one.toml"])
+    assert "\ndelta = {" in Path("one_p.toml").read_text(encoding="utf-8")
 
 
 @pytest.mark.real_data

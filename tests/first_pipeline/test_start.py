@@ -11,6 +11,7 @@ from trialid import pipeline_file
 from trialid.cli.main import commands
 from trialid.inspection import inspect_trials
 from trialid.result.json_file import read
+from trialid.ship.particulars import read_ship
 
 NEWCOMER = Path(__file__).parents[3] / "shared" / "data" / "newcomer"
 SHIP = ("--length", str(L))
@@ -120,3 +121,6 @@ def test_a_strangers_first_logs(tmp_path, monkeypatch, names, length):
     assert [t.name for t in result.trials if t.use == "check"] == [names[2]]
     assert result.verdict.kind == "missing"
     assert "yaw_cubic_rrr" in result.verdict.family
+    ship = read_ship(tmp_path / "first_trial_ship.toml")
+    rudders = ["rudder_port", "rudder_starboard"] if length == 96 else []
+    assert [one.name for one in ship.actuators] == rudders

@@ -77,8 +77,7 @@ class Parameter:
         Values tried where the effect is not linear at its null, as the speed of a steering gear,
         or may be far from it, as a sensor of many seconds.
     by_meaning
-        Whether its range is what it means: beyond it is another effect, as what is not weak but
-        strong, or weak on the other side.
+        Whether its range is what it means: beyond it is another effect, as strong is beyond weak.
     """
 
     start: float
@@ -161,8 +160,9 @@ class Effect:
 
     @property
     def scanned(self) -> bool:
-        """Whether it is not linear at its null at all, so that values have to be tried."""
-        return self.tried and Rate in self.forms
+        """Whether it is not linear at its null, or has none, so that values have to be tried."""
+        nulls = {p.null for p in self.parameters.values()}
+        return self.tried and (Rate in self.forms or nulls == {None})
 
     def acts_on(self, *forms: type) -> tuple[str, ...]:
         """Names in its results of these forms, as the signals that it delays."""

@@ -1,16 +1,12 @@
 """The models a user would write of `three_ships`, and what comes back of their truths."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import three_ships as truth
 from numpy.typing import NDArray
 
-from trialid.diagnosis.may_be_off import may_be_off
-from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.trust import accuracy_of
 from trialid.effects import CATALOGUE
 from trialid.effects.actuators import actuator_effects
 from trialid.identification.fit import Fit, identify
@@ -108,14 +104,6 @@ class Case:
         asked = Settings(free=(*self.sought,), outputs=self.outputs, nuisance=("initial_state",))
         return identify((self.record(seed),), self.model(), asked)
 
-    def distances(self, fit: Fit) -> dict[str, float]:
-        """How many standard errors each parameter is off its truth."""
-        assert fit.converged
-        augmented = augment(fit, {})
-        parts, _ = split(fit, augmented, {})
-        rows = accuracy_of(fit, parts, may_be_off(fit, augmented)).physical
-        return {r.name: (r.value - self.sought[r.name]) / r.standard_error for r in rows}
-
 
 def _primed(hull: truth.Hull, force: float) -> float:
     return force / (0.5 * truth.RHO * hull.L**2)
@@ -151,6 +139,17 @@ FERRY = Case(
         "Yv0": truth.FERRY.Yv,
         "Nr0": truth.FERRY.Nr,
         "C_D": truth.FERRY.C_D,
+    },
+)
+RACES = replace(
+    FERRY,
+    name="ferry of races",
+    push=truth.pods_in_races,
+    effects=(*FERRY.effects, "azimuths_strut", "azimuths_race"),
+    sought={
+        **FERRY.sought,
+        **{f"k_strut{own}": truth.STRUT for own in ("", "_pod_4")},
+        **{f"k_lost{own}": truth.LOST for own in ("", "_pod_4")},
     },
 )
 CARGO = Case(
@@ -224,4 +223,4 @@ SUPPLY = Case(
     },
     speed=2.0,
 )
-CASES = (FERRY, CARGO, SUPPLY)
+CASES = (FERRY, RACES, CARGO, SUPPLY)

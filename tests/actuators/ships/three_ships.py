@@ -136,6 +136,33 @@ def pods(now: Row, u: float, v: float, r: float) -> tuple[float, float, float]:
     return tuple(total)
 
 
+STRUT, LOST = 1.2e3, 45.0
+"""Of each pod: side force [N s^2/m^2], thrust lost in the race of the nearest [N s^2]."""
+
+
+def pods_in_races(now: Row, u: float, v: float, r: float) -> tuple[float, float, float]:
+    """Four pods with struts; each loses thrust where the race of another one meets it."""
+    total = np.array(pods(now, u, v, r))
+    for name, (x, y) in PODS.items():
+        angle = now[f"{name}_angle"]
+        flow = complex(u - y * r, v + x * r)
+        across = (flow * np.exp(-1j * angle)).imag
+        force = -STRUT * abs(flow) * across * 1j * np.exp(1j * angle)
+        for other, (x_o, y_o) in PODS.items():
+            if other != name:
+                there = complex(x - x_o, y - y_o)
+                blows = -now[other] * np.exp(1j * now[f"{other}_angle"])
+                off = abs(np.rad2deg(np.angle(there / blows)))
+                near = (10.0 / abs(there)) / (
+                    1.0
+                    + (2.0 * np.sin(np.deg2rad(off) / 2.0)) ** 3
+                    / (130.0 * np.deg2rad(1.0) ** 3 / 0.7**3)
+                )
+                force -= LOST * now[name] * abs(now[other]) * near * np.exp(1j * angle)
+        total += at_place(force.real, force.imag, x, y)
+    return tuple(total)
+
+
 def pod_signals(t: Vector, seed: int) -> dict[str, Vector]:
     """Revolutions of each and where each points, all apart."""
     rng = np.random.default_rng([seed, 4])

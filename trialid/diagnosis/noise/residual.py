@@ -48,6 +48,12 @@ def rudder(trial: Trial) -> Vector | None:
     return None
 
 
+def reason(fit: Fit, why: str) -> str:
+    """Why a route that goes by the rudder does not hold: this, or that there is not one rudder."""
+    ruddered = any(rudder(score.trial) is not None for score in fit.scores)
+    return why if ruddered else "goes by one rudder, and the record holds none or several"
+
+
 @dataclass(frozen=True)
 class OutputNoise:
     """Noise of one output by one route: normed variance, its standard error, effective samples."""

@@ -25,6 +25,7 @@ from trialid.diagnosis.noise.residual import (
     Residual,
     about_mean,
     pool_variance,
+    reason,
     residuals,
     rudder,
     slowness,
@@ -54,7 +55,6 @@ SEEN: Final = 0.02
 
 DISTINCT: Final = 0.05
 """Directions with singular values below this share of the largest are copies of others."""
-
 
 INPUT_DRIVEN: Final = "dependence on the input"
 STATED: Final = "stated sensor figure"
@@ -123,7 +123,7 @@ def _repeated(fit: Fit) -> Split:
         if _same_rudder(rudder(one.trial), rudder(other.trial))
     ]
     if not pairs:
-        return Split(method, "no two trials have the same rudder record")
+        return Split(method, reason(fit, "no two trials have the same rudder record"))
     pieces = [_differences(one, other) for one, other in pairs]
     names = " and ".join(repr(r.trial.name) for r in pairs[0])
     return _from_pieces(fit, method, pieces, f"what differs between {names}")
@@ -158,7 +158,7 @@ def _periodic(fit: Fit) -> Split:
             pieces.append(_differences(late, early))
             words.append(f"{lag * r.trial.period:.0f} s in {r.trial.name!r}")
     if not pieces:
-        return Split(method, "no rudder record repeats itself")
+        return Split(method, reason(fit, "no rudder record repeats itself"))
     return _from_pieces(fit, method, pieces, "scatter between periods of " + ", ".join(words))
 
 
@@ -207,7 +207,7 @@ def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:
                 pieces.append((about_mean(eps, mask), mask))
                 words.append(f"{start:.0f}-{stop:.0f} s of {r.trial.name!r}")
     if not pieces:
-        return Split(method, f"no stretch of {QUIET_SECONDS:.0f} s with the rudder at rest")
+        return Split(method, reason(fit, f"no stretch of {QUIET_SECONDS:.0f} s, rudder at rest"))
     return _from_pieces(fit, method, pieces, "residual in " + ", ".join(words))
 
 

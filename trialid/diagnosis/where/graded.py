@@ -77,7 +77,7 @@ def scales(left: Leftover) -> tuple[list[Scale], dict[str, str]]:
 def _amplitude(left: Leftover, signal: str, spoken: str) -> Scale | str:
     x = left.rudder() if signal == "delta" else left.signal(signal)
     if x is None:
-        return f"no {spoken} in the record"
+        return f"no {'single ' * (signal == 'delta')}{spoken} in the record"
     if float(np.ptp(x)) == 0.0:
         return f"the {spoken} never changes"
     size = np.abs(x)

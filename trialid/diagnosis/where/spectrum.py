@@ -84,7 +84,7 @@ def spectra(left: Leftover, output: int) -> Spectra | str:
     """Spectra of the residual and of what the rudder drives."""
     angle = left.rudder()
     if angle is None or not np.any(angle):
-        return "no rudder in the record"
+        return "no single rudder in the record"
     period = max(r.trial.period for r in left.parts)
     length = 2 * max(round(0.5 * SEGMENT * left.time_scale / period), 8)
     segments = [

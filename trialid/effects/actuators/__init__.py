@@ -9,6 +9,7 @@ from collections.abc import Collection
 from trialid.effects.actuators.actuator_faults import fault_effects
 from trialid.effects.actuators.jet_bucket import bucket_effects
 from trialid.effects.actuators.many_rudders import rudder_effects
+from trialid.effects.actuators.pods import pod_effects
 from trialid.effects.actuators.pushes import push_effects
 from trialid.effects.actuators.standstill import standstill_effects
 from trialid.ship.effect import Effect
@@ -30,6 +31,7 @@ def actuator_effects(ship: Ship, ordered: Collection[str] = ()) -> dict[str, Eff
     made = (
         *rudder_effects(ship),
         *push_effects(ship),
+        *pod_effects(ship),
         *bucket_effects(ship),
         *standstill_effects(ship),
         *fault_effects(ship, ordered),

@@ -10,6 +10,7 @@ from itertools import combinations
 
 from trialid.effects.actuators.instances import (
     GAIN_UNITS,
+    NOWHERE,
     make_effect,
     typical_gain,
 )
@@ -25,8 +26,6 @@ _REVERSED = Parameter(2.0, low=1.2, high=3.0, scan=(2.0,), by_meaning=True)
 _STUCK = Parameter(1.0, low=0.8, high=1.2, scan=(1.0,), by_meaning=True)
 _HELD = Parameter(0.05, "rad", low=-1.6, high=1.6, null=None)
 _EXCHANGED = Parameter(1.0, low=0.7, high=1.3, scan=(1.0,), by_meaning=True)
-NOWHERE = 1e-9
-"""Keeps the slope of a root finite where an actuator has lost all of its force."""
 
 
 def fault_effects(ship: Ship, ordered: Collection[str]) -> Iterator[Effect]:

@@ -16,6 +16,8 @@ FULL: Final = 0.01
 """Full thrust over 1/2 rho L^2 U^2, as a boat needs it at her speed."""
 FROUDE: Final = 0.3
 """Of a boat whose speed nobody states."""
+NOWHERE: Final = 1e-9
+"""Keeps the slope of a root finite where what is under it vanishes."""
 GAIN_UNITS: Final = {"revolutions": "N s^2", "share": "N", "thrust": "1"}
 """Unit of a gain of thrust, by what drives the actuator."""
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trialid.names import wording
+from trialid.names.quantities import RUDDERS
 from trialid.report.words import doubt
 from trialid.result.fit_rows import ParameterRow, WeakRow
 from trialid.result.schema import Result
@@ -20,6 +21,9 @@ OPENS: Final = {
     "stated sensor figure": "state how much each sensor scatters, as noise under [diagnose]",
 }
 """What would open a route to the noise that this record does not have."""
+
+
+EACH: Final = ("This", "Any one of these")
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,7 @@ def _nothing(run: Result) -> Iterable[Advice]:
         "No effect is to be added on the strength of this record."
         + limit
         + " Use the model within "
-        "the rudder angles, speeds and heel that the trials cover."
+        "the orders, speeds and heel that the trials cover."
     )
 
 
@@ -151,10 +155,15 @@ def _unclear(run: Result) -> Iterable[Advice]:
         )
         return
     closed = {row.method for row in run.split.routes if not row.available}
-    ways = [words for method, words in OPENS.items() if method in closed]
+    ruddered = not run.signals or any(row.signal in RUDDERS for row in run.signals)
+    ways = [
+        words
+        for method, words in OPENS.items()
+        if method in closed and (ruddered or "rudder" not in words)
+    ]
     if ways:
         yield Advice(
-            "Noise and model error cannot be told apart. Any one of these opens a way: "
+            f"Noise and model error cannot be told apart. {EACH[len(ways) > 1]} opens a way: "
             + "; ".join(ways) + "."
         )  # fmt: skip
 
@@ -182,7 +191,7 @@ def _loose(run: Result) -> Iterable[Advice]:
         if len(weak.parameters) > 1:
             yield Advice(
                 f"To part {' from '.join(map(str, weak.parameters[:2]))}: a trial in which they "
-                "act differently, such as another rudder angle or another rhythm of the rudder; "
+                "act differently, such as larger or smaller orders or another rhythm of them; "
                 "more of the same shrinks only the noise."
             )
 

@@ -7,9 +7,10 @@ from typing import Final
 
 from trialid.errors import LogError
 from trialid.inspection import Inspection
+from trialid.ship.actuators import Actuator
 from trialid.ship.estimate import Given, estimate
 from trialid.ship.estimate.ship_text import ship_text
-from trialid.ship.particulars import read_ship
+from trialid.ship.particulars import Ship, read_ship
 from trialid.workflow.first_pipeline.boat_choice import (
     PORT,
     actuator_lines,
@@ -20,11 +21,17 @@ from trialid.workflow.first_pipeline.boat_choice import (
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals, size_unit
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
+from trialid.workflow.first_pipeline.twin_rudders import (
+    RUDDERS,
+    has_twins,
+    twin_actuators,
+    with_twins,
+)
 
 __all__ = ["Starter", "begun_ship", "starter"]
 
 
-STEERS: Final = frozenset(("delta", "delta_order", PORT))
+STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,8 @@ def starter(
     LogError
         The logs hold too little, or not the same, to begin with, or the ship is not known.
     """
-    trials = _with_speeds([choose(one, speed) for one in surveys], speed)
+    own = read_ship(ship) if ship is not None else None
+    trials = with_twins(_with_speeds([choose(one, speed) for one in surveys], speed), own)
     _check_shared(trials)
     if ship is None and given.length is None:
         raise LogError(
@@ -77,22 +85,28 @@ def starter(
             "speed"
         )
     files: dict[Path, str] = {}
-    if ship is None:
+    if ship is None or own is None:
         ship = begun_ship(pipeline)
-        words = next(one.speed_words for one in trials if one.speed)
-        made = estimate(replace(given, speed=u0), f"ship of {pipeline.stem}")
-        files[ship], own = ship_text(made, comment(words)), made.ship
-        if is_boat(shared_signals(trials)):
-            own = replace(own, actuators=boat_actuators(trials[0].signals, own))
-            files[ship] += "\n".join(actuator_lines(own.actuators))
-    else:
-        own = read_ship(ship)
-        if is_boat(shared_signals(trials)):
-            trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
+        own, files[ship] = _begun(pipeline, replace(given, speed=u0), trials)
+    elif is_boat(shared_signals(trials)):
+        trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
     trials = [size_unit(one, L, u0) for one in trials]
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
+
+
+def _begun(pipeline: Path, given: Given, trials: Sequence[Chosen]) -> tuple[Ship, str]:
+    """A ship of these particulars, with what drives and steers her in these logs; and her file."""
+    words = next(one.speed_words for one in trials if one.speed)
+    made = estimate(given, f"ship of {pipeline.stem}")
+    ones: tuple[Actuator, ...] = ()
+    if is_boat(shared_signals(trials)):
+        ones = boat_actuators(trials[0].signals, made.ship)
+    elif has_twins(trials[0].signals):
+        ones = twin_actuators(made.ship)
+    text = ship_text(made, comment(words)) + "\n".join(actuator_lines(ones))
+    return replace(made.ship, actuators=ones), text
 
 
 def begun_ship(pipeline: Path) -> Path:

@@ -39,6 +39,18 @@ AFT: Final = -0.4
 """And so far aft, which where both push alike tells nothing."""
 
 
+ASSUMED: Final = {
+    "thruster": (
+        "# ASSUMED: where the thrusters stand. Measure it: the moment goes with it, and what is",
+        "# found of the inertia in yaw too.",
+    ),
+    "rudder": (
+        "# ASSUMED: where the rudders stand. Only `rudders_drag` and `rudders_race` ask for it; a",
+        "# rudder in the race of a screw is `behind` it.",
+    ),
+}
+
+
 def choose(survey: Inspection, speed: float | None) -> Chosen:
     """What to take from a log, of a ship with a rudder or of a boat with two thrusters.
 
@@ -178,10 +190,10 @@ def _command(unit: str) -> Command:
 
 
 def actuator_lines(actuators: tuple[Actuator, ...]) -> Iterator[str]:
-    """Tables for a ship file, with what was assumed."""
-    yield ""
-    yield "# ASSUMED: where the thrusters stand. Measure it: the moment goes with it, and what is"
-    yield "# found of the inertia in yaw too."
+    """Tables for a ship file, with what was assumed; nothing where there is none."""
+    if actuators:
+        yield ""
+        yield from ASSUMED[actuators[0].kind]
     yield from actuator_tables(actuators)
 
 

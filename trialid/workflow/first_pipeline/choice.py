@@ -86,7 +86,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
             f"channels, so no pipeline can be begun; {_what_then(survey)}"
         )
     r = rate_signal(live) if live["r"] else None
-    signals = [_rudder(rudder, live, r)]
+    signals = [rudder_signal(rudder, live, r)]
     signals += [r] if r else [_plain("psi", live, "no yaw rate is logged")]
     signals += [_plain("phi", live, "")] if live["phi"] else []
     known, words = approach_speed(survey, live, speed)
@@ -140,7 +140,7 @@ def rate_signal(live: Live) -> Signal:
     return Signal("r", plain.source, unit, positive, words, plain.others)
 
 
-def _rudder(name: str, live: Live, rate: Signal | None) -> Signal:
+def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     """The rudder or its order, its side measured where the motion tells it."""
     plain = _plain(name, live, "")
     witness = rate.source if rate else live["psi"][0]

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from trialid.errors import UnitError
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
-from trialid.workflow.first_pipeline.choice import Chosen
+from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen
 
 
 def held_out(trials: Sequence[Chosen]) -> int | None:
-    """Place of the trial in the middle by how far her rudder went; None where there is but one.
+    """Place of the trial in the middle by how far she was steered; None where there is but one.
 
     The largest is fitted: it shows most of what a ship does, and a model of the smaller ones alone
     would be asked for more than it has seen. Of an even number it is the smaller of the middle two.
@@ -20,8 +20,14 @@ def held_out(trials: Sequence[Chosen]) -> int | None:
     return order[(len(trials) - 1) // 2]
 
 
+def middle_by(trials: Sequence[Chosen]) -> str:
+    """What trials are put in order by, in words."""
+    steered = trials[0].signals[0].quantity
+    return "its rudder" if steered in RUDDERS else f"its {steered}"
+
+
 def _travel(trial: Chosen) -> float:
-    """How far the rudder went, in SI where its unit is known."""
+    """How far the rudder, or the first of what steers her, went; in SI where its unit is known."""
     rudder = trial.signals[0]
     unit = rudder.unit or rudder.source.unit or rudder.source.unit_in_name
     try:

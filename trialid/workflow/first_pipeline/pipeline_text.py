@@ -8,11 +8,13 @@ from typing import Final
 from trialid.errors import printable
 from trialid.inspection.channel_names import words
 from trialid.inspection.inspected import ChannelInspection
+from trialid.names.quantities import SIGNALS
+from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
 from trialid.toml_text import quote
 from trialid.workflow.first_pipeline.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
-from trialid.workflow.first_pipeline.held_out import held_out
+from trialid.workflow.first_pipeline.held_out import held_out, middle_by
 
 HEAD: Final = """\
 # Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
@@ -55,11 +57,12 @@ def pipeline_text(
 
 
 def _trial(path: Path, name: str, trial: Chosen, *, checks: bool) -> Iterator[str]:
+    by = middle_by([trial])
     yield "[[trial]]"
     yield f"name = {quote(name)}"
     yield f"logs = [{_log(trial, path)}]"
     if checks:
-        yield 'use = "check"  # held out, the middle one by its rudder: scored, never fitted'
+        yield f'use = "check"  # held out, the middle one by {by}: scored, never fitted'
     if trial.states_speed and trial.speed is not None:
         yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
     yield f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
@@ -148,7 +151,7 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
     own = one is signal.source
     unit = signal.unit if own else one.unit or one.unit_in_name or signal.unit
     positive = signal.positive if own else (one.guess and one.guess.positive) or signal.positive
-    if signal.quantity not in RUDDERS and positive == "starboard":
+    if signal.quantity in SIGNALS and signal.quantity not in RUDDERS and positive == "starboard":
         positive = None  # as the dictionary has it
     return {
         "channel": one.name,
@@ -183,14 +186,19 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
 
 def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
-    if ship.actuators and not known & {*RUDDERS}:
+    if known & {one.drive for one in ship.actuators if one.drive}:
         yield from boat_model(trials, ship)
         return
+    several = bool(known & rudder_signals(ship.actuators))
     outputs = ["r" if "r" in known else "psi", *(["phi"] if "phi" in known else [])]
-    rolls, order_only = "phi" in known, "delta" not in known
+    rolls, order_only = "phi" in known, not several and "delta" not in known
     states = ["v", *(["p"] if rolls else []), "r", *(["phi"] if rolls else [])]
     states += ["psi"] if "psi" in outputs else []
-    effects = ["linear_hull", "linear_rudder", *(["linear_roll"] if rolls else [])]
+    effects = [
+        "linear_hull",
+        "rudders" if several else "linear_rudder",
+        *(["linear_roll"] if rolls else []),
+    ]
     yield "[model]"
     yield f"states = {_list(states)}  # what is simulated; the speed is read from the log"
     if order_only:
@@ -208,10 +216,9 @@ def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     if any(name in ship.uncertainty for name in free):
         yield 'priors = "ship"  # held about her file\'s numbers, as far as it says they scatter'
     yield f"outputs = {_list(outputs)}"
-    yield (
-        'nuisance = ["initial_state", "bias", "rudder_offset", "delay"]  # of each trial, '
-        "estimated too"
-    )
+    offset = [] if several else ["rudder_offset"]  # of one rudder; of several `NAME_misaligned`
+    nuisance = ["initial_state", "bias", *offset, "delay"]
+    yield f"nuisance = {_list(nuisance)}  # of each trial, estimated too"
 
 
 def _names(trials: Sequence[Chosen]) -> list[str]:

@@ -1,0 +1,78 @@
+"""Struts of pods and the race of one on another: by hand, and compiled."""
+
+import numpy as np
+import pytest
+from boats import eight_actuators, ship_with
+
+from trialid.effects.actuators import actuator_effects
+from trialid.ship.actuators import Actuator
+from trialid.simulation.integrate import prepare, respond
+
+
+def test_a_strut_is_a_rudder_of_its_pod() -> None:
+    """Turned clockwise under way it pushes to starboard and back, and against a drift, at rest not.
+
+    By hand at 30 deg and 2 m/s: U_P = 2, v_P = -1, F_N = 6 N over 3 kg/m.
+    """
+    ones = (Actuator(name="pod", kind="azimuth", x=-5.0, y=0.0),)
+    strut = actuator_effects(ship_with(ones))["azimuths_strut"]
+    at = {"pod_angle": np.pi / 6.0, "u": 2.0, "v": 0.0, "r": 0.0, "k_strut": 3.0}
+    X, Y, _, N = strut(at)[0]
+    assert pytest.approx((-3.0, 6.0 * np.sqrt(0.75), -30.0 * np.sqrt(0.75))) == (X, Y, N)
+    drifting = strut(at | {"pod_angle": 0.0, "u": 0.0, "v": 1.0})[0]
+    assert pytest.approx((0.0, -3.0)) == (drifting.X, drifting.Y)
+    turning = strut(at | {"pod_angle": 0.0, "r": 0.1})[0]
+    assert turning.Y > 0.0 > turning.N
+    assert strut(at | {"u": 0.0})[0] == pytest.approx((0.0,) * 4)
+
+
+def test_a_pod_in_the_race_of_another_loses_thrust() -> None:
+    """The one aft, behind one that pushes ahead; the one ahead, before one that backs.
+
+    Half of it 7 deg off the axis, and at twice the distance of the nearest two; across it none.
+    """
+    ones = tuple(
+        Actuator(name=n, kind="azimuth", x=x, y=0.0)
+        for n, x in (("aft", -10.0), ("fore", 0.0), ("bow", 20.0))
+    )
+    race = actuator_effects(ship_with(ones))["azimuths_race"]
+    still = dict.fromkeys(race.signals, 0.0) | {"k_lost": 0.5}
+    at = still | {"aft": 2.0, "fore": 3.0}
+    assert race(at)[0] == pytest.approx((-3.0, 0.0, 0.0, 0.0), rel=1e-3)
+    backs = race(at | {"fore": -3.0})[0]
+    assert abs(backs.X) < 0.01
+    assert pytest.approx(3.0, rel=1e-3) == race(at | {"aft": -2.0, "fore": -3.0})[0].X
+    off = race(at | {"fore_angle": np.deg2rad((130.0 / 0.7**3) ** (1.0 / 3.0))})[0]
+    assert pytest.approx(-1.5, rel=1e-2) == off.X
+    assert abs(race(at | {"fore_angle": np.pi / 2.0})[0].X) < 0.01
+    far = race(still | {"fore": 2.0, "bow": 3.0})[0]
+    assert pytest.approx(-1.5, rel=1e-3) == far.X
+    aside = race(at | {"aft_angle": np.pi / 2.0})[0]
+    assert pytest.approx((0.0, -3.0, 30.0), rel=1e-3, abs=0.01) == (aside.X, aside.Y, aside.N)
+
+
+def test_compiled_and_numpy_agree_on_struts_races_and_what_holds_drives_back() -> None:
+    model, free, trial = eight_actuators()
+    own = actuator_effects(model.ship)
+    added = [own[f"azimuths_{n}"] for n in ("strut", "race", "deadband", "saturation")]
+    for effect in added:
+        model = model + effect
+    stated = {n: p.start for e in added for n, p in e.parameters.items()}
+    sought = (*free, *stated)
+    values = {n: model.value(n) for n in free} | stated | {"dead_azimuths": 0.05}
+    values["n_full_azimuths"] = 0.3
+    model = model.with_values(values)
+    compiled, plain = (
+        respond(
+            prepare(model, sought, ("u", "r"), engine),
+            trial,
+            values,
+            {"u": 5.0, "v": 0.1, "r": 0.001},
+        )
+        for engine in ("compiled", "numpy")
+    )
+    assert compiled.departure is None
+    assert np.all(np.abs(plain.S[:, :, -len(stated) :]).max(axis=(0, 1)) > 0.0)
+    for one, other in ((compiled.y, plain.y), (compiled.S, plain.S)):
+        size = np.abs(other).max(axis=0)
+        assert np.all(np.abs(one - other) <= 1e-9 * size + 1e-300)
