@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from sailed_tracks import FREE, NOISE, OUTPUTS, SHIP, accuracy, sailed, spread
 
+from trialid.design.helm import Passage
+from trialid.design.imo.measures import overshoots
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.sailed_trial import is_wind
 from trialid.design.imo.trial_measures import TrialMeasures, measure_trials
@@ -105,6 +107,19 @@ def test_less_current_and_wind_it_is_the_ship_in_calm() -> None:
             assert low < calm[m.name] < high
             assert high - low < 40.0
     assert max(abs(wind[m.name] - calm[m.name]) for m in rows) > 60.0  # what it is about
+
+
+def test_an_overshoot_less_the_wind_is_that_of_calm_air() -> None:
+    """Under the same rudder, which is that of a helmsman in calm air; nothing for the current."""
+    calm = sailed("zigzag", (0.0, 0.0))
+    truth = overshoots(Passage(calm, calm.signals["x"], calm.signals["y"], None))[0]
+    [row] = [m for m in measured(1).numbers if m.name == "first overshoot"]
+    assert row.interval[1] < truth - np.deg2rad(0.5)  # what it is about
+    assert row.corrected_for == "wind"
+    assert row.corrected == pytest.approx(truth, abs=np.deg2rad(0.5))
+    for low, high in (row.corrected_interval or (0.0, 0.0), row.predicted_interval or (0.0, 0.0)):
+        assert low < truth < high
+        assert high - low < np.deg2rad(4.0)
 
 
 def test_what_is_wind_and_what_is_not() -> None:
