@@ -153,7 +153,10 @@ def _round(record: SteeredRecord, run: Sequence[Excursion], course: float) -> bo
 def _run(
     record: SteeredRecord, free: Sequence[Excursion], place: int, course: float
 ) -> list[Excursion]:
-    """The longest zig-zag that begins with an excursion; that alone where there is none."""
+    """The longest zig-zag that begins with an excursion; that alone where there is none.
+
+    An indicator may differ from side to side, but to one side an order is the same angle again.
+    """
     run, usual = [free[place]], 0.0
     for k in range(place + 1, len(free)):
         last, one = run[-1], free[k]
@@ -163,7 +166,8 @@ def _run(
         change = float(np.sign(last.angle) * turned)  # on the side to which she was turned
         usual = usual or change
         even = abs(change - usual) <= max(ALIKE * usual, STRAIGHT) and change > STRAIGHT
-        if not even or change >= QUARTER or (one.held < HELD and k < len(free) - 1):
+        again = len(run) < 2 or abs(abs(one.angle) - abs(run[-2].angle)) <= 2.0 * SPARE
+        if not (even and again) or change >= QUARTER or (one.held < HELD and k < len(free) - 1):
             break
         run.append(one)
     return run
