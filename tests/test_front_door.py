@@ -71,6 +71,7 @@ def test_nothing_heavy_comes_before_it_is_asked_for() -> None:
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.study(turn=3)
 def test_a_run_is_the_commands_digit_for_digit(run, sample_run: Path) -> None:
     assert same(run.result, json.loads((sample_run / "result.json").read_text(encoding="utf-8")))
 
@@ -190,6 +191,7 @@ def test_arrays_give_the_pipelines_numbers(run, fit) -> None:
 
 
 @pytest.mark.study(turn=3)
+@pytest.mark.study(turn=1)
 def test_a_fit_from_arrays_is_diagnosed_and_grows(fit) -> None:
     found = ti.diagnose(fit, name="arrays")
     assert (found.verdict.kind, found.verdict.effect) == ("missing", EFFECT)

@@ -78,6 +78,7 @@ def test_the_file_has_eight_lines():
     assert len(OWN.splitlines()) == 8
 
 
+@pytest.mark.study(turn=4)
 def test_it_is_ranked_first_added_and_reported(folder):
     outcome = trialid_("run", "rail.toml")
     print(outcome.stdout)

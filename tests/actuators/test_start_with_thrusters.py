@@ -97,6 +97,7 @@ def test_a_ship_file_gives_its_own_names_or_says_what_it_lacks(tmp_path, monkeyp
 
 @pytest.mark.real_data
 @pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
+@pytest.mark.study(turn=1)
 def test_a_stranger_without_a_rudder_is_followed_to_the_noise(tmp_path, monkeypatch) -> None:
     """By second differences of the raw channels: 0.005 rad/s at 25 Hz and 0.03 m/s at 5 Hz."""
     logs = [NEWCOMER / f"usv{i}.mcap" for i in (1, 2)]

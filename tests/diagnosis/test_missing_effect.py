@@ -73,7 +73,7 @@ def test_twins_are_one_family():
     assert "cannot tell it from" in verdict.sentence
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=2)
 def test_false_alarms_are_counted():
     """Nothing hidden, wave noise: a name in at most 3 of 40 records at a nominal 5 %."""
     kinds = [diagnosed(record(MODEL, 100 + seed), MODEL)[3].kind for seed in range(40)]

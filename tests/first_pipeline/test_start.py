@@ -106,6 +106,7 @@ def test_a_boat_of_thrusters_is_told_what_she_is(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("names", "length"), [(("z10", "z20", "z15"), 62), (("twin20", "twin10", "twin15"), 96)]
 )
+@pytest.mark.study(turn="each")
 def test_a_strangers_first_logs(tmp_path, monkeypatch, names, length):
     """A cubic yaw term is what both lack: it is named, or a twin the record cannot tell from it.
 

@@ -36,7 +36,7 @@ speed = 7.0
 delta = {{ channel = "d", unit = "deg", positive = "starboard" }}
 r = {{ channel = "r", unit = "deg/s" }}
 """
-EACH_TIME, STUDY = 150, 20_000
+EACH_TIME, STUDY = 150, 4_000
 
 
 @pytest.fixture(scope="module")
@@ -92,9 +92,10 @@ def test_results_changed_by_hand(folder, tmp_path):
     check(folder, tmp_path, EACH_TIME, 5)
 
 
-@pytest.mark.study
-def test_many_results_changed_by_hand(folder, tmp_path):
-    check(folder, tmp_path, STUDY, 6)
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", range(6, 11))
+def test_many_results_changed_by_hand(folder, tmp_path, seed):
+    check(folder, tmp_path, STUDY, seed)
 
 
 def test_infinite_is_no_number_of_json(folder, tmp_path):

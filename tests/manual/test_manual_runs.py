@@ -105,10 +105,11 @@ def copy(project: Path, tmp_path: Path) -> Path:
 
 
 def in_turn(documents: list[str]) -> list[Any]:
-    """What a stranger reads first at each turn, the other pages one after another."""
-    later = [document for document in documents if document != "README"]
-    turns = {document: pytest.mark.study(turn=k % 5) for k, document in enumerate(later)}
-    return [pytest.param(d, marks=turns.get(d, pytest.mark.study)) for d in documents]
+    """One page after another."""
+    return [
+        pytest.param(document, marks=pytest.mark.study(turn=k % 5))
+        for k, document in enumerate(documents)
+    ]
 
 
 @pytest.mark.parametrize("document", in_turn(with_any("sh")))
@@ -124,6 +125,7 @@ def test_its_commands_run_and_print_what_is_shown(document: str, copy: Path, sam
             assert block.text == last, f"{where}: stale; run: python tests/manual/printed.py"
 
 
+@pytest.mark.study(turn=4)
 def test_the_readme_shows_the_first_screen_whole(sample: str) -> None:
     """80 columns of 40 lines, one of them for the prompt, and it is the one that comes out."""
     assert [block.text for block in blocks("README") if block.kind == PRINTED] == [sample]

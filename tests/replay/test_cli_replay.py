@@ -53,6 +53,7 @@ def edges(path, trial):
     ]
 
 
+@pytest.mark.study(turn=3)
 def test_the_band_is_that_of_the_run(done, tmp_path):
     """As `result.json` has it, with --run and where the fit is made anew."""
     pipeline, run = done

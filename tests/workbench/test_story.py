@@ -44,7 +44,7 @@ def run_of(pipeline: Path) -> dict:
     return json.loads(done.stdout)
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=3)
 def test_the_whole_story(sample: Path, tmp_path: Path) -> None:
     before = sample.read_bytes()
     with (
