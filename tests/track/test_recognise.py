@@ -25,7 +25,7 @@ STILL = (0.0, 0.0)
 LENGTH, SPEED = 175.0, 7.33
 ORDER, END = 6, 10
 """[s] By which an order and an end may be off: a gear takes so long, and a ship to stop."""
-DAYS, FIRST = 200, 3000
+DAYS, FIRST = 200, 8000
 THRESHOLDS = (
     *("MIDSHIPS", "LEAST", "ALIKE", "STRAIGHT", "LENGTHS", "PULL_OUT", "SPARE"),
     *("AWAY", "NEAR", "SETTLES", "KEPT"),
