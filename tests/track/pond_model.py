@@ -3,7 +3,7 @@
 The ship is what `trialid ship` makes of her particulars, each coefficient held by the scatter of
 its formula. The structure is one of some 25 fits tried, and what they made of the turning tests was
 seen: nothing of those tests was fitted, but they are no unseen check of it. It was taken as it has
-few coefficients and leaves no formula behind by three deviations. Others held 2 to 9 of the 12
+few coefficients and leaves no formula behind by three deviations. Others held 4 to 9 of the 12
 numbers in their bands, and left 0.1 to 0.8 lengths on the two zig-zags held out.
 """
 
