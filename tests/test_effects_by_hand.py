@@ -245,6 +245,10 @@ def test_screws_push_to_the_side_they_should() -> None:
     single = forces("propeller_side_force", {"N_n": -1e-9}, n=U0)
     assert single["N"] == pytest.approx(-1e-9 * 0.5 * RHO * L**5 * U0**2, rel=1e-6)
     assert single["Y"] == pytest.approx(-2.0 * single["N"] / L, rel=1e-6)
+    back = forces("propeller_astern", {"X_ast": 2e-9, "N_ast": 4e-10}, n=-U0)
+    assert back["X"] == pytest.approx(2e-9 * 0.5 * RHO * L**4 * U0**2, rel=1e-6)
+    assert back["N"] == pytest.approx(4e-10 * 0.5 * RHO * L**5 * U0**2, rel=1e-6)
+    assert not any(forces("propeller_astern", {"X_ast": 2e-9, "N_ast": 4e-10}, n=U0).values())
     assert forces("twin_screws", {"N_twin": 2e-10}, n_p=8.0, n_s=7.0)["N"] > 0.0
     slowed = CATALOGUE["shaft_speed_drop"]({"n": 8.0, "u": 0.5 * U0, "U0": U0, "k_n": 0.4})[0]
     assert slowed["n"] == pytest.approx(8.0 * 0.4 * -0.5)

@@ -3,16 +3,12 @@
 import numpy as np
 import pytest
 from measures_coverage import CASES, fitted
+from typical import spread_of
 
 from trialid.design.following import sailed_ship, vessel_of
 from trialid.design.helm import carry_out
-from trialid.design.prediction.likely_spread import likely_spread
 from trialid.design.prediction.predicted_motion import sail_manoeuvre
 from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, in_calm
-from trialid.diagnosis.may_be_off import doubts
-from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.trust import accuracy_of
 from trialid.effects import CATALOGUE
 from trialid.workflow.use.orders import named_manoeuvre
 
@@ -27,11 +23,7 @@ def holds(case, seed):
     if record is None:
         return None
     ship, fit = record
-    augmented = augment(fit, CATALOGUE)
-    off = doubts(fit, augmented)
-    parts, _ = split(fit, augmented, {})
-    covariance = accuracy_of(fit, parts, off.averaged).covariance
-    spread = likely_spread(fit, covariance, off.standing, off.held, off.missing)
+    spread = spread_of(fit, CATALOGUE)
     asked = named_manoeuvre(ASKED)
     found = sail_manoeuvre(sailed_ship(fit), asked, spread, {})
     true = in_calm(vessel_of(fit, ship.true.model))

@@ -6,18 +6,18 @@ from functools import cache
 
 import numpy as np
 from s175q import MODEL, SHAFT
+from typical import spread_of
 
 from trialid.accuracy.parameter_table import Accuracy, Subject, assess
 from trialid.design import manoeuvres
 from trialid.design.helm import carry_out, vessel
-from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
-from trialid.diagnosis.may_be_off import doubts
-from trialid.diagnosis.search.augment import augment
+from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.effects import CATALOGUE
 from trialid.effects.track import current
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import stretches
 from trialid.identification.problem import Settings
+from trialid.ship.effect import Effect
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
 
@@ -29,7 +29,8 @@ NOISE = {"r": np.deg2rad(0.05), "psi": np.deg2rad(0.3), "x": 1.0, "y": 1.0}
 
 PERIOD, APPROACH = 2.0, 30.0
 CURRENTS = {"circle": (0.5, -0.3), "zigzag": (-0.2, 0.8)}
-MAY_BE_MISSING = ("yaw_drag_rav", "sway_drag_vav", "rudder_offset", "yaw_drag_rar")
+FEW = ("yaw_drag_rav", "sway_drag_vav", "rudder_offset", "yaw_drag_rar")
+MISSING = {n: CATALOGUE[n] for n in FEW}
 SETTINGS = Settings(FREE, OUTPUTS, nuisance=("initial_state", "current"))
 
 
@@ -76,9 +77,7 @@ def accuracy(fit: Fit) -> Accuracy:
     return assess(subjects, psi, residual, parts, fit.eps_rmsn, 0.0, level=fit.level)
 
 
-def spread(fit: Fit) -> LikelySpread:
-    """What a prediction of the fit is uncertain by, with four effects that may be missing."""
-    tried = {n: CATALOGUE[n] for n in MAY_BE_MISSING}
-    off = doubts(fit, augment(fit, tried))
-    known = accuracy(fit).covariance
-    return likely_spread(fit, known, off.standing, off.held, off.missing)
+def spread(fit: Fit, catalogue: Mapping[str, Effect] = MISSING) -> LikelySpread:
+    """What a prediction of the fit is uncertain by, with any of these that may be missing."""
+    present = {e.name for e in fit.model.effects}
+    return spread_of(fit, {n: e for n, e in catalogue.items() if n not in present})

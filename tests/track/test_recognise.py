@@ -15,6 +15,7 @@ from trialid.design.helm import Passage
 from trialid.design.imo import excursions, measures, recognise, spirals, stops, williamson
 from trialid.design.imo.measured import heading_numbers
 from trialid.design.imo.recognition import Recognised
+from trialid.design.imo.track_numbers import Around
 from trialid.design.imo.trial_measures import measure_trials
 from trialid.design.imo.trial_numbers import ManoeuvreNumber
 from trialid.identification.fit import Fit, identify
@@ -24,7 +25,7 @@ STILL = (0.0, 0.0)
 LENGTH, SPEED = 175.0, 7.33
 ORDER, END = 6, 10
 """[s] By which an order and an end may be off: a gear takes so long, and a ship to stop."""
-DAYS, FIRST = 200, 3000
+DAYS, FIRST = 200, 8000
 THRESHOLDS = (
     *("MIDSHIPS", "LEAST", "ALIKE", "STRAIGHT", "LENGTHS", "PULL_OUT", "SPARE"),
     *("AWAY", "NEAR", "SETTLES", "KEPT"),
@@ -176,9 +177,9 @@ def test_a_pull_out_that_was_ended_too_early_has_no_number() -> None:
     whole, early = (found(x)[-1] for x in (trial, cut(trial, 475)))
     assert (whole.kind, whole.remark) == ("pull-out", "")
     assert (early.kind, early.remark) == ("pull-out", "the rate of turn had not settled")
-    [row] = heading_numbers(trial, [whole], None)
+    [row] = heading_numbers(trial, [whole], Around())
     assert row.interval[0] < 0.0001
-    assert list(heading_numbers(cut(trial, 475), [early], None)) == []
+    assert list(heading_numbers(cut(trial, 475), [early], Around())) == []
 
 
 def test_reversals_at_unequal_headings_are_told_as_that() -> None:
@@ -201,7 +202,7 @@ def test_every_overshoot_of_a_long_zigzag_is_measured() -> None:
         order.append(side * np.deg2rad(10.0))
     signals = {"delta": np.array(order), "psi": psi}
     trial = Trial("long", "fit", 1.0, signals, {n: np.ones(len(t), bool) for n in signals})
-    rows = list(heading_numbers(trial, found(trial), None))
+    rows = list(heading_numbers(trial, found(trial), Around()))
     assert [r.name for r in rows][:2] == ["first overshoot", "second overshoot"]
     assert [r.name for r in rows][6:] == [f"{n}th overshoot" for n in range(7, len(rows) + 1)]
     assert len(rows) >= 11

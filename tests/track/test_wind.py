@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from sailed_tracks import FREE, NOISE, OUTPUTS, SHIP, accuracy, sailed, spread
 
+from trialid.design.helm import Passage
+from trialid.design.imo.measures import overshoots
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.sailed_trial import is_wind
 from trialid.design.imo.trial_measures import TrialMeasures, measure_trials
@@ -59,6 +61,22 @@ def blown(name: str) -> Trial:
     return Trial(name, "fit", 2.0, signals, {n: np.ones(len(y), dtype=bool) for n in signals})
 
 
+def in_calm_air() -> dict[str, float]:
+    """Measures of the true ship that comes to the order as fast as in the wind, and straight."""
+    windy, (*names,) = blown("circle"), (*OUTPUTS, "u")
+    inputs = {n: windy.signals[n] for n in ("delta", "n", "V_aw", "gamma_aw")}
+    in_wind = Trial("circle", "fit", 2.0, inputs, {})
+    y = respond(prepare(WINDY, (), names), in_wind, {}, {"psi": 0.7}, sensitivities=False).y
+    k, speed = 15, float(y[15, -1])
+    turn = Trial("circle", "fit", 2.0, {n: x[k:] for n, x in inputs.items()}, {})
+    start = dict.fromkeys(SHIP.states, 0.0) | {"u": speed, "psi": 0.7}
+    y = respond(prepare(SHIP, (), OUTPUTS), turn, {}, start, sensitivities=False).y
+    run = 2.0 * speed * np.arange(-k, 0)
+    straight = {"psi": np.full(k, 0.7), "x": run * np.cos(0.7), "y": run * np.sin(0.7)}
+    track = {n: np.append(x, y[:, OUTPUTS.index(n)]) for n, x in straight.items()}
+    return measures_of(replace(windy, signals={**windy.signals, **track}))
+
+
 def measures_of(trial: Trial) -> dict[str, float]:
     [turn] = find_turns(trial, recognise(trial, 175.0, 7.33))
     return measure(replace(turn, t=30.0), trial.t, trial.signals)
@@ -79,8 +97,8 @@ def measured(seed: int) -> TrialMeasures:
 
 
 def test_less_current_and_wind_it_is_the_ship_in_calm() -> None:
-    calm, wind = measures_of(sailed("circle", (0.0, 0.0))), measures_of(blown("circle"))
-    rows = measured(0).turns
+    calm, wind = in_calm_air(), measures_of(blown("circle"))
+    rows = measured(1).turns
     assert [m.name for m in rows] == ["advance", "transfer", "tactical diameter"]
     for m in rows:
         assert m.corrected_for == "current and wind"
@@ -89,6 +107,19 @@ def test_less_current_and_wind_it_is_the_ship_in_calm() -> None:
             assert low < calm[m.name] < high
             assert high - low < 40.0
     assert max(abs(wind[m.name] - calm[m.name]) for m in rows) > 60.0  # what it is about
+
+
+def test_an_overshoot_less_the_wind_is_that_of_calm_air() -> None:
+    """Under the same rudder, which is that of a helmsman in calm air; nothing for the current."""
+    calm = sailed("zigzag", (0.0, 0.0))
+    truth = overshoots(Passage(calm, calm.signals["x"], calm.signals["y"], None))[0]
+    [row] = [m for m in measured(1).numbers if m.name == "first overshoot"]
+    assert row.interval[1] < truth - np.deg2rad(0.5)  # what it is about
+    assert row.corrected_for == "wind"
+    assert row.corrected == pytest.approx(truth, abs=np.deg2rad(0.5))
+    for low, high in (row.corrected_interval or (0.0, 0.0), row.predicted_interval or (0.0, 0.0)):
+        assert low < truth < high
+        assert high - low < np.deg2rad(4.0)
 
 
 def test_what_is_wind_and_what_is_not() -> None:
@@ -104,7 +135,7 @@ def test_what_is_wind_and_what_is_not() -> None:
 
 @pytest.mark.study(turn=1)
 def test_corrected_intervals_hold_the_calm_truth() -> None:
-    calm, inside = measures_of(sailed("circle", (0.0, 0.0))), []
+    calm, inside = in_calm_air(), []
     for seed in range(1, 25):
         for m in measured(seed).turns:
             low, high = m.corrected_interval or (np.nan, np.nan)

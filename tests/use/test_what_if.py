@@ -164,12 +164,46 @@ def test_a_ship_that_is_given_her_speed_is_not_stopped(model: FinishedModel) -> 
     plain = vessel(surging() - "propeller_thrust", 0.5, {"u": 7.0}, 0.05)
     with pytest.raises(DesignError, match="no effect of this model reads a shaft"):
         sail_stop(plain, 0.5, known_by("Xuu", 0.0), {})
-    shaft = vessel(surging(), 0.5, {"u": 7.33, "n": 5.0}, 0.05)
-    with pytest.raises(DesignError, match="knows n ahead alone"):
-        sail_stop(shaft, 0.0, known_by("Xuu", 0.0), {}, astern=True)
     for wrong in (["stop", "a"], ["stop", "0"], ["stop", "20", "3"]):
         with pytest.raises(TrialidError):
             stop_order(wrong)
+
+
+def test_a_shaft_astern_that_no_trial_held_astern_is_a_range() -> None:
+    """M du/dt = -c u^2 - T from U to rest runs M / (2 c) ln(1 + c U^2 / T); T is 60 to 100 %."""
+    model = surging().with_values({"t_P": 0.0})
+    ship = vessel(model, 0.5, {"u": 7.33, "n": 8.0}, 0.05)
+    made = sail_stop(ship, 0.0, known_by("Xuu", 0.0), {}, astern=True)
+    p = model.ship.particulars
+    drag = -XUU * 0.5 * p["rho"] * p["L"] ** 2
+    mass = (model.value("m") - model.value("Xudot")) * 0.5 * p["rho"] * p["L"] ** 3
+    pull = p["rho"] * (8.0 / (2.0 * np.pi)) ** 2 * model.value("D_P") ** 4 * model.value("KT0")
+    start = float(made.motion["u"][200])
+    reach, low, high = (
+        mass / (2.0 * drag) * np.log(1.0 + drag * start**2 / (share * pull))
+        for share in (0.8, 1.0, 0.6)
+    )
+    found, ends = made.numbers["head reach [m]"]
+    assert found == pytest.approx(reach, rel=5e-3)
+    assert ends == pytest.approx((low, high), rel=5e-3)
+    assert made.numbers["track reach [m]"][0] == pytest.approx(found, rel=1e-6)
+    assert "lateral deviation [m]" not in made.numbers
+    assert "no trial held the shaft astern" in made.remark
+
+
+def test_a_shaft_whose_pull_astern_was_fitted_stops_by_that() -> None:
+    known = surging() + CATALOGUE["propeller_astern"]
+    reaches = []
+    for less in (0.0, 1e-8):
+        model = known.with_values({"X_ast": less, "N_ast": 4e-10})
+        ship = vessel(model, 0.5, {"u": 7.33, "n": 8.0}, 0.05)
+        made = sail_stop(ship, 0.0, known_by("X_ast", 1e-9), {}, astern=True)
+        assert not made.remark
+        assert made.numbers["lateral deviation [m]"][0] != 0.0
+        reach, ends = made.numbers["head reach [m]"]
+        assert ends[0] < reach < ends[1]
+        reaches.append(reach)
+    assert reaches[1] > 1.1 * reaches[0]
 
 
 def test_speed_does_not_change_where_it_is_simulated() -> None:

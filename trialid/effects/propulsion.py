@@ -50,10 +50,30 @@ def propeller_side_force(n, *, N_n=Parameter(-1e-9, low=-2e-8, high=2e-8)):
     return Force(Y=-2.0 * N, N=N)
 
 
+@effect(source="B-screws in four quadrants: 20 to 40 % less astern; right-handed: bow to starboard")
+def propeller_astern(
+    n, *, X_ast=Parameter(2e-9, low=-5e-8, high=5e-8), N_ast=Parameter(4e-10, low=-1e-8, high=1e-8)
+):
+    """X = X_ast n^2,  N = N_ast n^2,  Y = -2 N where n < 0: less thrust than ahead, and a race.
+
+    On top of propeller_thrust, which has as much astern; the race astern pushes the stern sideways.
+    """
+    back = 0.5 * (n - abs(n))
+    N = N_ast * back * back
+    return Force(X=X_ast * back * back, Y=-2.0 * N, N=N)
+
+
 @effect(source="thrust of two shafts at some distance from the middle; size by judgement")
 def twin_screws(n_p, n_s, *, N_twin=Parameter(2e-10, low=0.0, high=1e-8)):
     """N = N_twin (n_p |n_p| - n_s |n_s|): two screws that do not turn alike."""
     return Force(N=N_twin * (n_p * abs(n_p) - n_s * abs(n_s)))
 
 
-EFFECTS = (rudder_slipstream, surge_loss, shaft_speed_drop, propeller_side_force, twin_screws)
+EFFECTS = (
+    rudder_slipstream,
+    surge_loss,
+    shaft_speed_drop,
+    propeller_side_force,
+    propeller_astern,
+    twin_screws,
+)

@@ -117,9 +117,23 @@ def _inflow(
 
 
 def _race(inflow: Number, n: Number, D_P: Number, KT0: Number, KT1: Number) -> Number:
-    """K_T (n D_P)^2 with K_T = KT0 + KT1 J, finite with the shaft stopped; n in rad/s."""
-    tip = n / TURN * D_P
+    """K_T (n D_P)^2 with K_T = KT0 + KT1 J, finite with the shaft stopped; n in rad/s, ahead."""
+    tip = _ahead(n) / TURN * D_P
     return (KT0 * tip + KT1 * inflow) * tip
+
+
+def _astern(inflow: Number, n: Number, D_P: Number, KT0: Number, KT1: Number) -> Number:
+    """The same of a shaft that turns astern, as of a screw with two like faces.
+
+    Water from ahead, in which the blades stall, leaves it the thrust of a ship at rest; from astern
+    it takes of it as J takes ahead.
+    """
+    return _race(_ahead(-inflow), -n, D_P, KT0, KT1)
+
+
+def _ahead(x: Number) -> Number:
+    """x where it is positive, else 0."""
+    return 0.5 * (x + abs(x))
 
 
 @effect(source=SN82, system="SI")
@@ -130,9 +144,13 @@ def propeller_thrust(
     w_P=Parameter(0.184, null=None), tau_P=Parameter(1.09, null=None),
     x_P=Parameter(-0.526, null=None),
 ):  # fmt: skip
-    """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s)."""
-    race = _race(_inflow(u=u, v=v, r=r, L=L, w_P=w_P, tau_P=tau_P, x_P=x_P), n, D_P, KT0, KT1)
-    return Force(X=(1.0 - t_P) * rho * D_P**2 * race)
+    """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s).
+
+    Astern -rho n^2 D_P^4 K_T, the screw as good as ahead: propeller_astern says by how much not.
+    """
+    inflow = _inflow(u=u, v=v, r=r, L=L, w_P=w_P, tau_P=tau_P, x_P=x_P)
+    ahead, back = (push(inflow, n, D_P, KT0, KT1) for push in (_race, _astern))
+    return Force(X=rho * D_P**2 * ((1.0 - t_P) * ahead - back))
 
 
 @effect(source=SN82, system="SI")
@@ -152,11 +170,12 @@ def propeller_rudder(
     """F_N = -1/2 rho A_R f (u_R^2 + v_R^2) sin(alpha_R): a rudder in the propeller's race.
 
     With the thrust X = (1 - t_P) rho n^2 D_P^4 K_T(J); u_R is the race, v_R the side flow that
-    drift and turning leave at the rudder, f the slope of the normal force by aspect ratio.
+    drift and turning leave at the rudder, f the slope of the normal force by aspect ratio. Astern
+    the thrust is that of propeller_thrust, and there is no race.
     """
     inflow = _inflow(u=u, v=v, r=r, L=L, w_P=w_P, tau_P=tau_P, x_P=x_P)
     race = _race(inflow, n, D_P, KT0, KT1)
-    thrust = rho * D_P**2 * race
+    thrust = rho * D_P**2 * ((1.0 - t_P) * race - _astern(inflow, n, D_P, KT0, KT1))
     u_R = eps_R * sqrt(inflow * inflow + 8.0 * k_R * race / PI + STANDSTILL)
     turning = (r * L) ** 2 / (u * u + v * v + STANDSTILL)
     turned = l_R * r + l_Rrrr * r * turning
@@ -166,7 +185,7 @@ def propeller_rudder(
     F_N = -0.5 * rho * A_R * slope * (u_R * u_R + v_R * v_R) * sin(alpha)
     across = F_N * cos(delta)
     return Force(
-        X=(1.0 - t_P) * thrust + c_RX * F_N * sin(delta),
+        X=thrust + c_RX * F_N * sin(delta),
         Y=(1.0 + a_H) * across,
         K=-(1.0 + a_H) * z_R * L * across,
         N=(x_R + a_H * x_H) * L * across,

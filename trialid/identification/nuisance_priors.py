@@ -44,6 +44,9 @@ CURRENT: Final = 1.0
 """[m/s] Speed to the north or to the east of the water that trials are sailed in: tides of open
 roads run at 0.5 to 1.5 m/s, and only a narrow sound has more. A record that sees it is not held."""
 
+PLACE: Final = ("psi", "x", "y")
+"""Integrals of the motion; no force acts on them."""
+
 LIMIT: Final = 10.0
 """Standard deviations beyond which no initial state is looked for."""
 
@@ -119,7 +122,8 @@ def _as_recorded(model: ShipModel, trial: Trial, state: str) -> Known:
     """The first samples, to within their noise and how much moves in half a length sailed.
 
     The median of five, so that one struck sample is no start; a tenth of all motion is let for
-    what the model makes of the first moments.
+    what the model makes of the first moments, but not of where she is and heads: a heading that is
+    free by a tenth of a turning circle begins 50 deg off, to make up for what comes later.
     """
     y = trial.signals[state][trial.valid[state]]
     y = y if len(y) else trial.signals[state]
@@ -127,7 +131,8 @@ def _as_recorded(model: ShipModel, trial: Trial, state: str) -> Known:
     first = y[: max(5, round(FIRST * L / U / trial.period))]
     noise = float(np.std(np.diff(y, 3))) / np.sqrt(20.0) if len(y) > 8 else 0.0
     floor = 1e-3 * {"u": U, "v": U, "p": U / L, "r": U / L}.get(state, 1.0)
-    deviation = np.hypot(np.std(first), 3.0 * noise) + 0.1 * float(np.std(y)) + floor
+    moves = 0.0 if state in PLACE else 0.1 * float(np.std(y))
+    deviation = np.hypot(np.std(first), 3.0 * noise) + moves + floor
     return float(np.median(y[:5])), float(deviation)
 
 

@@ -140,29 +140,34 @@ def _lacks(record: SteeredRecord, run: Sequence[Excursion], rest: Sequence[Excur
 def _round(record: SteeredRecord, run: Sequence[Excursion], course: float) -> bool:
     """Whether rudder and change of heading are one number that a crew is told: 10/10, 20/20.
 
-    One reversal alone is also what a helmsman does who meets a turn: two numbers that are round,
-    each by itself, come to that by chance one time in nine.
+    One reversal alone is also what a helmsman does who meets a turn. So both angles of the rudder
+    and the change of heading are to be that number: by chance less than one time in thirty.
     """
     k = given_back(record, run[0], run[1].begin)
     change, late = abs(record.psi[k] - course), 2.0 * abs(record.psi[k] - record.psi[k - 1])
     told = ROUND * round(abs(run[0].angle) / ROUND)
-    spares = ((change, SPARE + late), (abs(run[0].angle), SPARE))
+    spares = ((change, SPARE + late), *((abs(one.angle), SPARE) for one in run))
     return all(abs(x - told) <= spare for x, spare in spares)
 
 
 def _run(
     record: SteeredRecord, free: Sequence[Excursion], place: int, course: float
 ) -> list[Excursion]:
-    """The longest zig-zag that begins with an excursion; that alone where there is none."""
+    """The longest zig-zag that begins with an excursion; that alone where there is none.
+
+    An indicator may differ from side to side, but to one side an order is the same angle again.
+    """
     run, usual = [free[place]], 0.0
     for k in range(place + 1, len(free)):
         last, one = run[-1], free[k]
         if not reverses(record, last, one, run[0].angle):
             break
-        change = abs(record.psi[given_back(record, last, one.begin)] - course)
+        turned = record.psi[given_back(record, last, one.begin)] - course
+        change = float(np.sign(last.angle) * turned)  # on the side to which she was turned
         usual = usual or change
         even = abs(change - usual) <= max(ALIKE * usual, STRAIGHT) and change > STRAIGHT
-        if not even or change >= QUARTER or (one.held < HELD and k < len(free) - 1):
+        again = len(run) < 2 or abs(abs(one.angle) - abs(run[-2].angle)) <= 2.0 * SPARE
+        if not (even and again) or change >= QUARTER or (one.held < HELD and k < len(free) - 1):
             break
         run.append(one)
     return run

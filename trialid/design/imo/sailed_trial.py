@@ -32,7 +32,7 @@ Numbers = Callable[[Track], Mapping[str, float]]
 """What is read from a track; DesignError where it does not come so far."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SailedTrial:
     """A trial as the fitted ship sails it.
 
@@ -44,23 +44,47 @@ class SailedTrial:
         Their slopes by what is known and what may be missing; (N, 3, n).
     others
         Tracks with an effect at a value tried, and the columns of it.
+    speed, speed_by
+        Where it is simulated, the speed ahead [m/s] (N,), and its slopes (N, n).
     """
 
     track: Track
     by: Vector
     others: tuple[tuple[Track, tuple[int, ...]], ...]
     spread: LikelySpread
+    speed: Vector | None = None
+    speed_by: Vector | None = None
 
 
-def sail_trial(
-    fit: Fit, trial: Trial, spread: LikelySpread, *, windy: bool = True
-) -> SailedTrial | None:
-    """The trial as the fitted ship sails it; None where she cannot, or leaves her model.
+@dataclass(frozen=True, kw_only=True)
+class Sailing:
+    """What is sailed: a model with a track, her parameters and start, and columns by their place.
 
-    Not `windy`: as she would have sailed it without the wind that her model has.
+    Attributes
+    ----------
+    starts
+        Columns of initial states that slopes are wanted by.
     """
+
+    model: ShipModel
+    trial: Trial
+    values: Mapping[str, float]
+    start: Mapping[str, float]
+    starts: Mapping[str, int]
+
+
+def sail_trial(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | None:
+    """The trial as the fitted ship sails it; None where she cannot, or leaves her model."""
     try:
-        return _sailed(fit, trial, spread, windy)
+        values, start = of_trial(fit.problem, fit.theta, trial, fit.level)
+        one = Sailing(
+            model=with_track(fit, trial),
+            trial=trial,
+            values=values,
+            start=start,
+            starts=_own_starts(fit, trial),
+        )
+        return sail(fit, one, spread)
     except (EffectError, NotIdentifiable):
         return None  # a motion that carries her along is neither simulated nor recorded
 
@@ -76,44 +100,55 @@ def is_wind(effect: Effect) -> bool:
     return bool(steady or {"V_aw", "gamma_aw"} & {*effect.signals})
 
 
-def _sailed(fit: Fit, trial: Trial, spread: LikelySpread, windy: bool) -> SailedTrial | None:
-    base = _with_track(fit, trial)
-    values, start = of_trial(fit.problem, fit.theta, trial, fit.level)
-    acting = [m for m in spread.missing if _acts(m.effect, trial, base)]
-    if not windy:
-        acting = [m for m in acting if not is_wind(m.effect)]
-        for effect in (e for e in base.effects if is_wind(e)):
-            base = base - effect.name
+def sail(fit: Fit, one: Sailing, spread: LikelySpread, more: int = 0) -> SailedTrial | None:
+    """What a model sails, with its slopes; None where she leaves her model.
+
+    Parameters
+    ----------
+    more
+        Columns beside what is known and what may be missing.
+    """
+    acting = [m for m in spread.missing if _acts(m.effect, one.trial, one.model)]
     linear = [m for m in acting if not m.tried]
-    model = base
-    for one in linear:
-        model = (model + one.effect).with_values(one.effect.nulls)
-    places = _places(fit, trial, spread, linear)
+    model = one.model
+    for rival in linear:
+        model = (model + rival.effect).with_values(rival.effect.nulls)
+    places = {**_places(spread, linear), **one.starts}
     free = [n for n in places if n in model.parameters]
-    simulator = prepare(model, free, PLACE, substeps=fit.settings.substeps)
-    own = {n: values.get(n, model.value(n)) for n in free}
-    response = respond(simulator, trial, own, start)
+    outputs = (*PLACE, "u") if "u" in model.states else PLACE
+    simulator = prepare(model, free, outputs, substeps=fit.settings.substeps)
+    own = {n: one.values.get(n, model.value(n)) for n in free}
+    response = respond(simulator, one.trial, own, one.start)
     if response.departure is not None or response.S is None:
         return None
-    by = np.zeros((trial.samples, len(PLACE), len(spread.known) + spread.width))
+    width = len(spread.known) + spread.width + more
+    by = np.zeros((one.trial.samples, len(outputs), width))
     for i, column in enumerate(simulator.columns):
         if column in places:
             by[..., places[column]] = response.S[..., i]
-    others = tuple(_tried(base, one, trial, start, spread) for one in acting if one.tried)
-    return SailedTrial(_track(response.y), by, tuple(o for o in others if o), spread)
+    others = tuple(o for m in acting if m.tried and (o := _tried(one, m, spread)))
+    ahead = "u" in outputs
+    return SailedTrial(
+        track=_track(response.y),
+        by=by[:, :3],
+        others=others,
+        spread=spread,
+        speed=response.y[:, 3] if ahead else None,
+        speed_by=by[:, 3] if ahead else None,
+    )
 
 
 def sail_plainly(fit: Fit, trial: Trial) -> Track | None:
     """The track alone as the fitted ship sails it, from the first position and heading recorded."""
     try:
         _, start = of_trial(fit.problem, fit.theta, trial, fit.level)
-        response = respond(_plain(_with_track(fit, trial)), trial, {}, start, sensitivities=False)
+        response = respond(_plain(with_track(fit, trial)), trial, {}, start, sensitivities=False)
     except (EffectError, NotIdentifiable):
         return None
     return None if response.departure is not None else _track(response.y)
 
 
-def _with_track(fit: Fit, trial: Trial) -> ShipModel:
+def with_track(fit: Fit, trial: Trial) -> ShipModel:
     """The fitted model with a track of its own, through the water; losing speed where none is."""
     states = tuple(s for s in STATES if s in {*fit.model.states, *PLACE})
     model = replace(fit.model, states=states)
@@ -130,16 +165,20 @@ def _acts(effect: Effect, trial: Trial, model: ShipModel) -> bool:
     return bool({*effect.forms} - {*SENSORS}) and not unknown
 
 
-def _places(
-    fit: Fit, trial: Trial, spread: LikelySpread, linear: Sequence[Shows]
-) -> dict[str, int]:
-    """Place of each column of a simulator among what the spread is by."""
-    known = {n: i for i, n in enumerate(spread.known)}
+def _own_starts(fit: Fit, trial: Trial) -> dict[str, int]:
+    """Place of what a fitted trial has for itself, its initial states and its sensors'."""
     fitted = [t.name for t in fit.problem.trials]
-    for i, x in enumerate(fit.problem.unknowns):
-        if x.trial is not None and fitted[x.trial] == trial.name:
-            known[x.column] = i
-    known.pop(initial("psi"), None)
+    own = {
+        x.column: i
+        for i, x in enumerate(fit.problem.unknowns)
+        if x.trial is not None and fitted[x.trial] == trial.name
+    }
+    return {n: i for n, i in own.items() if n != initial("psi")}
+
+
+def _places(spread: LikelySpread, linear: Sequence[Shows]) -> dict[str, int]:
+    """Place of each column of a simulator among what the spread is by."""
+    known = {n: i for i, n in enumerate(spread.known) if n != initial("psi")}
     for one in linear:
         more = zip(one.parameters, one.columns, strict=True)
         known |= {n: len(spread.known) + c for n, c in more}
@@ -147,13 +186,13 @@ def _places(
 
 
 def _tried(
-    base: ShipModel, one: Shows, trial: Trial, start: Mapping[str, float], spread: LikelySpread
+    one: Sailing, rival: Shows, spread: LikelySpread
 ) -> tuple[Track, tuple[int, ...]] | None:
-    model = (base + one.effect).with_values({**one.effect.nulls, **one.tried})
-    response = respond(_plain(model), trial, {}, start, sensitivities=False)
+    model = (one.model + rival.effect).with_values({**rival.effect.nulls, **rival.tried})
+    response = respond(_plain(model), one.trial, {}, one.start, sensitivities=False)
     if response.departure is not None:
         return None
-    return _track(response.y), tuple(len(spread.known) + c for c in one.columns)
+    return _track(response.y), tuple(len(spread.known) + c for c in rival.columns)
 
 
 def _plain(model: ShipModel) -> Simulator:
@@ -161,7 +200,7 @@ def _plain(model: ShipModel) -> Simulator:
 
 
 def _track(y: Vector) -> Track:
-    return dict(zip(PLACE, y.T, strict=True))
+    return dict(zip(PLACE, y[:, :3].T, strict=True))
 
 
 def numbers(sailed: SailedTrial, read: Numbers) -> dict[str, tuple[float, Range | None]]:
@@ -197,7 +236,9 @@ def drift(windy: SailedTrial | None, calm: SailedTrial, read: Numbers) -> dict[s
     if windy is None:
         return {}
     try:
-        with_wind, without = read(windy.track), read(calm.track)
+        blown, calmly = read(windy.track), read(calm.track)
+        names = [n for n in calmly if n in blown]
+        with_wind, without = ({n: x[n] for n in names} for x in (blown, calmly))
         by = _slopes(calm, read, without) - _slopes(windy, read, with_wind)
     except DesignError:
         return {}
@@ -214,10 +255,12 @@ def _slopes(sailed: SailedTrial, read: Numbers, found: Mapping[str, float]) -> V
     for i in np.flatnonzero(sizes):
         step = SMALL / sizes[i]
         up, down = (read(_moved(sailed.track, side * by[..., i])) for side in (step, -step))
-        slopes[:, i] = [(up[n] - down[n]) / (2.0 * step) for n in found]
+        slopes[:, i] = [(up.get(n, x) - down.get(n, x)) / (2.0 * step) for n, x in found.items()]
     for track, columns in sailed.others:
         other = read(track)
-        slopes[:, list(columns)] = np.array([other[n] - x for n, x in found.items()])[:, None]
+        slopes[:, list(columns)] = np.array([other.get(n, x) - x for n, x in found.items()])[
+            :, None
+        ]
     return slopes
 
 

@@ -6,6 +6,7 @@ heading and logged speed, taken as white, half a sample of the order, the curren
 drift's own range. What the same ship does on another day they do not hold.
 """
 
+import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -13,7 +14,14 @@ from typing import Any, Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.imo.sailed_trial import Drift, SailedTrial, Track, drift, numbers
+from trialid.design.imo.sailed_trial import (
+    Drift,
+    Numbers,
+    SailedTrial,
+    Track,
+    drift,
+    numbers,
+)
 from trialid.design.imo.trial_numbers import Range
 from trialid.errors import DesignError
 from trialid.trial import Trial
@@ -61,11 +69,16 @@ class Around:
     """What acts on a trial besides the ship: its current, and the model with the wind and without.
 
     None where the fit knows no current, where nothing is predicted, where the model has no wind.
+
+    Attributes
+    ----------
+    calm
+        Sails on from an order [s] up to a sample without the wind; None where she cannot.
     """
 
     water: Water | None = None
     sailed: SailedTrial | None = None
-    calm: SailedTrial | None = None
+    calm: Callable[[float, int], SailedTrial | None] | None = None
 
     @property
     def words(self) -> str:
@@ -92,9 +105,7 @@ def track_numbers(reader: TrackReader, trial: Trial, around: Around) -> dict[str
     def read(whole: Track) -> dict[str, float]:
         return reader.read({n: x[reader.span] for n, x in whole.items()}, t, 0.0)
 
-    still = around.calm or around.sailed
-    predicted = {} if still is None else numbers(still, read)
-    off = {} if around.calm is None else drift(around.sailed, around.calm, read)
+    predicted, off = foretold(around, reader.order, reader.span.stop, read)
     found = {}
     for name, value in plain.items():
         half, own = spread.get(name), predicted.get(name, (None, None))
@@ -103,6 +114,24 @@ def track_numbers(reader: TrackReader, trial: Trial, around: Around) -> dict[str
             known = _without_wind(through.get(name), around, off.get(name))
             found[name] = {**ends, **known, "predicted": own[0], "predicted_interval": own[1]}
     return found
+
+
+def foretold(
+    around: Around, order: float, end: int, read: Numbers
+) -> tuple[dict[str, tuple[float, Range | None]], dict[str, Drift]]:
+    """The model's numbers of a manoeuvre by name, in calm air, and what the wind did to them.
+
+    Parameters
+    ----------
+    order, end
+        When it was ordered [s], and the sample up to which it is read.
+    """
+    if around.calm is None:
+        return {} if around.sailed is None else numbers(around.sailed, read), {}
+    calm = around.calm(order, end)
+    if calm is None:
+        return {}, {}
+    return numbers(calm, read), drift(around.sailed, calm, read)
 
 
 def _is_read(trial: Trial, name: str, span: slice) -> bool:
@@ -162,13 +191,24 @@ def _spread(
         if current is not None:
             north, east = (e * rng.standard_normal() for e in current)
             there = through_water(there, t - reader.order, (north, east))
-        try:
-            found = reader.read(there, t, period * rng.uniform(-0.5, 0.5))
-        except DesignError:
-            continue
-        for name, value in found.items():
-            drawn.setdefault(name, []).append(value)
-    return {n: NORMAL * float(np.std(x)) for n, x in drawn.items() if len(x) > DRAWS // 2}
+        with contextlib.suppress(DesignError):
+            for name, value in reader.read(there, t, 0.0).items():
+                drawn.setdefault(name, []).append(value)
+    known = {n: float(np.std(x)) for n, x in drawn.items() if len(x) > DRAWS // 2}
+    late = _by_timing(reader, t, track, period)
+    return {n: NORMAL * float(np.hypot(x, late.get(n, 0.0))) for n, x in known.items()}
+
+
+def _by_timing(reader: TrackReader, t: Vector, track: Track, period: float) -> dict[str, float]:
+    """Standard deviation of each number by an order that may be half a sample off.
+
+    By itself: between samples a noisy track is smoother, and draws of both would be too narrow.
+    """
+    try:
+        early, late = (reader.read(track, t, side * period) for side in (-0.5, 0.5))
+    except DesignError:
+        return {}
+    return {n: abs(x - early[n]) / np.sqrt(12.0) for n, x in late.items()}
 
 
 def white_noise(y: Vector) -> float:

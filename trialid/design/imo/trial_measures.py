@@ -1,9 +1,11 @@
 """All that the manoeuvres of a fit's trials come to; each trial is searched and sailed once."""
 
+import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from trialid.design.imo.calm_air import sail_in_calm_air
 from trialid.design.imo.measured import READERS, heading_numbers, order_time
 from trialid.design.imo.recognise import recognise, samples_a_length
 from trialid.design.imo.recognition import Recognised
@@ -63,7 +65,7 @@ def _of_trial(
     return TrialMeasures(
         manoeuvres=tuple(_manoeuvre(trial, m) for m in found),
         numbers=(
-            *heading_numbers(trial, found, around.sailed),
+            *heading_numbers(trial, found, around),
             *_track_numbers(fit, trial, readers, around),
         ),
         turns=tuple(_turn_measures(trial, circles, around)),
@@ -92,11 +94,9 @@ def _around(
     if not kinds & {*ON_TRACK, *READERS}:
         return Around()
     sailed = None if spread is None else sail_trial(fit, trial, spread)
-    if not kinds & {*ON_TRACK}:
-        return Around(sailed=sailed)
     calm = None
-    if spread is not None and sailed is not None and has_wind(fit.model):
-        calm = sail_trial(fit, trial, spread, windy=False)
+    if sailed is not None and has_wind(fit.model):
+        calm = functools.partial(sail_in_calm_air, fit, trial, sailed)
     return Around(water=_water(fit, trial, errors), sailed=sailed, calm=calm)
 
 

@@ -26,8 +26,8 @@ class ManoeuvreNumber:
     """A number of a manoeuvre that is no turning circle, in `unit`, and the fitted model's.
 
     Each with its 95 %. `predicted` is under the rudder as recorded; None where nothing is known to
-    predict it from. What is read from the track is corrected as that of a turn is; headings and
-    rates need it for no current, and are not corrected for wind.
+    predict it from. What is read from the track is corrected as that of a turn is; overshoots for
+    wind alone, as a current turns no ship; rates of pull-outs and spirals for nothing.
     """
 
     trial: str

@@ -1,7 +1,7 @@
 """What drives a ship on her approach, stopped and astern: the orders of her shafts and thrusters.
 
-A shaft `n` is one that turns ahead: the catalogue has no propeller for it that is known astern. An
-`[[actuator]]` has a gain of its own astern, so it can be ordered so.
+A shaft `n` that turns astern pulls by `propeller_thrust` and what `propeller_astern` says of it; an
+`[[actuator]]` has a gain of its own astern.
 """
 
 from collections.abc import Callable, Mapping
@@ -24,19 +24,16 @@ DOUBLINGS: Final = 60
 
 @dataclass(frozen=True)
 class Engine:
-    """What drives a ship: orders on the approach by the name of the input [SI]; those of a shaft.
+    """What drives a ship: orders on the approach by the name of the input [SI].
 
     Attributes
     ----------
     feedback
         By input, the state that follows it where its lag is in the model, else the input itself.
-    is_shaft
-        Whether it is one that the catalogue knows ahead alone.
     """
 
     approach: Mapping[str, float]
     feedback: Mapping[str, str]
-    is_shaft: bool
 
 
 def engine_of(ship: Vessel) -> Engine:
@@ -57,7 +54,7 @@ def engine_of(ship: Vessel) -> Engine:
     driven = [a for a in ship.model.ship.actuators if a.kind in PUSHING]
     feedback = {n: a.drive for a in driven for n in (a.drive, f"{a.drive}_order") if n in inputs}
     if shafts and not feedback:
-        return Engine({n: ship.constants[n] for n in shafts}, {n: n for n in shafts}, True)
+        return Engine({n: ship.constants[n] for n in shafts}, {n: n for n in shafts})
     if not feedback:
         raise DesignError(
             f"stop: no effect of this model reads a shaft's speed ({', '.join(SHAFTS)}) or a "
@@ -69,7 +66,7 @@ def engine_of(ship: Vessel) -> Engine:
             "the orders of each as a CSV"
         )
     order = _holding(ship, feedback)
-    return Engine(dict.fromkeys(feedback, order), feedback, False)
+    return Engine(dict.fromkeys(feedback, order), feedback)
 
 
 def astern_orders(ship: Vessel, engine: Engine) -> dict[str, float]:
@@ -80,19 +77,13 @@ def astern_orders(ship: Vessel, engine: Engine) -> dict[str, float]:
     DesignError
         The model does not know what pushes her astern.
     """
-    if engine.is_shaft:
-        raise DesignError(
-            f"stop astern: the model knows {', '.join(engine.approach)} ahead alone, as every "
-            "shaft of the catalogue; describe what drives her as an [[actuator]] of kind thruster, "
-            "which has a gain astern, and sail a trial that holds it astern"
-        )
     back = {n: -x for n, x in engine.approach.items()}
     if not _push(ship, engine.feedback, back) < _push(
         ship, engine.feedback, dict.fromkeys(back, 0.0)
     ):
         raise DesignError(
-            f"stop astern: {', '.join(back)} push nothing astern in this model; its gain astern is "
-            "zero or has the wrong sign: free it, with a trial that holds them astern"
+            f"stop astern: {', '.join(back)} push nothing astern in this model; what they give "
+            "astern is zero or has the wrong sign: free it, with a trial that holds them astern"
         )
     return back
 

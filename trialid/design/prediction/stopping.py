@@ -12,6 +12,7 @@ from trialid.design.prediction.engine_orders import astern_orders, engine_of
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.predicted_motion import sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
+from trialid.design.prediction.unseen_astern import all_of, screws_astern
 from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, in_calm
 from trialid.trial import Trial
 
@@ -38,9 +39,17 @@ def sail_stop(
     DesignError
         The model does not simulate the speed, nothing drives her, or nothing known drives astern.
     """
-    base = in_calm(ship)
-    engine, start = engine_of(base), round(STRAIGHT * STEPS)
-    samples = round(LENGTHS * STEPS) + 1
+    base, start = in_calm(ship), round(STRAIGHT * STEPS)
+    given = _orders(base, start, astern)
+    read = functools.partial(_numbers, start, share)
+    others = screws_astern(base) if astern else ()
+    made = [sail_orders(one, given, spread, band, read=read) for one in others or (base,)]
+    return _until_slow(all_of(made) if others else made[0], share, start)
+
+
+def _orders(base: Vessel, start: int, astern: bool) -> Trial:
+    """Straight ahead, then from a sample on the engine stopped, or as fast astern."""
+    engine, samples = engine_of(base), round(LENGTHS * STEPS) + 1
     signals = {n: np.full(samples, x) for n, x in base.constants.items() if n != "u"}
     signals |= {n: np.zeros(samples) for n in ("delta", "delta_order")}
     orders = astern_orders(base, engine) if astern else dict.fromkeys(engine.approach, 0.0)
@@ -48,10 +57,7 @@ def sail_stop(
         ahead = engine.approach[name]
         signals[engine.feedback[name]] = np.full(samples, ahead)
         signals[name] = np.where(np.arange(samples) < start, ahead, order)
-    given = Trial("stop", "check", base.period, signals, {})
-    read = functools.partial(_numbers, start, share)
-    made = sail_orders(base, given, spread, band, read=read)
-    return _until_slow(made, share, start)
+    return Trial("stop", "check", base.period, signals, {})
 
 
 def _numbers(start: int, share: float, t: Vector, now: Mapping[str, Vector]) -> dict[str, float]:
@@ -65,6 +71,8 @@ def _numbers(start: int, share: float, t: Vector, now: Mapping[str, Vector]) -> 
     if not len(slow):
         return {}
     end = start + int(slow[0])
+    steps = np.hypot(np.diff(now["x"]), np.diff(now["y"]))
+    way = np.concatenate([[0.0], np.cumsum(steps)])
     part = (u[end - 1] - wanted) / (u[end - 1] - u[end])
     at = end - 1 + part
 
@@ -74,6 +82,7 @@ def _numbers(start: int, share: float, t: Vector, now: Mapping[str, Vector]) -> 
     return {
         "time to that speed [s]": since(t),
         "head reach [m]": since(now["x"]),
+        "track reach [m]": since(way),
         "lateral deviation [m]": since(now["y"]),
     }
 

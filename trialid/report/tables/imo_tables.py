@@ -12,12 +12,17 @@ ON_TRACK: Final = ("Williamson turn", "stop")
 CORRECTED: Final = {
     "current": "Corrected for current: through the water, by the current that the fit found "
     "(a trial held out finds its own, without an interval).",
-    "wind": "Corrected for wind: less what the model drifts by it under the recorded rudder.",
+    "wind": "Corrected for wind: less what the model drifts by it under the recorded rudder, from "
+    "the order on.",
 }
 UNCORRECTED: Final = {
     "current": "Not corrected for current: the fit finds none.",
     "wind": "Not corrected for wind: the model has none in it.",
 }
+READINGS: Final = (
+    *("measured", "95 % from", "to", "corrected", "95 % from", "to", "corrected for"),
+    *("model", "95 % from", "to"),
+)
 
 
 def measures(run: Result) -> Table:
@@ -94,8 +99,8 @@ def track_numbers(run: Result) -> Table:
     found = (run.imo or ImoPart()).measured
     rows = tuple(_on_track(each) for each in found if each.kind in ON_TRACK)
     headings = (
-        *("trial", "manoeuvre", "t [s]", "number", "unit", "measured", "95 % from", "to"),
-        *("corrected", "95 % from", "to", "corrected for", "model", "95 % from", "to"),
+        *("trial", "manoeuvre", "t [s]", "number", "unit"),
+        *READINGS,
     )
     return Table("track_numbers", "Williamson turns and stops in the trials", headings, rows)
 
@@ -144,18 +149,15 @@ def manoeuvre_numbers(run: Result) -> Table:
     rows = tuple(_measured(each) for each in found if each.kind not in ON_TRACK)
     headings = (
         *("trial", "manoeuvre", "t [s]", "rudder [deg]", "number", "unit"),
-        *("measured", "95 % from", "to", "model", "95 % from", "to"),
+        *READINGS,
     )
     return Table("measured", "Zig-zags, pull-outs and spirals in the trials", headings, rows)
 
 
 def _measured(each: ManoeuvreNumber) -> tuple[Cell, ...]:
     unit, factor = wording.shown_unit(each.unit)
-    band = each.predicted_interval or (None, None)
-    sizes = (each.measured, *each.interval, each.predicted, *band)
-    numbers = (Figure(None if x is None else x * factor, 3) for x in sizes)
     start = (Figure(each.t), Figure(_degrees(each.rudder), 3))
-    return each.trial, each.kind, *start, each.name, unit, *numbers
+    return each.trial, each.kind, *start, each.name, unit, *_corrected(each, factor)
 
 
 def _degrees(angle: float) -> float:
