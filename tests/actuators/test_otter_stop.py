@@ -134,7 +134,7 @@ def check_gains(folder: Path, run: str) -> None:
     at = json.loads((folder / "nomoto.json").read_text(encoding="utf-8"))["at"][0]
     assert "thruster_port = cruise + delta, thruster_starboard = cruise - delta" in at["order"]
     assert (at["numbers"]["K"]["unit"], at["numbers"]["K"]["value"] > 0.0) == ("1", True)
-    command = ("export", run, "--as", "ardupilot", "--out", "boat.param")
+    command = ("export", run, "--as", "ardupilot", "--bandwidth", "1.5", "--out", "boat.param")
     for words, told in (
         ([], "add --full-command 1000 [rpm]"),
         (["--full-rudder", "35"], "say instead their command at full output"),

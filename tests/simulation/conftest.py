@@ -68,6 +68,7 @@ def lively() -> Callable[..., Trial]:
         t = np.arange(samples) * period
         signals = {name: wave(name, t, seed) for name in SIGNALS if name != "u"}
         signals["u"] = 7.3 + 0.1 * np.cos(0.07 * t)
+        signals["n"] = 10.0 + 2.0 * np.sin(0.13 * t)  # where a shaft stops, thrust has a kink
         return Trial("lively", "fit", period, signals, {})
 
     return make
