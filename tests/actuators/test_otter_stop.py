@@ -104,7 +104,8 @@ def test_the_words_of_a_crash_stop() -> None:
 
 def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
     """Stopped, ordered astern, handed over with the units of her thrusters; gains by both."""
-    done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv")], "--length 2")
+    logs = [log(tmp_path / f"{seed}.csv", seed=seed) for seed in (700, 701, 702)]
+    done = started(tmp_path, monkeypatch, logs, "--length 2")
     assert done.exit_code == 0, done.output
     run = "runs/first_trial"
     told = trialid_("simulate", run, "stop", "astern", "--out", "stop.csv")
@@ -134,7 +135,7 @@ def check_gains(folder: Path, run: str) -> None:
     at = json.loads((folder / "nomoto.json").read_text(encoding="utf-8"))["at"][0]
     assert "thruster_port = cruise + delta, thruster_starboard = cruise - delta" in at["order"]
     assert (at["numbers"]["K"]["unit"], at["numbers"]["K"]["value"] > 0.0) == ("1", True)
-    command = ("export", run, "--as", "ardupilot", "--bandwidth", "1.5", "--out", "boat.param")
+    command = ("export", run, "--as", "ardupilot", "--out", "boat.param")
     for words, told in (
         ([], "add --full-command 1000 [rpm]"),
         (["--full-rudder", "35"], "say instead their command at full output"),
