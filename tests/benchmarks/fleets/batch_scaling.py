@@ -37,7 +37,7 @@ from generated_fleet import (
 
 from trialid.fleet.batch import Batch, batch
 from trialid.fleet.dask_workers import connect, results
-from trialid.fleet.do_run import Done, do_run
+from trialid.fleet.do_run import Done
 from trialid.fleet.plan import plan
 from trialid.fleet.rows_of_run import run_row
 from trialid.pipeline_file.fleet_file import load_fleet
@@ -114,7 +114,6 @@ class Workers:
 
 def import_all() -> None:
     """Import what a run needs, so that a worker is warm."""
-    assert do_run
     import trialid.workflow.write_run  # noqa: F401
 
 
