@@ -121,6 +121,20 @@ def test_what_noise_leaves_open_is_no_change() -> None:
     assert find_changes(Estimates(x, np.full(20, 0.05)), 0.05)[0].course == ("step", 10)
 
 
+@pytest.mark.parametrize("at", [0, 20, 38, 39])
+def test_a_single_voyage_that_lies_off_is_no_change(at: int) -> None:
+    """Sixteen times the scatter off: no step there and back, and a step beside it is found."""
+    single = 0
+    for seed in range(300, 310):
+        x = 0.5 * np.random.default_rng(seed).standard_normal(40)
+        x[at] += 8.0
+        flat, level = np.ones(40), 0.05 / 4
+        assert find_changes(Estimates(x, flat), level) == ()
+        found = find_changes(Estimates(x + 3.0 * (np.arange(40) >= 24), flat), level)
+        single += [(one.course, abs(one.size - 3.0) < 1.0) for one in found] == [(("step", 24), 1)]
+    assert single >= 9
+
+
 def test_a_change_within_the_likely_ranges_says_so() -> None:
     small = list(changes(*fleet(3, step=-0.05, scatter=0.1)))
     large = list(changes(*fleet(3, step=-0.2, scatter=0.1)))

@@ -1,8 +1,9 @@
 """Changes of a ship's parameters in the course of her voyages: a step or a drift, and when.
 
 The estimates of a parameter scatter about one level until something changes: from voyage k on they
-lie at another level (a step), or leave it evenly (a drift). Such courses are fitted by least
-squares, each voyage weighted by its likely range. What one takes off the sum of squares, over what
+lie at another level (a step), or leave it evenly (a drift). A single voyage may lie off alone: that
+competes with changes, and is none. Such courses are fitted by least squares, each voyage weighted
+by its likely range. What one takes off the sum of squares, over what
 is left, follows Fisher's F where nothing changes; the scatter counts as it is found, and never less
 than the noise leaves. The best course, or the best two at once, count as found where even the best
 of all that were tried, over all parameters and ships of the fleet, would be as good by chance in
@@ -28,7 +29,7 @@ LEVEL: Final = 0.05
 FEWEST: Final = 6
 """Voyages from which on changes are sought: two on either side, and two for the scatter."""
 EITHER_SIDE: Final = 2
-"""Voyages that a level takes: a single one that lies off is no change."""
+"""Voyages that a level takes, so that a change is more than a voyage that lies off."""
 MOST: Final = 3
 """Changes of one parameter in one record."""
 TINY: Final = 1e-12
@@ -38,7 +39,7 @@ SWEEPS: Final = 4
 NORMAL: Final = float(norm.ppf(0.975))
 """Half of a range that holds 95 %, in standard deviations."""
 
-Form = Literal["step", "drift"]
+Form = Literal["step", "drift", "alone"]
 Course = tuple[Form, int]
 """What changes from which voyage on."""
 
@@ -121,7 +122,8 @@ def find_changes(y: Estimates, level: float) -> tuple[Found, ...]:
         chosen = _dated_anew(y, [*chosen, *more], tried)
     chosen = _worth_keeping(y, chosen, level)
     chosen.sort(key=lambda course: course[1])
-    return tuple(_found(y, chosen, i, len(tried)) for i in range(len(chosen)))
+    found = (_found(y, chosen, i, len(tried)) for i in range(len(chosen)))
+    return tuple(one for one in found if one.course[0] != "alone")
 
 
 def _next(y: Estimates, chosen: Sequence[Course], level: float, most: int) -> list[Course]:
@@ -180,14 +182,17 @@ def _worth_keeping(y: Estimates, chosen: list[Course], level: float) -> list[Cou
 
 
 def courses_of(voyages: int) -> list[Course]:
-    """Every change that is tried: from each voyage on that leaves enough on either side."""
+    """What is tried: a change from each voyage on that leaves enough on either side, each alone."""
     steps: list[Course] = [("step", k) for k in range(EITHER_SIDE, voyages - EITHER_SIDE + 1)]
     drifts: list[Course] = [("drift", k) for k in range(1, voyages - EITHER_SIDE - 1)]
-    return steps + drifts
+    alone: list[Course] = [("alone", k) for k in range(voyages)]
+    return steps + drifts + alone
 
 
 def column(course: Course, voyages: int) -> Vector:
     """What a course adds to the level, by voyage: 1 from the step on; of a drift 1 at the end.
+
+    Of a voyage alone 1 there.
 
     >>> column(("step", 2), 4).tolist(), column(("drift", 2), 4).tolist()
     ([0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 0.5, 1.0])
@@ -196,6 +201,8 @@ def column(course: Course, voyages: int) -> Vector:
     at = np.arange(voyages)
     if form == "step":
         return (at >= first).astype(float)
+    if form == "alone":
+        return (at == first).astype(float)
     return np.clip((at - first + 1.0) / (voyages - first), 0.0, None)
 
 
@@ -264,7 +271,7 @@ def _row(rows: Sequence[FittedRow], y: Estimates, found: Found, records: int) ->
         ship=rows[0].ship,
         parameter=rows[0].parameter,
         unit=rows[0].unit,
-        form=form,
+        form="step" if form == "step" else "drift",
         voyage=rows[first].voyage,
         date=rows[first].date,
         earliest=rows[found.ends[0]].voyage,
