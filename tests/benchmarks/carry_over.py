@@ -1,4 +1,4 @@
-r"""What half and twice of each threshold of `diagnosis.carry_over` does to the names.
+r"""What half and twice of each threshold of `diagnosis.search.carried` does to the names.
 
     PYTHONPATH=. python tests/benchmarks/carry_over.py --out tests/benchmarks/results/carry_over.md
 
@@ -22,7 +22,7 @@ from hidden_scenarios import guessed
 from hidden_tables import table
 from hidden_truth import Scenario, record
 
-from trialid.diagnosis.search import carry_over, score
+from trialid.diagnosis.search import carried, carry_over
 from trialid.diagnosis.search.completeness import WORTH, Completeness, completeness
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.effects import CATALOGUE
@@ -37,7 +37,7 @@ NOTHING: Final = ("nothing", "x_G + 1 % of L")
 OUTSIDE: Final = ("odd_switch", "odd_heel", "odd_rudder", "odd_course")
 NOISES: Final = ("white", "waves", "process")
 FIRST_SEED: Final = 7000
-FIELDS: Final = ("FALL", "LARGE", "FAINT", "EACH")
+FIELDS: Final = ("FALL", "LARGE", "ALIKE", "FAINT", "EACH")
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def variants() -> Iterator[tuple[str, str, dict[str, float], int]]:
     """Threshold, words, what it is then, and how many blocks."""
     yield "as they are", "", {}, 6
     for name in FIELDS:
-        value = getattr(carry_over, name)
+        value = getattr(carried, name)
         fall = name in ("FALL", "LARGE")
         for words, factor in (("half", 0.5), ("twice", 2.0)):
             new = 1.0 - factor * (1.0 - value) if fall else factor * value
@@ -118,12 +118,10 @@ def names(records: Sequence[Seen]) -> str:
 
 @contextmanager
 def changed(values: dict[str, float]) -> Iterator[None]:
-    """Thresholds at other values; `score` knows one of them by its own name."""
+    """Thresholds at other values."""
     with ExitStack() as stack:
         for name, value in values.items():
-            for module in (carry_over, score):
-                if hasattr(module, name):
-                    stack.enter_context(mock.patch.object(module, name, value))
+            stack.enter_context(mock.patch.object(carried, name, value))
         yield
 
 
