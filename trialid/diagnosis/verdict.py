@@ -228,17 +228,19 @@ def _missing_or_one_of(
 ) -> Verdict:
     """A name, unless blocks alone speak for it, and for what is unlike it as well."""
     others = rivals(named, ranking, refits)
-    if not {*others} <= {*named.candidate.family} and _faint(named, others, ranking, level):
+    if _open(named, others, ranking, level):
         return Verdict("cannot tell", None, (), _one_of(fit, named, others))
     return _missing(fit, named, others)
 
 
-def _faint(
+def _open(
     named: Refit, others: tuple[str, ...], ranking: Sequence[Candidate], level: float
 ) -> bool:
-    """Whether no effect that may be meant stands out against the noise: blocks alone show them."""
+    """Whether effects unlike in trace may be meant, and none stands out against the noise."""
     meant = {named.candidate.effect.name, *others}
-    return all(c.p_value >= level for c in ranking if c.effect.name in meant)
+    return not meant <= {*named.candidate.family} and all(
+        c.p_value >= level for c in ranking if c.effect.name in meant
+    )
 
 
 def _one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
