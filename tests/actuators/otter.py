@@ -29,6 +29,8 @@ ARM = 0.395
 AHEAD, ASTERN = 0.02216 / 2.0, 0.01289 / 2.0
 N_MAX, N_MIN = np.sqrt(0.5 * 24.4 * G / AHEAD), -np.sqrt(0.5 * 13.6 * G / ASTERN)
 LAG = 0.1
+STRIPS = 10
+"""As many as the published sum has: twice as many are 1.5 % more drag, which Nrr would make up."""
 PONTOON, DRAUGHT, C_D = 0.25, MASS / (2.0 * RHO * L * 0.25 * 0.5), 0.8
 
 
@@ -57,8 +59,8 @@ def rates(state: Vector, orders: Vector, weak: Vector, cross_flow: float) -> Vec
     Y = YV * v - (MASS - XUDOT) * u * r
     N = ARM * (left - right) + NR * r + NRR * abs(r) * r - MASS * X_G * u * r
     N += (YVDOT - XUDOT) * u * v
-    strips = (np.arange(20) + 0.5) * L / 20.0 - L / 2.0
-    drag = 0.5 * RHO * DRAUGHT * cross_flow * np.abs(v + strips * r) * (v + strips * r) * L / 20.0
+    strips = (np.arange(STRIPS) + 0.5) * L / STRIPS - L / 2.0
+    drag = 0.5 * RHO * DRAUGHT * cross_flow * np.abs(v + strips * r) * (v + strips * r) * L / STRIPS
     Y, N = Y - drag.sum(), N - (strips * drag).sum()
     lateral = np.array([[MASS - YVDOT, MASS * X_G], [MASS * X_G, I_Z - NRDOT]])
     v_dot, r_dot = np.linalg.solve(lateral, [Y, N])
@@ -68,17 +70,22 @@ def rates(state: Vector, orders: Vector, weak: Vector, cross_flow: float) -> Vec
 def sail(
     t: Vector, orders: Vector, weak: tuple[float, float] = (0.0, 0.0), cross_flow: float = C_D
 ) -> Sailed:
-    """The boat under orders (N, 2) [rad/s], from rest; classical Runge-Kutta, five steps each."""
+    """The boat under orders (N, 2) [rad/s] that run straight from sample to sample, from rest.
+
+    Classical Runge-Kutta, five steps each: of orders held for a fifth of a sample the lag would
+    come back 0.1 % too long, a quarter of its standard error.
+    """
     state, lost, states = np.zeros(5), np.array(weak), []
     h = (t[1] - t[0]) / 5.0
     for k in range(len(t)):
         states.append(state)
         for i in range(5):
-            near = orders[k] + (orders[min(k + 1, len(t) - 1)] - orders[k]) * (i + 0.5) / 5.0
-            a = rates(state, near, lost, cross_flow)
-            b = rates(state + h / 2.0 * a, near, lost, cross_flow)
-            c = rates(state + h / 2.0 * b, near, lost, cross_flow)
-            d = rates(state + h * c, near, lost, cross_flow)
+            rise = (orders[min(k + 1, len(t) - 1)] - orders[k]) / 5.0
+            first, middle, last = (orders[k] + rise * (i + part) for part in (0.0, 0.5, 1.0))
+            a = rates(state, first, lost, cross_flow)
+            b = rates(state + h / 2.0 * a, middle, lost, cross_flow)
+            c = rates(state + h / 2.0 * b, middle, lost, cross_flow)
+            d = rates(state + h * c, last, lost, cross_flow)
             state = state + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
     x = np.array(states)
     return Sailed(t=t, orders=orders, revolutions=x[:, 3:], u=x[:, 0], v=x[:, 1], r=x[:, 2])

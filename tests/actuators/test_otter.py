@@ -54,6 +54,13 @@ def test_parameters_come_back_from_two_orders_speed_and_rate_of_turn() -> None:
     assert sum(found) >= 9
 
 
+def test_without_noise_every_parameter_comes_back(monkeypatch) -> None:
+    """To a part in ten thousand, a fiftieth of its standard error: neither programme is coarse."""
+    monkeypatch.setattr(otter_model, "NOISE", dict.fromkeys(otter_model.NOISE, 0.0))
+    fit = fitted(record(1106, duration=40.0))
+    assert {n: fit.value(n) for n in TRUTH} == pytest.approx(TRUTH, rel=1e-4)
+
+
 def test_a_weak_thruster_is_named_on_its_side_and_nothing_where_nothing_is() -> None:
     weak = verdict(1103, "weak", 60.0)
     assert (weak.kind, weak.effect, weak.family) == ("missing", "right_weak", ("right_weak",))

@@ -89,7 +89,7 @@ def test_a_search_is_repeated_to_the_last_bit(trials):
 def test_the_record_itself_tells_gm_within_a_step_of_the_grid(trials):
     """From an absurd start, before any search of everything."""
     problem = pose_problem(trials, MODEL.with_values({**FAR, "GM": 5.0}), SETTINGS)
-    starts = record_starts(problem)
+    starts = record_starts(problem, SETTINGS)
     GM = starts[0][problem.roll.GM]
     print([f"{s[problem.roll.GM]:.3g}" for s in starts])
     assert 0.3 / 1.42 < GM < 0.3 * 1.42

@@ -13,6 +13,7 @@ from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
 from trialid.identification.record_starts import record_starts
 from trialid.identification.told_gm import FAR, rival_GM, roll_error
+from trialid.identification.weighing import NO_NOISE
 
 Vector = NDArray[np.float64]
 
@@ -95,7 +96,7 @@ def _by_record(
 ) -> Step:
     """From the starts that the record gives, where the stated one did not lead to a sure end."""
     why = _doubt(problem, best_of(ends))
-    starts = record_starts(problem) if why else []
+    starts = record_starts(problem, settings) if why else []
     more = [search(problem, settings, start, progress) for start in starts]
     return more, _words(why, "starts by the record itself", ends, more)
 
@@ -152,7 +153,7 @@ def _doubt(problem: Problem, end: End) -> str:
     if np.sqrt(2.0 * end.V) > UNEXPLAINED:
         return "next to nothing was explained"
     if problem.roll is None:
-        return ""
+        return "more is left than noise" if np.sqrt(2.0 * end.V) > NO_NOISE else ""
     stated, found = (t[problem.roll.GM] for t in (problem.start, end.minimum.theta))
     if abs(np.log(max(found, 1e-9) / max(stated, 1e-9))) > np.log(FAR):
         return f"GM was found at {found:.3g} m, far from the {stated:.3g} m it began with"

@@ -1,4 +1,9 @@
-"""Starts that the record itself gives: yaw alone first, then roll on a grid of its two numbers.
+"""Starts that the record itself gives: in pieces; yaw alone first, then roll on a grid.
+
+A ship that is unstable on her course, or turns on the spot, forgets nothing: the loss over a long
+record has valleys without number, and fewer the shorter what is simulated in one go (Ribeiro et al.
+2020, On the smoothness of nonlinear system identification, Automatica 121). So each trial is cut,
+each piece starts where it was recorded, and all of them are fitted by one ship.
 
 From a placeholder ship a search of everything at once has to find the period of a resonance while
 the motion that drives it is still wrong. Yaw is found first, by itself. Then each metacentric
@@ -6,15 +11,20 @@ height of a grid, with light or heavy damping, leaves all else of the roll linea
 tells how well the record's own period and decrement agree, and the best few are followed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.identification.gauss_newton import minimise
+from trialid.identification.one_search import search
 from trialid.identification.output_error import Problem, ranges
+from trialid.identification.problem import Settings, question
 from trialid.identification.weighing import Weighing
+from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
 Rows = NDArray[np.int_]
@@ -40,13 +50,81 @@ YAW_STEPS: Final = 40
 YAW_NEAR: Final = 1e-3
 ROLLING: Final = ("phi", "p")
 
+PIECES: Final = (8, 4, 2)
+"""Of a trial, one after the other; sixteen first lead to the same ends, eight alone now and then to
+another."""
 
-def record_starts(problem: Problem) -> list[Vector]:
+PIECES_STEPS: Final = 20
+"""Of a search in pieces: it is a start, and need not have arrived."""
+
+SHORTEST: Final = 30
+"""Samples of a piece: fewer say little beside where it starts."""
+
+
+def record_starts(problem: Problem, settings: Settings) -> list[Vector]:
     """Starts by the record, the most promising first; (n_theta,) each, perhaps none.
 
-    Deterministic. Where roll is not simulated, or its GM is not free, there is one at most: yaw
-    found without the roll.
+    Deterministic. Where GM is free they are of a grid of it; else in pieces, and yaw found without
+    the roll where there is one.
     """
+    if problem.roll is not None:
+        return _by_motion(problem)
+    return [*_in_pieces(problem, settings), *_by_motion(problem)]
+
+
+def _in_pieces(problem: Problem, settings: Settings) -> list[Vector]:
+    """Where the trials lead in pieces, ever longer; (n_theta,), none where nothing can be sailed.
+
+    What belongs to a trial alone is its first piece's in the end.
+    """
+    near = {x.name: x.start for x in problem.unknowns if x.trial is None}
+    most = min(PIECES_STEPS, settings.max_iterations)
+    for number in PIECES:
+        cut = in_pieces(problem, settings, number, near)
+        end = search(cut, settings, cut.start, max_iterations=most)
+        if not end.began:
+            return []
+        ended = zip(cut.unknowns, end.minimum.theta, strict=True)
+        near = {x.name: float(a) for x, a in ended}
+    return [np.array([near.get(x.name, x.start) for x in problem.unknowns])]
+
+
+def in_pieces(
+    problem: Problem, settings: Settings, number: int, near: Mapping[str, float]
+) -> Problem:
+    """The same question of trials cut into so many pieces, each with a start of its own.
+
+    Parameters
+    ----------
+    near
+        Starts by the name of the unknown; the first piece has the name of its trial.
+    """
+    shared = [x.name for x in problem.unknowns if x.trial is None]
+    own = dict.fromkeys(x.column for x in problem.unknowns if x.trial is not None)
+    kept = [n for n in own if not n.endswith("(0)")]
+    pieces = [piece for trial in problem.trials for piece in _cut(trial, number)]
+    asked = replace(settings, nuisance=("initial_state",))
+    cut = question(problem.simulator, pieces, asked, shared, kept, near)
+    return replace(cut, y_rms=problem.y_rms)
+
+
+def _cut(trial: Trial, number: int) -> list[Trial]:
+    """Pieces of about the same length; the first has the trial's name."""
+    most = int(np.clip(trial.samples // SHORTEST, 1, number))
+    ends = np.linspace(0, trial.samples, most + 1).round().astype(int)
+    return [
+        replace(
+            trial,
+            name=f"{trial.name} from {a}" if a else trial.name,
+            signals={n: y[a:b] for n, y in trial.signals.items()},
+            valid={n: y[a:b] for n, y in trial.valid.items()},
+        )
+        for a, b in pairwise(ends)
+    ]
+
+
+def _by_motion(problem: Problem) -> list[Vector]:
+    """Yaw found without the roll, then the best of a grid of the roll where its GM is free."""
     rolls, turns = rows_of(problem, ROLLING), rows_of(problem, _others(problem))
     if not len(rolls) or not len(turns):
         theta = problem.start

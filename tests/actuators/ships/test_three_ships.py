@@ -15,6 +15,7 @@ from typical import distances
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.effects import CATALOGUE
 from trialid.effects.actuators import actuator_effects
+from trialid.identification.adequacy import why_no_fit
 
 STUDIED = range(2000, 2040)
 
@@ -52,6 +53,22 @@ def test_no_fault_of_a_pod_is_named_where_the_model_lacks_all_resistance() -> No
     assert (found.kind, found.effect) == ("no fit", None)
 
 
+def test_a_false_valley_is_left_and_one_that_is_not_carries_no_verdict(monkeypatch) -> None:
+    """Begun at typical values the search ends with an error of 0.84, none of it at a bound."""
+    arrived = SUPPLY.fitted(514)
+    assert arrived.eps_rmsn < 0.12
+    assert why_no_fit(arrived) is None
+    assert "one of them went further" in arrived.told[0]
+    monkeypatch.setattr("trialid.identification.arrive.record_starts", lambda *_: [])
+    lost = SUPPLY.fitted(514)
+    assert lost.converged
+    assert not lost.at_bounds
+    failed = why_no_fit(lost)
+    assert failed is not None
+    closer = float(str(failed).split("follow the record ")[1].split()[0])
+    assert closer == pytest.approx(lost.eps_rmsn / arrived.eps_rmsn, rel=0.3)
+
+
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_parameters_come_back(case: Case) -> None:
     """Fewer than six of eight intervals hold by chance once in a hundred and fifty."""
@@ -69,14 +86,14 @@ def test_parameters_come_back(case: Case) -> None:
     ],
 )
 def test_intervals_hold_nineteen_truths_of_twenty(case: Case) -> None:
-    """Of fits that converge; one of forty may end as no fit, which says so and claims nothing."""
+    """Every search arrives: none is left in a false valley, of which some had an error of 1."""
     held: Counter[str] = Counter()
-    fits = [fit for seed in STUDIED if (fit := case.fitted(seed)).converged]
+    fits = [case.fitted(seed) for seed in STUDIED]
     for fit in fits:
         held.update(n for n, z in distances(fit, case.sought).items() if abs(z) < 1.96)
     count = len(fits) * len(case.sought)
     share = sum(held.values()) / count
     print(f"{case.name}, {len(fits)} fits: {share:.1%} of {count} intervals hold: {dict(held)}")
-    assert len(fits) >= len(STUDIED) - 1
+    assert max(fit.eps_rmsn for fit in fits) < 0.3
     assert 0.90 < share <= 0.99
     assert min(held[n] for n in case.sought) >= 0.8 * len(fits)
