@@ -8,15 +8,20 @@ import pytest
 from trialid.diagnosis import may_be_off as tested
 from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.search.augment import Trace
+from trialid.ship.effect import Parameter
 
 
-def handed_over(monkeypatch, *, tried=None, prior=None):
+def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None):
     """What a fit with one number held fixed hands to the averaging."""
     given = []
     monkeypatch.setattr(tested, "stand", lambda rows, rivals: given.append((rows, rivals)))
-    parameters = {"Nrar": SimpleNamespace(start=-0.0015), "Nvar": SimpleNamespace(start=0.005)}
+    parameters = parameters or {"Nrar": Parameter(-0.0015), "Nvar": Parameter(0.005)}
+    names = tuple(parameters)
+    places = tuple(range(len(names)))
     effect = SimpleNamespace(name="drag", parameters=parameters, is_whole=False, held=None)
-    trace = Trace(effect, (0, 1), ("Nrar", "Nvar"), tried or {})
+    traces = [Trace(effect, places, names, {})]
+    if tried:
+        traces = [Trace(effect, (0,), (), {"Nrar": x}) for x in tried]
     ship = SimpleNamespace(value=lambda name: -0.004, ship=SimpleNamespace(share_off=lambda n: 0.1))
     problem = SimpleNamespace(
         simulator=SimpleNamespace(model=ship),
@@ -28,7 +33,7 @@ def handed_over(monkeypatch, *, tried=None, prior=None):
         H=np.ones((5, 1)),
         S=np.ones((5, 2)),
         held=("Nv",),
-        traces=[trace],
+        traces=traces,
     )
     doubts(SimpleNamespace(problem=problem, level=0.02, theta=np.array([1.0, 3e-3])), augmented)
     return given[0]
@@ -43,8 +48,23 @@ def test_what_is_held_fixed_is_off_by_its_share(monkeypatch):
 def test_what_may_be_missing_is_of_twice_its_typical_size_either_way(monkeypatch):
     _, [rival] = handed_over(monkeypatch)
     assert rival.deviations == pytest.approx((0.003, 0.01))
-    _, [rival] = handed_over(monkeypatch, tried={"Nrar": -0.002})
-    assert rival.deviations == (1.0, 1.0)
+    assert (rival.limits, rival.share) == (None, 1.0)
+
+
+def test_what_was_tried_at_four_values_is_one_effect_and_there_in_part_or_whole(monkeypatch):
+    _, rivals = handed_over(monkeypatch, tried=(-0.001, -0.002, -0.003, -0.004))
+    assert [r.deviations for r in rivals] == [(1.0,)] * 4
+    assert [r.limits for r in rivals] == [(0.0, 1.0)] * 4
+    assert sum(r.share for r in rivals) == 1.0
+
+
+def test_a_single_parameter_stays_within_its_range_about_its_null(monkeypatch):
+    weak = {"lost": Parameter(0.1, low=0.0, high=1.0)}
+    _, [rival] = handed_over(monkeypatch, parameters=weak)
+    assert rival.limits == (0.0, 1.0)
+    gain = {"scale": Parameter(1.1, low=0.5, null=1.0)}
+    _, [rival] = handed_over(monkeypatch, parameters=gain)
+    assert rival.limits == (-0.5, np.inf)
 
 
 def test_a_prior_is_a_row_in_units_of_the_level(monkeypatch):

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from trialid.accuracy.likely import COARSE, Rival, Rows, average, stand
+from trialid.accuracy.likely import COARSE, Rows, average, stand
+from trialid.accuracy.one_missing import Rival
 
 RNG = np.random.default_rng(11)
 N = 400
@@ -185,3 +186,46 @@ def test_what_is_held_fixed_acts_in_a_prediction_too():
     found = standing.average(np.array([[1.0, 0.0, 0.7], [1.0, 0.0, 2.0]]))
     # up by one of its units moves the first parameter by -0.7: to nothing, or to 1.3
     assert np.sqrt(found.variances[0]) == pytest.approx([0.0, 0.39], abs=1e-6)
+
+
+@pytest.mark.parametrize("limits", [(0.0, 1.0), (0.35, 0.5), (-1.0, 0.1), (0.0, np.inf)])
+def test_a_size_within_limits_against_a_grid_of_all_sizes(limits):
+    """What the rows say times the prior, summed: moves, variances, weights and draws."""
+    level, deviation = 0.02, 0.5
+    noise = level * np.random.default_rng(5).standard_normal(N)
+    _, left = fitted(0.05 * HIDDEN[:, 0] + noise)
+    held = (PSI @ [0.7, -0.2])[:, None] + 0.5 * HIDDEN
+    given = rows(left, S=HIDDEN, level=level, held=held, deviations=(0.3,))
+    rival = Rival("hidden", (0,), (deviation,), limits, 0.5)
+    standing = stand(given, (rival,))
+    sizes, off = np.append(np.arange(-4.0, 4.0, 0.005) + 0.0025, 0.0), np.linspace(-2.0, 2.0, 401)
+    beside = np.linalg.lstsq(PSI, np.column_stack([left, HIDDEN, held]), rcond=None)[0]
+    clean = np.column_stack([left, HIDDEN, held]) - PSI @ beside
+    gram = clean.T @ clean / level**2
+    b, h = np.meshgrid(sizes, off, indexing="ij")
+    fit = gram[0, 0] - 2.0 * (b * gram[0, 1] + h * gram[0, 2]) + 2.0 * b * h * gram[1, 2]
+    fit += b**2 * gram[1, 1] + h**2 * gram[2, 2]
+    chance = np.exp(-0.5 * (fit - fit.min() + (h / 0.3) ** 2))
+    before = np.exp(-0.5 * (sizes / deviation) ** 2)
+    before *= (limits[0] < sizes) & (sizes < limits[1]) & (sizes != 0.0)
+    with_it = chance * (before / before.sum())[:, None]
+    moves = -(b[..., None] * beside[:, 1] + h[..., None] * beside[:, 2])
+    plain = chance[-1]
+    price = np.log(left @ left / level**2)  # which stands for how much narrower sizes become
+    narrower = np.eye(2) + gram[1:, 1:] * np.outer([deviation, 0.3], [deviation, 0.3])
+    stands = with_it.sum() / plain.sum() * np.sqrt(np.linalg.det(narrower) / narrower[1, 1])
+    odds = 0.5 * (stands * np.exp(-0.5 * price)) ** (1.0 / np.array(COARSE))
+    weight = (odds / (1.0 + odds))[:, None]
+    mean = np.einsum("bh,bhi->i", with_it, moves) / with_it.sum()
+    none = np.einsum("h,hi->i", plain, -off[:, None] * beside[:, 2]) / plain.sum()
+    shift = weight * mean + (1.0 - weight) * none
+    assert standing.average().shifts == pytest.approx(shift, rel=0.02, abs=1e-4)
+    square = np.einsum("bh,bhi->i", with_it, moves**2) / with_it.sum()
+    alone = np.einsum("h,hi->i", plain, (off[:, None] * beside[:, 2]) ** 2) / plain.sum()
+    whole = weight * square + (1.0 - weight) * alone - shift**2
+    assert standing.average().variances == pytest.approx(whole, rel=0.03)
+    drawn = standing.draw(20_000, np.random.default_rng(1))
+    there = drawn.columns[drawn.rivals == 0]
+    assert ((limits[0] <= there[:, 1]) & (there[:, 1] <= limits[1])).all()
+    assert np.mean(drawn.rivals == 0) == pytest.approx(weight.mean(), abs=0.02)
+    assert drawn.moves[drawn.rivals == 0].mean(axis=0) == pytest.approx(mean, rel=0.06, abs=2e-3)

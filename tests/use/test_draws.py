@@ -7,7 +7,8 @@ import pytest
 import s175q
 from typical import known_by
 
-from trialid.accuracy.likely import Rival, Rows, stand
+from trialid.accuracy.likely import Rows, stand
+from trialid.accuracy.one_missing import Rival
 from trialid.design.helm import carry_out, vessel
 from trialid.design.prediction.drawn_ships import draw_ships, sail_draws
 from trialid.design.prediction.keeping_place import sail_each
@@ -79,6 +80,19 @@ def test_draws_of_what_is_missing_have_the_moments_of_the_average() -> None:
     assert len(with_it) > 30_000
     assert with_it[:, 1].mean() > 0.2
     assert (drawn.columns[drawn.rivals < 0][:, 1] == 0.0).all()
+
+
+def test_ships_that_cannot_be_are_not_drawn() -> None:
+    """Mean and deviation of a mass known to +-50 % that is above zero, by its truncated normal."""
+    mass = MODEL.value("m")
+    base = vessel(MODEL, 0.5, {"u": 7.33}, 0.05)
+    drawn = draw_ships(base, known_by("m", 0.5 * mass), 4000, seed=1).known["m"] / mass
+    assert len(drawn) == 4000
+    assert drawn.min() > 0.0
+    density, above = np.exp(-2.0) / np.sqrt(2.0 * np.pi), 0.9772499
+    rise = 0.5 * density / above
+    assert drawn.mean() == pytest.approx(1.0 + rise, abs=0.03)
+    assert drawn.std() == pytest.approx(np.sqrt(0.25 - rise - rise**2), abs=0.02)
 
 
 def test_draws_fill_the_range_of_a_number() -> None:

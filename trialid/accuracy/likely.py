@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit  # scipy.stats would take another 0.4 s to import
 
+from trialid.accuracy.one_missing import Reduced, Rival, posterior
 from trialid.arrays import Vector
 
 WIDE: Final = 2.0
@@ -45,15 +46,6 @@ def share_off(value: float | None, likely: tuple[float, float] | None) -> float 
     if likely is None or not value:
         return None
     return max(abs(end - value) for end in likely) / abs(value)
-
-
-@dataclass(frozen=True)
-class Rival:
-    """Something that may be missing: its columns, and the standard deviation of each size."""
-
-    name: str
-    columns: tuple[int, ...]
-    deviations: tuple[float, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,7 +125,7 @@ class Standing:
     Made from the rows once; they are not needed again.
     """
 
-    known: "Reduced"
+    known: Reduced
     rivals: tuple[Rival, ...]
 
     def average(self, slopes: Vector | None = None) -> Averaged:
@@ -145,7 +137,7 @@ class Standing:
         """
         known = self.known if slopes is None else _through(self.known, slopes)
         models = [_model(known, r) for r in (Rival("", (), ()), *self.rivals)]
-        weights = _weights([m.cost for m in models])
+        weights = self._weights([m.cost for m in models])
         moves, own = np.array([m.shift for m in models]), np.array([m.variance for m in models])
         shifts = weights @ moves
         about = (moves - shifts[:, None]) ** 2
@@ -163,23 +155,21 @@ class Standing:
         Each coarseness has half of the draws; a range, which embraces what both say, is wider.
         """
         models = [Rival("", (), ()), *self.rivals]
-        found = [_posterior(self.known, r) for r in models]
-        chances = np.mean(_weights([m.cost for m in found]), axis=0)
+        found = [posterior(self.known, r) for r in models]
+        chances = np.mean(self._weights([m.cost for m in found]), axis=0)
         which = rng.choice(len(models), size=number, p=chances)
         columns = np.zeros((number, self.known.moves.shape[1] - 1))
         for m in np.unique(which):
             rows, one = np.flatnonzero(which == m), found[m]
-            white = rng.standard_normal((len(rows), len(one.places)))
-            drawn = one.expected + white @ np.linalg.cholesky(one.covariance).T
+            drawn = one.drawn(len(rows), rng)
             columns[np.ix_(rows, np.array(one.places, dtype=int) - 1)] = drawn * one.sizes
         return Drawn(which - 1, -columns @ self.known.moves[:, 1:].T, columns)
 
-
-def _weights(costs: Sequence[float]) -> Vector:
-    """How each model stands, by each coarseness; (len(COARSE), n), rows of sum one."""
-    cost = np.array(costs)
-    weights = np.exp(-0.5 * (cost - cost.min()) / np.array(COARSE)[:, None])
-    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+    def _weights(self, costs: Sequence[float]) -> Vector:
+        """How each model stands, by each coarseness; (len(COARSE), n), rows of sum one."""
+        cost, before = np.array(costs), np.array([1.0, *(r.share for r in self.rivals)])
+        weights = before * np.exp(-0.5 * (cost - cost.min()) / np.array(COARSE)[:, None])
+        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
 @dataclass(frozen=True)
@@ -209,21 +199,6 @@ def average(rows: Rows, rivals: Sequence[Rival]) -> Averaged:
 def stand(rows: Rows, rivals: Sequence[Rival]) -> Standing:
     """How all rivals and the model as it is stand by these rows."""
     return Standing(_reduce(rows), tuple(rivals))
-
-
-@dataclass(frozen=True)
-class Reduced:
-    """Sums of products with the fitted parameters taken out; the residual first, then the held.
-
-    `moves` is what the parameters, or what follows from them, do per unit of each column, with its
-    sign turned; (n, 1 + n_h + n_S).
-    """
-
-    gram: Vector
-    moves: Vector
-    deviations: Vector
-    variance: float
-    independent: float
 
 
 def _through(known: Reduced, slopes: Vector) -> Reduced:
@@ -263,35 +238,9 @@ class _Model:
     variance: Vector
 
 
-@dataclass(frozen=True)
-class _Posterior:
-    """What the record says of the columns of a model, in sizes, and -2 log of its standing."""
-
-    places: list[int]
-    sizes: Vector
-    expected: Vector
-    covariance: Vector
-    cost: float
-
-
-def _posterior(known: Reduced, rival: Rival) -> _Posterior:
-    """What the record says if this is missing, and all that was held fixed is uncertain."""
-    held = len(known.deviations)
-    places = [*range(1, held + 1), *(1 + held + c for c in rival.columns)]
-    sizes = np.append(known.deviations, rival.deviations)
-    gram = known.gram[np.ix_(places, places)] * np.outer(sizes, sizes) / known.variance
-    moment = known.gram[places, 0] * sizes / known.variance
-    covariance = np.asarray(np.linalg.inv(gram + np.eye(len(places))), dtype=np.float64)
-    expected = covariance @ moment
-    found = _Posterior(places, sizes, expected, covariance, 0.0)
-    return replace(
-        found, cost=len(rival.columns) * float(np.log(known.independent)) - float(moment @ expected)
-    )
-
-
 def _model(known: Reduced, rival: Rival) -> _Model:
     """What that does to the parameters, or to what follows from them."""
-    found = _posterior(known, rival)
+    found = posterior(known, rival)
     moves, expected = known.moves[:, found.places] * found.sizes, found.expected
     return _Model(
         cost=found.cost,

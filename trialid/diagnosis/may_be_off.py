@@ -1,19 +1,26 @@
 """By how much every parameter of a fit may be off, by all that its model may lack or hold wrong."""
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from trialid.accuracy.likely import WIDE, Averaged, Rival, Rows, Standing, stand
+from trialid.accuracy.likely import WIDE, Averaged, Rows, Standing, stand
+from trialid.accuracy.one_missing import Rival
 from trialid.arrays import Vector
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.identification.fit import Fit
+from trialid.ship.effect import Parameter
 
 SMALLEST: Final = 1e-12
 """Typical size of a parameter whose effect calls nothing typical."""
+
+IN_PART: Final = (0.0, 1.0)
+"""How much of an effect there may be that was tried at one value."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +66,8 @@ def doubts(fit: Fit, augmented: Augmented) -> Doubts:
         S=S,
         level=fit.level,
     )
-    standing = stand(rows, [_rival(t) for t in traces])
+    ways = Counter(t.effect.name for t in traces)
+    standing = stand(rows, [_rival(t, ways[t.effect.name]) for t in traces])
     return Doubts(standing, augmented.held, traces)
 
 
@@ -74,9 +82,22 @@ def _may_be_missing(augmented: Augmented) -> tuple[Vector, tuple[Trace, ...]]:
     return augmented.S[:, columns], tuple(kept)
 
 
-def _rival(trace: Trace) -> Rival:
-    """An effect that may be missing, at its typical size; where values were tried, at that one."""
+def _rival(trace: Trace, ways: int) -> Rival:
+    """An effect that may be missing, at its typical size; where values were tried, at that one.
+
+    One that shows in several ways is one effect all the same.
+    """
+    name, columns, share = trace.effect.name, trace.columns, 1.0 / ways
     if trace.tried:
-        return Rival(trace.effect.name, trace.columns, (1.0,) * len(trace.columns))
-    typical = (abs(trace.effect.parameters[n].start) or SMALLEST for n in trace.parameters)
-    return Rival(trace.effect.name, trace.columns, tuple(WIDE * size for size in typical))
+        return Rival(name, columns, (1.0,) * len(columns), IN_PART, share)
+    parameters = [trace.effect.parameters[n] for n in trace.parameters]
+    typical = tuple(WIDE * (abs(p.start) or SMALLEST) for p in parameters)
+    return Rival(name, columns, typical, _limits(parameters), share)
+
+
+def _limits(parameters: Sequence[Parameter]) -> tuple[float, float] | None:
+    """Of the size of a single parameter, about its null; None where it has none."""
+    [one, *others] = parameters
+    null = one.null or 0.0
+    bounded = np.isfinite([one.low, one.high]).any() and not others
+    return (one.low - null, one.high - null) if bounded else None

@@ -8,6 +8,7 @@ at a value tried is there in proportion.
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +22,13 @@ from trialid.design.prediction.predicted_motion import Manoeuvre, acts_under
 from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, acts_in_calm, in_calm
 from trialid.errors import DesignError
 from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import arguments, prepare, sensor_outputs
 from trialid.trial import Trial
+
+SPARE: Final = 4
+"""Times as many are drawn as are wanted, so that there are others for those that cannot be."""
+SOLID: Final = frozenset({"m", "I_xx", "I_zz"})
 
 Values = Mapping[str, Vector]
 """A number of each draw by its name; (n,) each."""
@@ -48,20 +54,33 @@ class DrawnShips:
 
 
 def draw_ships(ship: Vessel, spread: LikelySpread, number: int, seed: int) -> DrawnShips:
-    """Ships as the record leaves them open; the same seed gives the same ones."""
-    rng = np.random.default_rng(seed)
-    n_fit, model = len(spread.fitted), ship.model
-    drawn = spread.standing.draw(number, rng)
+    """Ships as the record leaves them open; the same seed gives the same ones.
+
+    Moves are of first order: far out they make ships that cannot be, with a mass below zero or a
+    thrust of nothing that the record rules out. Others are taken in their place.
+    """
+    rng, many = np.random.default_rng(seed), SPARE * number
+    drawn = spread.standing.draw(many, rng)
     root = np.linalg.cholesky(spread.covariance + np.diag(_least(spread.covariance)))
-    noise = rng.standard_normal((number, len(root))) @ root.T
-    noise[:, :n_fit] += drawn.moves
+    noise = rng.standard_normal((many, len(root))) @ root.T
+    noise[:, : len(spread.fitted)] += drawn.moves
     off = np.concatenate([noise, drawn.columns[:, : len(spread.held)]], axis=1)
-    known = dict[str, Vector]()
+    known, possible = dict[str, Vector](), np.ones(many, dtype=bool)
     for name, by in zip(spread.known, off.T, strict=True):
-        if name in model.parameters:
-            low, high = model.parameters[name].low, model.parameters[name].high
-            known[name] = np.clip(model.value(name) + by, low, high)
-    return DrawnShips(known, drawn.rivals, drawn.columns[:, len(spread.held) :])
+        if name in ship.model.parameters:
+            value, (low, high) = ship.model.value(name), _range(ship.model, name)
+            known[name] = np.clip(value + by, low, high)
+            if low < value < high:  # what ended at a bound is at it in every other ship
+                possible &= (low < value + by) & (value + by < high)
+    rows = np.argsort(~possible, kind="stable")[:number]
+    known = {n: x[rows] for n, x in known.items()}
+    return DrawnShips(known, drawn.rivals[rows], drawn.columns[rows, len(spread.held) :])
+
+
+def _range(model: ShipModel, name: str) -> tuple[float, float]:
+    """What a parameter can be."""
+    low, high = model.parameters[name].low, model.parameters[name].high
+    return (max(low, 0.0) if name in SOLID else low), high
 
 
 def _least(covariance: Vector) -> Vector:

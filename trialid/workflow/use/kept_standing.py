@@ -20,7 +20,8 @@ from typing import Final, Literal, Protocol
 import numpy as np
 
 from trialid import plugins
-from trialid.accuracy.likely import Reduced, Rival, Standing
+from trialid.accuracy.likely import Standing
+from trialid.accuracy.one_missing import Reduced, Rival
 from trialid.arrays import Vector
 from trialid.diagnosis.may_be_off import Doubts
 from trialid.diagnosis.search.augment import Trace
