@@ -256,6 +256,19 @@ def test_what_is_weak_keeps_its_share_of_the_force(kept: float) -> None:
         assert list(less) == pytest.approx(expected, rel=1e-6, abs=1e-4 * abs(whole.N))
 
 
+def test_the_jet_of_a_tunnel_sucks_at_the_hull_as_she_moves() -> None:
+    """By hand: Fr times a share of the push, whether ahead or astern; no moment, none at rest."""
+    effect, (one,) = EFFECTS["tunnels_hull"], [a for a in SHIP.actuators if a.kind == "tunnel"]
+    at = {one.name: 3.0, "aY_tunnel": -50.0}
+    Fr = 2.0 / np.sqrt(SHIP.particulars["g"] * SHIP.particulars["L"])
+    for sign in (1.0, -1.0):
+        [found] = effect(at | {"u": 2.0 * sign})
+        assert found == pytest.approx((0.0, -450.0 * Fr, 0.0, 0.0), abs=1e-9)
+        [back] = effect(at | {"u": 2.0, one.name: -3.0})
+        assert back == pytest.approx([-x for x in found], abs=1e-9)
+    assert effect(at | {"u": 0.0})[0] == pytest.approx((0.0, 0.0, 0.0, 0.0))
+
+
 def test_reversed_and_exchanged_do_what_they_say() -> None:
     [moved] = EFFECTS["left_reversed"]({"left": 4.0, "reversed_left": 2.0})
     assert 4.0 + moved["left"] == pytest.approx(-4.0)

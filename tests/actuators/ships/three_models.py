@@ -223,4 +223,11 @@ SUPPLY = Case(
     },
     speed=2.0,
 )
-CASES = (FERRY, RACES, CARGO, SUPPLY)
+SUCKED = replace(
+    SUPPLY,
+    name="supply, sucked",
+    push=truth.sucked_bow,
+    effects=(*SUPPLY.effects, "tunnels_hull"),
+    sought={**SUPPLY.sought, "aY_tunnel": truth.SUCKED},
+)
+CASES = (FERRY, RACES, CARGO, SUPPLY, SUCKED)

@@ -224,6 +224,16 @@ def bow_and_screws(now: Row, u: float, v: float, r: float) -> tuple[float, float
     return tuple(total + at_place(0.0, side_push, BOW, 0.0))
 
 
+SUCKED: Final = -450.0
+"""Force that the jet takes off the hull at a Froude number of one [N s^2], without a moment."""
+
+
+def sucked_bow(now: Row, u: float, v: float, r: float) -> tuple[float, float, float]:
+    """The same where the bent jet sucks at the side."""
+    X, Y, N = bow_and_screws(now, u, v, r)
+    return X, Y + SUCKED * now["bow"] * abs(now["bow"]) * abs(u) / math.sqrt(9.81 * SUPPLY.L), N
+
+
 def slow_signals(t: Vector, seed: int) -> dict[str, Vector]:
     """Low revolutions of both screws, apart, and the tunnel to both sides."""
     rng = np.random.default_rng([seed, 1])

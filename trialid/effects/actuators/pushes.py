@@ -11,7 +11,7 @@ from trialid.effects.actuators.instances import (
     typical_gain,
     usual_speed,
 )
-from trialid.effects.actuators.push_kinds import F11, PUSHES, Driven, Push, PushKind
+from trialid.effects.actuators.push_kinds import F11, PUSHES, Driven, Push, PushKind, thrust
 from trialid.maths import Number, clip
 from trialid.ship.actuators import COMMANDS, Actuator
 from trialid.ship.effect import Effect, Force, Parameter, Rate, Steered
@@ -21,6 +21,7 @@ TRIED = tuple(2.0 * 0.87**i for i in range(16))
 """Largest drives tried, over the stated or the usual one, of which nobody knows more: from twice to
 a quarter of it, so near each other that one is within 7 % of what is true. Half as many missed a
 drive that gave out at 0.77 of full."""
+M22 = "Miyauchi et al. (2022), J. Mar. Sci. Technol. 27: Y and N lose a share of their own with Fr"
 EXACT = 12
 """Digits of a cosine: that of 90 deg is zero."""
 
@@ -37,6 +38,8 @@ def push_effects(ship: Ship) -> Iterator[Effect]:
                 yield _saturation(ship, push.effect, ones)
         if ones and kind == "thruster":
             yield _advance(ship, ones)
+        if ones and kind == "tunnel":
+            yield _on_the_hull(ship, ones)
 
 
 def turned(one: Actuator, push: Push) -> Force:
@@ -170,6 +173,32 @@ def _advance(ship: Ship, ones: Sequence[Actuator]) -> Effect:
         name="thrusters_advance",
         equation="T = -k_advance |n| u: thrust that falls with the speed ahead, wake included",
         source=F11,
+        signals=[*(one.name for one in ones), "u"],
+        parameters=parameters,
+    )
+
+
+def _on_the_hull(ship: Ship, ones: Sequence[Actuator]) -> Effect:
+    """What a tunnel's jet, bent along the side, does beside fading: the force loses the more."""
+    full = math.sqrt(ship.particulars["g"] * ship.particulars["L"])
+
+    def hull(u: Number, **values: Number) -> Force:
+        forces = []
+        for one in ones:
+            jet = thrust(Driven(one.command, values[one.name], 0.0, u), 1.0, 1.0) * abs(u) / full
+            side = turned(one, Push(values[own_name("aY_tunnel", one)] * jet))
+            forces.append(Force(X=side.X, Y=side.Y))
+        return total(forces)
+
+    gains = {one: (typical_gain(ship, one.command), GAIN_UNITS[one.command]) for one in ones}
+    parameters = {
+        own_name("aY_tunnel", one): Parameter(-x, unit) for one, (x, unit) in gains.items()
+    }
+    return make_effect(
+        hull,
+        name="tunnels_hull",
+        equation="Y = aY_tunnel n |n| Fr: force that a tunnel's jet takes off the hull, not moment",
+        source=M22,
         signals=[*(one.name for one in ones), "u"],
         parameters=parameters,
     )
