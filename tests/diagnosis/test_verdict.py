@@ -120,13 +120,17 @@ def test_blocks_that_agree_are_apart_although_one_holds_most_of_the_error():
     assert as_good(fits, [*fits[:5], 3.28])  # one block alone may be chance
 
 
-def test_nothing_is_said_to_do_as_well_that_was_not_fitted():
-    named = refit("named", 0.50, 0.07, family=("twin",))
-    by_slope, twin = refit("by_slope", 0.55, 0.07, wobble=0.3), refit("twin", 0.5, 0.07)
-    ranking = [r.candidate for r in (named, by_slope, twin)]
-    assert rivals(named, ranking, [named]) == ("twin",)
+def test_slopes_are_believed_where_that_of_the_named_effect_foretold_its_fall():
+    by_slope = refit("by_slope", 0.55, 0.07, wobble=0.3)
+    believed = refit("named", 0.50, 0.07, family=("twin",))
+    ranking = [r.candidate for r in (believed, by_slope, refit("twin", 0.5, 0.07))]
+    assert to_fit(believed, ranking, [believed]) == ()
+    assert rivals(believed, ranking, [believed]) == ("by_slope", "twin")
+    fell = Carried(BEFORE, tuple(0.01 * x for x in BEFORE))  # and its slope says a half
+    named = Refit(believed.candidate, believed.fit, fell)
     assert to_fit(named, ranking, [named]) == (by_slope.candidate,)
     assert to_fit(named, ranking, [named, by_slope]) == ()
+    assert rivals(named, ranking, [named]) == ("twin",)
 
 
 @pytest.mark.parametrize(("gap", "good"), [(1.5, True), (2.4, True), (2.7, False)])
