@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.noise.split import Split
-from trialid.diagnosis.search.carried import FALL, Carried, as_good
+from trialid.diagnosis.search.carried import FALL
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import (
     HELD_OUT,
@@ -18,12 +18,9 @@ from trialid.diagnosis.search.refit import (
     likeliest_refit,
     objection,
 )
+from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
-
-RIVAL: Final = 0.5
-"""Share of the named effect's fall, as a logarithm, below which another explains too little to be
-taken for it."""
 
 NAMED: Final = 1.10
 """Ratio of squared errors that a further effect must be worth to be named beside the first: below
@@ -179,38 +176,6 @@ def _no_split(parts: Split) -> str:
         "no effect stands out, but noise and model error cannot be separated on this record: "
         + parts.why
     )
-
-
-def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) -> tuple[str, ...]:
-    """Effects that this record cannot tell from the named one: alike in trace, or as good.
-
-    As good is what leaves no more of the blocks left out than chance would, and explains more than
-    half of what the named one does.
-    """
-    fitted = {r.candidate.effect.name: r for r in refits}
-    close, apart = list[str](), set[str]()
-    for c in ranking:
-        name = c.effect.name
-        if c is named.candidate:
-            continue
-        refit = fitted.get(name)
-        mine, its = (
-            (named.carried, refit.carried) if refit else (named.candidate.carried, c.carried)
-        )
-        if _as_good(mine, its):
-            close += [name] if c.allowed else []
-        elif refit:
-            apart.add(name)
-    apart |= {c.effect.name for c in ranking if c.effect.bound_by_meaning and not c.allowed}
-    alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
-    return (*close, *alike)
-
-
-def _as_good(mine: Carried, its: Carried) -> bool:
-    """Whether another effect carries over as well as far as these blocks can tell."""
-    if not 0.0 < its.ratio < mine.ratio**RIVAL:
-        return False
-    return as_good(mine.after, its.after)
 
 
 def _missing(fit: Fit, named: Refit, others: tuple[str, ...]) -> Verdict:
