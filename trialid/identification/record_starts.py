@@ -54,6 +54,9 @@ PIECES: Final = (8, 4, 2)
 """Of a trial, one after the other; sixteen first lead to the same ends, eight alone now and then to
 another."""
 
+MANY: Final = 32
+"""Where she cannot be sailed as far as that from where the search starts."""
+
 PIECES_STEPS: Final = 20
 """Of a search in pieces: it is a start, and need not have arrived."""
 
@@ -80,9 +83,12 @@ def _in_pieces(problem: Problem, settings: Settings) -> list[Vector]:
     near = {x.name: x.start for x in problem.unknowns if x.trial is None}
     most = min(PIECES_STEPS, settings.max_iterations)
     for number in PIECES:
-        cut = in_pieces(problem, settings, number, near)
-        end = search(cut, settings, cut.start, max_iterations=most)
-        if not end.began:
+        for pieces in (number, MANY):
+            cut = in_pieces(problem, settings, pieces, near)
+            end = search(cut, settings, cut.start, max_iterations=most)
+            if end.began:
+                break
+        else:
             return []
         ended = zip(cut.unknowns, end.minimum.theta, strict=True)
         near = {x.name: float(a) for x, a in ended}

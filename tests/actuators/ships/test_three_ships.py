@@ -40,7 +40,10 @@ def test_she_turns_to_the_side_of_her_bow_thruster_and_of_her_rudders() -> None:
 
 @pytest.mark.study(turn=4)
 def test_no_fault_of_a_pod_is_named_where_the_model_lacks_all_resistance() -> None:
-    """Two pods exchanged would leave a sixth of an error of seven, and explain nothing."""
+    """Two pods exchanged would leave a sixth of what a search that does not arrive leaves.
+
+    It arrives, at 0.4 in place of 7, and what is missing is in the family that is named.
+    """
     lacking = ("cross_flow_drag", "still_water_surge", "surge_resistance")
     known = ("C_D", "Xu0", "Xuu")
     bare = replace(
@@ -49,8 +52,11 @@ def test_no_fault_of_a_pod_is_named_where_the_model_lacks_all_resistance() -> No
         sought={n: x for n, x in FERRY.sought.items() if n not in known},
     )
     candidates = {**CATALOGUE, **actuator_effects(bare.ship)}
-    found = diagnose(bare.fitted(25001), DiagnoseSettings(candidates=candidates)).verdict
-    assert (found.kind, found.effect) == ("no fit", None)
+    fit = bare.fitted(25001)
+    assert fit.eps_rmsn < 0.5
+    found = diagnose(fit, DiagnoseSettings(candidates=candidates)).verdict
+    assert {"cross_flow_drag", "surge_resistance"} < {*found.family}
+    assert [n for n in found.family if candidates[n].bound_by_meaning] == []
 
 
 def test_a_false_valley_is_left_and_one_that_is_not_carries_no_verdict(monkeypatch) -> None:
