@@ -23,6 +23,7 @@ def fit(eps, check=None, converged=True):
         converged=converged,
         eps_by_output={"r": eps},
         problem=SimpleNamespace(weights=np.ones(1)),
+        model=SimpleNamespace(displaced_by=lambda effect: ()),
     )
 
 
