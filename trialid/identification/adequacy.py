@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.arrays import Vector
 from trialid.identification.explained import of_use, over_noise, unexplained_share
 from trialid.identification.file_of_ship import is_another_ship, unlike_file
 from trialid.identification.fit import Fit, Score
@@ -21,6 +22,15 @@ RUDDER_RANGE: Final = 0.035
 """[rad] From the 5th to the 95th percentile, 2 deg: less keeps a course, and is no manoeuvre; a
 zig-zag of 2 deg has 4. Half lets a helm pass that corrects by a degree, twice turns that zig-zag
 away, which does identify a ship."""
+
+OFTEN: Final = (0.05, 0.95)
+SELDOM: Final = (0.005, 0.995)
+"""Of a day, seven minutes: a manoeuvre of a small ship. Outliers are fewer."""
+
+AROUND: Final = 60.0
+"""[s] Before and after the rudder is used: the ship has come to rest, and shows her bias."""
+
+MOST_TOLD: Final = 3
 
 ABOVE_NOISE: Final = 2.0
 """Standard deviation of an output over its white noise above which it tells of a motion. Noise
@@ -106,9 +116,13 @@ def _no_manoeuvre(fit: Fit) -> Inadequate | None:
     steered = [n for n in STEERING if n in inputs]
     if not steered or not TURNING & {*fit.problem.outputs} or inputs & OTHER_HANDS:
         return None
-    moved = max(_range(s, n) for s in of_use(fit, "fit") for n in steered)
+    rudders = [(s, n) for s in of_use(fit, "fit") for n in steered]
+    moved = max(_range(s, n, OFTEN) for s, n in rudders)
     if moved > RUDDER_RANGE:
         return None
+    score, name = max(rudders, key=lambda one: _range(one[0], one[1], SELDOM))
+    if _range(score, name, SELDOM) > RUDDER_RANGE:
+        return _manoeuvres_seldom(score, name, moved)
     return Inadequate(
         f"she never manoeuvres: the rudder moves by {np.rad2deg(moved):.2g} deg, and a manoeuvre "
         f"takes more than {np.rad2deg(RUDDER_RANGE):.2g} deg",
@@ -116,10 +130,40 @@ def _no_manoeuvre(fit: Fit) -> Inadequate | None:
     )
 
 
-def _range(score: Score, name: str) -> float:
+def _manoeuvres_seldom(score: Score, name: str, moved: float) -> Inadequate:
+    """A voyage with manoeuvres in it: where they are, for a trial each."""
+    found = _stretches(score, name)
+    windows = ", ".join(f"[{begin:.0f}, {end:.0f}]" for begin, end in found[:MOST_TOLD])
+    more = f" and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else ""
+    return Inadequate(
+        f"she manoeuvres in less than a tenth of {score.trial.name}: in the rest the rudder moves "
+        f"by {np.rad2deg(moved):.2g} deg, and counts for most",
+        f"cut out the manoeuvres, a trial each: about window = {windows} s from where "
+        f"it begins{more}",
+    )
+
+
+def _stretches(score: Score, name: str) -> list[tuple[float, float]]:
+    """Where the rudder is used, with what comes before and after; (begin, end) each [s]."""
+    t, rudder = score.trial.t, _rudder(score, name)
+    used = t[np.abs(rudder - np.median(rudder)) > 0.5 * RUDDER_RANGE]
+    apart = np.flatnonzero(np.diff(used) > 2.0 * AROUND) + 1
+    parts = np.split(used, apart)
+    return [
+        (max(float(part[0]) - AROUND, float(t[0])), min(float(part[-1]) + AROUND, float(t[-1])))
+        for part in parts
+        if part[-1] - part[0] > score.trial.period
+    ]
+
+
+def _rudder(score: Score, name: str) -> Vector:
     source = record_for(score.trial, name)
     assert source is not None  # a trial without it has been refused
-    low, high = np.quantile(score.trial.signals[source], (0.05, 0.95))
+    return score.trial.signals[source]
+
+
+def _range(score: Score, name: str, between: tuple[float, float]) -> float:
+    low, high = np.quantile(_rudder(score, name), between)
     return float(high - low)
 
 
