@@ -16,6 +16,8 @@ from turns import pytest_collection_modifyitems as pytest_collection_modifyitems
 os.environ.pop("COLUMNS", None)
 
 ROOT = Path(__file__).parent.parent
+collect_ignore_glob = ["*/conftest.py"]
+"""They hold no doctests, and as modules of one name they could not be given in one command."""
 
 
 @pytest.fixture(scope="session")

@@ -102,6 +102,7 @@ def test_the_tables_hold_what_the_result_holds(run) -> None:
     assert [t.name for t in run.trials] == [t.name for t in run.result.trials]
 
 
+@pytest.mark.study(turn=3)
 def test_two_runs_compared(run, better) -> None:
     table = better.compare(run)
     assert table.loc["error, fitted", "this"] == better.error

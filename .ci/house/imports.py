@@ -10,6 +10,8 @@ from typing import Final
 from house.sources import Breach, House, Source
 
 PROJECT: Final = "pyproject.toml"
+DEVELOPMENT: Final = {"test", "studies", "checks"}
+"""Extras for whoever works on the package: nothing that is shipped imports them."""
 _NAME: Final = re.compile(r"[\w.-]+")
 
 
@@ -18,13 +20,13 @@ def dependencies(house: House) -> Iterator[Breach]:
     project = tomllib.loads(house.text(PROJECT) or "[project]")["project"]
     extras = project.get("optional-dependencies", {})
     runtime = _names(project.get("dependencies", []))
-    for group in extras.keys() - {"test"}:
+    for group in extras.keys() - DEVELOPMENT:
         runtime |= _names(extras[group])
     shipped = _imported(house, house.package)
     others = [each for each in house.python if not each.path.startswith("trialid/")]
     yield from _undeclared(shipped, runtime, "dependencies")
-    everything = runtime | _names(extras.get("test", []))
-    yield from _undeclared(_imported(house, others), everything, "the extra 'test'")
+    everything = runtime | {n for group in DEVELOPMENT for n in _names(extras.get(group, []))}
+    yield from _undeclared(_imported(house, others), everything, "the extras for tests")
     used = shipped.keys() | _loaded(house) | set(house.listed("dependencies", "used_otherwise"))
     unused = runtime - used
     for name in sorted(unused - {project.get("name")}):

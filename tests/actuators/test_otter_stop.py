@@ -102,6 +102,7 @@ def test_the_words_of_a_crash_stop() -> None:
             stop_order(wrong)
 
 
+@pytest.mark.study(turn=4)
 def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
     """Stopped, ordered astern, handed over with the units of her thrusters; gains by both."""
     logs = [log(tmp_path / f"{seed}.csv", seed=seed) for seed in (700, 701, 702)]

@@ -39,6 +39,7 @@ def test_shares_come_back_from_pulse_widths_with_their_own_ends(tmp_path: Path) 
     assert np.abs(naive - skid_steer.shares(t, 710)[:, 1]).max() > 0.2
 
 
+@pytest.mark.study(turn=4)
 def test_from_the_log_to_a_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The Otter's damping that is there at rest is not in the first model, and is named."""
     monkeypatch.chdir(tmp_path)

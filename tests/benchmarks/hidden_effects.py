@@ -39,12 +39,12 @@ from hidden_truth import (
     without,
 )
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, worth_a_name
+from trialid.diagnosis.diagnose import DiagnoseSettings, refits_of
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.completeness import completeness
 from trialid.diagnosis.search.freed import candidates_to_free
-from trialid.diagnosis.search.refit import Refit, refit_best
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.diagnosis.verdict import Verdict, decide
 from trialid.effects import CATALOGUE
@@ -122,8 +122,7 @@ def diagnosed(
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        worth = worth_a_name(ranking, DEFAULTS)
-        refits = refit_best(fit, trials, worth, asked.refit, asked.level, lambda words: None)
+        refits = refits_of(fit, trials, ranking, asked, lambda words: None)
     with watch("decide"):
         whole = completeness(fit, augmented)
         parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)

@@ -10,7 +10,8 @@ from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.search.carried import Carried, as_good, lead_in_errors
 from trialid.diagnosis.search.completeness import Completeness, _Search
 from trialid.diagnosis.search.refit import Refit, best_of
-from trialid.diagnosis.verdict import decide, rivals
+from trialid.diagnosis.search.rivals import rivals, to_fit
+from trialid.diagnosis.verdict import decide
 
 BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
 
@@ -22,6 +23,7 @@ def fit(eps, check=None, converged=True):
         converged=converged,
         eps_by_output={"r": eps},
         problem=SimpleNamespace(weights=np.ones(1)),
+        model=SimpleNamespace(displaced_by=lambda effect: ()),
     )
 
 
@@ -111,13 +113,34 @@ def test_rivals_explain_more_than_half_and_differ_by_no_more_than_chance():
     assert found == ("close", "twin")
 
 
+def test_blocks_that_agree_are_apart_although_one_holds_most_of_the_error():
+    """A fault that fits against one that does not, six of six, one block ten times the others."""
+    fits, fails = [0.27, 0.23, 0.26, 0.26, 0.26, 0.27], [1.03, 0.38, 1.55, 0.53, 0.66, 3.28]
+    assert not as_good(fits, fails)
+    assert as_good(fails, fits)
+    assert as_good(fits, [*fits[:5], 3.28])  # one block alone may be chance
+
+
+def test_slopes_are_believed_where_that_of_the_named_effect_foretold_its_fall():
+    by_slope = refit("by_slope", 0.55, 0.07, wobble=0.3)
+    believed = refit("named", 0.50, 0.07, family=("twin",))
+    ranking = [r.candidate for r in (believed, by_slope, refit("twin", 0.5, 0.07))]
+    assert to_fit(believed, ranking, [believed]) == ()
+    assert rivals(believed, ranking, [believed]) == ("by_slope", "twin")
+    fell = Carried(BEFORE, tuple(0.01 * x for x in BEFORE))  # and its slope says a half
+    named = Refit(believed.candidate, believed.fit, fell)
+    assert to_fit(named, ranking, [named]) == (by_slope.candidate,)
+    assert to_fit(named, ranking, [named, by_slope]) == ()
+    assert rivals(named, ranking, [named]) == ("twin",)
+
+
 @pytest.mark.parametrize(("gap", "good"), [(1.5, True), (2.4, True), (2.7, False)])
 def test_two_lists_differ_by_student_s_97_5_per_cent(gap, good):
     """Six blocks: 2.57 standard errors."""
     one = np.array(BEFORE)
     spread = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
     spread *= np.sqrt(6.0) / np.std(spread, ddof=1)
-    other = one + 1e-3 * (gap + spread)
+    other = one * np.exp(1e-3 * (gap + spread))
     assert lead_in_errors(one, other) == pytest.approx(gap)
     assert bool(as_good(one, other)) is good
 

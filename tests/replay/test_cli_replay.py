@@ -149,6 +149,7 @@ def test_options_that_exclude_each_other(done, options):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
+@pytest.mark.study(turn=0)
 def test_in_a_terminal_space_pauses_arrows_seek_and_q_ends(done):
     pipeline, run = done
     pid, place = os.forkpty()

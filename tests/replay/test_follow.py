@@ -92,6 +92,7 @@ def test_a_growing_log_is_followed_and_ends_in_the_numbers_of_the_batch_run(pipe
     assert raised[0][1] < 640.0  # while it was still being written
 
 
+@pytest.mark.study(turn=4)
 def test_it_waits_for_enough_of_a_log_and_gives_up_when_nothing_comes(pipeline, ready, tmp_path):
     read = ready[0]
     text = (pipeline.parent / "halfway.csv").read_text(encoding="utf-8")

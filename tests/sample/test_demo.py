@@ -58,6 +58,7 @@ def shipped() -> dict[str, str]:
     return {n: h for n, h in found.items() if not n.endswith(".png")}
 
 
+@pytest.mark.study(turn=4)
 def test_it_writes_the_bytes_that_are_shipped(made: Path) -> None:
     """The logs come from the simulator, so that this also says the shipped ones do."""
     written = state(made)
@@ -80,6 +81,7 @@ def test_once_more_is_the_same(copy: Path) -> None:
     assert state(copy) == before
 
 
+@pytest.mark.study(turn=0)
 def test_what_to_try_is_said(copy: Path) -> None:
     told = demo(copy).stdout
     assert f"  cd {copy}\n" in told

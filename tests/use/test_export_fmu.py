@@ -172,6 +172,7 @@ def test_it_says_what_it_is(tmp_path: Path) -> None:
 
 
 @compiled
+@pytest.mark.study
 def test_an_importer_takes_it(run_folder: Path, tmp_path: Path) -> None:
     fmpy = pytest.importorskip("fmpy")
     validate_fmu = pytest.importorskip("fmpy.validation").validate_fmu
@@ -191,6 +192,7 @@ def test_an_importer_takes_it(run_folder: Path, tmp_path: Path) -> None:
 
 
 @compiled
+@pytest.mark.study
 def test_another_importer_sails_it_to_the_same_numbers(tmp_path: Path) -> None:
     """libcosim, on the FMI Library: what the kernel makes of a rudder that is held."""
     pytest.importorskip("libcosimpy")

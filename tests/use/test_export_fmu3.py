@@ -66,6 +66,7 @@ def test_nothing_of_it_is_out_of_bounds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["shipped", "a gear with a state", "surge and heading"])
+@pytest.mark.study
 def test_an_importer_sails_it_to_the_kernel_s_numbers(name: str, tmp_path: Path) -> None:
     """FMPy finds nothing wrong with it, every call of the standard in it, and the same motion."""
     fmpy = pytest.importorskip("fmpy")

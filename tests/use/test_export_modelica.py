@@ -17,6 +17,7 @@ from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
 
 rumoca = pytest.importorskip("rumoca")
+pytestmark = pytest.mark.study
 
 DRAWS = 4
 END, STEP = 60.0, 0.05

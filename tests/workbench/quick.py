@@ -13,15 +13,17 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import uvicorn
 
+from trialid.result.schema import Result
 from trialid.workbench import server
 from trialid.workbench.desk import Desk
 from trialid.workbench.status import Status
+from trialid.workflow import history
 
 ROOT = Path(__file__).parent.parent.parent
 SAMPLES = ROOT / "sample_data"
@@ -266,3 +268,23 @@ def running(*words: str) -> Iterator[Running]:
             yield Running(process, greeted(said, int(found[1])), said)
         finally:
             process.kill()
+
+
+def result(desk: Desk) -> Result:
+    """The result shown, without what stands in it of the model before."""
+    shown = desk.shown
+    assert shown.run is not None
+    return replace(shown.run.result, change=None)
+
+
+def steps(path: Path) -> list[tuple[str, str | None]]:
+    """The history in the file."""
+    rows, words = history.read(path)
+    assert words == ""
+    return [(row.step, row.added or row.dropped) for row in rows]
+
+
+def still_alone(path: Path) -> bool:
+    """Whether nothing but the history was left beside the pipeline."""
+    names = {p.name for p in path.parent.iterdir()}
+    return names <= {"log.csv", "quick.toml", "s175q.toml", "quick.history.jsonl", "__pycache__"}

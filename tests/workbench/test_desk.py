@@ -1,47 +1,38 @@
 """The loop by hand: every edit in the file, fitted as the command line fits, and taken back."""
 
 import threading
-from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 import quick
 from click.testing import CliRunner
-from held import Gate, Looks
-from quick import ADDED, OTHER, SPARE, diagnosed, edit, opened, settled, until
+from held import Gate
+from quick import (
+    ADDED,
+    OTHER,
+    SPARE,
+    diagnosed,
+    edit,
+    opened,
+    result,
+    settled,
+    steps,
+    still_alone,
+)
 
 from trialid.cli import main
-from trialid.errors import PipelineError, TrialidError
+from trialid.errors import PipelineError
 from trialid.pipeline_file import load
 from trialid.result.json_file import text_of
-from trialid.result.schema import Result
 from trialid.workbench import compute
 from trialid.workbench import desk as desk_module
 from trialid.workbench.desk import Desk
-from trialid.workbench.document import Outdated
 from trialid.workbench.shown import Shown
 from trialid.workflow import history
 from trialid.workflow.run import run
 
-
-@pytest.fixture(autouse=True)
-def _quick_looks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(desk_module, "POLL", 0.05)
-
-
-@pytest.fixture
-def path(tmp_path: Path) -> Path:
-    return quick.write(tmp_path)
-
-
-@pytest.fixture
-def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
-    made = Gate()
-    monkeypatch.setattr(compute, "examine", made.examine)
-    yield made
-    made.open.set()
+pytestmark = pytest.mark.usefixtures("quick_looks")
 
 
 @pytest.fixture
@@ -56,26 +47,6 @@ def told(monkeypatch: pytest.MonkeyPatch) -> list[Shown]:
 
     monkeypatch.setattr(desk_module._Seat, "show", showing)
     return shown
-
-
-def result(desk: Desk) -> Result:
-    """The result shown, without what stands in it of the model before."""
-    shown = desk.shown
-    assert shown.run is not None
-    return replace(shown.run.result, change=None)
-
-
-def steps(path: Path) -> list[tuple[str, str | None]]:
-    """The history in the file."""
-    rows, words = history.read(path)
-    assert words == ""
-    return [(row.step, row.added or row.dropped) for row in rows]
-
-
-def still_alone(path: Path) -> bool:
-    """Whether nothing but the history was left beside the pipeline."""
-    names = {p.name for p in path.parent.iterdir()}
-    return names <= {"log.csv", "quick.toml", "s175q.toml", "quick.history.jsonl", "__pycache__"}
 
 
 # --- what is shown ------------------------------------------------------------------------------
@@ -114,6 +85,7 @@ def test_counts_grow_with_what_a_page_should_ask_for(path: Path) -> None:
 # --- edits --------------------------------------------------------------------------------------
 
 
+@pytest.mark.study(turn=4)
 def test_add_and_drop_as_the_command_line_does(tmp_path: Path) -> None:
     """Bit for bit: the file, the numbers, the model before beside, and the history."""
     for folder in ("screen", "line"):
@@ -331,211 +303,6 @@ def test_an_effect_of_ones_own_that_needs_better_starts(tmp_path: Path) -> None:
 
 
 # --- others at work -----------------------------------------------------------------------------
-
-
-def test_a_second_window_loses_nothing(path: Path) -> None:
-    with opened(path) as desk:
-        seen_by_both = diagnosed(desk).version
-        desk.edit({"version": seen_by_both, "do": "add", "effect": ADDED})
-        content = path.read_bytes()
-        for late in (
-            lambda: desk.edit({"version": seen_by_both, "do": "add", "effect": OTHER}),
-            lambda: desk.undo(seen_by_both),
-            lambda: desk.redo(seen_by_both),
-        ):
-            with pytest.raises(Outdated):
-                late()
-            assert path.read_bytes() == content
-        assert diagnosed(desk).undo == f"add {ADDED}"
-
-
-def test_an_edit_in_an_editor_is_not_overwritten(path: Path) -> None:
-    """Not even before the change was noticed."""
-    with opened(path) as desk:
-        version = diagnosed(desk).version
-        theirs = quick.TEXT.replace('"Nrar"]', '"Kphi"]')
-        path.write_text(theirs, encoding="utf-8")
-        with pytest.raises(TrialidError):
-            desk.edit({"version": version, "do": "add", "effect": ADDED})
-        assert path.read_text(encoding="utf-8") == theirs
-
-
-def test_an_edit_made_elsewhere_is_taken_over(path: Path) -> None:
-    text = path.read_bytes()
-    with opened(path) as desk:
-        first = diagnosed(desk)
-        path.write_bytes(text.replace(b', "Nrar"]', b"]"))
-        until(lambda: desk.status.version != first.version, "the edit to be seen")
-        status = diagnosed(desk)
-        assert desk.shown.pipeline == load(path)
-        assert desk.shown.before is not None
-        assert result(desk) == run(load(path)).result
-        assert status.undo == "the edit made outside"
-        desk.undo(status.version)
-        assert path.read_bytes() == text
-        diagnosed(desk)
-
-
-@pytest.mark.study(turn=4)
-def test_an_edit_made_elsewhere_ends_a_refit(path: Path, gate: Gate) -> None:
-    with opened(path) as desk:
-        diagnosed(desk)
-        gate.close()
-        edit(desk, "add", effect=ADDED)
-        assert gate.reached.wait(quick.LONGEST)
-        version = desk.status.version
-        theirs = path.read_bytes().replace(b'"Nrar", ', b"")
-        path.write_bytes(theirs)
-        until(lambda: desk.status.version != version, "the edit to be seen")
-        gate.open.set()
-        diagnosed(desk)
-        assert path.read_bytes() == theirs
-        assert result(desk) == run(load(path)).result
-
-
-@pytest.mark.parametrize("broken", ["[model", "name = 3\n", None])
-@pytest.mark.study(turn="each")
-def test_a_broken_file_keeps_the_screen(path: Path, broken: str | None) -> None:
-    text = path.read_text(encoding="utf-8")
-    with opened(path) as desk:
-        first = diagnosed(desk)
-        shown = result(desk)
-        path.unlink() if broken is None else path.write_text(broken, encoding="utf-8")
-        status = until(lambda: (s := desk.status).trouble and s, "the trouble to be seen")
-        assert status.trouble is not None
-        assert status.trouble.where == "pipeline"
-        assert "quick.toml" in status.trouble.words
-        assert (status.stage, status.version) == ("diagnosed", first.version)
-        assert result(desk) == shown
-        with pytest.raises(Outdated):
-            edit(desk, "add", effect=ADDED)
-        assert (path.read_text() if path.exists() else None) == broken
-        path.write_text(text.replace('"Nrar"]', '"Nrar", "Kphi"]'), encoding="utf-8")
-        until(lambda: desk.status.version != first.version, "the mended file to be seen")
-        diagnosed(desk)
-        assert result(desk) == run(load(path)).result
-
-
-def test_a_file_mended_to_what_it_was(path: Path) -> None:
-    text = path.read_bytes()
-    with opened(path) as desk:
-        first = diagnosed(desk)
-        path.write_bytes(b"[model")
-        until(lambda: desk.status.trouble, "the trouble to be seen")
-        path.write_bytes(text)
-        until(lambda: desk.status.trouble is None, "the trouble to go")
-        assert diagnosed(desk).version == first.version
-        edit(desk, "add", effect=ADDED)
-        diagnosed(desk)
-
-
-@pytest.mark.study(turn=1)
-def test_an_effect_file_edited_broken_and_mended(tmp_path: Path) -> None:
-    path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
-    with opened(path) as desk:
-        serial = diagnosed(desk).serial
-        first = result(desk)
-        mine.write_text(quick.OWN.replace("v * abs(v)", "r * abs(r)"), encoding="utf-8")
-        until(lambda: desk.status.serial > serial, "the effect file to be seen")
-        diagnosed(desk)
-        second = result(desk)
-        assert second == run(load(path)).result
-        assert second.fit.eps_rmsn != first.fit.eps_rmsn
-        mine.write_text("def\n", encoding="utf-8")
-        status = until(lambda: (s := desk.status).trouble and s, "the trouble to be seen")
-        assert status.trouble is not None
-        assert status.trouble.where == "effects"
-        assert "mine.py" in status.trouble.words
-        assert result(desk) == second
-        with pytest.raises(TrialidError, match=r"mine\.py"):
-            edit(desk, "add", effect=ADDED)
-        mine.write_text(quick.OWN, encoding="utf-8")
-        until(lambda: desk.status.trouble is None, "the trouble to go")
-        diagnosed(desk)
-        assert result(desk).fit == first.fit
-
-
-@pytest.mark.study(turn=3)
-def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
-    """The file is as it was before the edit; what cannot be fitted now is, once it is mended."""
-    path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
-    text = path.read_bytes()
-    with opened(path) as desk:
-        diagnosed(desk)
-        edit(desk, "drop", effect="mine")
-        diagnosed(desk)
-        mine.write_text("def\n", encoding="utf-8")
-        desk.undo(desk.status.version)
-        assert path.read_bytes() == text
-        status = until(
-            lambda: (s := desk.status).trouble and s.working is None and s, "the trouble"
-        )
-        assert status.trouble is not None
-        assert status.trouble.where == "effects"
-        mine.write_text(quick.OWN, encoding="utf-8")
-        until(lambda: desk.status.trouble is None, "the trouble to go")
-        diagnosed(desk)
-        assert result(desk) == run(load(path)).result
-        assert path.read_bytes() == text
-
-
-def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: Any) -> None:
-    """Between the same two looks as an edit on the screen: it is seen all the same."""
-    path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
-    looks = Looks(desk_module.watch_list, path)
-    monkeypatch.setattr(desk_module, "watch_list", looks.watched)
-    with opened(path) as desk:
-        diagnosed(desk)
-        looks.stop()
-        edit(desk, "free", parameter="Nrar", free=False)
-        diagnosed(desk)
-        mine.write_text(quick.OWN.replace("v * abs(v)", "r * abs(r)"), encoding="utf-8")
-        serial = desk.status.serial
-        looks.go()
-        until(lambda: desk.status.serial > serial, "the effect file to be seen")
-        diagnosed(desk)
-        assert result(desk) == run(load(path)).result
-
-
-@pytest.mark.study(turn=4)
-def test_a_file_edited_while_it_is_taken_over(path: Path, monkeypatch: Any) -> None:
-    """The second of two edits elsewhere, made while the first is being read, is seen too."""
-    text = path.read_bytes()
-    second = text.replace(b', "Nrar"]', b', "Kphi"]')
-    reread = desk_module.Document.reread
-    late = [second]
-
-    def rereading(self: Any) -> bool:
-        found = reread(self)
-        if found and late:
-            path.write_bytes(late.pop())
-        return found
-
-    monkeypatch.setattr(desk_module.Document, "reread", rereading)
-    with opened(path) as desk:
-        diagnosed(desk)
-        path.write_bytes(text.replace(b', "Nrar"]', b"]"))
-        until(lambda: desk._document.pipeline.content == second, "the second edit to be seen")
-        diagnosed(desk)
-        assert result(desk) == run(load(path)).result
-
-
-@pytest.mark.study(turn=2)
-def test_a_log_that_grew_is_not_shown_as_it_was(path: Path) -> None:
-    """An undo shows again what was known, but not of another record."""
-    log = path.with_name("log.csv")
-    with opened(path) as desk:
-        diagnosed(desk)
-        edit(desk, "free", parameter="Nrar", free=False)
-        diagnosed(desk)
-        lines = log.read_text(encoding="utf-8").splitlines(keepends=True)
-        log.write_text("".join([lines[0], *lines[500:]]), encoding="utf-8")
-        desk.undo(desk.status.version)
-        diagnosed(desk)
-        assert result(desk) == run(load(path)).result
-
-
-# --- the end ------------------------------------------------------------------------------------
 
 
 def test_nothing_is_written_after_the_end(path: Path, gate: Gate) -> None:

@@ -1,6 +1,6 @@
 """All that is found out about a fitted model: its error, its accuracy, and what is missing."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -14,7 +14,8 @@ from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.completeness import Completeness, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
-from trialid.diagnosis.search.refit import Refit, refit_best
+from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
+from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate, rank
 from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
@@ -25,6 +26,7 @@ from trialid.identification.fit import Fit
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect
 from trialid.threads import one_thread
+from trialid.trial import Trial
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,10 +113,7 @@ def diagnose(
         return _gross(fit, before, augmented, faults, asked)
     if (failed := why_no_fit(fit)) is not None:
         return _no_fit(fit, before, augmented, failed)
-    worth = worth_a_name(ranking, asked)
-    refits = tuple(
-        refit_best(fit, trials, worth, asked.refit, asked.level, lambda words: progress(words, 0.7))
-    )
+    refits = refits_of(fit, trials, ranking, asked, lambda words: progress(words, 0.7), grown)
     if faults := whole_faults(fit, trials, asked.candidates, refits, progress):
         return _gross(fit, before, augmented, faults, asked)
     whole, left_out = _whole(fit, augmented), augmented.left_out
@@ -198,6 +197,17 @@ def _bounded(done: Diagnosed, fits: Sequence[Fit], whole: Completeness | None = 
     return replace(done, split=held_against(done.split, done.routes, done.fit, fits, whole))
 
 
-def worth_a_name(ranking: Sequence[Candidate], asked: DiagnoseSettings) -> tuple[Candidate, ...]:
-    """The candidates that are worth a name, the best first."""
-    return tuple(c for c in ranking if c.worth_a_name(asked.level))
+def refits_of(
+    fit: Fit,
+    trials: Sequence[Trial],
+    ranking: Sequence[Candidate],
+    asked: DiagnoseSettings,
+    progress: Callable[[str], None],
+    grown: bool = False,
+) -> tuple[Refit, ...]:
+    """The best candidates fitted, and whatever else would be said to do as well."""
+    worth = [c for c in ranking if c.worth_a_name(asked.level)]
+    best = refit_best(fit, trials, worth, asked.refit, asked.level, progress)
+    named = likeliest_refit(fit, best, asked.level, grown)
+    others = to_fit(named, ranking, best) if named else ()
+    return (*best, *refit(fit, trials, others, progress))

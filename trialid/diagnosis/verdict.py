@@ -7,23 +7,22 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.noise.split import Split
-from trialid.diagnosis.search.carried import FALL, Carried, as_good
+from trialid.diagnosis.search.carried import FALL, as_good
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import (
     HELD_OUT,
+    NOT_ARRIVED,
     Refit,
     best_of,
     fall,
     falls,
     likeliest_refit,
     objection,
+    worse_held_out,
 )
+from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
-
-RIVAL: Final = 0.5
-"""Share of the named effect's fall, as a logarithm, below which another explains too little to be
-taken for it."""
 
 NAMED: Final = 1.10
 """Ratio of squared errors that a further effect must be worth to be named beside the first: below
@@ -56,23 +55,43 @@ def decide(
     """From scores and refits to a verdict: missing, nothing missing, not in catalogue, cannot tell.
 
     An effect is named only if its score stands out over the whole catalogue, its refitted value
-    is physical, held-out trials do not speak against it, and no force of another shape explains
-    far more; and where the blocks left out alone show it, only if none as good differs in trace. In
-    a model that has `grown` by effects already it must be worth a tenth.
+    is physical, held-out trials do not speak against it, and neither a force of another shape nor
+    an effect whose search did not arrive explains far more; and where the blocks left out alone
+    show it, only if none as good differs in trace. In a model that has `grown` by effects already
+    it must be worth a tenth.
     """
     named = likeliest_refit(fit, refits, level, grown)
     if whole is not None and (whole.outdoes(named.carried) if named else whole.gap):
         return Verdict("not in catalogue", None, (), _gap(named, whole))
-    if named is None and (against := _contradicted(fit, refits, level)) is not None:
-        return Verdict("cannot tell", None, (), _against(fit, against))
-    if grown and named is not None and named.carried.ratio > 1.0 / NAMED:
-        return Verdict("cannot tell", None, (), _correction(named))
-    if named is not None and (share := _explained(fit, named, parts)) < SHARE:
-        return Verdict("not in catalogue", None, (), _little(named, share, parts))
     if named is not None:
-        return _missing_or_one_of(fit, named, ranking, refits, level)
+        return _judged(fit, named, ranking, refits, parts, level=level, grown=grown)
+    if (against := _contradicted(fit, refits, level)) is not None:
+        return Verdict("cannot tell", None, (), _against(fit, against))
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
     return _unnamed(parts, whole, small)
+
+
+def _judged(
+    fit: Fit,
+    named: Refit,
+    ranking: Sequence[Candidate],
+    refits: Sequence[Refit],
+    parts: Split,
+    *,
+    level: float,
+    grown: bool,
+) -> Verdict:
+    """What the likeliest effect is worth: a name, or why it has none."""
+    if (ahead := _ahead(fit, named, refits, level)) is not None:
+        return Verdict("cannot tell", None, (), _behind(fit, named, ahead))
+    if grown and named.carried.ratio > 1.0 / NAMED:
+        return Verdict("cannot tell", None, (), _correction(named))
+    if (share := _explained(fit, named, parts)) < SHARE:
+        return Verdict("not in catalogue", None, (), _little(named, share, parts))
+    others = rivals(named, ranking, refits)
+    if _open(named, others, ranking, level):
+        return Verdict("cannot tell", None, (), _one_of(fit, named, others))
+    return _missing(fit, named, others)
 
 
 def gross_verdict(fit: Fit, faults: Sequence[Refit]) -> Verdict:
@@ -151,6 +170,28 @@ def _against(fit: Fit, found: Refit) -> str:
     )
 
 
+def _ahead(fit: Fit, named: Refit, refits: Sequence[Refit], level: float) -> Refit | None:
+    """The best effect that leaves less than the named one, although its search never arrived."""
+    unfinished = [r for r in refits if objection(fit, r, level) == NOT_ARRIVED]
+    better = [
+        r
+        for r in unfinished
+        if r.fit.eps_rmsn < named.fit.eps_rmsn
+        and not as_good(r.carried.after, named.carried.after)
+        and not worse_held_out(fit, r.fit)
+    ]
+    return best_of(better)
+
+
+def _behind(fit: Fit, named: Refit, ahead: Refit) -> str:
+    name = ahead.candidate.effect.name
+    return (
+        f"with {name} the error falls from {fit.eps_rmsn:.2%} to {ahead.fit.eps_rmsn:.2%} although "
+        f"its search has not arrived, with {named.candidate.effect.name} to "
+        f"{named.fit.eps_rmsn:.2%}: `trialid add PIPELINE {name}` and starts of its own may tell"
+    )
+
+
 def _correction(named: Refit) -> str:
     return (
         f"{named.candidate.effect.name} would take another {1.0 - named.carried.ratio:.1%} off the "
@@ -181,56 +222,14 @@ def _no_split(parts: Split) -> str:
     )
 
 
-def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) -> tuple[str, ...]:
-    """Effects that this record cannot tell from the named one: alike in trace, or as good.
-
-    As good is what leaves no more of the blocks left out than chance would, and explains more than
-    half of what the named one does.
-    """
-    fitted = {r.candidate.effect.name: r for r in refits}
-    close, apart = list[str](), set[str]()
-    for c in ranking:
-        name = c.effect.name
-        if c is named.candidate:
-            continue
-        refit = fitted.get(name)
-        mine, its = (
-            (named.carried, refit.carried) if refit else (named.candidate.carried, c.carried)
-        )
-        if _as_good(mine, its):
-            close += [name] if c.allowed else []
-        elif refit:
-            apart.add(name)
-    apart |= {c.effect.name for c in ranking if c.effect.bound_by_meaning and not c.allowed}
-    alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
-    return (*close, *alike)
-
-
-def _as_good(mine: Carried, its: Carried) -> bool:
-    """Whether another effect carries over as well as far as these blocks can tell."""
-    if not 0.0 < its.ratio < mine.ratio**RIVAL:
-        return False
-    return as_good(mine.after, its.after)
-
-
 def _missing(fit: Fit, named: Refit, others: tuple[str, ...]) -> Verdict:
     candidate = named.candidate
     alike = f"; this record cannot tell it from {', '.join(others)}" if others else ""
     return Verdict(
         "missing", candidate.effect.name, (candidate.effect.name, *others),
-        f"{_what(named)} {_falls(fit, named.fit)} "
+        f"{_what(fit, named)} {_falls(fit, named.fit)} "
         f"(p = {candidate.p_value:.2g} over the catalogue){alike}",
     )  # fmt: skip
-
-
-def _missing_or_one_of(
-    fit: Fit, named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit], level: float
-) -> Verdict:
-    """A name, unless blocks alone speak for it, and for what is unlike it as well."""
-    others = rivals(named, ranking, refits)
-    if _open(named, others, ranking, level):
-        return Verdict("cannot tell", None, (), _one_of(fit, named, others))
-    return _missing(fit, named, others)
 
 
 def _open(
@@ -254,9 +253,11 @@ def _one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
     )
 
 
-def _what(named: Refit) -> str:
-    """What is named: an effect that the model lacks, or a coefficient held where it is not."""
+def _what(fit: Fit, named: Refit) -> str:
+    """What is named: what the model lacks or has in its place, or a coefficient held wrong."""
     name, held = named.candidate.effect.name, named.candidate.effect.held
+    if placed := fit.model.displaced_by(named.candidate.effect):
+        return f"{', '.join(placed)} is not what moves there: with {name} in its place"
     if held is None:
         return f"{name} is missing: with it"
     return f"{name} is held at {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"

@@ -33,6 +33,8 @@ STANDSTILL: Final = 1e-6
 class ShipModel:
     """What is simulated. `model + effect` and `model - "name"` give a new one.
 
+    An effect that gives a state which another gave takes its place.
+
     Attributes
     ----------
     states
@@ -62,7 +64,10 @@ class ShipModel:
     def __add__(self, effect: Effect) -> "ShipModel":
         if effect.held is not None:  # its coefficient is there
             return self
-        return replace(self, effects=(*self.effects, effect))
+        model = self
+        for name in self.displaced_by(effect):
+            model = model - name
+        return replace(model, effects=(*model.effects, effect))
 
     def __sub__(self, name: str) -> "ShipModel":
         if name not in (e.name for e in self.effects):
@@ -72,6 +77,16 @@ class ShipModel:
         gone = {p for e in self.effects if e.name == name for p in e.parameters}
         values = {n: x for n, x in self.values.items() if n not in gone}
         return replace(self, effects=kept, values=values)
+
+    def displaced_by(self, effect: Effect) -> tuple[str, ...]:
+        """Effects whose place another takes: a state has one equation, a rudder one gear."""
+        others = (e for e in self.effects if e.name != effect.name)
+        return tuple(e.name for e in others if {*e.states} & {*effect.states})
+
+    def lost_to(self, effect: Effect) -> frozenset[str]:
+        """Parameters that go where an effect takes another's place."""
+        gone = self.displaced_by(effect)
+        return frozenset(p for e in self.effects if e.name in gone for p in e.parameters)
 
     def with_values(self, values: Mapping[str, float]) -> "ShipModel":
         """The same model with other parameter values."""

@@ -1,6 +1,6 @@
 """A pipeline with one effect more or less, or with a coefficient freed or held; not yet written."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -55,8 +55,21 @@ def add_to_pipeline(pipeline: Pipeline, name: str) -> Edit:
     steps, _ = history.read(pipeline.path)
     free = history.free_before(steps, name, tuple(effect.parameters))
     new = [n for n in free if n not in pipeline.identify.free]
-    after, _ = _edited(pipeline, lambda text: (add_effect(text, name, new), ()))
-    return Edit("added", effect, pipeline, after)
+    after, said = _edited(pipeline, lambda text: _in_its_place(pipeline, text, effect, new))
+    return Edit("added", effect, pipeline, after, said)
+
+
+def _in_its_place(
+    pipeline: Pipeline, text: str, effect: Effect, free: Sequence[str]
+) -> tuple[str, tuple[str, ...]]:
+    """The text with an effect, without those that give the same state, and what it said of them."""
+    catalogue, said = available(pipeline), list[str]()
+    present = [catalogue[n] for n in pipeline.model.effects if n in catalogue]
+    for other in present:
+        if {*other.states} & {*effect.states}:
+            text, words = drop_effect(text, other.name, tuple(other.parameters))
+            said += words
+    return add_effect(text, effect.name, free), tuple(said)
 
 
 def drop_from_pipeline(pipeline: Pipeline, name: str) -> Edit:

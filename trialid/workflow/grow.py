@@ -130,7 +130,8 @@ def _forward(path: _Path, stage: Stage) -> Stage:
         return _not_kept(path, stage, name, f"with {name}: {error}")
     if trouble:
         return _not_kept(path, stage, name, f"{trouble} with {name}")
-    path.own.append(edit.effect)
+    if not before.model.displaced_by(edit.effect):  # a gear's place is never empty
+        path.own.append(edit.effect)
     return _told(path, edit, run, added=name)
 
 

@@ -115,7 +115,12 @@ def why_unusable(model: ShipModel, trial: Trial, effect: Effect) -> str:
     if lacking:
         where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
         return f"needs {', '.join(dict.fromkeys(lacking))}, which the {where} does not hold"
-    doubled = sorted(set(effect.states) & {*model.all_states, *trial.signals})
+    given = {*model.all_states}
+    if effect.scanned:  # it is tried in the place of the other
+        given -= {
+            s for e in model.effects if e.name in model.displaced_by(effect) for s in e.states
+        }
+    doubled = sorted(set(effect.states) & {*given, *trial.signals})
     if doubled:
         held = "simulated" if doubled[0] in model.all_states else "recorded"
         return f"gives {doubled[0]}, which is {held} already"
@@ -186,7 +191,7 @@ def fixed_coefficients(fit: Fit) -> tuple[str, ...]:
     """Masses and coefficients of the simulated model that nobody seeks and that are not zero."""
     model = fit.problem.simulator.model
     sought = {x.column for x in fit.problem.unknowns}
-    named = [n for e in model.effects if not e.scanned for n in e.parameters]
+    named = [n for e in model.effects for n in e.parameters]
     return tuple(n for n in (*MASS_PARAMETERS, *named) if n not in sought and model.stated(n))
 
 

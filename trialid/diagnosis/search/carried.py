@@ -31,6 +31,9 @@ EACH: Final = 0.01
 CHANCE: Final = 0.975
 """Student's level beyond which the errors of two models differ by more than chance."""
 
+TINY: Final = 1e-300
+"""What an error of nothing counts as where its logarithm is taken."""
+
 
 @dataclass(frozen=True)
 class Errors:
@@ -107,7 +110,7 @@ class Carried:
     @property
     def log_ratio(self) -> float:
         """Natural logarithm of the ratio; zero where there is nothing to compare."""
-        return float(np.log(max(self.ratio, 1e-300))) if self.blocks else 0.0
+        return float(np.log(max(self.ratio, TINY))) if self.blocks else 0.0
 
     def price(self, parameters: int) -> float:
         """What candidates are ordered by: the fall that is believed, and something a parameter."""
@@ -116,7 +119,7 @@ class Carried:
 
     def _believed(self, ratio: float) -> float:
         """The logarithm of a ratio by how much of the trace is seen."""
-        return float(np.log(max(ratio, 1e-300))) * self.seen / (self.seen + FAINT)
+        return float(np.log(max(ratio, TINY))) * self.seen / (self.seen + FAINT)
 
 
 def _ratio(before: Sequence[float], after: Sequence[float]) -> float:
@@ -144,11 +147,15 @@ def signed_rank_p(gaps: Sequence[float] | Vector) -> float:
 
 
 def lead_in_errors(one: Sequence[float], other: Sequence[float]) -> float:
-    """By how many of its standard errors the first list of squared errors is the smaller one."""
-    gaps = np.subtract(other, one)
+    """By how many of its standard errors the first list of squared errors is the smaller one.
+
+    As logarithms: blocks differ in how much there is to explain, and one with most of the motion
+    would hide that the others agree.
+    """
+    gaps = np.log(np.maximum(other, TINY)) - np.log(np.maximum(one, TINY))
     if len(gaps) < 2:
         return 0.0
-    return float(gaps.mean() / max(np.std(gaps, ddof=1) / np.sqrt(len(gaps)), 1e-300))
+    return float(gaps.mean() / max(np.std(gaps, ddof=1) / np.sqrt(len(gaps)), TINY))
 
 
 def as_good(one: Sequence[float], other: Sequence[float]) -> bool:

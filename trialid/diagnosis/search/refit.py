@@ -16,7 +16,8 @@ from trialid.ship.effect import Effect, Force, Mass, Rate
 from trialid.trial import Trial
 
 HELD_OUT: Final = "the held-out error rises"
-"""An objection in its words."""
+NOT_ARRIVED: Final = "the search does not arrive"
+"""Objections in their words."""
 
 
 @dataclass(frozen=True)
@@ -46,18 +47,33 @@ def refit(
     before, weights = own_errors(fit), levels(fit)
     for candidate in candidates:
         progress(f"trying {candidate.effect.name}")
-        start = {n: _inside(candidate.effect, n, x) for n, x in candidate.expected.items()}
-        settings = _settings_with(fit.settings, candidate.effect)
         try:
-            model = (fit.model + candidate.effect).with_values(start)
-            near = fit.estimates | start
-            fitted = identify(trials, model, settings, near=near, smaller=fit)
+            fitted = _fitted(fit, trials, candidate)
         except TrialidError:  # it cannot be fitted on this record: it is not the missing one
             continue
         after = Carried.between(before, own_errors(fitted, weights), candidate.carried.seen)
         lean = replace(fitted)  # its gradient is let go: it is larger than all else
         done.append(Refit(candidate, lean, after))
     return done
+
+
+def _fitted(fit: Fit, trials: Sequence[Trial], candidate: Candidate) -> Fit:
+    """The model with a candidate, from its expected value.
+
+    A value that was tried may lie far from all that the rest was fitted to: where the search does
+    not arrive, it begins again where the model itself began, and what only shapes the effect waits.
+    """
+    effect = candidate.effect
+    start = {n: _inside(effect, n, x) for n, x in candidate.expected.items()}
+    model, settings = (fit.model + effect).with_values(start), _settings_with(fit, effect)
+    found = identify(trials, model, settings, near=fit.estimates | start, smaller=fit)
+    if found.converged or not effect.scanned:
+        return found
+    shape = {n for n, p in effect.parameters.items() if not p.scan}
+    kept = tuple(n for n in settings.free if n not in shape)
+    rest = identify(trials, model, replace(settings, free=kept), near=start)
+    again = identify(trials, model, settings, near=start | rest.estimates, smaller=fit)
+    return again if again.converged else found
 
 
 def refit_best(
@@ -85,9 +101,11 @@ def _inside(effect: Effect, name: str, value: float) -> float:
     return float(np.clip(value, p.low, p.high))
 
 
-def _settings_with(settings: Settings, effect: Effect) -> Settings:
-    new = tuple(p for p in effect.parameters if p not in settings.free)
-    return replace(settings, free=(*settings.free, *new))
+def _settings_with(fit: Fit, effect: Effect) -> Settings:
+    lost = fit.model.lost_to(effect)
+    kept = tuple(n for n in fit.settings.free if n not in lost)
+    new = tuple(p for p in effect.parameters if p not in kept)
+    return replace(fit.settings, free=(*kept, *new))
 
 
 def likeliest_refit(
@@ -127,7 +145,7 @@ def objection(fit: Fit, refit: Refit, level: float) -> str:
     if not refit.candidate.shown(level):
         return "chance would do it, or no ship has such a value"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
-        return "the search does not arrive"
+        return NOT_ARRIVED
     if worse_held_out(fit, refit.fit):
         return HELD_OUT
     return "" if falls(fit, refit) else "the error hardly falls"

@@ -31,8 +31,10 @@ def secants(
     """Each combination of values, and the normed difference that the effect then makes; (M,)."""
     problem = fit.problem
     plain = respond_all(problem, fit.theta, sensitivities=False)
+    lost = base.lost_to(effect)
+    theta = fit.theta[[x.column not in lost for x in problem.unknowns]]
     for values, changed in _changed(problem, base, effect):
-        responses = respond_all(changed, fit.theta, sensitivities=False)
+        responses = respond_all(changed, theta, sensitivities=False)
         if not (isinstance(plain, Departure) or isinstance(responses, Departure)):
             yield values, _difference(problem, plain, responses)
 
@@ -50,20 +52,22 @@ def _changed(
     problem: Problem, base: ShipModel, effect: Effect
 ) -> Iterator[tuple[Mapping[str, float], Problem]]:
     """The problem with the effect at work, for each combination of values."""
-    if effect.forms == (Rate,) and "delta" in effect.states:
+    if effect.forms == (Rate,) and "delta" in effect.states and not base.displaced_by(effect):
         gear = prepare(ShipModel(base.ship, (), (effect,)), tuple(effect.parameters), ("delta",))
         for values in combinations(effect):
             trials = tuple(_steered(gear, values, t) for t in problem.trials)
             yield values, replace(problem, trials=trials)
         return
     model, simulator = base + effect, problem.simulator
-    free = simulator.equations.free
+    lost = base.lost_to(effect)
+    free = tuple(n for n in simulator.equations.free if n not in lost)
+    unknowns = tuple(x for x in problem.unknowns if x.column not in lost)
     typical = {n: p.start for n, p in effect.parameters.items()}  # a zero would be folded away
     made = prepare(model.with_values(typical), free, problem.outputs, "compiled",
                    simulator.substeps)  # fmt: skip
     for values in combinations(effect):
         fixed = replace(made, model=model.with_values(values))
-        yield values, replace(problem, simulator=fixed)
+        yield values, replace(problem, simulator=fixed, unknowns=unknowns)
 
 
 def _steered(gear: Simulator, values: Mapping[str, float], trial: Trial) -> Trial:

@@ -43,8 +43,9 @@ class FitRun(RunView):
         added = find(effect, own) if isinstance(effect, str) else effect
         if added.name in [e.name for e in self.fit.model.effects]:
             raise EffectError(f"{added.name!r} is in the model already")
-        free = tuple(dict.fromkeys([*self.fit.settings.free, *added.parameters]))
-        return self._again(self.fit.model + added, free)
+        lost = self.fit.model.lost_to(added)
+        kept = (n for n in self.fit.settings.free if n not in lost)
+        return self._again(self.fit.model + added, tuple(dict.fromkeys([*kept, *added.parameters])))
 
     def drop(self, name: str) -> "FitRun":
         """The run of the model with an effect less; nothing is written.

@@ -1,0 +1,104 @@
+"""A steering gear in the model can be the wrong one, or have the wrong numbers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import s175q
+
+from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.verdict import Verdict
+from trialid.effects import CATALOGUE
+from trialid.identification.fit import identify
+from trialid.pipeline_file import load
+from trialid.simulation.integrate import prepare, respond
+from trialid.trial import Trial
+from trialid.workflow.edit_pipeline import add_to_pipeline
+
+FEW = (
+    "rudder_servo_limited",
+    "rudder_servo_second_order",
+    "rudder_in_drift",
+    "lag_phi",
+    "drift_with_rudder",
+    "rudder_cubic",
+    "delay_r",
+    "yaw_cubic_rrr",
+)
+"""Other gears, and what was named in their place."""
+
+
+def ordered(gear: str, seed: int, **values: float) -> list[Trial]:
+    """Zig-zags of which orders are logged, the rudder moved by a gear that nobody announced."""
+    rng = np.random.default_rng(seed)
+    model = (s175q.MODEL + CATALOGUE[gear]).with_values(values)
+    trials = []
+    for amplitude in (5, 10, 20):
+        bare = s175q.zigzag(amplitude)
+        n = len(bare.signals["delta"])
+        signals = {k: x for k, x in bare.signals.items() if k != "delta"}
+        signals["delta_order"] = bare.signals["delta"]
+        valid = {name: np.ones(n, dtype=bool) for name in signals}
+        blank = replace(bare, signals=signals, valid=valid)
+        simulator = prepare(model, (), s175q.OUTPUTS)
+        y = respond(simulator, blank, {}, {"u": 7.33}, sensitivities=False).y
+        moved = {**signals, "r": y[:, 0].copy(), "phi": y[:, 1].copy()}
+        trials.append(s175q.with_noise(replace(blank, signals=moved), *s175q.white(rng, n)))
+    return trials
+
+
+def of_the_gear(trials: list[Trial]) -> Verdict:
+    """What is said of a model with a gear of one second and no limit, held so."""
+    model = (s175q.MODEL + CATALOGUE["rudder_servo"]).with_values({"T_delta": 1.0})
+    fit = identify(trials, model, s175q.SETTINGS)
+    return diagnose(fit, DiagnoseSettings(candidates={n: CATALOGUE[n] for n in FEW})).verdict
+
+
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize(
+    ("gear", "values", "kind", "effect"),
+    [
+        ("rudder_servo", {"T_delta": 1.0}, "nothing missing", None),
+        ("rudder_servo", {"T_delta": 2.0}, "missing", "T_delta"),
+        ("rudder_servo_limited", {"T_servo": 1.0, "rate_max": 0.021}, "missing", None),
+    ],
+)
+def test_the_gear_that_moved_the_rudder_is_named(gear, values, kind, effect) -> None:
+    """Without gears among what is tried, a force is: drift_with_rudder, lag_phi."""
+    found = of_the_gear(ordered(gear, 2041, **values))
+    wanted = gear if gear == "rudder_servo_limited" else effect
+    assert (found.kind, found.effect) == (kind, wanted)
+    if wanted == gear:
+        assert found.sentence.startswith(
+            "rudder_servo is not what moves there: with rudder_servo_limited in its place"
+        )
+    if wanted == "T_delta":
+        assert found.sentence.startswith("T_delta is held at 1; freed, it is 2")
+
+
+def test_a_state_has_one_equation() -> None:
+    slow = (s175q.MODEL + CATALOGUE["rudder_servo"]).with_values({"T_delta": 2.0})
+    limited = CATALOGUE["rudder_servo_limited"]
+    assert slow.displaced_by(limited) == ("rudder_servo",)
+    assert slow.lost_to(limited) == {"T_delta"}
+    changed = slow + limited
+    assert changed.effects == (*s175q.MODEL.effects, limited)
+    assert changed.values == s175q.MODEL.values
+    assert s175q.MODEL.displaced_by(limited) == ()
+
+
+def test_added_to_a_pipeline_it_takes_the_place_of_the_other(tmp_path) -> None:
+    sample = (s175q.ROOT / "pipelines" / "hidden_effect.toml").read_text(encoding="utf-8")
+    text = sample.replace("../sample_data", str(s175q.ROOT / "sample_data"))
+    text = text.replace('"roll_drag_var",', '"roll_drag_var", "rudder_servo",')
+    text = text.replace("[identify]", "[model.values]\nT_delta = 2.0\n\n[identify]")
+    path = tmp_path / "ordered.toml"
+    path.write_text(text, encoding="utf-8")
+    edit = add_to_pipeline(load(path), "rudder_servo_limited")
+    assert "rudder_servo" not in edit.after.model.effects
+    assert edit.after.model.effects[-1] == "rudder_servo_limited"
+    assert edit.taken_out == ("model.values.T_delta = 2.0",)
+    assert {"T_servo", "rate_max"} <= {*edit.after.identify.free}
+    back = add_to_pipeline(edit.after, "rudder_servo")
+    assert "rudder_servo_limited" not in back.after.model.effects
+    assert not {"T_servo", "rate_max"} & {*back.after.identify.free}
