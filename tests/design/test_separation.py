@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from s175q import MODEL, OUTPUTS
@@ -146,7 +148,7 @@ def gram(A: np.ndarray) -> np.ndarray:
 def test_what_is_shown_is_what_all_rows_show(memory: float) -> None:
     goal = GEAR.goal
     noise = {c: Noise(each.sigma, memory) for c, each in goal.noise.items()}
-    goal = module.replace(goal, noise=noise)
+    goal = replace(goal, noise=noise)
     A, names = whiten_sensitivities(goal, TRIALS)
     found = triangles_beside(
         goal, triangles_beside(goal, triangles(goal, TRIALS[:1]), TRIALS[1]), TRIALS[2]

@@ -28,7 +28,7 @@ LIGHT: Final = {
 }
 """Dask's settings for workers of this machine. Its own threshold gives every array of 128 kB back
 to the system at once, and 150 000 pages of a run are asked for anew: an eighth of its processor
-time. A tick of 20 ms and a look at memory every 100 ms take 3 % of a core of two."""
+time. A tick of 20 ms and a look at memory every 100 ms take 2 % of a core in each process."""
 
 Pack = Callable[[Task], Parcel]
 
