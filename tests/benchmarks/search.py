@@ -9,6 +9,7 @@ Results stand in `results/search.md` with `--write`.
 """
 
 import argparse
+import subprocess
 import sys
 import tempfile
 import time
@@ -175,7 +176,10 @@ def main() -> int:
     print(counted)
     if options.write:
         command = f"tests/benchmarks/search.py --count {options.count} --seed {options.seed}"
-        RESULTS.write_text(f"# Whether the search arrives\n\n`python {command}`\n\n{counted}\n")
+        git = ["git", "-C", str(RESULTS.parent), "rev-parse", "--short", "HEAD"]
+        commit = subprocess.run(git, check=True, capture_output=True, text=True).stdout.strip()
+        said = f"# Whether the search arrives\n\n`python {command}` at {commit}\n\n{counted}\n"
+        RESULTS.write_text(said, encoding="utf-8")
     arrived = sum(e.arrived or bool(e.reason) for e in ends) / len(ends)
     return int(arrived < 0.98 or any(e.is_absurd for e in ends))
 
