@@ -14,18 +14,23 @@ PANEL: Final = 8
 """Rows folded at a time and columns of a panel: small enough for the cache, whatever the record."""
 
 
-def triangle(A: Vector) -> Vector:
+def triangle(A: Vector, beside: Vector | None = None) -> Vector:
     """R of A = Q R, so that R^T R = A^T A; (n_theta, n_theta).
 
     Blocks of rows are folded into the triangle one after another, five times as fast as a QR of
-    the tall matrix at once.
+    the tall matrix at once. A column `beside` A, (M,), is its last, and A need not be copied.
 
     >>> np.abs(triangle(np.array([[3.0], [4.0]]))).tolist()
     [[5.0]]
     """
-    n = A.shape[1]
+    width = A.shape[1]
+    n = width + (beside is not None)
     R = np.zeros((n, n), order="F")
     for at in range(0, len(A), ROWS):
-        block = np.array(A[at : at + ROWS], order="F")  # a copy: LAPACK writes into it
+        rows = slice(at, min(at + ROWS, len(A)))
+        block = np.empty((rows.stop - at, n), order="F")  # LAPACK writes into it
+        block[:, :width] = A[rows]
+        if beside is not None:
+            block[:, width] = beside[rows]
         R = dtpqrt(0, min(PANEL, n), R, block, overwrite_a=1, overwrite_b=1)[0]
     return np.asarray(R)

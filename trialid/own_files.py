@@ -174,10 +174,8 @@ def _ours(folder: Path) -> Hashes:
 
 def _write_list(folder: Path, files: Hashes) -> None:
     text = json.dumps({"schema": SCHEMA, "files": files}, indent=1) + "\n"
-    descriptor, name = tempfile.mkstemp(prefix=temporary.prefix(), dir=folder)
-    with os.fdopen(descriptor, "w", encoding="utf-8") as stream:
-        stream.write(text)
-    Path(name).replace(folder / LIST)
+    with temporary.replace_whole(folder / LIST) as ready:
+        ready.write_text(text, encoding="utf-8")
 
 
 def _files(work: Path) -> list[Path]:

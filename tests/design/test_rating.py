@@ -8,7 +8,8 @@ from waters import GOAL, NOISE, VESSEL, D
 
 from trialid.design import manoeuvres
 from trialid.design.helm import carry_out
-from trialid.design.rating import Noise, goal, rate, whiten_sensitivities
+from trialid.design.rating import Noise, goal, rate
+from trialid.design.triangles import whiten_sensitivities
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
 from trialid.identification.fit import identify

@@ -1,13 +1,17 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from s175q import MODEL, OUTPUTS
 from waters import NOISE, ROLL, SPEED, VESSEL, D
 
+from trialid.design import triangles as module
 from trialid.design.kinds import Test, sail
 from trialid.design.limits import Limits
-from trialid.design.rating import whiten_sensitivities
+from trialid.design.rating import Noise
 from trialid.design.search import Search
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals, separate
+from trialid.design.triangles import triangles, triangles_beside, whiten_sensitivities
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
 from trialid.identification.problem import Settings
@@ -129,3 +133,43 @@ def test_odds_and_cosine_against_least_squares():
         # of one column each: what the rival leaves is the sine of the angle between the two
         sine = float(np.sqrt((left @ left) / (alone @ alone)))
         assert found.cosine == pytest.approx(np.sqrt(1.0 - sine**2), rel=1e-3)
+
+
+# A test rated beside a record kept small is as rated beside the record itself
+
+TRIALS = [zigzag(10), zigzag(20), zigzag(5, duration=900.0)]
+
+
+def gram(A: np.ndarray) -> np.ndarray:
+    return A.T @ A
+
+
+@pytest.mark.parametrize("memory", [0.0, 3.0])
+def test_what_is_shown_is_what_all_rows_show(memory: float) -> None:
+    goal = GEAR.goal
+    noise = {c: Noise(each.sigma, memory) for c, each in goal.noise.items()}
+    goal = replace(goal, noise=noise)
+    A, names = whiten_sensitivities(goal, TRIALS)
+    found = triangles_beside(
+        goal, triangles_beside(goal, triangles(goal, TRIALS[:1]), TRIALS[1]), TRIALS[2]
+    )
+    assert found.names == (*names,)
+    assert len({*names}) < len(names)  # two trials are called alike; their unknowns stay apart
+    assert found.rows(noise).shape[0] == len(noise) * len(names)
+    size = np.sqrt(np.diag(gram(A)))
+    off = (gram(found.rows(noise)) - gram(A)) / np.outer(size, size)
+    assert np.abs(off).max() < 1e-11
+
+
+def test_only_the_further_test_is_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
+    goal, sailed = GEAR.goal, list[int]()
+    before = triangles(goal, TRIALS[:2])
+    whole = module.linearisation
+
+    def counted(problem):
+        sailed.append(len(problem.trials))
+        return whole(problem)
+
+    monkeypatch.setattr(module, "linearisation", counted)
+    triangles_beside(goal, before, TRIALS[2])
+    assert sailed == [1]

@@ -4,15 +4,14 @@ import os
 import random
 import shutil
 import signal
-import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from generated_fleet import ROOT, contents, one_by_one, write_voyage
+from apart import processes
+from generated_fleet import contents, one_by_one, write_voyage
 
 from trialid.errors import TrialidError
 from trialid.fleet import dask_workers
@@ -137,37 +136,6 @@ def notes(todo: list[str]):
     return compute
 
 
-@contextmanager
-def processes(folder: Path, threads: int = 1) -> Iterator[str]:
-    """A scheduler and two workers, each a process with a folder of its own; its address."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"}
-    begun = []
-
-    def begin(kind: str, name: str, options: str) -> None:
-        (folder / name).mkdir()
-        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", "--no-dashboard"]
-        command += ["--scheduler-file", str(file), *options.split()]
-        log = (folder / name / "log").open("wb")
-        begun.append(
-            subprocess.Popen(command, cwd=folder / name, env=environment, stdout=log, stderr=log)
-        )
-
-    file = folder / "scheduler.json"
-    try:
-        begin("scheduler", "scheduler", "--host 127.0.0.1 --port 0")
-        for name in ("one", "two"):
-            begin("worker", name, f"--nthreads {threads} --local-directory {folder / name}")
-        with distributed.Client(scheduler_file=str(file), timeout="30s") as client:
-            client.wait_for_workers(2, timeout=60)
-            address = client.scheduler.address
-        yield address
-    finally:
-        for process in begun:
-            process.terminate()
-        for process in begun:
-            process.wait(30)
-
-
 @pytest.mark.study(turn=1)
 def test_a_scheduler_and_two_workers_with_folders_of_their_own(
     many: tuple[Path, dict], fresh: Path, tmp_path: Path
@@ -177,8 +145,8 @@ def test_a_scheduler_and_two_workers_with_folders_of_their_own(
     path.write_text('logs = "content"\n' + path.read_text(encoding="utf-8"), encoding="utf-8")
     told: list[str] = []
     (tmp_path / "apart").mkdir()
-    with processes(tmp_path / "apart") as address:
-        found = batch(load_fleet(path), fresh / "out", by_dask(address, None, told.append))
+    with processes(tmp_path / "apart") as apart:
+        found = batch(load_fleet(path), fresh / "out", by_dask(apart.address, None, told.append))
     assert found.anew == VOYAGES
     made, expected = contents(fresh / "out"), dict(many[1])
     assert made.pop("fleet.toml") != expected.pop("fleet.toml")
@@ -187,10 +155,37 @@ def test_a_scheduler_and_two_workers_with_folders_of_their_own(
 
 
 @pytest.mark.study(turn=4)
+def test_a_scheduler_killed_and_started_again(
+    many: tuple[Path, dict], fresh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was done is kept and is not done again; in the end no bit differs."""
+    monkeypatch.setattr(dask_workers, "ANSWER", "5s")
+    fleet, done = load_fleet(fresh / "fleet.toml"), list[float]()
+    (tmp_path / "apart").mkdir()
+    with processes(tmp_path / "apart") as apart:
+
+        def kill_it(words: str, share: float | None) -> None:
+            if share and not done:
+                done.append(share)
+                apart.kill("scheduler")
+
+        with pytest.raises(TrialidError, match="the scheduler is lost; what was done is kept"):
+            batch(fleet, fresh / "out", by_dask(apart.address, None, lambda words: None), kill_it)
+        kept = {path.name for path in (fresh / "out" / "runs").glob("alpha-*")}
+        apart.end()
+        apart.begin_all(1)
+        again = batch(fleet, fresh / "out", by_dask(apart.address, None, lambda words: None))
+    assert 1 <= len(kept) < VOYAGES
+    assert again.anew == VOYAGES - len(kept)
+    assert len(again.runs) == len({row.run for row in again.runs}) == VOYAGES
+    assert contents(fresh / "out") == many[1]
+
+
+@pytest.mark.study(turn=4)
 def test_workers_of_several_threads_are_refused(tmp_path: Path) -> None:
     with (
-        processes(tmp_path, threads=2) as address,
-        connect(address, None, 1) as client,
+        processes(tmp_path, threads=2) as apart,
+        connect(apart.address, None, 1) as client,
         pytest.raises(TrialidError, match="has 2 threads; start workers by"),
     ):
         check_threads(client)

@@ -182,3 +182,18 @@ def test_another_ships_file_is_noticed():
     says_so = replace(short.ship, source="PLACEHOLDER: of another length")
     begun = identify(trials, replace(short, ship=says_so), settings)
     assert "ship's file" not in str(why_no_fit(replace(begun, converged=True)))
+
+
+def test_a_voyage_of_few_manoeuvres_says_where_they_are(sound):
+    """Half an hour of helm in a day; a few outliers are none."""
+    samples, period = 86_400, 1.0
+    t = np.arange(samples) * period
+    delta = np.where((t > 30_000) & (t < 31_800), 0.2 * np.sign(np.sin(t / 60.0)), 0.0)
+    delta[100:103] = 0.5
+    day = Trial("day", "fit", period, {"delta": delta}, {})
+    scores = (replace(sound.scores[0], trial=day), *sound.scores[1:])
+    found = why_no_fit(replace(sound, scores=scores))
+    assert found.reason.startswith("she manoeuvres in less than a tenth of day")
+    assert "window = [40, 162], [29941, 31859] s from where it begins" in found.advice
+    still = replace(scores[0], trial=replace(day, signals={"delta": 0.05 * delta}))
+    assert "never manoeuvres" in why_no_fit(replace(sound, scores=(still, scores[1]))).reason

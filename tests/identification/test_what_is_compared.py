@@ -9,10 +9,10 @@ from s175q import MODEL, SETTINGS, white, with_noise, zigzag
 from scipy.optimize import lsq_linear
 from scipy.signal import lfilter
 
-from trialid.identification.fit import identify, step_halving
+from trialid.identification.fit import identify
 from trialid.identification.gauss_newton import minimise
 from trialid.identification.nuisance_priors import nuisance_prior
-from trialid.identification.output_error import linearise, norms, row_scale
+from trialid.identification.output_error import linearise, norms, row_scale, step_halving
 from trialid.identification.problem import pose_problem
 from trialid.identification.weighing import level_of
 from trialid.trial import Trial
@@ -120,7 +120,7 @@ def test_integration_errors_fall_by_far_more_than_the_step():
     fit = identify([zigzag(10)], MODEL, replace(PLAIN, most_substeps=1))
     simulator = fit.problem.simulator
     finer = replace(fit, problem=replace(fit.problem, simulator=replace(simulator, substeps=2)))
-    coarse, fine = step_halving(fit)["phi"], step_halving(finer)["phi"]
+    coarse, fine = (step_halving(f.problem, f.theta)["phi"] for f in (fit, finer))
     assert coarse > 1e-9
     assert 4.0 < coarse / fine < 20.0
 

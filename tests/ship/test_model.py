@@ -86,7 +86,7 @@ def test_a_name_the_rigid_body_has(s175q: ShipModel) -> None:
 
 def test_two_servos_on_one_rudder(s175q: ShipModel) -> None:
     with pytest.raises(EffectError, match="both have 'delta'"):
-        s175q + CATALOGUE["rudder_servo"] + CATALOGUE["rudder_servo_limited"]
+        replace(s175q, effects=(CATALOGUE["rudder_servo"], CATALOGUE["rudder_servo_limited"]))
 
 
 @pytest.mark.parametrize(("state", "name"), [("v", "m"), ("p", "I_xx"), ("r", "I_zz")])

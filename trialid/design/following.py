@@ -18,10 +18,11 @@ from trialid.design.imo.speed_loss import APPROACH, speed_loss, with_speed_loss
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
-from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
+from trialid.design.rating import Goal, Noise, goal
 from trialid.design.search import natural_roll, sail_all
-from trialid.design.separation import ENOUGH, Likeness, Separation, likeness, rivals
+from trialid.design.separation import ENOUGH, Likeness, Separation, likeness_of, rivals
 from trialid.design.standard import Measure, measures_of
+from trialid.design.triangles import Triangles, triangles, triangles_beside
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import compared_mask, norms
@@ -137,15 +138,15 @@ def _proposed(
         roll_frequency=_roll_frequency(fit, ready),
         speed=fit.model.ship.particulars["U0"],
     )
-    so_far = fit.problem.trials
+    so_far = triangles(pair.goal, fit.problem.trials)
     rated: list[tuple[float, Test, Likeness]] = []
     for test, trial in _feasible(fit, ready):
-        found = likeness(pair, [*so_far, trial])
+        found = likeness_of(pair, triangles_beside(pair.goal, so_far, trial))
         rated.append((found.cosine + max(0.0, ENOUGH - min(found.odds)) / ENOUGH, test, found))
     if not rated:
         return None
     _, test, after = min(rated, key=lambda r: r[0])
-    return Separation(pair.names, (test,), likeness(pair, so_far), after, len(rated))
+    return Separation(pair.names, (test,), likeness_of(pair, so_far), after, len(rated))
 
 
 def _roll_frequency(fit: Fit, ready: Vessel) -> float:
@@ -201,9 +202,10 @@ def narrowing_trial(
     sensors = {c: Noise(s) for c, s in noise.items()}
     try:
         asked = goal((fit.model + effect).with_values(effect.nulls), wider, sensors)
-        so_far = _openness(asked, fit.problem.trials, parameter, added)
+        before = triangles(asked, fit.problem.trials)
+        so_far = _openness(asked, before, parameter, added)
         found = [
-            (_openness(asked, [*fit.problem.trials, trial], parameter, added), test.name)
+            (_openness(asked, triangles_beside(asked, before, trial), parameter, added), test.name)
             for test, trial in _feasible(fit, vessel_of(fit))
         ]
     except TrialidError:
@@ -214,23 +216,22 @@ def narrowing_trial(
     return Narrowing(parameter, effect.name, least[1], least[0] / so_far)
 
 
-def _openness(asked: Goal, trials: Sequence[Trial], parameter: str, added: Sequence[str]) -> float:
+def _openness(asked: Goal, found: Triangles, parameter: str, added: Sequence[str]) -> float:
     """Standard deviation of a parameter in its sizes, the effect known to twice its typical one.
 
     By the formula of a fit, which weighs outputs by what they move in all its trials and takes
     what is left of them together.
     """
     outputs = asked.settings.outputs
-    compared = [compared_mask(t, asked.simulator) for t in trials]
+    compared = [compared_mask(t, asked.simulator) for t in found.trials]
     length = asked.simulator.model.ship.particulars["L"]
-    sizes = norms(trials, compared, outputs, asked.settings.norm, length)
+    sizes = norms(found.trials, compared, outputs, asked.settings.norm, length)
     shares = [asked.noise[c].sigma / size for c, size in zip(outputs, sizes, strict=True)]
     eps = float(np.sqrt(np.mean(np.square(shares))))
     alike = {c: Noise(eps * float(size)) for c, size in zip(outputs, sizes, strict=True)}
-    A, names = whiten_sensitivities(replace(asked, noise=alike), trials)
-    known = np.diag([1.0 / WIDE if n in added else 0.0 for n in names])
-    inverse = np.linalg.pinv(np.concatenate([A, known]))
-    return float(np.linalg.norm(inverse[names.index(parameter)]))
+    known = np.diag([1.0 / WIDE if n in added else 0.0 for n in found.names])
+    inverse = np.linalg.pinv(np.concatenate([found.rows(alike), known]))
+    return float(np.linalg.norm(inverse[found.names.index(parameter)]))
 
 
 def standard_measures(

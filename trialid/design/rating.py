@@ -163,42 +163,21 @@ def goal(
     )
 
 
-def whiten_sensitivities(goal: Goal, trials: Sequence[Trial]) -> tuple[Vector, list[str]]:
-    """Sensitivities in standard deviations of white noise, a column for each unknown's size; names.
-
-    (M, n_theta), (n_theta,). Noise with a memory is made white by the filter that forgets as it
-    does. Raises DesignError as `rate`.
-    """
-    problem, _, psi = _linearised(goal, trials)
-    A = relative_sensitivities(psi, np.array([x.size for x in problem.unknowns]))
-    scale = row_scale(problem)
-    for part in stretches(problem):
-        noise = goal.noise[problem.outputs[part.output]]
-        period = problem.trials[part.trial].period
-        A[part.rows] = _forgotten(A[part.rows], noise.memory / period)
-        A[part.rows] /= noise.sigma * scale[part.output]
-    return A, [x.name for x in problem.unknowns]
-
-
-def _linearised(goal: Goal, trials: Sequence[Trial]) -> tuple[Problem, Vector, Vector]:
-    """The fit to come, its residual at what is known beforehand (M,), and gradient (M, n_theta)."""
+def fit_to_come(goal: Goal, trials: Sequence[Trial]) -> Problem:
+    """The fit to come, at what is known beforehand. Raises DesignError as `rate`."""
     try:
-        problem = question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
+        return question(goal.simulator, trials, goal.settings, goal.shared, goal.per_trial)
     except NotIdentifiable as error:
         why = str(error).partition(";")[0]  # its advice is about logs
         raise DesignError(f"the test moves too little to find anything: {why}") from error
+
+
+def linearisation(problem: Problem) -> tuple[Vector, Vector]:
+    """Its residual there (M,), and gradient (M, n_theta). Raises DesignError as `rate`."""
     found = linearise(problem, problem.start)
     if isinstance(found, Departure):
         raise DesignError(f"the model to be fitted cannot follow this test: {found}")
-    return problem, *found
-
-
-def _forgotten(rows: Vector, memory: float) -> Vector:
-    """Rows less what noise that forgets in `memory` samples would still hold of those before."""
-    if memory <= 0.0:
-        return rows
-    kept = float(np.exp(-1.0 / memory))
-    return np.concatenate([rows[:1], (rows[1:] - kept * rows[:-1]) / np.sqrt(1.0 - kept**2)])
+    return found
 
 
 def rate(goal: Goal, trials: Sequence[Trial]) -> Rating:
@@ -209,7 +188,8 @@ def rate(goal: Goal, trials: Sequence[Trial]) -> Rating:
     DesignError
         The model to be fitted leaves its domain in one of them, or nothing moves in all of them.
     """
-    problem, remainder, psi = _linearised(goal, trials)
+    problem = fit_to_come(goal, trials)
+    remainder, psi = linearisation(problem)
     A = relative_sensitivities(psi, np.array([x.size for x in problem.unknowns]))
     inverse = np.asarray(np.linalg.pinv(triangle(A)))
     covariance = _covariance(goal, problem, A, inverse)

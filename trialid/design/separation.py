@@ -15,8 +15,9 @@ from trialid.arrays import Mask, Vector
 from trialid.design.helm import Vessel
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
-from trialid.design.rating import Goal, Noise, goal, whiten_sensitivities
+from trialid.design.rating import Goal, Noise, goal
 from trialid.design.search import BROKEN, Found, Search, binding_limit, sail_all, search_open
+from trialid.design.triangles import Triangles, triangles
 from trialid.errors import DesignError
 from trialid.identification.problem import Settings
 from trialid.linear_algebra import triangle
@@ -128,7 +129,12 @@ def expansion_point(effect: Effect) -> dict[str, float]:
 
 def likeness(rivals: Rivals, trials: Sequence[Trial]) -> Likeness:
     """How alike the two look in these trials."""
-    rows, names = whiten_sensitivities(rivals.goal, trials)
+    return likeness_of(rivals, triangles(rivals.goal, trials))
+
+
+def likeness_of(rivals: Rivals, so_far: Triangles) -> Likeness:
+    """How alike the two look in what trials show."""
+    rows, names = so_far.rows(rivals.goal.noise), so_far.names
     A = triangle(rows)  # as far as angles and lengths go, the same; a record long, a square high
     one, other = (np.isin(names, part) for part in (rivals.first, rivals.second))
     Q = _span(A[:, ~(one | other)])

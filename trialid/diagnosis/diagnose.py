@@ -116,11 +116,11 @@ def diagnose(
     refits = refits_of(fit, trials, ranking, asked, lambda words: progress(words, 0.7), grown)
     if faults := whole_faults(fit, trials, asked.candidates, refits, progress):
         return _gross(fit, before, augmented, faults, asked)
-    whole = _whole(fit, augmented)
+    whole, left_out = _whole(fit, augmented), augmented.left_out
+    del augmented  # columns of the whole catalogue, before there are those of the next model
     fits = [r.fit for r in refits]
     before = _bounded(before, fits, whole)
-    parts = before.split
-    verdict = decide(fit, ranking, refits, parts, whole, level=asked.level, grown=grown)
+    verdict = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
     after = _bounded(examine_fit(named.fit, asked, progress)[0], fits) if named else None
     wanted = force or verdict.kind == "not in catalogue"
@@ -128,7 +128,7 @@ def diagnose(
     return Diagnosis(
         before=before,
         ranking=ranking,
-        left_out=augmented.left_out,
+        left_out=left_out,
         refits=refits,
         verdict=verdict,
         where=where(fit),

@@ -54,7 +54,7 @@ def keep_run(done: Done, folder: Path) -> None:
     TrialidError
         The earlier folder holds what is not ours; it is left as it is.
     OSError
-        There is no room, or no right to write.
+        There is no room, or no right to write; an earlier folder is as it was.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
     rows = {"schema": SCHEMA, **plain(Kept(row=done.row, fitted=done.fitted))}
@@ -64,10 +64,21 @@ def keep_run(done: Done, folder: Path) -> None:
         with own_files.replacing(whole) as inside:
             for name, content in {**done.files, NAME: text.encode()}.items():
                 (inside / name).write_bytes(content)
-        if folder.exists():
-            own_files.check_all_ours(folder)
-            folder.rename(work / "earlier")
+        _put(whole, folder, work / "earlier")
+
+
+def _put(whole: Path, folder: Path, earlier: Path) -> None:
+    """A whole folder in its place; one that is there is put aside, and back where that fails."""
+    if not folder.exists():
         whole.rename(folder)
+        return
+    own_files.check_all_ours(folder)
+    folder.rename(earlier)
+    try:
+        whole.rename(folder)
+    except BaseException:  # and where it is broken off
+        earlier.rename(folder)
+        raise
 
 
 @contextmanager

@@ -4,17 +4,16 @@ A search that failed, a ship that never manoeuvred or a model that explains next
 leave a residual, and tests on it still name effects. None of those names means anything.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from trialid.identification.explained import of_use, over_noise, unexplained_share
+from trialid.arrays import Vector
+from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
 from trialid.identification.file_of_ship import is_another_ship, unlike_file
 from trialid.identification.fit import Fit, Score
 from trialid.identification.gauss_newton import REASONS
-from trialid.identification.one_search import search
-from trialid.identification.record_starts import PIECES, in_pieces
 from trialid.identification.time_scales import slowest_motion
 from trialid.identification.weighing import NO_NOISE
 from trialid.names.wording import shown_unit
@@ -24,6 +23,15 @@ RUDDER_RANGE: Final = 0.035
 """[rad] From the 5th to the 95th percentile, 2 deg: less keeps a course, and is no manoeuvre; a
 zig-zag of 2 deg has 4. Half lets a helm pass that corrects by a degree, twice turns that zig-zag
 away, which does identify a ship."""
+
+OFTEN: Final = (0.05, 0.95)
+SELDOM: Final = (0.005, 0.995)
+"""Of a day, seven minutes: a manoeuvre of a small ship. Outliers are fewer."""
+
+AROUND: Final = 60.0
+"""[s] Before and after the rudder is used: the ship has come to rest, and shows her bias."""
+
+MOST_TOLD: Final = 3
 
 ABOVE_NOISE: Final = 2.0
 """Standard deviation of an output over its white noise above which it tells of a motion. Noise
@@ -38,10 +46,6 @@ SLOWEST_TIMES: Final = 4.0
 """Time scales of the slowest motion that one trial must hold: a lag has settled to 2 % by then, an
 oscillation has swung twice. Half of it lets a lag be fitted that was seen to 14 %, twice turns
 free-running models away that sailed 20 lengths."""
-
-CLOSER: Final = 2.0
-"""Times as close as the fit that other values follow the record in pieces where the fit stands in a
-false valley. Twenty of four real ships had 1.0 to 1.3, false valleys of a simulated one 3.7 up."""
 
 STEERING: Final = ("delta", "delta_order")
 OTHER_HANDS: Final = frozenset({"n_p", "n_s", "X_ext", "Y_ext", "K_ext", "N_ext"})
@@ -114,9 +118,13 @@ def _no_manoeuvre(fit: Fit) -> Inadequate | None:
     steered = [n for n in STEERING if n in inputs]
     if not steered or not TURNING & {*fit.problem.outputs} or inputs & OTHER_HANDS:
         return None
-    moved = max(_range(s, n) for s in of_use(fit, "fit") for n in steered)
+    rudders = [(s, n) for s in of_use(fit, "fit") for n in steered]
+    moved = max(_range(s, n, OFTEN) for s, n in rudders)
     if moved > RUDDER_RANGE:
         return None
+    score, name = max(rudders, key=lambda one: _range(one[0], one[1], SELDOM))
+    if _range(score, name, SELDOM) > RUDDER_RANGE:
+        return _manoeuvres_seldom(score, name, moved)
     return Inadequate(
         f"she never manoeuvres: the rudder moves by {np.rad2deg(moved):.2g} deg, and a manoeuvre "
         f"takes more than {np.rad2deg(RUDDER_RANGE):.2g} deg",
@@ -124,10 +132,40 @@ def _no_manoeuvre(fit: Fit) -> Inadequate | None:
     )
 
 
-def _range(score: Score, name: str) -> float:
+def _manoeuvres_seldom(score: Score, name: str, moved: float) -> Inadequate:
+    """A voyage with manoeuvres in it: where they are, for a trial each."""
+    found = _stretches(score, name)
+    windows = ", ".join(f"[{begin:.0f}, {end:.0f}]" for begin, end in found[:MOST_TOLD])
+    more = f" and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else ""
+    return Inadequate(
+        f"she manoeuvres in less than a tenth of {score.trial.name}: in the rest the rudder moves "
+        f"by {np.rad2deg(moved):.2g} deg, and counts for most",
+        f"cut out the manoeuvres, a trial each: about window = {windows} s from where "
+        f"it begins{more}",
+    )
+
+
+def _stretches(score: Score, name: str) -> list[tuple[float, float]]:
+    """Where the rudder is used, with what comes before and after; (begin, end) each [s]."""
+    t, rudder = score.trial.t, _rudder(score, name)
+    used = t[np.abs(rudder - np.median(rudder)) > 0.5 * RUDDER_RANGE]
+    apart = np.flatnonzero(np.diff(used) > 2.0 * AROUND) + 1
+    parts = np.split(used, apart)
+    return [
+        (max(float(part[0]) - AROUND, float(t[0])), min(float(part[-1]) + AROUND, float(t[-1])))
+        for part in parts
+        if part[-1] - part[0] > score.trial.period
+    ]
+
+
+def _rudder(score: Score, name: str) -> Vector:
     source = record_for(score.trial, name)
     assert source is not None  # a trial without it has been refused
-    low, high = np.quantile(score.trial.signals[source], (0.05, 0.95))
+    return score.trial.signals[source]
+
+
+def _range(score: Score, name: str, between: tuple[float, float]) -> float:
+    low, high = np.quantile(_rudder(score, name), between)
     return float(high - low)
 
 
@@ -217,21 +255,13 @@ def _another_ship(fit: Fit) -> Inadequate | None:
 
 def _false_valley(fit: Fit) -> Inadequate | None:
     """Where more than noise is left, other values follow the record far better piece by piece."""
-    if fit.eps_rmsn <= NO_NOISE:
+    if fit.eps_rmsn <= NO_NOISE or (found := closer_in_pieces(fit)) is None:
         return None
-    cut = in_pieces(fit.problem, fit.settings, PIECES[0], fit.estimates)
-    as_fitted = [
-        replace(x, low=x.start, high=x.start) if x.trial is None else x for x in cut.unknowns
-    ]
-    held = replace(cut, unknowns=tuple(as_fitted))
-    own, best = (search(problem, fit.settings, problem.start) for problem in (held, cut))
-    closer = float(np.sqrt(own.V / best.V)) if own.began and best.began else 1.0
-    if closer < CLOSER:
-        return None
+    pieces, closer = found
     return Inadequate(
-        f"the search ended in a false valley: in {len(cut.trials)} pieces, each with its own "
-        f"start, the same effects follow the record {closer:.2g} times as closely with other "
-        f"values, and none were found that follow it whole (error {fit.eps_rmsn:.1%})",
+        f"the search ended in a false valley: in {pieces} pieces, each with its own start, the "
+        f"same effects follow the record {closer:.2g} times as closely with other values, and none "
+        f"were found that follow it whole (error {fit.eps_rmsn:.1%})",
         "start nearer the ship in [model.values] or in her file, raise [identify] starts, or fit "
         "shorter trials",
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -19,6 +20,7 @@ from trialid.identification.output_error import (
     loss,
     respond_all,
     scores,
+    step_halving,
 )
 from trialid.identification.own_start import own_start, starts_of
 from trialid.identification.problem import Settings, pose_problem
@@ -58,8 +60,8 @@ class Fit:
         The model with the fitted values of the shared parameters.
     theta
         All unknowns; (n_theta,).
-    residual, psi
-        Normed residual (M,) and normed gradient (M, n_theta) at the optimum, without priors.
+    residual
+        Normed residual at the optimum, without priors; (M,).
     scores
         Trials to fit, then trials to check.
     iterations
@@ -80,7 +82,6 @@ class Fit:
     problem: Problem
     theta: Vector
     residual: Vector
-    psi: Vector
     scores: tuple[Score, ...]
     iterations: tuple[Iteration, ...]
     reason: str
@@ -89,6 +90,13 @@ class Fit:
     level: float = 0.0
     told: tuple[str, ...] = ()
     rival_GM: tuple[float, ...] = ()
+
+    @cached_property
+    def psi(self) -> Vector:
+        """Normed gradient at the optimum, without priors, when first asked for; (M, n_theta)."""
+        point = linearise(self.problem, self.theta)
+        assert not isinstance(point, Departure)
+        return point[1]
 
     @property
     def V(self) -> float:
@@ -210,7 +218,8 @@ def identify(
 
 def _coarse(fit: Fit) -> bool:
     """Whether integration makes up a share of the error that can be seen."""
-    return max(step_halving(fit).values(), default=0.0) > STEP_ERROR * fit.eps_rmsn
+    errors = step_halving(fit.problem, fit.theta)
+    return max(errors.values(), default=0.0) > STEP_ERROR * fit.eps_rmsn
 
 
 def _searched(
@@ -291,7 +300,7 @@ def _finish(
     shared = {x.column: float(a) for x, a in zip(problem.unknowns, theta, strict=True)
               if x.trial is None}  # fmt: skip
     return Fit(
-        model.with_values(shared), settings, problem, theta, *point,
+        model.with_values(shared), settings, problem, theta, point[0],
         tuple(_score(problem, theta, t, level) for t in trials),
         () if end is None else end.path,
         "orthogonal" if end is None else end.minimum.reason,
@@ -341,18 +350,3 @@ def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:
         if not x.column.endswith("(0)"):
             gathered.setdefault(x.column, []).append(float(a))
     return {n: float(np.mean(a)) for n, a in gathered.items()}
-
-
-def step_halving(fit: Fit) -> dict[str, float]:
-    """Integration error of the fit: normed difference to the same run with half the step."""
-    problem = fit.problem
-    simulator = problem.simulator
-    finer = replace(problem, simulator=replace(simulator, substeps=2 * simulator.substeps))
-    coarse, fine = (respond_all(p, fit.theta, False) for p in (problem, finer))
-    if isinstance(coarse, Departure) or isinstance(fine, Departure):
-        return {}
-    result = {}
-    for c, name in enumerate(problem.outputs):
-        gaps = [a.y[:, c] - b.y[:, c] for a, b in zip(coarse, fine, strict=True)]
-        result[name] = float(np.sqrt(np.mean(np.concatenate(gaps) ** 2)) / problem.y_rms[c])
-    return result

@@ -250,7 +250,7 @@ class Fold:
     @classmethod
     def of(cls, residual: Vector, jacobian: Vector) -> "Fold":
         """The residual rides along as a last column, so that Q itself is never needed."""
-        table = triangle(np.column_stack([jacobian, residual]))
+        table = triangle(jacobian, residual)
         return cls(table[:-1, :-1], table[:-1, -1], float(table[-1, -1]))
 
     def loss(self, step: Vector) -> float:

@@ -6,7 +6,7 @@ V = 1/(2 n_y) sum_c 1/N_c sum_k (eps_c(k) / y_RMS,c)^2, which for one output and
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -153,10 +153,13 @@ def _respond(problem: Problem, theta: Vector, trial: int, sensitivities: bool) -
     return respond(problem.simulator, problem.trials[trial], values, start, sensitivities)
 
 
-def linearise(problem: Problem, theta: Vector) -> tuple[Vector, Vector] | Departure:
-    """Normed residual (M,) and normed gradient (M, n_theta), rows as in `stretches`."""
+def linearise(problem: Problem, theta: Vector, more: int = 0) -> tuple[Vector, Vector] | Departure:
+    """Normed residual (M,) and normed gradient (M, n_theta), rows as in `stretches`.
+
+    `more` rows below them are zero, for the caller to fill.
+    """
     parts, scale = stretches(problem), row_scale(problem)
-    residual = np.empty(parts[-1].rows.stop)
+    residual = np.zeros(parts[-1].rows.stop + more)
     psi = np.zeros((len(residual), len(problem.unknowns)))
     for i, trial in enumerate(problem.trials):  # one at a time: a response is larger than its rows
         response = _respond(problem, theta, i, sensitivities=True)
@@ -167,7 +170,9 @@ def linearise(problem: Problem, theta: Vector) -> tuple[Vector, Vector] | Depart
             eps = output_error(trial.signals[problem.outputs[c]], response.y[:, c])
             residual[part.rows] = part.taken(eps) * scale[c]
             acting, slopes = gradient(response, problem, i, c)
-            psi[part.rows, acting] = part.taken(slopes) * scale[c]
+            rows = part.taken(slopes)
+            rows *= scale[c]
+            psi[part.rows, acting] = rows
     return residual, psi
 
 
@@ -265,3 +270,17 @@ def scores(
         for i, c in enumerate(outputs)
         if compared[:, i].any()
     }
+
+
+def step_halving(problem: Problem, theta: Vector) -> dict[str, float]:
+    """Integration error by output: normed difference to the same run with half the step."""
+    simulator = problem.simulator
+    finer = replace(problem, simulator=replace(simulator, substeps=2 * simulator.substeps))
+    coarse, fine = (respond_all(p, theta, False) for p in (problem, finer))
+    if isinstance(coarse, Departure) or isinstance(fine, Departure):
+        return {}
+    result = {}
+    for c, name in enumerate(problem.outputs):
+        gaps = [a.y[:, c] - b.y[:, c] for a, b in zip(coarse, fine, strict=True)]
+        result[name] = float(np.sqrt(np.mean(np.concatenate(gaps) ** 2)) / problem.y_rms[c])
+    return result

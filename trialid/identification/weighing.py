@@ -55,21 +55,22 @@ class Weighing:
         self.deviations = np.array([p[2] for p in priors])
         self.parts = stretches(problem)
         self.rows = self.parts[-1].rows.stop
+        roll = problem.roll
+        self.more = len(priors) + (0 if roll is None else len(roll.off(problem.start)))
         self.level, self.colour = -1.0, colour or 1.0
         self.looks = 0 if colour else LOOKS
 
     def __call__(self, theta: Vector) -> Point | None:
         """Rows at a point, None where it cannot be simulated."""
-        point = linearise(self.problem, theta)
+        point = linearise(self.problem, theta, self.more)
         if isinstance(point, Departure):
             return None
         residual, psi = point
         if self.weights is not None:
-            residual, psi = residual * self.weights, psi * self.weights[:, None]
-        if not self.knows:
-            return residual, psi
-        if self.level < 0.0:
-            self._settle(residual, len(theta))
+            residual[: self.rows] *= self.weights
+            psi[: self.rows] *= self.weights[:, None]
+        if self.level < 0.0 and self.knows:
+            self._settle(residual[: self.rows], len(theta))
         return self._with_priors(theta, residual, psi)
 
     @property
@@ -78,12 +79,11 @@ class Weighing:
         return bool(len(self.held)) or self.problem.roll is not None
 
     def again(self, theta: Vector, point: Point) -> Point:
-        """The same point with priors weighed by its own level."""
+        """The same point with priors weighed by its own level; it takes the other's place."""
         if not self.knows:
             return point
-        residual, psi = point[0][: self.rows], point[1][: self.rows]
-        self._settle(residual, len(theta))
-        return self._with_priors(theta, residual, psi)
+        self._settle(point[0][: self.rows], len(theta))
+        return self._with_priors(theta, point[0].copy(), point[1])
 
     def pulls(self, theta: Vector) -> float:
         """Sum of squares of all priors, in their standard deviations."""
@@ -98,15 +98,17 @@ class Weighing:
         self.level = _level(residual, unknowns, self.colour)
 
     def _with_priors(self, theta: Vector, residual: Vector, psi: Vector) -> Point:
+        if not self.knows:
+            return residual, psi
         weigh = self.level / self.deviations
-        rows = np.zeros((len(self.held), len(theta)))
-        rows[np.arange(len(self.held)), self.held] = weigh
-        gap = (self.means - theta[self.held]) * weigh
+        held = self.rows + np.arange(len(self.held))
+        residual[held] = (self.means - theta[self.held]) * weigh
+        psi[held, self.held] = weigh
         if self.problem.roll is not None:
             off, slopes = self.problem.roll.rows(theta)
-            gap = np.append(gap, off * self.level)
-            rows = np.concatenate([rows, slopes * self.level])
-        return np.append(residual, gap), np.concatenate([psi, rows])
+            below = slice(self.rows + len(held), None)
+            residual[below], psi[below] = off * self.level, slopes * self.level
+        return residual, psi
 
 
 def level_of(problem: Problem, residual: Vector) -> float:

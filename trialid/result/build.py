@@ -18,7 +18,8 @@ from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where
 from trialid.identification.adequacy import remarks
-from trialid.identification.fit import Fit, step_halving
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import step_halving
 from trialid.plugins import packages
 from trialid.result.accuracy_part import accuracy_part, weighting
 from trialid.result.change_rows import ChangePart, MovedRow, Pair, StepRow
@@ -147,7 +148,7 @@ def _fit(fit: Fit, band: Mapping[str, float]) -> FitPart:
         reason=fit.explanation,
         starts=StartsPart(agreeing=fit.agreeing[0], of=fit.agreeing[1]),
         samples=len(fit.residual),
-        step_halving=step_halving(fit) or None,
+        step_halving=step_halving(fit.problem, fit.theta) or None,
         substeps=fit.settings.substeps,
         weighting=weighting(fit),
         y_rms=dict(zip(fit.problem.outputs, map(float, fit.problem.y_rms), strict=True)),

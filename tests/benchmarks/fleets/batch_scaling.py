@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
+from unittest.mock import patch
 
 import numpy as np
 
@@ -35,10 +36,10 @@ from generated_fleet import (
     write_voyage,
 )
 
+from trialid.fleet import dask_workers as workers
 from trialid.fleet.batch import Batch, batch
 from trialid.fleet.dask_workers import connect, results
 from trialid.fleet.do_run import Done
-from trialid.fleet.plan import plan
 from trialid.fleet.rows_of_run import run_row
 from trialid.pipeline_file.fleet_file import load_fleet
 
@@ -48,6 +49,8 @@ HIDDEN: Final = {
     "quadratic_roll_damping": {"Kpap": -2e-5},
 }
 """What the ships have in turn, and how much of it."""
+MANY: Final = 5
+"""Seeds a ship, where runs do nothing."""
 FREE: Final = '["Nr", "Ndelta", "Kp", "GM", "Xuu"]'
 
 
@@ -123,24 +126,34 @@ def rss() -> int:
     return pages * os.sysconf("SC_PAGE_SIZE") // 10**6
 
 
-def overhead(folder: Path) -> float:
-    """Processor seconds a run takes beside the run: planned, sent, brought back, kept, told."""
-    begun: list[float] = []
+def overhead(folder: Path) -> tuple[float, float]:
+    """Processor seconds beside the runs: of a batch once, and of each of its runs.
+
+    Planned, sent, brought back, kept, told: the line through two batches whose runs do nothing.
+    """
+    ships = [path.stem.removeprefix("pipeline-") for path in folder.glob("pipeline-*.toml")]
+    few, many = ((len(ships) * each, _of_nothing(folder, ships, each)) for each in (1, MANY))
+    run = (many[1] - few[1]) / (many[0] - few[0])
+    return few[1] - run * few[0], run
+
+
+def _of_nothing(folder: Path, ships: list[str], each: int) -> float:
+    """Processor seconds of a batch of so many runs a ship that do nothing."""
+    text = f"[vary]\nseed = {list(range(each))}\n"
+    text += "".join(f'[fleet.ship-{n}]\npipelines = "pipeline-{n}.toml"\n' for n in ships)
+    file = folder / f"nothing-{each}.toml"
+    file.write_text(text, encoding="utf-8")
 
     def compute(tasks, packed):
-        with connect("local", 1, len(tasks)) as client:
+        with connect("local", 1, len(tasks)) as client, patch.object(workers, "do_run", nothing):
             client.run(import_all)
-            begun.append(time.process_time() - sum(client.run(time.process_time).values()))
-            for task in tasks:
-                yield task, client.submit(nothing, packed(task), pure=False).result()
-            begun.append(sum(client.run(time.process_time).values()))
+            yield from results(client, tasks, packed)
+            beside.append(sum(client.run(time.process_time).values()))
 
+    beside: list[float] = []
     before = time.process_time()
-    fleet = load_fleet(folder / "fleet.toml")
-    tasks = plan(fleet, folder / "nothing")
-    planned = time.process_time() - before
-    batch(fleet, folder / "nothing", compute)
-    return (planned + time.process_time() - begun[0] + begun[1]) / len(tasks)
+    batch(load_fleet(file), folder / file.stem, compute)
+    return time.process_time() - before + beside[0]
 
 
 def nothing(parcel) -> Done:
@@ -166,28 +179,28 @@ def names(done: Batch, hides: dict[str, str | None]) -> str:
 def report(ships: int, jobs: int, folder: Path) -> str:
     """The table of a fleet of so many ships."""
     hides = generated(folder, ships)
-    workers = Workers(jobs)
-    dask = taken(folder, "dask", workers.compute)
-    warm = time.perf_counter() - workers.ready
+    warmed = Workers(jobs)
+    dask = taken(folder, "dask", warmed.compute)
+    warm = time.perf_counter() - warmed.ready
     alone = taken(folder, "alone", one_by_one)
     one, other = contents(folder / "dask"), contents(folder / "alone")
     different = [name for name in {**one, **other} if one.get(name) != other.get(name)]
-    over = overhead(folder)
+    once, over = overhead(folder)
     rows = [
         ("runs", f"{ships}, {sum(r.failure is not None for r in dask.batch.runs)} failed"),
         ("one process", f"{alone.seconds:.1f} s of clock, {alone.cpu:.1f} s of processor"),
         (
             f"Dask, {jobs} warm workers",
-            f"{warm:.1f} s of clock, {workers.cpu:.1f} s of processor in them, {dask.cpu:.1f} s "
+            f"{warm:.1f} s of clock, {warmed.cpu:.1f} s of processor in them, {dask.cpu:.1f} s "
             "in scheduler and client together",
         ),
         (
             "throughput over workers times one process, by the clock",
             f"{alone.seconds / warm / jobs:.2f}",
         ),
-        ("the same by processor seconds", f"{alone.cpu / (workers.cpu + dask.cpu):.2f}"),
-        ("a run's overhead, processor", f"{1e3 * over:.0f} ms"),
-        ("largest worker as they go [MB]", ", ".join(map(str, workers.memory))),
+        ("the same by processor seconds", f"{alone.cpu / (warmed.cpu + dask.cpu):.2f}"),
+        ("overhead, processor", f"{1e3 * over:.0f} ms a run, {once:.1f} s a batch"),
+        ("largest worker as they go [MB]", ", ".join(map(str, warmed.memory))),
         (
             "memory of this process, first and last run [MB]",
             f"{dask.memory[0]:.0f}, {dask.memory[-1]:.0f}",

@@ -52,7 +52,8 @@ def refit(
         except TrialidError:  # it cannot be fitted on this record: it is not the missing one
             continue
         after = Carried.between(before, own_errors(fitted, weights), candidate.carried.seen)
-        done.append(Refit(candidate, fitted, after))
+        lean = replace(fitted)  # its gradient is let go: it is larger than all else
+        done.append(Refit(candidate, lean, after))
     return done
 
 
