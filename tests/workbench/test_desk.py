@@ -36,14 +36,14 @@ pytestmark = pytest.mark.usefixtures("quick_looks")
 
 
 @pytest.fixture
-def told(monkeypatch: pytest.MonkeyPatch) -> list[Shown]:
-    """Everything that was shown, in order."""
+def told(path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Shown]:
+    """Everything that was shown of this pipeline, in order; desks of other tests may still work."""
     shown: list[Shown] = []
     show = desk_module._Seat.show
 
     def showing(self: Any, one: Shown) -> None:
         show(self, one)
-        shown.append(one)
+        shown.extend([one] if self.desk.path == path else [])
 
     monkeypatch.setattr(desk_module._Seat, "show", showing)
     return shown
