@@ -70,7 +70,7 @@ def test_the_gear_that_moved_the_rudder_is_named(gear, values, kind, effect) -> 
     assert (found.kind, found.effect) == (kind, wanted)
     if wanted == gear:
         assert found.sentence.startswith(
-            "rudder_servo is not what moves there: with rudder_servo_limited in its place"
+            "rudder_servo_limited belongs in the place of rudder_servo: with it the error falls"
         )
     if wanted == "T_delta":
         assert found.sentence.startswith("T_delta is held at 1; freed, it is 2")

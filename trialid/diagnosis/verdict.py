@@ -257,7 +257,7 @@ def _what(fit: Fit, named: Refit) -> str:
     """What is named: what the model lacks or has in its place, or a coefficient held wrong."""
     name, held = named.candidate.effect.name, named.candidate.effect.held
     if placed := fit.model.displaced_by(named.candidate.effect):
-        return f"{', '.join(placed)} is not what moves there: with {name} in its place"
+        return f"{name} belongs in the place of {', '.join(placed)}: with it"
     if held is None:
         return f"{name} is missing: with it"
     return f"{name} is held at {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
