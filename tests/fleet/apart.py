@@ -8,8 +8,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from distributed import Client
+import pytest
 from generated_fleet import ROOT
+
+distributed = pytest.importorskip("distributed")
 
 
 @dataclass
@@ -40,7 +42,7 @@ class Apart:
         for name in ("one", "two"):
             local = self.folder / name
             self.begin("worker", name, f"--nthreads {threads} --local-directory {local}")
-        with Client(scheduler_file=str(file), timeout="30s") as client:
+        with distributed.Client(scheduler_file=str(file), timeout="30s") as client:
             client.wait_for_workers(2, timeout=60)
             self.address = client.scheduler.address
 
