@@ -79,14 +79,13 @@ class ShipModel:
         return replace(self, effects=kept, values=values)
 
     def displaced_by(self, effect: Effect) -> tuple[str, ...]:
-        """Effects whose place another takes: a state has one equation, a rudder one gear."""
-        others = (e for e in self.effects if e.name != effect.name)
-        return tuple(e.name for e in others if {*e.states} & {*effect.states})
+        """Effects whose place another takes."""
+        return tuple(e.name for e in self.effects if takes_place(effect, e))
 
     def lost_to(self, effect: Effect) -> frozenset[str]:
         """Parameters that go where an effect takes another's place."""
-        gone = self.displaced_by(effect)
-        return frozenset(p for e in self.effects if e.name in gone for p in e.parameters)
+        gone = (e for e in self.effects if takes_place(effect, e))
+        return frozenset(p for e in gone for p in e.parameters)
 
     def with_values(self, values: Mapping[str, float]) -> "ShipModel":
         """The same model with other parameter values."""
@@ -173,6 +172,11 @@ def _primed_mass(ship: Ship, name: str) -> float:
     if ship.system == "prime":
         return value
     return value / mass_scale(name, ship.particulars["L"], ship.particulars["rho"])
+
+
+def takes_place(effect: Effect, other: Effect) -> bool:
+    """Whether both give one state: it has one equation, and a rudder one gear."""
+    return other.name != effect.name and bool({*effect.states} & {*other.states})
 
 
 def _check_states(states: tuple[str, ...]) -> None:

@@ -10,6 +10,7 @@ from trialid.names.quantities import MASS_PARAMETERS
 from trialid.pipeline_file import Pipeline, read, where
 from trialid.pipeline_file.edit import add_effect, drop_effect, hold_parameter, set_free
 from trialid.ship.effect import Effect
+from trialid.ship.model import takes_place
 from trialid.workflow import history
 from trialid.workflow.build_model import available, build_model
 
@@ -65,10 +66,9 @@ def _in_its_place(
     """The text with an effect, without those that give the same state, and what it said of them."""
     catalogue, said = available(pipeline), list[str]()
     present = [catalogue[n] for n in pipeline.model.effects if n in catalogue]
-    for other in present:
-        if {*other.states} & {*effect.states}:
-            text, words = drop_effect(text, other.name, tuple(other.parameters))
-            said += words
+    for other in (e for e in present if takes_place(effect, e)):
+        text, words = drop_effect(text, other.name, tuple(other.parameters))
+        said += words
     return add_effect(text, effect.name, free), tuple(said)
 
 

@@ -14,7 +14,7 @@ from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
 from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS
 from trialid.ship.effect import Effect, Steered
-from trialid.ship.model import STATES, ShipModel
+from trialid.ship.model import STATES, ShipModel, takes_place
 from trialid.simulation.integrate import Departure, Simulator, prepare, record_for, signals_of
 from trialid.trial import Trial
 from trialid.trial_rows import Stretch
@@ -117,9 +117,7 @@ def why_unusable(model: ShipModel, trial: Trial, effect: Effect) -> str:
         return f"needs {', '.join(dict.fromkeys(lacking))}, which the {where} does not hold"
     given = {*model.all_states}
     if effect.scanned:  # it is tried in the place of the other
-        given -= {
-            s for e in model.effects if e.name in model.displaced_by(effect) for s in e.states
-        }
+        given -= {s for e in model.effects if takes_place(effect, e) for s in e.states}
     doubled = sorted(set(effect.states) & {*given, *trial.signals})
     if doubled:
         held = "simulated" if doubled[0] in model.all_states else "recorded"
