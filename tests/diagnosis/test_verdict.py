@@ -103,6 +103,31 @@ def test_what_held_out_trials_lose_by_is_not_named():
     assert decide(fit(0.10, 0.20), (), [better], split(0.04), None, 0.05).kind == "missing"
 
 
+def unfinished(name, ratio, eps, **given):
+    """A refit whose search did not arrive."""
+    found = refit(name, ratio, eps, **given)
+    found.fit.converged = False
+    return found
+
+
+@pytest.mark.parametrize(
+    ("other", "kind"),
+    [
+        (unfinished("b", 0.40, 0.06, check=0.15), "cannot tell"),
+        (unfinished("b", 0.40, 0.06, check=0.21), "missing"),  # held-out trials speak against it
+        (unfinished("b", 0.69, 0.079, check=0.15, wobble=0.5), "missing"),  # chance would do it
+        (unfinished("b", 0.75, 0.085, check=0.15), "missing"),  # it leaves more
+    ],
+)
+def test_what_leaves_less_takes_the_name_although_its_search_did_not_arrive(other, kind):
+    named = refit("a", 0.7, 0.08, check=0.18)
+    found = decide(fit(0.10, 0.20), (), [named, other], split(0.04), None, 0.05)
+    assert (found.kind, found.effect) == (kind, "a" if kind == "missing" else None)
+    if kind == "cannot tell":
+        assert "with b the error falls from 10.00% to 6.00% although" in found.sentence
+        assert "with a to 8.00%" in found.sentence
+
+
 def test_rivals_explain_more_than_half_and_differ_by_no_more_than_chance():
     named = refit("named", 0.50, 0.07, family=("twin",))
     close = refit("close", 0.55, 0.07, wobble=0.3)  # its blocks disagree by more than it lags
