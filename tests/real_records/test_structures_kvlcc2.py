@@ -8,7 +8,7 @@ from trialid.pipeline_file import load
 from trialid.workflow.structures.compare_structures import compare_structures
 
 pytestmark = [
-    pytest.mark.study(turn=1),
+    pytest.mark.study(turn="each"),
     pytest.mark.real_data,
     pytest.mark.skipif(not DATA.is_dir(), reason=f"no real records {DATA}"),
 ]

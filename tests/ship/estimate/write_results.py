@@ -140,7 +140,7 @@ def _record(case: str, ship: str, path: Path) -> str:
         "held_out": "-1.0" if found.eps_check is None else f"{found.eps_check:.4f}",
         "converged": str(found.converged).lower(),
         "GM": f"{found.value('GM'):.3g}" if "GM" in found.estimates else "-1.0",
-        "ambiguous": str(bool(found.rival_GM)).lower(),
+        "ambiguous": str(bool(found.rivals)).lower(),
     }
     return "\n".join(["[[record]]", *(f"{key} = {text}" for key, text in row.items()), ""])
 
