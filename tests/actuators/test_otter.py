@@ -73,7 +73,7 @@ def test_a_dead_thruster_is_named_although_nothing_fits_without_it() -> None:
     fit = fitted(record(1104, "dead", side=0, duration=60.0))
     found = diagnose(fit, DiagnoseSettings(candidates=few)).verdict
     assert (found.effect, found.family) == ("left_weak", ("left_weak",))
-    assert "with other faults of an actuator it hardly does" in found.sentence
+    assert "further than with any other fault of an actuator" in found.sentence
 
 
 @pytest.mark.study(turn=1)

@@ -114,7 +114,9 @@ def diagnose(
     if (failed := why_no_fit(fit)) is not None:
         return _no_fit(fit, before, augmented, failed)
     refits = refits_of(fit, trials, ranking, asked, lambda words: progress(words, 0.7), grown)
-    if faults := whole_faults(fit, trials, asked.candidates, refits, progress):
+    if faults := whole_faults(
+        fit, trials, asked.candidates, refits, progress, lambda f: _leaves_noise(f, asked)
+    ):
         return _gross(fit, before, augmented, faults, asked)
     whole, left_out = _whole(fit, augmented), augmented.left_out
     del augmented  # columns of the whole catalogue, before there are those of the next model
@@ -190,6 +192,12 @@ def examine_fit(
     ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
     return Diagnosed(fit, best, routes, doubts(fit, augmented)), ranking, augmented
+
+
+def _leaves_noise(fit: Fit, asked: DiagnoseSettings) -> bool:
+    """Whether noise is told from model error in what a fit leaves, and may be all of it."""
+    inside = examine_fit(fit, asked, silent)[0].split.undermodelling_interval
+    return inside is not None and inside[0] == 0.0
 
 
 def _bounded(done: Diagnosed, fits: Sequence[Fit], whole: Completeness | None = None) -> Diagnosed:
