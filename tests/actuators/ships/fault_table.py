@@ -144,7 +144,7 @@ def main() -> int:
     asked.add_argument("--first", type=int, default=FIRST)
     said = asked.parse_args()
     warnings.simplefilter("ignore")
-    seeds = range(said.first, said.first + said.records)
+    seeds, at = range(said.first, said.first + said.records), commit()
     lines, faulty, healthy = [], Count(0, 0, 0, 0), Count(0, 0, 0, 0)
     for kind in kinds():
         done = counted(kind, seeds)
@@ -156,7 +156,7 @@ def main() -> int:
             faulty = _sum(faulty, done)
     lines += [line("all", "a fault", faulty), line("all", "nothing", healthy)]
     print("\n".join(lines[-2:]))
-    head = HEAD.format(records=said.records, first=said.first, commit=commit())
+    head = HEAD.format(records=said.records, first=said.first, commit=at)
     RESULTS.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
     every = _sum(faulty, healthy)
     return int(faulty.right < RIGHT * faulty.records or every.wrong > WRONG * every.records)
