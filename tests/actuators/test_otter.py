@@ -76,6 +76,12 @@ def test_a_dead_thruster_is_named_although_nothing_fits_without_it() -> None:
     assert "further than with any other fault of an actuator" in found.sentence
 
 
+@pytest.mark.study(turn=4)
+def test_a_weak_thruster_is_fitted_where_slopes_foretell_more_than_blocks_left_out() -> None:
+    """It leaves 0.029 of 0.129; by blocks it was no candidate, and a lever arm had the name."""
+    assert verdict(60012, "weak").family == ("left_weak",)
+
+
 @pytest.mark.study(turn=1)
 def test_intervals_hold_nineteen_truths_of_twenty() -> None:
     held: Counter[str] = Counter()

@@ -114,11 +114,9 @@ def diagnose(
     if (failed := why_no_fit(fit)) is not None:
         return _no_fit(fit, before, augmented, failed)
     refits = refits_of(fit, trials, ranking, asked, lambda words: progress(words, 0.7), grown)
-    if faults := whole_faults(
-        fit, trials, asked.candidates, refits, progress, lambda f: _leaves_noise(f, asked)
-    ):
+    if faults := _whole(fit, ranking, refits, asked, progress):
         return _gross(fit, before, augmented, faults, asked)
-    whole, left_out = _whole(fit, augmented), augmented.left_out
+    whole, left_out = _any_shape(fit, augmented), augmented.left_out
     del augmented  # columns of the whole catalogue, before there are those of the next model
     fits = [r.fit for r in refits]
     before = _bounded(before, fits, whole)
@@ -139,7 +137,26 @@ def diagnose(
     )
 
 
-def _whole(fit: Fit, augmented: Augmented) -> Completeness | None:
+def _whole(
+    fit: Fit,
+    ranking: Sequence[Candidate],
+    refits: Sequence[Refit],
+    asked: DiagnoseSettings,
+    progress: Progress,
+) -> tuple[Refit, ...]:
+    """Faults of actuators that explain what no refit does; mostly none."""
+    return whole_faults(
+        fit,
+        [s.trial for s in fit.scores],
+        asked.candidates,
+        ranking,
+        others=refits,
+        progress=progress,
+        leaves_noise=lambda found: _leaves_noise(found, asked),
+    )
+
+
+def _any_shape(fit: Fit, augmented: Augmented) -> Completeness | None:
     """Whether forces of any simple shape explain more; among sensors alone no force is missing."""
     return completeness(fit, augmented) if fit.model.states else Completeness(0.0, 0.0)
 

@@ -67,15 +67,18 @@ def whole_faults(
     fit: Fit,
     trials: Sequence[Trial],
     candidates: Mapping[str, Effect],
+    ranking: Sequence[Candidate],
     others: Sequence[Refit],
     progress: Progress,
     leaves_noise: Callable[[Fit], bool],
 ) -> tuple[Refit, ...]:
-    """Faults that are there whole and explain what none of the others does; mostly none.
+    """Faults that explain what none of the others does, by slopes or whole; mostly none.
 
     They leave half of what the best of the others leaves, or nothing but noise where each block
-    says that the others leave more. Such a fault is far from the ship without it, and so are the
-    parameters fitted there. Where one of the others explains the record none is tried.
+    says that the others leave more. A fault that is there whole is far from the ship without it,
+    and so are the parameters fitted there; of the rest those are tried that by their slopes leave
+    less than all others, whatever blocks left out say of them, which go by slopes too. Where one of
+    the others explains the record none is tried.
 
     Parameters
     ----------
@@ -85,7 +88,8 @@ def whole_faults(
     least = min((r.fit.eps_rmsn for r in others), default=fit.eps_rmsn)
     if fit.eps_rmsn < WHOLE or least < EXPLAINED * fit.eps_rmsn:
         return ()
-    faults = [e for e in _absent(fit, candidates) if e.is_whole]
+    able = {c.effect.name for c in ranking if c.allowed and c.eps_predicted < least}
+    faults = [e for e in _absent(fit, candidates) if e.is_whole or e.name in able]
     soon = replace(fit, settings=replace(fit.settings, max_iterations=SOON))
     found = _of_these(soon, trials, faults, progress)
     if not found or _explains(found[0], min(least, fit.eps_rmsn)):
