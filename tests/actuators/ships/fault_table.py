@@ -1,6 +1,6 @@
 """Faults of actuators over all kinds of ships: how often the right one is named, and a wrong one.
 
-    PYTHONPATH=. python tests/actuators/ships/fault_table.py [--records 40] [--first 61000]
+    PYTHONPATH=. python tests/actuators/ships/fault_table.py [--records 40] [--first N] [--jobs 2]
 
 writes `tests/benchmarks/results/actuator_faults.md`. A record depends on its ship, its fault and
 its seed alone. Seeds below 61000 were looked at while building; those from there on were not.
@@ -11,6 +11,7 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -100,8 +101,10 @@ class Count:
     wrong: int
 
 
-def counted(kind: Kind, seeds: Sequence[int]) -> Count:
-    """What is said of the records of these seeds; what is not right is printed."""
+def counted(number: int, seeds: Sequence[int]) -> Count:
+    """What is said of the records of a kind, by its number; what is not right is printed."""
+    warnings.simplefilter("ignore")
+    kind = [*kinds()][number]
     right = others = wrong = 0
     for seed in seeds:
         found, wanted = kind.verdict(seed), kind.wanted(seed)
@@ -142,24 +145,26 @@ def main() -> int:
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("--records", type=int, default=40)
     asked.add_argument("--first", type=int, default=FIRST)
+    asked.add_argument("--jobs", type=int, default=2)
     said = asked.parse_args()
-    warnings.simplefilter("ignore")
     seeds, at = range(said.first, said.first + said.records), commit()
     lines, faulty, healthy = [], Count(0, 0, 0, 0), Count(0, 0, 0, 0)
-    for kind in kinds():
-        done = counted(kind, seeds)
-        lines.append(line(kind.ship, kind.words, done))
-        print(lines[-1], flush=True)
-        if kind.words == "nothing":
-            healthy = _sum(healthy, done)
-        elif kind.detectable:
-            faulty = _sum(faulty, done)
+    every = [*kinds()]
+    with ProcessPoolExecutor(said.jobs) as pool:
+        counts = pool.map(counted, range(len(every)), [seeds] * len(every))
+        for kind, done in zip(every, counts, strict=True):
+            lines.append(line(kind.ship, kind.words, done))
+            print(lines[-1], flush=True)
+            if kind.words == "nothing":
+                healthy = _sum(healthy, done)
+            elif kind.detectable:
+                faulty = _sum(faulty, done)
     lines += [line("all", "a fault", faulty), line("all", "nothing", healthy)]
     print("\n".join(lines[-2:]))
     head = HEAD.format(records=said.records, first=said.first, commit=at)
     RESULTS.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
-    every = _sum(faulty, healthy)
-    return int(faulty.right < RIGHT * faulty.records or every.wrong > WRONG * every.records)
+    whole = _sum(faulty, healthy)
+    return int(faulty.right < RIGHT * faulty.records or whole.wrong > WRONG * whole.records)
 
 
 def _sum(one: Count, other: Count) -> Count:
