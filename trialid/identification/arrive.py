@@ -13,7 +13,7 @@ from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
 from trialid.identification.record_starts import record_starts
 from trialid.identification.roll.roll_range import RollRange
-from trialid.identification.roll.told_gm import FAR, rivals, roll_error
+from trialid.identification.roll.told_gm import FAR, along_GM, rivals, roll_error
 from trialid.identification.weighing import NO_NOISE
 
 Vector = NDArray[np.float64]
@@ -82,10 +82,21 @@ def arrive(
     for step in steps:
         more, words = step(problem, settings, ends, progress)
         ends, told = [*ends, *more], [*told, *words]
+    walked = along_GM(problem, best_of(ends)) if embedded is None or len(ends) > 1 else []
+    if lower := _lower(walked, best_of(ends)):
+        ends.append(search(problem, settings, lower.minimum.theta, progress))
+        told.append("searched again from where another GM had left less")
+        walked = along_GM(problem, best_of(ends))
     best = best_of(ends)
     same = sum(e.began and _same(e.V, best.V) for e in ends)
-    found = rivals(problem, ends, best) if embedded is None or len(ends) > 1 else ()
+    found = rivals(problem, ends, best, walked)
     return Arrival(best, same, len(ends), tuple(told), found)
+
+
+def _lower(walked: Sequence[End], best: End) -> End | None:
+    """The best of a walk, where it is better than what the walk began at."""
+    least = min(walked, key=lambda end: end.cost(best.colour), default=best)
+    return least if least.cost(best.colour) < best.cost(best.colour) - NOTICED else None
 
 
 Step = tuple[list[End], list[str]]

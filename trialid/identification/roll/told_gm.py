@@ -43,7 +43,20 @@ ALIKE: Final = 1.1
 """Factor within which two rivals are one in words."""
 
 
-def rivals(problem: Problem, ends: Sequence[End], best: End) -> tuple[Mapping[str, float], ...]:
+def along_GM(problem: Problem, best: End) -> list[End]:
+    """Ends with GM ever further off to either side, all else fitted again: what is hardly worse.
+
+    Nothing where no GM is searched for, or what was fitted is no resonance of hers.
+    """
+    roll = problem.roll
+    if roll is None or not best.began or not roll.is_a_ships(best.minimum.theta):
+        return []
+    return [end for step in (1.0 / FAR, FAR) for end in _hardly_worse(problem, best, step)]
+
+
+def rivals(
+    problem: Problem, ends: Sequence[End], best: End, walked: Sequence[End]
+) -> tuple[Mapping[str, float], ...]:
     """Values by name among which the record does not choose, by their GM, the smallest first.
 
     Empty where it tells GM.
@@ -52,6 +65,8 @@ def rivals(problem: Problem, ends: Sequence[End], best: End) -> tuple[Mapping[st
     ----------
     ends, best
         All searches of the problem, and the one that is taken.
+    walked
+        Ends along GM from there.
     """
     roll = problem.roll
     if roll is None or not best.began:
@@ -60,8 +75,7 @@ def rivals(problem: Problem, ends: Sequence[End], best: End) -> tuple[Mapping[st
     near = [e.minimum.theta for e in ends if e.cost(best.colour) < limit]
     if not roll.is_a_ships(best.minimum.theta):
         near += _as_ships_have(problem, best)
-    elif _factor(near, place) <= FAR:
-        near += [x for step in (1.0 / FAR, FAR) for x in _hardly_worse(problem, best, step)]
+    near += [end.minimum.theta for end in walked]
     near.sort(key=lambda theta: float(theta[place]))
     if _factor(near, place) < FAR * 0.999:
         return ()
@@ -108,13 +122,13 @@ def _scaled(problem: Problem, theta: Vector, factor: float) -> Vector:
     return np.asarray(there)
 
 
-def _hardly_worse(problem: Problem, best: End, step: float) -> list[Vector]:
-    """Values with GM ever further off by a factor, as far as all else makes good for it."""
+def _hardly_worse(problem: Problem, best: End, step: float) -> list[End]:
+    """Ends with GM ever further off by a factor, as far as all else makes good for it."""
     assert problem.roll is not None
     rows, place = rows_of(problem, ("phi", "p")), problem.roll.GM
-    unknown, found = problem.unknowns[place], list[Vector]()
+    unknown, found = problem.unknowns[place], list[End]()
     for _ in range(STEPS):
-        start = _scaled(problem, found[-1] if found else best.minimum.theta, step)
+        start = _scaled(problem, (found[-1] if found else best).minimum.theta, step)
         if not unknown.low < start[place] < unknown.high:
             break
         there = _with_GM_held(problem, start, best.colour)
@@ -124,7 +138,7 @@ def _hardly_worse(problem: Problem, best: End, step: float) -> list[Vector]:
         grown = np.sum(there.residual[rows] ** 2) / np.sum(best.residual[rows] ** 2) - 1.0
         if lost >= TOLD_BY and grown >= GROWS:
             break
-        found.append(there.minimum.theta)
+        found.append(there)
     return found
 
 
