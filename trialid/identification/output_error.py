@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable
-from trialid.identification.roll_range import RollRange
+from trialid.identification.roll.roll_range import RollRange
 from trialid.names.quantities import POSITION
 from trialid.simulation.delay import margin
 from trialid.simulation.integrate import Departure, Response, Simulator, record_for, respond

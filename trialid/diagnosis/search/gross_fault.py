@@ -131,7 +131,7 @@ def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progres
         fitted = _arrived(fit, trials, model, effect)
     except TrialidError:  # it cannot act on this record: it is not the one
         return None
-    if fitted is None or why_no_fit(fitted) is not None:
+    if fitted is None or fitted.eps_rmsn > ALIKE * GROSS or why_no_fit(fitted):
         return None
     carried = Carried.between(own_errors(fit), own_errors(fitted, levels(fit)))
     candidate = Candidate(
