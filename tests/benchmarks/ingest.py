@@ -29,7 +29,7 @@ SHORT = 0.15
 HUNDRED, LARGE = 100e6, 1e9
 SECONDS, MEMORY_MB = 4.0, 1000.0
 """The first of CPU time, which other work on the machine does not lengthen; imports included."""
-HUGE = ("MCAP", "dataflash")
+HUGE = ("MCAP", "dataflash", "CSV", "candump", "NMEA 0183")
 """Formats whose logs get that long."""
 
 

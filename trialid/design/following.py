@@ -25,7 +25,8 @@ from trialid.design.standard import Measure, measures_of
 from trialid.design.triangles import Triangles, triangles, triangles_beside
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
-from trialid.identification.output_error import compared_mask, norms
+from trialid.identification.output_error import compared_mask
+from trialid.identification.problem import norms
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import inputs

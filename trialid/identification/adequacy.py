@@ -108,13 +108,13 @@ def _manoeuvres_seldom(score: Score, name: str, moved: float) -> Inadequate:
         f"she manoeuvres in less than a tenth of {score.trial.name}: in the rest the rudder moves "
         f"by {np.rad2deg(moved):.2g} deg, and counts for most",
         f"cut out the manoeuvres, a trial each: about window = {windows} s from where "
-        f"it begins{more}",
+        f"its logs begin{more}",
     )
 
 
 def _stretches(score: Score, name: str) -> list[tuple[float, float]]:
     """Where the rudder is used, with what comes before and after; (begin, end) each [s]."""
-    t, rudder = score.trial.t, _rudder(score, name)
+    t, rudder = score.trial.opening + score.trial.t, _rudder(score, name)
     used = t[np.abs(rudder - np.median(rudder)) > 0.5 * RUDDER_RANGE]
     apart = np.flatnonzero(np.diff(used) > 2.0 * AROUND) + 1
     parts = np.split(used, apart)
