@@ -7,7 +7,6 @@ its seed alone. Seeds below 61000 were looked at while building; those from ther
 """
 
 import argparse
-import subprocess
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -17,10 +16,12 @@ from pathlib import Path
 from typing import Final
 
 sys.path.extend(str(Path(__file__).parents[n]) for n in range(3))
+sys.path.append(str(Path(__file__).parents[3] / ".ci"))
 
 import faults
 import test_otter as otter
 import test_twin_rudders as twins
+from at_commit import commit_of
 
 from trialid.diagnosis.verdict import Verdict
 
@@ -166,7 +167,7 @@ def main() -> int:
     asked.add_argument("--first", type=int, default=FIRST)
     asked.add_argument("--jobs", type=int, default=2)
     said = asked.parse_args()
-    at, numbers = commit(), range(len([*kinds()]))
+    at, numbers = commit_of(RESULTS.parent), range(len([*kinds()]))
     counts, faulty, healthy = [Count() for _ in numbers], Count(), Count()
     with ProcessPoolExecutor(said.jobs) as pool:
         for seed in range(said.first, said.first + said.records):
@@ -177,11 +178,6 @@ def main() -> int:
             print(f"{seed}: {faulty}, healthy: {healthy}", flush=True)
     whole = faulty + healthy
     return int(faulty.right < RIGHT * faulty.records or whole.wrong > WRONG * whole.records)
-
-
-def commit() -> str:
-    command = ["git", "rev-parse", "--short", "HEAD"]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 if __name__ == "__main__":
