@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from boats import SHIP
 
+from trialid.design.prediction.seen_range import SeenRange, beyond_words
 from trialid.replay.view import draw
 from trialid.report.files.overlay import tracks_of
 from trialid.report.pictures.input_course import input_courses
@@ -54,6 +55,15 @@ def test_a_panel_has_the_unit_of_its_actuator() -> None:
         drawn = np.frombuffer(base64.b64decode(line["data"]), "<f4")
         assert drawn == pytest.approx([value] * 3, rel=1e-4)
     assert any("left [rpm]" in text for text in input_courses(series()))
+
+
+def test_what_is_beyond_the_trials_is_told_in_the_unit_of_its_actuator() -> None:
+    seen = {"left": SeenRange(0.0, 10.0), "pod": SeenRange(-0.5, 0.5), "u": SeenRange(0.0, 2.0)}
+    asked = {"left": np.array([20.0]), "pod": np.array([0.5]), "u": np.array([3.0])}
+    said = beyond_words(SHIP, seen, asked)
+    assert "left 191 rpm (seen 0 rpm to 95.49 rpm)" in said
+    assert "3.00 m/s (seen 0 m/s to 2.00 m/s)" in said
+    assert "pod" not in said
 
 
 def test_a_recording_names_the_unit() -> None:

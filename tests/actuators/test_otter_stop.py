@@ -116,6 +116,10 @@ def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
     assert ahead == pytest.approx(-astern)
     assert ahead > 0.0
     assert "head reach" in told.stdout
+    assert "trialid simulate . stop" in (tmp_path / run / "report.html").read_text(encoding="utf-8")
+    refused = trialid_("simulate", run, "zigzag", "20", "20")
+    assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+    assert "she has no rudder to steer by; `stop` and orders of your own need" in refused.stderr
     check_gains(tmp_path, run)
     one_side = tuple(replace(a, y=0.4) for a in truth().ship.actuators)
     aside = boat(replace(truth(), ship=replace(truth().ship, actuators=one_side)))

@@ -71,7 +71,7 @@ def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
     """
     sailed = model or fit.model
     if not STEERED & {*sailed.recorded}:
-        raise DesignError("the model is not steered by a rudder")
+        raise DesignError("she has no rudder to steer by; `stop` and orders of your own need none")
     return vessel(sailed, fit.problem.trials[0].period, steady_inputs(fit), _rate(fit))
 
 

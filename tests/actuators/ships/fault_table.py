@@ -7,7 +7,6 @@ its seed alone. Seeds below 61000 were looked at while building; those from ther
 """
 
 import argparse
-import subprocess
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -17,10 +16,12 @@ from pathlib import Path
 from typing import Final
 
 sys.path.extend(str(Path(__file__).parents[n]) for n in range(3))
+sys.path.append(str(Path(__file__).parents[3] / ".ci"))
 
 import faults
 import test_otter as otter
 import test_twin_rudders as twins
+from at_commit import commit_of
 
 from trialid.diagnosis.verdict import Verdict
 
@@ -95,25 +96,30 @@ def _of_twins() -> Iterator[Kind]:
 class Count:
     """Records of one kind, and of them those named right, right with others, and wrong."""
 
-    records: int
-    right: int
-    among_others: int
-    wrong: int
+    records: int = 0
+    right: int = 0
+    among_others: int = 0
+    wrong: int = 0
+
+    def __add__(self, other: "Count") -> "Count":
+        return Count(
+            self.records + other.records,
+            self.right + other.right,
+            self.among_others + other.among_others,
+            self.wrong + other.wrong,
+        )
 
 
-def counted(number: int, seeds: Sequence[int]) -> Count:
-    """What is said of the records of a kind, by its number; what is not right is printed."""
+def judged(number: int, seed: int) -> Count:
+    """What is said of a record of a kind, by its number; what is not right is printed."""
     warnings.simplefilter("ignore")
     kind = [*kinds()][number]
-    right = others = wrong = 0
-    for seed in seeds:
-        found, wanted = kind.verdict(seed), kind.wanted(seed)
-        right += found.effect == wanted
-        others += found.effect == wanted and len(found.family) > 1
-        wrong += found.effect not in (None, wanted)
-        if found.effect != wanted:
-            print(f"  {kind.ship}, {kind.words}, {seed}: {found.sentence}", flush=True)
-    return Count(len(seeds), right, others, wrong)
+    found, wanted = kind.verdict(seed), kind.wanted(seed)
+    right = found.effect == wanted
+    if not right:
+        print(f"  {kind.ship}, {kind.words}, {seed}: {found.sentence}", flush=True)
+    wrong = not right and found.effect is not None
+    return Count(1, int(right), int(right and len(found.family) > 1), int(wrong))
 
 
 def line(ship: str, words: str, c: Count) -> str:
@@ -140,45 +146,38 @@ not show which of them is weak: no name is right there, and they are not in the 
 """
 
 
+def page(counts: Sequence[Count], first: int, at: str) -> tuple[str, Count, Count]:
+    """The table with its totals; all faulty records that can be told, and all healthy ones."""
+    faulty, healthy, lines = Count(), Count(), []
+    for kind, count in zip(kinds(), counts, strict=True):
+        lines.append(line(kind.ship, kind.words, count))
+        if kind.words == "nothing":
+            healthy += count
+        elif kind.detectable:
+            faulty += count
+    lines += [line("all", "a fault", faulty), line("all", "nothing", healthy)]
+    head = HEAD.format(records=counts[0].records, first=first, commit=at)
+    return head + "\n".join(lines) + "\n", faulty, healthy
+
+
 def main() -> int:
-    """Write the page; exit status 1 where less is named right, or more wrong, than asked for."""
+    """Write the page, anew after each seed; exit status 1 where the totals fall short."""
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("--records", type=int, default=40)
     asked.add_argument("--first", type=int, default=FIRST)
     asked.add_argument("--jobs", type=int, default=2)
     said = asked.parse_args()
-    seeds, at = range(said.first, said.first + said.records), commit()
-    lines, faulty, healthy = [], Count(0, 0, 0, 0), Count(0, 0, 0, 0)
-    every = [*kinds()]
+    at, numbers = commit_of(RESULTS.parent), range(len([*kinds()]))
+    counts, faulty, healthy = [Count() for _ in numbers], Count(), Count()
     with ProcessPoolExecutor(said.jobs) as pool:
-        counts = pool.map(counted, range(len(every)), [seeds] * len(every))
-        for kind, done in zip(every, counts, strict=True):
-            lines.append(line(kind.ship, kind.words, done))
-            print(lines[-1], flush=True)
-            if kind.words == "nothing":
-                healthy = _sum(healthy, done)
-            elif kind.detectable:
-                faulty = _sum(faulty, done)
-    lines += [line("all", "a fault", faulty), line("all", "nothing", healthy)]
-    print("\n".join(lines[-2:]))
-    head = HEAD.format(records=said.records, first=said.first, commit=at)
-    RESULTS.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
-    whole = _sum(faulty, healthy)
+        for seed in range(said.first, said.first + said.records):
+            one = pool.map(judged, numbers, [seed] * len(numbers))
+            counts = [a + b for a, b in zip(counts, one, strict=True)]
+            text, faulty, healthy = page(counts, said.first, at)
+            RESULTS.write_text(text, encoding="utf-8")
+            print(f"{seed}: {faulty}, healthy: {healthy}", flush=True)
+    whole = faulty + healthy
     return int(faulty.right < RIGHT * faulty.records or whole.wrong > WRONG * whole.records)
-
-
-def _sum(one: Count, other: Count) -> Count:
-    return Count(
-        one.records + other.records,
-        one.right + other.right,
-        one.among_others + other.among_others,
-        one.wrong + other.wrong,
-    )
-
-
-def commit() -> str:
-    command = ["git", "rev-parse", "--short", "HEAD"]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 if __name__ == "__main__":

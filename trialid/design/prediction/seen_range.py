@@ -9,6 +9,8 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.identification.fit import Fit, Score
 from trialid.names import labels
+from trialid.ship.actuators import actuator_quantities
+from trialid.ship.particulars import Ship
 from trialid.simulation.integrate import record_for
 
 ENDLESS: Final = frozenset({"psi", "t"})
@@ -48,7 +50,11 @@ def seen_ranges(fit: Fit) -> dict[str, SeenRange]:
             kept = values[np.isfinite(values)]
             if len(kept):
                 found.setdefault(name, []).append(kept)
-    return {name: _range(name, np.concatenate(parts)) for name, parts in found.items()}
+    own = actuator_quantities(fit.model.ship.actuators)
+    return {
+        name: _range((own.get(name) or labels.quantity(name)).mirror, np.concatenate(parts))
+        for name, parts in found.items()
+    }
 
 
 def _of_trial(fit: Fit, score: Score) -> Iterable[tuple[str, Vector]]:
@@ -65,17 +71,22 @@ def _of_trial(fit: Fit, score: Score) -> Iterable[tuple[str, Vector]]:
             yield name, column
 
 
-def _range(name: str, values: Vector) -> SeenRange:
+def _range(mirror: int, values: Vector) -> SeenRange:
     low, high = float(values.min()), float(values.max())
-    if labels.quantity(name).mirror < 0:
+    if mirror < 0:
         high = max(abs(low), abs(high))
         low = -high
     return SeenRange(low, high)
 
 
-def beyond_words(seen: Mapping[str, SeenRange], signals: Mapping[str, Vector]) -> str:
-    """What leaves the range that was seen, in a sentence; empty where nothing does."""
-    words = []
+def beyond_words(ship: Ship, seen: Mapping[str, SeenRange], signals: Mapping[str, Vector]) -> str:
+    """What leaves the range that was seen of a ship, in a sentence; empty where nothing does."""
+    words, own = [], actuator_quantities(ship.actuators)
+
+    def shown(name: str, value: float) -> str:
+        known = own.get(name)
+        return labels.command_text(known, value) if known else labels.shown_text(name, value)
+
     if "U" in signals:  # the speed ahead as it acts, whatever is given
         sway = signals.get("v", np.zeros_like(signals["U"]))
         signals = {**signals, "u": np.sqrt(np.maximum(signals["U"] ** 2 - sway**2, 0.0))}
@@ -83,7 +94,7 @@ def beyond_words(seen: Mapping[str, SeenRange], signals: Mapping[str, Vector]) -
         if name in signals and np.isfinite(signals[name]).any():
             value = known.excess(signals[name])
             if np.isfinite(value):
-                at, low, high = (labels.shown_text(name, x) for x in (value, known.low, known.high))
+                at, low, high = (shown(name, x) for x in (value, known.low, known.high))
                 words.append(f"{labels.label(name)} {at} (seen {low} to {high})")
     if not words:
         return ""

@@ -85,6 +85,7 @@ def whole_faults(
     leaves_noise
         Whether what a fit leaves is no more than noise.
     """
+    others = [r for r in others if not r.candidate.effect.is_whole]
     least = min((r.fit.eps_rmsn for r in others), default=fit.eps_rmsn)
     if fit.eps_rmsn < WHOLE or least < EXPLAINED * fit.eps_rmsn:
         return ()

@@ -38,7 +38,8 @@ def equations(run: Result) -> Iterator[EquationRow]:
 def commands(run: Result) -> Iterator[CommandRow]:
     """What can be done with the run, from its own folder."""
     marked = " --anyway" if run.verdict.kind == "no fit" else ""
-    yield CommandRow(f"trialid simulate . zigzag 20 20{marked}", "a manoeuvre with likely ranges")
+    manoeuvre = "stop" if run.model.by_thrusters else "zigzag 20 20"
+    yield CommandRow(f"trialid simulate . {manoeuvre}{marked}", "a manoeuvre with likely ranges")
     yield CommandRow(f"trialid simulate . orders.csv{marked}", "orders of your own")
     for name, kind in KINDS.items():
         needs = kind.needs_by_thrusters if run.model.by_thrusters else kind.needs

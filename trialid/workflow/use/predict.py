@@ -165,7 +165,9 @@ def with_words(
 ) -> Prediction:
     """A prediction with every sentence that belongs beside it."""
     words = [*model.doubts, *change_words(model, what_if)]
-    words += filter(None, [beyond_words(model.seen, {**made.given, **made.motion})])
+    words += filter(
+        None, [beyond_words(model.fit.model.ship, model.seen, {**made.given, **made.motion})]
+    )
     if orders.unread:
         words.append(f"Not read by the model: {', '.join(sorted(orders.unread))}.")
     if orders.held:
