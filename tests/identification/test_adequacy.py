@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
-from trialid.identification.adequacy import SLOWEST_TIMES, UNEXPLAINED, remarks, why_no_fit
+from trialid.identification.adequacy import SLOWEST_TIMES, UNEXPLAINED, why_no_fit
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
+from trialid.identification.remarks import remarks
 from trialid.identification.time_scales import slowest_motion
 from trialid.trial import Trial
 

@@ -41,7 +41,8 @@ def disturbed() -> dict[str, np.ndarray]:
 
 def ship_with(effect: Effect) -> ShipModel:
     """The reference ship with this effect, less what has the same numbers or does the same."""
-    same = {"rudder_race": "linear_rudder"}.get(effect.name)
+    instead = ("rudder_race", "rudder_race_shaft")
+    same = "linear_rudder" if effect.name in instead else None
     kept = tuple(
         e for e in MODEL.effects if e.name != same and not {*e.parameters} & {*effect.parameters}
     )

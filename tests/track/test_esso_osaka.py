@@ -54,8 +54,8 @@ def test_the_track_of_runs_that_were_not_fitted(pond: Fit) -> None:
     held = [e for n, e in errors.items() if any(h in n for h in HELD)]
     assert len(held) == 2
     assert max(held) < 0.5
-    assert max(e for n, e in errors.items() if "turn" in n) < 4.0
-    assert max(e for n, e in errors.items() if "turn" not in n) < 0.7
+    assert max(e for n, e in errors.items() if "turn" in n) < 1.2
+    assert max(e for n, e in errors.items() if "turn" not in n) < 0.5
 
 
 @pytest.fixture(scope="module")
@@ -65,23 +65,27 @@ def turns(pond: Fit) -> Sequence[TurnMeasure]:
 
 
 def test_what_zigzags_foretell_of_turning_tests(turns: Sequence[TurnMeasure]) -> None:
-    """No turn was fitted. All four are tighter than foretold, which the bands allow for."""
-    covered = []
+    """No turn was fitted; one of the advances lies apart from the three others."""
+    covered, errors = list[bool](), dict[str, list[float]]()
     for m in turns:
         assert m.predicted is not None
         assert m.corrected is not None
         assert m.corrected_for == "wind"
         low, high = m.predicted_interval or (np.nan, np.nan)
-        covered.append(low < m.corrected < high)
+        covered.append(bool(low < m.corrected < high))
         ends = "to".join(f" {x:.2f} " for x in m.corrected_interval or ())
         print(
             f"{m.trial} {m.name}: {m.measured:.2f} m, without wind {m.corrected:.2f} ({ends}), "
             f"model {m.predicted:.2f} m ({m.predicted / m.corrected - 1.0:+.0%}), "
             f"{low:.2f} to {high:.2f}"
         )
-        assert m.predicted == pytest.approx(m.corrected, rel=0.4)
+        assert m.predicted == pytest.approx(m.corrected, rel=0.2)
+        assert high - low < 0.6 * m.predicted + 0.25 * LENGTH
+        errors.setdefault(m.name, []).append(m.predicted / m.corrected - 1.0)
     print(f"{sum(covered)} of {len(covered)} within the model's bands")
-    assert sum(covered) >= 11
+    assert sum(covered) == 12
+    for name, off in errors.items():
+        assert abs(np.mean(off)) < 0.08, name
 
 
 def test_two_turns_alike_agree_without_the_wind(turns: Sequence[TurnMeasure]) -> None:

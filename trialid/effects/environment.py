@@ -43,9 +43,13 @@ def apparent_wind(
 def apparent_wind_yaw(
     V_aw, gamma_aw, *,
     N_aw=Parameter(0.000004, low=-0.0003, high=0.0003),
-    N_2aw=Parameter(0.000008, low=-0.0003, high=0.0003),
+    N_2aw=Parameter(-0.000008, low=-0.0003, high=0.0003),
 ):  # fmt: skip
-    """N = V_aw^2 (N_aw sin(gamma_aw) + N_2aw sin(2 gamma_aw)): wind in yaw."""
+    """N = V_aw^2 (N_aw sin(gamma_aw) + N_2aw sin(2 gamma_aw)): wind in yaw.
+
+    N_aw is C_aw times the lever of the side area. From ahead the wind grips further forward, and
+    blows the bow off: N_2aw is -0.1 C_aw or so (Blendermann 1994: 0.18 of the length a radian).
+    """
     return Force(N=V_aw**2 * (N_aw * sin(gamma_aw) + N_2aw * sin(2.0 * gamma_aw)))
 
 

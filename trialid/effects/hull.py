@@ -224,7 +224,11 @@ def surge_turning(
     Xvr=Parameter(-0.0031, low=-0.05, high=0.05), Xvv=Parameter(-0.0039, low=-0.05, high=0.05),
     Xrr=Parameter(0.0002, low=-0.005, high=0.005),
 ):  # fmt: skip
-    """X = Xvr v r + Xvv v^2 + Xrr r^2: speed lost in turns."""
+    """X = Xvr v r + Xvv v^2 + Xrr r^2: speed lost in turns.
+
+    Most of it is the water that turns with the hull, Xvrm v r of centripetal_added_mass. The Xvr of
+    a ship file stands beside Xvrm and often has the other sign: without it she speeds up in turns.
+    """
     return Force(X=Xvr * v * r + Xvv * v**2 + Xrr * r**2)
 
 

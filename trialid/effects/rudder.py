@@ -8,6 +8,7 @@ from trialid.ship.effect import Force, Parameter, Steered, effect
 BK99 = "Blanke & Knudsen (1999), section 4"
 SN82 = "Son & Nomoto (1982), container ship S-175"
 BC93 = "Blanke & Christensen (1993), multipurpose naval vessel"
+BG72 = "van Berlekom & Goddard (1972), tanker: squared flow over the rudder as u n and n^2"
 CST65 = "Chislett & Strom-Tejsen (1965), Mariner"
 TURN = 2.0 * math.pi
 PI = math.pi
@@ -136,6 +137,27 @@ def _ahead(x: Number) -> Number:
     return 0.5 * (x + abs(x))
 
 
+@effect(source=BG72)
+def rudder_race_shaft(
+    u,
+    n,
+    delta,
+    *,
+    N_un=Parameter(2e-6, low=0.0, high=1e-4, null=None),
+    N_nn=Parameter(3e-8, low=0.0, high=1e-6, null=None),
+    z_race=Parameter(0.03, low=0.0, high=0.2, null=None),
+):
+    """N = (N_un u n + N_nn n^2) delta,  Y = -2 N,  K = 2 z_race N: the race as the shaft turns.
+
+    Instead of linear_rudder, whose force goes as U^2, where trials are at several revolutions or
+    speed falls far: rudder_race and rudder_slipstream know one approach speed. With the shaft
+    stopped or astern there is no race and no force.
+    """
+    ahead = _ahead(n)
+    N = (N_un * u + N_nn * ahead) * ahead * delta
+    return Force(Y=-2.0 * N, K=2.0 * z_race * N, N=N)
+
+
 @effect(source=SN82, system="SI")
 def propeller_thrust(
     u, v, r, n, L, rho, *,
@@ -194,6 +216,6 @@ def propeller_rudder(
 
 EFFECTS = (
     linear_rudder, rudder_cubic, rudder_in_drift, drift_with_rudder, rudder_stall,
-    rudder_flow_asymmetry, rudder_race, surge_rudder, rudder_offset, rudder_scale,
-    rudder_feedback_curve, propeller_thrust, propeller_rudder,
+    rudder_flow_asymmetry, rudder_race, rudder_race_shaft, surge_rudder, rudder_offset,
+    rudder_scale, rudder_feedback_curve, propeller_thrust, propeller_rudder,
 )  # fmt: skip

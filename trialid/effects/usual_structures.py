@@ -23,7 +23,7 @@ of Blanke & Knudsen (1999), all third-order terms of Son & Nomoto (1982), one dr
 
 RACE: Final = "rudder_slipstream"
 LOST_SPEED: Final = "surge_loss"
-IN_THE_RACE: Final = ("rudder_race", "propeller_rudder")
+IN_THE_RACE: Final = ("rudder_race", "rudder_race_shaft", "propeller_rudder")
 """Rudders that have the race in them; a pipeline with one keeps it in every structure."""
 
 TELLING: Final = frozenset(

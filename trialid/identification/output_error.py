@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask
-from trialid.identification.roll_range import RollRange
+from trialid.identification.roll.roll_range import RollRange
 from trialid.simulation.by_parts import respond_by_parts
 from trialid.simulation.delay import margin
 from trialid.simulation.integrate import Departure, Response, Simulator, record_for, respond

@@ -13,7 +13,7 @@ from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.nuisance_priors import speed
 from trialid.identification.of_each_trial import Nuisance, nuisances, with_nuisance
 from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask
-from trialid.identification.roll_range import RollRange, roll_range
+from trialid.identification.roll.roll_range import RollRange, roll_range
 from trialid.names.quantities import MASS_PARAMETERS, POSITION
 from trialid.ship.effect import Force, Rate
 from trialid.ship.model import ShipModel

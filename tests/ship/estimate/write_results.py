@@ -19,10 +19,11 @@ import numpy as np
 
 HERE: Final = Path(__file__).resolve().parent
 ROOT: Final = HERE.parents[2]
-sys.path[:0] = [str(HERE), str(HERE.parents[2] / ".ci")]
+sys.path.insert(0, str(HERE))
 
-from at_commit import commit_of  # noqa: E402
+
 from begun_records import CASES, begun  # noqa: E402
+from commit import commit_of  # noqa: E402
 from published import Published, published_ships  # noqa: E402
 from sailed_zigzags import fit, sailed  # noqa: E402
 
@@ -139,7 +140,7 @@ def _record(case: str, ship: str, path: Path) -> str:
         "held_out": "-1.0" if found.eps_check is None else f"{found.eps_check:.4f}",
         "converged": str(found.converged).lower(),
         "GM": f"{found.value('GM'):.3g}" if "GM" in found.estimates else "-1.0",
-        "ambiguous": str(bool(found.rival_GM)).lower(),
+        "ambiguous": str(bool(found.rivals)).lower(),
     }
     return "\n".join(["[[record]]", *(f"{key} = {text}" for key, text in row.items()), ""])
 

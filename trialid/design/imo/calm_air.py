@@ -1,17 +1,20 @@
-"""A manoeuvre as the fitted ship would have sailed it in calm air, straight ahead until its order.
+"""A manoeuvre as the fitted ship would have sailed it, from its order on: in the wind, and in calm.
 
 On the approach a rudder holds her against the wind. In calm air the same rudder would have turned
 her off her course long before the order, so the wind is taken off from the order on: she comes to
-it on a straight course, at the speed she had.
+it on a straight course, at the speed she had. What speeds and rate of turn the record has there is
+where she begins: minutes of approach have led the model elsewhere.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.imo.measure_slopes import Shows
+from trialid.design.imo.recognise import samples_a_length
 from trialid.design.imo.sailed_trial import (
     PLACE,
     SailedTrial,
@@ -27,31 +30,78 @@ from trialid.identification.fit import Fit, of_trial
 from trialid.simulation.integrate import initial
 from trialid.trial import Trial
 
+MOTION: Final[tuple[str, ...]] = ("u", "v", "r", "psi")
 
-def sail_in_calm_air(
+
+@dataclass(frozen=True)
+class FromOrder:
+    """A manoeuvre from its order on, in the wind as it blew, and without."""
+
+    windy: SailedTrial
+    calm: SailedTrial
+
+
+def sail_from_order(
     fit: Fit, trial: Trial, windy: SailedTrial, order: float, end: int
-) -> SailedTrial | None:
-    """A trial up to a sample, without wind from an order on [s]; None where she cannot.
+) -> FromOrder | None:
+    """A trial up to a sample, from an order on [s]; None where she cannot.
 
     Parameters
     ----------
     windy
-        The trial as she sails it in the wind; its speed at the order is what she begins with.
+        The trial from its beginning; its speed at the order is what she begins with where the fit
+        compared none.
     """
-    k = int(order / trial.period)
+    span = slice(int(order / trial.period), end)
+    motion = _motion_at(fit, trial, span.start)
     try:
-        begun = _sailing(fit, trial, windy, slice(k, end))
-        calm_spread = replace(windy.spread, missing=_without_wind(windy.spread))
-        made = sail(fit, begun, calm_spread, len(begun.starts))
+        blown, calm = (_sail_on(fit, trial, windy, span, motion, still) for still in (False, True))
     except (EffectError, NotIdentifiable):
         return None
+    return None if blown is None or calm is None else FromOrder(blown, calm)
+
+
+def _motion_at(fit: Fit, trial: Trial, k: int) -> dict[str, float]:
+    """Speeds, rate and heading at a sample: the model's, by as much off as it was just before.
+
+    Just before is half a ship length of way: a mean over it takes off noise.
+    """
+    [score] = [s for s in fit.scores if s.trial.name == trial.name]
+    size, states = fit.model.ship.particulars, fit.problem.simulator.model.all_states
+    before = slice(max(k + 1 - samples_a_length(trial, size["L"], size["U0"]) // 2, 0), k + 1)
+    there = [n for n in MOTION if n in states]
+    motion = {n: float(score.response.states[k, states.index(n)]) for n in there}
+    for place, name in enumerate(fit.problem.outputs):
+        known = score.compared[before, place]
+        if name in motion and known.any():
+            off = trial.signals[name][before] - score.response.y[before, place]
+            motion[name] += float(np.mean(off[known]))
+    return motion
+
+
+def _sail_on(
+    fit: Fit,
+    trial: Trial,
+    windy: SailedTrial,
+    span: slice,
+    motion: Mapping[str, float],
+    calm: bool,
+) -> SailedTrial | None:
+    """On from the order."""
+    begun = _sailing(fit, trial, windy, span, motion, calm)
+    missing = _without_wind(windy.spread) if calm else windy.spread.missing
+    made = sail(fit, begun, replace(windy.spread, missing=missing), len(begun.starts))
     if made is None:
         return None
     by = made.by[..., : windy.by.shape[-1]]
-    if windy.speed_by is not None:
-        by = by + made.by[..., -1:] * windy.speed_by[k]
+    if begun.starts and windy.speed_by is not None:
+        by = by + made.by[..., -1:] * windy.speed_by[span.start]
+    k = span.start
     speed = begun.start.get("u", float(trial.signals["u"][k]) if "u" in trial.signals else 0.0)
     before = _approach(speed, begun.start["psi"], k, trial.period)
+    if not calm:  # held on her course against the wind, she is not on it all the time
+        own = trial.signals if "psi" in fit.problem.outputs else windy.track
+        before["psi"] = own["psi"][:k]
     return SailedTrial(
         track=_joined(before, made.track),
         by=np.concatenate([np.zeros((k, *by.shape[1:])), by]),
@@ -64,16 +114,24 @@ def _without_wind(spread: LikelySpread) -> tuple[Shows, ...]:
     return tuple(m for m in spread.missing if not is_wind(m.effect))
 
 
-def _sailing(fit: Fit, trial: Trial, windy: SailedTrial, span: slice) -> Sailing:
-    """Straight ahead at the order, all that is hers as in the wind."""
+def _sailing(
+    fit: Fit,
+    trial: Trial,
+    windy: SailedTrial,
+    span: slice,
+    motion: Mapping[str, float],
+    calm: bool,
+) -> Sailing:
+    """What she is and how she moves at the order; in calm air straight ahead."""
     model = with_track(fit, trial)
-    for effect in (e for e in model.effects if is_wind(e)):
+    for effect in (e for e in model.effects if calm and is_wind(e)):
         model = model - effect.name
     values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
-    start = dict.fromkeys(model.states, 0.0) | {"psi": float(windy.track["psi"][span.start])}
+    begun = {"psi": float(windy.track["psi"][span.start]), **motion}
+    kept = {n: x for n, x in begun.items() if n in ("u", "psi") or not calm}
+    start = dict.fromkeys(model.states, 0.0) | kept
     starts = {}
-    if windy.speed is not None:
-        start["u"] = float(windy.speed[span.start])
+    if windy.speed is not None and "u" not in fit.problem.outputs:
         starts[initial("u")] = windy.by.shape[-1]
     part = replace(
         trial,

@@ -203,20 +203,25 @@ def _track(y: Vector) -> Track:
     return dict(zip(PLACE, y[:, :3].T, strict=True))
 
 
-def numbers(sailed: SailedTrial, read: Numbers) -> dict[str, tuple[float, Range | None]]:
+def numbers(
+    sailed: SailedTrial, read: Numbers, beyond: Mapping[str, float] | None = None
+) -> dict[str, tuple[float, Range | None]]:
     """What the model comes to by name, each with its 95 % range; empty where it does not get there.
 
     Parameters
     ----------
     read
         Reads the numbers from a track; DesignError where there are none.
+    beyond
+        Standard error of each by what acts on a single run and is not in the model.
     """
     try:
         found = read(sailed.track)
         slopes = _slopes(sailed, read, found)
     except DesignError:
         return {}
-    ranges = sailed.spread.ranges([*found.values()], slopes)
+    own = np.array([(beyond or {}).get(n, 0.0) for n in found])
+    ranges = sailed.spread.ranges([*found.values()], slopes, own)
     return {n: (x, r) for (n, x), r in zip(found.items(), ranges, strict=True)}
 
 

@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from trialid.arrays import Vector
+from trialid.design.imo.calm_air import FromOrder
 from trialid.design.imo.sailed_trial import (
     Drift,
     Numbers,
@@ -23,6 +24,7 @@ from trialid.design.imo.sailed_trial import (
     numbers,
 )
 from trialid.design.imo.trial_numbers import Range
+from trialid.design.prediction.unexplained_motion import UnexplainedMotion
 from trialid.errors import DesignError
 from trialid.trial import Trial
 
@@ -73,12 +75,15 @@ class Around:
     Attributes
     ----------
     calm
-        Sails on from an order [s] up to a sample without the wind; None where she cannot.
+        Sails on from an order [s] up to a sample in the wind and without; None where she cannot.
+    unexplained
+        What fitted trials did beyond the model.
     """
 
     water: Water | None = None
     sailed: SailedTrial | None = None
-    calm: Callable[[float, int], SailedTrial | None] | None = None
+    calm: Callable[[float, int], FromOrder | None] | None = None
+    unexplained: UnexplainedMotion | None = None
 
     @property
     def words(self) -> str:
@@ -127,11 +132,21 @@ def foretold(
         When it was ordered [s], and the sample up to which it is read.
     """
     if around.calm is None:
-        return {} if around.sailed is None else numbers(around.sailed, read), {}
-    calm = around.calm(order, end)
-    if calm is None:
+        return {} if around.sailed is None else _numbers(around, around.sailed, order, read), {}
+    sailed = around.calm(order, end)
+    if sailed is None:
         return {}, {}
-    return numbers(calm, read), drift(around.sailed, calm, read)
+    return _numbers(around, sailed.calm, order, read), drift(sailed.windy, sailed.calm, read)
+
+
+def _numbers(
+    around: Around, sailed: SailedTrial, order: float, read: Numbers
+) -> dict[str, tuple[float, Range | None]]:
+    """The model's numbers with the range of a single run."""
+    if around.unexplained is None:
+        return numbers(sailed, read)
+    begin = int(order / around.unexplained.period)
+    return numbers(sailed, read, around.unexplained.errors(read, sailed.track, begin))
 
 
 def _is_read(trial: Trial, name: str, span: slice) -> bool:

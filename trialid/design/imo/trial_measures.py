@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.design.imo.calm_air import sail_in_calm_air
+from trialid.design.imo.calm_air import sail_from_order
 from trialid.design.imo.measured import READERS, heading_numbers, order_time
 from trialid.design.imo.recognise import recognise, samples_a_length
 from trialid.design.imo.recognition import Recognised
@@ -16,6 +16,7 @@ from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, TurnMea
 from trialid.design.imo.turns import NEEDED, Turn, find_turns, is_seen, turn_reader
 from trialid.design.imo.williamson_numbers import williamson_reader
 from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.design.prediction.unexplained_motion import unexplained_motion
 from trialid.effects.track import CURRENT
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit, of_trial
@@ -96,8 +97,12 @@ def _around(
     sailed = None if spread is None else sail_trial(fit, trial, spread)
     calm = None
     if sailed is not None and has_wind(fit.model):
-        calm = functools.partial(sail_in_calm_air, fit, trial, sailed)
-    return Around(water=_water(fit, trial, errors), sailed=sailed, calm=calm)
+        calm = functools.partial(sail_from_order, fit, trial, sailed)
+    size = fit.model.ship.particulars
+    clock = samples_a_length(trial, size["L"], size["U0"])
+    beyond = None if sailed is None else unexplained_motion(fit, clock)
+    water = _water(fit, trial, errors)
+    return Around(water=water, sailed=sailed, calm=calm, unexplained=beyond)
 
 
 def _water(fit: Fit, trial: Trial, errors: Mapping[str, float]) -> Water | None:

@@ -50,18 +50,22 @@ class LikelySpread:
         """Columns of what may be missing, also of what is there whole or not at all."""
         return self.standing.known.moves.shape[1] - 1 - len(self.held)
 
-    def ranges(self, values: Sequence[float] | Vector, by: Vector) -> list[Range | None]:
+    def ranges(
+        self, values: Sequence[float] | Vector, by: Vector, beyond: Vector | float = 0.0
+    ) -> list[Range | None]:
         """The 95 % range of each number; None where nobody knows.
 
         Parameters
         ----------
         values, by
             The numbers (n,), and their slopes by `known` and `missing`; (n, n_known + width).
+        beyond
+            Standard error of each by what no parameter says; (n,).
         """
         first, last = len(self.fitted), len(self.fitted) + len(NAMES)
         averaged = self.standing.average(np.delete(by, np.s_[first:last], axis=1))
         own = by[:, :last]
-        errors = np.sqrt(np.einsum("ni,ni->n", own @ self.covariance, own))
+        errors = np.sqrt(np.einsum("ni,ni->n", own @ self.covariance, own) + np.square(beyond))
         each = zip(values, errors, strict=True)
         return [averaged.range(i, float(x), float(e)) for i, (x, e) in enumerate(each)]
 

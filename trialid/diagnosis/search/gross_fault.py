@@ -87,15 +87,18 @@ def _of_these(
     fit: Fit, trials: Sequence[Trial], faults: Sequence[Effect], progress: Progress
 ) -> tuple[Refit, ...]:
     """Those that alone explain the record, the best first."""
-    found = [r for e in faults if (r := _fitted(fit, trials, e, progress)) is not None]
+    most = min(EXPLAINS * fit.eps_rmsn, GROSS)
+    found = [r for e in faults if (r := _fitted(fit, trials, e, ALIKE * most, progress))]
     found.sort(key=lambda r: r.fit.eps_rmsn)
-    if not found or found[0].fit.eps_rmsn > min(EXPLAINS * fit.eps_rmsn, GROSS):
+    if not found or found[0].fit.eps_rmsn > most:
         return ()
     return tuple(r for r in found if r.fit.eps_rmsn < ALIKE * found[0].fit.eps_rmsn)
 
 
-def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progress) -> Refit | None:
-    """The model with a fault, fitted; None where that fails or the fault is at its range's end."""
+def _fitted(
+    fit: Fit, trials: Sequence[Trial], effect: Effect, most: float, progress: Progress
+) -> Refit | None:
+    """The model with a fault, fitted; None where that fails, leaves more, or ends at a bound."""
     progress(f"trying {effect.name}", 0.68)
     start = {n: p.start if effect.is_whole else 0.9 * p.high for n, p in effect.parameters.items()}
     free = (*fit.settings.free, *effect.parameters)
@@ -104,7 +107,7 @@ def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progres
         fitted = identify(trials, model, replace(fit.settings, free=free))
     except TrialidError:  # it cannot act on this record: it is not the one
         return None
-    if why_no_fit(fitted) is not None or not _inside(fitted, effect):
+    if fitted.eps_rmsn > most or why_no_fit(fitted) or not _inside(fitted, effect):
         return None
     carried = Carried.between(own_errors(fit), own_errors(fitted, levels(fit)))
     candidate = Candidate(

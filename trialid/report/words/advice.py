@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from trialid.accuracy.parameter_table import ANOTHER_GM
 from trialid.names import wording
 from trialid.names.quantities import RUDDERS
 from trialid.report.words import doubt
@@ -229,7 +230,9 @@ def widest(parameters: Sequence[ParameterRow]) -> str:
         return ""
     _, row = max(known, key=lambda pair: pair[0])
     why = "by the numbers held fixed (how sure those are: [uncertainty] in the ship file)"
-    if row.widened_by:
+    if row.widened_by == ANOTHER_GM:
+        why = "as the record does not tell GM"
+    elif row.widened_by:
         why = f"as {row.widened_by} may be missing"
     return f"Least known: {row.name}, {why}."
 
