@@ -20,8 +20,9 @@ from typing import Final
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "real_records"))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
+from at_commit import commit_of
 from basin import BASES, held_in_basin, in_basin
-from commit import commit_of
 from pond import WIND, held_on_pond, on_pond
 from real_record import of_a_clock, stages
 
@@ -121,7 +122,7 @@ def main() -> int:
     said = report(loops)
     print(said)
     if options.write:
-        commit = commit_of()
+        commit = commit_of(RESULTS.parent)
         head = f"# Real zig-zags\n\n`python tests/benchmarks/real_choices.py` at {commit}\n\n"
         RESULTS.write_text(head + said, encoding="utf-8")
     return int(any(x.rises for x in loops))

@@ -22,8 +22,9 @@ from typing import Final
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
-from commit import commit_of
+from at_commit import commit_of
 from search_ships import KINDS, Drawn, draw, placeholder
 
 from trialid.effects import CATALOGUE
@@ -180,8 +181,8 @@ def main() -> int:
     print(counted)
     if options.write:
         command = f"tests/benchmarks/search.py --count {options.count} --seed {options.seed}"
-        head = f"# Whether the search arrives\n\n`python {command}` at {commit_of()}\n\n"
-        said = f"{head}{counted}\n"
+        at = f"`python {command}` at {commit_of(RESULTS.parent)}"
+        said = f"# Whether the search arrives\n\n{at}\n\n{counted}\n"
         RESULTS.write_text(said, encoding="utf-8")
     arrived = sum(e.arrived or bool(e.reason) for e in ends) / len(ends)
     return int(arrived < 0.98 or any(e.is_absurd for e in ends))

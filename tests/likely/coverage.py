@@ -18,8 +18,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
-from commit import commit_of
+from at_commit import commit_of
 from hidden_truth import OUTPUTS
 from sailed_records import NoPassage, record
 from worlds import SCENARIOS, Conditions, World, guessed, hidden_world, world
@@ -221,7 +222,7 @@ def main() -> int:
         missed += share(done, "likely")[0] < case.asked
         print(lines[-1], flush=True)
     last = said.first + said.records - 1
-    head = HEAD.format(commit=commit_of(), first=said.first, last=last)
+    head = HEAD.format(commit=commit_of(Path(__file__).parent), first=said.first, last=last)
     RESULTS.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
     return int(missed > 0)
 

@@ -24,10 +24,10 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Final, TypeVar
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
-from commit import commit_of
+from at_commit import commit_of
 from planted_errors import ROOT, Planted, chosen, planted_errors
 
 RESULTS: Final = ROOT / "tests" / "benchmarks" / "results" / "planted.md"

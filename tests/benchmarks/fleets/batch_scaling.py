@@ -24,9 +24,9 @@ from unittest.mock import patch
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "fleet"))
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / ".ci"))
 
-from commit import commit_of
+from at_commit import commit_of
 from generated_fleet import (
     FORMATS,
     ROOT,

@@ -20,11 +20,11 @@ from typing import Any, Final
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from commit import commit_of
-
 ROOT: Final = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "tests" / "benchmarks"), str(ROOT / ".ci")]
+
+from at_commit import commit_of  # noqa: E402
+
 SIGNALS: Final = {"rudder": "deg", "rate": "deg/s", "roll": "deg", "speed": "m/s"}
 Stages = dict[str, list[float]]
 
@@ -157,7 +157,8 @@ def report(asked: argparse.Namespace, folder: Path) -> str:
 
 def heading(asked: argparse.Namespace) -> str:
     """What was run, where."""
-    commits = [commit_of(tree) for tree in (*([asked.against] if asked.against else []), ROOT)]
+    trees = [*([asked.against] if asked.against else []), ROOT]
+    commits = [commit_of(tree) for tree in trees]
     return (
         f"# Long records\n\n`python tests/benchmarks/fleets/long_records.py --trials "
         f"{asked.trials} --samples {asked.samples} --text {asked.text}`,\ncommit {commits[-1]}"

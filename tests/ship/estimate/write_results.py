@@ -19,11 +19,10 @@ import numpy as np
 
 HERE: Final = Path(__file__).resolve().parent
 ROOT: Final = HERE.parents[2]
-sys.path.insert(0, str(HERE))
+sys.path[:0] = [str(HERE), str(HERE.parents[2] / ".ci")]
 
-
+from at_commit import commit_of  # noqa: E402
 from begun_records import CASES, begun  # noqa: E402
-from commit import commit_of  # noqa: E402
 from published import Published, published_ships  # noqa: E402
 from sailed_zigzags import fit, sailed  # noqa: E402
 

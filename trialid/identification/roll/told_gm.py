@@ -136,8 +136,9 @@ def _with_GM_held(problem: Problem, theta: Vector, colour: float) -> End | None:
     chosen = [x for x, moves in zip(problem.unknowns, moving, strict=True) if moves]
     rows = np.arange(stretches(problem)[-1].rows.stop)
     part = Part(problem, theta, rows, moving)
-    steps = (NEIGHBOUR_STEPS, NEIGHBOUR_NEAR)
-    end = minimise(part, theta[moving], *ranges(chosen), *steps, keep=False)
+    end = minimise(
+        part, theta[moving], *ranges(chosen), NEIGHBOUR_STEPS, NEIGHBOUR_NEAR, keep=False
+    )
     if not end.iterations:
         return None
     there = theta.copy()

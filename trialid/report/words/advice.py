@@ -16,9 +16,9 @@ RIVALS: Final = 2
 """Other members of the family whose command is written out."""
 
 OPENS: Final = {
-    "repeated manoeuvre": "run one manoeuvre twice, with the same rudder orders",
-    "periods of a periodic test": "run a test in which the rudder repeats itself several times",
-    "quiet stretch": "record a minute or more of steady course, rudder at rest, in the same sea",
+    "repeated manoeuvre": "run one manoeuvre twice, with the same orders",
+    "periods of a periodic test": "run a test whose orders repeat themselves several times",
+    "quiet stretch": "record a minute or more of steady course, nothing ordered, in the same sea",
     "stated sensor figure": "state how much each sensor scatters, as noise under [diagnose]",
 }
 """What would open a route to the noise that this record does not have."""
