@@ -1,5 +1,6 @@
 """Sensitivities that come part by part are those of the whole response."""
 
+import tracemalloc
 from collections.abc import Callable
 
 import numpy as np
@@ -94,3 +95,20 @@ def test_a_departure_is_told_and_nothing_given_from_there_on(
     response, slopes, _ = together(simulator, trial, 1)
     assert response.departure == told.departure
     assert np.isnan(slopes[int(told.departure.t) :]).all()
+
+
+def test_the_sensitivities_of_a_long_record_are_never_held_whole(
+    everything: ShipModel, lively: Callable[..., Trial], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trial = lively(samples=20_000, period=0.1)
+    simulator = prepare(everything, tuple(everything.parameters), OUTPUTS)
+    monkeypatch.setattr(by_parts, "NUMBERS", 1 << 16)
+    given = []
+    tracemalloc.start()
+    by_parts.respond_by_parts(
+        simulator, trial, values(simulator), START, lambda samples, slopes: given.append(samples)
+    )
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert given[-1].stop == trial.samples
+    assert peak < 0.3 * 8 * trial.samples * len(OUTPUTS) * len(simulator.columns)

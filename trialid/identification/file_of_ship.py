@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from trialid.identification.fit import Fit
 from trialid.identification.one_search import search
 from trialid.identification.output_error import Unknown, ranges
+from trialid.linear_algebra import triangle
 
 Vector = NDArray[np.float64]
 
@@ -97,7 +98,7 @@ def _near(x: Unknown, stated: float, scatter: float) -> Unknown:
 def _standard_errors(fit: Fit) -> Vector:
     """By the level of the error with its colour, priors counted; (n_theta,)."""
     held = [fit.level / x.prior[1] if x.prior else 0.0 for x in fit.problem.unknowns]
-    rows = np.concatenate([fit.psi, np.diag(held)])
+    rows = np.concatenate([triangle(fit.psi), np.diag(held)])  # a long record's are not copied
     sizes = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
     R = np.linalg.qr(rows / sizes, mode="r")
     return np.asarray(fit.level * np.linalg.norm(np.linalg.pinv(R), axis=1) / sizes)

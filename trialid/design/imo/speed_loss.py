@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from trialid.arrays import Mask, Vector
 from trialid.design.helm import Vessel, vessel
@@ -84,6 +83,8 @@ def speed_loss(fit: Fit) -> SpeedLoss | None:
     logged = [s for s in fit.scores if s.trial.use == "fit" and _logged(s.trial)]
     if not logged:
         return SpeedLoss(_named(NOTHING), np.diag(TYPICAL**2))
+    from scipy.optimize import least_squares  # a quarter of a second, for no run without a log
+
     simulator = prepare(ShipModel(fit.model.ship, ("psi",), (logged_loss,)), NAMES, ("U",))
     records = [_record(fit, s) for s in logged]
 

@@ -3,7 +3,6 @@
 from typing import Final
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from trialid.arrays import Vector
 from trialid.design.imo.recognition import Recognised
@@ -39,6 +38,7 @@ def stop_reader(one: Recognised, order: float, clock: int, samples: int) -> Trac
     begin, window = one.execute - first, 2 * max(round(SMOOTHED * clock / 2.0), 2) + 1
     if last - first < window:
         return None
+    from scipy.signal import savgol_filter  # half a second, which few runs have a use for
 
     def read(track: Track, t: Vector, late: float) -> dict[str, float]:
         smooth = {n: savgol_filter(x, window, 2) for n, x in track.items()}

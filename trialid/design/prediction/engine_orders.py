@@ -8,8 +8,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from scipy.optimize import brentq
-
 from trialid.design.helm import Vessel
 from trialid.errors import DesignError
 from trialid.simulation.reference import evaluator
@@ -117,5 +115,7 @@ def _holding(ship: Vessel, feedback: Mapping[str, str]) -> float:
 
 def holding_order(rate: Callable[[float], float]) -> float | None:
     """The order that holds a speed, of du/dt [m/s^2] by the order; None where none does."""
+    from scipy.optimize import brentq  # a quarter of a second, for stops alone
+
     most = next((1e-3 * 2.0**k for k in range(DOUBLINGS) if rate(1e-3 * 2.0**k) > 0.0), None)
     return None if most is None or rate(0.0) >= 0.0 else float(brentq(rate, 0.0, most))

@@ -238,7 +238,8 @@ def _linear(
         return point
     residual, psi = point
     psi, rest = np.split(psi, [len(fit.theta)], axis=1)
-    return residual, psi, rest[:, : len(columns)], rest[:, [every.index(n) for n in held]]
+    # copies: a view of a few columns would keep those of the whole catalogue
+    return residual, psi.copy(), rest[:, : len(columns)], rest[:, [every.index(n) for n in held]]
 
 
 def _scanned(

@@ -5,7 +5,7 @@ the residual's autocovariance along the slice, and a mean square by the number o
 values in it, N_b^2 / sum_k rho(k)^2 A_b(k), A_b the autocorrelation of the slice's indicator.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -192,12 +192,20 @@ class Squares:
 
 def squares(left: Leftover, colour: Colour, output: int, slices: Mask) -> Squares:
     """Mean square of one output's residual in slices against that outside them; slices (N, q)."""
-    inside = slices & left.compared[:, output, None]
+    return squares_of_each(left, colour, output, slices.T)
+
+
+def squares_of_each(left: Leftover, colour: Colour, output: int, slices: Iterable[Mask]) -> Squares:
+    """The same of slices one after another, (N,) each: there may be thousands of a long record."""
+    compared = left.compared[:, output]
     e2 = left.eps[:, output] ** 2
-    count, total = inside.sum(axis=0).astype(float), float(e2.sum())
-    every = float(left.compared[:, output].sum())
-    held = np.array([e2[column].sum() for column in np.ascontiguousarray(inside.T)])
-    chain = along(inside, colour.squared[:, output], left.spans)
+    total, every = float(e2.sum()), float(compared.sum())
+    sums = []
+    for one in slices:
+        inside = one & compared
+        chain = along(inside[:, None], colour.squared[:, output], left.spans)[0]
+        sums.append((float(inside.sum()), float(e2[inside].sum()), float(chain)))
+    count, held, chain = np.array(sums).reshape(-1, 3).T
     own = count**2 / np.maximum(chain, 1e-300)
     rest = np.maximum(float(colour.independent[output]) - own, 1.0)
     here = held / np.maximum(count, 1.0)

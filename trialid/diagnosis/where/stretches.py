@@ -14,7 +14,7 @@ from trialid.diagnosis.where.bins import bars, in_reports
 from trialid.diagnosis.where.doing import ship_activity
 from trialid.diagnosis.where.finding import Bars, Examined, Finding
 from trialid.diagnosis.where.leftover import Leftover
-from trialid.diagnosis.where.slice_test import Colour, Squares, squares
+from trialid.diagnosis.where.slice_test import Colour, Squares, squares, squares_of_each
 
 Vector = NDArray[np.float64]
 
@@ -70,10 +70,9 @@ def worst_stretches(left: Leftover, colour: Colour, output: int) -> Examined | s
     if len(rows) < FEWEST:
         return f"the trials are shorter than {FEWEST} windows"
     tried = spells(rows)
-    inside = np.zeros((len(left.eps), len(tried)), dtype=bool, order="F")
-    for k, spell in enumerate(tried):
-        inside[rows[spell[0]].start : rows[spell[-1]].stop, k] = True
-    held = squares(left, colour, output, inside)
+    clock = np.arange(len(left.eps))
+    inside = ((clock >= rows[s[0]].start) & (clock < rows[s[-1]].stop) for s in tried)
+    held = squares_of_each(left, colour, output, inside)
     p = np.where(held.ratio > 1.0, 0.5 * held.p, 1.0)
     least = min(float(p.min()) * len(p), 1.0)
     if least > LEVEL:
