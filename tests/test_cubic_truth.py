@@ -18,8 +18,6 @@ from trialid.report.words import doubt
 from trialid.ship.particulars import read_ship
 from trialid.workflow import grow
 
-pytestmark = pytest.mark.study(turn="each")
-
 MODULI = """"sway_drag_vav", "sway_drag_var", "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rar",
   "roll_drag_vav", "roll_drag_var","""
 CASES = {
@@ -41,7 +39,14 @@ OF_THE_WRONG_CLASS = {
 """What the truth has otherwise or with other values: only a fit's own numbers stand for them."""
 
 
-@pytest.fixture(scope="module", params=CASES)
+TURN = {"white": 0, "waves": 1, "bare": 3}
+"""All that is asked of a case at one turn: the loop takes three quarters of a minute."""
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=pytest.mark.study(turn=TURN[name])) for name in CASES],
+)
 def done(request, tmp_path_factory):
     """The stages of the loop, its history printed."""
     coloured, seed, changes = CASES[request.param]

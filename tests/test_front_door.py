@@ -191,7 +191,6 @@ def test_arrays_give_the_pipelines_numbers(run, fit) -> None:
         assert abs(fit.value(row.name) - row.value) < 0.05 * row.standard_error
 
 
-@pytest.mark.study(turn=3)
 @pytest.mark.study(turn=1)
 def test_a_fit_from_arrays_is_diagnosed_and_grows(fit) -> None:
     found = ti.diagnose(fit, name="arrays")

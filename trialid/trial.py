@@ -44,6 +44,8 @@ class Trial:
         The files behind it.
     start
         Stamp of the first sample on the clock of the logs [ns].
+    opening
+        Where a window of the logs begins that the trial is [s], as a pipeline states it.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Trial:
     remarks: tuple[str, ...] = field(default=())
     logs: tuple[LogSource, ...] = field(default=())
     start: int = 0
+    opening: float = 0.0
 
     def __post_init__(self) -> None:
         for array in (*self.signals.values(), *self.valid.values()):

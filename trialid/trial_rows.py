@@ -34,5 +34,11 @@ class Stretch:
         sums = whole.reshape(len(self.compared), self.every, *values.shape[1:]).sum(axis=1)
         return np.asarray(sums[self.compared] / np.sqrt(self.every))
 
+    def within(self, samples: slice, first: int) -> "Stretch":
+        """The rows that some samples make, from a multiple of `every` on; the first is `first`."""
+        compared = self.compared[samples.start // self.every : samples.stop // self.every]
+        rows = slice(first, first + int(compared.sum()))
+        return Stretch(self.trial, self.output, rows, compared, self.every)
+
 
 Kind = Literal["physical", "nuisance"]

@@ -51,11 +51,13 @@ def thrust(n: Vector) -> Vector:
     return np.where(n > 0.0, AHEAD, ASTERN) * n * np.abs(n)
 
 
-def rates(state: Vector, orders: Vector, weak: Vector, cross_flow: float) -> Vector:
-    """Time derivatives of u, v, r and both revolutions."""
+def rates(
+    state: Vector, orders: Vector, weak: Vector, cross_flow: float, quadratic: float = 0.0
+) -> Vector:
+    """Time derivatives of u, v, r and both revolutions; `quadratic` is Xuu [kg/m], hers is 0."""
     u, v, r, *n = state
     left, right = thrust(np.array(n)) * (1.0 - weak)
-    X = left + right + XU * u + (MASS - YVDOT) * v * r + MASS * X_G * r * r
+    X = left + right + XU * u + quadratic * u * abs(u) + (MASS - YVDOT) * v * r + MASS * X_G * r * r
     Y = YV * v - (MASS - XUDOT) * u * r
     N = ARM * (left - right) + NR * r + NRR * abs(r) * r - MASS * X_G * u * r
     N += (YVDOT - XUDOT) * u * v
@@ -68,7 +70,11 @@ def rates(state: Vector, orders: Vector, weak: Vector, cross_flow: float) -> Vec
 
 
 def sail(
-    t: Vector, orders: Vector, weak: tuple[float, float] = (0.0, 0.0), cross_flow: float = C_D
+    t: Vector,
+    orders: Vector,
+    weak: tuple[float, float] = (0.0, 0.0),
+    cross_flow: float = C_D,
+    quadratic: float = 0.0,
 ) -> Sailed:
     """The boat under orders (N, 2) [rad/s] that run straight from sample to sample, from rest.
 
@@ -82,10 +88,10 @@ def sail(
         for i in range(5):
             rise = (orders[min(k + 1, len(t) - 1)] - orders[k]) / 5.0
             first, middle, last = (orders[k] + rise * (i + part) for part in (0.0, 0.5, 1.0))
-            a = rates(state, first, lost, cross_flow)
-            b = rates(state + h / 2.0 * a, middle, lost, cross_flow)
-            c = rates(state + h / 2.0 * b, middle, lost, cross_flow)
-            d = rates(state + h * c, last, lost, cross_flow)
+            a = rates(state, first, lost, cross_flow, quadratic)
+            b = rates(state + h / 2.0 * a, middle, lost, cross_flow, quadratic)
+            c = rates(state + h / 2.0 * b, middle, lost, cross_flow, quadratic)
+            d = rates(state + h * c, last, lost, cross_flow, quadratic)
             state = state + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
     x = np.array(states)
     return Sailed(t=t, orders=orders, revolutions=x[:, 3:], u=x[:, 0], v=x[:, 1], r=x[:, 2])

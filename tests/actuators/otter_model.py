@@ -1,5 +1,6 @@
 """The model a user would write of the Otter: masses and sway as published, all else to be found."""
 
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -90,7 +91,9 @@ def model() -> ShipModel:
     return ShipModel(SHIP, ("u", "v", "r"), effects).with_values(held)
 
 
-def record(seed: int, fault: str = "", side: int = 0, duration: float = 120.0) -> Trial:
+def record(
+    seed: int, fault: str = "", side: int = 0, duration: float = 120.0, quadratic: float = 0.0
+) -> Trial:
     """What is logged of one trial: both orders, the speed and the rate of turn.
 
     Parameters
@@ -99,6 +102,8 @@ def record(seed: int, fault: str = "", side: int = 0, duration: float = 120.0) -
         `weak` (a fifth of its thrust is gone), `half`, `dead`, `reversed`, `late` (0.5 s) of the
         thruster on this side, or both `exchanged`, `saturated` (at 0.65 of full) or with a
         `deadband` (of 0.05); the log shows the orders all the same.
+    quadratic
+        Xuu [kg/m] in her truth beside the published linear resistance.
     """
     t = np.arange(0.0, duration, PERIOD)
     orders = otter.some_orders(t, seed)
@@ -114,7 +119,7 @@ def record(seed: int, fault: str = "", side: int = 0, duration: float = 120.0) -
         acting = np.clip(orders, -SATURATED, SATURATED)
     elif fault == "deadband":
         acting = orders - np.clip(orders, -DEAD, DEAD)
-    sailed = otter.sail(t, acting, (weak[0], weak[1]))
+    sailed = otter.sail(t, acting, (weak[0], weak[1]), quadratic=quadratic)
     rng = np.random.default_rng([seed, 1])
     noisy = {c: y + NOISE[c] * rng.standard_normal(len(t)) for c, y in _motions(sailed).items()}
     given = dict(zip(ORDERED, orders.T, strict=True)) | noisy
@@ -127,7 +132,16 @@ def _motions(sailed: otter.Sailed) -> dict[str, Vector]:
     return {"u": sailed.u, "r": sailed.r}
 
 
-def fitted(trial: Trial) -> Fit:
-    """The fit; four steps a sample, because the lag is as long as a sample."""
-    settings = Settings(free=FREE, outputs=("u", "r"), nuisance=("initial_state",), substeps=4)
-    return identify((trial,), model(), settings)
+def fitted(trial: Trial, added: Mapping[str, Effect] | None = None) -> Fit:
+    """The fit; four steps a sample, because the lag is as long as a sample.
+
+    Parameters
+    ----------
+    added
+        Effects beside those of the model, by the parameter that is sought of each.
+    """
+    fitted_model, free = model(), FREE
+    for name, effect in (added or {}).items():
+        fitted_model, free = fitted_model + effect, (*free, name)
+    settings = Settings(free=free, outputs=("u", "r"), nuisance=("initial_state",), substeps=4)
+    return identify((trial,), fitted_model, settings)

@@ -122,6 +122,7 @@ PARTNERS = {a: b for a, b in zip("abcdefgh", "badcfehg", strict=True)}
     [
         "thrusters",
         "azimuths",
+        "azimuths_advance",
         "azimuths_race",
         "azimuths_strut",
         "waterjets",

@@ -2,13 +2,18 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
+from boats import ship_with
 from click.testing import CliRunner
 
 from trialid import guide, pipeline_file
 from trialid.cli.main import commands
+from trialid.effects.actuators import actuator_effects
+from trialid.effects.actuators.push_kinds import PUSHES
 from trialid.errors import PipelineError
+from trialid.ship.actuators import Actuator
 from trialid.workflow.build_model import available, build_model
 
 TRIAL = 'ship = "ship.toml"\n[[trial]]\nname = "a"\nlogs = ["a.csv"]\n'
@@ -17,6 +22,25 @@ TRIAL = 'ship = "ship.toml"\n[[trial]]\nname = "a"\nlogs = ["a.csv"]\n'
 def block(kind: str) -> str:
     """The first fence of this kind."""
     return guide.page("actuators").split(f"```{kind}\n")[1].split("```")[0]
+
+
+def test_a_new_kind_is_ten_lines_and_brings_all_that_kinds_have(monkeypatch) -> None:
+    """The guide's kind, with the word in `Kind` the tenth line; its moment is that of its place."""
+    code = guide.page("contributing").split("## A kind of actuator")[1].split("```")[1]
+    own = code.removeprefix("python").partition("\n\n\n")[2]
+    assert len([line for line in own.splitlines() if line]) + 1 == 10
+    known: dict[str, Any] = {}
+    exec(code.removeprefix("python"), known)
+    monkeypatch.setitem(PUSHES, "airscrew", known["AIRSCREW"])
+    two = [
+        Actuator(name=n, kind="airscrew", x=-2.0, y=y) for n, y in (("left", -1.0), ("right", 1.0))
+    ]
+    made = actuator_effects(ship_with(tuple(two)), ("left",))
+    push = made["airscrews"]({"left": 3.0, "right": -2.0, "k_air": 5.0})[0]
+    assert pytest.approx((45.0, 0.0, 0.0, 45.0)) == push
+    assert {f"airscrews_{n}" for n in ("lag", "deadband", "saturation")} < {*made}
+    assert {f"left_{n}" for n in ("weak", "late", "reversed", "misaligned")} < {*made}
+    assert "left_right_exchanged" in made
 
 
 @pytest.fixture

@@ -26,6 +26,22 @@ def test_a_strut_is_a_rudder_of_its_pod() -> None:
     assert strut(at | {"u": 0.0})[0] == pytest.approx((0.0,) * 4)
 
 
+def test_a_pod_loses_thrust_to_the_flow_that_it_looks_into() -> None:
+    """By hand, 60 deg to starboard, 5 m aft of the origin: U_P = 2 / 2 = 1, T = -4 * 3 * 1.
+
+    A drift to starboard counts as speed where it looks across; an idle pod loses nothing.
+    """
+    ones = (Actuator(name="pod", kind="azimuth", x=-5.0, y=0.0),)
+    lost = actuator_effects(ship_with(ones))["azimuths_advance"]
+    at = {"pod": 3.0, "pod_angle": np.pi / 3.0, "u": 2.0, "v": 0.0, "r": 0.0, "k_pod_advance": 4.0}
+    X, Y, _, N = lost(at)[0]
+    assert pytest.approx((-6.0, -12.0 * np.sqrt(0.75), 60.0 * np.sqrt(0.75))) == (X, Y, N)
+    assert pytest.approx(-6.0) == lost(at | {"pod": -3.0})[0].X
+    across = lost(at | {"pod_angle": np.pi / 2.0, "u": 0.0, "v": 0.5, "r": 0.02})[0]
+    assert pytest.approx((0.0, -12.0 * 0.4), abs=1e-12) == (across.X, across.Y)
+    assert lost(at | {"pod": 0.0})[0] == pytest.approx((0.0,) * 4)
+
+
 def test_a_pod_in_the_race_of_another_loses_thrust() -> None:
     """The one aft, behind one that pushes ahead; the one ahead, before one that backs.
 
@@ -54,7 +70,7 @@ def test_a_pod_in_the_race_of_another_loses_thrust() -> None:
 def test_compiled_and_numpy_agree_on_struts_races_and_what_holds_drives_back() -> None:
     model, free, trial = eight_actuators()
     own = actuator_effects(model.ship)
-    added = [own[f"azimuths_{n}"] for n in ("strut", "race", "deadband", "saturation")]
+    added = [own[f"azimuths_{n}"] for n in ("strut", "advance", "race", "deadband", "saturation")]
     for effect in added:
         model = model + effect
     stated = {n: p.start for e in added for n, p in e.parameters.items()}

@@ -97,6 +97,23 @@ def test_a_ship_file_gives_its_own_names_or_says_what_it_lacks(tmp_path, monkeyp
 
 @pytest.mark.real_data
 @pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("record", ["usv1", "usv2"])
+def test_a_stranger_without_a_rudder_is_told_that_what_is_left_is_noise(
+    tmp_path, monkeypatch, record
+) -> None:
+    """Nothing stated and nothing changed: the noise is what is left while both thrusters rest."""
+    done = started(tmp_path, monkeypatch, [NEWCOMER / f"{record}.mcap"], "--length 4.9")
+    assert done.exit_code == 0, done.output
+    found = read(tmp_path / "runs" / "first_trial" / "result.json")
+    assert found.fit.converged
+    assert found.verdict.kind == "nothing missing"
+    assert found.split.method == "quiet stretch"
+    assert found.fit.eps_rmsn < 1.2 * found.split.noise, found.split
+
+
+@pytest.mark.real_data
+@pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
 @pytest.mark.study(turn=1)
 def test_a_stranger_without_a_rudder_is_followed_to_the_noise(tmp_path, monkeypatch) -> None:
     """By second differences of the raw channels: 0.005 rad/s at 25 Hz and 0.03 m/s at 5 Hz."""

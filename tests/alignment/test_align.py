@@ -73,7 +73,7 @@ def test_the_common_clock_and_the_window():
     trial = align("zigzag", "fit", [log], [RUDDER, ROLL], 0.5, None)
     assert trial.duration == 109.0  # from 10 s, where the rudder begins, to the last roll, 119 s
     part = align("zigzag", "fit", [log], [RUDDER, ROLL], 0.5, (20.0, 50.0))
-    assert part.duration == 30.0
+    assert (part.duration, trial.opening, part.opening) == (30.0, 0.0, 20.0)
     np.testing.assert_array_equal(part.signals["phi"], trial.signals["phi"][40:101])
     long = align("zigzag", "fit", [log], [RUDDER, ROLL], 0.5, (20.0, 500.0))
     assert long.duration == 89.0

@@ -21,20 +21,21 @@ if TYPE_CHECKING:
     from ingest_timing import Cost
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE.parent / "ingest"), str(HERE)]
+FORMATS = HERE / "ingest_formats"
+sys.path[:0] = [str(HERE.parent / "ingest"), str(HERE), str(FORMATS)]
 
 SHORT = 0.15
 """Share of the usual size, for CI."""
 HUNDRED, LARGE = 100e6, 1e9
 SECONDS, MEMORY_MB = 4.0, 1000.0
 """The first of CPU time, which other work on the machine does not lengthen; imports included."""
-HUGE = ("MCAP", "dataflash")
+HUGE = ("MCAP", "dataflash", "CSV", "candump", "NMEA 0183")
 """Formats whose logs get that long."""
 
 
 def modules(only: str | None) -> Iterator[ModuleType]:
     """The benchmarks of each format."""
-    names = sorted(path.stem for path in HERE.glob("ingest_*.py"))
+    names = sorted(path.stem for path in FORMATS.glob("ingest_*.py"))
     for name in names:
         if name != "ingest_timing" and only in (None, name.removeprefix("ingest_")):
             yield importlib.import_module(name)

@@ -9,7 +9,7 @@ Results stand in `results/search.md` with `--write`.
 """
 
 import argparse
-import subprocess
+import multiprocessing
 import sys
 import tempfile
 import time
@@ -22,7 +22,9 @@ from typing import Final
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
+from at_commit import commit_of
 from search_ships import KINDS, Drawn, draw, placeholder
 
 from trialid.effects import CATALOGUE
@@ -109,7 +111,8 @@ def examine(seed: int) -> Ended:
     found = why_no_fit(fit)
     return Ended(
         drawn, fit.eps_rmsn <= (1.0 + SAME) * other.eps_rmsn, found.reason if found else "",
-        fit.eps_rmsn, fit.eps_check or np.nan, absurd(drawn, fit), fit.value("GM"), fit.rival_GM,
+        fit.eps_rmsn, fit.eps_check or np.nan, absurd(drawn, fit), fit.value("GM"),
+        tuple(values["GM"] for values in fit.rivals),
         seconds, fit.agreeing[1],
     )  # fmt: skip
 
@@ -165,20 +168,21 @@ def main() -> int:
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("--count", type=int, default=30)
     asked.add_argument("--seed", type=int, default=0)
+    asked.add_argument("--jobs", type=int, default=1)
     asked.add_argument("--write", action="store_true")
     options = asked.parse_args()
     warnings.simplefilter("ignore")
-    ends = []
-    for seed in range(options.seed, options.seed + options.count):
-        ends.append(examine(seed))
-        print(line(seed, ends[-1]), flush=True)
+    ends, seeds = [], range(options.seed, options.seed + options.count)
+    with multiprocessing.Pool(options.jobs) as pool:
+        for seed, end in zip(seeds, pool.imap(examine, seeds), strict=True):
+            ends.append(end)
+            print(line(seed, end), flush=True)
     counted = table(ends)
     print(counted)
     if options.write:
         command = f"tests/benchmarks/search.py --count {options.count} --seed {options.seed}"
-        git = ["git", "-C", str(RESULTS.parent), "rev-parse", "--short", "HEAD"]
-        commit = subprocess.run(git, check=True, capture_output=True, text=True).stdout.strip()
-        said = f"# Whether the search arrives\n\n`python {command}` at {commit}\n\n{counted}\n"
+        at = f"`python {command}` at {commit_of(RESULTS.parent)}"
+        said = f"# Whether the search arrives\n\n{at}\n\n{counted}\n"
         RESULTS.write_text(said, encoding="utf-8")
     arrived = sum(e.arrived or bool(e.reason) for e in ends) / len(ends)
     return int(arrived < 0.98 or any(e.is_absurd for e in ends))

@@ -73,12 +73,13 @@ def test_twins_are_one_family():
     assert "cannot tell it from" in verdict.sentence
 
 
-@pytest.mark.study(turn=2)
-def test_false_alarms_are_counted():
-    """Nothing hidden, wave noise: a name in at most 3 of 40 records at a nominal 5 %."""
-    kinds = [diagnosed(record(MODEL, 100 + seed), MODEL)[3].kind for seed in range(40)]
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("first", range(100, 140, 8))
+def test_false_alarms_are_counted(first):
+    """Nothing hidden, wave noise: a name in at most 1 of 8 records at a nominal 5 %."""
+    kinds = [diagnosed(record(MODEL, seed), MODEL)[3].kind for seed in range(first, first + 8)]
     print({kind: kinds.count(kind) for kind in set(kinds)})
-    assert kinds.count("missing") <= 3
+    assert kinds.count("missing") <= 1
 
 
 @effect(source="made up: a root of what becomes negative")

@@ -65,7 +65,6 @@ def test_an_outer_force_is_found_with_its_course_and_follows_no_signal():
     assert np.corrcoef(course.force, true)[0, 1] > 0.6
 
 
-@pytest.mark.study(turn=1)
 @pytest.mark.study(turn=0)
 def test_a_hidden_effect_is_found_with_its_shape():
     found = missing_force(fit_of(rudder_in_heel, 4)[0])

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, waves, white, with_noise, zigzag
 
-from trialid.diagnosis.noise.split import _period, split
+from trialid.diagnosis.noise.excitation import QUIET_ANGLE, period_of
+from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.augment import augment
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
@@ -158,8 +159,8 @@ def test_a_slow_rudder_logged_fast_does_not_repeat_itself() -> None:
     t = np.arange(20_000) * 0.1
     held = np.where(np.searchsorted(switches, t) % 2, 0.2, -0.2) * (t > 30.0)
     smooth = np.convolve(held, np.ones(50) / 50, mode="same")
-    assert _period(smooth) is None
+    assert period_of(smooth[:, None] / QUIET_ANGLE) is None
     again = np.tile(smooth[:6000], 3)
-    found = _period(again)
+    found = period_of(again[:, None] / QUIET_ANGLE)
     assert found is not None
     assert found[1] == pytest.approx(6000, abs=2)

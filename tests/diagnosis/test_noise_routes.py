@@ -9,6 +9,7 @@ from scipy.signal import lfilter
 from trialid.diagnosis.noise.residual import effective_in
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.variance import hac, lag_window
+from trialid.ship.actuators import Actuator
 from trialid.trial import Trial
 from trialid.trial_rows import Stretch
 
@@ -35,12 +36,21 @@ def trial(name, left, predicted=None, delta=None, use="fit"):
     )
 
 
-def fit_of(*scores, y_rms=1.0):
+SHIP = SimpleNamespace(actuators=(), particulars={"L": 175.0, "g": 9.81})
+
+
+def fit_of(*scores, y_rms=1.0, ship=SHIP):
     """A fit as far as its residual goes."""
     left = [s.trial.signals["r"] - s.response.y[:, 0] for s in scores if s.trial.use == "fit"]
     eps = float(np.sqrt(np.mean(np.concatenate(left) ** 2))) / y_rms
     problem = SimpleNamespace(outputs=("r",), y_rms=np.array([y_rms]), weights=np.ones(1))
-    return SimpleNamespace(scores=scores, problem=problem, eps_rmsn=eps, eps_by_output={"r": eps})
+    return SimpleNamespace(
+        model=SimpleNamespace(ship=ship),
+        scores=scores,
+        problem=problem,
+        eps_rmsn=eps,
+        eps_by_output={"r": eps},
+    )
 
 
 def steered(n):
@@ -65,6 +75,54 @@ def test_a_stretch_in_which_the_model_moves_is_not_quiet():
     left = SIGMA * noise(2, n) + 0.4 * roll
     chosen, _ = split(fit_of(trial("decay", left, predicted=roll)), NOTHING, {})
     assert chosen.noise == pytest.approx(SIGMA, rel=0.1)
+
+
+TWIN = SimpleNamespace(
+    actuators=tuple(Actuator(name=n, kind="thruster", x=-0.8, y=0.0) for n in ("left", "right")),
+    particulars={"L": 175.0 / 36.0, "g": 9.81},
+)
+
+
+def with_thrusters(name, left, port, starboard):
+    """A trial of a boat of two thrusters; they go ahead, revolutions [rad/s]."""
+    made = trial(name, left)
+    del made.trial.signals["delta"]
+    made.trial.signals.update(left_order=port, right=starboard)
+    return made
+
+
+def test_a_boat_without_a_rudder_is_quiet_where_all_her_thrusters_rest():
+    """For ten seconds, a sixth of a ship 36 times as long; what one of them stirs is no noise."""
+    n = 1600
+    still, moved = np.full(n, 60.0), 60.0 + 20.0 * steered(5 * n)[::5]
+    left = SIGMA * noise(3, n) + np.where(np.arange(n) < 1200, 0.03 * (moved - 60.0), 0.0)
+    moved[1200:] = 60.0
+    for port, starboard in ((still, moved), (moved, still)):
+        chosen, _ = split(
+            fit_of(with_thrusters("a", left, port, starboard), ship=TWIN), NOTHING, {}
+        )
+        assert chosen.method == "quiet stretch"
+        assert chosen.noise == pytest.approx(SIGMA, rel=0.15)
+    short = with_thrusters("b", left[:1218], moved[:1218], still[:1218])
+    assert (
+        "no stretch of 10 s, actuator at rest"
+        in split(fit_of(short, ship=TWIN), NOTHING, {})[0].why
+    )
+
+
+def test_two_runs_are_one_manoeuvre_where_every_thruster_did_the_same():
+    """What the model leaves of both alike is its own; a run with another port side is no repeat."""
+    n = 1600
+    port, starboard = 60.0 + 20.0 * steered(n), 60.0 - 20.0 * steered(n)
+    runs = [
+        with_thrusters(f"{i}", SIGMA * noise(i, n) + steered(n), port, starboard) for i in (5, 6)
+    ]
+    chosen, _ = split(fit_of(*runs, ship=TWIN), NOTHING, {})
+    assert chosen.method == "repeated manoeuvre"
+    assert chosen.noise == pytest.approx(SIGMA, rel=0.1)
+    other = with_thrusters("other", SIGMA * noise(7, n) + steered(n), starboard, starboard)
+    again, _ = split(fit_of(runs[0], other, ship=TWIN), NOTHING, {})
+    assert "no two trials have the same actuator record" in again.why
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.9])

@@ -235,6 +235,8 @@ def test_windows_scale_with_the_root_of_the_length():
     (np.full(120, 0.17), np.full(120, 0.01), "steady turn to starboard"),
     (np.full(120, -0.17), -np.linspace(0.005, 0.01, 120), "turning to port"),
     (np.zeros(120), np.zeros(120), "straight course"),
+    (None, np.where(np.arange(120) < 100, -0.002, -0.01), "slow turn to port"),
+    (None, np.where(np.arange(120) < 118, 0.0, 0.01), "straight course"),
 ])  # fmt: skip
 def test_what_the_ship_was_doing(angle, turn, words):
     left = leftover(identify(record(11, white), MODEL, FIT))

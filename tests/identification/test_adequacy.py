@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
-from trialid.identification.adequacy import SLOWEST_TIMES, UNEXPLAINED, remarks, why_no_fit
+from trialid.identification.adequacy import SLOWEST_TIMES, UNEXPLAINED, why_no_fit
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
+from trialid.identification.remarks import remarks
 from trialid.identification.time_scales import slowest_motion
 from trialid.trial import Trial
 
@@ -194,6 +195,9 @@ def test_a_voyage_of_few_manoeuvres_says_where_they_are(sound):
     scores = (replace(sound.scores[0], trial=day), *sound.scores[1:])
     found = why_no_fit(replace(sound, scores=scores))
     assert found.reason.startswith("she manoeuvres in less than a tenth of day")
-    assert "window = [40, 162], [29941, 31859] s from where it begins" in found.advice
+    assert "window = [40, 162], [29941, 31859] s from where its logs begin" in found.advice
+    cut = (replace(scores[0], trial=replace(day, opening=500.0)), *scores[1:])
+    found = why_no_fit(replace(sound, scores=cut))
+    assert "window = [540, 662], [30441, 32359] s from where its logs begin" in found.advice
     still = replace(scores[0], trial=replace(day, signals={"delta": 0.05 * delta}))
     assert "never manoeuvres" in why_no_fit(replace(sound, scores=(still, scores[1]))).reason

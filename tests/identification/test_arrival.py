@@ -14,12 +14,13 @@ from search import begun
 from search_ships import draw
 
 from trialid.effects import CATALOGUE
-from trialid.identification.adequacy import remarks
 from trialid.identification.arrive import best_of
 from trialid.identification.fit import identify
 from trialid.identification.one_search import search
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.record_starts import of_roll, record_starts
+from trialid.identification.remarks import remarks
+from trialid.workflow.notebook.front import diagnose
 
 FREE = ("Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
 EVERY = ("initial_state", "bias", "rudder_offset", "delay")
@@ -47,7 +48,7 @@ def test_from_a_good_start_one_search_is_enough(arrived):
     assert arrived.converged
     assert arrived.told == ()
     assert arrived.agreeing == (1, 1)
-    assert arrived.rival_GM == ()
+    assert arrived.rivals == ()
     assert arrived.value("GM") == pytest.approx(0.3, rel=0.05)
 
 
@@ -58,7 +59,7 @@ def test_from_any_metacentric_height_the_same_optimum_is_reached(trials, arrived
     assert fit.converged
     assert fit.eps_rmsn == pytest.approx(arrived.eps_rmsn, rel=1e-4)
     assert fit.value("GM") == pytest.approx(arrived.value("GM"), rel=0.01)
-    assert fit.rival_GM == ()
+    assert fit.rivals == ()
     if GM != 0.15:
         assert "starts by the record itself" in fit.told[0]
 
@@ -108,9 +109,51 @@ def test_a_metacentric_height_that_is_wrong_is_not_called_known(seed):
     drawn = draw(seed)
     fit = identify(drawn.trials, begun(drawn), SETTINGS)
     assert abs(np.log(fit.value("GM") / drawn.GM)) > np.log(1.5)
-    assert fit.rival_GM[-1] >= 1.5 * fit.rival_GM[0] * 0.999
-    assert fit.rival_GM == tuple(sorted(fit.rival_GM))
+    GM = [values["GM"] for values in fit.rivals]
+    assert GM[-1] >= 1.5 * GM[0] * 0.999
+    assert sorted(GM) == GM
     assert any("does not tell GM" in line for line in remarks(fit))
+
+
+@pytest.mark.parametrize(
+    ("seed", "ratio"),
+    [
+        (7162, 0.01),
+        pytest.param(7234, 0.01, marks=pytest.mark.study(turn=2)),
+        pytest.param(7385, 0.36, marks=pytest.mark.study(turn=2)),
+    ],
+)
+def test_a_roll_damped_as_no_ships_is_tells_no_gm(seed, ratio):
+    """Two in a swell that the fit takes for her own roll, one whose heel only follows the turn."""
+    drawn = draw(seed)
+    fit = identify(drawn.trials, begun(drawn), SETTINGS)
+    assert abs(np.log(fit.value("GM") / drawn.GM)) > np.log(1.5)
+    found = fit.problem.roll.ratio(fit.theta)
+    assert found < ratio if ratio < 0.1 else found > ratio
+    assert fit.rivals[0]["GM"] < drawn.GM < fit.rivals[-1]["GM"]
+    assert any("as no ship's is" in line for line in remarks(fit))
+
+
+def test_a_gm_that_the_record_tells_has_no_rivals():
+    """Damped by 0.02 to 0.15 of what is critical, and rolled by her rudder."""
+    for seed in (7209, 7248):
+        drawn = draw(seed)
+        fit = identify(drawn.trials, begun(drawn), SETTINGS)
+        assert fit.value("GM") == pytest.approx(drawn.GM, rel=0.05)
+        assert fit.rivals == ()
+
+
+def test_ranges_reach_to_what_the_record_does_not_exclude():
+    """Linear, 84 m: found at an eighth of the true GM, where next to nothing speaks against it."""
+    drawn = draw(7293)
+    fit = identify(drawn.trials, begun(drawn), SETTINGS)
+    assert fit.value("GM") < 0.2 * drawn.GM
+    rows = {row.name: row for row in diagnose(fit, candidates={}).result.physical}
+    low, high = rows["GM"].likely
+    assert low < drawn.GM < high
+    assert rows["GM"].widened_by == "another GM"
+    low, high = rows["Kdelta"].likely
+    assert low < drawn.values["Kdelta"] < high
 
 
 # --- a larger model -------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from s175q import MODEL, SETTINGS, waves, white, with_noise, zigzag
 from trialid.identification.fit import identify
 from trialid.identification.nuisance_priors import limits, nuisance_prior
 from trialid.identification.problem import Settings, pose_problem
-from trialid.identification.roll_range import DAMPING_RATIO, GM_OVER_L
+from trialid.identification.roll.roll_range import DAMPING_RATIO, GM_OVER_L
 from trialid.identification.weighing import Weighing, colour_of, level_of
 from trialid.ship.effect import Force
 from trialid.trial import Trial

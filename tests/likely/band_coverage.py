@@ -19,8 +19,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
-from coverage import RESULTS, as_known, commit, fit_of
+from at_commit import commit_of
+from coverage import RESULTS, as_known, fit_of
 from sailed_records import NoPassage
 from worlds import Conditions, hidden_world
 
@@ -124,7 +126,7 @@ def main() -> int:
         lines.append(line(case, done, lost))
         missed += not calibrated(done)
         print(lines[-1], flush=True)
-    head = HEAD.format(commit=commit(), first=seeds[0], last=seeds[-1])
+    head = HEAD.format(commit=commit_of(Path(__file__).parent), first=seeds[0], last=seeds[-1])
     if not said.dry:
         PAGE.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
     return int(missed > 0)

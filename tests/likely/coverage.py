@@ -7,7 +7,6 @@ Seeds 1 to 250 were looked at while the ranges were built; those from 5000 on we
 """
 
 import argparse
-import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -19,7 +18,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
+from at_commit import commit_of
 from hidden_truth import OUTPUTS
 from sailed_records import NoPassage, record
 from worlds import SCENARIOS, Conditions, World, guessed, hidden_world, world
@@ -221,14 +222,9 @@ def main() -> int:
         missed += share(done, "likely")[0] < case.asked
         print(lines[-1], flush=True)
     last = said.first + said.records - 1
-    head = HEAD.format(commit=commit(), first=said.first, last=last)
+    head = HEAD.format(commit=commit_of(Path(__file__).parent), first=said.first, last=last)
     RESULTS.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
     return int(missed > 0)
-
-
-def commit() -> str:
-    command = ["git", "rev-parse", "--short", "HEAD"]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 if __name__ == "__main__":

@@ -18,8 +18,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
-from coverage import EXACT, RESULTS, as_known, commit
+from at_commit import commit_of
+from coverage import EXACT, RESULTS, as_known
 from hidden_truth import OUTPUTS
 from sailed_records import NoPassage, record
 from worlds import EVERY, Conditions, World, guessed, hidden_world
@@ -216,7 +218,7 @@ def main() -> int:
         lines.append(line(case, done, lost))
         missed += share(done)[0] < case.asked
         print(lines[-1], flush=True)
-    head = HEAD.format(commit=commit(), first=seeds[0], last=seeds[-1])
+    head = HEAD.format(commit=commit_of(Path(__file__).parent), first=seeds[0], last=seeds[-1])
     if len(said.cases) == len(CASES):
         PAGE.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
     return int(missed > 0)

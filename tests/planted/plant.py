@@ -25,7 +25,9 @@ from queue import SimpleQueue
 from typing import Final, TypeVar
 
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 
+from at_commit import commit_of
 from planted_errors import ROOT, Planted, chosen, planted_errors
 
 RESULTS: Final = ROOT / "tests" / "benchmarks" / "results" / "planted.md"
@@ -178,7 +180,7 @@ def page(done: Sequence[tuple[Planted, Outcome]], seconds: float) -> str:
     """The table as Markdown."""
     said = [verdict(error, out) for error, out in done]
     count = {word: said.count(word) for word in ("noticed", "survived", "explained")}
-    head = HEAD.format(commit=_commit(), planted=len(done), minutes=seconds / 60.0, **count)
+    head = HEAD.format(commit=commit_of(ROOT), planted=len(done), minutes=seconds / 60.0, **count)
     rows = [
         f"| {error.package} | {_cell(error.name)} | {_cell(_told(error, out))} |\n"
         for error, out in sorted(done, key=lambda one: one[0].package)
@@ -194,11 +196,6 @@ def _told(error: Planted, out: Outcome) -> str:
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|")
-
-
-def _commit() -> str:
-    command = ["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def main() -> int:

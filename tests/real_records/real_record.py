@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from trialid.diagnosis.search.refit import of_the_ship
+from trialid.effects import CATALOGUE
 from trialid.pipeline_file import Pipeline, load
 from trialid.workflow import grow
 
@@ -45,3 +47,13 @@ def stages(pipeline: Path, changes) -> list[grow.Stage]:
 def added(done) -> list[str]:
     """The effects that were added and stayed."""
     return [str(stage.added) for stage in done[1:] if stage.kept]
+
+
+def of_a_clock(name: str) -> bool:
+    """Whether an effect is of a sensor or its clock."""
+    return name.startswith(("lag_", "delay_", "clock_", "bias_", "scale_"))
+
+
+def moves_the_ship(name: str) -> bool:
+    """Whether an effect is of the ship; a coefficient that is held fixed, and freed, is."""
+    return name not in CATALOGUE or of_the_ship(CATALOGUE[name])

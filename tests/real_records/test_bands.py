@@ -1,13 +1,10 @@
 """Bands of predictions on real records: what is measured in held-out trials lies inside."""
 
-from itertools import combinations
-
 import numpy as np
 import pytest
-from real_record import DATA, HERE
-from test_carried_over import ESSO, PIPELINE, SHIP
-from test_kvlcc2_zigzag import PIPELINE as ZIGZAG
-from test_kvlcc2_zigzag import RECORDS, columns, in_ship
+from basin import RECORDS, held_in_basin, in_basin
+from pond import ESSO, held_on_pond, on_pond
+from real_record import DATA
 
 from trialid.diagnosis.prediction_band import prediction_band
 from trialid.pipeline_file import load
@@ -57,50 +54,20 @@ def assert_calibrated(what, shares):
     assert np.mean(shares) > 0.85
 
 
-def trial(name, use):
-    check = 'use = "check"\n' if use else ""
-    return f'[[trial]]\nname = "{name}"\nlogs = ["{name}.csv"]\n{check}'
-
-
 @pytest.mark.skipif(not ESSO.is_dir(), reason="no records of the Esso Osaka")
 def test_zigzags_on_a_pond_in_wind(tmp_path):
     """A linear model that leaves a third of the motion: a band that is honest is wide."""
-    (tmp_path / "ship.toml").write_text(SHIP, encoding="utf-8")
-    for record in sorted(ESSO.glob("zigzag*.csv")):
-        lines = [x for x in record.read_text(encoding="utf-8").splitlines() if x.strip(",")]
-        name = record.stem.split("_", 2)[-1]
-        (tmp_path / f"{name}.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    names = sorted(p.stem for p in tmp_path.glob("*.csv"))
-    pairs = list(combinations(names, 2))
-    shares = []
+    pairs, shares = on_pond(tmp_path), []
     for held in pairs[:: len(pairs) // CHOICES]:
-        rows = "".join(trial(n, n in held) for n in names)
-        path = tmp_path / "pond.toml"
-        path.write_text(f'name = "pond"\nship = "ship.toml"\n{rows}{PIPELINE}', encoding="utf-8")
-        shares += inside(path)
+        shares += inside(held_on_pond(tmp_path, held))
     assert_calibrated("Esso Osaka", shares)
 
 
 @pytest.mark.skipif(not RECORDS.is_dir(), reason="no records of the KVLCC2")
 def test_zigzags_in_a_basin(tmp_path):
     """From 5 to 30 degrees, any four fitted by a linear model: some are foretold from far off."""
-    for record in RECORDS.glob("*.dat"):
-        c = columns(record)
-        table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
-        text = "t_s,u,v,r,delta"
-        np.savetxt(tmp_path / f"{record.stem}.csv", table, "%.9g", ",", header=text, comments="")
-    ship = HERE / "kvlcc2_hsva.toml"
-    text = (HERE / ZIGZAG).read_text(encoding="utf-8").replace(ship.name, ship.as_posix())
-    head, _, rest = text.partition("[[trial]]")
-    tail = "[signals]" + rest.partition("[signals]")[2]
-    names, rng, shares = (
-        sorted(p.stem for p in tmp_path.glob("*.csv")),
-        np.random.default_rng(0),
-        [],
-    )
+    names = sorted({n for held in in_basin(tmp_path) for n in held})
+    rng, shares = np.random.default_rng(0), []
     for _ in range(CHOICES):
-        held = set(rng.permutation(names)[4:])
-        rows = "".join(trial(n, n in held) + "speed = 1.18\n" for n in names)
-        (tmp_path / "basin.toml").write_text(head + rows + tail, encoding="utf-8")
-        shares += inside(tmp_path / "basin.toml")
+        shares += inside(held_in_basin(tmp_path, tuple(rng.permutation(names)[4:])))
     assert_calibrated("KVLCC2", shares)

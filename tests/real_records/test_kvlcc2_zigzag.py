@@ -1,30 +1,23 @@
-"""Zig-zags of a tanker model from 5 to 30 degrees: linear yaw is not enough, and what is missing.
-
-The release labels the columns wrongly. Column 7 is the rate of turn in deg/s (it is d psi/dt), and
-columns 5 and 6 are not u and v of the ship but the speed along and across the tank (they are
-dx0/dt and dy0/dt): the converter turns them by the heading.
-"""
+"""Zig-zags of a tanker model from 5 to 30 degrees: linear yaw is not enough; what is missing."""
 
 import shutil
 
 import numpy as np
 import pytest
-from real_record import DATA, HERE, added, stages, with_candidates, with_effects
+from basin import PIPELINE, RECORDS, columns, in_basin, in_ship
+from real_record import added, stages, with_candidates, with_effects
 
-from trialid import ingest, pipeline_file
+from trialid import pipeline_file
 from trialid.diagnosis.search import backward
 from trialid.effects import CATALOGUE
 from trialid.ship.effect import Force, Mass, Rate
 from trialid.workflow.run import run as run_pipeline
 
-RECORDS = DATA / "kvlcc2_hsva_zigzag"
 pytestmark = [
     pytest.mark.real_data,
     pytest.mark.skipif(not RECORDS.is_dir(), reason=f"no real records {RECORDS}"),
 ]
 
-PIPELINE = "kvlcc2_zigzag.toml"
-TEMPLATE = HERE / "kvlcc2_hsva.template.toml"
 YAW = {
     "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rav", "yaw_drag_rar",
     "yaw_cubic_vvv", "yaw_cubic_cross", "yaw_cubic_rrr", "cross_flow_drag",
@@ -34,32 +27,11 @@ BOTH = {"cross_flow_drag"}
 """Nonlinear damping of sway and yaw in one number."""
 
 
-def columns(record):
-    """A record's columns by name, as it has them; t in seconds."""
-    channels = ingest.read(record, None, ingest.Aids(template=TEMPLATE)).channels
-    seconds = next(iter(channels.values())).t / 1e9
-    return {"t": seconds} | {name: channel.y for name, channel in channels.items()}
-
-
-def in_ship(c):
-    """Speed ahead and to starboard [m/s] from speed along and across the tank."""
-    psi = np.deg2rad(c["psi"])
-    u = c["along"] * np.cos(psi) + c["across"] * np.sin(psi)
-    v = c["across"] * np.cos(psi) - c["along"] * np.sin(psi)
-    return u, v
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """The pipeline, its ship and the records as CSV, side by side."""
     made = tmp_path_factory.mktemp("kvlcc2")
-    for name in (PIPELINE, "kvlcc2_hsva.toml"):
-        shutil.copy(HERE / name, made)
-    for record in RECORDS.glob("*.dat"):
-        c = columns(record)
-        table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
-        name = record.stem.removeprefix("HSVA_CPMC_KVLCC2_")
-        np.savetxt(made / f"{name}.csv", table, "%.9g", ",", header="t,u,v,r,delta", comments="")
+    in_basin(made)
     return made
 
 

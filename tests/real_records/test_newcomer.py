@@ -5,7 +5,8 @@ import pytest
 from real_record import DATA, HERE
 
 from trialid import pipeline_file
-from trialid.identification.adequacy import remarks, why_no_fit
+from trialid.identification.adequacy import why_no_fit
+from trialid.identification.remarks import remarks
 from trialid.ingest import Aids
 from trialid.inspection import inspect_log
 from trialid.ship.estimate import Given
@@ -127,7 +128,7 @@ def test_as_begun_the_fit_is_sound_and_no_sensor_is_absurd(case, tmp_path):
         assert abs(value) < limits.get(x.column, np.inf), x.name
     truth = true_GM(fit.model, ROLLS[CASES[case][0]])
     right = abs(np.log(fit.value("GM") / truth)) < np.log(1.5)
-    assert right or fit.rival_GM
+    assert right or fit.rivals
 
 
 @pytest.mark.parametrize("seconds", [(60, 86), (120, 146)])

@@ -1,17 +1,14 @@
 """The structure that zig-zags of a tanker model ask for, and whether any one run decides it."""
 
-import shutil
-
-import numpy as np
 import pytest
-from real_record import DATA, HERE
-from test_kvlcc2_zigzag import PIPELINE, RECORDS, columns, in_ship
+from basin import PIPELINE, in_basin
+from real_record import DATA
 
 from trialid.pipeline_file import load
 from trialid.workflow.structures.compare_structures import compare_structures
 
 pytestmark = [
-    pytest.mark.study(turn=1),
+    pytest.mark.study(turn="each"),
     pytest.mark.real_data,
     pytest.mark.skipif(not DATA.is_dir(), reason=f"no real records {DATA}"),
 ]
@@ -21,16 +18,9 @@ RECORDED = 'v = { channel = "v", unit = "m/s" }\nu = { channel = "u", unit = "m/
 @pytest.fixture
 def zigzags(tmp_path):
     """The pipeline with all seven zig-zags fitted, its ship and the records as CSV."""
-    shutil.copy(HERE / "kvlcc2_hsva.toml", tmp_path)
-    for record in RECORDS.glob("*.dat"):
-        c = columns(record)
-        table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
-        name = record.stem.removeprefix("HSVA_CPMC_KVLCC2_")
-        np.savetxt(
-            tmp_path / f"{name}.csv", table, "%.9g", ",", header="t,u,v,r,delta", comments=""
-        )
-    text = (HERE / PIPELINE).read_text(encoding="utf-8").replace('use = "check"\n', "")
+    in_basin(tmp_path)
     path = tmp_path / PIPELINE
+    text = path.read_text(encoding="utf-8").replace('use = "check"\n', "")
     path.write_text(text, encoding="utf-8")
     return path
 

@@ -9,7 +9,7 @@ import csv
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from test_carried_over import ESSO, PIPELINE, SHIP
+from pond import ESSO, PIPELINE, SHIP
 
 from trialid.cli.main import commands
 from trialid.design.following import standard_measures

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -19,6 +20,7 @@ from trialid.replay.closing_words import summary
 from trialid.replay.playback import Playback
 from trialid.replay.record import write
 from trialid.replay.view import bar, draw
+from trialid.ship.model import ShipModel
 
 HALF = {"r": 0.002, "phi": 0.03}
 """Half of the band about the prediction [rad/s, rad]: 1.7 deg of roll."""
@@ -184,3 +186,17 @@ def test_without_a_band_nothing_is_said_of_it(playback, tmp_path):
     with path.open("rb") as stream:
         channels = make_reader(stream).get_summary().channels.values()
     assert not any("predicted_band" in channel.topic for channel in channels)
+
+
+def test_what_a_boat_was_doing_is_told_by_less_of_the_record(playback):
+    """A reversal is seen in ten seconds of a ship of 175 m, and not in one, of a boat of 1.75 m."""
+    found = {}
+    for length in (175.0, 1.75):
+        model = playback.fit.model
+        ship = replace(model.ship, particulars={**model.ship.particulars, "L": length})
+        fit = replace(playback.fit, model=ShipModel(ship, model.states, model.effects))
+        made = Playback(fit, playback.trial, playback.bands)
+        made.go_to(600)
+        found[length] = {made.doing(k) for k in range(1, 600, 5)}
+    assert any(words.startswith("rudder reversal") for words in found[175.0])
+    assert not any(words.startswith("rudder reversal") for words in found[1.75])

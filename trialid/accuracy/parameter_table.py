@@ -1,7 +1,8 @@
 """Every parameter of a fit with its sensitivities and errors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -25,6 +26,9 @@ from trialid.accuracy.weak import Weakness, weak_directions, without_nuisance
 from trialid.arrays import Vector
 from trialid.linear_algebra import triangle
 from trialid.trial_rows import Kind, Stretch
+
+ANOTHER_GM: Final = "another GM"
+"""What widens a range where the record does not tell the metacentric height."""
 
 
 @dataclass(frozen=True)
@@ -235,6 +239,35 @@ def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> Param
         return row
     likely = averaged.range(place, row.value, row.standard_error, row.freedom)
     return replace(row, likely=likely, widened_by=averaged.widest[place])
+
+
+def with_rivals(accuracy: Accuracy, rivals: Sequence[Mapping[str, float]]) -> Accuracy:
+    """The same with ranges that reach about each rival by the share they reach about the fit.
+
+    Parameters
+    ----------
+    rivals
+        Values of the unknowns by name that fit as well or hardly worse.
+    """
+    rows = tuple(
+        _with_rivals(row, [values[row.name] for values in rivals if row.name in values])
+        for row in accuracy.parameters
+    )
+    return replace(accuracy, parameters=rows)
+
+
+def _with_rivals(row: ParameterAccuracy, rivals: Sequence[float]) -> ParameterAccuracy:
+    if row.likely is None or not rivals or not row.value:
+        return row
+    low, high = row.likely
+    shares = [max(1.0, abs(rival / row.value)) for rival in rivals]
+    lows = [rival - share * (row.value - low) for rival, share in zip(rivals, shares, strict=True)]
+    highs = [
+        rival + share * (high - row.value) for rival, share in zip(rivals, shares, strict=True)
+    ]
+    whole = (min(low, *lows), max(high, *highs))
+    wider = whole[1] - whole[0] > 2.0 * (high - low)
+    return replace(row, likely=whole, widened_by=ANOTHER_GM if wider else row.widened_by)
 
 
 def _scaled(known: float | None, relative: float, reference: float) -> float | None:

@@ -101,7 +101,7 @@ def align(
         *(finding.sentence for finding in findings),
         *(finding.sentence for finding in duplicate_channels.unchosen(sources, recordings)),
     )
-    return dataclasses.replace(trial, remarks=remarks)
+    return dataclasses.replace(trial, remarks=remarks, opening=window[0] if window else 0.0)
 
 
 def _of_motions(trial: Trial, sources: Sequence[SignalSource], where: str) -> Iterator[str]:

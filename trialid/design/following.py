@@ -26,7 +26,8 @@ from trialid.design.standard import Measure, in_calm, measures_of
 from trialid.design.triangles import Triangles, triangles, triangles_beside
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
-from trialid.identification.output_error import compared_mask, norms
+from trialid.identification.output_error import compared_mask
+from trialid.identification.problem import norms
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import inputs
@@ -42,7 +43,6 @@ SPIKE: Final = 3
 
 APART: Final = 0.05
 """Share by which approach speeds differ that are two."""
-
 WORTH_SAILING: Final = 0.9
 """A test that leaves more than this share of a width is not proposed for it."""
 

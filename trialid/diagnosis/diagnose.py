@@ -114,9 +114,9 @@ def diagnose(
     if (failed := why_no_fit(fit)) is not None:
         return _no_fit(fit, before, augmented, failed)
     refits = refits_of(fit, trials, ranking, asked, lambda words: progress(words, 0.7), grown)
-    if faults := whole_faults(fit, trials, asked.candidates, refits, progress):
+    if faults := _whole(fit, ranking, refits, asked, progress):
         return _gross(fit, before, augmented, faults, asked)
-    whole, left_out = _whole(fit, augmented), augmented.left_out
+    whole, left_out = _any_shape(fit, augmented), augmented.left_out
     del augmented  # columns of the whole catalogue, before there are those of the next model
     fits = [r.fit for r in refits]
     before = _bounded(before, fits, whole)
@@ -137,7 +137,26 @@ def diagnose(
     )
 
 
-def _whole(fit: Fit, augmented: Augmented) -> Completeness | None:
+def _whole(
+    fit: Fit,
+    ranking: Sequence[Candidate],
+    refits: Sequence[Refit],
+    asked: DiagnoseSettings,
+    progress: Progress,
+) -> tuple[Refit, ...]:
+    """Faults of actuators that explain what no refit does; mostly none."""
+    return whole_faults(
+        fit,
+        [s.trial for s in fit.scores],
+        asked.candidates,
+        ranking,
+        others=refits,
+        progress=progress,
+        leaves_noise=lambda found: _leaves_noise(found, asked),
+    )
+
+
+def _any_shape(fit: Fit, augmented: Augmented) -> Completeness | None:
     """Whether forces of any simple shape explain more; among sensors alone no force is missing."""
     return completeness(fit, augmented) if fit.model.states else Completeness(0.0, 0.0)
 
@@ -190,6 +209,12 @@ def examine_fit(
     ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
     return Diagnosed(fit, best, routes, doubts(fit, augmented)), ranking, augmented
+
+
+def _leaves_noise(fit: Fit, asked: DiagnoseSettings) -> bool:
+    """Whether noise is told from model error in what a fit leaves, and may be all of it."""
+    inside = examine_fit(fit, asked, silent)[0].split.undermodelling_interval
+    return inside is not None and inside[0] == 0.0
 
 
 def _bounded(done: Diagnosed, fits: Sequence[Fit], whole: Completeness | None = None) -> Diagnosed:

@@ -3,7 +3,7 @@
 from typing import Final
 
 from trialid.accuracy.likely import Averaged
-from trialid.accuracy.parameter_table import Accuracy, Subject, assess, with_ranges
+from trialid.accuracy.parameter_table import Accuracy, Subject, assess, with_ranges, with_rivals
 from trialid.diagnosis.noise.split import Split
 from trialid.identification.fit import Fit
 from trialid.identification.one_search import influence
@@ -37,4 +37,4 @@ def accuracy_of(fit: Fit, parts: Split, averaged: Averaged) -> Accuracy:
         undermodelling=parts.undermodelling if model is None else model[1],
         level=fit.level,
     )
-    return with_ranges(made, averaged)
+    return with_rivals(with_ranges(made, averaged), fit.rivals)

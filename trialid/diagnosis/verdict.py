@@ -32,6 +32,9 @@ SHARE: Final = 0.12
 """Share of what is not noise that the best effect must explain: the best of the catalogue explains
 0.04 of what it does not hold, and 0.21 or more of what it holds."""
 
+ANYTHING: Final = 0.5
+"""Model error from which on what would not be seen may be anything: half of what moved."""
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -101,7 +104,7 @@ def gross_verdict(fit: Fit, faults: Sequence[Refit]) -> Verdict:
     before = f"{fit.eps_rmsn:.2%}" if np.isfinite(fit.eps_rmsn) else "no motion at all"
     said = (
         f"{names[0]} is missing: with it the error falls from {before} to "
-        f"{faults[0].fit.eps_rmsn:.2%}, with other faults of an actuator it hardly does{alike}"
+        f"{faults[0].fit.eps_rmsn:.2%}, further than with any other fault of an actuator{alike}"
     )
     return Verdict("missing", names[0], names, said)
 
@@ -140,7 +143,7 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
             f"({parts.method}), and no effect of the catalogue explains it",
         )  # fmt: skip
     return Verdict(
-        "nothing missing", None, (),
+        "nothing missing" if high < ANYTHING else "cannot tell", None, (),
         f"no effect stands out against the noise; a model error of up to {high:.1%} would not "
         f"be seen ({parts.method})",
     )  # fmt: skip

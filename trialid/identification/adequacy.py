@@ -11,12 +11,11 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
-from trialid.identification.file_of_ship import is_another_ship, unlike_file
+from trialid.identification.file_of_ship import left_by_file, unlike_file
 from trialid.identification.fit import Fit, Score
 from trialid.identification.gauss_newton import REASONS
 from trialid.identification.time_scales import slowest_motion
 from trialid.identification.weighing import NO_NOISE
-from trialid.names.wording import shown_unit
 from trialid.simulation.integrate import record_for
 
 RUDDER_RANGE: Final = 0.035
@@ -80,38 +79,6 @@ def why_no_fit(fit: Fit) -> Inadequate | None:
     return next((found for check in checks if (found := check(fit))), None)
 
 
-def remarks(fit: Fit) -> tuple[str, ...]:
-    """What to read beside the parameters of a fit, sound or not; a line each.
-
-    Priors of the ship's own parameters stand in the table, and what contradicts them beside it.
-    """
-    own = {x.name for x in fit.problem.unknowns if x.kind == "physical" and x.prior}
-    units = {x.name: x.unit for x in fit.problem.unknowns}
-
-    def said(name: str, value: float) -> str:
-        unit, factor = shown_unit(units[name])
-        return f"{value * factor:.4g} {unit if unit != '1' else ''}".rstrip()
-
-    bounds = [
-        f"{n} ended at its bound {said(n, x)}: that is the bound's value, not the record's"
-        for n, x in fit.at_bounds.items()
-    ]
-    against = [
-        f"{n} = {said(n, fit.value(n))} is {abs(z):.1f} deviations "
-        f"{'above' if z > 0.0 else 'below'} what is likely"
-        for n, z in fit.contradicted.items()
-        if n not in own
-    ]
-    weak = ["the search was slow to the end: some parameters can hardly be told apart"]
-    rivals = " or ".join(f"{GM:.3g}" for GM in fit.rival_GM)
-    roll = (
-        [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]
-        if fit.rival_GM
-        else []
-    )
-    return (*bounds, *against, *roll, *(weak if fit.weakly_identified else []))
-
-
 def _no_manoeuvre(fit: Fit) -> Inadequate | None:
     """The rudder is never used, where nothing else could turn the ship."""
     inputs = {*fit.problem.simulator.equations.inputs}
@@ -141,13 +108,13 @@ def _manoeuvres_seldom(score: Score, name: str, moved: float) -> Inadequate:
         f"she manoeuvres in less than a tenth of {score.trial.name}: in the rest the rudder moves "
         f"by {np.rad2deg(moved):.2g} deg, and counts for most",
         f"cut out the manoeuvres, a trial each: about window = {windows} s from where "
-        f"it begins{more}",
+        f"its logs begin{more}",
     )
 
 
 def _stretches(score: Score, name: str) -> list[tuple[float, float]]:
     """Where the rudder is used, with what comes before and after; (begin, end) each [s]."""
-    t, rudder = score.trial.t, _rudder(score, name)
+    t, rudder = score.trial.opening + score.trial.t, _rudder(score, name)
     used = t[np.abs(rudder - np.median(rudder)) > 0.5 * RUDDER_RANGE]
     apart = np.flatnonzero(np.diff(used) > 2.0 * AROUND) + 1
     parts = np.split(used, apart)
@@ -241,14 +208,15 @@ def _little_explained(fit: Fit) -> Inadequate | None:
 
 
 def _another_ship(fit: Fit) -> Inadequate | None:
-    """Most coefficients that the ship's file gives are clearly others."""
-    if not is_another_ship(fit):
+    """Most coefficients are clearly others than the ship's file gives, and the file's do not do."""
+    if (left := left_by_file(fit)) is None:
         return None
     unlike, compared = unlike_file(fit)
     listed = ", ".join(f"{n} {x:.2g}" for n, x in list(unlike.items())[:4])
     return Inadequate(
         f"the ship's file is not of this ship: {len(unlike)} of {compared} fitted coefficients are "
-        f"less than half or more than twice the file's ({listed} times)",
+        f"less than half or more than twice the file's ({listed} times), and none between leave "
+        f"less than {left:.2g} times the error",
         "name her own file, check speed and units, or begin with `trialid inspect --init --length`",
     )
 

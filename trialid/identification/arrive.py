@@ -1,6 +1,6 @@
 """More than one search where one does not arrive, and what was done, in words."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,7 +12,8 @@ from trialid.identification.one_search import End, Progress, random_starts, sear
 from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
 from trialid.identification.record_starts import record_starts
-from trialid.identification.told_gm import FAR, rival_GM, roll_error
+from trialid.identification.roll.roll_range import RollRange
+from trialid.identification.roll.told_gm import FAR, rivals, roll_error
 from trialid.identification.weighing import NO_NOISE
 
 Vector = NDArray[np.float64]
@@ -50,15 +51,15 @@ class Arrival:
         How many searches ended there, of how many.
     told
         What was done beyond one search, in words.
-    rival_GM
-        Metacentric heights [m] among which the record does not choose, empty where it does.
+    rivals
+        Values by name among which the record does not choose, by GM; empty where it does.
     """
 
     best: End
     same: int
     tried: int
     told: tuple[str, ...]
-    rival_GM: tuple[float, ...]
+    rivals: tuple[Mapping[str, float], ...]
 
 
 def arrive(
@@ -83,8 +84,8 @@ def arrive(
         ends, told = [*ends, *more], [*told, *words]
     best = best_of(ends)
     same = sum(e.began and _same(e.V, best.V) for e in ends)
-    rivals = rival_GM(problem, ends, best) if _doubts_GM(problem, ends, best) else ()
-    return Arrival(best, same, len(ends), tuple(told), rivals)
+    found = rivals(problem, ends, best) if embedded is None or len(ends) > 1 else ()
+    return Arrival(best, same, len(ends), tuple(told), found)
 
 
 Step = tuple[list[End], list[str]]
@@ -154,17 +155,18 @@ def _doubt(problem: Problem, end: End) -> str:
         return "next to nothing was explained"
     if problem.roll is None:
         return "more is left than noise" if np.sqrt(2.0 * end.V) > NO_NOISE else ""
-    stated, found = (t[problem.roll.GM] for t in (problem.start, end.minimum.theta))
+    return _doubt_of_roll(problem, problem.roll, end)
+
+
+def _doubt_of_roll(problem: Problem, roll: RollRange, end: End) -> str:
+    """Why the roll that was found may be another."""
+    stated, found = (t[roll.GM] for t in (problem.start, end.minimum.theta))
     if abs(np.log(max(found, 1e-9) / max(stated, 1e-9))) > np.log(FAR):
         return f"GM was found at {found:.3g} m, far from the {stated:.3g} m it began with"
+    if not roll.is_a_ships(end.minimum.theta):
+        ratio = roll.ratio(end.minimum.theta)
+        return f"roll was found damped by {ratio:.2g} of what is critical, as no ship is"
     return "roll is hardly explained" if roll_error(problem, end) > DOUBTFUL else ""
-
-
-def _doubts_GM(problem: Problem, ends: Sequence[End], best: End) -> bool:
-    """Whether it must be asked if the record tells GM: roll that is well explained does."""
-    if problem.roll is None or not best.began:
-        return False
-    return len(ends) > 1 or roll_error(problem, best) > DOUBTFUL
 
 
 def _at_bounds(problem: Problem, end: End) -> list[Unknown]:

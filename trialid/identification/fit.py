@@ -72,9 +72,9 @@ class Fit:
         What one independent row of the residual is uncertain by; priors weigh by it.
     told
         What the search did beyond going down from the stated start, in words.
-    rival_GM
-        Metacentric heights [m], smallest first, that fit as well or hardly worse: the record does
-        not tell GM, whatever its standard error. Empty where it does, or was not doubted.
+    rivals
+        Values of all unknowns by name, by GM, the smallest first, that fit as well or hardly worse:
+        the record does not tell GM, whatever its standard error. Empty where it does.
     """
 
     model: ShipModel
@@ -89,7 +89,7 @@ class Fit:
     agreeing: tuple[int, int]
     level: float = 0.0
     told: tuple[str, ...] = ()
-    rival_GM: tuple[float, ...] = ()
+    rivals: tuple[Mapping[str, float], ...] = ()
 
     @cached_property
     def psi(self) -> Vector:
@@ -241,8 +241,8 @@ def _searched(
     if not arrival.best.began:
         raise SimulationError(_why_no_start(problem))
     fit = _finish(model, problem, trials, settings, arrival.best, (arrival.same, arrival.tried))
-    rivals = arrival.rival_GM or (() if smaller is None else smaller.rival_GM)
-    return replace(fit, told=arrival.told, rival_GM=rivals)
+    rivals = arrival.rivals or (() if smaller is None else smaller.rivals)
+    return replace(fit, told=arrival.told, rivals=rivals)
 
 
 @one_thread

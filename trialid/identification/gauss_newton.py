@@ -96,6 +96,7 @@ def minimise(
     again: Callable[[Vector, Linearised], Linearised] = lambda theta, point: point,
     worth: Callable[[], float] = lambda: 0.0,
     rows: int | None = None,
+    keep: bool = True,
 ) -> Minimum:
     """Find the parameters with the smallest sum of squared residuals.
 
@@ -115,6 +116,9 @@ def minimise(
         may end.
     rows
         How many rows come from a record, before those of priors; all where it is not said.
+    keep
+        Whether the Jacobian at the end is wanted: that of a long record is as long, and is not
+        held beside the next one where nobody asks for it.
     """
     low = np.full(len(start), -np.inf) if low is None else low
     high = np.full(len(start), np.inf) if high is None else high
@@ -123,7 +127,8 @@ def minimise(
     if here is None or not _finite(here):
         empty = np.zeros(0)
         return Minimum(theta, empty, np.zeros((0, len(start))), (), "start", 1)
-    search = _Search(evaluate, scale, low, high, theta, here, tolerance, again, rows)
+    search = _Search(evaluate, scale, low, high, theta, here, tolerance, again, rows, keep)
+    del here
     for count in range(max_iterations):
         reason = search.advance()
         progress(search.path[-1])
@@ -155,16 +160,21 @@ class _Search:
         tolerance: float,
         again: Callable[[Vector, Linearised], Linearised],
         rows: int | None,
+        keep: bool,
     ) -> None:
         self.evaluate, self.low, self.high, self.tolerance = evaluate, low, high, tolerance
         self.size = np.where(scale > 0.0, scale, 1.0)
-        self.theta, self.here, self.again = theta, here, again
+        self.theta, self.again, self.keep = theta, again, keep
         self.fold, self.left = Fold.of(*here), np.inf
+        self.here = self._kept(here)
         self.damping, self.growth = FIRST_DAMPING, 2.0
         self.norms = np.zeros(len(theta))
         self.count = 1
         self.rows = slice(rows)
         self.path = [Iteration(self._of_record(here), 0.0, self.damping)]
+
+    def _kept(self, point: Linearised) -> Linearised:
+        return point if self.keep else (point[0], point[1][:0].copy())
 
     @staticmethod
     def _loss(point: Linearised) -> float:
@@ -235,7 +245,7 @@ class _Search:
         if weighed is not point:
             point, fold = weighed, Fold.of(*weighed)
         self.path.append(Iteration(self._of_record(point), self._relative(taken), self.damping))
-        self.theta, self.here, self.fold = there, point, fold
+        self.theta, self.here, self.fold = there, self._kept(point), fold
         return True
 
 

@@ -1,7 +1,7 @@
 """One search from one start: least squares, robust or not, with what is known beforehand."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -126,6 +126,7 @@ def _minimise(
         again=weighing.again,
         worth=lambda: WORTH * float(np.sqrt(weighing.colour)),
         rows=weighing.rows,
+        keep=False,
     )
 
 
@@ -138,7 +139,6 @@ def _plain(problem: Problem, theta: Vector) -> Vector:
 
 def _end(weighing: Weighing, minimum: Minimum, path: tuple[Iteration, ...]) -> End:
     residual = minimum.residual[: weighing.rows]
-    minimum = replace(minimum, jacobian=minimum.jacobian[:0].copy())  # a record long, of each start
     if not len(residual):
         return End(minimum, path, residual, 1.0, 0.0)
     colour = weighing.colour if weighing.knows else colour_of(residual, weighing.parts)

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask
-from trialid.errors import NotIdentifiable
-from trialid.identification.roll_range import RollRange
-from trialid.names.quantities import POSITION
+from trialid.identification.roll.roll_range import RollRange
+from trialid.simulation.by_parts import respond_by_parts
 from trialid.simulation.delay import margin
 from trialid.simulation.integrate import Departure, Response, Simulator, record_for, respond
 from trialid.trial import Trial
@@ -111,19 +110,15 @@ def loss(residual: Vector) -> float:
     return 0.5 * float(residual @ residual)
 
 
-def gradient(
-    response: Response, problem: Problem, trial: int, output: int
-) -> tuple[list[int], Vector]:
-    """Eq. 6: Psi(k) = d yhat(k) / d theta by the variational equations, for one output.
+def gradient(problem: Problem, trial: int) -> tuple[list[int], list[int]]:
+    """Eq. 6: Psi(k) = d yhat(k) / d theta by the variational equations: where it stands.
 
-    The unknowns that act in this trial, and the gradient by them; by all others it is zero.
-    (n,), (N, n).
+    The unknowns that act in this trial, and their columns among the simulator's sensitivities; by
+    all others it is zero. (n,), (n,).
     """
-    assert response.S is not None
     columns = {n: i for i, n in enumerate(problem.simulator.columns)}
     acting = [i for i, x in enumerate(problem.unknowns) if x.trial in (None, trial)]
-    places = [columns[problem.unknowns[i].column] for i in acting]
-    return acting, response.S[:, output, places]
+    return acting, [columns[problem.unknowns[i].column] for i in acting]
 
 
 def hessian(psi: Vector) -> Vector:
@@ -148,9 +143,16 @@ def respond_all(
 
 
 def _respond(problem: Problem, theta: Vector, trial: int, sensitivities: bool) -> Response:
-    values = problem.values(theta, trial)
-    start = {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+    values, start = _values_and_start(problem, theta, trial)
     return respond(problem.simulator, problem.trials[trial], values, start, sensitivities)
+
+
+def _values_and_start(
+    problem: Problem, theta: Vector, trial: int
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Parameters by name, and the initial states among them by state."""
+    values = problem.values(theta, trial)
+    return values, {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
 
 
 def linearise(problem: Problem, theta: Vector, more: int = 0) -> tuple[Vector, Vector] | Departure:
@@ -161,19 +163,51 @@ def linearise(problem: Problem, theta: Vector, more: int = 0) -> tuple[Vector, V
     parts, scale = stretches(problem), row_scale(problem)
     residual = np.zeros(parts[-1].rows.stop + more)
     psi = np.zeros((len(residual), len(problem.unknowns)))
-    for i, trial in enumerate(problem.trials):  # one at a time: a response is larger than its rows
-        response = _respond(problem, theta, i, sensitivities=True)
+    for i, trial in enumerate(problem.trials):
+        mine = [p for p in parts if p.trial == i]
+        response = _fill(problem, theta, i, [psi[p.rows] for p in mine], mine, scale)
         if response.departure is not None:
             return response.departure
-        for part in (p for p in parts if p.trial == i):
-            c = part.output
-            eps = output_error(trial.signals[problem.outputs[c]], response.y[:, c])
-            residual[part.rows] = part.taken(eps) * scale[c]
-            acting, slopes = gradient(response, problem, i, c)
-            rows = part.taken(slopes)
-            rows *= scale[c]
-            psi[part.rows, acting] = rows
+        for part in mine:
+            eps = output_error(
+                trial.signals[problem.outputs[part.output]], response.y[:, part.output]
+            )
+            residual[part.rows] = part.taken(eps) * scale[part.output]
     return residual, psi
+
+
+def _fill(
+    problem: Problem,
+    theta: Vector,
+    trial: int,
+    psi: Sequence[Vector],
+    parts: Sequence[Stretch],
+    scale: Vector,
+) -> Response:
+    """The response of a trial, its normed gradient written into the rows of each of its outputs.
+
+    A whole gradient is larger than its rows: it comes part by part.
+    """
+    acting, places = gradient(problem, trial)
+    begun = [0] * len(parts)
+
+    def take(samples: slice, slopes: Vector) -> None:
+        for k, part in enumerate(parts):
+            some = part.within(samples, begun[k])
+            rows = some.taken(slopes[:, part.output, places])
+            rows *= scale[part.output]
+            psi[k][some.rows, acting] = rows
+            begun[k] = some.rows.stop
+
+    values, start = _values_and_start(problem, theta, trial)
+    response, added = respond_by_parts(
+        problem.simulator, problem.trials[trial], values, start, take, problem.every
+    )
+    for c, column, slopes in added if response.departure is None else ():
+        for k, part in enumerate(parts):
+            if part.output == c and column in places:
+                psi[k][:, acting[places.index(column)]] += part.taken(slopes) * scale[c]
+    return response
 
 
 def row_scale(problem: Problem) -> Vector:
@@ -221,43 +255,6 @@ def _edge(simulator: Simulator, output: str, period: float) -> int:
                 value = simulator.model.value(name)
                 return margin(value, value, period) if value else 0
     return 0
-
-
-def norms(
-    trials: Sequence[Trial],
-    compared: Sequence[Mask],
-    outputs: Sequence[str],
-    norm: Norm,
-    length: float,
-) -> Vector:
-    """y_RMS of each output over the trials, about each trial's own mean or about zero; (n_y,).
-
-    A position is normed by the ship's `length` [m]: it grows with the length of a trial, and what
-    is wrong with it does not.
-
-    Raises
-    ------
-    NotIdentifiable
-        An output has nothing to compare, or does not move.
-    """
-    result = []
-    for c, name in enumerate(outputs):
-        pieces = [t.signals[name][m[:, c]] for t, m in zip(trials, compared, strict=True)]
-        pieces = [p - p.mean() if norm == "mean" else p for p in pieces if len(p)]
-        y = np.concatenate(pieces) if pieces else np.zeros(0)
-        if len(y) == 0:
-            raise NotIdentifiable(
-                f"output {name!r}: no sample where it and every input were measured; "
-                "check gaps and time windows"
-            )
-        rms = float(np.sqrt(np.mean(y**2)))
-        if rms == 0.0:
-            raise NotIdentifiable(
-                f"output {name!r} does not move in the trials to fit; check the channel, or leave "
-                "it out of [identify] outputs"
-            )
-        result.append(length if name in POSITION else rms)
-    return np.array(result)
 
 
 def scores(

@@ -8,12 +8,13 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.nuisance_priors import speed
 from trialid.identification.of_each_trial import Nuisance, nuisances, with_nuisance
-from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask, norms
-from trialid.identification.roll_range import RollRange, roll_range
-from trialid.names.quantities import MASS_PARAMETERS
+from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask
+from trialid.identification.roll.roll_range import RollRange, roll_range
+from trialid.names.quantities import MASS_PARAMETERS, POSITION
 from trialid.ship.effect import Force, Rate
 from trialid.ship.model import ShipModel
 from trialid.ship.motion import check_mass
@@ -238,3 +239,40 @@ def _check_excitation(problem: Problem) -> None:
                     f"{listed}: nothing excites the ship and no parameter can be found; use a "
                     "trial with a manoeuvre, or check the channel"
                 )
+
+
+def norms(
+    trials: Sequence[Trial],
+    compared: Sequence[Mask],
+    outputs: Sequence[str],
+    norm: Norm,
+    length: float,
+) -> Vector:
+    """y_RMS of each output over the trials, about each trial's own mean or about zero; (n_y,).
+
+    A position is normed by the ship's `length` [m]: it grows with the length of a trial, and what
+    is wrong with it does not.
+
+    Raises
+    ------
+    NotIdentifiable
+        An output has nothing to compare, or does not move.
+    """
+    result = []
+    for c, name in enumerate(outputs):
+        pieces = [t.signals[name][m[:, c]] for t, m in zip(trials, compared, strict=True)]
+        pieces = [p - p.mean() if norm == "mean" else p for p in pieces if len(p)]
+        y = np.concatenate(pieces) if pieces else np.zeros(0)
+        if len(y) == 0:
+            raise NotIdentifiable(
+                f"output {name!r}: no sample where it and every input were measured; "
+                "check gaps and time windows"
+            )
+        rms = float(np.sqrt(np.mean(y**2)))
+        if rms == 0.0:
+            raise NotIdentifiable(
+                f"output {name!r} does not move in the trials to fit; check the channel, or leave "
+                "it out of [identify] outputs"
+            )
+        result.append(length if name in POSITION else rms)
+    return np.array(result)

@@ -198,7 +198,7 @@ def _descend(problem: Problem, theta: Vector, rows: Rows, moving: NDArray[np.boo
     """The best of some unknowns for some rows, the others held; theta where none can be had."""
     chosen = [x for x, moves in zip(problem.unknowns, moving, strict=True) if moves]
     evaluate = Part(problem, theta, rows, moving)
-    end = minimise(evaluate, theta[moving], *ranges(chosen), YAW_STEPS, YAW_NEAR)
+    end = minimise(evaluate, theta[moving], *ranges(chosen), YAW_STEPS, YAW_NEAR, keep=False)
     found = theta.copy()
     found[moving] = end.theta
     return found

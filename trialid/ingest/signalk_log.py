@@ -18,7 +18,7 @@ import numpy as np
 
 from trialid.errors import LogError
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted, sha256
-from trialid.ingest.nmea0183 import nmea0183_recorded
+from trialid.ingest.nmea0183 import nmea0183_recorded, nmea0183_steps
 from trialid.ingest.nmea2000 import nmea2000_messages
 from trialid.recording import Channel, Recording
 
@@ -116,7 +116,7 @@ def _damaged_stamps(block: bytes) -> frozenset[bytes]:
     """Stamps out of step with those of the lines around them: nothing else protects them."""
     stamps = STAMP.findall(block)
     t = np.array(stamps, "S14").astype(np.int64)
-    odd = nmea0183_recorded.out_of_step(t * MILLISECOND)
+    odd = nmea0183_steps.out_of_step(t * MILLISECOND)
     return frozenset(stamps[row] for row in np.flatnonzero(odd))
 
 

@@ -21,7 +21,7 @@ from trialid.trial import Trial
 Vector = NDArray[np.float64]
 
 LOOK_BACK: Final = 10.0
-"""Record [s] before a moment that tells what the ship was doing."""
+"""Record [s] before a moment that tells what a ship of 175 m was doing; of others by Froude."""
 
 
 @dataclass(frozen=True)
@@ -120,10 +120,11 @@ class Playback:
         return float(np.nanmax(apart, initial=0.0))
 
     def doing(self, samples: int) -> str:
-        """What the ship was doing in the last ten seconds before a sample."""
+        """What the ship was doing in the last seconds before a sample."""
         n = max(min(samples, self.stream.at), 1)
-        first = max(n - round(LOOK_BACK / self.trial.period), 0)
-        return ship_activity(self._so_far(n), slice(first, n))
+        so_far = self._so_far(n)
+        back = max(round(LOOK_BACK * so_far.time_scale / self.trial.period), 1)
+        return ship_activity(so_far, slice(n - back, n)) if n >= back else "the record begins"
 
     def events(self, start: float = 0.0) -> list[Event]:
         """Alarms and their ends from a time [s] on, as far as the record was played."""

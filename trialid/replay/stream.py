@@ -22,8 +22,8 @@ from trialid.simulation.integrate import (
     arguments,
     departure,
     late_by,
-    sensor_outputs,
 )
+from trialid.simulation.readout import sensor_outputs
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]

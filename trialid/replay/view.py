@@ -26,6 +26,9 @@ HALF: Final = 12
 BROAD: Final = 4.0
 """Deviations of noise at the end of a bar."""
 
+NOTHING: Final = 0.01
+"""Share of its noise below which what is predicted is shown as zero."""
+
 LAST: Final = 5
 """Alarms and other events that are listed."""
 
@@ -63,9 +66,10 @@ def draw(playback: Playback, pace: Pace) -> "Group":
     for c, band in enumerate(playback.bands.of):
         ratio = float(residual[c]) / band.sigma if band.sigma else math.nan
         seen = float(playback.measured[place, c]) if playback.compared[place, c] else math.nan
+        predicted = float(playback.stream.y[place, c])
         table.add_row(
             labels.label(band.output), _shown(band.output, seen),
-            _shown(band.output, float(playback.stream.y[place, c])),
+            _shown(band.output, predicted if abs(predicted) > NOTHING * band.sigma else 0.0),
             bar(ratio), _deviations(ratio),
         )  # fmt: skip
     events = [e for e in playback.events() if e.t <= place * playback.trial.period][-LAST:]

@@ -17,9 +17,9 @@ from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.split import Split
 from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where
-from trialid.identification.adequacy import remarks
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import step_halving
+from trialid.identification.remarks import remarks
 from trialid.plugins import packages
 from trialid.result.accuracy_part import accuracy_part, weighting
 from trialid.result.change_rows import ChangePart, MovedRow, Pair, StepRow

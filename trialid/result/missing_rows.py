@@ -54,7 +54,7 @@ def _expected(c: Candidate, name: str, refit: Fit | None) -> CandidateParameterR
     parameter = c.effect.parameters[name]
     return CandidateParameterRow(
         expected=c.expected[name] if c.visibility > VISIBLE else None,
-        refitted=refit.estimates[name] if refit else None,
+        refitted=refit.estimates.get(name, c.expected[name]) if refit else None,
         unit=parameter.unit,
         low=parameter.low,
         high=parameter.high,

@@ -71,7 +71,7 @@ def _weighed(y: Vector, whole: Whole, weights: Vector) -> Vector:
     """Six neighbours of each sample, moved by whole samples, times their weights."""
     n = len(y)
     if weights.ndim == 1:  # one delay for all: neighbours are slices of one longer record
-        return _all_alike(y, np.arange(-int(whole) - 2, n - int(whole) + 3), weights)
+        return _all_alike(y, _neighbours(int(whole), slice(0, n), n), weights)
     beside = (slice(None), *(None,) * (y.ndim - 1))  # weights of a sample, over all its columns
     first, total = np.arange(n) - whole - 2, np.zeros_like(y, dtype=float)
     for i in range(6):
@@ -79,12 +79,33 @@ def _weighed(y: Vector, whole: Whole, weights: Vector) -> Vector:
     return total
 
 
+def shift_part(y: Vector, begin: int, lag: float, wanted: slice, samples: int) -> Vector:
+    """As `shift` of a record of so many samples, of which `y` are some: the wanted ones.
+
+    `y` begins at sample `begin` and holds those that `reach` says.
+    """
+    whole = int(np.ceil(lag))
+    return _all_alike(y, _neighbours(whole, wanted, samples) - begin, taps(whole - lag)[0])
+
+
+def reach(lag: float) -> tuple[int, int]:
+    """How many samples before and behind itself a delayed sample is made of; below 0: none."""
+    whole = int(np.ceil(lag))
+    return whole + REACH - 1, REACH - whole
+
+
+def _neighbours(whole: int, wanted: slice, samples: int) -> Whole:
+    """Places of the first of the six of each wanted sample, and five more; ends stand for more."""
+    return np.clip(np.arange(wanted.start - whole - 2, wanted.stop - whole + 3), 0, samples - 1)
+
+
 def _all_alike(y: Vector, places: Whole, weights: Vector) -> Vector:
     """Six slices of one longer record, by rows that the cache holds until they are summed."""
-    n, total = len(y), np.empty(y.shape)
+    n = len(places) - 5
+    total = np.empty((n, *y.shape[1:]))
     for at in range(0, n, TOGETHER):
         rows = min(TOGETHER, n - at)
-        near = y[np.clip(places[at : at + rows + 5], 0, n - 1)]
+        near = y[places[at : at + rows + 5]]
         part = weights[0] * near[:rows]
         for i in range(1, 6):
             part += weights[i] * near[i : i + rows]

@@ -3,7 +3,7 @@
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,10 @@ from trialid.names.quantities import SIGNALS
 from trialid.ship.effect import Delayed, Effect, Steered
 from trialid.ship.model import ShipModel, late, slope
 from trialid.simulation import kernel
-from trialid.simulation.delay import delay_samples, lag_samples, shift
-from trialid.simulation.graph import Node, gradient
+from trialid.simulation.delay import delay_samples
 from trialid.simulation.kernel import Kernel
-from trialid.simulation.reference import Reference, evaluator
+from trialid.simulation.readout import Readout, sensor_outputs
+from trialid.simulation.reference import Reference
 from trialid.simulation.trace import Equations, trace
 from trialid.trial import Trial
 
@@ -94,9 +94,9 @@ class Simulator:
         return {n: self.model.value(n) for n in eq.parameters if n not in eq.free}
 
     @functools.cached_property
-    def readout(self) -> "_Readout":
+    def readout(self) -> Readout:
         """How outputs follow from states."""
-        return _Readout(self.equations, self.outputs)
+        return Readout(self.equations, self.outputs)
 
 
 def initial(state: str) -> str:
@@ -266,98 +266,3 @@ def departure(
         return None
     outside = int(np.flatnonzero(~(np.abs(X[left]) < limit))[0])
     return Departure(simulator.equations.states[outside], left * period, float(X[left, outside]))
-
-
-class _Readout:
-    """Outputs and their derivatives by states and parameters, as functions of arrays."""
-
-    def __init__(self, eq: Equations, outputs: tuple[str, ...]) -> None:
-        symbols = (*eq.states, *eq.inputs, *eq.parameters)
-        table = {n.value: n for n in eq.graph.nodes if n.op == "symbol"}
-        self.kept = [eq.states[i] for i in eq.kept]
-        by = [table[s] for s in (*self.kept, *eq.free) if s in table]
-        self.by = [n.value for n in by]
-        nodes = [eq.outputs[c] for c in outputs]
-        slopes = [gradient(n, by) for n in nodes]
-        self.entries = [
-            (c, i) for c, row in enumerate(slopes) for i, d in enumerate(row) if not _zero(d)
-        ]
-        states = [(c, self.by[i], slopes[c][i]) for c, i in self.entries if self.by[i] in self.kept]
-        alike = len(self.kept) == len(outputs) and all(d.is_constant(1.0) for *_, d in states)
-        self.plain = alike and [(c, s) for c, s, _ in states] == list(enumerate(self.kept))
-        # every output is a state of its own: S is what is asked for
-        self.value = evaluator(nodes, symbols, scalar=False)
-        self.slope = evaluator([slopes[c][i] for c, i in self.entries], symbols, scalar=False)
-        self.delay = {c: _Timing(eq, eq.delays[c], table) for c in outputs}
-        self.lags = {c: [_Timing(eq, lag, table) for lag in eq.lags[c]] for c in outputs}
-
-
-class _Timing:
-    """A delay or a time constant, and its derivatives by the free parameters."""
-
-    def __init__(self, eq: Equations, node: Node, table: Mapping[str, Node]) -> None:
-        symbols = (*eq.states, *eq.inputs, *eq.parameters)
-        slopes = gradient(node, [table[s] for s in eq.free])
-        self.absent = _zero(node)
-        self.by = [i for i, d in enumerate(slopes) if not _zero(d)]
-        self.value = evaluator([node], symbols, scalar=False)
-        self.slopes = evaluator([slopes[i] for i in self.by], symbols, scalar=False)
-
-
-def _zero(node: Node) -> bool:
-    return node.is_constant(0.0)
-
-
-def sensor_outputs(
-    simulator: Simulator, period: float, X: Vector, S: Vector | None, u: Vector, theta: Vector
-) -> tuple[Vector, Vector | None]:
-    """Outputs as a sensor records them, from states; (N, n_y), (N, n_y, n_columns)."""
-    read = simulator.readout
-    symbols = [*X.T, *u.T, *theta]
-    y = np.column_stack([np.broadcast_to(c, len(X)) for c in read.value(symbols)])
-    if S is None:
-        return _late(simulator, period, y, None, symbols)
-    dy = _slopes(simulator, S, read.slope(symbols))
-    return _late(simulator, period, y, dy, symbols)
-
-
-def _slopes(simulator: Simulator, S: Vector, slopes: Sequence[Vector | float]) -> Vector:
-    """Sensitivities of the outputs from those of the kept states, in place where they are alike."""
-    read, free, width = simulator.readout, simulator.equations.free, len(simulator.columns)
-    dy = S[..., :width] if read.plain else np.zeros((len(S), len(simulator.outputs), width))
-    for (c, i), factor in zip(read.entries, slopes, strict=True):
-        name = read.by[i]
-        if name not in read.kept:
-            dy[:, c, free.index(name)] += factor
-        elif not read.plain:
-            wide = np.broadcast_to(factor, len(S))[:, None]
-            dy[:, c] += wide * S[:, read.kept.index(name), :width]
-    return dy
-
-
-def _late(
-    simulator: Simulator, period: float, y: Vector, dy: Vector | None, symbols: Sequence[Any]
-) -> tuple[Vector, Vector | None]:
-    """Apply the low-passes and delays of the outputs, with the derivatives by their parameters."""
-    read = simulator.readout
-    for c, output in enumerate(simulator.outputs):
-        for lag in read.lags[output]:
-            [tau] = lag.value(symbols)
-            y[:, c], by_tau = lag_samples(y[:, c], float(tau), period)
-            if dy is not None:
-                dy[:, c] = lag_samples(dy[:, c], float(tau), period)[0]
-                _add_slopes(dy[:, c], lag, by_tau, symbols)
-        if read.delay[output].absent:
-            continue
-        [tau] = read.delay[output].value(symbols)
-        y[:, c], by_lag = delay_samples(y[:, c], tau / period)
-        if dy is not None:
-            dy[:, c] = shift(dy[:, c], tau / period)
-            _add_slopes(dy[:, c], read.delay[output], by_lag / period, symbols)
-    return y, dy
-
-
-def _add_slopes(dy: Vector, timing: _Timing, by_time: Vector, symbols: Sequence[Any]) -> None:
-    """Chain rule, in place: what a parameter does to a time, and the time to the output."""
-    for i, slope_ in zip(timing.by, timing.slopes(symbols), strict=True):
-        dy[:, i] += by_time * slope_

@@ -189,14 +189,23 @@ class Kernel:
         return X, left
 
     def sensitivities(
-        self, theta: Vector, x0: Vector, u: Vector, limit: Vector, h: float, substeps: int
+        self,
+        theta: Vector,
+        x0: Vector,
+        u: Vector,
+        limit: Vector,
+        h: float,
+        substeps: int,
+        s: Vector | None = None,
     ) -> tuple[Vector, Vector, int]:
-        """States, and d(kept states)/d(free parameters, initial states); (N, n_kept, columns)."""
+        """States, and d(kept states)/d(free parameters, initial states); (N, n_kept, columns).
+
+        `s` are those of all states at the first sample, and then at the last: a run goes on.
+        """
         eq = self.equations
         n_x, width = len(eq.states), eq.columns
         X = _room(x0, len(u))
-        s = np.zeros((n_x, width))
-        s[np.arange(n_x), len(eq.free) + np.arange(n_x)] = 1.0
+        s = first_slopes(eq) if s is None else s
         S = np.empty((len(u), len(eq.kept), width))
         S[0] = s[list(eq.kept)]
         if len(u) < 2:
@@ -208,6 +217,14 @@ class Kernel:
         if left:
             S[left + 1 :] = np.nan  # what the kernel did not write is not a number
         return X, S, left
+
+
+def first_slopes(equations: Equations) -> Vector:
+    """Sensitivities of all states at the first sample: to their own start; (n_x, columns)."""
+    n_x = len(equations.states)
+    s = np.zeros((n_x, equations.columns))
+    s[np.arange(n_x), len(equations.free) + np.arange(n_x)] = 1.0
+    return s
 
 
 def _room(x0: Vector, samples: int) -> Vector:

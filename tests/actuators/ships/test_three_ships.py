@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from three_models import CARGO, CASES, FERRY, RACES, SUPPLY, Case
+from three_models import CARGO, CASES, FERRY, RACES, SUCKED, SUPPLY, Case
 from typical import distances
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
@@ -88,7 +88,7 @@ def test_parameters_come_back(case: Case) -> None:
     "case",
     [
         pytest.param(one, id=one.name, marks=pytest.mark.study(turn=turn))
-        for one, turn in ((RACES, 0), (FERRY, 1), (CARGO, 2), (SUPPLY, 3))
+        for one, turn in ((RACES, 0), (FERRY, 1), (CARGO, 2), (SUPPLY, 3), (SUCKED, 4))
     ],
 )
 def test_intervals_hold_nineteen_truths_of_twenty(case: Case) -> None:

@@ -11,7 +11,6 @@ of the clock: where others share the machine, only they compare.
 import argparse
 import os
 import resource
-import subprocess
 import sys
 import time
 from collections import Counter
@@ -25,7 +24,9 @@ from unittest.mock import patch
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "fleet"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / ".ci"))
 
+from at_commit import commit_of
 from generated_fleet import (
     FORMATS,
     ROOT,
@@ -214,10 +215,8 @@ def report(ships: int, jobs: int, folder: Path) -> str:
 def heading(ships: int) -> str:
     """What was run, where."""
     command = f"python tests/benchmarks/fleets/batch_scaling.py --ships {ships}"
-    git = ["git", "rev-parse", "--short", "HEAD"]
-    commit = subprocess.run(git, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     return (
-        f"# Batches\n\n`{command}`, commit {commit.strip()},\n{os.cpu_count()} cores, load "
+        f"# Batches\n\n`{command}`, commit {commit_of(ROOT)},\n{os.cpu_count()} cores, load "
         f"{os.getloadavg()[1]:.1f} (others share them).\n\n| | |\n| :--- | :--- |\n"
     )
 

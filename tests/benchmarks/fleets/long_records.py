@@ -21,7 +21,10 @@ from typing import Any, Final
 import numpy as np
 
 ROOT: Final = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))
+sys.path[:0] = [str(ROOT / "tests" / "benchmarks"), str(ROOT / ".ci")]
+
+from at_commit import commit_of  # noqa: E402
+
 SIGNALS: Final = {"rudder": "deg", "rate": "deg/s", "roll": "deg", "speed": "m/s"}
 Stages = dict[str, list[float]]
 
@@ -154,12 +157,8 @@ def report(asked: argparse.Namespace, folder: Path) -> str:
 
 def heading(asked: argparse.Namespace) -> str:
     """What was run, where."""
-    git = ["git", "rev-parse", "--short", "HEAD"]
     trees = [*([asked.against] if asked.against else []), ROOT]
-    commits = [
-        subprocess.run(git, cwd=tree, capture_output=True, text=True, check=True).stdout.strip()
-        for tree in trees
-    ]
+    commits = [commit_of(tree) for tree in trees]
     return (
         f"# Long records\n\n`python tests/benchmarks/fleets/long_records.py --trials "
         f"{asked.trials} --samples {asked.samples} --text {asked.text}`,\ncommit {commits[-1]}"

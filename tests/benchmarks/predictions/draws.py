@@ -76,7 +76,7 @@ def first_overshoot(ship, theta) -> float:
         def beyond(t, x, side=side):
             return side * x[psi] - ANGLE
 
-        beyond.terminal, beyond.direction = True, 1.0
+        vars(beyond).update(terminal=True, direction=1.0)
         found = solve_ivp(
             rates, (t, t + 2e3), state, "LSODA", events=beyond, rtol=1e-6, atol=1e-9, max_step=2.0
         )

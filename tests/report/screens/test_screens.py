@@ -193,6 +193,7 @@ def test_runs_are_laid_over_one_another_where_they_saw_the_same(opened, comparis
     )
 
 
+@pytest.mark.study(turn=0)
 def test_runs_of_other_trials_are_told_in_tables_alone(result, series):
     other = [replace(t, name=f"{t.name} b") for t in series]
     found = {"a": series, "b": other}

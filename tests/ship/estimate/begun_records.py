@@ -9,8 +9,8 @@ from typing import Final
 TESTS: Final = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TESTS), str(TESTS / "real_records"), str(TESTS / "benchmarks")]
 
+from pond import ESSO  # noqa: E402
 from search_ships import placeholder  # noqa: E402
-from test_carried_over import ESSO  # noqa: E402
 from test_newcomer import CASES as NEWCOMER  # noqa: E402
 from test_newcomer import COASTER, FERRY, LOGS  # noqa: E402
 

@@ -7,7 +7,6 @@ Fits of real records are done where the records lie beside the repository, else 
 of them stays.
 """
 
-import subprocess
 import sys
 import tempfile
 import tomllib
@@ -20,8 +19,9 @@ import numpy as np
 
 HERE: Final = Path(__file__).resolve().parent
 ROOT: Final = HERE.parents[2]
-sys.path.insert(0, str(HERE))
+sys.path[:0] = [str(HERE), str(HERE.parents[2] / ".ci")]
 
+from at_commit import commit_of  # noqa: E402
 from begun_records import CASES, begun  # noqa: E402
 from published import Published, published_ships  # noqa: E402
 from sailed_zigzags import fit, sailed  # noqa: E402
@@ -55,7 +55,7 @@ def main() -> None:
     ships = published_ships()
     before = tomllib.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.is_file() else {}
     parts = [
-        f'{HEAD}commit = "{_commit()}"\n',
+        f'{HEAD}commit = "{commit_of(ROOT)}"\n',
         *(_ship(s) for s in ships),
         *_numbers(ships),
         _held_out(ships),
@@ -63,11 +63,6 @@ def main() -> None:
         *(_records() or _again(before.get("record", []))),
     ]
     RESULTS.write_text("\n".join(parts), encoding="utf-8")
-
-
-def _commit() -> str:
-    command = ["git", "rev-parse", "--short", "HEAD"]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout[:-1]
 
 
 def _ship(ship: Published) -> str:
@@ -144,7 +139,7 @@ def _record(case: str, ship: str, path: Path) -> str:
         "held_out": "-1.0" if found.eps_check is None else f"{found.eps_check:.4f}",
         "converged": str(found.converged).lower(),
         "GM": f"{found.value('GM'):.3g}" if "GM" in found.estimates else "-1.0",
-        "ambiguous": str(bool(found.rival_GM)).lower(),
+        "ambiguous": str(bool(found.rivals)).lower(),
     }
     return "\n".join(["[[record]]", *(f"{key} = {text}" for key, text in row.items()), ""])
 

@@ -23,7 +23,8 @@ from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, acts_in_calm, in_c
 from trialid.errors import DesignError
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
-from trialid.simulation.integrate import arguments, prepare, sensor_outputs
+from trialid.simulation.integrate import arguments, prepare
+from trialid.simulation.readout import sensor_outputs
 from trialid.trial import Trial
 
 SPARE: Final = 4

@@ -14,7 +14,8 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.helm import GEAR_STATE, Hold, Instructions, Passage, Vessel, track
 from trialid.errors import DesignError
-from trialid.simulation.integrate import arguments, departure, sensor_outputs
+from trialid.simulation.integrate import arguments, departure
+from trialid.simulation.readout import sensor_outputs
 from trialid.trial import Trial
 
 REACH: Final = 400

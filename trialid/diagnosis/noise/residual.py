@@ -40,20 +40,6 @@ def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
     return found
 
 
-def rudder(trial: Trial) -> Vector | None:
-    """The rudder's record, the measured angle before the order; None where there is neither."""
-    for name in ("delta", "delta_order"):
-        if name in trial.signals:
-            return trial.signals[name]
-    return None
-
-
-def reason(fit: Fit, why: str) -> str:
-    """Why a route that goes by the rudder does not hold: this, or that there is not one rudder."""
-    ruddered = any(rudder(score.trial) is not None for score in fit.scores)
-    return why if ruddered else "goes by one rudder, and the record holds none or several"
-
-
 @dataclass(frozen=True)
 class OutputNoise:
     """Noise of one output by one route: normed variance, its standard error, effective samples."""

@@ -20,14 +20,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask
+from trialid.diagnosis.noise.excitation import (
+    are_same,
+    excitation,
+    period_of,
+    quiet_seconds,
+    rest_ends,
+    what_drives,
+)
 from trialid.diagnosis.noise.residual import (
     OutputNoise,
     Residual,
     about_mean,
     pool_variance,
-    reason,
     residuals,
-    rudder,
     slowness,
 )
 from trialid.diagnosis.noise.variance import hac
@@ -42,11 +48,6 @@ CONFIDENCE: Final = 1.96
 TIGHT: Final = 0.35
 """A noise estimate whose 95 % interval is wider than this share either way is no estimate."""
 
-SAME_RUDDER: Final = 0.02
-"""Mean square difference over variance below which two rudder records are the same."""
-
-QUIET_SECONDS: Final = 60.0
-QUIET_RUDDER: Final = np.deg2rad(0.5)
 QUIET_RESPONSE: Final = 0.1
 """A stretch is quiet when the model itself moves less than this share of y_RMS in it."""
 
@@ -113,28 +114,20 @@ def split(
 
 
 def _repeated(fit: Fit) -> Split:
-    """Route a: pairs of trials with the same rudder record."""
-    method = "repeated manoeuvre"
+    """Route a: pairs of trials that were steered and driven alike."""
+    method, ship = "repeated manoeuvre", fit.model.ship
     found = residuals(fit, ("fit", "check"))
     pairs = [
         (one, other)
         for i, one in enumerate(found)
         for other in found[i + 1 :]
-        if _same_rudder(rudder(one.trial), rudder(other.trial))
+        if are_same(excitation(ship, one.trial), excitation(ship, other.trial))
     ]
     if not pairs:
-        return Split(method, reason(fit, "no two trials have the same rudder record"))
+        return Split(method, f"no two trials have the same {what_drives(ship)} record")
     pieces = [_differences(one, other) for one, other in pairs]
     names = " and ".join(repr(r.trial.name) for r in pairs[0])
     return _from_pieces(fit, method, pieces, f"what differs between {names}")
-
-
-def _same_rudder(one: Vector | None, other: Vector | None) -> bool:
-    if one is None or other is None or min(len(one), len(other)) < 0.8 * max(len(one), len(other)):
-        return False
-    n = min(len(one), len(other))
-    spread = float(np.var(one[:n]))
-    return spread > 0.0 and float(np.mean((one[:n] - other[:n]) ** 2)) < SAME_RUDDER * spread
 
 
 def _differences(one: Residual, other: Residual) -> tuple[Vector, Mask]:
@@ -145,12 +138,12 @@ def _differences(one: Residual, other: Residual) -> tuple[Vector, Mask]:
 
 
 def _periodic(fit: Fit) -> Split:
-    """Route b: periods of one trial's rudder against each other."""
-    method = "periods of a periodic test"
+    """Route b: periods of one trial's record of what steers and drives against each other."""
+    method, ship = "periods of a periodic test", fit.model.ship
     pieces, words = [], []
     for r in residuals(fit):
-        angle = rudder(r.trial)
-        found = None if angle is None else _period(angle)
+        moves = excitation(ship, r.trial)
+        found = None if moves is None else period_of(moves)
         if found is not None:
             start, lag = found
             late = Residual(r.trial, r.eps[start + lag :], r.compared[start + lag :], r.predicted)
@@ -158,48 +151,17 @@ def _periodic(fit: Fit) -> Split:
             pieces.append(_differences(late, early))
             words.append(f"{lag * r.trial.period:.0f} s in {r.trial.name!r}")
     if not pieces:
-        return Split(method, reason(fit, "no rudder record repeats itself"))
+        return Split(method, f"no {what_drives(ship)} record repeats itself")
     return _from_pieces(fit, method, pieces, "scatter between periods of " + ", ".join(words))
 
 
-def _period(rudder: Vector) -> tuple[int, int] | None:
-    """Start and length [samples] of a rudder record that repeats at least once after its start."""
-    moving = np.flatnonzero(np.abs(rudder - rudder[0]) > QUIET_RUDDER)
-    if len(moving) == 0:
-        return None
-    start = int(moving[0])
-    active = rudder[start:] - rudder[start:].mean()
-    gap = _gaps(active) / float(np.mean(active**2))
-    apart = np.flatnonzero(gap > 1.0)
-    if len(apart) == 0:
-        return None
-    # a rudder is like itself a moment before; it repeats where it has been unlike in between
-    alike = gap < SAME_RUDDER
-    alike[: apart[0]] = False
-    if not alike.any():
-        return None
-    first = int(np.argmax(alike))
-    end = first + int(np.argmin(np.append(alike[first:], False)))
-    return start, first + int(np.argmin(gap[first:end]))
-
-
-def _gaps(x: Vector) -> Vector:
-    """Mean square of what a record differs by from itself so many samples later, up to half."""
-    n = len(x)
-    lags = np.arange(n // 2 + 1)
-    spectrum = np.fft.rfft(x, 1 << (2 * n - 1).bit_length())
-    products = np.fft.irfft(np.abs(spectrum) ** 2)[: len(lags)]
-    before = np.concatenate([[0.0], np.cumsum(x**2)])
-    squares = (before[n] - before[lags]) + before[n - lags]
-    return np.asarray((squares - 2.0 * products) / (n - lags))
-
-
 def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:
-    """Route c: stretches in which the rudder rests and the model stands still."""
-    method = "quiet stretch"
-    pieces, words = [], []
+    """Route c: stretches in which rudder or drives rest and the model stands still."""
+    method, ship = "quiet stretch", fit.model.ship
+    pieces, words, seconds = [], [], quiet_seconds(ship)
     for r in residuals(fit, ("fit", "check")):
-        spans = declared.get(r.trial.name) or _still(r)
+        moves = excitation(ship, r.trial)
+        spans = declared.get(r.trial.name) or _still(r, moves, seconds)
         for start, stop in spans:
             a, b = round(start / r.trial.period), round(stop / r.trial.period)
             eps, mask = r.eps[a:b], r.compared[a:b]
@@ -207,39 +169,22 @@ def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:
                 pieces.append((about_mean(eps, mask), mask))
                 words.append(f"{start:.0f}-{stop:.0f} s of {r.trial.name!r}")
     if not pieces:
-        return Split(method, reason(fit, f"no stretch of {QUIET_SECONDS:.0f} s, rudder at rest"))
+        return Split(method, f"no stretch of {seconds:.0f} s, {what_drives(ship)} at rest")
     return _from_pieces(fit, method, pieces, "residual in " + ", ".join(words))
 
 
-def _still(r: Residual) -> list[Interval]:
-    """Longest stretch with rudder and prediction at rest, if it is long enough."""
-    angle = rudder(r.trial)
-    if angle is None:
+def _still(r: Residual, moves: Vector | None, seconds: float) -> list[Interval]:
+    """Longest stretch with prediction and all that drives at rest, if it is long enough."""
+    if moves is None:
         return []
-    best: list[Interval] = []
-    n, needed = len(angle), round(QUIET_SECONDS / r.trial.period)
-    start = 0
-    while start + needed <= n:
-        stop = _rest(angle, r.predicted, start)
-        if stop - start >= needed and (not best or stop - start > _samples(best[0], r)):
-            best = [(start * r.trial.period, stop * r.trial.period)]
+    columns = np.column_stack([moves, r.predicted / QUIET_RESPONSE])
+    longest, needed, start = range(0), round(seconds / r.trial.period), 0
+    while start + needed <= len(columns):
+        stop = rest_ends(columns, start)
+        if stop - start >= max(needed, len(longest) + 1):
+            longest = range(start, stop)
         start = max(stop, start + needed // 4)
-    return best
-
-
-def _samples(span: Interval, r: Residual) -> int:
-    return round((span[1] - span[0]) / r.trial.period)
-
-
-def _rest(rudder: Vector, predicted: Vector, start: int) -> int:
-    """Where rest that begins at `start` ends."""
-    low, high = np.minimum.accumulate(rudder[start:]), np.maximum.accumulate(rudder[start:])
-    moved = (
-        np.maximum.accumulate(predicted[start:], axis=0)
-        - np.minimum.accumulate(predicted[start:], axis=0)
-    ).max(axis=1)
-    broken = np.flatnonzero((high - low > QUIET_RUDDER) | (moved > QUIET_RESPONSE))
-    return start + int(broken[0]) if len(broken) else len(rudder)
+    return [(longest.start * r.trial.period, longest.stop * r.trial.period)] if longest else []
 
 
 def _stated(fit: Fit, stated: Mapping[str, float]) -> Split:

@@ -4,13 +4,13 @@ Slopes at such a fit say nothing, so each fault that is bound by its meaning is 
 and fitted from where the first fit began, and the one that alone explains the record is named.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.carried import Carried, as_good
 from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
@@ -19,6 +19,7 @@ from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
 from trialid.progress import Progress
 from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
 from trialid.trial import Trial
 
 WHOLE: Final = 0.1
@@ -47,6 +48,10 @@ ALIKE: Final = 1.2
 INSIDE: Final = 1e-3
 """Share of its range by which a fault's value lies inside of it: at its end it is another."""
 
+UNSEEN: Final = 1.01
+"""... unless with all of the fault no more is left: then a gain of the actuator's own makes up for
+any value (the only tunnel of a ship, reversed, ended at either end of three in six)."""
+
 
 def gross_faults(
     fit: Fit, trials: Sequence[Trial], candidates: Mapping[str, Effect], progress: Progress
@@ -54,28 +59,46 @@ def gross_faults(
     """Faults that explain a record which the fit does not, the best first; mostly none."""
     if np.isfinite(fit.eps_rmsn) and fit.eps_rmsn < GROSS and fit.converged:
         return ()
-    return _of_these(fit, trials, _absent(fit, candidates), progress)
+    found = _of_these(fit, trials, _absent(fit, candidates), progress)
+    return found if found and _explains(found[0], fit.eps_rmsn) else ()
 
 
 def whole_faults(
     fit: Fit,
     trials: Sequence[Trial],
     candidates: Mapping[str, Effect],
+    ranking: Sequence[Candidate],
     others: Sequence[Refit],
     progress: Progress,
+    leaves_noise: Callable[[Fit], bool],
 ) -> tuple[Refit, ...]:
-    """Faults that are there whole and leave half of what the best of the others does; mostly none.
+    """Faults that explain what none of the others does, by slopes or whole; mostly none.
 
-    Such a fault is far from the ship without it, and so are the parameters fitted there. Where one
-    of the others explains the record none is tried.
+    They leave half of what the best of the others leaves, or nothing but noise where each block
+    says that the others leave more. A fault that is there whole is far from the ship without it,
+    and so are the parameters fitted there; of the rest those are tried that by their slopes leave
+    less than all others, whatever blocks left out say of them, which go by slopes too. Where one of
+    the others explains the record none is tried.
+
+    Parameters
+    ----------
+    leaves_noise
+        Whether what a fit leaves is no more than noise.
     """
     least = min((r.fit.eps_rmsn for r in others), default=fit.eps_rmsn)
     if fit.eps_rmsn < WHOLE or least < EXPLAINED * fit.eps_rmsn:
         return ()
-    faults = [e for e in _absent(fit, candidates) if e.is_whole]
+    able = {c.effect.name for c in ranking if c.allowed and c.eps_predicted < least}
+    faults = [e for e in _absent(fit, candidates) if e.is_whole or e.name in able]
     soon = replace(fit, settings=replace(fit.settings, max_iterations=SOON))
     found = _of_these(soon, trials, faults, progress)
-    return found if found and found[0].fit.eps_rmsn < EXPLAINS * least else ()
+    if not found or _explains(found[0], min(least, fit.eps_rmsn)):
+        return found
+    first = found[0].carried
+    rest = [r.carried.after for r in others] or [first.before]
+    if any(as_good(first.after, after) for after in rest) or not leaves_noise(found[0].fit):
+        return ()
+    return tuple(r for r in found if as_good(first.after, r.carried.after))
 
 
 def _absent(fit: Fit, candidates: Mapping[str, Effect]) -> list[Effect]:
@@ -86,25 +109,29 @@ def _absent(fit: Fit, candidates: Mapping[str, Effect]) -> list[Effect]:
 def _of_these(
     fit: Fit, trials: Sequence[Trial], faults: Sequence[Effect], progress: Progress
 ) -> tuple[Refit, ...]:
-    """Those that alone explain the record, the best first."""
+    """Those of which the fit can be trusted, the best first, and what leaves hardly more."""
     found = [r for e in faults if (r := _fitted(fit, trials, e, progress)) is not None]
     found.sort(key=lambda r: r.fit.eps_rmsn)
-    if not found or found[0].fit.eps_rmsn > min(EXPLAINS * fit.eps_rmsn, GROSS):
+    if not found or found[0].fit.eps_rmsn > GROSS:
         return ()
     return tuple(r for r in found if r.fit.eps_rmsn < ALIKE * found[0].fit.eps_rmsn)
+
+
+def _explains(fault: Refit, error: float) -> bool:
+    """Whether a fault leaves so little of this error that it alone explains the record."""
+    return not fault.fit.eps_rmsn > min(EXPLAINS * error, GROSS)  # an error may be no number
 
 
 def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progress) -> Refit | None:
     """The model with a fault, fitted; None where that fails or the fault is at its range's end."""
     progress(f"trying {effect.name}", 0.68)
     start = {n: p.start if effect.is_whole else 0.9 * p.high for n, p in effect.parameters.items()}
-    free = (*fit.settings.free, *effect.parameters)
+    model = (fit.model + effect).with_values(start)
     try:
-        model = (fit.model + effect).with_values(start)
-        fitted = identify(trials, model, replace(fit.settings, free=free))
+        fitted = _arrived(fit, trials, model, effect)
     except TrialidError:  # it cannot act on this record: it is not the one
         return None
-    if why_no_fit(fitted) is not None or not _inside(fitted, effect):
+    if fitted is None or fitted.eps_rmsn > ALIKE * GROSS or why_no_fit(fitted):
         return None
     carried = Carried.between(own_errors(fit), own_errors(fitted, levels(fit)))
     candidate = Candidate(
@@ -119,6 +146,21 @@ def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progres
         carried=carried,
     )
     return Refit(candidate, fitted, carried)
+
+
+def _arrived(fit: Fit, trials: Sequence[Trial], model: ShipModel, effect: Effect) -> Fit | None:
+    """A fault with the value found, or all of it where any value does; None at its range's end."""
+
+    def added(names: Iterable[str]) -> Fit:
+        return identify(trials, model, replace(fit.settings, free=(*fit.settings.free, *names)))
+
+    freed = added(effect.parameters)
+    if _inside(freed, effect):
+        return freed
+    if not effect.is_whole:
+        return None
+    whole = added(n for n, p in effect.parameters.items() if not p.by_meaning)
+    return whole if whole.eps_rmsn < UNSEEN * freed.eps_rmsn else None
 
 
 def _inside(fit: Fit, effect: Effect) -> bool:

@@ -28,6 +28,9 @@ KNOTS: Final = 11
 FINE: Final = 4.0
 """Steps of the clock in sqrt(L / g), the time in which a ship answers at its quickest."""
 
+TOGETHER: Final = 4096
+"""Samples that are made of a coarser clock at a time."""
+
 EQUATIONS: Final = "YKN"
 """Where probes act; surge shows in turning and rolling only through these."""
 
@@ -76,13 +79,15 @@ def probes(fit: Fit) -> Probes:
     }
     shapes = tuple(_shapes([s for s, (low, high) in ranges.items() if high > low]))
     rows = [r for r in paths[0].rows if r in EQUATIONS]
-    found = []
-    for p, m, n, trial in zip(paths, moves, every, problem.trials, strict=True):
-        values = np.column_stack([s.of(m, ranges) for s in shapes])
-        found.append(_between(_responses(p, rows, values), n, trial.samples))
     edges = np.cumsum([0, *[s.width for _ in rows for s in shapes]])
     groups = tuple(tuple(range(a, b)) for a, b in pairwise(edges))
-    return Probes(_stacked(found, stretches(problem)), groups)
+    parts = stretches(problem)
+    columns = np.empty((parts[-1].rows.stop, int(edges[-1])))
+    for i, (p, m) in enumerate(zip(paths, moves, strict=True)):
+        y = _responses(p, rows, np.column_stack([s.of(m, ranges) for s in shapes]))
+        for part in (one for one in parts if one.trial == i):
+            _fill(columns[part.rows], part, y[:, part.output], every[i])
+    return Probes(columns, groups)
 
 
 def _moves(signals: Mapping[str, Vector]) -> dict[str, Vector]:
@@ -111,15 +116,22 @@ def _responses(along: Path, rows: Sequence[str], shapes: Vector) -> Vector:
     return y
 
 
-def _between(y: Vector, every: int, samples: int) -> Vector:
+def _fill(columns: Vector, part: Stretch, y: Vector, every: int) -> None:
+    """Rows of one output of a trial, some at a time: all its samples are far more."""
+    step = part.every * max(TOGETHER // part.every, 1)
+    at = 0
+    for start in range(0, len(part.compared) * part.every, step):
+        stop = min(start + step, len(part.compared) * part.every)
+        some = part.within(slice(start, stop), at)
+        columns[some.rows] = some.taken(_between(y, every, slice(start, stop)))
+        at = some.rows.stop
+
+
+def _between(y: Vector, every: int, samples: slice) -> Vector:
     """Straight lines between the samples of a coarser clock; (N, ...)."""
     if every == 1:
-        return y
-    place = np.minimum(np.arange(samples) / every, len(y) - 1.0)
+        return y[samples]
+    place = np.minimum(np.arange(samples.start, samples.stop) / every, len(y) - 1.0)
     before = np.minimum(place.astype(int), len(y) - 2)
-    share = (place - before)[:, None, None]
+    share = (place - before)[:, None]
     return np.asarray((1.0 - share) * y[before] + share * y[before + 1])
-
-
-def _stacked(found: Sequence[Vector], parts: Sequence[Stretch]) -> Vector:
-    return np.concatenate([s.taken(found[s.trial][:, s.output]) for s in parts])

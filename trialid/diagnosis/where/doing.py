@@ -15,6 +15,9 @@ REVERSAL: Final = np.deg2rad(3.0)
 TURNING: Final = 0.5
 """A mean rate of turn above this share of the largest is a turn."""
 
+STRAIGHT: Final = 0.1
+"""Below this share of it the course is straight; between the two she turns slowly."""
+
 STEADY: Final = 0.2
 """A turn whose rate varies by less than this share of its mean is steady."""
 
@@ -35,7 +38,7 @@ def ship_activity(left: Leftover, stretch: slice) -> str:
         still = float(np.ptp(angle[stretch])) < REVERSAL
         words = _rolling(left, stretch) if still else ""
     if not words:
-        words = "straight course" if turn is not None else _held(angle, stretch)
+        words = _course(turn, stretch) if turn is not None else _held(angle, stretch)
     speed = _speed(left, stretch)
     return f"{words}, {speed}" if speed else words
 
@@ -58,6 +61,14 @@ def _turn(turn: Vector, stretch: slice) -> str:
         return ""
     steady = float(np.ptp(here)) < STEADY * abs(mean)
     return f"{'steady turn' if steady else 'turning'} to {'starboard' if mean > 0.0 else 'port'}"
+
+
+def _course(turn: Vector, stretch: slice) -> str:
+    """What is no turn to speak of."""
+    mean = float(turn[stretch].mean())
+    if abs(mean) <= STRAIGHT * float(np.abs(turn).max()):
+        return "straight course"
+    return f"slow turn to {'starboard' if mean > 0.0 else 'port'}"
 
 
 def _rolling(left: Leftover, stretch: slice) -> str:

@@ -20,6 +20,8 @@ NOWHERE: Final = 1e-9
 """Keeps the slope of a root finite where what is under it vanishes."""
 GAIN_UNITS: Final = {"revolutions": "N s^2", "share": "N", "thrust": "1"}
 """Unit of a gain of thrust, by what drives the actuator."""
+ADVANCE_UNITS: Final = {"revolutions": "N s^2/m", "share": "N s/m", "thrust": "s/m"}
+"""Unit of what is lost of it to the speed."""
 
 
 def own_name(parameter: str, one: Actuator) -> str:
@@ -52,6 +54,13 @@ def typical_drive(ship: Ship, command: Command) -> float:
     full = typical_gain(ship, "share")
     revolutions = math.sqrt(full / typical_gain(ship, "revolutions"))
     return {"revolutions": revolutions, "share": 1.0, "thrust": full}[command]
+
+
+def advance_gain(ship: Ship, one: Actuator) -> Parameter:
+    """What is lost of its thrust to the speed, over the drive and the speed: half at her speed."""
+    half = 0.5 * typical_gain(ship, one.command) / usual_speed(ship)
+    half *= typical_drive(ship, one.command) if one.command == "revolutions" else 1.0
+    return Parameter(half, ADVANCE_UNITS[one.command], low=0.0)
 
 
 def make_effect(

@@ -1,4 +1,4 @@
-"""What pods do beside pushing to where they point: their struts, and the race of one on another."""
+"""What pods do beside pushing to where they point: struts, thrust lost to speed and to races."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -7,11 +7,12 @@ from typing import Final
 from trialid.effects.actuators.instances import (
     GAIN_UNITS,
     NOWHERE,
+    advance_gain,
     make_effect,
     own_name,
     typical_gain,
 )
-from trialid.effects.actuators.push_kinds import Push
+from trialid.effects.actuators.push_kinds import F11, Push
 from trialid.effects.actuators.pushes import total, turned
 from trialid.maths import Number, cos, sin, sqrt
 from trialid.ship.actuators import Actuator
@@ -36,6 +37,7 @@ def pod_effects(ship: Ship) -> Iterator[Effect]:
     pods = [one for one in ship.actuators if one.kind == "azimuth"]
     if pods:
         yield _struts(ship, pods)
+        yield _advance(ship, pods)
     if len(pods) > 1 and len({one.command for one in pods}) == 1:
         yield _races(ship, pods)
 
@@ -69,6 +71,26 @@ def _flow(one: Actuator, values: dict[str, Number]) -> tuple[Number, Number]:
     v = values["v"] + one.x * values["r"]
     angle = values[one.angle] + one.direction
     return u * cos(angle) + v * sin(angle), v * cos(angle) - u * sin(angle)
+
+
+def _advance(ship: Ship, pods: Sequence[Actuator]) -> Effect:
+    def advance(**values: Number) -> Force:
+        forces = []
+        for one in pods:
+            lost = values[own_name("k_pod_advance", one)] * abs(values[one.drive])
+            lost *= _flow(one, values)[0]
+            angle = values[one.angle]
+            forces.append(turned(one, Push(-lost * cos(angle), -lost * sin(angle))))
+        return total(forces)
+
+    return make_effect(
+        advance,
+        name="azimuths_advance",
+        equation="T = -k_pod_advance |n| U_P, U_P the flow along a pod: thrust lost to the speed",
+        source=F11,
+        signals=[*(s for one in pods for s in one.signals), "u", "v", "r"],
+        parameters={own_name("k_pod_advance", one): advance_gain(ship, one) for one in pods},
+    )
 
 
 def _races(ship: Ship, pods: Sequence[Actuator]) -> Effect:

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from trialid.effects.actuators.instances import (
     GAIN_UNITS,
+    advance_gain,
     make_effect,
     own_name,
     typical_drive,
     typical_gain,
-    usual_speed,
 )
 from trialid.effects.actuators.push_kinds import F11, PUSHES, Driven, Push, PushKind, thrust
 from trialid.maths import Number, clip
@@ -162,19 +162,13 @@ def _advance(ship: Ship, ones: Sequence[Actuator]) -> Effect:
             forces.append(turned(one, Push(-lost)))
         return total(forces)
 
-    units = {"revolutions": "N s^2/m", "share": "N s/m", "thrust": "s/m"}
-    parameters = {}
-    for one in ones:
-        half = 0.5 * typical_gain(ship, one.command) / usual_speed(ship)
-        half *= typical_drive(ship, one.command) if one.command == "revolutions" else 1.0
-        parameters[own_name("k_advance", one)] = Parameter(half, units[one.command], low=0.0)
     return make_effect(
         advance,
         name="thrusters_advance",
         equation="T = -k_advance |n| u: thrust that falls with the speed ahead, wake included",
         source=F11,
         signals=[*(one.name for one in ones), "u"],
-        parameters=parameters,
+        parameters={own_name("k_advance", one): advance_gain(ship, one) for one in ones},
     )
 
 

@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 SLACK = 1.125
+MOST = 1 << 18
+"""Numbers of slack at most: a long array is made longer without a copy, its slack is memory."""
 FEWEST = 1024
 
 
@@ -28,7 +30,7 @@ class Growing:
         end = self.count + len(piece)
         if end > len(self._room):
             # Nobody else has seen the array yet, so none can hold on to where it lay.
-            self._room.resize(max(end, int(SLACK * end), FEWEST), refcheck=False)
+            self._room.resize(max(min(int(SLACK * end), end + MOST), FEWEST), refcheck=False)
         self._room[self.count : end] = piece
         self.count = end
 

@@ -254,10 +254,10 @@ def channels(
                 f"{name}: {_size(column)} samples in {key.unit} left out, the unit changes"
             )
             continue
+        remarks += _complaints(name, column)
         channel = _channel(
             name=name, key=key, column=column, t=t, received=received, clock=clock, none=none
         )
-        remarks += _complaints(name, column)
         if np.isnan(channel.y).all():
             empty.append(name)
         else:
@@ -309,9 +309,10 @@ def _channel(
     clock: str,
     none: int,
 ) -> Channel:
-    rows = np.concatenate(column.rows)
+    rows, y = np.concatenate(column.rows), np.concatenate(column.y)
+    column.rows, column.y = [], []  # a long log's samples are not held twice
     timed = t[rows] != none
-    rows, y = rows[timed], np.concatenate(column.y)[timed]
+    rows, y = rows[timed], y[timed]
     quantity, device = key.field.quantity, f", {key.device}" if key.device else ""
     if key.sentence == "RPM" and key.field.name == "speed":
         quantity, words = SHAFTS.get(key.device, (None, "engine or further shaft"))
@@ -319,7 +320,6 @@ def _channel(
     talker = f", talker {key.talker}" if key.talker else ""
     source = f", source {key.connection}" if key.connection else ""
     words = f"{key.sentence} {key.words}{talker}{source}{device}: {key.field.words}"
-    arrived = None if received is None else received[rows]
     return Channel(
         name=name,
         t=t[rows],
@@ -329,7 +329,7 @@ def _channel(
         description=words,
         quantity=quantity,
         positive=key.field.positive,
-        received=arrived,
+        received=None if received is None else received[rows],
     )
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from trialid.errors import LogError
 from trialid.ingest.adapter import Wanted
+from trialid.ingest.bytes.growing import Growing
 from trialid.ingest.nmea0183 import nmea0183_channels, nmea0183_clock, nmea0183_stamps
 from trialid.ingest.nmea0183.nmea0183_sentences import (
     Mask,
@@ -22,7 +23,8 @@ from trialid.ingest.nmea0183.nmea0183_sentences import (
     has_checksums,
     sentences,
 )
-from trialid.ingest.nmea0183.nmea0183_stamps import LOCAL, NONE, SECOND, TIME_OF_DAY
+from trialid.ingest.nmea0183.nmea0183_stamps import LOCAL, NONE, TIME_OF_DAY
+from trialid.ingest.nmea0183.nmea0183_steps import out_of_step
 from trialid.ingest.times import local_time
 from trialid.recording import Channel
 
@@ -31,20 +33,21 @@ Connections = Callable[[Sentences], Iterable[tuple[Places, str]]]
 """Sentences by the connection they came over: rows and name."""
 
 BLOCK = 4 << 20
-OUT_OF_STEP = 50_000_000
-"""A stamp this much [ns] outside of its two neighbours, which agree, is a damaged one."""
 UNSAFE = re.compile(r"[^\w.+#-]+")
 MOST = 0.5
 
 
 @dataclass
 class Stream:
-    """What is gathered from a stream, block after block."""
+    """What is gathered from a stream, block after block.
+
+    `tagged` are times of tag blocks, and which are whole seconds, from a sentence on; none of the
+    many blocks without any tag.
+    """
 
     found: nmea0183_channels.Found = field(default_factory=dict)
-    tagged: list[Ints] = field(default_factory=list)
-    tag_coarse: list[Mask] = field(default_factory=list)
-    stamped: list[Ints] = field(default_factory=list)
+    tagged: list[tuple[int, Ints, Mask]] = field(default_factory=list)
+    stamped: Growing = field(default_factory=lambda: Growing(np.int64))
     kind: list[NDArray[np.int8]] = field(default_factory=list)
     coarse: list[Mask] = field(default_factory=list)
     ticks: dict[str, list[nmea0183_clock.Ticks]] = field(default_factory=dict)
@@ -156,9 +159,9 @@ def _take(
                 offset=stream.total,
                 found=stream.found,
             )
-    stream.tagged.append(tags.t)
-    stream.tag_coarse.append(tags.seconds_only)
-    stream.stamped.append(t)
+    if (tags.t != NONE).any():
+        stream.tagged.append((stream.total, tags.t, tags.seconds_only))
+    stream.stamped.add(t)
     stream.kind.append(kind)
     stream.coarse.append(coarse)
     stream.total += len(t)
@@ -192,10 +195,12 @@ def _by_connection(
 
 
 def _timed(path: Path, stream: Stream, zone: str | None) -> Timed:
-    tagged, stamped = np.concatenate(stream.tagged), np.concatenate(stream.stamped)
-    coarse = np.concatenate(stream.tag_coarse)
-    has_tags, has_stamps = _mostly(tagged != NONE), _mostly(stamped != NONE)
-    fine = has_tags and not _mostly(coarse[tagged != NONE])
+    stamped: Ints = stream.stamped.array().astype(np.int64, copy=False)
+    tags = sum(int(np.sum(t != NONE)) for _, t, _ in stream.tagged)
+    seconds = sum(int(np.sum(coarse[t != NONE])) for _, t, coarse in stream.tagged)
+    has_tags, has_stamps = tags >= MOST * stream.total, _mostly(stamped != NONE)
+    fine = has_tags and seconds < MOST * tags
+    tagged = _whole(stream.tagged, stream.total if has_tags else 0)
     lines = _of_lines(stream, stamped, zone) if has_stamps else None
     if has_tags and (fine or lines is None):
         words = "tag block time" + ("" if fine else ", whole seconds")
@@ -213,6 +218,14 @@ def _timed(path: Path, stream: Stream, zone: str | None) -> Timed:
     return Timed(clock.t, None, clock.words, (*clock.remarks, *_untimed(clock.t)))
 
 
+def _whole(parts: list[tuple[int, Ints, Mask]], total: int) -> Ints:
+    """Times from their sentences on, NONE where there is none. (N,)."""
+    t = np.full(total, NONE)
+    for start, part, _ in parts if total else ():
+        t[start : start + len(part)] = part
+    return t
+
+
 def _mostly(there: Mask) -> bool:
     return len(there) > 0 and bool(there.mean() >= MOST)
 
@@ -221,57 +234,25 @@ def _of_lines(stream: Stream, stamped: Ints, zone: str | None) -> Timed:
     """The recorder's stamps: of the kind most lines have, without those that are damaged."""
     kinds = np.concatenate(stream.kind)
     kind = int(np.argmax(np.bincount(kinds[stamped != NONE])))
-    rows = np.flatnonzero((kinds == kind) & (stamped != NONE))
-    times = stamped[rows]
+    ours = (kinds == kind) & (stamped != NONE)
+    times = stamped if ours.all() else stamped[ours]
     if kind == LOCAL and zone is not None:
         times = local_time.utc(times, zone)
     if kind == TIME_OF_DAY:
         times = nmea0183_clock.unwrap_midnights(times)
-    odd = out_of_step(times)
-    t = np.full(len(stamped), NONE)
-    t[rows[~odd]] = times[~odd]
+    times[out_of_step(times)] = NONE
+    t = times
+    if len(times) < len(stamped):
+        t = np.full(len(stamped), NONE)
+        t[ours] = times
     words = {
         LOCAL: f"line stamps, zone {zone}" if zone else "line stamps, no zone stated: taken as UTC",
         TIME_OF_DAY: "line stamps, time of day, no date",
     }.get(kind, "line stamps")
     remarks = list(_untimed(t))
-    if _mostly(np.concatenate(stream.coarse)[rows]):
+    if _mostly(np.concatenate(stream.coarse)[ours]):
         remarks.append("the stamps on the lines are whole seconds")
     return Timed(t, None, words, tuple(remarks))
-
-
-def out_of_step(t: Ints) -> Mask:
-    """Stamps that those around them, which agree, do not enclose; (N,).
-
-    Nothing protects the text before a sentence. Asked are the two neighbours, and the medians of
-    three on either side. Given up as well is a stamp far from both sides, and at the ends, where
-    neighbours are missing, one far from the next.
-    """
-    if len(t) < 3:
-        return np.zeros(len(t), np.bool_)
-    edged = np.concatenate([t[[0, 0, 0]], t, t[[-1, -1, -1]]])
-    before, after = _median_of_3(edged[:-4]), _median_of_3(edged[4:])
-    odd = _outside(edged[2:-4], t, edged[4:-2]) | _outside(before, t, after)
-    alone = np.minimum(np.abs(t - before), np.abs(t - after))
-    odd |= alone > 10 * SECOND + 2 * np.abs(after - before)
-    kept = np.flatnonzero(~odd)
-    if len(kept) > 1:
-        far = 10 * SECOND + 10 * int(np.median(np.abs(np.diff(t[kept]))))
-        first, last = t[kept[1]] - t[kept[0]], t[kept[-1]] - t[kept[-2]]
-        odd[kept[0]] |= not -OUT_OF_STEP <= first <= far
-        odd[kept[-1]] |= not -OUT_OF_STEP <= last <= far
-    return odd
-
-
-def _outside(before: Ints, here: Ints, after: Ints) -> Mask:
-    out = (here < before - OUT_OF_STEP) | (here > after + OUT_OF_STEP)
-    return out & (before <= after + OUT_OF_STEP)
-
-
-def _median_of_3(t: Ints) -> Ints:
-    """Medians of each three in a row; (N - 2,)."""
-    a, b, c = t[:-2], t[1:-1], t[2:]
-    return np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c))
 
 
 def _untimed(t: Ints) -> tuple[str, ...]:

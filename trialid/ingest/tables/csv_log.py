@@ -12,10 +12,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
+from trialid.ingest.bytes.encoded_text import UTF_16
 from trialid.ingest.tables import table_header, table_text, template
+from trialid.ingest.tables.table import Head
 from trialid.ingest.tables.table import head as head_of
-from trialid.ingest.tables.table_channels import recording
-from trialid.ingest.tables.table_layout import UTF_16, Layout, decode_text, of_template
+from trialid.ingest.tables.table_channels import columns_to_read, recording
+from trialid.ingest.tables.table_layout import Layout, decode_text, of_template
 from trialid.ingest.tables.table_names import is_time
 from trialid.ingest.tables.table_tidy import tidy
 from trialid.recording import Recording
@@ -57,11 +59,15 @@ def is_text(head: bytes) -> bool:
 
 def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted columns; LogError names the line and column of what cannot be read."""
-    if aids.template is None:
-        table = tidy(table_text.load(path, _layout(path)))
-        return recording(table, ADAPTER.name, wanted, aids)
-    told = template.load(aids.template)
-    table = table_text.load(path, of_template(told), told)
+    told = None if aids.template is None else template.load(aids.template)
+
+    def wanted_of(heads: Sequence[Head]) -> set[int]:
+        return columns_to_read(heads, wanted, told)
+
+    if told is None:
+        table = tidy(table_text.load(path, _layout(path), wanted_of))
+    else:
+        table = table_text.load(path, of_template(told), wanted_of, told)
     return recording(table, ADAPTER.name, wanted, aids, told)
 
 

@@ -33,7 +33,8 @@ class Table:
     """The columns of a file, equally long.
 
     `place` says in words where a row is in the file, `number` reads one text or cell and raises
-    ValueError for what is none. `utc` is True where dates are instants of UTC and no local time.
+    ValueError for what is none. `utc` is True where dates are instants of UTC and no local time,
+    `own` where nobody else holds the columns: stamps may take the place of the seconds they are of.
     """
 
     path: Path
@@ -43,6 +44,7 @@ class Table:
     number: Callable[[Any], float] = float
     remarks: tuple[str, ...] = ()
     utc: bool = False
+    own: bool = False
 
     def where(self, row: int, column: int) -> str:
         """Place of a field, as an error names it."""

@@ -3,7 +3,7 @@
 import dataclasses
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from trialid.errors import LogError, UnitError
 from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
@@ -41,6 +41,18 @@ def recording(
                 one.name, clock.t, y, one.unit, clock.words, quantity=quantity
             )
     return Recording(table.path, adapter, sha256(table.path), channels, tuple(remarks))
+
+
+def columns_to_read(heads: Sequence[Head], wanted: Wanted, template: Template | None) -> set[int]:
+    """The columns whose values are looked at: those wanted, and any that may tell the time."""
+    if template is None:
+        named = heads
+        timed = {*table_clock.columns_of_time(heads)}
+        timed |= {i for i, one in enumerate(heads) if one.name in table_clock.UNNAMED}
+    else:
+        named = [_as_told(one, template) for one in heads]
+        timed = {i for i, one in enumerate(heads) if one.text in template.time.columns}
+    return timed | {i for i, one in enumerate(named) if is_wanted(one.name, wanted)}
 
 
 def _by_template(table: Table, template: Template) -> Table:

@@ -8,6 +8,12 @@ end the day may come first or the month: the column tells, if a number in it is 
 import re
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
+Stamps = tuple[NDArray[np.int64], bool]
+"""Dates as written [ns] (N,), and whether they state their zone."""
+ISO = re.compile(r"\d{4}-\d\d-\d\d([T ]|$)")
 DATED = re.compile(
     r"(?P<first>\d{1,4})(?P<mark>[./-])(?P<second>\d{1,2}|[A-Za-z]{3})(?P=mark)(?P<third>\d{1,4})"
     r"(?:[T,\s]\s*(?P<hour>\d{1,2}):(?P<minute>\d\d)(?::(?P<second_of>\d\d)"
@@ -86,3 +92,40 @@ def _iso(one: re.Match[str], order: str) -> str:
     zone = one["zone"] or ""
     clock = f"{hour:02d}:{one['minute']}:{one['second_of'] or '00'}{part}"
     return f"{date}T{clock}{'Z' if zone in ('UTC', 'GMT') else zone}"
+
+
+def stamps(texts: list[str], form: str | None) -> Stamps | None:
+    """Dates as written [ns] and whether they stated their zone; None where not all are alike."""
+    import pandas as pd
+
+    try:
+        if form is None and min(map(len, texts), default=0) < 10:
+            raise ValueError("a year and a month are no date")
+        found = pd.DatetimeIndex(pd.to_datetime(texts, format=form or "ISO8601"))
+        aware = found.tz is not None
+        plain = found.tz_convert("UTC").tz_localize(None) if aware else found
+        return plain.as_unit("ns").to_numpy().astype(np.int64, copy=True), aware
+    except (ValueError, OverflowError, TypeError):
+        return None
+
+
+def stamps_of_block(texts: Sequence[str], form: str | None) -> Stamps | None:
+    """As `stamps`, of some rows of a column; None too where other rows may say how they are read.
+
+    >>> stamps_of_block(["1970-01-01T00:00:02Z"], None)
+    (array([2000000000]), True)
+    >>> stamps_of_block(["13/06/2026 09:12:00"], None), stamps_of_block(["2026-06-03"], None)
+    (None, None)
+    """
+    plain: list[str] | None = [write_point(text.strip(), form) for text in texts]
+    if form is None and plain and not ISO.match(plain[0]):
+        alike = "/" not in plain[0] or plain[0][:4].isdigit()
+        plain = as_iso(plain) if alike else None
+    if not plain or (form is None and len(plain[0]) <= len("2026-06-03")):
+        return None
+    return stamps(plain, form)
+
+
+def write_point(text: str, form: str | None) -> str:
+    """The text as its form has the decimals of its seconds."""
+    return text.replace(",", ".") if form and "," not in form else text

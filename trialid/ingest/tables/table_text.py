@@ -1,15 +1,17 @@
 """Delimited text to columns: a quick way for tables without fault, a careful one for the others.
 
-The quick way is pandas' reader, which pads short rows and cannot say where a field is. Whatever it
-finds odd is therefore read again by the careful way, which knows the line of every field.
+The quick way is pandas' reader over one block after the other, which pads short rows and cannot say
+where a field is. Whatever it finds odd is therefore read again, whole, by the careful way, which
+knows the line of every field.
 """
 
+import contextlib
 import csv
 import dataclasses
 import io
 import itertools
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,53 +19,100 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import LogError, list_names
-from trialid.ingest.tables import table_quick
+from trialid.ingest.bytes.encoded_text import (
+    LONGEST_LINE,
+    OddTextError,
+    first_long_line,
+    text_blocks,
+    unify_text,
+)
+from trialid.ingest.tables import table_clock, table_quick
 from trialid.ingest.tables.table import Head, Table, check_width, head, reader_of_numbers
 from trialid.ingest.tables.table_layout import (
     SPACES,
     Layout,
     Top,
+    blocks_below,
     decimal,
     decode_text,
     encode_text,
-    unify_text,
+    find_end,
+    in_one,
+    join_separators,
+    without_cut_line,
 )
 from trialid.ingest.tables.table_quick import is_number
 from trialid.ingest.tables.table_tidy import cut
 from trialid.ingest.tables.template import Template, check_header, distinct
 
 MOST_BYTES = 2_000_000_000
-"""Of a table as text, which is read whole."""
-LONGEST_LINE = 2_000_000
-"""Bytes of a line, more than the columns of any table."""
-JOINT = "\x1f"
-"""What takes the place of a separator of several characters."""
+"""Of a table as text that is read whole."""
+Needed = Callable[[Sequence[Head]], Collection[int]]
+"""Which columns somebody wants, by their headers."""
 
 
-def load(path: Path, layout: Layout, template: Template | None = None) -> Table:
-    """The columns of a text; LogError for rows that are not of the header's length."""
+def load(path: Path, layout: Layout, needed: Needed, template: Template | None = None) -> Table:
+    """The columns of a text; LogError for rows that are not of the header's length.
+
+    Columns that are not needed may hold nothing but NaN.
+    """
+    with contextlib.suppress(OddTextError):
+        return _quick(path, layout, needed, template)
     size = path.stat().st_size
     if size > MOST_BYTES:
         raise LogError(
             f"{path}: {size / 1e9:.0f} GB of text; tables of up to {MOST_BYTES / 1e9:.0f} GB are "
             "read: split it, or save it as Parquet"
         )
-    raw, encoding = unify_text(path.read_bytes(), layout.encoding)
-    _check_lines(path, raw)
-    layout = dataclasses.replace(layout, encoding=encoding)
-    if len(layout.separator) > 1:
-        raw = raw.replace(encode_text(layout.separator, layout), JOINT.encode())
-        layout = dataclasses.replace(layout, separator=JOINT)
-    top = _top(path, raw, layout, template)
+    return _whole(path, layout, template)
+
+
+def _quick(path: Path, layout: Layout, needed: Needed, template: Template | None) -> Table:
+    """The table by blocks; OddTextError where anything is odd."""
+    remarks: list[str] = []
+    first = next(text_blocks(path, layout.encoding), b"")
+    told = in_one(layout, path)
+    top = _top(path, join_separators(first, layout, told), told, template)
     check_width(path, len(top.heads))
-    raw, remarks = _ended(path, raw, top, layout)
+    if template is None:
+        told = dataclasses.replace(told, dated=table_clock.columns_of_time(top.heads))
+
+    def blocks() -> Iterator[tuple[bytes, int]]:
+        remarks.clear()
+        return blocks_below(path, layout, told, top, remarks)
+
+    found = table_quick.columns(blocks, top, told, needed(top.heads))
+    if found is None:
+        raise OddTextError
+    number = reader_of_numbers(found.mark, layout.thousands, layout.missing)
+    return Table(
+        path=path,
+        heads=top.heads,
+        columns=found.columns,
+        place=_line(top.lines),
+        number=number,
+        remarks=tuple(remarks),
+        utc=found.utc,
+        own=True,
+    )
+
+
+def _whole(path: Path, layout: Layout, template: Template | None) -> Table:
+    """The table read at once, with care."""
+    told = in_one(layout, path)
+    raw = join_separators(unify_text(path.read_bytes(), layout.encoding), layout, told)
+    if (at := first_long_line(raw)) is not None:
+        line = raw.count(b"\n", 0, at) + 1
+        raise LogError(
+            f"{path}, line {line}: more than {LONGEST_LINE / 1e6:.0f} MB "
+            "without an end of line; it is no table, or damaged: mend or delete the line"
+        )
+    top = _top(path, raw, told, template)
+    check_width(path, len(top.heads))
+    raw, remarks = _ended(path, raw, top, told)
     if re.compile(rb"\S").search(raw, top.offset) is None:
         raise LogError(f"{path}: a header but no rows; check that the log was exported")
-    columns = table_quick.columns(path, raw, top, layout)
-    if columns is None:
-        return _careful(path, raw, top, layout, remarks)
-    number = reader_of_numbers(decimal(raw, top, layout), layout.thousands, layout.missing)
-    return Table(path, top.heads, columns, _line(top.lines), number, tuple(remarks))
+    return _careful(path, raw, top, told, remarks)
 
 
 def _top(path: Path, raw: bytes, layout: Layout, template: Template | None) -> Top:
@@ -88,20 +137,6 @@ def _top(path: Path, raw: bytes, layout: Layout, template: Template | None) -> T
     heads = tuple(head(text, one) for text, one in zip(texts, unit, strict=False))
     _agree(path, heads, unit)
     return Top(heads, lines.offset, lines.number)
-
-
-def _check_lines(path: Path, raw: bytes) -> None:
-    """LogError for a line that is longer than the columns of any table."""
-    at = 0
-    while len(raw) - at > LONGEST_LINE:
-        end = raw.rfind(b"\n", at, at + LONGEST_LINE)
-        if end < 0:
-            line = raw.count(b"\n", 0, at) + 1
-            raise LogError(
-                f"{path}, line {line}: more than {LONGEST_LINE / 1e6:.0f} MB without an end of "
-                "line; it is no table, or damaged: mend or delete the line"
-            )
-        at = end + 1
 
 
 class _Lines:
@@ -162,40 +197,14 @@ def _agree(path: Path, heads: tuple[Head, ...], stated: list[str]) -> None:
 def _ended(path: Path, raw: bytes, top: Top, layout: Layout) -> tuple[bytes, list[str]]:
     """The text down to where the table ends, without a last line that was cut short."""
     if layout.end is not None:
-        at = _end(raw, top.offset, encode_text(layout.end, layout))
+        at = find_end(raw, top.offset, encode_text(layout.end, layout))
         if at is None:
             raise LogError(
                 f"{path}: no line begins with {layout.end!r}, where the template has the table "
                 "end; it is another export, or cut short"
             )
         raw = raw[:at]
-    last = raw[raw.rfind(b"\n") + 1 :]
-    fields = _fields(decode_text(last), layout, len(top.heads)) if last.strip() else len(top.heads)
-    if fields >= len(top.heads) or len(raw) - len(last) < top.offset:
-        return raw, []
-    kept = raw[: len(raw) - len(last)]
-    # Careful with quotes: a field may go on over several lines.
-    if raw.find(b'"', top.offset) >= 0:
-        return raw, []
-    line = kept.count(b"\n") + 1
-    return kept, [f"line {line}, the last, is cut short and left out"]
-
-
-def _end(raw: bytes, start: int, text: bytes) -> int | None:
-    """Where the first line starts that begins with the text, after blanks and quotes."""
-    at = raw.find(text, start)
-    while at >= 0:
-        line = max(raw.rfind(b"\n", start, at) + 1, start)
-        if not raw[line:at].strip(b' \t"'):
-            return line
-        at = raw.find(text, at + 1)
-    return None
-
-
-def _fields(line: str, layout: Layout, most: int) -> int:
-    """How many fields a line has; it is not counted on beyond `most`."""
-    separator = None if layout.separator == SPACES else layout.separator
-    return len(line.split(separator, most))
+    return without_cut_line(raw, top, layout)
 
 
 def _line(before: int) -> Callable[[int], str]:
@@ -220,7 +229,7 @@ def _careful(path: Path, raw: bytes, top: Top, layout: Layout, remarks: list[str
                 f" ({list_names(names)}); mend or delete the line, or, where the table is laid out "
                 "otherwise, draft a template (trialid inspect LOG --template FILE)"
             )
-    mark = decimal(raw, top, layout)
+    mark = decimal(raw, layout, top.offset)
     columns = tuple(np.array(column, dtype=object) for column in zip(*rows, strict=True))
     number = reader_of_numbers(mark, layout.thousands, layout.missing)
     if layout.decimal is None and mark == ",":

@@ -1,7 +1,7 @@
 """The clock of a table: stamps [ns] from seconds, indices, dates, days or times of day."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, time, timedelta
 from typing import Any, NoReturn
@@ -18,7 +18,6 @@ from trialid.names import units
 
 TIME_NAMES = ("t", "time", "timestamp", "zeit")
 DATE_NAMES = ("date", "datum")
-ISO = re.compile(r"\d{4}-\d\d-\d\d([T ]|$)")
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 LATEST_S = 9e9
 """More seconds than this do not fit 64 bits of nanoseconds, and are no seconds."""
@@ -27,6 +26,8 @@ FIRST_DAY = {"excel days": 25_569, "matlab datenum": 719_529}
 """What the two count on 1 January 1970."""
 DAYS = ((30_000.0, 60_000.0), (693_962.0, 767_010.0))
 """What Excel and MATLAB count between 1982 and 2064, and in the years 1900 to 2100."""
+PART = 1 << 20
+"""Rows of a column that are gone through at once."""
 QUICKEST = 1e-3
 """[s] Seconds that step by less, among such numbers, are rather days."""
 TOLD = "or say in a template how the time is written (trialid inspect LOG --template FILE)"
@@ -85,17 +86,25 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
     stated = unit or head.unit or unit_of_time(bare(head))
     if stated is None:
         _not_days(table, column, y)
-    seconds = y * _seconds_per(table, stated or "s")
-    wrong = ~(np.abs(seconds) < LATEST_S)
-    if wrong.any():
-        row = int(np.argmax(wrong))
-        raise LogError(
-            f"{table.where(row, column)}: {_shown(table, row, column)!r} is no time in seconds; "
-            "state the unit in the header, as in 't[ms]', or delete the line"
-        )
-    remarks = _resolution(table, column, y, seconds)
-    t = np.rint(seconds * 1e9).astype(np.int64)
+    scale = _seconds_per(table, stated or "s")
+    for part in _parts(y):
+        wrong = ~(np.abs(y[part] * scale) < LATEST_S)
+        if wrong.any():
+            row = part.start + int(np.argmax(wrong))
+            raise LogError(
+                f"{table.where(row, column)}: {_shown(table, row, column)!r} is no time in "
+                "seconds; state the unit in the header, as in 't[ms]', or delete the line"
+            )
+    remarks = _resolution(table, column, y, scale)
+    t = y.view(np.int64) if table.own else np.empty(len(y), np.int64)
+    for part in _parts(y):
+        t[part] = np.rint(y[part] * scale * 1e9)
     return Clock(t, (column,), f"column {head.name}", remarks)
+
+
+def _parts(y: NDArray[np.float64]) -> Iterator[slice]:
+    """A long column part by part, as what is made of it on the way is as long again."""
+    return (slice(at, at + PART) for at in range(0, len(y), PART))
 
 
 def _numbers(table: Table, column: int) -> NDArray[np.float64]:
@@ -138,9 +147,9 @@ def _shown(table: Table, row: int, column: int) -> str:
 
 def _not_days(table: Table, column: int, y: NDArray[np.float64]) -> None:
     """LogError for numbers that are seconds at an unlikely rate, and days at a likely one."""
-    if len(y) < 2 or not np.isfinite(y).all():
+    if len(y) < 2:
         return
-    within = any(low < y.min() and y.max() < high for low, high in DAYS)
+    within = any(low < y.min() and y.max() < high for low, high in DAYS)  # not with NaN
     if within and 0.0 < np.median(np.abs(np.diff(y))) < QUICKEST:
         raise LogError(
             f"{table.where(0, column)}: {y[0]:.10g} may be seconds or days; state the unit in the "
@@ -148,17 +157,15 @@ def _not_days(table: Table, column: int, y: NDArray[np.float64]) -> None:
         )
 
 
-def _resolution(
-    table: Table, column: int, y: NDArray[np.float64], seconds: NDArray[np.float64]
-) -> tuple[str, ...]:
+def _resolution(table: Table, column: int, y: NDArray[np.float64], scale: float) -> tuple[str, ...]:
     """Remark on stamps that went through 32 bits; LogError where those cannot tell them apart."""
     narrow = table.columns[column].dtype == np.float32
-    if len(y) < 3 or not (narrow or (y == y.astype(np.float32)).all()):
+    exact = all((y[part] == y[part].astype(np.float32)).all() for part in _parts(y))
+    if len(y) < 3 or not (narrow or exact):
         return ()
-    largest = int(np.argmax(np.abs(y)))
-    scale = abs(seconds[largest] / y[largest]) if y[largest] else 1.0
-    finest = float(np.spacing(np.abs(y[largest]).astype(np.float32))) * scale
-    step = float(np.ptp(seconds)) / (len(seconds) - 1)
+    most = np.float32(max(abs(y.min()), abs(y.max())))
+    finest = float(np.spacing(most)) * scale
+    step = float(np.ptp(y)) * scale / (len(y) - 1)
     if finest > 0.5 * step and (narrow or len(np.unique(y)) < len(y)):
         raise LogError(
             f"{table.path}: column {table.heads[column].name!r} went through 32 bits, which tell "
@@ -290,31 +297,18 @@ def _no_gaps(table: Table, column: int, t: NDArray[np.int64]) -> None:
         raise LogError(f"{table.where(row, column)}: '' is no time; delete the line")
 
 
-def _read_dates(
-    table: Table, columns: Sequence[int], form: str | None
-) -> tuple[NDArray[np.int64], bool]:
+def _read_dates(table: Table, columns: Sequence[int], form: str | None) -> table_stamps.Stamps:
     """Stamps as written [ns], and whether the texts stated their zone."""
-    import pandas as pd
-
     texts = join_columns(table, columns, form)
-    if form is None and not ISO.match(texts[0] if texts else ""):
+    if form is None and not table_stamps.ISO.match(texts[0] if texts else ""):
         texts = table_stamps.as_iso(texts) or texts
-    try:
-        if form is None and min(map(len, texts), default=0) < 10:
-            raise ValueError("a year and a month are no date")
-        found = pd.DatetimeIndex(pd.to_datetime(texts, format=form or "ISO8601"))
-        aware = found.tz is not None
-        plain = found.tz_convert("UTC").tz_localize(None) if aware else found
-        return plain.as_unit("ns").to_numpy().astype(np.int64, copy=True), aware
-    except (ValueError, OverflowError, TypeError):
-        return _one_by_one(table, columns, texts, form)
+    return table_stamps.stamps(texts, form) or _one_by_one(table, columns, texts, form)
 
 
 def join_columns(table: Table, columns: Sequence[int], form: str | None) -> list[str]:
     """The texts of these columns, of each row one."""
     parts = [_date_texts(table.columns[column].tolist()) for column in columns]
-    texts = [" ".join(words) for words in zip(*parts, strict=True)]
-    return [text.replace(",", ".") for text in texts] if form and "," not in form else texts
+    return [table_stamps.write_point(" ".join(words), form) for words in zip(*parts, strict=True)]
 
 
 def _date_texts(values: Sequence[Any]) -> list[str]:

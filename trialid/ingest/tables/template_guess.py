@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from trialid.ingest.bytes.encoded_text import UTF_16, unify_text
 from trialid.ingest.tables.table import MISSING
-from trialid.ingest.tables.table_layout import SPACES, UTF_16, decode_text, unify_text
+from trialid.ingest.tables.table_layout import SPACES, decode_text
 
 TOP, TAIL = 262_144, 16_384
 """Bytes looked at, at the beginning and at the end."""
@@ -45,7 +46,7 @@ def guess(path: Path) -> Guess | None:
     """The layout a text seems to have; None where no two lines look like rows of one table."""
     with path.open("rb") as file:
         raw = file.read(TOP)
-    text = decode_text(unify_text(raw, None)[0])
+    text = decode_text(unify_text(raw, None))
     lines = [line.rstrip("\r") for line in text.split("\n")]
     lines = lines[:-1] if len(raw) == TOP else lines
     found = max(

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from trialid.accuracy.parameter_table import ANOTHER_GM
 from trialid.names import wording
 from trialid.names.quantities import RUDDERS
 from trialid.report.words import doubt
@@ -15,9 +16,9 @@ RIVALS: Final = 2
 """Other members of the family whose command is written out."""
 
 OPENS: Final = {
-    "repeated manoeuvre": "run one manoeuvre twice, with the same rudder orders",
-    "periods of a periodic test": "run a test in which the rudder repeats itself several times",
-    "quiet stretch": "record a minute or more of steady course, rudder at rest, in the same sea",
+    "repeated manoeuvre": "run one manoeuvre twice, with the same orders",
+    "periods of a periodic test": "run a test whose orders repeat themselves several times",
+    "quiet stretch": "record a minute or more of steady course, nothing ordered, in the same sea",
     "stated sensor figure": "state how much each sensor scatters, as noise under [diagnose]",
 }
 """What would open a route to the noise that this record does not have."""
@@ -229,7 +230,9 @@ def widest(parameters: Sequence[ParameterRow]) -> str:
         return ""
     _, row = max(known, key=lambda pair: pair[0])
     why = "by the numbers held fixed (how sure those are: [uncertainty] in the ship file)"
-    if row.widened_by:
+    if row.widened_by == ANOTHER_GM:
+        why = "as the record does not tell GM"
+    elif row.widened_by:
         why = f"as {row.widened_by} may be missing"
     return f"Least known: {row.name}, {why}."
 

@@ -86,9 +86,9 @@ from pathlib import Path
 path, wanted = Path(sys.argv[1]), json.loads(sys.argv[2])
 start = time.perf_counter()
 if wanted is None:
-    from trialid.report.inspection import inspection
-    from trialid.survey import survey
-    found = survey(path)
+    from trialid.inspection import inspect_log
+    from trialid.report.terminal.log_contents import inspection
+    found = inspect_log(path)
     inspection(found)
 else:
     from trialid.ingest import read

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from ingest_timing import Row, fastest
+from ingest_timing import Row, SizedLogs, fastest, repeated
 from pynmeagps import NMEAReader
 from write_nmea0183 import OPENCPN, said, with_iso, with_opencpn, with_signal_k, with_tag_block
 
@@ -57,3 +57,13 @@ def _ours(path: Path) -> None:
 def _library(data: bytes) -> None:
     for _ in NMEAReader(io.BytesIO(data)):
         pass
+
+
+def sized(path: Path, size: float) -> tuple[str, ...]:
+    """A log of that size, each sentence behind its stamp."""
+    lines = [text for _, _, text in said(_series(600))]
+    repeated(path, lines, lambda i: f"{np.datetime64(START // 10**6 + i * 10, 'ms')}Z ", size)
+    return "RSA/AG:starboard", "ROT/TI:rate", "XDR/II/ROLL:angle"
+
+
+SIZED: SizedLogs = {"NMEA 0183": sized}

@@ -1,0 +1,48 @@
+"""What to read beside the parameters of a fit, sound or not."""
+
+from trialid.identification.fit import Fit
+from trialid.names.wording import shown_unit
+
+
+def remarks(fit: Fit) -> tuple[str, ...]:
+    """What to read beside the parameters of a fit, sound or not; a line each.
+
+    Priors of the ship's own parameters stand in the table, and what contradicts them beside it.
+    """
+    own = {x.name for x in fit.problem.unknowns if x.kind == "physical" and x.prior}
+    units = {x.name: x.unit for x in fit.problem.unknowns}
+
+    def said(name: str, value: float) -> str:
+        unit, factor = shown_unit(units[name])
+        return f"{value * factor:.4g} {unit if unit != '1' else ''}".rstrip()
+
+    bounds = [
+        f"{n} ended at its bound {said(n, x)}: that is the bound's value, not the record's"
+        for n, x in fit.at_bounds.items()
+    ]
+    against = [
+        f"{n} = {said(n, fit.value(n))} is {abs(z):.1f} deviations "
+        f"{'above' if z > 0.0 else 'below'} what is likely"
+        for n, z in fit.contradicted.items()
+        if n not in own
+    ]
+    weak = ["the search was slow to the end: some parameters can hardly be told apart"]
+    return (*bounds, *against, *_untold_GM(fit), *(weak if fit.weakly_identified else []))
+
+
+def _untold_GM(fit: Fit) -> list[str]:
+    """That the record does not choose among metacentric heights, where it does not."""
+    roll = fit.problem.roll
+    if not fit.rivals or roll is None:
+        return []
+    if not roll.is_a_ships(fit.theta):
+        ratio = roll.ratio(fit.theta)
+        return [
+            f"the record does not tell GM: her roll is damped by {ratio:.2g} of what is critical, "
+            f"as no ship's is, so that {fit.value('GM'):.3g} m is of a swell or of nothing"
+        ]
+    listed = [f"{values['GM']:.3g}" for values in fit.rivals]
+    rivals = (
+        " or ".join(listed) if len(listed) < 4 else f"anything from {listed[0]} to {listed[-1]}"
+    )
+    return [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]

@@ -1,0 +1,3 @@
+"""What is special about roll: a resonance that a record may not show, and what ships have."""
+
+__all__: list[str] = []

@@ -1,0 +1,147 @@
+"""Whether the record tells GM: other valleys as deep, a valley that is hardly one, or no ship's."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trialid.identification.gauss_newton import minimise
+from trialid.identification.one_search import End
+from trialid.identification.output_error import Problem, ranges, stretches
+from trialid.identification.record_starts import Part, of_roll, rows_of
+from trialid.identification.roll.roll_range import FACTOR, GM_OVER_L
+from trialid.identification.weighing import Weighing
+
+Vector = NDArray[np.float64]
+
+FAR: Final = 1.5
+"""Factor by which GM must be known to be worth stating: a fifth of the roll period."""
+
+RIVAL: Final = 12.0
+"""Two ends are rivals when twice their log likelihoods differ by less, by the residual's colour:
+odds of 400 to 1, because the colour is an estimate itself."""
+
+TOLD_BY: Final = 36.0
+"""Twice the log likelihood that must be lost where GM is `FAR` off and all else is fitted again,
+for the record to tell it: six standard errors. Those of a resonance that is hardly excited are
+known to be two to twelve times too small. Half and twice of it: the benchmark of the search."""
+
+GROWS: Final = 0.02
+"""Share by which the squared roll error must grow there: a hundredth of the error is what a small
+fault of sensors or model makes, and longer records make it no more certain."""
+
+STEPS: Final = 5
+"""Factors of `FAR` that are walked to either side, while the record does not object: to 7.6 times
+and an eighth; what ships of one length have differs by no more."""
+
+NEIGHBOUR_STEPS: Final = 10
+NEIGHBOUR_NEAR: Final = 1e-3
+
+ALIKE: Final = 1.1
+"""Factor within which two rivals are one in words."""
+
+
+def rivals(problem: Problem, ends: Sequence[End], best: End) -> tuple[Mapping[str, float], ...]:
+    """Values by name among which the record does not choose, by their GM, the smallest first.
+
+    Empty where it tells GM.
+
+    Parameters
+    ----------
+    ends, best
+        All searches of the problem, and the one that is taken.
+    """
+    roll = problem.roll
+    if roll is None or not best.began:
+        return ()
+    place, limit = roll.GM, best.cost(best.colour) + RIVAL
+    near = [e.minimum.theta for e in ends if e.cost(best.colour) < limit]
+    if not roll.is_a_ships(best.minimum.theta):
+        near += _as_ships_have(problem, best)
+    elif _factor(near, place) <= FAR:
+        near += [x for step in (1.0 / FAR, FAR) for x in _hardly_worse(problem, best, step)]
+    near.sort(key=lambda theta: float(theta[place]))
+    if _factor(near, place) < FAR * 0.999:
+        return ()
+    distinct = near[:1]
+    for theta in near:
+        distinct += [theta] if ALIKE * distinct[-1][place] < theta[place] else []
+    names = [x.name for x in problem.unknowns]
+    return tuple(dict(zip(names, theta.tolist(), strict=True)) for theta in distinct)
+
+
+def roll_error(problem: Problem, end: End) -> float:
+    """Normed error of the roll outputs."""
+    squares = float(np.sum(end.residual[rows_of(problem, ("phi", "p"))] ** 2))
+    return float(np.sqrt(squares * len(problem.outputs)))
+
+
+def _factor(near: Sequence[Vector], place: int) -> float:
+    GM = [float(theta[place]) for theta in near]
+    return max(GM) / max(min(GM), 1e-300)
+
+
+def _as_ships_have(problem: Problem, best: End) -> list[Vector]:
+    """The least and the greatest GM that a ship of this length may have, her heel as it was.
+
+    What was fitted was no resonance of hers, and so nothing of the record speaks of it.
+    """
+    assert problem.roll is not None
+    place, middle = problem.roll.GM, GM_OVER_L * problem.roll.length
+    found = []
+    for deviations in (-2.0, 2.0):
+        GM = middle * float(np.exp(deviations * FACTOR))
+        found.append(_scaled(problem, best.minimum.theta, GM / best.minimum.theta[place]))
+    return found
+
+
+def _scaled(problem: Problem, theta: Vector, factor: float) -> Vector:
+    """Values of the same heel in a steady turn and the same damping ratio, with another GM."""
+    assert problem.roll is not None
+    moments = [x.column.startswith("K") for x in problem.unknowns]
+    there = np.where(of_roll(problem) & moments, theta * factor, theta)
+    there[problem.roll.GM] = theta[problem.roll.GM] * factor
+    if problem.roll.Kp is not None:
+        there[problem.roll.Kp] = theta[problem.roll.Kp] * np.sqrt(factor)
+    return np.asarray(there)
+
+
+def _hardly_worse(problem: Problem, best: End, step: float) -> list[Vector]:
+    """Values with GM ever further off by a factor, as far as all else makes good for it."""
+    assert problem.roll is not None
+    rows, place = rows_of(problem, ("phi", "p")), problem.roll.GM
+    unknown, found = problem.unknowns[place], list[Vector]()
+    for _ in range(STEPS):
+        start = _scaled(problem, found[-1] if found else best.minimum.theta, step)
+        if not unknown.low < start[place] < unknown.high:
+            break
+        there = _with_GM_held(problem, start, best.colour)
+        if there is None:
+            break
+        lost = there.cost(best.colour) - best.cost(best.colour)
+        grown = np.sum(there.residual[rows] ** 2) / np.sum(best.residual[rows] ** 2) - 1.0
+        if lost >= TOLD_BY and grown >= GROWS:
+            break
+        found.append(there.minimum.theta)
+    return found
+
+
+def _with_GM_held(problem: Problem, theta: Vector, colour: float) -> End | None:
+    """The end of a short search of everything but GM, None where it cannot begin."""
+    assert problem.roll is not None
+    moving = np.ones(len(theta), dtype=bool)
+    moving[problem.roll.GM] = False
+    chosen = [x for x, moves in zip(problem.unknowns, moving, strict=True) if moves]
+    rows = np.arange(stretches(problem)[-1].rows.stop)
+    part = Part(problem, theta, rows, moving)
+    end = minimise(
+        part, theta[moving], *ranges(chosen), NEIGHBOUR_STEPS, NEIGHBOUR_NEAR, keep=False
+    )
+    if not end.iterations:
+        return None
+    there = theta.copy()
+    there[moving] = end.theta
+    pulls = Weighing(problem).pulls(there)
+    return End(replace(end, theta=there), end.iterations, end.residual[: len(rows)], colour, pulls)
