@@ -118,6 +118,22 @@ def test_the_race_keeps_the_force_on_the_rudder() -> None:
     assert instead.N * 0.5 * RHO * L**3 * u**2 == pytest.approx(race * L * Ndelta)
 
 
+def test_the_race_of_a_shaft_goes_by_its_revolutions() -> None:
+    """As rudder_race at revolutions that go with U0; nothing with the shaft stopped or astern."""
+    shaft, race = CATALOGUE["rudder_race_shaft"], CATALOGUE["rudder_race"]
+    at = {"u": 0.6, "delta": 0.3}
+    known = {"Y_race": -0.003, "K_race": 0.0001, "N_race": 0.0015, "U0": 1.4}
+    [of_race] = race({**at, **known})
+    [of_shaft] = shaft({**at, "n": 140.0, "N_un": 1.5e-5, "N_nn": 0.0, "z_race": 0.0001 / 0.003})
+    assert pytest.approx(of_race.N) == of_shaft.N
+    assert pytest.approx(of_race.Y) == of_shaft.Y
+    assert pytest.approx(of_race.K) == of_shaft.K
+    at |= {"N_un": 0.0, "N_nn": 1e-7, "z_race": 0.0}
+    [slow], [fast] = (shaft({**at, "n": n}) for n in (60.0, 120.0))
+    assert pytest.approx(4.0 * slow.N) == fast.N
+    assert all(shaft({**at, "n": n})[0].N == 0.0 for n in (0.0, -60.0))
+
+
 def test_speed_is_lost_in_a_steady_turn() -> None:
     """The state settles where k (r L)^2 = u u_lost, and then acts as less speed."""
     r, k = 0.008, 5.0

@@ -119,3 +119,21 @@ def test_a_rudder_never_runs_past_its_order():
     assert followed.max() <= 0.1
     assert followed.min() >= -0.2
     assert followed[-1] == 0.0
+
+
+def test_where_she_is_can_be_an_output_as_well():
+    """Positions, and what receivers make of them; a test to come is rated by all outputs."""
+
+    def told():
+        yield Hold(20 * D, 300.0)
+
+    passage = carry_out(VESSEL, told(), 20.0, 300.0)
+    signals, valid = passage.trial.signals, passage.trial.valid
+    np.testing.assert_array_equal(signals["x"], passage.x)
+    np.testing.assert_array_equal(signals["y"], passage.y)
+    assert all(valid[n].all() for n in ("x", "y", "sog", "cog"))
+    run = np.hypot(*np.gradient(np.stack([passage.x, passage.y]), VESSEL.period, axis=1))
+    np.testing.assert_allclose(signals["sog"], run)
+    ahead = signals["cog"] - signals["psi"]
+    assert abs(ahead[30]) < 1e-6
+    assert np.all(ahead[-20:] < -0.02)  # she drifts outwards

@@ -7,6 +7,7 @@ import pytest
 from s175q import GYRO, INCLINOMETER, MODEL, SETTINGS, waves, white, with_noise, zigzag
 
 from trialid.diagnosis.prediction_band import prediction_band
+from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.trial import Trial
 
@@ -85,3 +86,13 @@ def test_it_holds_what_is_measured_in_trials_held_out():
 
 def test_one_trial_alone_tells_nothing_of_another():
     assert prediction_band(identify(sailed(4, angles=(20,)), MODEL, SETTINGS)) == {}
+
+
+def test_what_one_trial_alone_tells_stays_within_what_is_typical():
+    """Without the only trial with heel in it, roll damping and GM are anyone's guess."""
+    still = [replace(t, signals={**t.signals, "phi": 0.0 * t.signals["phi"]}) for t in sailed(4)]
+    lone = replace(SETTINGS, free=("Nr", "Ndelta", "N_n"))
+    model = (MODEL + CATALOGUE["propeller_side_force"]).with_values({"N_n": 0.0})
+    shafts = [replace(t, signals={**t.signals, "n": 1e-6 * t.signals["n"]}) for t in still[1:]]
+    band = prediction_band(identify([still[0], *shafts], model, replace(lone, outputs=("r",))))
+    assert band["r"] < 1.0  # rad/s, where it was 1e5 of them

@@ -41,6 +41,7 @@ def fit_of(theta, sizes):
         residual=0.1 * e / np.linalg.norm(e),
         level=0.1 / np.sqrt(N),
         settings=SimpleNamespace(loss="squares"),
+        rivals=(),
     )
 
 

@@ -13,6 +13,7 @@ from sailed_tracks import SETTINGS, SHIP, noisy, sailed, spread
 
 from trialid.design.helm import Passage
 from trialid.design.imo import excursions, measures, recognise, spirals, stops, williamson
+from trialid.design.imo.excursions import order_sample
 from trialid.design.imo.measured import heading_numbers
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.track_numbers import Around
@@ -89,6 +90,20 @@ def test_a_zigzag_and_a_circle_to_either_side() -> None:
             assert one.kind == kind
             assert np.sign(one.rudder) == side
             assert one.execute * trial.period == pytest.approx(30.0, abs=2.0 * trial.period)
+
+
+@pytest.mark.parametrize("kept", [-8.0, -4.0, 0.0, 4.0, 8.0])
+def test_a_rudder_that_keeps_the_course_is_no_order(kept: float) -> None:
+    """In a strong wind it stands off midships for minutes before it is put over."""
+    period, gear = 0.5, np.deg2rad(5.0)
+    t = np.arange(0.0, 120.0, period)
+    wander = np.deg2rad(kept + 1.5 * np.sin(0.3 * t))
+    hard = np.deg2rad(35.0)
+    rudder = np.minimum(wander + gear * np.maximum(t - 60.0, 0.0), hard)
+    first = int(np.argmax(rudder > np.deg2rad(3.0)))
+    for side in (1.0, -1.0):
+        found = order_sample(side * rudder, first, side * hard) * period
+        assert found == pytest.approx(60.0, abs=0.5)
 
 
 def test_what_is_broken_off_is_a_line() -> None:

@@ -17,11 +17,12 @@ from trialid.design.imo.measure_slopes import Shows, measure_slopes
 from trialid.design.imo.speed_loss import APPROACH, speed_loss, with_speed_loss
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
+from trialid.design.prediction.engine_orders import at_her_speed
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.rating import Goal, Noise, goal
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness_of, rivals
-from trialid.design.standard import Measure, measures_of
+from trialid.design.standard import Measure, in_calm, measures_of
 from trialid.design.triangles import Triangles, triangles, triangles_beside
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
@@ -42,7 +43,6 @@ SPIKE: Final = 3
 
 APART: Final = 0.05
 """Share by which approach speeds differ that are two."""
-
 WORTH_SAILING: Final = 0.9
 """A test that leaves more than this share of a width is not proposed for it."""
 
@@ -62,7 +62,7 @@ FEASIBLE: Final[Mapping[str, tuple[str, Mapping[str, float]]]] = {
 
 
 def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
-    """The fitted ship, ready to be sailed as she was in the first of her trials.
+    """The fitted ship as she was in the first of her trials, at revolutions that hold her speed.
 
     Raises
     ------
@@ -72,7 +72,8 @@ def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
     sailed = model or fit.model
     if not STEERED & {*sailed.recorded}:
         raise DesignError("she has no rudder to steer by; `stop` and orders of your own need none")
-    return vessel(sailed, fit.problem.trials[0].period, steady_inputs(fit), _rate(fit))
+    ship = vessel(sailed, fit.problem.trials[0].period, steady_inputs(fit), _rate(fit))
+    return at_her_speed(ship, in_calm(ship))
 
 
 def steady_inputs(fit: Fit) -> dict[str, float]:
@@ -83,8 +84,7 @@ def steady_inputs(fit: Fit) -> dict[str, float]:
     steady = {n: float(np.median(c)) for n, c in zip(eq.inputs, u.T, strict=True)}
     logged = {n: float(np.median(x)) for n, x in trial.signals.items() if n not in STATES}
     constants = {n: x for n, x in (logged | steady).items() if n not in STEERED and n != "t"}
-    constants["u"] = fit.model.ship.particulars["U0"]  # the approach, not what a turn leaves of it
-    return constants
+    return constants | {"u": fit.model.ship.particulars["U0"]}  # not what a turn leaves of it
 
 
 def _rate(fit: Fit) -> float:

@@ -29,6 +29,7 @@ Vector = NDArray[np.float64]
 Motion = Mapping[str, Vector]
 """Signals of a stretch of the trial by name, all of one length: `t`, `psi`, `r`, `phi`, `delta`."""
 
+OVER_GROUND: Final = ("sog", "cog")
 GEAR_STATE: Final = "delta"
 """The state a steering gear among the effects adds; without one the gear here is used."""
 
@@ -266,6 +267,7 @@ def _passage(
     t = signals.pop("t")
     x, y = track(t, signals, vessel.model.ship.particulars["U0"])
     arrays = {c: np.array(values) for c, values in signals.items()}
+    arrays |= {"x": x, "y": y, **_over_ground(t, x, y)}
     valid = {c: np.ones(len(t), dtype=bool) for c in arrays}
     return Passage(Trial(name, "fit", vessel.period, arrays, valid), x, y, departure, driven)
 
@@ -283,6 +285,13 @@ def track(t: Vector, motion: Motion, speed: float) -> tuple[Vector, Vector]:
     ahead = u * np.cos(psi) - v * np.sin(psi)
     abeam = u * np.sin(psi) + v * np.cos(psi)
     return _integral(t, ahead), _integral(t, abeam)
+
+
+def _over_ground(t: Vector, x: Vector, y: Vector) -> dict[str, Vector]:
+    """The track's speed [m/s] and course [rad], as receivers tell them; no current is known."""
+    north, east = np.gradient(x, t), np.gradient(y, t)
+    told = np.hypot(north, east), np.unwrap(np.arctan2(east, north))
+    return dict(zip(OVER_GROUND, told, strict=True))
 
 
 def _integral(t: Vector, rate: Vector) -> Vector:

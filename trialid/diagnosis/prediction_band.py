@@ -4,8 +4,9 @@ Each fitted trial is left out in turn and predicted from the others, to first or
 further simulation: the parameters come from the other trials, what belongs to a sensor takes the
 mean of theirs, and only where the motion starts is the trial's own, as for a trial held out. What
 is left holds noise, what the model lacks, and what parameters and sensors differ by from trial to
-trial. Where the trials are unlike, few tell how large it may be: as many degrees of freedom as the
-scatter of their mean squares leaves (Satterthwaite 1946, Biometrics Bulletin 2).
+trial. What only the trial left out tells stays within what is typical of it. Where the trials are
+unlike, few tell how large it may be: as many degrees of freedom as the scatter of their mean
+squares leaves (Satterthwaite 1946, Biometrics Bulletin 2).
 """
 
 from collections.abc import Sequence
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit  # scipy.stats would take another 0.4 s to import
 
+from trialid.accuracy.likely import WIDE
 from trialid.arrays import Vector
 from trialid.diagnosis.search.carry_over import prior_rows, take_out
 from trialid.identification.fit import Fit
@@ -75,7 +77,8 @@ def _left_out(fit: Fit, parts: Sequence[Stretch], trials: Sequence[int]) -> Vect
         known.append(_rows(fit, [p for p in parts if p.trial == trial], own, shared, priors))
     whole = np.sum([k.gram for k in known], axis=0)
     slopes, gaps = priors[shared].T
-    beside = np.diag(np.append(slopes**2, 0.0))
+    loose = fit.level / (WIDE * np.array([fit.problem.unknowns[i].size for i in shared]))
+    beside = np.diag(np.append(np.where(slopes > 0.0, slopes, loose) ** 2, 0.0))
     beside[:-1, -1] = beside[-1, :-1] = slopes * gaps
     left = np.zeros(len(fit.residual))
     for one in known:

@@ -73,7 +73,7 @@ class TurnMeasure:
         found, and less what the fitted model drifts by the wind, where it has one.
     predicted, predicted_interval
         Of the fitted model through the water, without the wind where it has one, under the rudder
-        as recorded, and where the true ship's is likely to lie.
+        as recorded, and where that of a single run of the true ship is likely to lie.
     """
 
     trial: str

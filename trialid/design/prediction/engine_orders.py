@@ -5,7 +5,7 @@ A shaft `n` that turns astern pulls by `propeller_thrust` and what `propeller_as
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from trialid.design.helm import Vessel
@@ -16,6 +16,9 @@ SHAFTS: Final = ("n", "n_p", "n_s")
 """Inputs that are zero where the engine is stopped."""
 PUSHING: Final = ("thruster", "azimuth", "waterjet")
 """Kinds of actuators that drive a ship ahead."""
+ABOUT: Final = 0.05
+"""Share by which revolutions are other ones: at so many more she is as much faster, which is where
+approach speeds are told apart."""
 DOUBLINGS: Final = 60
 """Of a thousandth, until an order is found that holds the speed."""
 
@@ -111,6 +114,22 @@ def _holding(ship: Vessel, feedback: Mapping[str, str]) -> float:
             f"{ship.model.ship.particulars['U0']:g} m/s in this model; give the orders as a CSV"
         )
     return order
+
+
+def at_her_speed(ship: Vessel, calm: Vessel) -> Vessel:
+    """A ship at the revolutions that hold her approach speed in calm water.
+
+    As she is where hers hold it about, her model is given its speed or reads no shaft: the median
+    of a trial at other speeds would have her slow down or speed up all through a manoeuvre.
+    """
+    shafts: list[str] = [n for n in SHAFTS if n in calm.simulator.equations.inputs]
+    if "u" not in calm.model.states or not shafts:
+        return ship
+    same = dict[str, str](zip(shafts, shafts, strict=True))
+    order = holding_order(lambda x: _push(calm, same, dict.fromkeys(shafts, x)))
+    if order is None or all(abs(ship.constants[n] - order) <= ABOUT * order for n in shafts):
+        return ship
+    return replace(ship, constants={**ship.constants, **dict.fromkeys(shafts, order)})
 
 
 def holding_order(rate: Callable[[float], float]) -> float | None:

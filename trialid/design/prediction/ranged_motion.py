@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.helm import Vessel, track
+from trialid.design.helm import OVER_GROUND, Vessel, track
 from trialid.design.imo.measure_slopes import SMALL
 from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.names.quantities import SIGNALS, Quantity
@@ -83,7 +83,7 @@ def with_ranges(
         lower, upper = np.minimum(low, -wide), np.maximum(high, wide)
         ranges[name] = signals[name] + lower, signals[name] + upper
     named = {*SIGNALS, *actuator_quantities(ship.model.ship.actuators)}
-    given = [n for n in trial.signals if n in named and n not in outputs]
+    given = [n for n in trial.signals if n in named and n not in (*names, *OVER_GROUND)]
     return PredictedMotion(
         t=trial.t,
         given={n: trial.signals[n] for n in given},
