@@ -168,7 +168,7 @@ def test_a_delay_unlike_others_comes_back_and_is_remarked():
     assert any("tau_phi [zigzag-10] = " in line and "above" in line for line in remarks(fit))
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study
 def test_another_ships_file_is_noticed():
     """The container ship's zig-zags as if a ship of a third of her length had sailed them."""
     ship = MODEL.ship

@@ -176,7 +176,7 @@ def _doubt_of_roll(problem: Problem, roll: RollRange, end: End) -> str:
         return f"GM was found at {found:.3g} m, far from the {stated:.3g} m it began with"
     if not roll.is_a_ships(end.minimum.theta):
         ratio = roll.ratio(end.minimum.theta)
-        return f"roll was found damped by {ratio:.2g} of what is critical, as no ship is"
+        return f"roll was found damped by {abs(ratio):.2g} of what is critical, as no ship is"
     return "roll is hardly explained" if roll_error(problem, end) > DOUBTFUL else ""
 
 

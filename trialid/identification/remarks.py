@@ -36,7 +36,7 @@ def _untold_GM(fit: Fit) -> list[str]:
     if not fit.rivals or roll is None:
         return []
     if not roll.is_a_ships(fit.theta):
-        ratio = roll.ratio(fit.theta)
+        ratio = abs(roll.ratio(fit.theta))
         return [
             f"the record does not tell GM: her roll is damped by {ratio:.2g} of what is critical, "
             f"as no ship's is, so that {fit.value('GM'):.3g} m is of a swell or of nothing"
