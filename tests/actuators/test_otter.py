@@ -61,6 +61,7 @@ def test_without_noise_every_parameter_comes_back(monkeypatch) -> None:
     assert {n: fit.value(n) for n in TRUTH} == pytest.approx(TRUTH, rel=1e-4)
 
 
+@pytest.mark.study(turn=0)
 def test_a_weak_thruster_is_named_on_its_side_and_nothing_where_nothing_is() -> None:
     weak = verdict(1103, "weak", 60.0)
     assert (weak.kind, weak.effect, weak.family) == ("missing", "right_weak", ("right_weak",))

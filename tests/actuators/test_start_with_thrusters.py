@@ -64,6 +64,7 @@ def test_sides_that_the_turn_contradicts_are_asked(tmp_path, monkeypatch) -> Non
     assert not (tmp_path / "runs").exists()
 
 
+@pytest.mark.study(turn=1)
 def test_a_unit_that_nothing_tells_is_asked(tmp_path, monkeypatch) -> None:
     """Counts of an engine may be anything; what is called a thrust is read as one, with care."""
     made = log(tmp_path / "a.csv", drive="engine")

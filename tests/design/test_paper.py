@@ -52,6 +52,7 @@ def test_the_ratio_depends_on_the_scale_and_is_least_at_5_5_with_the_papers():
     assert AMPLITUDES[int(np.argmin(PAPER_1["R"]))] == 5
 
 
+@pytest.mark.study(turn=1)
 def test_trends_of_the_papers_table_1():
     mine = np.array([[value(ours(zigzag(a)), n) for a in AMPLITUDES] for n in TEN])
     paper = np.array([PAPER_1[n] for n in TEN])

@@ -96,6 +96,7 @@ def test_a_drift_and_a_step_the_other_way_in_one_parameter() -> None:
     assert found >= 9
 
 
+@pytest.mark.study(turn=1)
 def test_no_change_is_found_where_there_is_none() -> None:
     """A hundred fleets: a false alarm in five of them at most; without the bound one in three."""
     alarms, loose = 0, 0

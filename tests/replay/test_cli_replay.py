@@ -102,6 +102,7 @@ def test_alarms_are_told_as_they_come_and_fitting_first_gives_the_same(done):
     assert trialid_("replay", pipeline, "--run", run, "--fast", "--quiet").stdout == ""
 
 
+@pytest.mark.study(turn=0)
 def test_a_log_that_grows_no_more_is_followed_to_its_end(done):
     pipeline, run = done
     outcome = trialid_("replay", pipeline, "--run", run, "--follow", "--idle", "0.5")

@@ -133,6 +133,7 @@ def inside(row: ManoeuvreNumber, truth: float) -> tuple[bool, bool]:
 
 
 @pytest.mark.parametrize("name", ["turn", "stop"])
+@pytest.mark.study(turn=0)
 def test_numbers_of_the_record_and_of_the_model(name: str) -> None:
     truth, rows = TRUTHS[name](0), [r for r in measured(0).numbers if r.trial == name]
     assert [row.name for row in rows] == [*truth]
