@@ -27,7 +27,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         if n not in own
     ]
     weak = ["the search was slow to the end: some parameters can hardly be told apart"]
-    return (*bounds, *against, *_untold_GM(fit), *(weak if fit.weakly_identified else []))
+    return (*_untold_GM(fit), *bounds, *against, *(weak if fit.weakly_identified else []))
 
 
 def _untold_GM(fit: Fit) -> list[str]:
