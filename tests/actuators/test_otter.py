@@ -112,20 +112,23 @@ def test_surge_damping_comes_back_in_its_linear_and_its_quadratic_part(first: in
 
 
 @pytest.mark.study(turn="each")
-@pytest.mark.parametrize("first", range(0, 10, 2))
-def test_faults_are_named_on_their_side_and_no_other(first: int) -> None:
-    """Two records of each at a turn: the name that is right, alone, and no wrong one."""
+@pytest.mark.parametrize("place", range(0, 10, 2))
+def test_faults_are_named_on_their_side_and_no_other(place: int) -> None:
+    """A record of each at a turn: the name that is right, alone, and no wrong one.
+
+    Many more, of this and other boats: `ships/fault_table.py`.
+    """
     right: Counter[str] = Counter()
     wrong: list[str] = []
-    for seed in STUDIED[first : first + 2]:
-        for fault in FAULTS:
-            found = verdict(seed, fault)
-            if found.effect == effect_of(fault, seed) and len(found.family) <= 1:
-                right[fault] += 1
-            elif found.effect is not None:
-                wrong.append(f"{seed} {fault or 'nothing'}: {found.sentence}")
+    seed = STUDIED[place]
+    for fault in FAULTS:
+        found = verdict(seed, fault)
+        if found.effect == effect_of(fault, seed) and len(found.family) <= 1:
+            right[fault] += 1
+        elif found.effect is not None:
+            wrong.append(f"{seed} {fault or 'nothing'}: {found.sentence}")
     print(dict(right), wrong)
-    assert sum(right.values()) >= 0.85 * 2 * len(FAULTS)
+    assert sum(right.values()) >= 0.85 * len(FAULTS)
     assert wrong == []
 
 

@@ -1,5 +1,6 @@
 """The Modelica file under a compiler that knows nothing of us: the kernel's numbers, how sure."""
 
+import gc
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +18,15 @@ from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
 
 rumoca = pytest.importorskip("rumoca")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def dropped_where_it_was_made():
+    """A model of rumoca's must not be let go by another thread, as those of other tests may do."""
+    yield
+    gc.collect()
+
+
 pytestmark = pytest.mark.study
 
 DRAWS = 4
