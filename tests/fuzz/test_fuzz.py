@@ -18,7 +18,7 @@ def check(tmp_path, count, seed):
     return rows
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=2)
 def test_some_damaged_logs_of_every_format(tmp_path):
     check(tmp_path, EACH_TIME, 7)
 

@@ -69,6 +69,7 @@ LATER = (0.0, 0.3, 0.6, 0.9)
 """[s] later than the second trough."""
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("period", PERIODS)
 def test_the_arm_and_then_the_damping_at_every_period_and_start(tmp_path, period):
     """Ours: 3.0 to 0.3 % in every cell."""
@@ -95,6 +96,7 @@ def test_the_arm_and_then_the_damping_at_every_period_and_start(tmp_path, period
                 assert stage.run.result.fit.eps_rmsn < 2.0 * 0.0031
 
 
+@pytest.mark.study(turn=1)
 def test_no_noise_part_is_above_what_any_model_leaves(basin):
     """The same rows by the linear model and by what the loop makes of it."""
     done = stages(held_in_basin(basin, ("Z_10_10_S", "Z_20_10_S")), {})
