@@ -34,11 +34,9 @@ def told(found):
     return sum(name == found.chosen for name in found.chosen_without.values())
 
 
-@pytest.mark.parametrize(("speed", "alike"), [("stated", 6), ("recorded", 5)])
-def test_drag_of_the_cross_flow_with_the_race_whichever_run_is_missing(
-    zigzags, speed, alike
-) -> None:
-    """Without 10/10 modulus terms come first, and cubic ones without 5/1 by recorded speed."""
+@pytest.mark.parametrize("speed", ["stated", "recorded"])
+def test_drag_of_the_cross_flow_with_the_race_whichever_run_is_missing(zigzags, speed) -> None:
+    """Ours: 6 of 7 choices the same either way; without 10/10 the modulus terms come first."""
     if speed == "recorded":
         text = zigzags.read_text(encoding="utf-8").replace("speed = 1.18\n", "")
         text = text.replace('v = { channel = "v", unit = "m/s" }', RECORDED)
@@ -47,7 +45,7 @@ def test_drag_of_the_cross_flow_with_the_race_whichever_run_is_missing(
     same = told(found)
     assert found.chosen == "cross-flow, race" + (", surge" if speed == "stated" else "")
     assert len(found.trials) == 7
-    assert same >= alike
+    assert same >= 6
     chosen, linear = found.row(found.chosen), found.row("linear")
     assert chosen.eps_rmsn_left_out < 0.5 * linear.eps_rmsn_left_out
     again = {name for name in found.chosen_without.values() if name is not None}

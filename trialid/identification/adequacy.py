@@ -11,7 +11,7 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
-from trialid.identification.file_of_ship import left_by_file, unlike_file
+from trialid.identification.file_of_ship import left_by_file, most_are_unlike
 from trialid.identification.fit import Fit, Score
 from trialid.identification.gauss_newton import REASONS
 from trialid.identification.time_scales import slowest_motion
@@ -211,12 +211,9 @@ def _another_ship(fit: Fit) -> Inadequate | None:
     """Most coefficients are clearly others than the ship's file gives, and the file's do not do."""
     if (left := left_by_file(fit)) is None:
         return None
-    unlike, compared = unlike_file(fit)
-    listed = ", ".join(f"{n} {x:.2g}" for n, x in list(unlike.items())[:4])
     return Inadequate(
-        f"the ship's file is not of this ship: {len(unlike)} of {compared} fitted coefficients are "
-        f"less than half or more than twice the file's ({listed} times), and none between leave "
-        f"less than {left:.2g} times the error",
+        f"the ship's file is not of this ship: {most_are_unlike(fit)}, and none between leave less "
+        f"than {left:.2g} times the error",
         "name her own file, check speed and units, or begin with `trialid inspect --init --length`",
     )
 

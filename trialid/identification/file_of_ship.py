@@ -60,17 +60,29 @@ def _compared(fit: Fit) -> dict[str, tuple[float, float]]:
     }
 
 
-def left_by_file(fit: Fit) -> float | None:
-    """How many times the fit's error the ship of her file leaves; None where hers is the fit's.
+def most_are_unlike(fit: Fit) -> str:
+    """That half of what can be compared, and three, are clearly unlike the file's; else empty.
 
-    Half of what can be compared, and three coefficients, are clearly unlike the file's: a quarter
-    would call a ship with one missing effect another, all of them none. That alone does not make
-    her another: where drift and rate of turn go together a model that lacks something is fitted by
-    sway coefficients that are not hers, and others do nearly as well. So the search is made again
-    with every coefficient kept where it is not unlike.
+    A quarter would call a ship with one missing effect another, all of them none.
     """
     found, compared = unlike_file(fit)
     if len(found) < FEWEST or 2 * len(found) < compared:
+        return ""
+    listed = ", ".join(f"{n} {x:.2g}" for n, x in list(found.items())[:4])
+    return (
+        f"{len(found)} of {compared} fitted coefficients are less than half or more than twice "
+        f"the file's ({listed} times)"
+    )
+
+
+def left_by_file(fit: Fit) -> float | None:
+    """How many times the fit's error the ship of her file leaves; None where hers is the fit's.
+
+    Coefficients unlike the file's do not make her another: where drift and rate of turn go together
+    a model that lacks something is fitted by sway coefficients that are not hers, and others do
+    nearly as well. So the search is made again with every coefficient kept where it is not unlike.
+    """
+    if not most_are_unlike(fit):
         return None
     problem = replace(fit.problem, unknowns=_kept_near(fit))
     _, low, high = ranges(problem.unknowns)

@@ -9,6 +9,7 @@ import numpy as np
 
 from trialid.errors import NotIdentifiable, TrialidError
 from trialid.identification.adequacy import why_no_fit
+from trialid.identification.file_of_ship import most_are_unlike
 from trialid.identification.fit import Fit, Score, identify
 from trialid.identification.gauss_newton import REASONS
 from trialid.trial import Trial
@@ -45,7 +46,8 @@ class KeptFit:
 def fit_whole(structure: Structure, trials: Sequence[Trial]) -> KeptFit:
     """The fit of all trials; the pipeline's held-out ones are scored and have no say in it.
 
-    It is worth nothing where a run of this structure would carry no verdict.
+    It is worth nothing where a run of this structure would carry no verdict, or where it takes
+    coefficients that are not hers to fit: other structures do without.
     """
     try:
         fit = identify(trials, structure.model, structure.settings)
@@ -54,6 +56,8 @@ def fit_whole(structure: Structure, trials: Sequence[Trial]) -> KeptFit:
     own = replace(fit, scores=tuple(s for s in fit.scores if s.trial.use == "fit"))
     if trouble := why_no_fit(own):
         return KeptFit(why_not=trouble.reason)
+    if unlike := most_are_unlike(fit):
+        return KeptFit(why_not=unlike)
     shared = [i for i, x in enumerate(fit.problem.unknowns) if x.trial is None]
     check = fit.eps_check
     return KeptFit(
