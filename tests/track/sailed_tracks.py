@@ -12,6 +12,7 @@ from trialid.accuracy.parameter_table import Accuracy, Subject, assess
 from trialid.design import manoeuvres
 from trialid.design.helm import carry_out, vessel
 from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.diagnosis.noise.recorded_inputs import felt_noise
 from trialid.effects import CATALOGUE
 from trialid.effects.track import current
 from trialid.identification.fit import Fit
@@ -74,7 +75,8 @@ def accuracy(fit: Fit) -> Accuracy:
     ]
     parts = stretches(fit.problem)
     residual, psi = fit.residual, fit.psi
-    return assess(subjects, psi, residual, parts, fit.eps_rmsn, 0.0, level=fit.level)
+    felt = felt_noise(fit)
+    return assess(subjects, psi, residual, parts, fit.eps_rmsn, 0.0, level=fit.level, felt=felt)
 
 
 def spread(fit: Fit, catalogue: Mapping[str, Effect] = MISSING) -> LikelySpread:

@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.accuracy.felt import Draw, Felt, felt_by, freedom_of_sum
 from trialid.arrays import Mask, Vector
 from trialid.linear_algebra import triangle
 from trialid.trial_rows import Stretch
@@ -70,6 +71,7 @@ def coloured_covariance(
     stretches: Sequence[Stretch],
     held: Vector | None = None,
     level: float | None = None,
+    felt: Draw | None = None,
 ) -> Coloured:
     """Covariance of the relative parameters for the residual's own colour.
 
@@ -88,16 +90,25 @@ def coloured_covariance(
         parameter without; (n_theta,).
     level
         By what the fit weighed priors; the root of the row variance where none is given.
+    felt
+        Draws rows that noise of recorded inputs moves the simulation by. What of it the residual
+        has room for is no other noise.
     """
     narrow = np.linalg.pinv(with_priors(A, held))
     inverse = np.asarray(narrow @ (A @ narrow).T, dtype=np.float64)
-    parts = [_Part.of(inverse, residual, stretch) for stretch in stretches]
-    drawn = _drawn(A, inverse, parts)
+    draws = draws_for(len(A))
+    by_inputs = felt and felt_by(A, inverse, residual, stretches, felt, draws)
+    parts = [_Part.of(inverse, residual, s, by_inputs) for s in stretches]
+    drawn = _drawn(A, inverse, parts, draws)
     meat = sum((p.variance() for p in parts), np.zeros((A.shape[1], A.shape[1])))
     shown = drawn.mean(axis=0) / np.where(np.diag(meat) > 0.0, np.diag(meat), 1.0)
     grown = 1.0 / np.sqrt(np.where(shown > 0.0, shown, 1.0))
     covariance = meat * np.outer(grown, grown)
     freedom = 2.0 * drawn.mean(axis=0) ** 2 / np.maximum(drawn.var(axis=0, ddof=1), 1e-300)
+    if by_inputs is not None:
+        own, more = np.diag(covariance), np.diag(by_inputs.covariance)
+        freedom = freedom_of_sum((own, freedom), (more, by_inputs.draws))
+        covariance = covariance + by_inputs.covariance
     if held is not None:
         pulled = (narrow @ narrow.T) * held
         variance = row_variance(A, residual) if level is None else level**2
@@ -118,10 +129,16 @@ class _Part:
     c: Vector
 
     @classmethod
-    def of(cls, inverse: Vector, residual: Vector, stretch: Stretch) -> "_Part":
+    def of(
+        cls, inverse: Vector, residual: Vector, stretch: Stretch, by_inputs: Felt | None
+    ) -> "_Part":
         e = _on_clock(residual[stretch.rows], stretch.compared)
         a = _on_clock(inverse[:, stretch.rows].T, stretch.compared)
-        return cls(stretch, a, autocovariance(e, stretch.compared))
+        c = autocovariance(e, stretch.compared)
+        if by_inputs is not None:
+            left = _on_clock(by_inputs.left[:, stretch.rows].T, stretch.compared).T
+            c = _without(c, _weighted(left, stretch.compared, len(c)).mean(axis=0))
+        return cls(stretch, a, c)
 
     def variance(self) -> Vector:
         """What this noise does to the parameters; (n_theta, n_theta)."""
@@ -131,29 +148,29 @@ class _Part:
         """Records of noise of this colour, compared rows; (draws, rows)."""
         n = len(self.a)
         size = 1 << (n + 2 * len(self.c)).bit_length()
-        power = np.maximum(_circulant(self.c, size), 0.0)
+        power = _circulant(self.c, size)
         white = np.fft.rfft(rng.standard_normal((draws, size)), axis=1)
         drawn = np.fft.irfft(white * np.sqrt(power), size, axis=1)
         return np.asarray(drawn[:, :n][:, self.stretch.compared])
 
     def assessed(self, left: Vector) -> Vector:
         """The variances that residuals (draws, rows) would give, at the same lags; (draws, n)."""
-        n, lags = len(self.a), len(self.c)
-        size = 1 << (2 * n - 1).bit_length()
-        full = np.zeros((len(left), n))
+        lags = len(self.c)
+        size = 1 << (2 * len(self.a) - 1).bit_length()
+        full = np.zeros((len(left), len(self.a)))
         full[:, self.stretch.compared] = left
-        products = np.fft.irfft(np.abs(np.fft.rfft(full, size, axis=1)) ** 2, size, axis=1)
         own = np.fft.irfft(np.abs(np.fft.rfft(self.a, size, axis=0)) ** 2, size, axis=0)
-        weights = (1.0 - np.arange(lags) / lags) / np.maximum(_pairs(self.stretch.compared), 1.0)[
-            :lags
-        ]
         twice = np.where(np.arange(lags) > 0, 2.0, 1.0)
-        return np.asarray((products[:, :lags] * weights) @ (own[:lags] * twice[:, None]))
+        return _weighted(full, self.stretch.compared, lags) @ (own[:lags] * twice[:, None])
 
 
-def _drawn(A: Vector, inverse: Vector, parts: Sequence[_Part]) -> Vector:
+def draws_for(rows: int) -> int:
+    """How many records of so many rows are drawn."""
+    return int(np.clip(_ROWS // max(rows, 1), 8, DRAWS))
+
+
+def _drawn(A: Vector, inverse: Vector, parts: Sequence[_Part], draws: int) -> Vector:
     """Variances assessed from fits to drawn noise; (draws, n_theta)."""
-    draws = int(np.clip(_ROWS // max(len(A), 1), 8, DRAWS))
     rng = np.random.default_rng(0)
     noise = np.zeros((draws, len(A)))
     for part in parts:
@@ -182,6 +199,21 @@ def autocovariance(e: Vector, compared: Mask) -> Vector:
     lags = window(c, n)
     weights: Vector = c[:lags] * (1.0 - np.arange(lags) / lags)
     return weights
+
+
+def _weighted(e: Vector, compared: Mask, lags: int) -> Vector:
+    """Bartlett-weighted autocovariances of many records (n, N) up to a lag; (n, lags)."""
+    size = 1 << (2 * e.shape[1] - 1).bit_length()
+    products = np.fft.irfft(np.abs(np.fft.rfft(e, size, axis=1)) ** 2, size, axis=1)
+    weights = (1.0 - np.arange(lags) / lags) / np.maximum(_pairs(compared), 1.0)[:lags]
+    return np.asarray(products[:, :lags] * weights)
+
+
+def _without(c: Vector, known: Vector) -> Vector:
+    """An autocovariance less another, no frequency below zero; (lags,)."""
+    size = 1 << (2 * len(c)).bit_length()
+    power = np.maximum(_circulant(c, size) - _circulant(known, size), 0.0)
+    return np.asarray(np.fft.irfft(power, size)[: len(c)])
 
 
 def _pairs(compared: Mask) -> Vector:
@@ -221,8 +253,8 @@ def toeplitz_times(a: Vector, c: Vector) -> Vector:
 
 
 def _circulant(c: Vector, size: int) -> Vector:
-    """Spectrum of an autocovariance on a circle of this many samples."""
+    """Spectrum of an autocovariance on a circle of this many samples, nowhere below zero."""
     kernel = np.zeros(size)
     kernel[: len(c)] = c
     kernel[size - len(c) + 1 :] += c[1:][::-1]
-    return np.asarray(np.fft.rfft(kernel).real)
+    return np.maximum(np.fft.rfft(kernel).real, 0.0)

@@ -21,6 +21,7 @@ from trialid.accuracy.equations import (
     sensitivity,
     sensitivity_range,
 )
+from trialid.accuracy.felt import Draw
 from trialid.accuracy.likely import Averaged, share_off
 from trialid.accuracy.weak import Weakness, weak_directions, without_nuisance
 from trialid.arrays import Vector
@@ -111,6 +112,7 @@ def assess(
     noise: float | None,
     undermodelling: float | None,
     level: float | None = None,
+    felt: Draw | None = None,
 ) -> Accuracy:
     """The accuracy of every parameter from the sensitivities and the residual of a fit.
 
@@ -123,20 +125,20 @@ def assess(
         the residual sum to eps_RMSn^2.
     noise, undermodelling
         eps^x_RMSn and eps^m_RMSn, None where they could not be separated.
-    level
-        By what the fit weighed priors; the root of the row variance where none is given.
+    level, felt
+        As in `coloured_covariance`.
     """
     reference = np.array([s.reference for s in subjects])
     A = relative_sensitivities(psi, reference)
     deviation = float(np.sqrt(row_variance(A, residual)))
     held = _held(subjects, level or deviation)
-    coloured = coloured_covariance(A, residual, stretches, held, level or deviation)
+    coloured = coloured_covariance(A, residual, stretches, held, level or deviation, felt)
     covariance = coloured.covariance
     white = white_covariance(A, residual, _held(subjects, deviation))
     # the pseudo-inverse would give an error of zero to what neither record nor prior knows
     hidden = minimum_sensitivity(with_priors(A, held)) <= 0.0
-    covariance[hidden, :] = covariance[:, hidden] = np.nan
-    white[hidden, :] = white[:, hidden] = np.nan
+    for each in (covariance, white):
+        each[hidden, :] = each[:, hidden] = np.nan
     rows = _rows(subjects, A, white, coloured, noise, undermodelling)
     rows = _with_shares(rows, prior_shares(A, held))
     physical = np.array([s.kind == "physical" for s in subjects])
@@ -145,8 +147,7 @@ def assess(
     seen = [r.n_effective for r in rows if r.kind == "physical" and np.isfinite(r.n_effective)]
     typical = float(np.median(seen)) if seen else float(len(residual))
     names = [s.name for s in subjects if s.kind == "physical"]
-    error = float(np.linalg.norm(residual)) / np.sqrt(typical)
-    weak = weak_directions(clean, names, error)
+    weak = weak_directions(clean, names, float(np.linalg.norm(residual)) / np.sqrt(typical))
     scaled = covariance * np.outer(reference, reference)
     return Accuracy(
         parameters=rows,

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask, Vector
+from trialid.white_noise import white_noise_of_most
 
 FEWEST_STRETCHES = 20
 """Independent stretches the record must hold; fewer correlate by chance."""
@@ -144,8 +145,8 @@ def _relation(pair: Pair, length: int) -> Relation | None:
     best = _nearest_peak(found)
     x, y = _shifted(first, second, valid, int(lags[best]))
     against = np.max(-found[len(lags) // 2 :] * np.sign(found[best]), initial=0.0)
-    noise = noise_of(pair.first[pair.valid]) / length**pair.fades
-    other = noise_of(pair.second[pair.valid]) / length**0.5
+    noise = white_noise_of_most(pair.first[pair.valid]) / length**pair.fades
+    other = white_noise_of_most(pair.second[pair.valid]) / length**0.5
     moves = _moves(x, noise), _moves(y, other)
     return Relation(
         float(found[best]), _gain(x, y), *_lag(np.float64(pair.period) * lags, found, best),
@@ -268,14 +269,3 @@ def _parts(x: Vector, y: Vector) -> list[tuple[Vector, Vector]]:
 def _moves(means: Vector, noise: float) -> float:
     """Spread of the means over stretches, in units of the noise left in them."""
     return float(np.std(means)) / noise if noise > 0 else math.inf
-
-
-def noise_of(y: Vector) -> float:
-    """White noise of a signal [its unit] from its third differences, which motion hardly reaches.
-
-    >>> rng = np.random.default_rng(1)
-    >>> y = np.sin(0.01 * np.arange(10_000)) + 0.1 * rng.normal(size=10_000)
-    >>> round(noise_of(y), 2)
-    0.1
-    """
-    return float(1.4826 * np.median(np.abs(np.diff(y, 3)))) / math.sqrt(20.0) if len(y) > 3 else 0.0

@@ -4,6 +4,7 @@ from typing import Final
 
 from trialid.accuracy.likely import Averaged
 from trialid.accuracy.parameter_table import Accuracy, Subject, assess, with_ranges, with_rivals
+from trialid.diagnosis.noise.recorded_inputs import felt_noise
 from trialid.diagnosis.noise.split import Split
 from trialid.identification.fit import Fit
 from trialid.identification.one_search import influence
@@ -36,5 +37,6 @@ def accuracy_of(fit: Fit, parts: Split, averaged: Averaged) -> Accuracy:
         noise=parts.noise,
         undermodelling=parts.undermodelling if model is None else model[1],
         level=fit.level,
+        felt=felt_noise(fit),
     )
     return with_rivals(with_ranges(made, averaged), fit.rivals)

@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 from trialid.identification.fit import Fit, Score
 from trialid.identification.one_search import search
 from trialid.identification.record_starts import PIECES, in_pieces
+from trialid.white_noise import SMOOTH
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-SMOOTH = np.sqrt(20.0)
-"""Standard deviation of the third differences of white noise of one: 1, 3, 3, 1."""
 
 CLOSER: Final = 2.0
 """Times as close as the fit that other values follow the record in pieces where the fit stands in a

@@ -16,6 +16,7 @@ from trialid.effects.track import CURRENT as WATER
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import guess
 from trialid.trial import Trial
+from trialid.white_noise import white_noise
 
 Vector = NDArray[np.float64]
 Known = tuple[float, float]
@@ -129,10 +130,9 @@ def _as_recorded(model: ShipModel, trial: Trial, state: str) -> Known:
     y = y if len(y) else trial.signals[state]
     U, L = speed(model, trial), model.ship.particulars["L"]
     first = y[: max(5, round(FIRST * L / U / trial.period))]
-    noise = float(np.std(np.diff(y, 3))) / np.sqrt(20.0) if len(y) > 8 else 0.0
     floor = 1e-3 * {"u": U, "v": U, "p": U / L, "r": U / L}.get(state, 1.0)
     moves = 0.0 if state in PLACE else 0.1 * float(np.std(y))
-    deviation = np.hypot(np.std(first), 3.0 * noise) + moves + floor
+    deviation = np.hypot(np.std(first), 3.0 * white_noise(y)) + moves + floor
     return float(np.median(y[:5])), float(deviation)
 
 

@@ -18,10 +18,11 @@ from trialid.design.imo.excursions import LATE, order_sample, rudder_of
 from trialid.design.imo.recognise import UNSETTLED
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.sailed_trial import Drift
-from trialid.design.imo.track_numbers import Around, foretold, white_noise
+from trialid.design.imo.track_numbers import Around, foretold
 from trialid.design.imo.trial_numbers import ManoeuvreNumber, Range
 from trialid.errors import DesignError
 from trialid.trial import Trial
+from trialid.white_noise import white_noise
 
 NORMAL: Final = 1.96
 STILL: Final = 6

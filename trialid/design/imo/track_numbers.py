@@ -27,6 +27,7 @@ from trialid.design.imo.trial_numbers import Range
 from trialid.design.prediction.unexplained_motion import UnexplainedMotion
 from trialid.errors import DesignError
 from trialid.trial import Trial
+from trialid.white_noise import white_noise
 
 DRAWS: Final = 400
 """Of noise, timing and current; the interval's width is known to 4 % by so many."""
@@ -224,8 +225,3 @@ def _by_timing(reader: TrackReader, t: Vector, track: Track, period: float) -> d
     except DesignError:
         return {}
     return {n: abs(x - early[n]) / np.sqrt(12.0) for n, x in late.items()}
-
-
-def white_noise(y: Vector) -> float:
-    """Standard deviation of what is white in a smooth motion, by its third differences."""
-    return float(np.std(np.diff(y, 3))) / np.sqrt(20.0) if len(y) > 8 else 0.0

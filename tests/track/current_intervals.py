@@ -1,0 +1,120 @@
+"""How often the 95 % interval of a steady current holds it, with and without noise of inputs.
+
+    python tests/track/current_intervals.py [--records 300] [--write]
+
+A turning circle and a 20/20 zig-zag with a current each, a receiver of 1 m, a compass and a gyro:
+in calm air, and with the wind's forces fitted from an anemometer on board. Results stand in
+`tests/benchmarks/results/currents.md` with `--write`. Exit status 1 below 93 or above 97 %, where
+both have noise.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import sailed_wind
+from sailed_tracks import CURRENTS, SETTINGS, SHIP, accuracy, trials
+from scipy.stats import t as student
+
+from trialid.accuracy.parameter_table import ParameterAccuracy
+from trialid.effects.track import CURRENT
+from trialid.identification.fit import Fit, identify
+from trialid.threads import one_thread
+
+RESULTS: Final = Path(__file__).parents[1] / "benchmarks" / "results" / "currents.md"
+Waters = dict[str, tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A way to log: which currents there are, and a fit by seed."""
+
+    name: str
+    waters: Waters
+    fit: Callable[[int], Fit]
+    judged: bool = True
+
+
+def windy(seed: int, sensors: float = 1.0, air: float = 1.0) -> Fit:
+    """Both manoeuvres in the wind, fitted."""
+    rng = np.random.default_rng([31, seed])
+    waters = sailed_wind.WATERS
+    logs = [sailed_wind.noisy(sailed_wind.blown(n), rng, sensors, air) for n in waters]
+    return identify(logs, sailed_wind.WINDY, sailed_wind.SETTINGS)
+
+
+CASES: Final = (
+    Case("calm air", CURRENTS, lambda seed: identify(trials(seed), SHIP, SETTINGS)),
+    Case("wind known exactly", sailed_wind.WATERS, lambda seed: windy(seed, air=0.0)),
+    Case("wind by anemometer", sailed_wind.WATERS, windy),
+    Case("anemometer three times as noisy", sailed_wind.WATERS, lambda s: windy(s, air=3.0)),
+    Case("all noise the anemometer's", sailed_wind.WATERS, lambda s: windy(s, 0.0), judged=False),
+)
+
+
+def holds(row: ParameterAccuracy, truth: float) -> bool:
+    """Whether a 95 % interval holds the truth."""
+    return abs(row.value - truth) < student.ppf(0.975, row.freedom) * row.standard_error
+
+
+@one_thread
+def count(case: Case, seeds: Sequence[int]) -> tuple[list[bool], float]:
+    """Which intervals held their current, and the median standard error [m/s]."""
+    inside, errors = [], []
+    for seed in seeds:
+        rows = {p.name: p for p in accuracy(case.fit(seed)).parameters}
+        for name, water in case.waters.items():
+            for column, truth in zip(CURRENT, water, strict=True):
+                row = rows[f"{column} [{name}]"]
+                inside.append(holds(row, truth))
+                errors.append(row.standard_error)
+    return inside, float(np.median(errors))
+
+
+def page(records: int, first: int) -> tuple[str, bool]:
+    """The table, and whether every share that is judged is as it should be."""
+    lines = [
+        "| | records, intervals | held | median standard error |",
+        "| :--- | ---: | ---: | ---: |",
+    ]
+    good = True
+    for case in CASES:
+        inside, error = count(case, range(first, first + records))
+        share = float(np.mean(inside))
+        lines.append(
+            f"| {case.name} | {records}, {len(inside)} | {share:.1%} | {1000.0 * error:.2f} mm/s |"
+        )
+        print(lines[-1], flush=True)
+        good = good and (not case.judged or 0.93 <= share <= 0.97)
+    return "\n".join(lines) + "\n", good
+
+
+def main() -> int:
+    """Count, and write."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--records", type=int, default=300)
+    parser.add_argument("--first-seed", type=int, default=5000)
+    parser.add_argument("--write", action="store_true")
+    asked = parser.parse_args()
+    table, good = page(asked.records, asked.first_seed)
+    if asked.write:
+        sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
+        from at_commit import commit_of
+
+        last = asked.first_seed + asked.records - 1
+        head = (
+            "# Currents within their 95 % intervals\n\n"
+            "`python tests/track/current_intervals.py` at "
+            f"{commit_of(RESULTS.parent)}, seeds {asked.first_seed} to {last}, none of them used\n"
+            "while building.\n\n"
+        )
+        RESULTS.write_text(head + table, encoding="utf-8")
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

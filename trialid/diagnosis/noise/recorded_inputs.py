@@ -1,0 +1,94 @@
+"""What the noise of recorded inputs leads a simulation to.
+
+A rudder angle or a wind that drives the simulation was measured, too. Its noise pushes the ship of
+the model as nothing pushed the true one, and what comes of it is slow: a heading that walks, a
+track that drifts like a current. Beside the noise of positions it is small, so that the residual
+hardly shows it, and what is slow in the track takes it up. So it is drawn, simulated and fitted.
+"""
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trialid.accuracy.felt import Draw
+from trialid.arrays import Mask, Vector
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import Problem, row_scale, stretches
+from trialid.identification.own_start import starts_of
+from trialid.simulation.integrate import record_for, respond
+from trialid.trial import Trial
+from trialid.white_noise import white_noise_of_most
+
+QUICK: Final = 0.5
+"""Blocks of this times sqrt(L/g) tell the noise: two seconds for 175 m. The filter of a trial's
+clock, or a sensor slower than that clock, takes away from what single samples show of it."""
+
+GROWS: Final = 1.5
+"""Times as much that blocks of twice the length show where motion or gusts begin: gusts, whose
+spectrum falls with f^(-5/3), 1.8 times; what is left of a sensor at half its clock 1.2."""
+
+
+def felt_noise(fit: Fit) -> Draw | None:
+    """Normed rows that noise of the inputs moves the simulation by, for a number of draws.
+
+    None where no input has noise that could be seen. The noise is taken as white; what cannot be
+    simulated is left out.
+    """
+    levels = [input_noise(fit.problem, trial) for trial in fit.problem.trials]
+    return functools.partial(_drawn, fit, levels) if any(levels) else None
+
+
+def _drawn(fit: Fit, levels: Sequence[Mapping[str, float]], draws: int) -> Vector:
+    """Rows of so many draws, or of fewer; (draws, M)."""
+    made = np.zeros((draws, len(fit.residual)))
+    for i, level in enumerate(levels):
+        if level:
+            _felt_in(fit, i, level, made)
+    return made[np.isfinite(made).all(axis=1)]
+
+
+def _felt_in(fit: Fit, place: int, level: Mapping[str, float], made: Vector) -> None:
+    """Write the rows of one trial."""
+    problem, trial = fit.problem, fit.problem.trials[place]
+    values = problem.values(fit.theta, place)
+    parts, scale = [p for p in stretches(problem) if p.trial == place], row_scale(problem)
+    run = functools.partial(
+        respond, problem.simulator, values=values, start=starts_of(values), sensitivities=False
+    )
+    clean, rng = run(trial).y, np.random.default_rng([0, place])
+    for row in made:
+        moved = run(with_noise(trial, level, rng)).y - clean
+        for part in parts:
+            row[part.rows] = part.taken(moved[:, part.output]) * scale[part.output]
+
+
+def with_noise(trial: Trial, level: Mapping[str, float], rng: np.random.Generator) -> Trial:
+    """The trial with more white noise on some of its signals."""
+    more = {n: trial.signals[n] + s * rng.standard_normal(trial.samples) for n, s in level.items()}
+    return replace(trial, signals={**trial.signals, **more})
+
+
+def input_noise(problem: Problem, trial: Trial) -> dict[str, float]:
+    """White noise of each record that drives the simulation, as it has any [SI]."""
+    L, g = (problem.simulator.model.ship.particulars[n] for n in ("L", "g"))
+    block = max(1, int(QUICK * np.sqrt(L / g) / trial.period))
+    records = (record_for(trial, n) for n in problem.simulator.equations.inputs)
+    sources = sorted({n for n in records if n is not None})
+    level = {n: _level(trial.signals[n], trial.valid.get(n), block) for n in sources}
+    return {n: s for n, s in level.items() if s > 0.0}
+
+
+def _level(y: Vector, valid: Mask | None, block: int) -> float:
+    """Deviation of a sample whose slow part is that of the blocks' means."""
+    short, long = (_of_blocks(y, valid, size) for size in (block, 2 * block))
+    return long if short < long < GROWS * short else short
+
+
+def _of_blocks(y: Vector, valid: Mask | None, block: int) -> float:
+    whole = len(y) // block * block
+    means = y[:whole].reshape(-1, block).mean(axis=1)
+    seen = None if valid is None else np.all(valid[:whole].reshape(-1, block), axis=1)
+    return float(np.sqrt(block)) * white_noise_of_most(means, seen)
