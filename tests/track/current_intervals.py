@@ -16,9 +16,11 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+from scipy.stats import t as student
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
 import sailed_wind
 from sailed_tracks import CURRENTS, SETTINGS, SHIP, accuracy, trials
-from scipy.stats import t as student
 
 from trialid.accuracy.parameter_table import ParameterAccuracy
 from trialid.effects.track import CURRENT

@@ -50,6 +50,8 @@ PATHS: dict[str, tuple[str | None, str | None, Side | None]] = {
     "navigation.speedOverGround": ("m/s", None, None),
     "navigation.courseOverGroundTrue": ("rad", None, None),
     "navigation.courseOverGroundMagnetic": ("rad", None, None),
+    "navigation.position:latitude": ("deg", None, None),
+    "navigation.position:longitude": ("deg", None, None),
     "navigation.leewayAngle": ("rad", None, None),
     "environment.wind.angleApparent": ("rad", "gamma_aw", "starboard"),
     "environment.wind.speedApparent": ("m/s", "V_aw", None),
@@ -59,7 +61,8 @@ PATHS: dict[str, tuple[str | None, str | None, Side | None]] = {
     "environment.depth.belowKeel": ("m", None, None),
     "environment.depth.belowSurface": ("m", None, None),
 }
-"""Unit, quantity and positive side of the paths of Signal K 1.8; an attitude has three fields."""
+"""Unit, quantity and positive side of the paths of Signal K 1.8; an attitude has three fields.
+Angles are radians, but for positions."""
 REVOLUTIONS = re.compile(r"propulsion\.[^.]+\.revolutions")
 
 

@@ -37,6 +37,9 @@ UNITS: Final = {
     ("vehicle_local_position", "vx"): "m/s", ("vehicle_local_position", "vy"): "m/s",
     ("vehicle_gps_position", "vel_m_s"): "m/s", ("sensor_gps", "vel_m_s"): "m/s",
     ("vehicle_gps_position", "cog_rad"): "rad", ("sensor_gps", "cog_rad"): "rad",
+    ("vehicle_gps_position", "latitude_deg"): "deg", ("sensor_gps", "latitude_deg"): "deg",
+    ("vehicle_gps_position", "longitude_deg"): "deg", ("sensor_gps", "longitude_deg"): "deg",
+    ("vehicle_global_position", "lat"): "deg", ("vehicle_global_position", "lon"): "deg",
     ("vehicle_angular_velocity", "xyz[1]"): "rad/s", ("sensor_combined", "gyro_rad[1]"): "rad/s",
 }  # fmt: skip
 QUATERNION: Final = {f"q[{i}]": f"q.{axis}" for i, axis in enumerate("wxyz")}

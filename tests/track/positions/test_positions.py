@@ -1,12 +1,12 @@
 """Positions of every format that has them, against independent decoders, and what is no fix."""
 
-import struct
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from nmea2000.decoder import NMEA2000Decoder
+from position_logs import LAYOUTS, gnss, sentence, sides
 from pymavlink import DFReader
 from pymavlink.dialects.v20 import all as dialect
 from pynmeagps import NMEAReader
@@ -15,7 +15,7 @@ from trialid.ingest import fix_quality, read
 from trialid.ingest.nmea2000 import nmea2000_messages
 from trialid.recording import Channel, Recording
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "ingest"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "ingest"))
 import write_dataflash
 import write_tlog
 from write_nmea0183 import checksum, iso
@@ -30,29 +30,6 @@ def places(seed):
     lat, lon = rng.uniform(-90.0, 90.0, N), rng.uniform(-180.0, 180.0, N)
     lat[:4], lon[:4] = (0.0, 89.99999, -89.99999, 1e-5), (0.0, 179.99999, -179.99999, -1e-5)
     return lat, lon
-
-
-def minutes(angle, digits):
-    """dddmm.mmmmm as devices write it."""
-    whole, rest = divmod(round(abs(angle) * 60.0, 5), 60.0)
-    return f"{int(whole):0{digits}d}{rest:08.5f}"
-
-
-def sides(lat, lon):
-    return minutes(lat, 2), "SN"[int(lat >= 0.0)], minutes(lon, 3), "WE"[int(lon >= 0.0)]
-
-
-LAYOUTS = {
-    "RMC": lambda p: ["101010.00", "A", *p, "7.1", "31.5", "141123", "", "", "A"],
-    "GGA": lambda p: ["101010.00", *p, "2", "09", "0.94", "1.0", "M", "2.0", "M", "", ""],
-    "GLL": lambda p: [*p, "101010.00", "A", "D"],
-    "GNS": lambda p: ["101010.00", *p, "AN", "09", "0.94", "1.0", "2.0", "", ""],
-}
-
-
-def sentence(talker, kind, fields):
-    body = ",".join([talker + kind, *fields])
-    return f"${body}*{checksum(body)}"
 
 
 def logged(tmp_path, texts):
@@ -190,12 +167,6 @@ def test_dataflash_as_pymavlink_reads_it(tmp_path):
             np.testing.assert_allclose(y[fixed], mine[fixed, place], rtol=1e-12)
             assert np.isnan(y[~fixed]).all()
     assert sum("without a fix" in one for one in log.remarks) == 2
-
-
-def gnss(lat, lon, method):
-    head = struct.pack("<BHI", 0, 19_000, 360_000_000)
-    place = struct.pack("<qqq", round(lat * 1e16), round(lon * 1e16), 0)
-    return head + place + struct.pack("<BBBhh5x", method << 4, 0xFC, 11, 94, 120)
 
 
 def test_nmea2000_as_canboat_reads_it_and_each_method():
