@@ -200,12 +200,16 @@ class ParameterRow:
         return share_off(self.value, self.likely)
 
     @property
-    def off_by_noise(self) -> float | None:
-        """How far noise alone may put the value, 95 times of 100, as a share of it."""
-        if self.standard_error is None or not self.value:
+    def reach(self) -> float | None:
+        """How far noise alone may put the value, 95 times of 100, in `unit`."""
+        if self.standard_error is None:
             return None
-        wide = float(student(inf if self.freedom is None else self.freedom))
-        return wide * abs(self.standard_error / self.value)
+        return float(student(inf if self.freedom is None else self.freedom)) * self.standard_error
+
+    @property
+    def off_by_noise(self) -> float | None:
+        """The same as a share of the value."""
+        return abs(self.reach / self.value) if self.reach is not None and self.value else None
 
     @property
     def off_prior(self) -> float | None:

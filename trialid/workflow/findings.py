@@ -3,6 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from trialid.accuracy.likely import student
 from trialid.design import following
 from trialid.design.following import Narrowing
 from trialid.design.helm import Vessel
@@ -116,7 +119,8 @@ def _imo(pipeline: Pipeline, done: Diagnosed, ship: Vessel | None) -> dict[str, 
         return {}
     off, fit = done.doubts, done.fit
     spread = likely_spread(fit, done.accuracy.covariance, off.standing, off.held, off.missing)
-    errors = {p.name: p.standard_error for p in done.accuracy.parameters}
+    wider = {p.name: float(student(p.freedom) / student(np.inf)) for p in done.accuracy.parameters}
+    errors = {p.name: wider[p.name] * p.standard_error for p in done.accuracy.parameters}
     found = measure_trials(fit, errors, spread)
     by_heading = {one.trial for one in found.numbers if one.kind == "zig-zag"}
     integrals = (one for one in observed.overshoots(fit) if one.trial not in by_heading)

@@ -42,7 +42,7 @@ def measure_trials(
     Parameters
     ----------
     errors
-        Standard errors of the unknowns by name.
+        Standard errors of the unknowns by name, 1.96 of which are 95 %.
     spread
         What a prediction is uncertain by; without it there is none.
     """

@@ -229,14 +229,14 @@ def _finish(fit: Fit, method: str, why: str, found: Sequence[OutputNoise]) -> Sp
     for (c, eps), n in zip(fit.eps_by_output.items(), found, strict=True):
         x2 = min(n.variance, eps**2)
         by_output[c] = (float(np.sqrt(x2)), float(np.sqrt(eps**2 - x2)))
-    x2 = float(np.mean([x**2 for x, _ in by_output.values()]))
+    x2, m2 = (float(np.mean([part[k] ** 2 for part in by_output.values()])) for k in (0, 1))
     gap = CONFIDENCE * float(np.hypot(deviation, spread))
     model2 = (total**2 - noise2 - gap, total**2 - noise2 + gap)
     return Split(
         method=method,
         why=why,
         noise=float(np.sqrt(x2)),
-        undermodelling=float(np.sqrt(max(total**2 - x2, 0.0))),
+        undermodelling=float(np.sqrt(m2)),
         noise_interval=_roots(noise2 - CONFIDENCE * deviation, noise2 + CONFIDENCE * deviation),
         undermodelling_interval=_roots(*model2),
         by_output=by_output,

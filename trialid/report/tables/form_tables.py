@@ -15,7 +15,6 @@ from trialid.result.imo_rows import ImoPart
 from trialid.result.schema import Result
 
 CURRENT: Final = {"V_cn": "current to the north", "V_ce": "current to the east"}
-NORMAL: Final = 1.96
 
 
 Winds = Mapping[str, tuple[float, float]]
@@ -109,7 +108,7 @@ def _current(row: ParameterRow) -> tuple[Cell, ...] | None:
     name, _, trial = row.name.partition(" [")
     if name not in CURRENT or row.value is None:
         return None
-    reach = None if row.standard_error is None else NORMAL * row.standard_error
+    reach = row.reach
     ends = [None, None] if reach is None else [row.value - reach, row.value + reach]
     numbers = (Figure(x, 3) for x in (row.value, *ends))
     return trial.removesuffix("]"), f"{CURRENT[name]}, estimated", *numbers, "m/s"
