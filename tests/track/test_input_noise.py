@@ -55,6 +55,18 @@ def test_noise_that_the_residual_has_no_room_for_was_none() -> None:
     assert none == coloured_covariance(LINE, left, WHOLE).covariance[0, 0]
 
 
+def test_what_noise_of_inputs_leaves_is_not_counted_twice() -> None:
+    """All of the residual is such noise: the error is what it moved the parameter by, no more."""
+    [walk] = walks(1.0, 1, 6)
+    slope, left = fitted_line(walk)
+
+    def draw(draws: int) -> np.ndarray:
+        return np.where(np.arange(draws) % 2, 1.0, -1.0)[:, None] * walk
+
+    [[variance]] = coloured_covariance(LINE, left, WHOLE, felt=draw).covariance
+    assert variance == pytest.approx(slope**2, rel=1e-6)
+
+
 def test_the_noise_of_an_anemometer_is_read_from_its_record() -> None:
     rng = np.random.default_rng(7)
     fit = identify([noisy(blown(n), rng) for n in WATERS], WINDY, SETTINGS)
