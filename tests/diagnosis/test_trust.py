@@ -33,6 +33,7 @@ def fit_of(theta, sizes):
         unknowns=[unknown(f"x{i}", s) for i, s in enumerate(sizes)],
         compared=(np.ones((N, 1), dtype=bool),),
         every=1,
+        trials=(),  # no record that drives anything
     )
     return SimpleNamespace(
         problem=problem,

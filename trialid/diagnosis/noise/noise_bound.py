@@ -70,7 +70,7 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
         chosen,
         noise=noise,
         undermodelling=model,
-        noise_interval=(low, min(high, left)),
+        noise_interval=(min(low, noise), min(high, left)),
         undermodelling_interval=(floor, max(top, model)),  # by chance alone a fit leaves less, too
         by_output={c: (x, _rest(eps, x)) for c, (x, eps) in by_output.items()} or None,
     )
