@@ -61,14 +61,15 @@ def felt_by(
     parameter, beside what a white residual of this size would do.
     """
     white = float(residual @ residual) / len(residual) * np.sum(inverse**2, axis=1)
-    few = draw(FIRST) @ inverse.T
-    if not np.any(np.sum(few**2, axis=0) > MATTERS * white * len(few)):
+    rows = draw(FIRST)
+    if not np.any(np.sum((rows @ inverse.T) ** 2, axis=0) > MATTERS * white * len(rows)):
         return None
-    rows = draw(draws)
+    if draws > FIRST:
+        rows = draw(draws)
     moved = rows @ inverse.T
-    left = rows - moved @ A.T
-    share = min((_room(residual[s.rows], left[:, s.rows]) for s in stretches), default=1.0)
-    return Felt(np.sqrt(share) * left, share * moved.T @ moved / len(rows))
+    rows -= moved @ A.T
+    share = min((_room(residual[s.rows], rows[:, s.rows]) for s in stretches), default=1.0)
+    return Felt(np.sqrt(share) * rows, share * moved.T @ moved / len(rows))
 
 
 def _room(residual: Vector, left: Vector) -> float:
