@@ -13,7 +13,7 @@ from trialid.alignment.clocks import Series
 from trialid.alignment.log_clock import on_one_clock
 from trialid.errors import AlignmentError, LogError
 from trialid.ingest import read
-from trialid.ingest.tables import template
+from trialid.ingest.tables.templates import template
 from trialid.inspection import channels, sketch
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
