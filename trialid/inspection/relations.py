@@ -11,7 +11,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from trialid.alignment import signs
+from trialid.alignment.agreement import signs
 from trialid.arrays import Mask
 from trialid.inspection.inspected import ChannelInspection, Guess
 from trialid.inspection.sketch import Vector, together

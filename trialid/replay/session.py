@@ -1,6 +1,7 @@
 """A replay from its first sample to its last: pace, keys, loop, and a log that grows."""
 
 import math
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final, Protocol
@@ -33,6 +34,18 @@ class Time(Protocol):
 
     def wait(self, seconds: float) -> None:
         """Come back that much later."""
+
+
+class WallClock:
+    """The computer's own."""
+
+    def now(self) -> float:
+        """Seconds since some instant."""
+        return time.monotonic()
+
+    def wait(self, seconds: float) -> None:
+        """Sleep."""
+        time.sleep(seconds)
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,10 @@ from trialid.result.series import OutputSeries, TrialSeries
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.trial import Trial
+from trialid.workbench.document import Step
 from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Shown
+from trialid.workbench.watch import Files
 from trialid.workflow import history
 from trialid.workflow.build_model import available, build_model
 from trialid.workflow.edit_model import fit_edited, foresee_edit, proposed_steps, set_beside
@@ -73,6 +75,23 @@ class Seat(Protocol):
 
     def record(self, steps: tuple[StepRow, ...]) -> None:
         """Write steps of the history."""
+
+
+class LetGo(Exception):
+    """The computation is not wanted any more."""
+
+
+@dataclass
+class Job:
+    """A computation under way, the edit that began it, and whether it is still wanted.
+
+    `files` are those it rests on, as they were when it began.
+    """
+
+    task: Task
+    step: Step | None
+    files: Files
+    wanted: bool = True
 
 
 @one_thread
