@@ -40,7 +40,7 @@ def test_wild_stamps_make_no_clock_of_years():
     assert checks.trial_of_series({"phi": wild}) is None
     assert duplicate_channels.disagreements({"a": wild, "b": wild}) == ()
     one = sketch.sketch(WILD, np.append(Y, 0.0))
-    assert sketch.together(one, one) is None
+    assert sketch.on_one_clock(one, one) is None
     assert checks.trial_of_series({"phi": series(T, Y)}).samples >= len(T) - 1
 
 
@@ -103,7 +103,7 @@ def test_numbers_past_all_in_one_of_two_channels_of_a_quantity():
     }
     chosen = SignalSource("r", "a", "rad/s")
     assert (
-        duplicate_channels.compare_unused([chosen], [Recording(Path("log"), "mcap", "", pair)])
+        duplicate_channels.compare_duplicates([chosen], [Recording(Path("log"), "mcap", "", pair)])
         == ()
     )
 

@@ -75,8 +75,7 @@ def align(
     series, found = _without_faults(series, sources, grid, keep or {}, at)
     signals = _on_grid(series, sources, grid, where)
     trial = antenna.with_course(_trial(name, use, recordings, signals, grid))
-    findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
-    channel_finding.refuse(findings, where)
+    agreement = _agreement(trial, sources, recordings, where)
     remarks = (
         *_of_logs(recordings, sources),
         *of_clocks,
@@ -84,17 +83,23 @@ def align(
         *_of_signals(logged, series, sources, grid),
         *found,
         *quality.of_trial(series, grid, window),
-        *_of_motions(trial, sources, where),
-        *(finding.sentence for finding in findings),
-        *(finding.sentence for finding in duplicate_channels.compare_unused(sources, recordings)),
+        *agreement,
     )
     return dataclasses.replace(trial, remarks=remarks, opening=window[0] if window else 0.0)
 
 
-def _of_motions(trial: Trial, sources: Sequence[SignalSource], where: str) -> Iterator[str]:
-    """Whether motions agree: the track with heading and speed, signs with each other."""
-    yield from antenna.check_track(trial)
-    yield from signs.check(trial, {source.quantity: source for source in sources}, where)
+def _agreement(
+    trial: Trial, sources: Sequence[SignalSource], recordings: Sequence[Recording], where: str
+) -> tuple[str, ...]:
+    """Whether the signals agree: with each other, with the track, with channels not chosen."""
+    findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
+    channel_finding.refuse(findings, where)
+    twins = duplicate_channels.compare_duplicates(sources, recordings)
+    return (
+        *antenna.check_track(trial),
+        *signs.check(trial, {source.quantity: source for source in sources}, where),
+        *(finding.sentence for finding in (*findings, *twins)),
+    )
 
 
 def _without_faults(

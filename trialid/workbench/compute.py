@@ -23,7 +23,7 @@ from trialid.workbench.shown import Shown
 from trialid.workbench.watch import Files
 from trialid.workflow import history
 from trialid.workflow.build_model import available, build_model
-from trialid.workflow.edit_model import fit_edited, foresee_edit, proposed_steps, set_beside
+from trialid.workflow.edit_model import fit_edit, foresee_edit, proposed_steps, set_beside
 from trialid.workflow.edit_pipeline import Edit
 from trialid.workflow.fit_model import fit_of, time_series
 from trialid.workflow.outcome import Outcome
@@ -132,7 +132,7 @@ def _fit(
         catalogue = available(task.pipeline)
         return None, UNKNOWN, fit_of(task.pipeline, trials, catalogue, seat.progress)
     foreseen = _foreseen(task.edit, task.before, trials, seat)
-    edit, fit = fit_edited(task.edit, trials, foreseen, seat.progress)
+    edit, fit = fit_edit(task.edit, trials, foreseen, seat.progress)
     if edit is not task.edit:
         seat.amend(edit)
     return edit, foreseen, fit

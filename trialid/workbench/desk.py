@@ -20,7 +20,7 @@ from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Shown, Trouble, Working, place_of
 from trialid.workbench.status import Counts, Status, status_of
 from trialid.workbench.watch import Files, source_states, watch_list
-from trialid.workbench.wishes import Granted, between, grant, understood
+from trialid.workbench.wishes import Granted, find_edit, grant, read_wish
 from trialid.workflow import history
 from trialid.workflow.build_model import available
 from trialid.workflow.edit_pipeline import Edit
@@ -88,7 +88,7 @@ class Desk:
         TrialidError
             It cannot be done; nothing has changed.
         """
-        wish = understood(asked)
+        wish = read_wish(asked)
         with self._open():
             self._document.check(wish.version)
             found = grant(self._document.pipeline, wish)
@@ -143,7 +143,7 @@ class Desk:
             old = self._document.pipeline
             step = move()
             after = self._document.pipeline
-            self._changed(Granted(after, words.format(step.words), between(old, after)), None)
+            self._changed(Granted(after, words.format(step.words), find_edit(old, after)), None)
 
     def _changed(self, found: Granted, step: Step | None) -> None:
         """Work out what the file holds now, its last complete model being the one before."""

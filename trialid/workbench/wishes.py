@@ -98,7 +98,7 @@ class Granted:
     edit: Edit | None = None
 
 
-def understood(asked: object) -> Any:
+def read_wish(asked: object) -> Any:
     """The wish in what a page sent.
 
     Raises
@@ -131,7 +131,7 @@ def grant(pipeline: Pipeline, wish: Any) -> Granted:
     return found
 
 
-def between(old: Pipeline, new: Pipeline) -> Edit | None:
+def find_edit(old: Pipeline, new: Pipeline) -> Edit | None:
     """The edit that one effect came or went by; None where two pipelines differ otherwise."""
     had, has = old.model.effects, new.model.effects
     came = [n for n in has if n not in had]
@@ -168,9 +168,9 @@ def _bounds(pipeline: Pipeline, wish: Bounds) -> Granted:
     name, low, high = wish.parameter, wish.low, wish.high
     if low is None and high is None:
         return _edited(pipeline, f"no bounds of {name}", lambda text: set_bounds(text, name, None))
-    between = (-math.inf if low is None else low, math.inf if high is None else high)
-    words = f"bounds of {name} {between[0]:g} to {between[1]:g}"
-    return _edited(pipeline, words, lambda text: set_bounds(text, name, between))
+    find_edit = (-math.inf if low is None else low, math.inf if high is None else high)
+    words = f"bounds of {name} {find_edit[0]:g} to {find_edit[1]:g}"
+    return _edited(pipeline, words, lambda text: set_bounds(text, name, find_edit))
 
 
 def _value(pipeline: Pipeline, wish: Value) -> Granted:

@@ -119,7 +119,7 @@ def _evidence(found: Relation | None, offset: float) -> dict[str, float]:
     }  # fmt: skip
 
 
-def compare_unused(
+def compare_duplicates(
     sources: Sequence[SignalSource], recordings: Sequence[Recording]
 ) -> tuple[Finding, ...]:
     """Where a chosen channel disagrees with another of its quantity that was read with it.

@@ -55,8 +55,10 @@ def _sector(
         value = np.where(off, mean.value, 0.0)
         ends = dict.fromkeys(k for k in (int(value.argmax()), int(value.argmin())) if off[k])
         share = share_of_means(left, output, value, held)
-        parts = [f"heading {names[k]} {words.off(left, output, float(mean.value[k]) * factor)}"
-                 for k in ends]  # fmt: skip
+        off_by = {k: float(mean.value[k]) * factor for k in ends}
+        parts = [
+            f"heading {names[k]} {words.how_far_off(left, output, m)}" for k, m in off_by.items()
+        ]
         said = f"the prediction is, on average, {', '.join(parts)}"
         said += f"; such means are {words.share(share)} of its squared error"
         samples, standing = 0.0, off

@@ -29,7 +29,9 @@ def offset(left: Leftover, colour: Colour, output: int) -> Examined:
     share = share_of_means(left, output, np.where(standing, mean.value, 0.0), held)
     names = [r.trial.name for r in left.parts]
     value = float(mean.value[worst]) * in_reports(left, output)
-    said = f"in {names[worst]!r} the prediction is on average {words.off(left, output, value)}"
+    said = (
+        f"in {names[worst]!r} the prediction is on average {words.how_far_off(left, output, value)}"
+    )
     others = int(standing.sum()) - 1
     said += f", and {others} more of the trials" if others else ""
     said += f"; such offsets are {words.share(share)} of its squared error"

@@ -66,7 +66,7 @@ def _side(
     said = f"{doing[worse]}, {words.share_sentence(samples, share)}"
     standing = np.arange(2) == worse
     if apart:
-        off = [words.off(left, output, float(m) * factor) for m in mean.value[1:]]
+        off = [words.how_far_off(left, output, float(m) * factor) for m in mean.value[1:]]
         said = (
             f"port and starboard differ: {doing[0]} the prediction is on average {off[0]}, "
             f"{doing[1]} {off[1]}"
