@@ -29,7 +29,7 @@ STEP_ERROR: Final = 0.05
 """Share of the error that integration may make up before steps are made finer."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Fit:
     """The result of a search.
 
@@ -266,12 +266,18 @@ def _finish(
     point = linearise(problem, theta)
     assert not isinstance(point, Departure)
     level = level_of(problem, point[0])
-    shared = {x.column: float(a) for x, a in zip(problem.unknowns, theta, strict=True)
-              if x.trial is None}  # fmt: skip
+    ended = zip(problem.unknowns, theta, strict=True)
+    shared = {x.column: float(a) for x, a in ended if x.trial is None}
     return Fit(
-        model.with_values(shared), settings, problem, theta, point[0],
-        tuple(score_trial(problem, theta, t, level) for t in trials),
-        () if end is None else end.path,
-        "orthogonal" if end is None else end.minimum.reason,
-        end is None or end.minimum.converged, agreeing, level,
-    )  # fmt: skip
+        model=model.with_values(shared),
+        settings=settings,
+        problem=problem,
+        theta=theta,
+        residual=point[0],
+        scores=tuple(score_trial(problem, theta, t, level) for t in trials),
+        iterations=() if end is None else end.path,
+        reason="orthogonal" if end is None else end.minimum.reason,
+        converged=end is None or end.minimum.converged,
+        agreeing=agreeing,
+        level=level,
+    )

@@ -168,9 +168,9 @@ def _bounds(pipeline: Pipeline, wish: Bounds) -> Granted:
     name, low, high = wish.parameter, wish.low, wish.high
     if low is None and high is None:
         return _edited(pipeline, f"no bounds of {name}", lambda text: set_bounds(text, name, None))
-    find_edit = (-math.inf if low is None else low, math.inf if high is None else high)
-    words = f"bounds of {name} {find_edit[0]:g} to {find_edit[1]:g}"
-    return _edited(pipeline, words, lambda text: set_bounds(text, name, find_edit))
+    between = (-math.inf if low is None else low, math.inf if high is None else high)
+    words = f"bounds of {name} {between[0]:g} to {between[1]:g}"
+    return _edited(pipeline, words, lambda text: set_bounds(text, name, between))
 
 
 def _value(pipeline: Pipeline, wish: Value) -> Granted:

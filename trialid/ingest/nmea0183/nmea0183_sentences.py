@@ -35,7 +35,7 @@ class Span:
         return Span(self.a[rows], self.b[rows])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Sentences:
     """The N sound sentences of a block.
 
@@ -201,4 +201,16 @@ def _indexed(data: Bytes, body: Span, low: Places, lost: tuple[int, int, int]) -
     fields = np.searchsorted(comma, body.b) - first
     comma = np.append(comma, len(data))  # what stands behind the last
     before = Span(low, body.a - 1)
-    return Sentences(data, body, before, joined, comma, first, fields, *lost)
+    wrong, foreign, bare = lost
+    return Sentences(
+        data=data,
+        body=body,
+        before=before,
+        joined=joined,
+        comma=comma,
+        first=first,
+        fields=fields,
+        wrong=wrong,
+        foreign=foreign,
+        bare=bare,
+    )
