@@ -10,7 +10,7 @@ from test_bad_input import PIPELINE, Table, record, trialid_
 
 from trialid.errors import TrialidError
 from trialid.result.schema import Result
-from trialid.workflow.repeat import again, compare, comparison_words, earlier
+from trialid.workflow.repeat import compare, comparison_words, earlier, repeat
 
 ROOT = Path(__file__).parent.parent
 
@@ -162,6 +162,6 @@ def test_other_versions_are_named() -> None:
 
 
 def test_the_library_gives_the_same(place: Path) -> None:
-    _, found = again(earlier(run_of(place)), lambda words, share: None)
+    _, found = repeat(earlier(run_of(place)), lambda words, share: None)
     assert found.same
     assert found.differing == 0

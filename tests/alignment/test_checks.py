@@ -6,7 +6,8 @@ from made_recordings import channel, recording
 from made_trials import record
 from real_channels import BUSES, DATA, DECAY, HSVA, bus_series, decay_series, hsva_series, series
 
-from trialid.alignment import SignalSource, align, checks, duplicate_channels
+from trialid.alignment import SignalSource, align
+from trialid.alignment.agreement import checks, duplicate_channels
 from trialid.errors import AlignmentError
 
 UNITS = {"u": "m/s", "r": "rad/s", "p": "rad/s"}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trialid.alignment.time_steps import unwrap_counter
+from trialid.alignment.stamps.time_steps import unwrap_counter
 
 
 @pytest.mark.parametrize(("bits", "tick"), [(32, 1e-9), (16, 1e-3), (32, 1e-6), (32, 1e-3)])

@@ -11,7 +11,7 @@ from made_recordings import channel, recording
 
 from trialid.alignment import SignalSource, align
 from trialid.alignment.clocks import Series
-from trialid.alignment.dejitter import repair_stamps
+from trialid.alignment.stamps.dejitter import repair_stamps
 from trialid.names.quantities import SIGNALS
 
 START = 1_700_000_000_000_000_000

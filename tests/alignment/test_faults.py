@@ -178,7 +178,7 @@ def _faults(series):
     words = []
     for i, one in enumerate(series):
         words += faults.mask_faults(one, Grid(int(one.t[0]), 0.5, 100), (), 0.0, "t")[1]
-        stuck = faults.frozen(series, i, Grid(int(one.t[0]), 0.5, 100))
+        stuck = faults.find_stuck(series, i, Grid(int(one.t[0]), 0.5, 100))
         words += [f"{one.quantity.name} {stuck.words}"] if stuck else []
     return words
 

@@ -67,10 +67,10 @@ def test_vibration_does_not_fold_into_the_motion():
     """50 Hz with 12.4 Hz vibration, to 2 Hz: taking every 25th sample would leave all of it."""
     t = np.arange(0, 300, 0.02)
     vibration = np.sin(2 * np.pi * 12.4 * t)
-    y, valid = resample.onto(series("r", t, vibration), grid(299), smooth=True)
+    y, valid = resample.resample(series("r", t, vibration), grid(299), smooth=True)
     assert np.abs(y[valid]).max() < 1e-4
     assert np.abs(vibration[::25]).max() > 0.9
-    y, valid = resample.onto(series("r", t, motion(t) + vibration), grid(299), smooth=True)
+    y, valid = resample.resample(series("r", t, motion(t) + vibration), grid(299), smooth=True)
     assert np.abs(y - motion(t[::25][: len(y)]))[valid].max() < 2e-3
 
 
@@ -98,8 +98,8 @@ def test_a_static_relation_survives(rate, jitter, gain, seed):
     u = np.random.default_rng(seed).normal(size=len(t))
     on = grid(90, start=3.0)
     for smooth in (True, False):
-        y, _ = resample.onto(series("p", t, u), on, smooth=smooth)
-        other, _ = resample.onto(series("r", t, gain * u), on, smooth=smooth)
+        y, _ = resample.resample(series("p", t, u), on, smooth=smooth)
+        other, _ = resample.resample(series("r", t, gain * u), on, smooth=smooth)
         assert np.abs(other - gain * y).max() < 1e-9
 
 
@@ -107,8 +107,8 @@ def test_a_static_relation_between_rudder_and_turn_survives_on_a_common_clock():
     """Sampled in step with the grid, linear and PCHIP interpolation give the same."""
     t = np.arange(0, 100, 0.02)
     u = np.random.default_rng(2).normal(size=len(t))
-    rudder, _ = resample.onto(series("delta", t, u), grid(99), smooth=True)
-    turn, _ = resample.onto(series("r", t, 2 * u), grid(99), smooth=True)
+    rudder, _ = resample.resample(series("delta", t, u), grid(99), smooth=True)
+    turn, _ = resample.resample(series("r", t, 2 * u), grid(99), smooth=True)
     assert np.abs(turn - 2 * rudder).max() < 1e-9
 
 
@@ -116,7 +116,9 @@ def test_the_filter_is_without_delay_and_the_same_for_a_slow_channel():
     """A symmetric pulse stays where it is, at 50 Hz and at 1 Hz alike."""
     for rate in (50.0, 1.0):
         t = np.arange(0, 100, 1 / rate)
-        y, _ = resample.onto(series("r", t, np.exp(-(((t - 40) / 8) ** 2))), grid(99), smooth=True)
+        y, _ = resample.resample(
+            series("r", t, np.exp(-(((t - 40) / 8) ** 2))), grid(99), smooth=True
+        )
         instants = np.arange(len(y)) * PERIOD
         assert np.sum(instants * y) / np.sum(y) == pytest.approx(40.0, abs=1e-3)
 
@@ -151,8 +153,8 @@ def test_a_gap_is_masked_and_never_bridged(smooth, rate):
     t = np.arange(0, 100, 1 / rate)
     kept = (t <= 40) | (t >= 60)
     on = grid(99)
-    first, valid = resample.onto(series("r", t[kept], motion(t)[kept]), on, smooth=smooth)
-    second, _ = resample.onto(
+    first, valid = resample.resample(series("r", t[kept], motion(t)[kept]), on, smooth=smooth)
+    second, _ = resample.resample(
         series("r", t[kept], np.where(t > 50, 100 - t, motion(t))[kept]), on, smooth=smooth
     )
     margin = 2.5 if smooth else 0.0
@@ -169,8 +171,8 @@ def test_missing_values_are_a_gap_like_missing_stamps():
     y[(t > 40) & (t < 60)] = np.nan
     kept = np.isfinite(y)
     for smooth in (True, False):
-        by_value = resample.onto(series("r", t, y), grid(99), smooth=smooth)
-        by_stamp = resample.onto(series("r", t[kept], y[kept]), grid(99), smooth=smooth)
+        by_value = resample.resample(series("r", t, y), grid(99), smooth=smooth)
+        by_stamp = resample.resample(series("r", t[kept], y[kept]), grid(99), smooth=smooth)
         np.testing.assert_array_equal(by_value[0], by_stamp[0])
         np.testing.assert_array_equal(by_value[1], by_stamp[1])
 
@@ -191,7 +193,7 @@ def test_before_the_first_and_after_the_last_value_the_value_is_held():
     y = motion(t)
     y[t < 20] = np.nan
     y[t > 80] = np.nan
-    value, valid = resample.onto(series("r", t, y), grid(99), smooth=False)
+    value, valid = resample.resample(series("r", t, y), grid(99), smooth=False)
     assert not valid[:40].any()
     assert valid[40:161].all()
     assert not valid[161:].any()
@@ -204,7 +206,7 @@ def test_before_the_first_and_after_the_last_value_the_value_is_held():
 def test_heading_is_unwrapped_before_anything_else(turn, rate, smooth):
     t = np.arange(0, 120, 1 / rate)
     heading = 6.0 + turn * t
-    y, valid = resample.onto(series("psi", t, heading % (2 * np.pi)), grid(119), smooth=smooth)
+    y, valid = resample.resample(series("psi", t, heading % (2 * np.pi)), grid(119), smooth=smooth)
     expected = heading[0] % (2 * np.pi) + turn * np.arange(len(y)) * PERIOD
     assert np.abs(y - expected)[valid].max() < 1e-9
 
@@ -214,13 +216,13 @@ def test_an_unwrapped_heading_survives_a_missing_value():
     heading = 6.0 + 0.1 * t
     logged = heading % (2 * np.pi)
     logged[5] = np.nan
-    y, _ = resample.onto(series("psi", t, logged), grid(59), smooth=False)
+    y, _ = resample.resample(series("psi", t, logged), grid(59), smooth=False)
     np.testing.assert_allclose(y, heading[: len(y)], atol=1e-9)
 
 
 def test_a_rudder_step_does_not_overshoot():
     t = np.arange(0, 60, 1.0)
-    y, _ = resample.onto(series("delta", t, np.where(t < 30, 0.0, 0.2)), grid(59), smooth=False)
+    y, _ = resample.resample(series("delta", t, np.where(t < 30, 0.0, 0.2)), grid(59), smooth=False)
     assert y.min() >= 0.0
     assert y.max() <= 0.2
     np.testing.assert_allclose(y[58:61], [0.0, 0.1, 0.2])
@@ -229,7 +231,7 @@ def test_a_rudder_step_does_not_overshoot():
 def test_a_single_sample_between_two_gaps():
     t = np.concatenate([np.arange(0, 20, 0.5), [40.0], np.arange(60, 80, 0.5)])
     for smooth in (True, False):
-        value, valid = resample.onto(series("r", t, motion(t)), grid(79), smooth=smooth)
+        value, valid = resample.resample(series("r", t, motion(t)), grid(79), smooth=smooth)
         assert np.isfinite(value).all()
         assert valid[80] == (not smooth)
 
@@ -239,7 +241,8 @@ def test_a_rudder_moves_in_ramps_and_never_beyond_its_samples():
     t = np.arange(0.0, 40.0)
     ramp = np.clip((t - 10.0) * 0.04, 0.0, 0.2)
     (y, valid), (turning, _) = (
-        resample.onto(series(name, t, ramp), grid(39.0), smooth=False) for name in ("delta", "r")
+        resample.resample(series(name, t, ramp), grid(39.0), smooth=False)
+        for name in ("delta", "r")
     )
     lines = np.clip((grid(39.0).t - 10.0) * 0.04, 0.0, 0.2)
     np.testing.assert_allclose(y, lines, atol=1e-12)
@@ -250,7 +253,7 @@ def test_a_rudder_moves_in_ramps_and_never_beyond_its_samples():
 def test_half_of_the_filter_is_not_believed_at_either_end_of_a_stretch():
     """Five periods of half a second at both ends of the record and on both sides of its gap."""
     t = np.delete(np.arange(0.0, 100.0, 0.1), np.s_[400:600])
-    _, valid = resample.onto(series("r", t, motion(t)), grid(99.5), smooth=True)
+    _, valid = resample.resample(series("r", t, motion(t)), grid(99.5), smooth=True)
     at = grid(99.5).t
     expected = ((at >= 2.5) & (at <= 37.4)) | ((at >= 62.5) & (at <= 97.4))
     np.testing.assert_array_equal(valid, expected)

@@ -8,7 +8,8 @@ from rich.console import Console
 from trialid.pipeline_file.design_file import load_design
 from trialid.report.tables.design_tables import tables
 from trialid.report.terminal.terminal import SCREEN
-from trialid.workflow.design.design_run import plain, plan
+from trialid.workflow.design.design_run import plan
+from trialid.workflow.design.plan_data import plain
 
 PIPELINES = Path(__file__).parents[2] / "pipelines"
 QUICK = ("design_rivals", "design_s175q")

@@ -11,7 +11,8 @@ from trialid.design.search import score
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError, PipelineError
 from trialid.pipeline_file.design_file import load_design
-from trialid.workflow.design.design_run import largest_error, plain, plan
+from trialid.workflow.design.design_run import largest_error, plan
+from trialid.workflow.design.plan_data import plain
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = sorted((ROOT / "pipelines").glob("design_*.toml"))

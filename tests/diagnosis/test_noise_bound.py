@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.noise_bound import held_against
-from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED, Split
+from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
 from trialid.diagnosis.search.completeness import Completeness
 
 OUTPUTS = ("r", "phi")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trialid.accuracy.likely import Averaged
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.trust import accuracy_of
 
 N = 3000

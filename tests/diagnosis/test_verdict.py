@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import Carried, as_good, lead_in_errors
 from trialid.diagnosis.search.completeness import Completeness, _Search
 from trialid.diagnosis.search.refit import Refit, best_of

@@ -13,7 +13,7 @@ from trialid.errors import TrialidError
 from trialid.fleet.batch import Batch, batch
 from trialid.pipeline_file.fleet_file import load_fleet
 from trialid.result.json_file import read
-from trialid.workflow.repeat import again, earlier
+from trialid.workflow.repeat import earlier, repeat
 
 pytest.importorskip("pyarrow")
 
@@ -59,7 +59,7 @@ def test_rows_are_what_the_runs_say(finished: Path) -> None:
 def test_a_run_of_a_fleet_is_a_run(finished: Path) -> None:
     """Its folder can be repeated, digit for digit."""
     before = earlier(finished / "out" / "runs" / "alpha-2025-03-10")
-    _, compared = again(before, lambda words, share: None)
+    _, compared = repeat(before, lambda words, share: None)
     assert compared.same
 
 

@@ -23,7 +23,7 @@ from limits import LONGEST_MESSAGE, Hang, time_limit
 
 from trialid.errors import TrialidError
 from trialid.ingest import draft_template
-from trialid.ingest.tables import template
+from trialid.ingest.tables.templates import template
 from trialid.pipeline_file import load
 from trialid.pipeline_file.design_file import load_design
 from trialid.ship.particulars import read_ship

@@ -30,7 +30,8 @@ from trialid.ingest import read
 from trialid.ingest.adapter import Aids
 from trialid.inspection import inspect_log
 from trialid.recording import Channel, Recording
-from trialid.report.terminal.log_contents import inspection, plain
+from trialid.report.files.log_data import plain
+from trialid.report.terminal.log_contents import inspection
 
 SURVEYED = 4
 """Every so many damaged logs one goes on to the survey and the alignment."""

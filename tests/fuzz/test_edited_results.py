@@ -14,7 +14,7 @@ from limits import LONGEST_MESSAGE, time_limit
 
 from trialid.cli.console import render
 from trialid.errors import TrialidError
-from trialid.report.pages.folder import read_finished, write_one
+from trialid.report.pages.folder import read_run, write_one
 from trialid.report.terminal.summary import summary
 from trialid.result import json_file
 
@@ -63,7 +63,7 @@ def shown(folder, place):
     try:
         with time_limit():
             found = json_file.read(folder / "result.json")
-            done = read_finished("a", folder, found)
+            done = read_run("a", folder, found)
             render(summary(found))
             write_one(done, place)
     except TrialidError as error:

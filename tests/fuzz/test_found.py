@@ -8,12 +8,13 @@ import pytest
 import seed_logs  # it finds the writers
 from resealed import SEALS
 
-from trialid.alignment import LogClock, SignalSource, checks, clocks, duplicate_channels, signs
+from trialid.alignment import LogClock, SignalSource, clocks
+from trialid.alignment.agreement import checks, duplicate_channels, signs
 from trialid.alignment.clocks import Series
 from trialid.alignment.log_clock import on_one_clock
 from trialid.errors import AlignmentError, LogError
 from trialid.ingest import read
-from trialid.ingest.tables import template
+from trialid.ingest.tables.templates import template
 from trialid.inspection import channels, sketch
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
@@ -36,11 +37,11 @@ def test_a_channel_without_a_value_beside_one_with_values():
 
 def test_wild_stamps_make_no_clock_of_years():
     wild = series(WILD, np.append(Y, 0.0))
-    assert checks.together({"phi": wild}) is None
+    assert checks.trial_of_series({"phi": wild}) is None
     assert duplicate_channels.disagreements({"a": wild, "b": wild}) == ()
     one = sketch.sketch(WILD, np.append(Y, 0.0))
-    assert sketch.together(one, one) is None
-    assert checks.together({"phi": series(T, Y)}).samples >= len(T) - 1
+    assert sketch.on_one_clock(one, one) is None
+    assert checks.trial_of_series({"phi": series(T, Y)}).samples >= len(T) - 1
 
 
 def test_a_rudder_that_is_valid_for_three_samples():
@@ -67,7 +68,7 @@ def test_messages_and_remarks_stay_on_one_line_and_steer_nothing():
 def test_a_step_next_to_nothing_beside_any_other():
     y = np.where(np.arange(len(T)) % 2, 1e-310, 0.0)
     y[100:] = Y[100:]
-    assert np.isfinite(checks.together({"phi": series(T, y)}).signals["phi"]).all()
+    assert np.isfinite(checks.trial_of_series({"phi": series(T, y)}).signals["phi"]).all()
 
 
 def test_a_quaternion_of_numbers_past_all():
@@ -101,7 +102,10 @@ def test_numbers_past_all_in_one_of_two_channels_of_a_quantity():
         name: Channel(name, T, y, "rad/s", quantity="r") for name, y in {"a": Y, "b": wild}.items()
     }
     chosen = SignalSource("r", "a", "rad/s")
-    assert duplicate_channels.unchosen([chosen], [Recording(Path("log"), "mcap", "", pair)]) == ()
+    assert (
+        duplicate_channels.compare_duplicates([chosen], [Recording(Path("log"), "mcap", "", pair)])
+        == ()
+    )
 
 
 def by_match(y):

@@ -12,7 +12,7 @@ from limits import bounded
 from trialid.effects import from_file
 from trialid.errors import TrialidError
 from trialid.ingest import draft_template
-from trialid.ingest.tables import template
+from trialid.ingest.tables.templates import template
 from trialid.pipeline_file import load
 from trialid.pipeline_file.design_file import load_design
 from trialid.pipeline_file.place import data_of, with_entry

@@ -126,11 +126,11 @@ def test_a_search_that_stopped_early_is_no_fit():
 
 def test_a_held_out_trial_that_diverges_is_named(sound):
     """The fitted ship with a righting moment the wrong way round capsizes there."""
-    from trialid.identification.fit import _score
+    from trialid.identification.trial_score import score_trial
 
     theta = sound.theta.copy()
     theta[FEW.index("Kp")] = 0.01
-    lost = _score(sound.problem, theta, sound.scores[1].trial, sound.level)
+    lost = score_trial(sound.problem, theta, sound.scores[1].trial, sound.level)
     assert lost.response.departure is not None
     found = why_no_fit(replace(sound, scores=(sound.scores[0], lost)))
     assert "held-out trial 'zigzag-5' diverges" in found.reason

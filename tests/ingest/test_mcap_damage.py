@@ -10,7 +10,7 @@ from sample_writers import write_logs
 
 from trialid.errors import LogError
 from trialid.ingest import read
-from trialid.ingest.mcap.mcap_damage import between
+from trialid.ingest.mcap.mcap_damage import span_words
 
 START = 1_700_000_000_000_000_000
 COUNT = 600
@@ -106,7 +106,7 @@ def test_damage_in_one_chunk_costs_that_chunk(whole, tmp_path_factory):
     found, (remark,) = read_or_nothing(damaged(tmp_path_factory, bytes(content)))
     lost = sorted(TRUE.keys() - found.keys())
     assert 0 < len(lost) < 0.1 * COUNT
-    span = between(lost[0], lost[-1])
+    span = span_words(lost[0], lost[-1])
     assert remark.startswith(f"recovered {len(found)} of {COUNT} messages, lost {span}; damaged at")
     assert "the checksum of the chunk is wrong" in remark
 

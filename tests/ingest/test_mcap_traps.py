@@ -17,7 +17,7 @@ from trialid.alignment import align
 from trialid.errors import LogError
 from trialid.ingest import read
 from trialid.ingest.adapter import NO_AIDS
-from trialid.ingest.mcap import mcap_batches, mcap_chunk, mcap_log, mcap_records
+from trialid.ingest.mcap import mcap_batches, mcap_chunk, mcap_log, mcap_stretches
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 
@@ -386,7 +386,7 @@ def test_how_much_is_decoded_together_changes_nothing(tmp_path, monkeypatch, str
     whole = read(path).channels
     monkeypatch.setattr(write_logs, "CHUNK_SIZE", 1500)
     write_logs.write_ros2_mcap(path, {"/rudder": (T[::3], T[::3] * 1.0)}, {"/imu": moved})
-    monkeypatch.setattr(mcap_records, "STRETCH", stretch)
+    monkeypatch.setattr(mcap_stretches, "STRETCH", stretch)
     for name, channel in read(path).channels.items():
         np.testing.assert_array_equal(channel.y, whole[name].y)
         np.testing.assert_array_equal(channel.t, whole[name].t)

@@ -10,7 +10,7 @@ from pynmeagps import NMEAMessage, NMEAReader
 from write_nmea0183 import checksum, iso, sentence
 
 from trialid.ingest import read
-from trialid.ingest.nmea0183 import nmea0183_sentences
+from trialid.ingest.nmea0183 import nmea0183_columns, nmea0183_sentences
 
 START = 1_700_000_000_000_000_000
 N = 200
@@ -199,16 +199,16 @@ def test_units_sides_and_words(tmp_path):
 
 
 def test_every_unit_can_be_converted():
-    from trialid.ingest.nmea0183.nmea0183_layouts import LAYOUTS, TRANSDUCER_UNITS
+    from trialid.ingest.nmea0183.nmea0183_instruments import INSTRUMENTS
+    from trialid.ingest.nmea0183.nmea0183_transducers import TRANSDUCER_UNITS
     from trialid.ingest.signalk_log import PATHS
-    from trialid.names import units
-    from trialid.names.quantities import SIGNALS
+    from trialid.names import quantities, units
 
-    fields = [f for layouts in LAYOUTS.values() for layout in layouts for f in layout.fields]
+    fields = [f for layouts in INSTRUMENTS.values() for layout in layouts for f in layout.fields]
     pairs = [(f.unit, f.quantity) for f in fields] + [(u, q) for u, q, _ in PATHS.values()]
     for unit, quantity in pairs:
         if unit is not None and quantity is not None:
-            assert units.factor(unit, SIGNALS[quantity].unit) > 0
+            assert units.factor(unit, quantities.SIGNALS[quantity].unit) > 0
     for unit in {*TRANSDUCER_UNITS.values(), *(unit for unit, _ in pairs if unit)}:
         assert units.factor(unit, unit) == pytest.approx(1)
 
@@ -253,7 +253,7 @@ def test_transducers_behind_a_field_too_many(tmp_path):
 def parsed(texts):
     data = np.frombuffer(("," + ",".join(texts) + ",").encode(), np.uint8)
     comma = np.flatnonzero(data == 44)
-    return nmea0183_sentences.numbers(data, nmea0183_sentences.Span(comma[:-1] + 1, comma[1:]))
+    return nmea0183_columns.numbers(data, nmea0183_sentences.Span(comma[:-1] + 1, comma[1:]))
 
 
 @pytest.mark.parametrize(

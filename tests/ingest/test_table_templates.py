@@ -10,8 +10,8 @@ from test_table_logs import SERIES, forms, refused
 
 from trialid.errors import LogError
 from trialid.ingest import Aids, LogFile, draft_template, files_of, read
-from trialid.ingest.tables import template
-from trialid.ingest.tables.template_guess import guess
+from trialid.ingest.tables.templates import template
+from trialid.ingest.tables.templates.template_guess import guess
 
 START = 1_699_192_800  # 2023-11-05 14:00:00 UTC
 PLAIN = """

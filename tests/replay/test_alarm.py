@@ -6,7 +6,7 @@ import pytest
 
 from trialid import pipeline_file
 from trialid.diagnosis.diagnose import examine_fit
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.replay.alarm import Band, Monitor, bands
 from trialid.replay.playback import Playback
 from trialid.workflow.build_model import available

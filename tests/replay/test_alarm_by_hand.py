@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.replay.alarm import Band, Monitor, bands
 
 WHITE = Band("r", 1.0, np.array([1.0]))

@@ -114,5 +114,5 @@ def test_as_fast_as_possible_waits_for_nothing():
 
 def test_due_is_the_inverse_of_at():
     pace = Pace(7.0, 3.0, 50.0)
-    assert clock.at(pace, clock.due(pace, 44.0)) == pytest.approx(44.0)
+    assert clock.position_at(pace, clock.due(pace, 44.0)) == pytest.approx(44.0)
     assert clock.due(clock.toggle(pace, 51.0, 10.0), 44.0) == math.inf

@@ -7,7 +7,7 @@ import pytest
 from trialid import pipeline_file
 from trialid.diagnosis.diagnose import examine_fit
 from trialid.errors import TrialidError
-from trialid.identification.fit import of_trial
+from trialid.identification.trial_score import of_trial
 from trialid.replay.alarm import bands
 from trialid.replay.follow import Follower
 from trialid.replay.playback import Playback

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from trialid.errors import printable
 from trialid.inspection import inspect_log
 from trialid.inspection.inspected import Inspection
-from trialid.report.terminal.log_contents import inspection, plain, safe_text
+from trialid.report.files.log_data import plain
+from trialid.report.terminal.log_contents import inspection
 
 SAMPLES = Path(__file__).parents[2] / "sample_data" / "hidden_effect"
 
@@ -72,7 +74,7 @@ def test_names_steer_neither_terminal_nor_markup(ros):
     assert "rudder\\x1b]0;x\\x07 [/bold][red]" in said
     assert "\\x1b[2J" in said
     assert "[b]" in said
-    assert safe_text("a\nb\u202e") == "a\\nb\\u202e"
+    assert printable("a\nb\u202e") == "a\\nb\\u202e"
 
 
 def test_two_sources_are_set_side_by_side(tmp_path):

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from importlib import resources
 
-from trialid.report.script import MODULES, joined, script
+from trialid.report.script import MODULES, join_modules, script
 from trialid.workbench.server import ASSETS
 
 IMPORT = re.compile(r'^import (?:\{ (?P<names>[^}]+) \}|\* as \w+) from "(?P<path>[^"]+)";$')
@@ -63,4 +63,4 @@ def test_what_a_served_module_imports_is_served_and_given() -> None:
 
 def test_what_is_said_between_the_modules_only_is_dropped() -> None:
     module = 'import { a } from "./a.js";\nexport async function b() {\n  a("export c");\n}\n'
-    assert joined([module]) == 'async function b() {\n  a("export c");\n}\n'
+    assert join_modules([module]) == 'async function b() {\n  a("export c");\n}\n'

@@ -7,7 +7,7 @@ import pytest
 from s175q import MODEL, SETTINGS, zigzag
 
 from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.identification.fit import identify
 from trialid.identification.problem import replace
 from trialid.result import build

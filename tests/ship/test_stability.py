@@ -7,7 +7,7 @@ import pytest
 
 from trialid.effects import CATALOGUE
 from trialid.ship.model import ShipModel
-from trialid.ship.stability import levers, roll_coupled, stability
+from trialid.ship.stability import couple_roll, levers, stability
 from trialid.simulation.integrate import prepare, respond
 from trialid.simulation.reference import evaluator
 from trialid.simulation.trace import trace
@@ -93,7 +93,7 @@ def test_heel_takes_stability_away_and_more_so_with_speed(U: float, printed: flo
     """Determinant of the S-175: 1.006e-5 upright; as printed, without m_x l_x."""
     c = with_surge_mass(RUDDER)
     assert determinant(c) == pytest.approx(1.006e-5, rel=1e-3)
-    coupled = roll_coupled(c | HEEL | {"G_phi": stiffness(U)})
+    coupled = couple_roll(c | HEEL | {"G_phi": stiffness(U)})
     assert determinant(coupled) == pytest.approx(printed, rel=1e-3)
     assert 0.0 < stability(coupled).margin < stability(c).margin
 
@@ -123,7 +123,7 @@ def test_a_slow_turn_of_the_whole_model(U: float, linear: ShipModel) -> None:
     trial = Trial("turn", "fit", 1.0, signals, {})
     v, _, r, _ = respond(prepare(linear, (), ("r",)), trial, {}, {}, False).states[-1]
     c = coefficients(linear, U)
-    flat = roll_coupled(c)
+    flat = couple_roll(c)
     tilt = linear.value("Kdelta") / c["G_phi"]
     matrix = [
         [flat["Yv"], flat["Yr"] - c["m"]],
@@ -152,8 +152,8 @@ def test_the_margin_changes_sign_with_the_eigenvalue(excess: float, linear: Ship
     """At the N_r where the roll-coupled margin is nil the slow eigenvalue passes zero."""
     U = 11.52
     c = coefficients(linear, U)
-    L_v = levers(roll_coupled(c))[1]
-    flat = roll_coupled(c | {"Nr": 0.0})
+    L_v = levers(couple_roll(c))[1]
+    flat = couple_roll(c | {"Nr": 0.0})
     neutral = c["m"] * c["x_G"] + L_v * (flat["Yr"] - c["m"]) - flat["Nr"]
     moved = linear.with_values({"Nr": neutral * (1.0 + excess)})
     margin = stability(coefficients(moved, U), coupled=True)

@@ -10,8 +10,9 @@ from scipy.stats import t as student
 
 from trialid.effects.track import CURRENT
 from trialid.errors import NotIdentifiable
-from trialid.identification.fit import identify, of_trial
+from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
+from trialid.identification.trial_score import of_trial
 from trialid.threads import one_thread
 
 SEEDS = 200

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from trialid.effects import CATALOGUE
-from trialid.identification.fit import identify, of_trial
+from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
+from trialid.identification.trial_score import of_trial
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import read_ship
 from trialid.simulation.integrate import prepare, respond

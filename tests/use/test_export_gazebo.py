@@ -11,7 +11,7 @@ from test_bad_input import trialid_
 from trialid.design.hull_terms import hull_terms, in_hull_terms
 from trialid.design.prediction.seen_range import SeenRange
 from trialid.effects import CATALOGUE
-from trialid.identification.fit import of_trial
+from trialid.identification.trial_score import of_trial
 from trialid.progress import silent
 from trialid.ship.model import ShipModel
 from trialid.ship.motion import derivatives

@@ -125,7 +125,7 @@ def test_undo_and_redo_show_again_what_was_known(path: Path, monkeypatch: Any) -
             results.append(result(desk))
         assert status.undo == "fix Nrar"
         monkeypatch.setattr(compute, "fit_of", _no_fit)
-        monkeypatch.setattr(compute, "fit_edited", _no_fit)
+        monkeypatch.setattr(compute, "fit_edit", _no_fit)
         monkeypatch.setattr(compute, "examine", _no_fit)
         for i in (2, 1, 0, 1, 2, 3):
             move = desk.undo if texts.index(path.read_bytes()) > i else desk.redo
@@ -336,7 +336,7 @@ def test_a_bug_is_said_and_takes_the_edit_back(path: Path, monkeypatch: Any) -> 
     monkeypatch.setattr(threading, "excepthook", caught.append)
     with opened(path) as desk:
         diagnosed(desk)
-        monkeypatch.setattr(compute, "fit_edited", _no_fit)
+        monkeypatch.setattr(compute, "fit_edit", _no_fit)
         edit(desk, "add", effect=ADDED)
         status = settled(desk)
         assert status.trouble is not None

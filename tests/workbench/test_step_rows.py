@@ -25,5 +25,5 @@ def test_noise_takes_its_part_of_the_squares():
 
 
 def test_the_number_is_that_of_the_fitted_trials_and_beside_it_the_held_out():
-    found = error_number.of(SHOWN)
+    found = error_number.error_number(SHOWN)
     assert (found.eps, found.check) == (0.05, 0.07)

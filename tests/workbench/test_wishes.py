@@ -12,7 +12,7 @@ import quick
 
 from trialid.errors import TrialidError
 from trialid.pipeline_file import Pipeline, load, read
-from trialid.workbench.wishes import Granted, between, grant, understood
+from trialid.workbench.wishes import Granted, find_edit, grant, read_wish
 
 LINE = 400
 
@@ -23,7 +23,7 @@ def recipe(tmp_path_factory: pytest.TempPathFactory) -> Pipeline:
 
 
 def ask(recipe: Pipeline, do: str, **what: Any) -> Granted:
-    return grant(recipe, understood({"version": "", "do": do, **what}))
+    return grant(recipe, read_wish({"version": "", "do": do, **what}))
 
 
 def told(granted_: Granted) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def test_a_bound_may_be_on_one_side_alone(recipe: Pipeline) -> None:
 ])  # fmt: skip
 def test_what_cannot_be_is_one_line(recipe: Pipeline, wish: Any, words: tuple[str, ...]) -> None:
     with pytest.raises(TrialidError) as caught:
-        grant(recipe, understood({"version": "", **wish}))
+        grant(recipe, read_wish({"version": "", **wish}))
     said = str(caught.value)
     said.encode()
     assert "\n" not in said
@@ -117,7 +117,7 @@ def test_what_cannot_be_is_one_line(recipe: Pipeline, wish: Any, words: tuple[st
 @pytest.mark.parametrize("asked", [None, [], "add", 3, {"version": ""}, {"do": "add"}])
 def test_what_is_no_wish_is_refused(asked: object) -> None:
     with pytest.raises(TrialidError):
-        understood(asked)
+        read_wish(asked)
 
 
 def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Pipeline) -> None:
@@ -136,7 +136,7 @@ def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Pipeline) -> None
         names = {"effect", "parameter", "trial", "use"}
         wish = {key: chance.choice(texts if key in names else numbers) for key in kinds[do]}
         try:
-            found = grant(recipe, understood({"version": "", "do": do, **wish}))
+            found = grant(recipe, read_wish({"version": "", "do": do, **wish}))
         except TrialidError as error:
             said = str(error)
             said.encode()
@@ -150,17 +150,17 @@ def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Pipeline) -> None
 
 def test_the_effect_by_which_two_pipelines_differ(recipe: Pipeline) -> None:
     added = ask(recipe, "add", effect=quick.ADDED).after
-    edit = between(recipe, added)
+    edit = find_edit(recipe, added)
     assert edit is not None
     assert (edit.step, edit.effect.name, edit.after) == ("added", quick.ADDED, added)
-    back = between(added, recipe)
+    back = find_edit(added, recipe)
     assert back is not None
     assert (back.step, back.effect.name, back.after) == ("dropped", quick.ADDED, recipe)
-    assert between(recipe, recipe) is None
+    assert find_edit(recipe, recipe) is None
     two = ask(added, "add", effect=quick.OTHER).after
-    assert between(recipe, two) is None
+    assert find_edit(recipe, two) is None
     fixed = ask(recipe, "free", parameter="GM", free=False).after
-    assert between(recipe, fixed) is None
+    assert find_edit(recipe, fixed) is None
 
 
 def test_no_edit_is_seen_where_the_effect_is_not_to_be_had(tmp_path: Path) -> None:
@@ -168,10 +168,10 @@ def test_no_edit_is_seen_where_the_effect_is_not_to_be_had(tmp_path: Path) -> No
     own = load(path)
     without = ask(own, "drop", effect="mine").after
     (tmp_path / "mine.py").write_text("def\n", encoding="utf-8")
-    assert between(without, own) is None
-    assert between(own, without) is None
+    assert find_edit(without, own) is None
+    assert find_edit(own, without) is None
 
 
 def test_a_wish_is_read_as_json_gives_it() -> None:
-    wish = understood(json.loads('{"version": "v", "do": "value", "parameter": "GM", "value": 1}'))
+    wish = read_wish(json.loads('{"version": "v", "do": "value", "parameter": "GM", "value": 1}'))
     assert (wish.version, wish.parameter, wish.value) == ("v", "GM", 1.0)

@@ -86,7 +86,7 @@ def turned(path):
     before = opened(path)
     edit = edit_pipeline.add_to_pipeline(before.pipeline, ADDED)
     foreseen = edit_model.foresee_edit(edit, before.fit)
-    edit, fit = edit_model.fit_edited(edit, before.trials, foreseen, quiet)
+    edit, fit = edit_model.fit_edit(edit, before.trials, foreseen, quiet)
     run = examine(edit.after, before.trials, quiet, fit).outcome
     result, _ = edit_model.set_beside(edit, run.result, before.run.result, foreseen)
     model = build_model(edit.after, before.catalogue)

@@ -2,32 +2,21 @@
 
 `align` is the whole of it: bring the logs onto one clock (`log_clock`, `clock_match`), find each
 channel and bring it to SI and to our positive direction (`sources`, `frames`), repair its stamps
-(`clock_health`, `dejitter`), put them in order and choose the common clock (`clocks`), mask what is
-surely no measurement (`faults`), resample with one and the same filter (`resample`), and say what
-was noticed on the way (`quality`) and whether the signals agree (`checks`, `signs`, `twins`).
+(`stamps`), put them in order and choose the common clock (`clocks`), mask what is surely no
+measurement (`faults`), resample with one and the same filter (`resample`), and say what was noticed
+on the way (`quality`) and whether the signals agree (`agreement`).
 """
 
 import dataclasses
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Literal
 
-from trialid.alignment import (
-    checks,
-    clock_health,
-    clocks,
-    combine,
-    dejitter,
-    duplicate_channels,
-    faults,
-    frames,
-    log_clock,
-    quality,
-    resample,
-    signs,
-)
+from trialid.alignment import clocks, combine, faults, frames, log_clock, quality, resample
+from trialid.alignment.agreement import channel_finding, checks, duplicate_channels, signs
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.log_clock import LogClock
 from trialid.alignment.sources import SignalSource, log_with, seams
+from trialid.alignment.stamps import clock_health, dejitter
 from trialid.alignment.track import antenna, position
 from trialid.errors import AlignmentError
 from trialid.recording import Recording
@@ -80,16 +69,13 @@ def align(
     logged = [frames.series(s, recordings, w) for s, w in zip(sources, at, strict=True)]
     repairs = [_repaired(one) if repair else (one, ()) for one in logged]
     logged = [one for one, _ in repairs]
-    series = [clocks.in_time_order(one) for one in logged]
-    for one, place in zip(series, at, strict=True):
-        clocks.check(one, place)
+    series = _in_order(logged, at)
     _check_epochs(series, sources, recordings, where)
     grid = clocks.common(series, period, window, where)
     series, found = _without_faults(series, sources, grid, keep or {}, at)
     signals = _on_grid(series, sources, grid, where)
     trial = antenna.with_course(_trial(name, use, recordings, signals, grid))
-    findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
-    checks.refuse(findings, where)
+    agreement = _agreement(trial, sources, recordings, where)
     remarks = (
         *_of_logs(recordings, sources),
         *of_clocks,
@@ -97,17 +83,23 @@ def align(
         *_of_signals(logged, series, sources, grid),
         *found,
         *quality.of_trial(series, grid, window),
-        *_of_motions(trial, sources, where),
-        *(finding.sentence for finding in findings),
-        *(finding.sentence for finding in duplicate_channels.unchosen(sources, recordings)),
+        *agreement,
     )
     return dataclasses.replace(trial, remarks=remarks, opening=window[0] if window else 0.0)
 
 
-def _of_motions(trial: Trial, sources: Sequence[SignalSource], where: str) -> Iterator[str]:
-    """Whether motions agree: the track with heading and speed, signs with each other."""
-    yield from antenna.check_track(trial)
-    yield from signs.check(trial, {source.quantity: source for source in sources}, where)
+def _agreement(
+    trial: Trial, sources: Sequence[SignalSource], recordings: Sequence[Recording], where: str
+) -> tuple[str, ...]:
+    """Whether the signals agree: with each other, with the track, with channels not chosen."""
+    findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
+    channel_finding.refuse(findings, where)
+    twins = duplicate_channels.compare_duplicates(sources, recordings)
+    return (
+        *antenna.check_track(trial),
+        *signs.check(trial, {source.quantity: source for source in sources}, where),
+        *(finding.sentence for finding in (*findings, *twins)),
+    )
 
 
 def _without_faults(
@@ -127,6 +119,13 @@ def _repaired(logged: Series) -> tuple[Series, tuple[str, ...]]:
     stepless, of_clock = clock_health.set_right(logged)
     even, of_stamps = dejitter.repair_stamps(stepless)
     return even, (*of_clock, *of_stamps)
+
+
+def _in_order(logged: Sequence[Series], places: Sequence[str]) -> list[Series]:
+    series = [clocks.in_time_order(one) for one in logged]
+    for one, place in zip(series, places, strict=True):
+        clocks.check(one, place)
+    return series
 
 
 def _check_sources(sources: Sequence[SignalSource], where: str) -> None:
@@ -179,7 +178,7 @@ def _on_grid(
 ) -> dict[str, combine.Sampled]:
     """Every quantity on the clock of the trial, made of one channel or of several."""
     smooth = resample.any_faster(series, grid.period)
-    sampled = [resample.onto(one, grid, smooth=smooth) for one in series]
+    sampled = [resample.resample(one, grid, smooth=smooth) for one in series]
     for one, (_, known) in zip(series, sampled, strict=True):
         quality.check_valid(one, known, grid, where)
     signals = {}

@@ -1,9 +1,9 @@
 """How far two clocks are apart, by a motion that both logs hold.
 
 The lag at which two measurements agree best, of either sign and any size, each as logged or its
-rate. The agreement is a correlation over what overlaps at each lag, gaps left out; the best lag is
-refined, with a drift, by least squares, and its interval comes from how differently the parts of
-the record would place it. What is weak, or as good elsewhere, is refused.
+rate (`clock_lag`). The best lag is refined, with a drift, by least squares, and its interval comes
+from how differently the parts of the record would place it. What is weak, or as good elsewhere, is
+refused.
 """
 
 from dataclasses import dataclass
@@ -11,24 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.alignment.clock_lag import FEWEST, NARROW, PARTS, Peak, Steps, best_lag
+from trialid.arrays import Vector
 from trialid.errors import AlignmentError
 
-Vector = NDArray[np.float64]
-
-WEAK = 0.7
-"""Correlation below which two channels do not show the same motion."""
-BEYOND = 2.0
-"""Times less that may be left unexplained further apart than the clocks are said to be."""
-NARROW = 0.1
-"""Share of the search that the interval may be."""
-UNIQUE = 3.0
-"""Standard errors by which the best lag must be better than any other."""
-PARTS = 20
-"""Parts of the record that show the spread."""
-FEWEST = 100
-"""Steps that must overlap."""
-SHARE = 0.3
-"""Share of the shorter record that must overlap."""
 MOST = 2**17
 """Steps of the common grid at most."""
 SMOOTH = (4, 16, 64)
@@ -38,8 +24,6 @@ CLEAN = 0.9
 on the interval that comes of it: that would be the shortest by chance."""
 WORSE = 1.3
 """Times what the best relation leaves unexplained that any other must leave, at another lag."""
-MOVES = 0.05
-"""Share of a channel's variance that what overlaps must have."""
 ROUNDS = 8
 """Steps of least squares."""
 GAP = 5.0
@@ -84,29 +68,6 @@ class Match:
     middle: float
     clean: float
     how: str
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """Values on steps of `dt` from `start` [s]; those in gaps and at the ends are not `good`."""
-
-    start: float
-    dt: float
-    y: Vector
-    good: NDArray[np.bool_]
-
-    @property
-    def t(self) -> Vector:
-        return self.start + self.dt * np.arange(len(self.y), dtype=np.float64)
-
-
-@dataclass(frozen=True)
-class _Peak:
-    """Where two grids agree best: correlation, lag [steps], or why that tells nothing."""
-
-    strength: float
-    lag: int = 0
-    why_not: str = ""
 
 
 def refuse_few(signal: Signal, where: str) -> None:
@@ -156,7 +117,7 @@ def _best(
     dt, width = smooth
     a, b = _grid(here, start, dt, width), _grid(there, origin, dt, width)
     pairs = [
-        (_peak(left, right, within), left, right, f"{of_a} against {of_b}")
+        (best_lag(left, right, within), left, right, f"{of_a} against {of_b}")
         for left, of_a in ((a, here.name), (_rate(a, width), f"the rate of {here.name}"))
         for right, of_b in ((b, there.name), (_rate(b, width), f"the rate of {there.name}"))
     ]
@@ -171,11 +132,11 @@ def _best(
     return found
 
 
-def _as_strong(other: _Peak, best: _Peak) -> bool:
+def _as_strong(other: Peak, best: Peak) -> bool:
     return 1 - other.strength**2 < WORSE * (1 - best.strength**2)
 
 
-def _grid(signal: Signal, origin: int, dt: float, width: int) -> _Grid:
+def _grid(signal: Signal, origin: int, dt: float, width: int) -> Steps:
     t = (signal.t - origin) / 1e9
     start = np.ceil(t[0] / dt) * dt
     at = start + dt * np.arange(int((t[-1] - start) / dt) + 1)
@@ -187,7 +148,7 @@ def _grid(signal: Signal, origin: int, dt: float, width: int) -> _Grid:
     y = np.convolve(y - np.mean(y), np.convolve(mean, mean), "same")
     edge = np.convolve(~good, np.ones(2 * width + 1), "same") > 0.5
     edge[:width] = edge[-width:] = True
-    return _Grid(float(start), dt, y, ~edge)
+    return Steps(float(start), dt, y, ~edge)
 
 
 def _unwrapped(y: Vector) -> Vector:
@@ -199,93 +160,16 @@ def _unwrapped(y: Vector) -> Vector:
     return y
 
 
-def _rate(grid: _Grid, width: int) -> _Grid:
+def _rate(grid: Steps, width: int) -> Steps:
     half = max(1, width // 2)
     y = np.zeros_like(grid.y)
     y[half:-half] = (grid.y[2 * half :] - grid.y[: -2 * half]) / (2 * half * grid.dt)
     good = grid.good & np.roll(grid.good, half) & np.roll(grid.good, -half)
     good[:half] = good[-half:] = False
-    return _Grid(grid.start, grid.dt, y, good)
+    return Steps(grid.start, grid.dt, y, good)
 
 
-def _peak(a: _Grid, b: _Grid, within: float) -> _Peak:
-    """The lag at which `a` agrees best with `b`, and whether it stands alone."""
-    lags, rho = _correlation(a, b)
-    ahead = a.start - b.start + a.dt * lags
-    far = np.abs(ahead) > within
-    near = np.where(far, 0.0, np.abs(rho))
-    best, beyond = int(np.argmax(near)), int(np.argmax(np.where(far, np.abs(rho), 0.0)))
-    strength, lag = float(near[best]), int(lags[best])
-    if abs(rho[beyond]) > WEAK and 1.0 - rho[beyond] ** 2 < (1.0 - strength**2) / BEYOND:
-        words = f"they agree better {abs(ahead[beyond]):.4g} s apart, and within = {within:g} s"
-        return _Peak(float(abs(rho[beyond])), lag, words)
-    if strength < WEAK:
-        return _Peak(strength, lag, f"the best correlation within {within:g} s is {strength:.2f}")
-    lobe = np.sign(rho[best]) * rho > 0.5 * strength
-    ends = np.flatnonzero(~lobe)
-    near[ends[ends < best].max(initial=-1) + 1 : ends[ends > best].min(initial=len(rho))] = 0.0
-    beside = round(NARROW * within / a.dt)
-    for rival in (int(np.argmax(near)), best - beside, best + beside):
-        if 0 <= rival < len(rho) and not _better(a, b, int(lags[best]), int(lags[rival]), rho):
-            return _Peak(
-                strength,
-                lag,
-                f"they agree as well {abs(ahead[rival] - ahead[best]):.3g} s away (correlation "
-                f"{strength:.2f} and {abs(rho[rival]):.2f})",
-            )
-    return _Peak(strength, lag)
-
-
-def _correlation(a: _Grid, b: _Grid) -> tuple[NDArray[np.int64], Vector]:
-    """Lags [steps] of a behind b and the correlation of what overlaps there; 0 where too little."""
-    size = 1 << int(len(a.y) + len(b.y)).bit_length()
-    parts = [
-        np.fft.rfft(np.where(g.good, y, 0.0), size) for g in (a, b) for y in (1.0, g.y, g.y**2)
-    ]
-    one_a, a1, a2, one_b, b1, b2 = parts
-
-    def summed(f: NDArray[np.complex128], g: NDArray[np.complex128]) -> Vector:
-        return np.roll(np.fft.irfft(f * np.conj(g), size), len(b.y) - 1)[: len(a.y) + len(b.y) - 1]
-
-    count = np.maximum(summed(one_a, one_b), 1.0)
-    sum_a, sum_b = summed(a1, one_b), summed(one_a, b1)
-    var_a = summed(a2, one_b) / count - (sum_a / count) ** 2
-    var_b = summed(one_a, b2) / count - (sum_b / count) ** 2
-    both = summed(a1, b1) / count - sum_a * sum_b / count**2
-    least = max(FEWEST, SHARE * min(a.good.sum(), b.good.sum()))
-    enough = count >= least
-    for grid, var in ((a, var_a), (b, var_b)):
-        enough &= var > MOVES * max(
-            float(np.var(grid.y[grid.good])) if grid.good.any() else 0.0, 1e-300
-        )
-    rho = np.zeros(len(count))
-    rho[enough] = both[enough] / np.sqrt(var_a[enough] * var_b[enough])
-    return np.arange(len(count)) - (len(b.y) - 1), np.clip(rho, -1.0, 1.0)
-
-
-def _better(a: _Grid, b: _Grid, best: int, rival: int, rho: Vector) -> bool:
-    """True when the record agrees better at one lag [steps] than at the other, part by part."""
-    first = len(b.y) - 1
-    if rho[rival + first] ** 2 < rho[best + first] ** 2 / 2:
-        return True
-    at = np.arange(len(b.y))
-    use = b.good.copy()
-    for lag in (best, rival):
-        inside = (at + lag >= 0) & (at + lag < len(a.y))
-        use &= inside & a.good[np.clip(at + lag, 0, len(a.y) - 1)]
-    at = at[use]
-    if len(at) < FEWEST:
-        return False
-    left = []
-    for lag in (best, rival):
-        design = np.column_stack([np.ones(len(at)), a.y[at + lag]])
-        fit = np.linalg.lstsq(design, b.y[at], rcond=None)[0]
-        left.append((b.y[at] - design @ fit) ** 2)
-    gain = np.array([part.sum() for part in np.array_split(left[1] - left[0], PARTS)])
-    return bool(gain.mean() > UNIQUE * gain.std(ddof=1) / np.sqrt(PARTS))
-
-
-def _refined(peak: _Peak, a: _Grid, b: _Grid, how: str, origin: int) -> Match:
+def _refined(peak: Peak, a: Steps, b: Steps, how: str, origin: int) -> Match:
     """Lag and drift where the squares are least; their spread by parts of the record."""
     middle = float(np.mean(b.t[b.good]))
     ahead, drift = a.start - b.start + a.dt * peak.lag, 0.0
@@ -309,7 +193,7 @@ def _refined(peak: _Peak, a: _Grid, b: _Grid, how: str, origin: int) -> Match:
 
 
 def _pull(
-    a: _Grid, b: _Grid, ahead: float, drift: float, middle: float
+    a: Steps, b: Steps, ahead: float, drift: float, middle: float
 ) -> tuple[Vector, Vector, float, float]:
     """Pull of each sample at lag and drift (n, 2), curvature (2, 2), gain, likeness of slopes.
 

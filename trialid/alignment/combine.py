@@ -8,10 +8,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from trialid.alignment import relation
+from trialid.alignment.agreement import relation
+from trialid.alignment.agreement.duplicate_channels import disagreements
+from trialid.alignment.agreement.signs import CONTRADICTION
 from trialid.alignment.clocks import Series
-from trialid.alignment.duplicate_channels import disagreements
-from trialid.alignment.signs import CONTRADICTION
 from trialid.alignment.sources import SignalSource
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError

@@ -1,46 +1,36 @@
 """Values that are surely no measurement, found on the channel's own clock and masked.
 
-A spike leaves the motion and comes back within three samples, further than anything else in the
-record bends: it is judged against the motion's own smoothness, so that a rudder step (which does
-not come back), a coarse resolution (which jumps as far all the time) or noise (likewise) is none.
-Short runs of exact zeros are judged in the same way. A flat top is an extreme value that is held
-again and again, entered and left at speed. What may be real is remarked and left as it is.
+What nothing afloat can have, spikes and short runs of zeros (`spikes`), flat tops and sensors that
+are stuck. A flat top is an extreme value that is held again and again, entered and left at speed.
+What may be real is remarked and left as it is.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from trialid.alignment.clocks import Grid, Series, check
+from trialid.alignment.fault_samples import (
+    Fault,
+    Samples,
+    available_samples,
+    joined_runs,
+    resolution,
+)
 from trialid.alignment.signal_limits import LIMITS
 from trialid.alignment.sources import SignalSource
+from trialid.alignment.spikes import WIDEST_SPIKE, dropouts, spikes
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
 from trialid.names import units
-from trialid.names.quantities import RUDDERS, is_input
+from trialid.names.quantities import is_input
 
 KINDS = ("range", "dropouts", "spikes", "saturation", "stuck")
 """What may be found; a signal's `keep` names those that are left as they are."""
 
 MOST_WRONG = 0.2
 """Share of impossible values above which the unit is wrong, not the values."""
-WIDEST_SPIKE = 3
-WIDEST_DROPOUT = 10
-"""Samples; what lasts longer is a motion, or a sensor that is off."""
-SHARPER = 2.5
-"""A spike leaves the line between its neighbours by so many times the largest bend elsewhere: a
-step bends by half its height, so a one-sample pulse as high as the record's own steps is none."""
-SHARP = 8.0
-"""And by so many times the usual bend."""
-MOST_SPIKES = 0.02
-"""Share of spikes above which they are the signal's own way."""
-MOST_ZEROS = 0.1
-"""And of zeros, which are no motion however many."""
-PULSE_S = 1.0
-"""[s] No shaft stops and turns again in less, and no rudder goes there and back through zero."""
-STEERED = np.deg2rad(60.0)
-"""[rad/s] No steering gear of a ship or yacht moves as fast."""
 FLAT = 4
 """Samples in a flat top, of which there must be two before the value is called a limit."""
 ABRUPT = 0.5
@@ -55,16 +45,6 @@ GO_TOGETHER = {
     "psi": ("r",), "r": ("psi", "phi"), "phi": ("p", "r"), "p": ("phi", "r"), "v": ("r", "psi"),
 }  # fmt: skip
 """Motions that cannot rest while the other moves, the surest one first."""
-
-
-@dataclass(frozen=True)
-class Fault:
-    """Samples of a series that are wrong; `sure` if they cannot be a measurement."""
-
-    kind: str
-    words: str
-    samples: Mask
-    sure: bool
 
 
 def mask_all(
@@ -85,7 +65,7 @@ def mask_all(
         left.append(kept)
         remarks += found
     for i, (one, place) in enumerate(zip(tuple(left), places, strict=True)):
-        fault = frozen(left, i, grid)
+        fault = find_stuck(left, i, grid)
         if fault is not None:
             hide = "stuck" not in keep.get(one.quantity.name, ())
             remarks.append(_words(one, fault, grid, hide))
@@ -115,7 +95,7 @@ def mask_faults(
     Raises AlignmentError when so many values are impossible that the unit must be wrong.
     """
     remarks = []
-    for find in (_range, _dropouts, _spikes, _saturation):
+    for find in (_range, dropouts, spikes, _saturation):
         for fault in find(series, zero):
             _check_share(fault, series, where)
             hide = fault.sure and fault.kind not in keep
@@ -172,155 +152,21 @@ def _beyond_a_turn(y: Vector) -> Mask:
     """Headings of more than a turn that stand alone; a logger that counts turns goes on so."""
     out = np.zeros(len(y), np.bool_)
     at = np.flatnonzero(np.isfinite(y))
-    for first, last in _runs(np.abs(np.diff(y[at])) < np.pi):
+    for first, last in joined_runs(np.abs(np.diff(y[at])) < np.pi):
         run = at[first : last + 1]
         lonely = len(run) <= WIDEST_SPIKE < len(at)
         out[run] = lonely and bool(np.all(np.abs(y[run]) > 2 * np.pi + 1e-3))
     return out
 
 
-def _runs(joined: Mask) -> list[tuple[int, int]]:
-    """First and last sample of the runs whose neighbours are joined; `joined` has one less."""
-    breaks = np.flatnonzero(~joined)
-    if len(joined) == 0:
-        return []
-    starts, ends = [0, *(breaks + 1)], [*breaks, len(joined)]
-    return [(int(i), int(j)) for i, j in zip(starts, ends, strict=True)]
-
-
-@dataclass(frozen=True)
-class _Samples:
-    """The available samples: place in the series, time [s], value, near to the one before."""
-
-    at: np.ndarray
-    t: Vector
-    y: Vector
-    near: Mask
-
-
-def _samples(series: Series) -> _Samples:
-    at = np.flatnonzero(np.isfinite(series.y))
-    y = np.unwrap(series.y[at]) if series.quantity.angle else series.y[at]
-    t = (series.t[at] - series.t[0]) / 1e9
-    near = np.concatenate([[False], np.diff(t) < 3 * series.period]) if len(at) else at > 0
-    return _Samples(at, t, y, near)
-
-
-def _bends(s: _Samples, width: int) -> Vector:
-    """How far each run of `width` samples lies off the line between the samples beside it.
-
-    Zero where it lies on both sides of it, and at a gap; (n - width - 1,), the run that begins at
-    the second sample first.
-    """
-    n = len(s.y) - width - 1
-    left, right = s.y[:n], s.y[width + 1 :]
-    low, high = np.full(n, np.inf), np.full(n, -np.inf)
-    whole = s.near[width + 1 :].copy()
-    for k in range(1, width + 1):
-        off = s.y[k : n + k] - left - (right - left) * (k / (width + 1))
-        low, high = np.minimum(low, off), np.maximum(high, off)
-        whole &= s.near[k : n + k]
-    return np.where(whole, np.maximum(np.maximum(low, -high), 0.0), 0.0)
-
-
-def _found(s: _Samples, widest: int, only: Mask | None = None) -> tuple[Mask, Mask]:
-    """Samples of runs up to `widest` that stand out of the motion and come back to it.
-
-    Second result: those that lie beyond all the rest by more than the rest spans. `only` restricts
-    the runs to samples of this kind.
-    """
-    out = np.zeros(len(s.y), np.bool_)
-    if len(s.y) < 2 * widest + 4:
-        return out, out
-    bends = [_bends(s, width) for width in range(1, widest + 1)]
-    size = np.zeros(len(s.y))
-    for width, bend in enumerate(bends, 1):
-        for i in np.flatnonzero(_returns(s, width, bend) & (bend > SHARP * _usual(bend))):
-            run = slice(i + 1, i + 1 + width)
-            if only is None or bool(np.all(only[run])):
-                size[run] = np.maximum(size[run], bend[i])
-    candidates = size > 0
-    if not candidates.any() or candidates.mean() > (MOST_SPIKES if only is None else MOST_ZEROS):
-        return out, out
-    beside = candidates | np.roll(candidates, 1) | np.roll(candidates, -1)
-    rest = max(_outside(bend, beside, width) for width, bend in enumerate(bends, 1))
-    found = size > max(SHARPER * rest, 4 * _resolution(s.y[~candidates]))
-    high = float(np.ptp(s.y[~beside])) if not beside.all() else np.inf
-    return found, found & (size > high) & (high > 0)
-
-
-def _returns(s: _Samples, width: int, bend: Vector) -> Mask:
-    """True where the samples on both sides of the run agree better than the run with them."""
-    n = len(bend)
-    return np.abs(s.y[width + 1 :] - s.y[:n]) < bend / 2
-
-
-def _usual(bend: Vector) -> float:
-    return max(1.4826 * float(np.median(bend)), float(np.quantile(bend, 0.95)) / 2)
-
-
-def _outside(bend: Vector, beside: Mask, width: int) -> float:
-    """The largest bend of runs that touch no candidate."""
-    n = len(bend)
-    touches = np.any(np.stack([beside[k : n + k] for k in range(width + 2)]), axis=0)
-    return float(bend[~touches].max(initial=0.0))
-
-
-def _resolution(y: Vector) -> float:
-    """Smallest distance between two values."""
-    levels = np.diff(np.unique(y))
-    return float(levels.min(initial=np.inf)) if len(levels) else 0.0
-
-
-def _spikes(series: Series, zero: float) -> Iterator[Fault]:
-    s = _samples(series)
-    found, outside = _found(s, WIDEST_SPIKE)
-    yield from _judged(series, s, found, outside, "spikes", "out of line")
-
-
-def _dropouts(series: Series, zero: float) -> Iterator[Fault]:
-    """Short runs of exact zeros in a signal that is far from zero on both sides."""
-    s = _samples(series)
-    null = np.isclose(series.y[s.at], zero, rtol=0.0, atol=1e-12)
-    found, outside = _found(s, WIDEST_DROPOUT, null) if null.any() else (null, null)
-    yield from _judged(series, s, found, outside, "dropouts", "dropped to zero")
-
-
-def _judged(
-    series: Series, s: _Samples, found: Mask, outside: Mask, kind: str, words: str
-) -> Iterator[Fault]:
-    """A motion's are sure; an input's where it is too quick or too far for one."""
-    if not found.any():
-        return
-    sure = found
-    if is_input(series.quantity):
-        brief = (WIDEST_SPIKE + 1) * series.period < PULSE_S and kind == "dropouts"
-        sure = found & (outside | brief | _too_quick(series, s))
-    for part, certain in ((sure, True), (found & ~sure, False)):
-        if part.any():
-            samples = np.zeros(len(series.y), np.bool_)
-            samples[s.at[part]] = True
-            yield Fault(kind, words, samples, certain)
-
-
-def _too_quick(series: Series, s: _Samples) -> Mask:
-    """Rudder angles that no gear could have reached in time."""
-    if series.quantity.name not in RUDDERS:
-        return np.zeros(len(s.y), np.bool_)
-    pace = np.zeros(len(s.y))
-    pace[1:] = np.abs(np.diff(s.y)) / np.diff(s.t)
-    back = np.append(pace[1:], 0.0)
-    return np.asarray(np.maximum(pace, back) > STEERED)
-
-
 def _saturation(series: Series, zero: float) -> Iterator[Fault]:
     """Flat tops of a motion: its extreme value held, entered and left at speed."""
-    s = _samples(series)
+    s = available_samples(series)
     if is_input(series.quantity) or series.quantity.angle or len(s.y) < 10 * FLAT:
         return
     steps = np.abs(np.diff(s.y))
     usual = float(np.mean(steps[steps > 0])) if np.any(steps) else 0.0
-    levels = _resolution(s.y)
+    levels = resolution(s.y)
     for extreme in (s.y.max(), s.y.min()):
         if np.isclose(extreme, zero, rtol=0.0, atol=1e-12) or np.ptp(s.y) == 0:
             continue
@@ -336,14 +182,14 @@ def _saturation(series: Series, zero: float) -> Iterator[Fault]:
             yield Fault("saturation", words, samples, True)
 
 
-def _held(s: _Samples, value: float) -> list[tuple[int, int]]:
+def _held(s: Samples, value: float) -> list[tuple[int, int]]:
     """Runs of FLAT samples and more that have one and the same value."""
     same = np.abs(s.y - value) <= 1e-9 * abs(value)
-    runs = _runs((same[1:] == same[:-1]) & s.near[1:])
+    runs = joined_runs((same[1:] == same[:-1]) & s.near[1:])
     return [(i, j) for i, j in runs if same[i] and j - i + 1 >= FLAT]
 
 
-def _abrupt(s: _Samples, run: tuple[int, int], usual: float, levels: float) -> bool:
+def _abrupt(s: Samples, run: tuple[int, int], usual: float, levels: float) -> bool:
     """True when the signal came to the value at speed, from several steps of resolution away."""
     first, last = run
     if first < 2 or last > len(s.y) - 3:
@@ -352,9 +198,9 @@ def _abrupt(s: _Samples, run: tuple[int, int], usual: float, levels: float) -> b
     return min(abs(step) for step in outer) > max(ABRUPT * usual, 3 * levels)
 
 
-def frozen(series: Sequence[Series], i: int, grid: Grid) -> Fault | None:
+def find_stuck(series: Sequence[Series], i: int, grid: Grid) -> Fault | None:
     """Where motion `i` keeps one value while the others say that the ship moves."""
-    one, s = series[i], _samples(series[i])
+    one, s = series[i], available_samples(series[i])
     if one.quantity.mirror > 0 or is_input(one.quantity) or len(s.y) < 2:
         return None
     edges = np.flatnonzero(~((np.diff(s.y) == 0) & s.near[1:])) + 1
@@ -381,7 +227,7 @@ def _moves(series: Sequence[Series], i: int, ends: tuple[int, int]) -> bool:
 
 def _lively(series: Series, ends: tuple[int, int]) -> bool:
     """Rates against zero, which is rest; angles against their mean."""
-    s = _samples(series)
+    s = available_samples(series)
     stamps = series.t[s.at]
     level = 0.0 if series.quantity.name in {"r", "p"} else float(np.mean(s.y))
     inside = (stamps >= ends[0]) & (stamps <= ends[1])

@@ -11,10 +11,11 @@ from datetime import UTC, datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.alignment import clock_health, dejitter, frames
+from trialid.alignment import frames
 from trialid.alignment.clock_match import Signal, match_clocks, refuse_few
 from trialid.alignment.clocks import CALENDAR_NS, Series, moment
 from trialid.alignment.sources import find
+from trialid.alignment.stamps import clock_health, dejitter
 from trialid.errors import AlignmentError
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording

@@ -77,7 +77,7 @@ def available(series: Series, grid: Grid) -> tuple[Vector, Vector]:
     return grid.seconds(series.t[finite]), np.unwrap(y) if series.quantity.angle else y
 
 
-def onto(series: Series, grid: Grid, *, smooth: bool) -> tuple[Vector, Mask]:
+def resample(series: Series, grid: Grid, *, smooth: bool) -> tuple[Vector, Mask]:
     """Values on the grid, and where they may be believed; (samples,) each.
 
     Outside of the stretches the values are a straight line, held at the ends, to keep a simulation

@@ -1,14 +1,14 @@
 """From a pipeline file to its answer on a screen: the folder, the summary, or plain data."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trialid import temporary
 from trialid.cli.console import complain, render, say, screen_less
-from trialid.errors import TrialidError
+from trialid.errors import TrialidError, nearest
 
 if TYPE_CHECKING:
     from trialid.pipeline_file import Pipeline
@@ -110,3 +110,10 @@ def write_draft(draft: Path, done: "Run") -> str:
     except OSError as error:
         raise TrialidError(f"--draft {draft}: {(error.strerror or str(error)).lower()}") from error
     return f"Draft: {draft}"
+
+
+def check_trial_names(asked: Sequence[str], known: Sequence[str], pipeline: Path) -> None:
+    """TrialidError for a name that no trial of the pipeline has."""
+    for name in asked:
+        if name not in known:
+            raise TrialidError(f"{pipeline}: no trial {name!r}; {nearest(name, known)}")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from trialid import temporary
+from trialid.cli.answering import check_trial_names
 from trialid.cli.console import file_width, note, progress_bar, render, say
 from trialid.cli.particulars_options import (
     KNOT,
@@ -105,7 +106,7 @@ def align(pipeline: Path, out: Path, only: tuple[str, ...], force: bool, quiet: 
 
     export.check_place(out, replace=force)
     asked = load(pipeline)
-    _check_names(only, [trial.name for trial in asked.trials], pipeline)
+    check_trial_names(only, [trial.name for trial in asked.trials], pipeline)
     from trialid.export.provenance import provenance
     from trialid.workflow.read_trials import align_trials
 
@@ -120,14 +121,6 @@ def align(pipeline: Path, out: Path, only: tuple[str, ...], force: bool, quiet: 
         say(f"{trial.name}: {trial.samples} samples, {trial.period:g} s apart: {names}")
     if not quiet:
         say(f"Written: {out}")
-
-
-def _check_names(asked: Sequence[str], known: Sequence[str], pipeline: Path) -> None:
-    from trialid.errors import nearest
-
-    for name in asked:
-        if name not in known:
-            raise TrialidError(f"{pipeline}: no trial {name!r}; {nearest(name, known)}")
 
 
 def look_into(
@@ -157,7 +150,7 @@ def look_into(
 
 def _print_plain(surveys: Sequence["Inspection"]) -> None:
     """One log: its survey; several: a list of them."""
-    from trialid.report.terminal.log_contents import plain
+    from trialid.report.files.log_data import plain
 
     data = [plain(one) for one in surveys]
     say(json.dumps(data[0] if len(data) == 1 else data, indent=2, allow_nan=False))

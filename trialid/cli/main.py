@@ -7,7 +7,7 @@ import errno
 import io
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final
@@ -24,7 +24,6 @@ from trialid.cli.answering import (
     write_or_say_why,
 )
 from trialid.cli.console import (
-    Progress,
     complain,
     let_go,
     no_room,
@@ -38,6 +37,7 @@ from trialid.cli.demo_command import demo
 from trialid.cli.design_command import design
 from trialid.cli.effects_command import effects
 from trialid.cli.export_command import export
+from trialid.cli.grow_loop import grow_and_answer
 from trialid.cli.guide_command import guide
 from trialid.cli.log_commands import align, inspect
 from trialid.cli.many import batch, structures
@@ -51,9 +51,7 @@ from trialid.cli.workbench_command import workbench
 from trialid.version import VERSION
 
 if TYPE_CHECKING:
-    from trialid.pipeline_file import Pipeline
     from trialid.result.schema import Result
-    from trialid.workflow.grow import Stage
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF)
 """What a stream says that takes no more."""
@@ -127,7 +125,7 @@ def run(
     asked, folder = open_pipeline(pipeline, out)
     check_draft(draft)
     if auto:
-        _grow(asked, folder, keep, as_json, quiet)
+        grow_and_answer(asked, folder, keep, as_json, quiet)
         return
     # The chain takes a second to import: a misspelt key is answered before.
     from trialid.workflow.run import run as identify_from
@@ -226,73 +224,6 @@ def _change(
     back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
     foot = f"{pipeline}: {difference_words(done.edit)}\nUndo: {back}\n"
     answer(done.run.result, folder, as_json, quiet, _beside, foot)
-
-
-def _grow(asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: bool) -> None:
-    """Add what is missing, one line for each step, and show the last model."""
-    from trialid.workflow.edit_model import commit
-    from trialid.workflow.grow import conclude
-    from trialid.workflow.write_run import write
-
-    told = not (as_json or quiet)
-    done = list(_stages(asked, told, shown=not quiet and sys.stderr.isatty()))
-    last, steps = conclude(done)
-    with write_or_say_why(folder):
-        if keep and steps:
-            commit(asked, done[-1].pipeline, last, steps, folder)
-        else:
-            write(last, folder)
-    foot = _loop_ended(done, asked.path, keep)
-    file = str(asked.path) if keep else ""  # to add to a file that lacks the rest is another model
-    above = 2 + sum(stage.kept for stage in done)
-    if told:
-        say("")
-    answer(last.result, folder, as_json, quiet, summary_of(file, above), foot)
-
-
-def _stages(asked: "Pipeline", told: bool, shown: bool) -> "Iterator[Stage]":
-    """The loop's stages; the bar is gone while a line is printed."""
-    from trialid.report.terminal import steps
-    from trialid.workflow.grow import stage_row, stages
-
-    bars: list[Progress] = []
-
-    def show(sentence: str, fraction: float | None) -> None:
-        bars[-1](sentence, fraction)
-
-    loop = stages(asked, show)
-    if told:
-        say(steps.heading())
-    while True:
-        with progress_bar(shown=shown) as progress:
-            bars.append(progress)
-            stage = next(loop, None)
-        if stage is None:
-            return
-        if told and stage.kept:
-            present = stage.run.result.present
-            say(steps.line(stage_row(stage, present)))
-        yield stage
-
-
-def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
-    """Why no more was added, and what the file holds now, in lines of this terminal."""
-    from trialid.diagnosis.search.backward import worth_naming
-    from trialid.workflow.grow import survivors
-
-    added = survivors(done)
-    words = f"Added no more: {done[-1].end}."
-    if names := worth_naming(done[-1].worths):
-        rest = [n for n in added if n not in names]
-        corrected = f"; a correction of shape without a name: {', '.join(rest)}" if rest else ""
-        words += (
-            f"\nWhat was missing, the dearest to leave out first: {', '.join(names)}{corrected}."
-        )
-    if added and keep:
-        words += f"\n{pipeline} now has {', '.join(added)}."
-    elif added:
-        words += f"\n{pipeline} is as it was; --write puts {', '.join(added)} into it."
-    return render(words) + "\n"
 
 
 def _beside(result: "Result", lines: int) -> str:

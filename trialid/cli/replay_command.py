@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from trialid import temporary
+from trialid.cli.answering import check_trial_names
 from trialid.cli.console import complain, progress_bar, say
 from trialid.cli.replay_source import Following, source_of
-from trialid.errors import TrialidError, nearest
+from trialid.errors import TrialidError
 from trialid.version import VERSION
 
 if TYPE_CHECKING:
@@ -33,14 +34,6 @@ FILE: Final = click.Path(path_type=Path)
 POSITIVE: Final = click.FloatRange(min=0, min_open=True)
 IDLE: Final = 30.0
 """Without growth for so long [s] a followed log is taken to be whole."""
-
-
-class _WallClock:
-    def now(self) -> float:
-        return time.monotonic()
-
-    def wait(self, seconds: float) -> None:
-        time.sleep(seconds)
 
 
 @click.command(cls=Following, short_help="Play a trial through its model as a stream, with alarms.")
@@ -159,11 +152,8 @@ def _check_out(out: Path | None, force: bool) -> None:
 def _chosen(asked: "Pipeline", name: str | None, pipeline: Path) -> "TrialSection":
     if name is None:
         return asked.trials[-1]
-    for one in asked.trials:
-        if one.name == name:
-            return one
-    known = nearest(name, [t.name for t in asked.trials])
-    raise TrialidError(f"{pipeline}: no trial {name!r}; {known}")
+    check_trial_names([name], [one.name for one in asked.trials], pipeline)
+    return next(one for one in asked.trials if one.name == name)
 
 
 def _finished(folder: Path) -> "Result":
@@ -252,7 +242,7 @@ def _play(
 ) -> "Playback":
     """Play; Ctrl-C ends it like q, and what was played is kept."""
     from trialid.replay.keys import keyboard
-    from trialid.replay.session import play
+    from trialid.replay.session import WallClock, play
 
     last = playback
     with _showing(quiet) as show, keyboard() as keys:
@@ -263,7 +253,7 @@ def _play(
             show(now_playing, pace, now)
 
         try:
-            return play(playback, wishes, _WallClock(), seen, keys, follower)
+            return play(playback, wishes, WallClock(), seen, keys, follower)
         except KeyboardInterrupt:
             return last
 

@@ -43,13 +43,13 @@ def report(runs: tuple[Path, ...], out: Path | None, imo: bool, quiet: bool, sch
         raise click.UsageError("Missing argument 'RUN_DIR...'.")
     if imo and len(runs) > 1:
         raise click.UsageError("--imo is of one run; give one RUN_DIR.")
-    from trialid.report.pages.folder import read_finished, write_one, write_several
+    from trialid.report.pages.folder import read_run, write_one, write_several
     from trialid.report.pages.imo_form import write_form
     from trialid.result import json_file
 
     labels = run_labels(runs)
     read = [
-        read_finished(label, folder, json_file.read(folder / json_file.NAME))
+        read_run(label, folder, json_file.read(folder / json_file.NAME))
         for label, folder in zip(labels, runs, strict=True)
     ]
     place = out or (runs[0] if len(runs) == 1 else Path("comparison"))
@@ -101,11 +101,11 @@ def _check_place(place: Path, runs: Sequence[Path]) -> None:
 def repeat_run(folder: Path, as_json: bool, quiet: bool) -> bool:
     """Run what a folder holds once more and say whether the numbers are the same."""
     from trialid.result.json_file import plain
-    from trialid.workflow.repeat import again, comparison_words, earlier
+    from trialid.workflow.repeat import comparison_words, earlier, repeat
 
     done = earlier(folder)
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
-        fresh, found = again(done, progress)
+        fresh, found = repeat(done, progress)
     words = comparison_words(found, done.result, fresh.result)
     if as_json:
         say(json.dumps(plain(fresh.result), indent=2, allow_nan=False))

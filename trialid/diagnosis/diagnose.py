@@ -7,8 +7,9 @@ from functools import cached_property
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
 from trialid.diagnosis.may_be_off import Doubts, doubts
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.noise_bound import held_against
-from trialid.diagnosis.noise.split import Split, split
+from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.prediction_band import prediction_band
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.completeness import Completeness, completeness

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import FALL, as_good
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import (

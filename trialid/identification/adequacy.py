@@ -12,9 +12,10 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
 from trialid.identification.file_of_ship import left_by_file, most_are_unlike
-from trialid.identification.fit import Fit, Score
+from trialid.identification.fit import Fit
 from trialid.identification.gauss_newton import REASONS
 from trialid.identification.time_scales import slowest_motion
+from trialid.identification.trial_score import Score
 from trialid.identification.weighing import NO_NOISE
 from trialid.simulation.integrate import record_for
 

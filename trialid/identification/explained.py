@@ -7,9 +7,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.identification.fit import Fit, Score
+from trialid.identification.fit import Fit
 from trialid.identification.one_search import search
 from trialid.identification.record_starts import PIECES, in_pieces
+from trialid.identification.trial_score import Score
 from trialid.white_noise import SMOOTH
 
 Vector = NDArray[np.float64]

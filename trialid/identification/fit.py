@@ -6,32 +6,22 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trialid.arrays import Mask
+from trialid.arrays import Vector
 from trialid.errors import NotIdentifiable, SimulationError
 from trialid.identification.arrive import arrive
 from trialid.identification.gauss_newton import REASONS, Iteration
 from trialid.identification.one_search import End, Progress
-from trialid.identification.output_error import (
-    Problem,
-    compared_mask,
-    linearise,
-    loss,
-    respond_all,
-    scores,
-    step_halving,
-)
-from trialid.identification.own_start import own_start, starts_of
+from trialid.identification.output_error import Problem, linearise, loss, respond_all, step_halving
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.smaller import point_of_smaller
+from trialid.identification.trial_score import Score, pool_errors, score_trial
 from trialid.identification.weighing import level_of
 from trialid.ship.model import ShipModel
-from trialid.simulation.integrate import Departure, Response, respond
+from trialid.simulation.integrate import Departure
 from trialid.threads import one_thread
 from trialid.trial import Trial
 
-Vector = NDArray[np.float64]
 CONTRADICTS: Final = 3.0
 """Standard deviations of a prior at which the record speaks against it."""
 
@@ -39,18 +29,7 @@ STEP_ERROR: Final = 0.05
 """Share of the error that integration may make up before steps are made finer."""
 
 
-@dataclass(frozen=True)
-class Score:
-    """How one trial came out: eps_RMSn of each output, and the simulated response."""
-
-    trial: Trial
-    response: Response
-    compared: Mask
-    eps_rmsn: Mapping[str, float]
-    counts: Mapping[str, int]
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Fit:
     """The result of a search.
 
@@ -111,7 +90,7 @@ class Fit:
     @property
     def eps_by_output(self) -> dict[str, float]:
         """The same, output by output."""
-        return _pooled([s for s in self.scores if s.trial.use == "fit"])
+        return pool_errors([s for s in self.scores if s.trial.use == "fit"])
 
     @property
     def eps_check(self) -> float | None:
@@ -122,7 +101,7 @@ class Fit:
     @property
     def eps_check_by_output(self) -> dict[str, float]:
         """The same, output by output; empty where there are none."""
-        return _pooled([s for s in self.scores if s.trial.use == "check"])
+        return pool_errors([s for s in self.scores if s.trial.use == "check"])
 
     @property
     def explanation(self) -> str:
@@ -165,16 +144,6 @@ class Fit:
         if roll is not None:
             off |= {unknowns[i].name: z for i, z in roll.off(self.theta).items()}
         return {name: z for name, z in off.items() if abs(z) > CONTRADICTS}
-
-
-def _pooled(scored: Sequence[Score]) -> dict[str, float]:
-    """Root mean square of each output over all compared samples of these trials."""
-    squares, counts = dict[str, float](), dict[str, int]()
-    for score in scored:
-        for c, eps in score.eps_rmsn.items():
-            squares[c] = squares.get(c, 0.0) + eps**2 * max(score.counts[c], 1)
-            counts[c] = counts.get(c, 0) + max(score.counts[c], 1)
-    return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
 
 
 @one_thread
@@ -297,56 +266,18 @@ def _finish(
     point = linearise(problem, theta)
     assert not isinstance(point, Departure)
     level = level_of(problem, point[0])
-    shared = {x.column: float(a) for x, a in zip(problem.unknowns, theta, strict=True)
-              if x.trial is None}  # fmt: skip
+    ended = zip(problem.unknowns, theta, strict=True)
+    shared = {x.column: float(a) for x, a in ended if x.trial is None}
     return Fit(
-        model.with_values(shared), settings, problem, theta, point[0],
-        tuple(_score(problem, theta, t, level) for t in trials),
-        () if end is None else end.path,
-        "orthogonal" if end is None else end.minimum.reason,
-        end is None or end.minimum.converged, agreeing, level,
-    )  # fmt: skip
-
-
-def of_trial(
-    problem: Problem, theta: Vector, trial: Trial, level: float | None = None
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Parameters and initial states with which a fit simulates one trial.
-
-    A trial to check has nothing of its own but its start and its current, if the fit leaves them
-    free too: sensors keep the mean of the fitted ones. `level` is the fit's, else found.
-    """
-    if trial.use == "fit":
-        place = [t.name for t in problem.trials].index(trial.name)
-        values = problem.values(theta, place)
-        return values, starts_of(values)
-    values = _mean_values(problem, theta)
-    compared = compared_mask(trial, problem.simulator)
-    if level is None:
-        point = linearise(problem, theta)
-        level = 0.0 if isinstance(point, Departure) else level_of(problem, point[0])
-    own = own_start(problem, trial, compared, values, level)
-    return values | {n: own[n] for n in own if n in values}, starts_of(own)
-
-
-def _score(problem: Problem, theta: Vector, trial: Trial, level: float) -> Score:
-    """Simulate one trial with the fitted parameters."""
-    compared = compared_mask(trial, problem.simulator)
-    values, start = of_trial(problem, theta, trial, level)
-    response = respond(problem.simulator, trial, values, start, sensitivities=False)
-    if response.departure is None:
-        eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
-    else:  # what was lost has no error, however good its beginning
-        compared = compared & np.isfinite(response.y)
-        eps = dict.fromkeys(problem.outputs, np.inf)
-    counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
-    return Score(trial, response, compared, eps, counts)
-
-
-def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:
-    """Shared parameters, and the mean over the trials of what belongs to a sensor."""
-    gathered: dict[str, list[float]] = {}
-    for x, a in zip(problem.unknowns, theta, strict=True):
-        if not x.column.endswith("(0)"):
-            gathered.setdefault(x.column, []).append(float(a))
-    return {n: float(np.mean(a)) for n, a in gathered.items()}
+        model=model.with_values(shared),
+        settings=settings,
+        problem=problem,
+        theta=theta,
+        residual=point[0],
+        scores=tuple(score_trial(problem, theta, t, level) for t in trials),
+        iterations=() if end is None else end.path,
+        reason="orthogonal" if end is None else end.minimum.reason,
+        converged=end is None or end.minimum.converged,
+        agreeing=agreeing,
+        level=level,
+    )

@@ -13,7 +13,8 @@ from trialid.ingest.mavlink import dataflash_log, tlog_log
 from trialid.ingest.mcap import mcap_log
 from trialid.ingest.nmea0183 import nmea0183_log
 from trialid.ingest.ros import bag_log, db3_log
-from trialid.ingest.tables import csv_log, excel_log, mat_log, parquet_log, template_draft
+from trialid.ingest.tables import csv_log, excel_log, mat_log, parquet_log
+from trialid.ingest.tables.templates import template_draft
 from trialid.plugins import plugins
 from trialid.recording import Recording
 

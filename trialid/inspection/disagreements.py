@@ -4,8 +4,8 @@ Judged on the sketches, so that a log of any length is judged at once; alignment
 every sample.
 """
 
-from trialid.alignment import checks, duplicate_channels
-from trialid.alignment.checks import Finding
+from trialid.alignment.agreement import checks, duplicate_channels
+from trialid.alignment.agreement.channel_finding import Finding
 from trialid.alignment.clocks import Series
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.usual_units import to_si

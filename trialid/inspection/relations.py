@@ -11,10 +11,10 @@ from typing import Final, Literal
 
 import numpy as np
 
-from trialid.alignment import signs
+from trialid.alignment.agreement import signs
 from trialid.arrays import Mask
 from trialid.inspection.inspected import ChannelInspection, Guess
-from trialid.inspection.sketch import Vector, together
+from trialid.inspection.sketch import Vector, on_one_clock
 from trialid.inspection.usual_units import USUAL, to_si
 
 SLOPES: Final = {"r": "psi", "p": "phi"}
@@ -59,7 +59,7 @@ def _named(channels: Mapping[str, ChannelInspection], quantity: str) -> list[Cha
 
 def slope_agreement(rate: ChannelInspection, angle: ChannelInspection) -> float:
     """Correlation of a rate with the change of an angle; 0 where they have too little in common."""
-    common = together(rate.sketch, angle.sketch)
+    common = on_one_clock(rate.sketch, angle.sketch)
     if common is None:
         return 0.0
     _, (y, x), whole = common
@@ -98,7 +98,7 @@ def side(
 
 def _turning(rudder: ChannelInspection, turning: ChannelInspection) -> signs.Turning | None:
     """How the ship answers a rudder; None where the two have too little in common."""
-    common = together(rudder.sketch, turning.sketch)
+    common = on_one_clock(rudder.sketch, turning.sketch)
     if common is None:
         return None
     period, (delta, r), whole = common
@@ -109,7 +109,7 @@ def _turning(rudder: ChannelInspection, turning: ChannelInspection) -> signs.Tur
 
 def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | None:
     """The unit of a rate that its angle, whose unit is known, leaves open; None where none fits."""
-    common = together(rate.sketch, angle.sketch)
+    common = on_one_clock(rate.sketch, angle.sketch)
     size = to_si(angle.unit or angle.unit_in_name or "", "rad")
     if common is None or size is None:
         return None

@@ -50,7 +50,7 @@ def join_sketches(parts: list[Sketch]) -> Sketch:
     return sketch(t[order], y)
 
 
-def together(*sketches: Sketch) -> tuple[float, list[Vector], NDArray[np.bool_]] | None:
+def on_one_clock(*sketches: Sketch) -> tuple[float, list[Vector], NDArray[np.bool_]] | None:
     """The sketches on one even clock: its period [s], the values, where none has a hole.
 
     None when they have too little in common, or nearly all of it lies between two samples.

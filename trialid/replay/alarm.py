@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from trialid.arrays import Mask
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.whitening import Colour, colour_of
 from trialid.diagnosis.search.augment import Augmented
 from trialid.identification.fit import Fit

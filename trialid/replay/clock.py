@@ -28,7 +28,7 @@ class Pace:
     running: bool = True
 
 
-def at(pace: Pace, now: float) -> float:
+def position_at(pace: Pace, now: float) -> float:
     """Where in the record a replay stands [s].
 
     >>> at(Pace(10.0, 5.0, 100.0), 102.0)
@@ -55,6 +55,6 @@ def toggle(pace: Pace, now: float, position: float) -> Pace:
     return replace(pace, position=position, since=now, running=not pace.running)
 
 
-def sought(pace: Pace, now: float, position: float) -> Pace:
+def seek(pace: Pace, now: float, position: float) -> Pace:
     """At another place, running or paused as before."""
     return replace(pace, position=position, since=now)

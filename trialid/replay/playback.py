@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from trialid.diagnosis.noise.residual import Residual
 from trialid.diagnosis.where.doing import ship_activity
 from trialid.diagnosis.where.leftover import Leftover
-from trialid.identification.fit import Fit, of_trial
+from trialid.identification.fit import Fit
 from trialid.identification.output_error import compared_mask, output_error, output_matrix
+from trialid.identification.trial_score import of_trial
 from trialid.replay.alarm import Alarm, Bands, Monitor
 from trialid.replay.stream import Stream
 from trialid.threads import one_thread

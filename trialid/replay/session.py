@@ -1,6 +1,7 @@
 """A replay from its first sample to its last: pace, keys, loop, and a log that grows."""
 
 import math
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final, Protocol
@@ -33,6 +34,18 @@ class Time(Protocol):
 
     def wait(self, seconds: float) -> None:
         """Come back that much later."""
+
+
+class WallClock:
+    """The computer's own."""
+
+    def now(self) -> float:
+        """Seconds since some instant."""
+        return time.monotonic()
+
+    def wait(self, seconds: float) -> None:
+        """Sleep."""
+        time.sleep(seconds)
 
 
 @dataclass(frozen=True)
@@ -78,9 +91,9 @@ def play(
         show(playback, pace, now)
         ended = pace.running and playback.at >= playback.available
         if ended and playback.growing:
-            pace = clock.sought(pace, now, _position(playback))
+            pace = clock.seek(pace, now, _position(playback))
         elif ended and wishes.loop:
-            pace = clock.sought(pace, now, wishes.start)
+            pace = clock.seek(pace, now, wishes.start)
             playback.go_to(_sample(wishes.start, period))
         elif ended:
             return playback
@@ -91,7 +104,7 @@ def _next(playback: Playback, pace: Pace, now: float) -> int:
     """Samples that are to be played by now."""
     if not pace.running:
         return playback.at
-    position = clock.at(pace, now)
+    position = clock.position_at(pace, now)
     if math.isinf(position):
         return min(playback.at + CHUNK, playback.available)
     return min(_sample(position, playback.trial.period), playback.available)
@@ -108,13 +121,13 @@ def _position(playback: Playback) -> float:
 
 def _pressed(pace: Pace, key: str, now: float, playback: Playback) -> Pace:
     """The pace after a key; it goes on from the sample that is shown."""
-    here = min(clock.at(pace, now), _position(playback))
+    here = min(clock.position_at(pace, now), _position(playback))
     if key == "space":
         return clock.toggle(pace, now, here)
     if key in {"left", "right"}:
         step = SEEK if key == "right" else -SEEK
         end = max(playback.available - 1, 0) * playback.trial.period
-        return clock.sought(pace, now, min(max(here + step, 0.0), end))
+        return clock.seek(pace, now, min(max(here + step, 0.0), end))
     return pace
 
 

@@ -29,10 +29,10 @@ _EXPORT: Final = re.compile(r"^export (?=(?:async function|function|const) )", r
 def script() -> str:
     """What draws the plots of a report, without `uPlot`, for one `<script type="module">`."""
     files = resources.files("trialid.report")
-    return joined([files.joinpath(name).read_text(encoding="utf-8") for name in MODULES])
+    return join_modules([files.joinpath(name).read_text(encoding="utf-8") for name in MODULES])
 
 
-def joined(modules: Sequence[str]) -> str:
+def join_modules(modules: Sequence[str]) -> str:
     r"""Modules in the order of their imports as one: they find each other's names in one scope.
 
     Imports stand on one line each, exports before what they export, and no name occurs twice.

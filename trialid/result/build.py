@@ -14,7 +14,7 @@ from trialid.design.separation import Separation
 from trialid.design.standard import Measure
 from trialid.design.steering.nomoto import Nomoto
 from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
-from trialid.diagnosis.noise.split import Split
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where
 from trialid.identification.fit import Fit

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from trialid.identification.fit import Score
+from trialid.identification.trial_score import Score
 from trialid.result.fit_rows import LogRow, TrialRow
 
 

@@ -6,21 +6,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from traceback import extract_tb
-from typing import Any, Final, Literal
-
-import numpy as np
+from typing import Any, Literal
 
 from trialid.errors import EffectError, nearest
 from trialid.maths import Number
 from trialid.names.quantities import QUANTITIES
 from trialid.ship.effect_checks import (
-    check_names,
-    check_numbers,
     check_own,
-    check_rates,
     check_readings,
     check_scan,
     check_states,
+    find_forms,
 )
 from trialid.ship.forms import (
     FORMS,
@@ -53,9 +49,6 @@ __all__ = [
 ]
 
 System = Literal["prime", "SI"]
-SIZES: Final = (0.001, 0.1, 1.0, 10.0, 1000.0)
-"""Values of all signals at which an effect is tried: it may have no number at some, as at a length
-of 0.1 m, but not at all."""
 
 
 @dataclass(frozen=True)
@@ -235,7 +228,7 @@ def effect(
         own = dict(states or {})
         asked = _own_signals(name, function)
         signals, parameters = _signature(name, function, {**own, **asked})
-        forms = _forms(name, function, signals, parameters, own)
+        forms = find_forms(name, function, signals, parameters, own)
         made: System = system if Force in forms or Mass in forms else "SI"
         check_states(name, own, made)
         check_readings(name, signals, forms)
@@ -298,54 +291,3 @@ def _parameter(effect: str, name: str, start: Any) -> Parameter:
             "it sets the scale of everything relative and must be a number other than 0"
         )
     return made
-
-
-def _forms(
-    name: str,
-    function: Callable[..., Any],
-    signals: tuple[str, ...],
-    parameters: Mapping[str, Parameter],
-    own: Mapping[str, Any],
-) -> tuple[type, ...]:
-    """Find out what the function returns by calling it once on small numbers."""
-    values = dict.fromkeys(signals, 0.1) | {n: p.start for n, p in parameters.items()}
-    try:
-        result = function(**values)
-    except (ArithmeticError, TypeError, NameError, AttributeError, ValueError) as error:
-        raise EffectError(f"effect {name!r} cannot be evaluated: {error}") from error
-    names = ", ".join(form.__name__ for form in FORMS)
-    results = result if isinstance(result, tuple) and not isinstance(result, Force) else (result,)
-    if not results:
-        raise EffectError(f"effect {name!r} returns nothing; expected one of {names}")
-    for part in results:
-        if not isinstance(part, FORMS):
-            raise EffectError(
-                f"effect {name!r} returns {type(part).__name__}; expected one of {names}"
-            )
-        check_names(name, part, signals)
-        check_numbers(name, part)
-    if not any(_finite(function, signals, parameters, size) for size in SIZES):
-        raise EffectError(
-            f"effect {name!r} returns nan or inf, whatever its signals are; look for a nan, a "
-            "division by zero or a root of a negative number"
-        )
-    check_rates(name, tuple(n for part in results if isinstance(part, Rate) for n in part), own)
-    return tuple(type(part) for part in results)
-
-
-def _finite(
-    function: Callable[..., Any],
-    signals: tuple[str, ...],
-    parameters: Mapping[str, Parameter],
-    size: float,
-) -> bool:
-    """Whether all it returns are numbers where every signal has this value."""
-    values = dict.fromkeys(signals, size) | {n: p.start for n, p in parameters.items()}
-    try:
-        with np.errstate(all="ignore"):
-            result = function(**values)
-    except (ArithmeticError, ValueError):
-        return False
-    parts = (result,) if isinstance(result, FORMS) else result
-    numbers = (x for p in parts for x in (p if isinstance(p, Force) else p.values()))
-    return bool(np.all(np.isfinite(list(numbers))))

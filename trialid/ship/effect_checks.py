@@ -1,16 +1,21 @@
 """What a declared effect must not do: names, numbers and forms that contradict one another."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from trialid.errors import EffectError, nearest
 from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, SIGNALS
-from trialid.ship.forms import SENSORS, Force, Mass, Result
+from trialid.ship.forms import FORMS, SENSORS, Force, Mass, Rate, Result
 
 if TYPE_CHECKING:
     from trialid.ship.effect import Parameter, Signal, System
+
+
+SIZES: Final = (0.001, 0.1, 1.0, 10.0, 1000.0)
+"""Values of all signals at which an effect is tried: it may have no number at some, as at a length
+of 0.1 m, but not at all."""
 
 
 def check_own(name: str, asked: "Mapping[str, Signal]", system: "System") -> None:
@@ -88,3 +93,54 @@ def check_names(name: str, part: Result, signals: tuple[str, ...]) -> None:
                 f"effect {name!r} returns {type(part).__name__}({signal}=...), and {signal!r} is "
                 f"not a {'mass parameter' if mass else 'signal'} ({nearest(signal, known)})"
             )
+
+
+def find_forms(
+    name: str,
+    function: Callable[..., Any],
+    signals: tuple[str, ...],
+    parameters: "Mapping[str, Parameter]",
+    own: Mapping[str, Any],
+) -> tuple[type, ...]:
+    """Find out what the function returns by calling it once on small numbers."""
+    values = dict.fromkeys(signals, 0.1) | {n: p.start for n, p in parameters.items()}
+    try:
+        result = function(**values)
+    except (ArithmeticError, TypeError, NameError, AttributeError, ValueError) as error:
+        raise EffectError(f"effect {name!r} cannot be evaluated: {error}") from error
+    names = ", ".join(form.__name__ for form in FORMS)
+    results = result if isinstance(result, tuple) and not isinstance(result, Force) else (result,)
+    if not results:
+        raise EffectError(f"effect {name!r} returns nothing; expected one of {names}")
+    for part in results:
+        if not isinstance(part, FORMS):
+            raise EffectError(
+                f"effect {name!r} returns {type(part).__name__}; expected one of {names}"
+            )
+        check_names(name, part, signals)
+        check_numbers(name, part)
+    if not any(_finite(function, signals, parameters, size) for size in SIZES):
+        raise EffectError(
+            f"effect {name!r} returns nan or inf, whatever its signals are; look for a nan, a "
+            "division by zero or a root of a negative number"
+        )
+    check_rates(name, tuple(n for part in results if isinstance(part, Rate) for n in part), own)
+    return tuple(type(part) for part in results)
+
+
+def _finite(
+    function: Callable[..., Any],
+    signals: tuple[str, ...],
+    parameters: "Mapping[str, Parameter]",
+    size: float,
+) -> bool:
+    """Whether all it returns are numbers where every signal has this value."""
+    values = dict.fromkeys(signals, size) | {n: p.start for n, p in parameters.items()}
+    try:
+        with np.errstate(all="ignore"):
+            result = function(**values)
+    except (ArithmeticError, ValueError):
+        return False
+    parts = (result,) if isinstance(result, FORMS) else result
+    numbers = (x for p in parts for x in (p if isinstance(p, Force) else p.values()))
+    return bool(np.all(np.isfinite(list(numbers))))

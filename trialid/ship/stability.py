@@ -40,7 +40,7 @@ class Stability:
         return self.margin > 0.0
 
 
-def roll_coupled(c: Mapping[str, Number]) -> dict[str, Number]:
+def couple_roll(c: Mapping[str, Number]) -> dict[str, Number]:
     """Sway and yaw derivatives of a ship that heels as it turns slowly; primed.
 
     In a slow turn the heel follows phi = (K_v v + (K_r + m z_G) r) / G_phi, with
@@ -79,7 +79,7 @@ def stability(
 
 def _levers(values: Mapping[str, Number], coupled: bool) -> tuple[complex, complex]:
     numbers = {n: complex(x) for n, x in values.items()}
-    return levers(roll_coupled(numbers) if coupled else numbers)
+    return levers(couple_roll(numbers) if coupled else numbers)
 
 
 def _slope(values: Mapping[str, float], name: str, coupled: bool) -> float:

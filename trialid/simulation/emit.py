@@ -2,126 +2,23 @@
 
 Per RK4 step the four stages evaluate f, the nonzeros of J and W and the entries of G; then the
 whole RK4 step runs for eight sensitivity columns at a time in vector registers. That is the exact
-derivative of the RK4 map. `reassoc nsz arcp contract` buys the speed of -ffast-math and still
-keeps NaN and infinity, by which a diverging simulation is found.
+derivative of the RK4 map.
 """
 
-import struct
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Final
 
-from trialid.simulation.graph import CONSTANT, SYMBOL, Node, order
+from trialid.simulation.graph import SYMBOL, Node, order
+from trialid.simulation.ir_text import DECLARATIONS, VECTOR, IrText, evaluate, literal
 from trialid.simulation.trace import BLOCK, Equations
 
-FAST: Final = "reassoc nsz arcp contract"
-VECTOR: Final = f"<{BLOCK} x double>"
-ARITHMETIC: Final = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
-FUNCTIONS: Final = {
-    "abs": "llvm.fabs.f64", "sqrt": "llvm.sqrt.f64", "sin": "llvm.sin.f64", "cos": "llvm.cos.f64",
-    "exp": "exp", "tanh": "tanh", "arctan": "atan",
-}  # fmt: skip
-DECLARATIONS: Final = (
-    "declare double @llvm.fabs.f64(double)\ndeclare double @llvm.sqrt.f64(double)\n"
-    "declare double @llvm.sin.f64(double)\ndeclare double @llvm.cos.f64(double)\n"
-    "declare double @llvm.copysign.f64(double, double)\n"
-    "declare double @exp(double)\ndeclare double @tanh(double)\ndeclare double @atan(double)\n"
-    "declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)\n"
-)
 ARGUMENTS: Final = (
     "i64 %N, i64 %sub, double %h, ptr noalias %theta, ptr noalias %u, ptr noalias %limit, "
     "ptr noalias %X"
 )
 WORK: Final = ", ptr noalias %S, ptr noalias %s, ptr noalias %g, ptr noalias %j"
-
-
-def _literal(value: float) -> str:
-    return "0x" + struct.pack(">d", value).hex().upper()
-
-
-class _Text:
-    """IR text in the making; every method appends an instruction and returns its name."""
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        self._count = 0
-
-    def new(self, expression: str) -> str:
-        self._count += 1
-        self.lines.append(f"  %v{self._count} = {expression}")
-        return f"%v{self._count}"
-
-    def raw(self, *lines: str) -> None:
-        self.lines.extend(lines)
-
-    def binary(self, op: str, a: str, b: str, kind: str = "double") -> str:
-        return self.new(f"{op} {FAST} {kind} {a}, {b}")
-
-    def integer(self, op: str, a: str, b: str | int) -> str:
-        return self.new(f"{op} i64 {a}, {b}")
-
-    def address(self, base: str, index: str | int) -> str:
-        return self.new(f"getelementptr inbounds double, ptr {base}, i64 {index}")
-
-    def load(self, base: str, index: str | int, kind: str = "double") -> str:
-        return self.new(f"load {kind}, ptr {self.address(base, index)}, align 8")
-
-    def store(self, value: str, base: str, index: str | int, kind: str = "double") -> None:
-        self.raw(f"  store {kind} {value}, ptr {self.address(base, index)}, align 8")
-
-    def splat(self, value: str) -> str:
-        lone = self.new(f"insertelement {VECTOR} poison, double {value}, i32 0")
-        zeros = f"<{BLOCK} x i32> zeroinitializer"
-        return self.new(f"shufflevector {VECTOR} {lone}, {VECTOR} poison, {zeros}")
-
-    def call(self, function: str, *args: str) -> str:
-        listed = ", ".join(f"double {a}" for a in args)
-        return self.new(f"call {FAST} double @{function}({listed})")
-
-    def variable(self, kind: str, start: str) -> str:
-        """A place in memory that the optimiser turns into a register."""
-        place = self.new(f"alloca {kind}, align 64")
-        self.raw(f"  store {kind} {start}, ptr {place}")
-        return place
-
-    def get(self, place: str, kind: str = "double") -> str:
-        return self.new(f"load {kind}, ptr {place}, align 8")
-
-    def put(self, value: str, place: str, kind: str = "double") -> None:
-        self.raw(f"  store {kind} {value}, ptr {place}, align 8")
-
-
-def _evaluate(text: _Text, nodes: Iterable[Node], known: dict[int, str]) -> None:
-    """Write the instructions of nodes that are not known yet."""
-    for node in nodes:
-        if node.index not in known and node.op != SYMBOL:
-            known[node.index] = (
-                _literal(node.value) if node.op == CONSTANT else _instruction(text, node, known)
-            )
-
-
-def _instruction(text: _Text, node: Node, known: Mapping[int, str]) -> str:
-    args = [known[a.index] for a in node.args]
-    if node.op in ARITHMETIC:
-        return text.binary(ARITHMETIC[node.op], *args)
-    match node.op:
-        case "clip":
-            low = text.new(f"fneg double {args[1]}")
-            return _nearer(text, "ogt", _nearer(text, "olt", args[0], low), args[1])
-        case "inside":
-            size = text.call("llvm.fabs.f64", args[0])
-            test = text.new(f"fcmp olt double {size}, {args[1]}")
-            return text.new(f"select i1 {test}, double {_literal(1.0)}, double {_literal(0.0)}")
-        case "sign":
-            return text.call("llvm.copysign.f64", _literal(1.0), *args)
-    return text.call(FUNCTIONS[node.op], *args)
-
-
-def _nearer(text: _Text, beyond: str, value: str, bound: str) -> str:
-    """The bound where the value is beyond it; NaN is beyond nothing and stays."""
-    test = text.new(f"fcmp {beyond} double {value}, {bound}")
-    return text.new(f"select i1 {test}, double {bound}, double {value}")
 
 
 @dataclass(frozen=True)
@@ -143,7 +40,7 @@ class _Writer:
     def __init__(self, equations: Equations, sensitivities: bool) -> None:
         self.eq = equations
         self.sens = sensitivities
-        self.text = _Text()
+        self.text = IrText()
         self.known: dict[int, str] = {}
         self.n_x = len(equations.states)
         self.J = list(equations.J.items())
@@ -175,18 +72,18 @@ class _Writer:
         for node in nodes:
             if node.op == SYMBOL and not node.moving:
                 self.known[node.index] = t.load("%theta", self.eq.parameters.index(node.value))
-        _evaluate(t, [n for n in nodes if not n.moving], self.known)
+        evaluate(t, [n for n in nodes if not n.moving], self.known)
         self.moving = [n for n in nodes if n.moving]
         count = t.new("uitofp i64 %sub to double")
         step = t.new(f"fdiv double %h, {count}")
-        zero = _literal(0.0)
+        zero = literal(0.0)
         state = [t.variable("double", t.load("%X", i)) for i in range(self.n_x)]
         slope = [t.variable("double", zero) for _ in range(self.n_x)]
         total = [t.variable("double", zero) for _ in range(self.n_x)]
         half, sixth, third = (
-            t.new(f"fmul double {step}, {_literal(x)}") for x in (1 / 2, 1 / 6, 1 / 3)
+            t.new(f"fmul double {step}, {literal(x)}") for x in (1 / 2, 1 / 6, 1 / 3)
         )
-        self.share = t.new(f"fdiv double {_literal(1.0)}, {count}")
+        self.share = t.new(f"fdiv double {literal(1.0)}, {count}")
         self.vectors = (
             {n: t.splat(x) for n, x in (("half", half), ("sixth", sixth), ("step", step))}
             if self.sens
@@ -232,7 +129,7 @@ class _Writer:
         t = self.text
         stage = t.get(s, "i64")
         first, last = (t.new(f"icmp eq i64 {stage}, {i}") for i in (0, 3))
-        one, middle, zero = _literal(1.0), _literal(0.5), _literal(0.0)
+        one, middle, zero = literal(1.0), literal(0.5), literal(0.0)
         ahead = t.new(f"select i1 {last}, double {one}, double {middle}")
         ahead = t.new(f"select i1 {first}, double {zero}, double {ahead}")
         reach = t.binary("fmul", ahead, frame.step)
@@ -240,7 +137,7 @@ class _Writer:
         ends = t.new(f"or i1 {first}, {last}")
         weight = t.new(f"select i1 {ends}, double {frame.sixth}, double {frame.third}")
         known = self.known | self._symbols(frame, reach, along, u0, du)
-        _evaluate(t, self.moving, known)
+        evaluate(t, self.moving, known)
         if self.sens:
             self._store_stage(known, stage)
         for i, f in enumerate(self.eq.f):
@@ -349,14 +246,14 @@ class _Writer:
             if row not in g:
                 continue
             if w.is_constant():
-                factor = t.splat(_literal(w.value))
+                factor = t.splat(literal(w.value))
             elif w.moving:
                 at = len(self.J) + moving_W.index((i, row))
                 factor = t.splat(t.load("%j", stage * count + at))
             else:
                 factor = self.fixed_W[i, row]
             slope[i] = self._fused(factor, g[row], slope[i])
-        return [k if k is not None else t.splat(_literal(0.0)) for k in slope]
+        return [k if k is not None else t.splat(literal(0.0)) for k in slope]
 
     def _sum(self, a: str, b: str) -> str:
         return self.text.binary("fadd", a, b, VECTOR)

@@ -17,11 +17,13 @@ from trialid.result.series import OutputSeries, TrialSeries
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
 from trialid.trial import Trial
+from trialid.workbench.document import Step
 from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Shown
+from trialid.workbench.watch import Files
 from trialid.workflow import history
 from trialid.workflow.build_model import available, build_model
-from trialid.workflow.edit_model import fit_edited, foresee_edit, proposed_steps, set_beside
+from trialid.workflow.edit_model import fit_edit, foresee_edit, proposed_steps, set_beside
 from trialid.workflow.edit_pipeline import Edit
 from trialid.workflow.fit_model import fit_of, time_series
 from trialid.workflow.outcome import Outcome
@@ -75,6 +77,23 @@ class Seat(Protocol):
         """Write steps of the history."""
 
 
+class LetGo(Exception):
+    """The computation is not wanted any more."""
+
+
+@dataclass
+class Job:
+    """A computation under way, the edit that began it, and whether it is still wanted.
+
+    `files` are those it rests on, as they were when it began.
+    """
+
+    task: Task
+    step: Step | None
+    files: Files
+    wanted: bool = True
+
+
 @one_thread
 def work_out(task: Task, shelf: Shelf, seat: Seat) -> None:
     """Read, fit and examine; every stage is shown when it is reached.
@@ -113,7 +132,7 @@ def _fit(
         catalogue = available(task.pipeline)
         return None, UNKNOWN, fit_of(task.pipeline, trials, catalogue, seat.progress)
     foreseen = _foreseen(task.edit, task.before, trials, seat)
-    edit, fit = fit_edited(task.edit, trials, foreseen, seat.progress)
+    edit, fit = fit_edit(task.edit, trials, foreseen, seat.progress)
     if edit is not task.edit:
         seat.amend(edit)
     return edit, foreseen, fit

@@ -11,16 +11,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from trialid.errors import EffectError, LogError, PipelineError, TrialidError
+from trialid.errors import PipelineError, TrialidError
 from trialid.pipeline_file import Pipeline
 from trialid.result.change_rows import StepRow
-from trialid.workbench.compute import Seat, Task, work_out
+from trialid.workbench.compute import Job, LetGo, Seat, Task, work_out
 from trialid.workbench.document import Document, Step
 from trialid.workbench.shelf import Shelf
-from trialid.workbench.shown import Place, Shown, Trouble, Working
+from trialid.workbench.shown import Shown, Trouble, Working, place_of
 from trialid.workbench.status import Counts, Status, status_of
 from trialid.workbench.watch import Files, source_states, watch_list
-from trialid.workbench.wishes import Granted, between, grant, understood
+from trialid.workbench.wishes import Granted, find_edit, grant, read_wish
 from trialid.workflow import history
 from trialid.workflow.build_model import available
 from trialid.workflow.edit_pipeline import Edit
@@ -31,23 +31,6 @@ KEPT: Final = 12
 
 POLL: Final = 0.3
 """Between two looks at the files [s]; a change is taken up when it has stood for one of them."""
-
-
-class _LetGo(Exception):
-    """The computation is not wanted any more."""
-
-
-@dataclass
-class Job:
-    """A computation under way, the edit that began it, and whether it is still wanted.
-
-    `files` are those it rests on, as they were when it began.
-    """
-
-    task: Task
-    step: Step | None
-    files: Files
-    wanted: bool = True
 
 
 @dataclass
@@ -105,7 +88,7 @@ class Desk:
         TrialidError
             It cannot be done; nothing has changed.
         """
-        wish = understood(asked)
+        wish = read_wish(asked)
         with self._open():
             self._document.check(wish.version)
             found = grant(self._document.pipeline, wish)
@@ -160,7 +143,7 @@ class Desk:
             old = self._document.pipeline
             step = move()
             after = self._document.pipeline
-            self._changed(Granted(after, words.format(step.words), between(old, after)), None)
+            self._changed(Granted(after, words.format(step.words), find_edit(old, after)), None)
 
     def _changed(self, found: Granted, step: Step | None) -> None:
         """Work out what the file holds now, its last complete model being the one before."""
@@ -190,7 +173,7 @@ class Desk:
         with self._computing:
             try:
                 work_out(job.task, self._shelf, _Seat(self, job))
-            except _LetGo:
+            except LetGo:
                 return
             except TrialidError as error:
                 self._failed(job, error)
@@ -216,7 +199,7 @@ class Desk:
             self._let_go(job)
             taken = self._back(job, "back")
             end = f"; {job.task.why}: taken back" if taken else ""
-            self._trouble = Trouble("fit" if taken else _place_of(error), f"{error}{end}")
+            self._trouble = Trouble("fit" if taken else place_of(error), f"{error}{end}")
             self._count()
 
     def _let_go(self, job: Job) -> None:
@@ -255,7 +238,7 @@ class Desk:
                     available(self._document.pipeline)
                     self._changed_elsewhere("an effect file or the ship was edited")
             except TrialidError as error:
-                self._outside = Trouble(_place_of(error), str(error))
+                self._outside = Trouble(place_of(error), str(error))
             if self._outside != trouble:
                 self._count()
 
@@ -306,18 +289,9 @@ class _Seat(Seat):
 
     def _check(self) -> None:
         if not self.job.wanted:
-            raise _LetGo
+            raise LetGo
 
 
 def _name(pipeline: Pipeline, files: Files) -> str:
     """What one model is told from another by: its pipeline, and the files it rests on."""
     return repr((pipeline.content, files))
-
-
-def _place_of(error: TrialidError) -> Place:
-    """Where a mistake was made."""
-    if isinstance(error, EffectError):
-        return "effects"
-    if isinstance(error, LogError):
-        return "logs"
-    return "pipeline" if isinstance(error, PipelineError) else "fit"

@@ -20,7 +20,7 @@ class ErrorNumber:
     old_check: float | None
 
 
-def of(shown: Shown) -> ErrorNumber:
+def error_number(shown: Shown) -> ErrorNumber:
     """The error: known with the fit, before what it is made of is."""
     return ErrorNumber(*_now(shown), *_old(shown))
 

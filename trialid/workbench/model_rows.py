@@ -115,10 +115,16 @@ def _free(
     low, high = said.bounds.get(name, (-inf, inf))
     prior = _known(shown).get(name)
     made = ParameterRow(
-        name, p.unit, True, _estimate(name, shown), bar=bar, low=as_typed(low), high=as_typed(high),
-        limits=(as_typed(p.low), as_typed(p.high)),
+        name,
+        p.unit,
+        True,
+        _estimate(name, shown),
+        bar=bar,
+        low=number_text(low),
+        high=number_text(high),
+        limits=(number_text(p.low), number_text(p.high)),
         prior=prior,
-    )  # fmt: skip
+    )
     if row is None:
         return made
     return replace(
@@ -153,7 +159,7 @@ def _held(name: str, p: Parameter, shown: Shown) -> ParameterRow:
     source = "given here" if given else "" if value is None else "from the ship file"
     if value == 0.0 and model is not None and model.stated(name) is None:
         source = "acts on nothing that is simulated"
-    shown_value = "" if given is None or value is None else as_typed(value)
+    shown_value = "" if given is None or value is None else number_text(value)
     return ParameterRow(name, p.unit, False, value, given=shown_value, own=own, source=source)
 
 
@@ -169,7 +175,7 @@ def _value(model: ShipModel | None, name: str) -> float | None:
         return None
 
 
-def as_typed(value: float) -> str:
+def number_text(value: float) -> str:
     """A number as one types it; an open end is empty.
 
     >>> as_typed(-0.0125), as_typed(inf)

@@ -63,7 +63,7 @@ def parts(shown: Shown) -> dict[str, str]:
 def facts(shown: Shown) -> Plain:
     """Plain numbers of the model shown; None where not known yet, never those of another model."""
     run = shown.run.result if shown.run else None
-    found = error_number.of(shown)
+    found = error_number.error_number(shown)
     return finite(
         {
             "eps_rmsn": found.eps,
@@ -121,7 +121,7 @@ def _context(shown: Shown) -> Plain:
         "known": known is not None,
         "stale": shown.run is None,
         "run": run,
-        "error": error_number.of(shown),
+        "error": error_number.error_number(shown),
         "split": replace(bars.split_bars(run)[0], length=100.0),
         "trials": list(_trials(shown, run)),
         "steps": step_rows.steps(shown, run),

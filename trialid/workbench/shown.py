@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from trialid.errors import EffectError, LogError, PipelineError, TrialidError
 from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
 from trialid.result.series import TrialSeries
@@ -75,3 +76,12 @@ class Shown:
         if self.fit is not None:
             return "fitted"
         return "measured" if self.trials else "reading"
+
+
+def place_of(error: TrialidError) -> Place:
+    """Where a mistake was made."""
+    if isinstance(error, EffectError):
+        return "effects"
+    if isinstance(error, LogError):
+        return "logs"
+    return "pipeline" if isinstance(error, PipelineError) else "fit"

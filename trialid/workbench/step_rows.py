@@ -45,7 +45,7 @@ def steps(shown: Shown, run: Result) -> Steps:
     if shown.run is None:
         known = [row for row in known if row.step != "proposed"]
     sizes = [row.eps_rmsn or 0.0 for row in known]
-    now = error_number.of(shown).eps
+    now = error_number.error_number(shown).eps
     longest = max([*sizes, now or 0.0], default=0.0) or 1.0
     rows = [*_rows(known, longest, shown.run is not None)]
     if shown.run is None and (known or shown.fit):
@@ -83,7 +83,7 @@ def _bar(row: StepRow, longest: float) -> SplitBar:
 
 def _pending(shown: Shown, longest: float) -> ShownStep:
     """The model that is being computed: its error a second before what it is made of."""
-    found = error_number.of(shown)
+    found = error_number.error_number(shown)
     length = 100.0 * (found.eps or 0.0) / longest
     bar = SplitBar(
         label="",

@@ -98,7 +98,7 @@ class Granted:
     edit: Edit | None = None
 
 
-def understood(asked: object) -> Any:
+def read_wish(asked: object) -> Any:
     """The wish in what a page sent.
 
     Raises
@@ -131,7 +131,7 @@ def grant(pipeline: Pipeline, wish: Any) -> Granted:
     return found
 
 
-def between(old: Pipeline, new: Pipeline) -> Edit | None:
+def find_edit(old: Pipeline, new: Pipeline) -> Edit | None:
     """The edit that one effect came or went by; None where two pipelines differ otherwise."""
     had, has = old.model.effects, new.model.effects
     came = [n for n in has if n not in had]

@@ -210,7 +210,7 @@ def check_quiet(pipeline: Pipeline, trials: tuple[Trial, ...]) -> None:
             )
 
 
-def check_moving(pipeline: Pipeline, model: ShipModel, trials: tuple[Trial, ...]) -> None:
+def check_headway(pipeline: Pipeline, model: ShipModel, trials: tuple[Trial, ...]) -> None:
     """Refuse to fit steering to a ship that lies still.
 
     Only where the speed is on record, and where nothing but a rudder could have turned her: two

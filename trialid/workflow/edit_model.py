@@ -71,7 +71,7 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     trials = align_trials(edit.before, progress)
     known = _before(edit, trials, folder, progress)
     before, foreseen = (None, known) if isinstance(known, str) else known
-    edit, fit = fit_edited(edit, trials, foreseen, progress)
+    edit, fit = fit_edit(edit, trials, foreseen, progress)
     run = examine(edit.after, trials, progress, fit)
     result, steps = set_beside(edit, run.result, before, foreseen)
     return Changed(edit, replace(run, result=result), steps)
@@ -98,7 +98,7 @@ def set_beside(
     return result, (*base, row)[len(steps) :]
 
 
-def fit_edited(
+def fit_edit(
     edit: Edit, trials: tuple[Trial, ...], foreseen: Foreseen | str, progress: Progress
 ) -> tuple[Edit, Fit]:
     """The fit of the new model, and the edit with better starts where it needs them.

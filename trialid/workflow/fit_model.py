@@ -16,7 +16,7 @@ from trialid.trial import Trial
 from trialid.workflow.build_model import (
     build_model,
     check_bounds,
-    check_moving,
+    check_headway,
     settings_of,
 )
 from trialid.workflow.track_prediction import track_of
@@ -38,7 +38,7 @@ def fit_of(
     model = build_model(pipeline, catalogue)
     settings = settings_of(pipeline, model)
     check_bounds(pipeline, model, settings)
-    check_moving(pipeline, model, trials)
+    check_headway(pipeline, model, trials)
     progress("fitting", 0.3)
     return fit_with_progress(trials, model, settings, progress)
 

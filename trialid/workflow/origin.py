@@ -14,7 +14,7 @@ def sources_of(pipeline: Pipeline) -> tuple[SourceRow, ...]:
     aids = dict.fromkeys(aid for log in logs for aid in (log.template, log.dbc))
     return tuple(
         SourceRow(
-            path=as_written(pipeline, path).as_posix(),
+            path=relative_path(pipeline, path).as_posix(),
             sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
         )
         for path in (pipeline.ship, *pipeline.model.effects_from, *aids)
@@ -32,7 +32,7 @@ def signals_of(pipeline: Pipeline) -> tuple[SignalRow, ...]:
     )
 
 
-def as_written(pipeline: Pipeline, path: Path) -> Path:
+def relative_path(pipeline: Pipeline, path: Path) -> Path:
     """A log's path from the pipeline's folder, so that a result holds no place of one machine."""
     folder = pipeline.path.parent.resolve()
     return Path(os.path.relpath(path.resolve(), folder))

@@ -15,7 +15,7 @@ from trialid.pipeline_file.form import ClockSection
 from trialid.progress import Progress
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
-from trialid.workflow.origin import as_written
+from trialid.workflow.origin import relative_path
 from trialid.workflow.quantities_read import quantities_of
 
 
@@ -38,7 +38,7 @@ def align_trial(
     clocks = [_log_clock(g.clock) for g in trial.logs]
     matched = [name for clock in clocks if clock and clock.match for name in clock.match]
     recordings = ingest.read_together(logs, [s.channel for s in sources] + matched)
-    recordings = tuple(replace(r, path=as_written(pipeline, r.path)) for r in recordings)
+    recordings = tuple(replace(r, path=relative_path(pipeline, r.path)) for r in recordings)
     made = align(
         trial.name, trial.use, recordings, sources, pipeline.align.period, trial.window,
         repair=pipeline.align.clocks == "repair",

@@ -118,7 +118,7 @@ def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def again(done: Earlier, progress: Progress) -> tuple[Run, Compared]:
+def repeat(done: Earlier, progress: Progress) -> tuple[Run, Compared]:
     """The run once more, and how it compares with the first.
 
     Raises

@@ -8,7 +8,8 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.imo.sailed_trial import sail_plainly
 from trialid.effects.track import CURRENT
-from trialid.identification.fit import Fit, Score, of_trial
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import Score, of_trial
 from trialid.result.track_series import PLACE, TrackSeries, Way
 from trialid.trial import Trial
 

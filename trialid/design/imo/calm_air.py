@@ -26,7 +26,8 @@ from trialid.design.imo.sailed_trial import (
 )
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.errors import EffectError, NotIdentifiable
-from trialid.identification.fit import Fit, of_trial
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import of_trial
 from trialid.simulation.integrate import initial
 from trialid.trial import Trial
 

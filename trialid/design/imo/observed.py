@@ -7,7 +7,8 @@ import numpy as np
 
 from trialid.arrays import Mask, Vector
 from trialid.design.imo.trial_numbers import Overshoot
-from trialid.identification.fit import Fit, Score
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import Score
 
 PLATEAU: Final = 0.7
 """Share of the largest rudder angle that both sides of a reversal must reach."""

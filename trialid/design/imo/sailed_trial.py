@@ -20,7 +20,8 @@ from trialid.design.standard import AT_SEA
 from trialid.effects.environment import steady_wind
 from trialid.effects.track import current
 from trialid.errors import DesignError, EffectError, NotIdentifiable
-from trialid.identification.fit import Fit, of_trial
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import of_trial
 from trialid.ship.effect import SENSORS, Effect
 from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import Simulator, initial, prepare, respond

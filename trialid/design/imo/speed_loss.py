@@ -14,7 +14,8 @@ import numpy as np
 
 from trialid.arrays import Mask, Vector
 from trialid.design.helm import Vessel, vessel
-from trialid.identification.fit import Fit, Score
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import Score
 from trialid.maths import Number
 from trialid.ship.effect import Parameter, Rate, Steered, effect
 from trialid.ship.model import ShipModel

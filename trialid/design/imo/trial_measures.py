@@ -19,7 +19,8 @@ from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.unexplained_motion import unexplained_motion
 from trialid.effects.track import CURRENT
 from trialid.errors import DesignError
-from trialid.identification.fit import Fit, of_trial
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import of_trial
 from trialid.trial import Trial
 
 ON_TRACK: Final = ("turning circle", "Williamson turn", "stop")

@@ -7,7 +7,8 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.identification.fit import Fit, Score
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import Score
 from trialid.names import labels
 from trialid.ship.actuators import actuator_quantities
 from trialid.ship.particulars import Ship

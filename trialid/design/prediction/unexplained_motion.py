@@ -15,7 +15,8 @@ import numpy as np
 from trialid.accuracy.likely import student
 from trialid.arrays import Vector
 from trialid.errors import DesignError
-from trialid.identification.fit import Fit, Score
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import Score
 
 Track = Mapping[str, Vector]
 PLACES: Final = 40

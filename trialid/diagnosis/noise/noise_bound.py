@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED, Split
+from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.identification.fit import Fit
 

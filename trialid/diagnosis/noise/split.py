@@ -13,13 +13,13 @@ First differences are not a route: on wave noise they find about a tenth of the 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask
+from trialid.diagnosis.noise.error_parts import Interval, Split, split_by_noise
 from trialid.diagnosis.noise.excitation import (
     are_same,
     excitation,
@@ -42,11 +42,6 @@ from trialid.identification.fit import Fit
 from trialid.trial_rows import Stretch
 
 Vector = NDArray[np.float64]
-Interval = tuple[float, float]
-
-CONFIDENCE: Final = 1.96
-TIGHT: Final = 0.35
-"""A noise estimate whose 95 % interval is wider than this share either way is no estimate."""
 
 QUIET_RESPONSE: Final = 0.1
 """A stretch is quiet when the model itself moves less than this share of y_RMS in it."""
@@ -59,27 +54,6 @@ DISTINCT: Final = 0.05
 
 INPUT_DRIVEN: Final = "dependence on the input"
 STATED: Final = "stated sensor figure"
-
-
-@dataclass(frozen=True)
-class Split:
-    """What the error is made of, by one route; numbers None where the route does not hold.
-
-    `noise` and `undermodelling` are normed as eps_RMSn, their squares add up to its square.
-    """
-
-    method: str
-    why: str
-    noise: float | None = None
-    undermodelling: float | None = None
-    noise_interval: Interval | None = None
-    undermodelling_interval: Interval | None = None
-    by_output: Mapping[str, tuple[float, float]] | None = None
-
-    @property
-    def available(self) -> bool:
-        """Whether the route holds on this record."""
-        return self.noise is not None
 
 
 def split(
@@ -197,7 +171,7 @@ def _stated(fit: Fit, stated: Mapping[str, float]) -> Split:
         OutputNoise((stated[c] / y) ** 2, 0.0)
         for c, y in zip(fit.problem.outputs, fit.problem.y_rms, strict=True)
     ]
-    return _finish(fit, method, "as stated in [diagnose] noise", found)
+    return split_by_noise(fit, method, "as stated in [diagnose] noise", found)
 
 
 def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], why: str) -> Split:
@@ -214,47 +188,7 @@ def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], w
     for c, noise in zip(fit.problem.outputs, found, strict=True):
         if noise is None:
             return Split(method, f"{why}: nothing compared in {c}")
-    return _finish(fit, method, why, [n for n in found if n is not None])
-
-
-def _finish(fit: Fit, method: str, why: str, found: Sequence[OutputNoise]) -> Split:
-    """Noise and model part with intervals; refused where the noise is hardly known."""
-    total, spread = _total(fit)
-    noise2 = float(np.mean([n.variance for n in found]))
-    deviation = float(np.sqrt(np.sum([n.deviation**2 for n in found])) / len(found))
-    if CONFIDENCE * deviation > 2.0 * TIGHT * noise2:
-        share = 0.5 * CONFIDENCE * deviation / noise2
-        return Split(method, f"{why}: too short, the noise is known to +-{share:.0%} only")
-    by_output = {}
-    for (c, eps), n in zip(fit.eps_by_output.items(), found, strict=True):
-        x2 = min(n.variance, eps**2)
-        by_output[c] = (float(np.sqrt(x2)), float(np.sqrt(eps**2 - x2)))
-    x2, m2 = (float(np.mean([part[k] ** 2 for part in by_output.values()])) for k in (0, 1))
-    gap = CONFIDENCE * float(np.hypot(deviation, spread))
-    model2 = (total**2 - noise2 - gap, total**2 - noise2 + gap)
-    return Split(
-        method=method,
-        why=why,
-        noise=float(np.sqrt(x2)),
-        undermodelling=float(np.sqrt(m2)),
-        noise_interval=_roots(noise2 - CONFIDENCE * deviation, noise2 + CONFIDENCE * deviation),
-        undermodelling_interval=_roots(*model2),
-        by_output=by_output,
-    )
-
-
-def _roots(low: float, high: float) -> Interval:
-    return float(np.sqrt(max(low, 0.0))), float(np.sqrt(max(high, 0.0)))
-
-
-def _total(fit: Fit) -> tuple[float, float]:
-    """eps_RMSn, and the standard error that noise gives its square."""
-    found = residuals(fit)
-    spread = []
-    for c in range(len(fit.problem.outputs)):
-        known = pool_variance([r.eps[:, c] for r in found], [r.compared[:, c] for r in found])
-        spread.append(0.0 if known is None else known.deviation)
-    return fit.eps_rmsn, float(np.sqrt(np.sum(np.square(spread))) / len(spread))
+    return split_by_noise(fit, method, why, [n for n in found if n is not None])
 
 
 def _input_driven(fit: Fit, augmented: Augmented) -> Split:
@@ -283,7 +217,7 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
         for c in range(len(fit.problem.outputs))
     ]
     why = f"what {Z.shape[1]} directions of candidate effects explain beyond chance is model"
-    return _finish(fit, method, why, found)
+    return split_by_noise(fit, method, why, found)
 
 
 def _visible_directions(raw: Vector, whole: Vector, white: Vector) -> Vector:

@@ -85,13 +85,22 @@ def bars(
 ) -> Bars:
     """A picture's numbers, in the units of reports; `by` is what the bins are of, and its unit."""
     factor = in_reports(left, output)
+    what, in_unit = by
     return Bars(
-        *by, _plain(edges), tuple(names), _plain(held.samples), _plain(held.share),
-        _plain(held.ratio), _plain(held.low), _plain(held.high),
-        None if mean is None else _plain(mean.value * factor),
-        None if mean is None else _plain(mean.error * factor),
-        unit(left.outputs[output]), tuple(bool(b) for b in standing),
-    )  # fmt: skip
+        by=what,
+        unit=in_unit,
+        edges=_plain(edges),
+        names=tuple(names),
+        samples=_plain(held.samples),
+        share=_plain(held.share),
+        mean_square=_plain(held.ratio),
+        low=_plain(held.low),
+        high=_plain(held.high),
+        mean=None if mean is None else _plain(mean.value * factor),
+        error=None if mean is None else _plain(mean.error * factor),
+        mean_unit=unit(left.outputs[output]),
+        standing=tuple(bool(b) for b in standing),
+    )
 
 
 def in_reports(left: Leftover, output: int) -> float:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Bars:
     """Error by bins of something: one entry a bin, in the unit of reports.
 
@@ -24,7 +24,7 @@ class Bars:
         Whether the bin belongs to what the finding says.
     """
 
-    form: Literal["bars"] = field(default="bars", kw_only=True)
+    form: Literal["bars"] = "bars"
     by: str
     unit: str
     edges: tuple[float, ...]

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from trialid.arrays import Mask
 from trialid.diagnosis.where import words
 from trialid.diagnosis.where.bins import (
-    bars,
     in_reports,
     members,
     nice_edges,
@@ -18,6 +17,7 @@ from trialid.diagnosis.where.bins import (
 )
 from trialid.diagnosis.where.finding import Examined, Finding
 from trialid.diagnosis.where.leftover import Leftover, mirror, shown_factor, unit
+from trialid.diagnosis.where.slice_finding import slice_finding
 from trialid.diagnosis.where.slice_test import Colour, Means, Squares, means, squares, trend
 
 Vector = NDArray[np.float64]
@@ -178,21 +178,20 @@ def _finding(
             standing[off] = True
             share = share_of_means(left, output, np.where(standing, mean.value, 0.0), each)
             said[-1] += f" ({words.share(share)} of its squared error)"
-    excess = float(each.share[standing].sum() / each.samples[standing].sum())
     label = f"|{scale.signal}|" if scale.kind != "speed" else scale.signal
     by = (f"{scale.words} {label}", scale.unit)
-    picture = bars(
-        left=left, output=output, by=by, edges=edges, held=each, mean=mean, standing=standing
-    )
-    return Finding(
-        output=left.outputs[output],
+    return slice_finding(
+        left,
+        output,
+        each,
+        standing,
         kind=scale.kind,
+        said="; ".join(said),
         share=share,
-        beyond=share - samples,
-        excess=excess,
-        p_value=1.0,
-        sentence=f"{words.name(left.outputs[output])}: " + "; ".join(said),
-        picture=picture,
+        samples=samples,
+        by=by,
+        edges=edges,
+        mean=mean,
     )
 
 

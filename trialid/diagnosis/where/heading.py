@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask
 from trialid.diagnosis.where import words
-from trialid.diagnosis.where.bins import bars, in_reports, members, share_of_means, weights
+from trialid.diagnosis.where.bins import in_reports, members, share_of_means, weights
 from trialid.diagnosis.where.finding import Examined, Finding
 from trialid.diagnosis.where.leftover import Leftover
+from trialid.diagnosis.where.slice_finding import slice_finding
 from trialid.diagnosis.where.slice_test import Colour, Means, Squares, means, squares
 
 Vector = NDArray[np.float64]
@@ -54,8 +55,10 @@ def _sector(
         value = np.where(off, mean.value, 0.0)
         ends = dict.fromkeys(k for k in (int(value.argmax()), int(value.argmin())) if off[k])
         share = share_of_means(left, output, value, held)
-        parts = [f"heading {names[k]} {words.off(left, output, float(mean.value[k]) * factor)}"
-                 for k in ends]  # fmt: skip
+        off_by = {k: float(mean.value[k]) * factor for k in ends}
+        parts = [
+            f"heading {names[k]} {words.how_far_off(left, output, m)}" for k, m in off_by.items()
+        ]
         said = f"the prediction is, on average, {', '.join(parts)}"
         said += f"; such means are {words.share(share)} of its squared error"
         samples, standing = 0.0, off
@@ -66,24 +69,17 @@ def _sector(
             f"heading {names[k]}, {words.share_sentence(samples, share)}",
             kept == kept[k],
         )
-    excess = float(held.share[standing].sum() / held.samples[standing].sum())
-    picture = bars(
-        left=left,
-        output=output,
+    return slice_finding(
+        left,
+        output,
+        held,
+        standing,
+        kind="heading sector",
+        said=said,
+        share=share,
+        samples=samples,
         by=("heading", ""),
         edges=np.arange(len(kept) + 1.0),
-        held=held,
         mean=mean,
-        standing=standing,
         names=names,
-    )
-    return Finding(
-        output=left.outputs[output],
-        kind="heading sector",
-        share=share,
-        beyond=share - samples,
-        excess=excess,
-        p_value=1.0,
-        sentence=f"{words.name(left.outputs[output])}: {said}",
-        picture=picture,
     )

@@ -5,9 +5,10 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.where import words
-from trialid.diagnosis.where.bins import bars, in_reports, share_of_means, weights
-from trialid.diagnosis.where.finding import Examined, Finding
+from trialid.diagnosis.where.bins import in_reports, share_of_means, weights
+from trialid.diagnosis.where.finding import Examined
 from trialid.diagnosis.where.leftover import Leftover
+from trialid.diagnosis.where.slice_finding import slice_finding
 from trialid.diagnosis.where.slice_test import Colour, means, squares
 
 LEVEL: Final = 0.05
@@ -28,30 +29,25 @@ def offset(left: Leftover, colour: Colour, output: int) -> Examined:
     share = share_of_means(left, output, np.where(standing, mean.value, 0.0), held)
     names = [r.trial.name for r in left.parts]
     value = float(mean.value[worst]) * in_reports(left, output)
-    said = f"in {names[worst]!r} the prediction is on average {words.off(left, output, value)}"
+    said = (
+        f"in {names[worst]!r} the prediction is on average {words.how_far_off(left, output, value)}"
+    )
     others = int(standing.sum()) - 1
     said += f", and {others} more of the trials" if others else ""
     said += f"; such offsets are {words.share(share)} of its squared error"
-    excess = float(held.share[standing].sum() / held.samples[standing].sum())
-    picture = bars(
-        left=left,
-        output=output,
+    finding = slice_finding(
+        left,
+        output,
+        held,
+        standing,
+        kind="mean offset",
+        said=said,
+        share=share,
+        samples=0.0,
         by=("trial", ""),
         edges=np.arange(len(names) + 1.0),
-        held=held,
         mean=mean,
-        standing=standing,
         names=names,
-    )
-    finding = Finding(
-        output=left.outputs[output],
-        kind="mean offset",
-        share=share,
-        beyond=share,
-        excess=excess,
-        p_value=1.0,
-        sentence=f"{words.name(left.outputs[output])}: {said}",
-        picture=picture,
         trial=names[worst],
     )
     return Examined(least, (finding,))

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask
 from trialid.diagnosis.where import words
-from trialid.diagnosis.where.bins import bars, in_reports, share_of_means, weights
+from trialid.diagnosis.where.bins import in_reports, share_of_means, weights
 from trialid.diagnosis.where.finding import Examined, Finding
 from trialid.diagnosis.where.leftover import Leftover, mirror
+from trialid.diagnosis.where.slice_finding import slice_finding
 from trialid.diagnosis.where.slice_test import Colour, Means, Squares, means, squares
 
 Vector = NDArray[np.float64]
@@ -65,7 +66,7 @@ def _side(
     said = f"{doing[worse]}, {words.share_sentence(samples, share)}"
     standing = np.arange(2) == worse
     if apart:
-        off = [words.off(left, output, float(m) * factor) for m in mean.value[1:]]
+        off = [words.how_far_off(left, output, float(m) * factor) for m in mean.value[1:]]
         said = (
             f"port and starboard differ: {doing[0]} the prediction is on average {off[0]}, "
             f"{doing[1]} {off[1]}"
@@ -74,24 +75,17 @@ def _side(
         samples, standing = 0.0, np.ones(2, dtype=bool)
         said += f"; what does not mirror is {words.share(share)} of its squared error"
     both = Means(mean.value[1:], mean.error[1:], mean.p[1:], mean.joint)
-    picture = bars(
-        left=left,
-        output=output,
+    return slice_finding(
+        left,
+        output,
+        held,
+        standing,
+        kind="side",
+        said=said,
+        share=share,
+        samples=samples,
         by=("side", ""),
         edges=np.array([0.0, 1.0, 2.0]),
-        held=held,
         mean=both,
-        standing=standing,
         names=doing,
-    )
-    excess = float(held.share[standing].sum() / held.samples[standing].sum())
-    return Finding(
-        output=left.outputs[output],
-        kind="side",
-        share=share,
-        beyond=share - samples,
-        excess=excess,
-        p_value=1.0,
-        sentence=f"{words.name(left.outputs[output])}: {said}",
-        picture=picture,
     )

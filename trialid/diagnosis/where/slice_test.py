@@ -82,7 +82,7 @@ def gram(columns: Vector, kernel: Vector, spans: Sequence[slice]) -> Vector:
     return total
 
 
-def along(columns: Vector | Mask, kernel: Vector, spans: Sequence[slice]) -> Vector:
+def gram_diagonal(columns: Vector | Mask, kernel: Vector, spans: Sequence[slice]) -> Vector:
     """The diagonal of `gram`; (q,)."""
     rows = np.ascontiguousarray(columns.T)
     return np.array([sum(_chained(row[span], kernel) for span in spans) for row in rows])
@@ -170,7 +170,7 @@ def trend(left: Leftover, colour: Colour, output: int, size: Vector) -> float:
     compared = left.compared[:, output]
     away = np.where(compared, size - size[compared].mean(), 0.0)
     power = float((left.eps[:, output] ** 2).sum() / max(int(compared.sum()), 1))
-    variance = 2.0 * along(away[:, None], colour.squared[:, output], left.spans)[0]
+    variance = 2.0 * gram_diagonal(away[:, None], colour.squared[:, output], left.spans)[0]
     z = float(away @ left.eps[:, output] ** 2) / max(power * np.sqrt(variance), 1e-300)
     return float(2.0 * stdtr(max(float(colour.independent[output]) - 1.0, 1.0), -abs(z)))
 
@@ -203,7 +203,7 @@ def squares_of_each(left: Leftover, colour: Colour, output: int, slices: Iterabl
     sums = []
     for one in slices:
         inside = one & compared
-        chain = along(inside[:, None], colour.squared[:, output], left.spans)[0]
+        chain = gram_diagonal(inside[:, None], colour.squared[:, output], left.spans)[0]
         sums.append((float(inside.sum()), float(e2[inside].sum()), float(chain)))
     count, held, chain = np.array(sums).reshape(-1, 3).T
     own = count**2 / np.maximum(chain, 1e-300)

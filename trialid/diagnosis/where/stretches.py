@@ -125,7 +125,7 @@ def _finding(
     )
     value = _mean(left, output, slice(first.start, last.stop))
     if abs(value[0]) > ONE_SIDED * value[1]:
-        said += f"; the prediction is {words.off(left, output, value[0])}"
+        said += f"; the prediction is {words.how_far_off(left, output, value[0])}"
     each = Squares(*(x[1:] for x in vars(held).values()))
     standing = np.isin(mine, run)
     picture = _picture(left, output, [rows[k] for k in mine], each, standing)

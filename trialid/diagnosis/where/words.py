@@ -28,7 +28,7 @@ def share(part: float) -> str:
     return f"{percent:.0f} %" if percent >= 1.0 or percent == 0.0 else f"{percent:.1g} %"
 
 
-def off(left: Leftover, output: int, mean: float) -> str:
+def how_far_off(left: Leftover, output: int, mean: float) -> str:
     """How a prediction lies off, from measured less predicted in the unit of reports."""
     name = left.outputs[output]
     amount = f"{figure(mean)} {unit(name)}"

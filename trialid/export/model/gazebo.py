@@ -17,7 +17,8 @@ import numpy as np
 from trialid.design.following import steady_inputs
 from trialid.design.hull_terms import KEPT, ROWS, HullTerms, Term, hull_terms, in_hull_terms
 from trialid.export.model.fitted_model import FittedModel
-from trialid.identification.fit import Fit, of_trial
+from trialid.identification.fit import Fit
+from trialid.identification.trial_score import of_trial
 from trialid.names import labels
 from trialid.names.quantities import MASS_PARAMETERS
 from trialid.ship.model import ShipModel

@@ -133,7 +133,7 @@ def unwrap_ticks(raw: Times, received: Times, unit: int) -> Times:
     return (raw + turns * TURN) * unit
 
 
-def near(raw: Times, about: Times, unit: int) -> Times:
+def closest_time(raw: Times, about: Times, unit: int) -> Times:
     """The time [ns] closest to `about` that a counter of 32 bits can mean by `raw`; (N,)."""
     turns = np.rint((about / unit - raw) / TURN).astype(np.int64)
     return (raw + np.maximum(turns, 0) * TURN) * unit
@@ -169,7 +169,7 @@ def send_times(
         return Sent(counts * unit, f"boot clock {clock}")
     if by is None:
         return Sent(unwrap_ticks(counts, received, unit), f"boot clock {clock}")
-    return Sent(near(counts, by.at(index, received), unit), f"boot clock {clock}")
+    return Sent(closest_time(counts, by.at(index, received), unit), f"boot clock {clock}")
 
 
 def _by_neighbours(index: Places, received: Times, by: Boot | None) -> Sent:

@@ -10,7 +10,6 @@ are no channels, nor are parameters.
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +23,12 @@ from trialid.ingest.mavlink import (
     mavlink_dialect,
     mavlink_meanings,
     servo_deflection,
-    tlog_clock,
     tlog_frames,
     tlog_messages,
-    vehicle_modes,
 )
 from trialid.ingest.mavlink.mavlink_dialect import Definition, Field
-from trialid.ingest.mavlink.tlog_messages import Log, Messages, Sender
-from trialid.ingest.times import gps_time
+from trialid.ingest.mavlink.tlog_messages import Log, Messages, Sender, parameters
+from trialid.ingest.mavlink.tlog_remarks import damage, receive_dates, sender_remarks
 from trialid.recording import Channel, Recording
 
 CHAIN = 3
@@ -41,10 +38,6 @@ HEAD_SEARCHED = 600
 
 PARAMETERS = frozenset({"PARAM_VALUE", "PARAM_SET", "PARAM_EXT_VALUE", "PARAM_EXT_SET"})
 SERVO_MESSAGE, SERVOS_A_PORT = "SERVO_OUTPUT_RAW", 16
-ROVERS = (10, 11)
-"""MAV_TYPE of a ground rover and of a surface boat."""
-NO_AUTOPILOT = 8
-ARMED = 128
 
 
 def recognises(head: bytes) -> bool:
@@ -96,12 +89,12 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
         raise LogError(f"{path}: holds no frame with a valid checksum; take another copy of it")
     log = tlog_messages.log(found, known)
     channels = {one.name: one for one in _channels(log, wanted)}
-    remarks = list(_damage(log))
+    remarks = list(damage(log))
     for sender in log.senders:
         steering, names = _deflections(log, sender, wanted)
         channels |= steering
-        remarks += _of_sender(log, sender, names)
-    remarks.append(_recorded(found))
+        remarks += sender_remarks(log, sender, names)
+    remarks.append(receive_dates(found))
     return Recording(path, ADAPTER.name, sha256(path), channels, tuple(remarks))
 
 
@@ -193,23 +186,6 @@ def _channel(
     )
 
 
-def _parameters(log: Log, sender: Sender, start: int) -> servo_deflection.Parameters:
-    """Parameters as they were during one start of the sender.
-
-    What was said in an earlier start held from its beginning on; what is only said later is the
-    best that is known.
-    """
-    said = log.messages(sender, log.number("PARAM_VALUE"))
-    starts, table = sender.starts(said.rows), said.table
-    t = np.where(
-        starts < start,
-        servo_deflection.EVER,
-        np.where(starts > start, servo_deflection.NEVER, said.sent.t),
-    )
-    names = [name.decode("latin-1") for name in table["param_id"].tolist()]
-    return servo_deflection.parameters(names, t, table["param_value"].astype(np.float64))
-
-
 def _deflections(
     log: Log, sender: Sender, wanted: Wanted
 ) -> tuple[dict[str, Channel], dict[int, str]]:
@@ -219,7 +195,7 @@ def _deflections(
     channels: dict[str, Channel] = {}
     names: dict[int, str] = {}
     for start in np.unique(starts).tolist():
-        known = _parameters(log, sender, start)
+        known = parameters(log, sender, start)
         for n, output in servo_deflection.outputs(known).items():
             port, place = divmod(n - 1, SERVOS_A_PORT)
             part = np.flatnonzero((starts == start) & (table["port"] == port))
@@ -234,83 +210,6 @@ def _deflections(
                 received = said.received[part]
                 channels[name] = replace(made, clock=said.sent.clock, received=received)
     return channels, names
-
-
-def _damage(log: Log) -> Iterator[str]:
-    """What was lost and what was left out."""
-    found = log.found
-    seen = len(found.frames)
-    if found.holes:
-        lost = sum(end - begin for begin, end in found.holes)
-        about = seen + max(1, round(lost * seen / max(len(found.data) - lost, 1)))
-        spans = ", ".join(_span(found, *hole) for hole in found.holes[:3])
-        more = f" and at {len(found.holes) - 3} places more" if len(found.holes) > 3 else ""
-        yield f"recovered {seen} of about {about} messages, lost {spans}{more} (receive times)"
-    if found.failed:
-        names = ", ".join(sorted(log.known[number].name for number in found.failed))
-        yield f"{sum(found.failed.values())} messages fail their checksum, left out: {names}"
-    if found.unchecked:
-        numbers = ", ".join(str(number) for number in list(found.unchecked)[:8])
-        count = sum(found.unchecked.values())
-        yield f"{count} messages of numbers no MAVLink dialect here knows, left out: {numbers}"
-
-
-def _span(found: tlog_frames.Found, begin: int, end: int) -> str:
-    """Receive times around a hole."""
-    i = int(np.searchsorted(found.frames.at, begin))
-    before = _date(int(found.stamp[i - 1])) if i else "the start"
-    after = _date(int(found.stamp[i])) if i < len(found.stamp) else "the end"
-    return f"{before}-{after.rpartition(' ')[2] if i else after}"
-
-
-def _date(ns: int) -> str:
-    date = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(
-        microseconds=min(ns // 1000, tlog_frames.LATEST_US)
-    )
-    return date.strftime("%Y-%m-%d %H:%M:%S")
-
-
-def _of_sender(log: Log, sender: Sender, names: dict[int, str]) -> Iterator[str]:
-    """Remarks on one sender: its clock, its servos and parameters, its modes."""
-    for words in _words_of_sender(log, sender, names):
-        yield f"{sender.name}: {words}"
-
-
-def _words_of_sender(log: Log, sender: Sender, names: dict[int, str]) -> Iterator[str]:
-    if sender.boot is not None and len(sender.boot.first):
-        dates = ", ".join(_date(int(log.found.stamp[i])) for i in sender.boot.first[:3])
-        yield (
-            f"restarted {len(sender.boot.first)} times (received {dates}); the channels after a "
-            "restart are called boot2 and so on"
-        )
-    beats = log.messages(sender, log.number("HEARTBEAT"))
-    table = beats.table
-    steers = table["autopilot"] != NO_AUTOPILOT
-    if not steers.any():
-        return
-    known = _parameters(log, sender, 0)
-    yield from servo_deflection.remarks(known, names)
-    yield from servo_deflection.changes(known)
-    rover = bool(np.isin(table["type"], ROVERS).any())
-    yield from vehicle_modes.modes(beats.sent.t, table["custom_mode"].astype(np.int64), rover)
-    yield from vehicle_modes.arming_remark(beats.sent.t, (table["base_mode"] & ARMED) != 0)
-    yield from _start_date(log, sender)
-
-
-def _start_date(log: Log, sender: Sender) -> Iterator[str]:
-    """A remark on the date, by the sender's own SYSTEM_TIME."""
-    table = log.messages(sender, log.number("SYSTEM_TIME")).table
-    dated = np.flatnonzero(table["time_unix_usec"] > tlog_clock.CALENDAR_US)
-    if len(dated) and table["time_unix_usec"][dated[0]] < tlog_frames.LATEST_US:
-        unix = int(table["time_unix_usec"][dated[0]])
-        since = int(table["time_boot_ms"][dated[0]]) * 1000
-        start = gps_time.UNIX + timedelta(microseconds=unix - since)
-        yield gps_time.words(start, "SYSTEM_TIME")
-
-
-def _recorded(found: tlog_frames.Found) -> str:
-    first, last = _date(int(found.stamp.min())), _date(int(found.stamp.max()))
-    return f"received {first} to {last} by the clock of the ground station"
 
 
 ADAPTER = Adapter("tlog", recognises, read, general=True)  # no magic: a chance chain elsewhere

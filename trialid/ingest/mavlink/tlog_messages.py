@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.ingest.bytes.linked_records import Places
-from trialid.ingest.mavlink import tlog_clock, tlog_frames
+from trialid.ingest.mavlink import servo_deflection, tlog_clock, tlog_frames
 from trialid.ingest.mavlink.mavlink_dialect import Definition
 
 REPEATED = frozenset({"SERVO_OUTPUT_RAW", "PARAM_VALUE", "HEARTBEAT"})
@@ -113,3 +113,20 @@ def _boot(
             if boot is not None:
                 return boot
     return None
+
+
+def parameters(log: Log, sender: Sender, start: int) -> servo_deflection.Parameters:
+    """Parameters as they were during one start of the sender.
+
+    What was said in an earlier start held from its beginning on; what is only said later is the
+    best that is known.
+    """
+    said = log.messages(sender, log.number("PARAM_VALUE"))
+    starts, table = sender.starts(said.rows), said.table
+    t = np.where(
+        starts < start,
+        servo_deflection.EVER,
+        np.where(starts > start, servo_deflection.NEVER, said.sent.t),
+    )
+    names = [name.decode("latin-1") for name in table["param_id"].tolist()]
+    return servo_deflection.parameters(names, t, table["param_value"].astype(np.float64))

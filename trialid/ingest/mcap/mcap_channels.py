@@ -10,7 +10,7 @@ from trialid.ingest.bytes.bounds import check_channels
 from trialid.ingest.bytes.unaligned import Places
 from trialid.ingest.mcap import mcap_meaning
 from trialid.ingest.mcap.mcap_names import Source
-from trialid.ingest.mcap.mcap_records import Stretch
+from trialid.ingest.mcap.mcap_stretches import Stretch
 from trialid.ingest.mcap.mcap_topics import Timed, Topic
 from trialid.recording import Channel
 

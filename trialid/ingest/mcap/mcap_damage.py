@@ -49,10 +49,10 @@ def _lost(book: Book) -> str:
     if not spans:
         return "the time lost is not known"
     more = f" and {len(spans) - SHOWN} more spans" if len(spans) > SHOWN else ""
-    return "lost " + ", ".join(between(*span) for span in spans[:SHOWN]) + more
+    return "lost " + ", ".join(span_words(*span) for span in spans[:SHOWN]) + more
 
 
-def between(first: int, last: int) -> str:
+def span_words(first: int, last: int) -> str:
     """Two times [ns]: as dates where they count from 1970, else in seconds.
 
     >>> between(1_700_000_846_000_000_000, 1_700_000_875_500_000_000)

@@ -19,7 +19,7 @@ from trialid.ingest.mcap import (
     mcap_channels,
     mcap_damage,
     mcap_names,
-    mcap_records,
+    mcap_stretches,
 )
 from trialid.ingest.mcap.mcap_batches import Size
 from trialid.ingest.mcap.mcap_channels import Share
@@ -75,7 +75,7 @@ def _check(path: Path, book: Book) -> None:
 def _shares(path: Path, book: Book, remarks: list[str]) -> Iterator[Share]:
     """The messages of the file by source, stretch by stretch."""
     nameless: dict[int, int] = {}
-    for stretch in mcap_records.stretches(path, book):
+    for stretch in mcap_stretches.stretches(path, book):
         for number in np.flatnonzero(np.bincount(stretch.channel)).tolist():
             rows = np.flatnonzero(stretch.channel == number)
             source = stretch.sources.get(number)

@@ -10,7 +10,7 @@ from trialid.ingest.bytes.growing import Growing
 from trialid.ingest.bytes.unaligned import Places
 from trialid.ingest.mcap import mcap_clock, payload_cdr, payload_json, payload_protobuf
 from trialid.ingest.mcap.mcap_names import Source
-from trialid.ingest.mcap.mcap_records import Stretch
+from trialid.ingest.mcap.mcap_stretches import Stretch
 from trialid.ingest.mcap.payload import Column, Columns, Decoder, Keep, Payloads
 
 DECODERS = {

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.ingest.nmea0183.nmea0183_sentences import Mask, Places, Sentences, Span, numbers
+from trialid.ingest.nmea0183.nmea0183_columns import numbers
+from trialid.ingest.nmea0183.nmea0183_sentences import Mask, Places, Sentences, Span
 from trialid.ingest.nmea0183.nmea0183_stamps import NONE, SECOND, days_of
 
 Ints = NDArray[np.int64]

@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.ingest.nmea0183.nmea0183_columns import texts
 from trialid.ingest.nmea0183.nmea0183_layouts import Field, Letter
-from trialid.ingest.nmea0183.nmea0183_sentences import Mask, Places, Sentences, texts
+from trialid.ingest.nmea0183.nmea0183_sentences import Mask, Places, Sentences
 
 
 def invalid_numbers(block: Sentences, rows: Places, one: Field) -> Mask:

@@ -14,7 +14,8 @@ import numpy as np
 
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, sha256
 from trialid.ingest.nmea0183 import nmea0183_recorded
-from trialid.ingest.nmea0183.nmea0183_sentences import Places, Sentences, Span, texts
+from trialid.ingest.nmea0183.nmea0183_columns import texts
+from trialid.ingest.nmea0183.nmea0183_sentences import Places, Sentences, Span
 from trialid.recording import Recording
 
 TEXT = frozenset(range(32, 127)) | {9, 10, 13, 0}

@@ -6,7 +6,8 @@ told or made up (modes E, M, S; quality 6, 7, 8) is no fix and no number here.
 
 from collections.abc import Mapping
 
-from trialid.ingest.nmea0183.nmea0183_layouts import LAYOUTS, Field, Layout, Letter
+from trialid.ingest.nmea0183.nmea0183_instruments import INSTRUMENTS
+from trialid.ingest.nmea0183.nmea0183_layouts import Field, Layout, Letter
 
 FIXED = "ADRFP"
 """Modes of a fix by satellites: autonomous, differential, real time kinematic, float, precise."""
@@ -82,5 +83,5 @@ RECEIVERS: Mapping[str, tuple[Layout, ...]] = {
 }
 """Sentence by its three letters."""
 
-SENTENCES: Mapping[str, tuple[Layout, ...]] = {**LAYOUTS, **RECEIVERS}
+SENTENCES: Mapping[str, tuple[Layout, ...]] = {**INSTRUMENTS, **RECEIVERS}
 """Every sentence that is read."""

@@ -15,7 +15,13 @@ from numpy.typing import NDArray
 from trialid.errors import LogError
 from trialid.ingest.adapter import Wanted
 from trialid.ingest.bytes.growing import Growing
-from trialid.ingest.nmea0183 import nmea0183_channels, nmea0183_clock, nmea0183_stamps
+from trialid.ingest.nmea0183 import (
+    nmea0183_channels,
+    nmea0183_clock,
+    nmea0183_gather,
+    nmea0183_stamps,
+)
+from trialid.ingest.nmea0183.nmea0183_gather import Sender
 from trialid.ingest.nmea0183.nmea0183_sentences import (
     Mask,
     Places,
@@ -45,7 +51,7 @@ class Stream:
     many blocks without any tag.
     """
 
-    found: nmea0183_channels.Found = field(default_factory=dict)
+    found: nmea0183_gather.Found = field(default_factory=dict)
     tagged: list[tuple[int, Ints, Mask]] = field(default_factory=list)
     stamped: Growing = field(default_factory=lambda: Growing(np.int64))
     kind: list[NDArray[np.int8]] = field(default_factory=list)
@@ -141,24 +147,7 @@ def _take(
     sources = list(tags.sources)
     if connections is not None:
         sources += connections(block)
-    for rows, sentence, talker in nmea0183_channels.addresses(block):
-        stream.useful += len(rows)
-        sound = rows[~damaged[rows]]
-        if sentence in nmea0183_clock.CLOCKS:
-            tick = nmea0183_clock.ticks(block, sound, sentence, stream.total)
-            stream.ticks.setdefault(talker + sentence, []).append(tick)
-        if not nmea0183_channels.wants(sentence, wanted) or sentence == "ZDA":
-            continue
-        for connection, part in _by_connection(sound, sources, len(t)):
-            nmea0183_channels.gather(
-                block=block,
-                rows=part,
-                sentence=sentence,
-                talker=talker,
-                connection=connection,
-                offset=stream.total,
-                found=stream.found,
-            )
+    _gather(stream, block, damaged, sources, wanted)
     if (tags.t != NONE).any():
         stream.tagged.append((stream.total, tags.t, tags.seconds_only))
     stream.stamped.add(t)
@@ -168,6 +157,27 @@ def _take(
     stream.wrong += block.wrong + int(damaged.sum())
     stream.foreign += block.foreign
     stream.bare += block.bare
+
+
+def _gather(
+    stream: Stream,
+    block: Sentences,
+    damaged: Mask,
+    sources: list[tuple[Places, str]],
+    wanted: Wanted,
+) -> None:
+    """Add what the sentences of a block say, and the times of those that tell the time."""
+    for rows, sentence, talker in nmea0183_gather.addresses(block):
+        stream.useful += len(rows)
+        sound = rows[~damaged[rows]]
+        if sentence in nmea0183_clock.CLOCKS:
+            tick = nmea0183_clock.ticks(block, sound, sentence, stream.total)
+            stream.ticks.setdefault(talker + sentence, []).append(tick)
+        if not nmea0183_gather.wants(sentence, wanted) or sentence == "ZDA":
+            continue
+        for connection, part in _by_connection(sound, sources, len(damaged)):
+            sender = Sender(sentence, connection, talker)
+            nmea0183_gather.gather(block, part, sender, stream.total, stream.found)
 
 
 def _inherit(block: Sentences, t: Ints, kind: NDArray[np.int8]) -> None:

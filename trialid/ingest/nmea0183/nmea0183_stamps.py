@@ -13,15 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.ingest.nmea0183.nmea0183_sentences import (
-    Bytes,
-    Mask,
-    Places,
-    Span,
-    agrees,
-    alike,
-    table,
-)
+from trialid.ingest.nmea0183.nmea0183_columns import alike, table
+from trialid.ingest.nmea0183.nmea0183_sentences import Bytes, Mask, Places, Span, agrees
 
 Ints = NDArray[np.int64]
 

@@ -1,18 +1,14 @@
 """XDR sentences: any number of transducers, each type, value, unit and name."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.ingest.nmea0183.nmea0183_layouts import (
-    TRANSDUCER_QUANTITIES,
-    TRANSDUCER_UNITS,
-    TRANSDUCERS,
-    Field,
-)
-from trialid.ingest.nmea0183.nmea0183_sentences import Mask, Places, Sentences, Span, texts
+from trialid.ingest.nmea0183.nmea0183_columns import texts
+from trialid.ingest.nmea0183.nmea0183_layouts import Field, Side
+from trialid.ingest.nmea0183.nmea0183_sentences import Mask, Places, Sentences, Span
 
 NUMERIC = np.frombuffer(b"0123456789+-. ", np.uint8)
 
@@ -121,3 +117,47 @@ def _shaped(block: Sentences, rows: Places, number: NDArray[np.intp]) -> Mask:
         cells = block.data[np.minimum(value.a + column, len(block.data) - 1)]
         shaped &= ~inside | np.isin(cells, NUMERIC)
     return shaped & (number + 3 <= block.fields[rows])
+
+
+TRANSDUCERS = {
+    "A": "angle",
+    "C": "temperature",
+    "D": "displacement",
+    "F": "frequency",
+    "G": "generic",
+    "H": "humidity",
+    "I": "current",
+    "L": "salinity",
+    "N": "force",
+    "P": "pressure",
+    "R": "flow",
+    "S": "switch",
+    "T": "speed",
+    "U": "voltage",
+    "V": "volume",
+}
+"""Types of transducers of XDR."""
+TRANSDUCER_UNITS = {
+    "AD": "deg",
+    "AR": "rad",
+    "CC": "degC",
+    "CK": "kelvin",
+    "DM": "m",
+    "DI": "inch",
+    "FH": "Hz",
+    "HP": "percent",
+    "IA": "A",
+    "NN": "N",
+    "PB": "bar",
+    "PP": "Pa",
+    "TR": "rpm",
+    "UV": "V",
+    "VM": "m^3",
+}
+"""Type and unit letter of a transducer to its unit; others have none a text could state."""
+TRANSDUCER_QUANTITIES: Mapping[str, tuple[str, Side | None]] = {
+    "ROLL": ("phi", "starboard"),
+    "HEEL": ("phi", None),
+    "RUDDER": ("delta", None),
+}
+"""What the usual names of angles mean; only the roll has a side by the standard's own list."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from trialid.ingest.mcap.mcap_channels import Share
 from trialid.ingest.mcap.mcap_names import Source
-from trialid.ingest.mcap.mcap_records import Stretch
+from trialid.ingest.mcap.mcap_stretches import Stretch
 
 Message = tuple[int, int, bytes]
 """Number of the source, stamp of the recorder [ns], payload in CDR."""

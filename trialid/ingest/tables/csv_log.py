@@ -13,13 +13,14 @@ from pathlib import Path
 
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
 from trialid.ingest.bytes.encoded_text import UTF_16
-from trialid.ingest.tables import table_header, table_text, template
+from trialid.ingest.tables import table_header, table_text
 from trialid.ingest.tables.table import Head
 from trialid.ingest.tables.table import head as head_of
 from trialid.ingest.tables.table_channels import columns_to_read, recording
 from trialid.ingest.tables.table_layout import Layout, decode_text, of_template
 from trialid.ingest.tables.table_names import is_time
 from trialid.ingest.tables.table_tidy import tidy
+from trialid.ingest.tables.templates import template
 from trialid.recording import Recording
 
 SEPARATORS = ",;\t"

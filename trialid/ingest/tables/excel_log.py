@@ -18,12 +18,13 @@ from numpy.typing import NDArray
 from trialid.errors import LogError, reason_of
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
 from trialid.ingest.packages import require
-from trialid.ingest.tables import excel_guard, excel_sheets, table_header, template
+from trialid.ingest.tables import excel_guard, excel_sheets, table_header
 from trialid.ingest.tables.excel_sheets import Found
 from trialid.ingest.tables.table import Head, Table, blank_out, head, reader_of_numbers
 from trialid.ingest.tables.table_channels import recording
 from trialid.ingest.tables.table_names import is_time
-from trialid.ingest.tables.template import Template
+from trialid.ingest.tables.templates import template
+from trialid.ingest.tables.templates.template import Template
 from trialid.recording import Recording
 
 FIRST_MEMBERS = (b"[Content_Types].xml", b"_rels/", b"docProps/", b"xl/")

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from trialid.errors import LogError
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
-from trialid.ingest.tables import template
 from trialid.ingest.tables.mat_arrays import OLD, Arrays, of_hdf5, of_version_5
 from trialid.ingest.tables.table import Head, Table, blank_out
 from trialid.ingest.tables.table_channels import recording
 from trialid.ingest.tables.table_names import is_time
-from trialid.ingest.tables.template import Template, Time
+from trialid.ingest.tables.templates import template
+from trialid.ingest.tables.templates.template import Template, Time
 from trialid.recording import Recording
 
 HDF5 = b"\x89HDF\r\n\x1a\n"

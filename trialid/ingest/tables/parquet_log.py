@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from trialid.errors import LogError, reason_of
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted
 from trialid.ingest.packages import require
-from trialid.ingest.tables import table_clock, template
+from trialid.ingest.tables.clock import table_clock
 from trialid.ingest.tables.table import Table, blank_out, check_width, head
 from trialid.ingest.tables.table_channels import recording
-from trialid.ingest.tables.template import Template
+from trialid.ingest.tables.templates import template
+from trialid.ingest.tables.templates.template import Template
 from trialid.recording import Recording
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from trialid.errors import LogError, UnitError
 from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
-from trialid.ingest.tables import table_clock
+from trialid.ingest.tables.clock import table_clock
 from trialid.ingest.tables.table import Head, Table, check_width, numbers
-from trialid.ingest.tables.template import Template
+from trialid.ingest.tables.templates.template import Template
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording

@@ -13,7 +13,7 @@ import numpy as np
 from trialid.errors import UnitError
 from trialid.ingest.tables.table import MISSING
 from trialid.ingest.tables.table_names import is_time
-from trialid.ingest.tables.template_guess import DATE, is_number
+from trialid.ingest.tables.templates.template_guess import DATE, is_number
 from trialid.names import units
 
 DEEPEST = 60

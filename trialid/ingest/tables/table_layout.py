@@ -10,7 +10,7 @@ import numpy as np
 
 from trialid.ingest.bytes.encoded_text import OddTextError, text_blocks, wide_codec
 from trialid.ingest.tables.table import Head
-from trialid.ingest.tables.template import TAB, WHITESPACE, Template
+from trialid.ingest.tables.templates.template import TAB, WHITESPACE, Template
 
 PART = 1 << 18
 """Bytes that lie in the processor's cache."""

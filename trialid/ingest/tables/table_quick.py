@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from trialid.ingest.bytes.encoded_text import OddTextError
 from trialid.ingest.bytes.growing import Growing
-from trialid.ingest.tables import table_stamps
+from trialid.ingest.tables.clock import table_stamps
 from trialid.ingest.tables.table import MISSING, Values, reader_of_numbers
 from trialid.ingest.tables.table_layout import SPACES, Layout, Top, count_bytes, decimal
 

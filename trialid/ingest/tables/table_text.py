@@ -26,7 +26,8 @@ from trialid.ingest.bytes.encoded_text import (
     text_blocks,
     unify_text,
 )
-from trialid.ingest.tables import table_clock, table_quick
+from trialid.ingest.tables import table_quick
+from trialid.ingest.tables.clock import table_clock
 from trialid.ingest.tables.table import Head, Table, check_width, head, reader_of_numbers
 from trialid.ingest.tables.table_layout import (
     SPACES,
@@ -43,7 +44,7 @@ from trialid.ingest.tables.table_layout import (
 )
 from trialid.ingest.tables.table_quick import is_number
 from trialid.ingest.tables.table_tidy import cut
-from trialid.ingest.tables.template import Template, check_header, distinct
+from trialid.ingest.tables.templates.template import Template, check_header, distinct
 
 MOST_BYTES = 2_000_000_000
 """Of a table as text that is read whole."""

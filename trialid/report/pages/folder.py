@@ -30,7 +30,7 @@ class Finished:
     forces: tuple[ForceSeries, ...]
 
 
-def read_finished(label: str, folder: Path, result: Result) -> Finished:
+def read_run(label: str, folder: Path, result: Result) -> Finished:
     """A run's result with the series beside it.
 
     Raises

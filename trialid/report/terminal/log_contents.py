@@ -1,4 +1,4 @@
-"""A survey of a log as a person reads it in a terminal, and as plain data.
+"""A survey of a log as a person reads it in a terminal.
 
 Names of channels come from files that anybody may have written: they are shown as plain text, and
 what could steer a terminal is shown escaped.
@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from trialid.alignment.checks import Finding
+from trialid.alignment.agreement.channel_finding import Finding
 from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.errors import printable
 from trialid.inspection.disagreements import findings
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from rich.measure import Measurement
     from rich.table import Table
 
-SCHEMA: Final = "trialid-survey/1"
 MOST_MESSAGES: Final = 12
 """Messages without a recognised field that are listed before they are only counted."""
 NARROW, DESCRIBED = 24, 46
@@ -33,15 +32,6 @@ NARROW, DESCRIBED = 24, 46
 DEGREES: Final = {"rad": "deg", "rad/s": "deg/s"}
 """People think in degrees."""
 MOST_REMARKS: Final = 8
-
-
-def safe_text(text: str) -> str:
-    r"""Text of a log with its control characters escaped.
-
-    >>> safe_text("roll\x1b[31m")
-    'roll\\x1b[31m'
-    """
-    return printable(text)
 
 
 def inspection(survey: Inspection, *, everything: bool = False) -> Sequence[Any]:
@@ -71,7 +61,7 @@ def _title(survey: Inspection) -> Any:
     count = len(survey.channels)
     files = f", {len(survey.files)} files" if len(survey.files) > 1 else ""
     facts = f"{survey.format}{files}, {count} channel{'s' if count > 1 else ''}, {_span(survey)}"
-    return Text(f"{safe_text(str(survey.path))}\n", style="bold").append(facts, style="not bold")
+    return Text(f"{printable(str(survey.path))}\n", style="bold").append(facts, style="not bold")
 
 
 def _span(survey: Inspection) -> str:
@@ -105,7 +95,7 @@ def _signals(known: dict[str, tuple[ChannelInspection, ...]]) -> "Table":
             cells = (_how(one), *_numbers(one))
             style = "dim" if one.constant else ""
             table.add_row(
-                _Source(safe_text(one.key), safe_text(one.description.replace(f" {one.name}", ""))),
+                _Source(printable(one.key), printable(one.description.replace(f" {one.name}", ""))),
                 *(Text(cell) for cell in cells),
                 style=style,
             )
@@ -181,7 +171,7 @@ def _unit(one: ChannelInspection) -> str:
     if degrees := _in_degrees(one):
         return f"{degrees}\nlog {one.unit or one.unit_in_name}"
     if one.unit:
-        return safe_text(one.unit)
+        return printable(one.unit)
     return f"{one.unit_in_name} (name)" if one.unit_in_name else "not stated"
 
 
@@ -211,7 +201,7 @@ def _all_others(rest: Sequence[ChannelInspection]) -> "Table":
     table.columns[5].justify = "left"
     for one in rest:
         cells = (cell.replace("\n", ", ") for cell in _numbers(one))
-        add_row(table, safe_text(one.key), *cells)
+        add_row(table, printable(one.key), *cells)
     return table
 
 
@@ -225,7 +215,7 @@ def _folded(rest: Sequence[ChannelInspection]) -> Iterator[Any]:
     table.columns[0].max_width = 44
     for message, fields in list(groups.items())[:MOST_MESSAGES]:
         names = ", ".join(one.key.removeprefix(f"{message}:") for one in fields)
-        add_row(table, safe_text(message) or "(columns)", f"{fields[0].rate:.3g}", safe_text(names))
+        add_row(table, printable(message) or "(columns)", f"{fields[0].rate:.3g}", printable(names))
     yield table
     left = len(groups) - MOST_MESSAGES
     if left > 0:
@@ -244,8 +234,8 @@ def _clocks(survey: Inspection) -> Iterator[Any]:
     for words, group in groups.items():
         messages = list(dict.fromkeys(one.message or "table" for one in group))
         more = f" and {len(messages) - 3} more" if len(messages) > 3 else ""
-        names = safe_text(", ".join(messages[:3])) + more
-        add_row(table, safe_text(words) or "not stated", names, *_worst(group))
+        names = printable(", ".join(messages[:3])) + more
+        add_row(table, printable(words) or "not stated", names, *_worst(group))
     yield _heading("clocks")
     yield table
     yield ""
@@ -295,7 +285,7 @@ def _bullet(line: str) -> Any:
     from rich.text import Text
 
     grid = Table.grid(padding=(0, 1))
-    grid.add_row(Text("-"), Padding(Text(safe_text(line)), 0))
+    grid.add_row(Text("-"), Padding(Text(printable(line)), 0))
     return grid
 
 
@@ -303,65 +293,3 @@ def _heading(text: str) -> Any:
     from rich.text import Text
 
     return Text(text, style="bold")
-
-
-def plain(survey: Inspection) -> dict[str, Any]:
-    """The survey as plain data, schema `trialid-survey/1`; what is not known is null."""
-    dated = survey.start > CALENDAR_NS
-    return {
-        "schema": SCHEMA,
-        "path": str(survey.path),
-        "format": survey.format,
-        "duration": survey.duration,
-        "start": f"{moment(survey.start)}Z" if dated else None,
-        "files": [
-            {"path": str(f.path), "format": f.format, "sha256": f.sha256, "remarks": [*f.remarks]}
-            for f in survey.files
-        ],
-        "channels": [_plain_channel(one) for one in survey.channels.values()],
-        "findings": [_plain_finding(one) for one in findings(survey)],
-        "warnings": list(survey.warnings),
-    }
-
-
-def _plain_finding(one: Finding) -> dict[str, Any]:
-    return {
-        "kind": one.kind,
-        "severity": one.severity,
-        "about": list(one.about),
-        "sentence": one.sentence,
-        "evidence": {k: v if math.isfinite(v) else None for k, v in one.evidence.items()},
-        "mend": one.mend,
-    }
-
-
-def _plain_channel(one: ChannelInspection) -> dict[str, Any]:
-    late = one.clock.received
-    return {
-        "channel": one.name,
-        "as": one.angle,
-        "description": one.description or None,
-        "quantity": one.guess and one.guess.quantity,
-        "known": one.guess and one.guess.words,
-        "positive": one.guess and one.guess.positive,
-        "unit": one.unit,
-        "unit_in_name": one.unit_in_name,
-        "samples": one.samples,
-        "missing": one.missing,
-        "rate": one.rate or None,
-        "start_ns": one.start,
-        "end_ns": one.end,
-        "range": None if math.isnan(one.low) else [one.low, one.high],
-        "gaps": {
-            "count": one.gaps.count, "total": one.gaps.total, "longest": one.gaps.longest,
-        },
-        "clock": {
-            "words": one.clock.words,
-            "jitter": one.clock.jitter,
-            "steps_back": one.clock.steps_back,
-            "furthest_back": one.clock.furthest_back,
-            "same_stamp": one.clock.same,
-            "received": late
-            and {"offset": late.offset, "drift": late.drift, "jitter": late.jitter},
-        },
-    }  # fmt: skip

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
-from trialid.alignment.checks import LATE, Finding
+from trialid.alignment.agreement.channel_finding import Finding
+from trialid.alignment.agreement.slopes import LATE
 from trialid.inspection.disagreements import COMPARED, MOST_SOURCES
 from trialid.inspection.drives import drives_of
 from trialid.inspection.inspected import ChannelInspection, Inspection

@@ -14,7 +14,7 @@ from trialid.report.pages import bridge
 from trialid.report.pages.bridge import file_name
 from trialid.ship.actuators import actuator_quantities
 from trialid.toml_text import quote
-from trialid.workflow.design import design_run as plans
+from trialid.workflow.design import plan_data
 from trialid.workflow.design.design_run import Plan, Rated
 
 LOG = "log-of-{}.mcap"
@@ -23,7 +23,7 @@ LOG = "log-of-{}.mcap"
 
 def write(plan: Plan, folder: Path) -> dict[str, Any]:
     """Write everything into a folder; the plain data of the design."""
-    data = plans.plain(plan)
+    data = plan_data.plain(plan)
     with own_files.replacing(folder) as work:
         for name, text in _texts(plan, data, folder).items():
             (work / name).write_text(text, encoding="utf-8")
@@ -71,7 +71,7 @@ def _pipeline(plan: Plan, folder: Path, rated: Rated, stems: Sequence[str]) -> s
     model = plan.ship.vessel.model
     known = SIGNALS | actuator_quantities(model.ship.actuators)
     # what is ordered of a drive stands for what it does where the model has no lag
-    moving = [n for n in plans.steering(plan) if n in model.recorded] or ["delta"]
+    moving = [n for n in plan_data.steering(plan) if n in model.recorded] or ["delta"]
     wanted = [*moving, *pipeline.identify.outputs, *plan.ship.vessel.constants]
     for signal in dict.fromkeys([*wanted, "u"]):
         side = ', positive = "starboard"' if known[signal].steers else ""

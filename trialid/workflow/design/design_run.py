@@ -3,49 +3,29 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from trialid.design import signals
-from trialid.design.helm import vessel
 from trialid.design.kinds import KINDS, Test, Value
 from trialid.design.limits import Limits
-from trialid.design.ordered_signals import late_orders, ordered_signals
-from trialid.design.rating import Goal, Noise, goal
-from trialid.design.search import (
-    Found,
-    Outcome,
-    Search,
-    Ship,
-    natural_roll,
-    optimise,
-    outcome,
-    sail_all,
-    score,
-)
+from trialid.design.ordered_signals import late_orders
+from trialid.design.rating import Goal
+from trialid.design.search import Found, Outcome, Search, Ship, optimise, outcome, sail_all, score
 from trialid.design.separation import Separation, likeness, rivals, separate
-from trialid.errors import DesignError, PipelineError, UnitError, nearest
-from trialid.identification.problem import Settings, with_starts
-from trialid.names import units
-from trialid.names.quantities import SIGNALS, Quantity
+from trialid.errors import DesignError, PipelineError, nearest
+from trialid.identification.problem import Settings
 from trialid.pipeline_file import where
 from trialid.pipeline_file.design_file import DesignFile, Numbers, TestSection
-from trialid.pipeline_file.finished_run import FinishedRun, finished_run
-from trialid.pipeline_file.form import GivenValue
-from trialid.report.files import design_data
-from trialid.ship.actuators import actuator_quantities
+from trialid.pipeline_file.finished_run import finished_run
 from trialid.ship.effect import Effect
-from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
-from trialid.version import VERSION
-from trialid.workflow.build_model import available, build_model, settings_of
+from trialid.workflow.build_model import available, settings_of
 from trialid.workflow.design import design_imo
+from trialid.workflow.design.design_ships import limits_of_design, ships_of_design
 
 Progress = Callable[[str, float | None], None]
-
-NO_ROLL: Final = 2.0 * np.pi / 15.0
-"""rad/s, where the model does not roll and nothing depends on it."""
 
 
 @dataclass(frozen=True)
@@ -101,8 +81,8 @@ def plan(pipeline: DesignFile, progress: Progress = lambda words, share: None) -
     """
     progress("making the ship ready", 0.0)
     catalogue = available(pipeline)
-    ships = _ships(pipeline, catalogue)
-    limits = _limits(pipeline, ships[0].vessel.model)
+    ships = ships_of_design(pipeline, catalogue)
+    limits = limits_of_design(pipeline, ships[0].vessel.model)
     separation = _separation(pipeline, catalogue, ships[0], limits, progress)
     chosen = {} if separation is None else {t.name: t for t in separation.programme}
     tests = tuple(chosen.get(t.name) or _test(pipeline, t) for t in pipeline.tests)
@@ -189,96 +169,6 @@ def _of_lines(test: Test, ship: Ship) -> list[str]:
     return said
 
 
-def _ships(pipeline: DesignFile, catalogue: Mapping[str, Effect]) -> list[Ship]:
-    """The ship as she is known, first, and others she might be."""
-    model = build_model(pipeline, catalogue)
-    run = finished_run(pipeline)
-    known = {n: x for n, x in run.values.items() if n in model.parameters}
-    settings = settings_of(pipeline, model)
-    model = with_starts(model.with_values(known), pipeline.identify.free, settings)
-    full = _full(pipeline, model, catalogue)
-    made = [_ship(pipeline, run, model, full)]
-    draw = np.random.default_rng(pipeline.ships.seed)
-    for _ in range(pipeline.ships.count - 1):
-        factors = {
-            n: 1.0 + pipeline.ships.spread * draw.standard_normal()
-            for n in pipeline.identify.free
-            if n in model.parameters
-        }
-        values = {n: model.value(n) * f for n, f in factors.items()}
-        made.append(_ship(pipeline, run, model.with_values(values), full.with_values(values)))
-    return made
-
-
-def _full(pipeline: DesignFile, model: ShipModel, catalogue: Mapping[str, Effect]) -> ShipModel:
-    """What is sailed: the model to be fitted and what the ship has beyond it."""
-    full = model
-    for i, name in enumerate(pipeline.full.effects):
-        if name not in catalogue:
-            at = where(pipeline, f"full.effects[{i}]")
-            raise PipelineError(f"{at}: there is no effect {name!r}; {nearest(name, catalogue)}")
-        full = full + catalogue[name]
-    values = {}
-    for name, given in pipeline.full.values.items():
-        if name not in full.parameters:
-            at = where(pipeline, f"full.values.{name}")
-            raise PipelineError(f"{at}: no such parameter; {nearest(name, full.parameters)}")
-        values[name] = _si(pipeline, f"full.values.{name}", given, full.parameters[name].unit, None)
-    typical = {
-        n: p.start
-        for e in full.effects
-        if e.name in pipeline.full.effects
-        for n, p in e.parameters.items()
-        if full.stated(n) is None
-    }
-    return full.with_values({**typical, **values})
-
-
-def _ship(pipeline: DesignFile, run: FinishedRun, model: ShipModel, full: ShipModel) -> Ship:
-    at_sea, known = pipeline.at_sea, SIGNALS | actuator_quantities(full.ship.actuators)
-    constants = {n: x for n, x in run.constants.items() if n in full.recorded} | {
-        name: _si(pipeline, f"at_sea.constant.{name}", given, known[name].unit, known[name].shown)
-        for name, given in at_sea.constant.items()
-    }
-    ready = vessel(full, at_sea.period, constants, run.gear_rate(at_sea.rudder_rate))
-    noise = {
-        c: Noise(n.sigma / units.shown_factor(SIGNALS[c]), n.memory)
-        for c, n in pipeline.noise.items()
-    }
-    asked = goal(model, settings_of(pipeline, model), noise, pipeline.wanted, pipeline.scale)
-    rolls = {"p", "phi"} <= {*model.states}
-    speed = model.ship.particulars["U0"]
-    return Ship(ready, asked, natural_roll(ready) if rolls else NO_ROLL, speed)
-
-
-def _si(pipeline: DesignFile, key: str, given: GivenValue, unit: str, bare: str | None) -> float:
-    """A given number in SI; without a unit it is in `bare`, or as it is."""
-    stated = given.unit or bare
-    try:
-        return given.value if stated is None else given.value * units.factor(stated, unit)
-    except UnitError as error:
-        raise UnitError(f"{where(pipeline, key)}: {error}") from error
-
-
-def _limits(pipeline: DesignFile, model: ShipModel) -> Limits:
-    """The file's limits in SI; one of a motion that is not simulated would never bind."""
-    r = pipeline.limits
-    for name, state, given in (("heel", "phi", r.heel), ("speed_loss", "u", r.speed_loss)):
-        if given is not None and state not in model.states:
-            raise PipelineError(
-                f"{where(pipeline, f'limits.{name}')}: {state} is not simulated, so nothing can be "
-                f"held against it; put {state} among model.states, or leave the limit out"
-            )
-    degrees = np.deg2rad(1.0)
-    return Limits(
-        rudder=None if r.rudder is None else r.rudder * degrees,
-        rudder_rate=None if r.rudder_rate is None else r.rudder_rate * degrees,
-        heel=None if r.heel is None else r.heel * degrees,
-        speed_loss=r.speed_loss, room=r.room, duration=r.duration,
-        rudders=tuple(one for one in model.ship.actuators if one.kind == "rudder"),
-    )  # fmt: skip
-
-
 def _test(pipeline: DesignFile, test: TestSection) -> Test:
     """A test of the file with its numbers in SI."""
     variables = KINDS[test.kind].variables
@@ -344,46 +234,3 @@ def _without_bias(settings: Settings) -> Settings:
     """Nuisances that are among the effects to be told apart would hide them."""
     kept = tuple(n for n in settings.nuisance if n == "initial_state")
     return replace(settings, nuisance=kept)
-
-
-def steering(plan: Plan) -> dict[str, Quantity]:
-    """What the tests order, and what comes of it, by the signal's name."""
-    return ordered_signals([p for rated in plan.rated for p in rated.outcome.passages])
-
-
-def _recorded(plan: Plan) -> list[str]:
-    """What the crew must record, in words."""
-    known = SIGNALS | steering(plan)
-    outputs, still = plan.pipeline.identify.outputs, plan.ship.vessel.constants
-    names = [*steering(plan), *outputs, *(n for n in still if n in known), "psi", "u"]
-    return [known[n].meaning.partition(",")[0] for n in dict.fromkeys(names)]
-
-
-def plain(plan: Plan) -> dict[str, Any]:
-    """A plan as plain data, schema `trialid-design/1`."""
-    best = plan.best
-    tests = [
-        {
-            "name": rated.name,
-            "programme": [design_data.of_test(t) for t in rated.programme],
-            "searched": None if rated.found is None else rated.found.tried,
-            "remarks": list(rated.remarks),
-            **design_data.of_outcome(rated.outcome),
-        }
-        for rated in plan.rated
-    ]
-    return {
-        "schema": design_data.SCHEMA,
-        "version": VERSION,
-        "name": plan.pipeline.name,
-        "design": plan.pipeline.path.name,
-        "ship": plan.ship.vessel.model.ship.name,
-        "wanted": list(plan.ship.goal.wanted),
-        "outputs": list(plan.pipeline.identify.outputs),
-        "recorded": _recorded(plan),
-        "roll_period": 2.0 * np.pi / plan.ship.roll_frequency,
-        "tests": tests,
-        "best": None if best is None else best.name,
-        "separation": design_data.of_separation(plan.separation),
-        **design_imo.plain(plan.imo),
-    }

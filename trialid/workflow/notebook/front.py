@@ -11,10 +11,11 @@ from trialid.diagnosis.diagnose import DiagnoseSettings
 from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification import fit as search
-from trialid.identification.fit import Fit, of_trial
+from trialid.identification.fit import Fit
 from trialid.identification.of_each_trial import Nuisance
 from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import ship_priors
+from trialid.identification.trial_score import of_trial
 from trialid.pipeline_file import load
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect

@@ -9,7 +9,7 @@ from trialid.result.build import Findings
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries
 from trialid.threads import one_thread
-from trialid.workflow.edit_model import fit_edited, foresee_edit, set_beside
+from trialid.workflow.edit_model import fit_edit, foresee_edit, set_beside
 from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
 from trialid.workflow.notebook.run_view import RunView
 from trialid.workflow.outcome import Run
@@ -52,7 +52,7 @@ class PipelineRun(RunView):
     @one_thread
     def _edited(self, edit: Edit) -> "PipelineRun":
         foreseen = foresee_edit(edit, self.fit)
-        edit, fit = fit_edited(edit, self.trials, foreseen, silent)
+        edit, fit = fit_edit(edit, self.trials, foreseen, silent)
         after = examine(edit.after, self.trials, silent, fit)
         result, _ = set_beside(edit, after.result, self.result, foreseen)
         return pipeline_run(replace(after, result=result))

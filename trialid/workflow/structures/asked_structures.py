@@ -18,7 +18,7 @@ from trialid.workflow.build_model import (
     available,
     build_model,
     check_bounds,
-    check_moving,
+    check_headway,
     settings_of,
 )
 
@@ -52,7 +52,7 @@ def asked_structures(
     catalogue = available(pipeline)
     written = build_model(pipeline, catalogue)
     check_bounds(pipeline, written, settings_of(pipeline, written))
-    check_moving(pipeline, written, trials)
+    check_headway(pipeline, written, trials)
     lists, left_out = _lists(pipeline, trials, catalogue)
     found = []
     for name, effects in lists.items():

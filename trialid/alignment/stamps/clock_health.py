@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Series
-from trialid.alignment.time_steps import is_lasting
+from trialid.alignment.stamps.time_steps import is_lasting
 
 Vector = NDArray[np.float64]
 

@@ -10,11 +10,13 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from trialid.alignment import relation
-from trialid.alignment.checks import FAIR, LATE, LOOSE, MOVING, Finding, is_clear, together
+from trialid.alignment.agreement import relation
+from trialid.alignment.agreement.channel_finding import Finding
+from trialid.alignment.agreement.checks import trial_of_series
+from trialid.alignment.agreement.relation import Relation
+from trialid.alignment.agreement.slopes import FAIR, LATE, LOOSE, MOVING, is_clear
 from trialid.alignment.clocks import Series
 from trialid.alignment.frames import sensor_values
-from trialid.alignment.relation import Relation
 from trialid.alignment.sources import SignalSource
 from trialid.arrays import Vector
 from trialid.errors import UnitError
@@ -46,7 +48,7 @@ def disagreements(channels: Mapping[str, Series]) -> tuple[Finding, ...]:
 
 
 def _pair(names: tuple[str, str], first: Series, second: Series) -> Iterator[Finding]:
-    both = together({"first": first, "second": second})
+    both = trial_of_series({"first": first, "second": second})
     if both is None or len(both.signals) < 2:  # one of them has hardly a sample
         return
     valid = both.valid["first"] & both.valid["second"]
@@ -117,7 +119,7 @@ def _evidence(found: Relation | None, offset: float) -> dict[str, float]:
     }  # fmt: skip
 
 
-def unchosen(
+def compare_duplicates(
     sources: Sequence[SignalSource], recordings: Sequence[Recording]
 ) -> tuple[Finding, ...]:
     """Where a chosen channel disagrees with another of its quantity that was read with it.

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.alignment.sample_index import pace
+from trialid.alignment.stamps.sample_index import pace
 
 Vector = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Which column of a table is its clock, and how it is written, where no template says so."""
+"""The clock of a table as its template has it, or as the table leaves no doubt of it."""
 
 import dataclasses
 import re
@@ -9,22 +9,21 @@ from typing import Any
 import numpy as np
 
 from trialid.errors import LogError, list_names
-from trialid.ingest.tables import table_stamps
-from trialid.ingest.tables.table import Head, Table
-from trialid.ingest.tables.table_names import is_date, is_time
-from trialid.ingest.tables.table_time import (
+from trialid.ingest.tables.clock import table_stamps
+from trialid.ingest.tables.clock.table_dates import date_clock, join_columns
+from trialid.ingest.tables.clock.table_time import (
     TIME_NAMES,
     TOLD,
     Clock,
     bare,
-    clock_by_template,
-    date_clock,
+    in_samples,
     in_seconds,
-    join_columns,
     no_zone,
     of_day,
 )
-from trialid.ingest.tables.template import Time
+from trialid.ingest.tables.table import Head, Table
+from trialid.ingest.tables.table_names import is_date, is_time
+from trialid.ingest.tables.templates.template import Time
 
 UNNAMED = ("", "Unnamed: 0", "column 1", "column A", "__index_level_0__")
 """What stands above the rows' own labels in a table that pandas saved."""
@@ -41,7 +40,29 @@ def clock(table: Table, spec: Time | None, zone: str | None) -> Clock:
 
     Raises LogError for what is no time, and for what may be read in two ways.
     """
-    return _alone(table, zone) if spec is None else clock_by_template(table, spec, zone)
+    return _alone(table, zone) if spec is None else _by_template(table, spec, zone)
+
+
+def _by_template(table: Table, spec: Time, zone: str | None) -> Clock:
+    """The table's clock as the template has it; LogError for what is no time."""
+    if spec.zone and zone and spec.zone != zone:
+        raise LogError(
+            f"{table.path}: the log is given zone {zone!r} and its template says {spec.zone!r}; "
+            "leave one out"
+        )
+    columns = tuple(_index(table, name) for name in spec.columns)
+    if spec.kind in ("datetime", "excel days", "matlab datenum"):
+        return date_clock(table, columns, spec, spec.zone or zone)
+    no_zone(table, spec.zone or zone)
+    if spec.kind == "index":
+        return in_samples(table, columns, spec)
+    if spec.kind == "time of day":
+        return of_day(table, columns[0], spec)
+    return in_seconds(table, columns[0], spec.unit)
+
+
+def _index(table: Table, name: str) -> int:
+    return [head.text for head in table.heads].index(name)
 
 
 def columns_of_time(heads: Sequence[Head]) -> tuple[int, ...]:

@@ -46,7 +46,7 @@ class Pair:
         return (len(self.first) - 1) * self.period
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Relation:
     """The second signal is `gain` times the first, `lag` seconds later.
 
@@ -148,11 +148,19 @@ def _relation(pair: Pair, length: int) -> Relation | None:
     noise = white_noise_of_most(pair.first[pair.valid]) / length**pair.fades
     other = white_noise_of_most(pair.second[pair.valid]) / length**0.5
     moves = _moves(x, noise), _moves(y, other)
+    lag, interval = _lag(np.float64(pair.period) * lags, found, best)
     return Relation(
-        float(found[best]), _gain(x, y), *_lag(np.float64(pair.period) * lags, found, best),
-        float(found[len(lags) // 2]), float(against), length * pair.period, _swing(x, pair.period),
-        moves, tuple(_correlation(a, b) for a, b in _parts(x, y)),
-    )  # fmt: skip
+        correlation=float(found[best]),
+        gain=_gain(x, y),
+        lag=lag,
+        lags=interval,
+        at_once=float(found[len(lags) // 2]),
+        against=float(against),
+        length=length * pair.period,
+        swing=_swing(x, pair.period),
+        moves=moves,
+        parts=tuple(_correlation(a, b) for a, b in _parts(x, y)),
+    )
 
 
 def _lags(pair: Pair) -> NDArray[np.int64]:

@@ -17,7 +17,7 @@ from itertools import takewhile
 
 import numpy as np
 
-from trialid.alignment import relation
+from trialid.alignment.agreement import relation
 from trialid.alignment.sources import SignalSource
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
@@ -46,7 +46,7 @@ def check(trial: Trial, sources: Mapping[str, SignalSource], where: str) -> Iter
     turning = rate_of_turn(trial)
     rudders = RUDDERS | _together(trial, sources)
     for rudder in sorted(rudders & trial.signals.keys()):
-        if turning is not None and ahead(trial):
+        if turning is not None and runs_ahead(trial):
             yield from _rudder(trial, rudder, turning, sources[rudder], where)
 
 
@@ -140,7 +140,7 @@ def rate_of_turn(trial: Trial) -> tuple[Vector, Mask] | None:
     return None
 
 
-def ahead(trial: Trial) -> bool:
+def runs_ahead(trial: Trial) -> bool:
     """A rudder works the other way when the ship goes astern; then it cannot be judged."""
     return "u" not in trial.signals or float(np.median(trial.signals["u"])) > 0
 

@@ -1,29 +1,24 @@
-"""The clock of a table: stamps [ns] from seconds, indices, dates, days or times of day."""
+"""The clock of a table: stamps [ns] from seconds, sample numbers or times of day."""
 
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime, time, timedelta
+from datetime import datetime, time, timedelta
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import LogError, UnitError
-from trialid.ingest.tables import table_stamps
 from trialid.ingest.tables.table import Head, Table, numbers
-from trialid.ingest.tables.table_names import is_universal, unit_of_time
-from trialid.ingest.tables.template import Time
+from trialid.ingest.tables.table_names import unit_of_time
+from trialid.ingest.tables.templates.template import Time
 from trialid.names import units
 
 TIME_NAMES = ("t", "time", "timestamp", "zeit")
-DATE_NAMES = ("date", "datum")
-EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 LATEST_S = 9e9
 """More seconds than this do not fit 64 bits of nanoseconds, and are no seconds."""
 DAY_NS = 86_400 * 10**9
-FIRST_DAY = {"excel days": 25_569, "matlab datenum": 719_529}
-"""What the two count on 1 January 1970."""
 DAYS = ((30_000.0, 60_000.0), (693_962.0, 767_010.0))
 """What Excel and MATLAB count between 1982 and 2064, and in the years 1900 to 2100."""
 PART = 1 << 20
@@ -44,31 +39,9 @@ class Clock:
     remarks: tuple[str, ...] = ()
 
 
-def clock_by_template(table: Table, spec: Time, zone: str | None) -> Clock:
-    """The table's clock as the template has it; LogError for what is no time."""
-    if spec.zone and zone and spec.zone != zone:
-        raise LogError(
-            f"{table.path}: the log is given zone {zone!r} and its template says {spec.zone!r}; "
-            "leave one out"
-        )
-    columns = tuple(_index(table, name) for name in spec.columns)
-    if spec.kind in ("datetime", "excel days", "matlab datenum"):
-        return date_clock(table, columns, spec, spec.zone or zone)
-    no_zone(table, spec.zone or zone)
-    if spec.kind == "index":
-        return _counted(table, columns, spec)
-    if spec.kind == "time of day":
-        return of_day(table, columns[0], spec)
-    return in_seconds(table, columns[0], spec.unit)
-
-
 def bare(head: Head) -> str:
     """The column's own name, without the group it is in."""
     return head.name.rpartition(".")[2]
-
-
-def _index(table: Table, name: str) -> int:
-    return [head.text for head in table.heads].index(name)
 
 
 def no_zone(table: Table, zone: str | None) -> None:
@@ -82,7 +55,7 @@ def no_zone(table: Table, zone: str | None) -> None:
 def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
     """Numbers in a unit of time: the one told, else that of the header or of its name."""
     head = table.heads[column]
-    y = _numbers(table, column)
+    y = time_numbers(table, column)
     stated = unit or head.unit or unit_of_time(bare(head))
     if stated is None:
         _not_days(table, column, y)
@@ -92,7 +65,7 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
         if wrong.any():
             row = part.start + int(np.argmax(wrong))
             raise LogError(
-                f"{table.where(row, column)}: {_shown(table, row, column)!r} is no time in "
+                f"{table.where(row, column)}: {show_value(table, row, column)!r} is no time in "
                 "seconds; state the unit in the header, as in 't[ms]', or delete the line"
             )
     remarks = _resolution(table, column, y, scale)
@@ -107,7 +80,8 @@ def _parts(y: NDArray[np.float64]) -> Iterator[slice]:
     return (slice(at, at + PART) for at in range(0, len(y), PART))
 
 
-def _numbers(table: Table, column: int) -> NDArray[np.float64]:
+def time_numbers(table: Table, column: int) -> NDArray[np.float64]:
+    """The numbers of a column of times; LogError at the first that is none."""
     try:
         y = numbers(table, column)
     except LogError as error:
@@ -129,7 +103,7 @@ def _first_text(table: Table, column: int) -> int:
 
 
 def _no_time(table: Table, row: int, column: int, cause: LogError | None) -> NoReturn:
-    text = _shown(table, row, column)
+    text = show_value(table, row, column)
     place = f"{table.where(row, column)}: {text!r} is no time"
     if re.match(r"\d{1,2}[./-]\d{1,2}[./-]\d{2,4}", text):
         raise LogError(f"{place} that can be read in one way only; write ISO-8601 dates, {TOLD}")
@@ -138,7 +112,8 @@ def _no_time(table: Table, row: int, column: int, cause: LogError | None) -> NoR
     ) from cause
 
 
-def _shown(table: Table, row: int, column: int) -> str:
+def show_value(table: Table, row: int, column: int) -> str:
+    """A value as an error shows it."""
     value = table.columns[column][row]
     if isinstance(value, float | np.floating):
         return "" if np.isnan(value) else f"{value:.17g}"
@@ -184,9 +159,10 @@ def _seconds_per(table: Table, unit: str) -> float:
         raise LogError(f"{table.path}, header of the time column: {error}") from error
 
 
-def _counted(table: Table, columns: Sequence[int], spec: Time) -> Clock:
+def in_samples(table: Table, columns: Sequence[int], spec: Time) -> Clock:
+    """Sample numbers of a column, or the rows counted, at the template's rate."""
     rows = len(table.columns[0])
-    count = _numbers(table, columns[0]) if columns else np.arange(rows, dtype=np.float64)
+    count = time_numbers(table, columns[0]) if columns else np.arange(rows, dtype=np.float64)
     rate = spec.rate or 1.0
     seconds = count / rate
     wrong = ~(np.abs(seconds) < LATEST_S)
@@ -205,7 +181,7 @@ def of_day(table: Table, column: int, spec: Time) -> Clock:
     for row, value in enumerate(table.columns[column]):
         found = _since_midnight(value, spec.format)
         if found is None:
-            shown = _shown(table, row, column)
+            shown = show_value(table, row, column)
             raise LogError(
                 f"{table.where(row, column)}: {shown!r} is no time of day "
                 f"({spec.format or '14:30:05.25'}); mend or delete the line"
@@ -248,118 +224,3 @@ def _hours(text: str) -> int | None:
     if not within or past >= 61.0:
         return None
     return (int(hours) * 60 + int(minutes)) * 60 * 10**9 + round(past * 1e9)
-
-
-def date_clock(table: Table, columns: tuple[int, ...], spec: Time, zone: str | None) -> Clock:
-    """Dates, in one column or two; in UTC where nothing else is said."""
-    name = " and ".join(table.heads[column].name for column in columns)
-    values = table.columns[columns[0]]
-    if spec.kind in FIRST_DAY:
-        naive, aware = _days(table, columns[0], FIRST_DAY[spec.kind]), False
-        said = f"column {name}, {spec.kind}"
-    elif values.dtype.kind == "M" and len(columns) == 1:
-        naive = values.astype("datetime64[ns]").astype(np.int64)
-        aware = table.utc or _universal(table, columns)
-        _no_gaps(table, columns[0], naive)
-        said = f"column {name}, dates"
-    else:
-        naive, aware = _read_dates(table, columns, spec.format)
-        aware = aware or _universal(table, columns)
-        said = f"column {name}, dates"
-    if aware:
-        return Clock(naive, columns, f"{said} (UTC where no zone is given)")
-    if zone is None:
-        return Clock(naive, columns, f"{said} (UTC where no zone is given)")
-    t = _localized(table, columns[0], naive, zone)
-    return Clock(t, columns, f"{said}, time zone {zone}")
-
-
-def _universal(table: Table, columns: Sequence[int]) -> bool:
-    """Whether the header says that the dates are of UTC."""
-    return any(is_universal(bare(table.heads[i]), table.heads[i].unit) for i in columns)
-
-
-def _days(table: Table, column: int, first: int) -> NDArray[np.int64]:
-    days = _numbers(table, column) - first
-    wrong = ~(np.abs(days * 86_400.0) < LATEST_S)
-    if wrong.any():
-        row = int(np.argmax(wrong))
-        shown = _shown(table, row, column)
-        raise LogError(f"{table.where(row, column)}: {shown!r} is no day; mend or delete the line")
-    whole = np.floor(days)
-    return whole.astype(np.int64) * DAY_NS + np.rint((days - whole) * DAY_NS).astype(np.int64)
-
-
-def _no_gaps(table: Table, column: int, t: NDArray[np.int64]) -> None:
-    none = t == np.iinfo(np.int64).min
-    if none.any():
-        row = int(np.argmax(none))
-        raise LogError(f"{table.where(row, column)}: '' is no time; delete the line")
-
-
-def _read_dates(table: Table, columns: Sequence[int], form: str | None) -> table_stamps.Stamps:
-    """Stamps as written [ns], and whether the texts stated their zone."""
-    texts = join_columns(table, columns, form)
-    if form is None and not table_stamps.ISO.match(texts[0] if texts else ""):
-        texts = table_stamps.as_iso(texts) or texts
-    return table_stamps.stamps(texts, form) or _one_by_one(table, columns, texts, form)
-
-
-def join_columns(table: Table, columns: Sequence[int], form: str | None) -> list[str]:
-    """The texts of these columns, of each row one."""
-    parts = [_date_texts(table.columns[column].tolist()) for column in columns]
-    return [table_stamps.write_point(" ".join(words), form) for words in zip(*parts, strict=True)]
-
-
-def _date_texts(values: Sequence[Any]) -> list[str]:
-    if set(map(type, values)) == {str}:
-        return [value.strip() for value in values]
-    return [_date_text(value) for value in values]
-
-
-def _date_text(value: Any) -> str:
-    if isinstance(value, np.datetime64):
-        value = value.astype("datetime64[us]").item()
-    if isinstance(value, datetime) and value.time() == time():
-        return value.date().isoformat()
-    return str(value).strip()
-
-
-def _one_by_one(
-    table: Table, columns: Sequence[int], texts: Sequence[str], form: str | None
-) -> tuple[NDArray[np.int64], bool]:
-    """The slow way, which knows which text is none, and takes texts with and without a zone."""
-    dates = [_date(table, row, columns[-1], text, form) for row, text in enumerate(texts)]
-    aware = any(date.tzinfo for date in dates)
-    utc = (date if date.tzinfo else date.replace(tzinfo=UTC) for date in dates)
-    nanos = [(date - EPOCH) // timedelta(microseconds=1) * 1000 for date in utc]
-    late = next((row for row, one in enumerate(nanos) if abs(one) >= LATEST_S * 1e9), None)
-    if late is not None:
-        place = table.where(late, columns[-1])
-        raise LogError(f"{place}: {texts[late]!r} is out of range; mend or delete the line")
-    return np.array(nanos, np.int64), aware
-
-
-def _date(table: Table, row: int, column: int, text: str, form: str | None) -> datetime:
-    try:
-        return datetime.fromisoformat(text) if form is None else datetime.strptime(text, form)
-    except ValueError as error:
-        place = table.where(row, column)
-        what = "ISO-8601 date" if form is None else f"date of the form {form}"
-        raise LogError(f"{place}: {text!r} is no {what}; mend or delete the line") from error
-
-
-def _localized(table: Table, column: int, t: NDArray[np.int64], zone: str) -> NDArray[np.int64]:
-    """Local stamps to UTC; LogError for those a change of the clocks makes none or two of."""
-    import pandas as pd
-
-    local = pd.DatetimeIndex(t.astype("datetime64[ns]"))
-    known = local.tz_localize(zone, ambiguous="NaT", nonexistent="NaT")
-    doubtful = np.asarray(known.isna())
-    if doubtful.any():
-        row = int(np.argmax(doubtful))
-        raise LogError(
-            f"{table.where(row, column)}: {local[row]} is no one instant in {zone}, where the "
-            "clocks are changed then; export the time in UTC, or cut the hour out"
-        )
-    return known.tz_convert("UTC").tz_localize(None).as_unit("ns").to_numpy().astype(np.int64)

@@ -1,0 +1,44 @@
+"""What is found about the channels of a trial, as data; what no fit could live with is refused."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from trialid.errors import AlignmentError
+
+Severity = Literal["error", "remark"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something about the channels that a user should know.
+
+    Parameters
+    ----------
+    kind
+        `unit`, `scale`, `unrelated`, `sign`, `side`, `lag`, `differ`, `heel` or `still`.
+    severity
+        `error` where no fit could be right, else `remark`.
+    about
+        Quantities or channels it is about.
+    sentence
+        In words, one line.
+    evidence
+        Its figures, in SI.
+    mend
+        The line of a pipeline's signal that would mend it, where it is known.
+    """
+
+    kind: str
+    severity: Severity
+    about: tuple[str, ...]
+    sentence: str
+    evidence: Mapping[str, float] = field(default_factory=dict)
+    mend: str | None = None
+
+
+def refuse(findings: Sequence[Finding], where: str) -> None:
+    """AlignmentError for the first finding that is an error."""
+    for one in findings:
+        if one.severity == "error":
+            raise AlignmentError(f"{where}: {one.sentence}")

@@ -1,0 +1,78 @@
+"""How one trial came out at the end of a search: what it was simulated with, and its error."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trialid.arrays import Mask, Vector
+from trialid.identification.output_error import Problem, compared_mask, linearise, scores
+from trialid.identification.own_start import own_start, starts_of
+from trialid.identification.weighing import level_of
+from trialid.simulation.integrate import Departure, Response, respond
+from trialid.trial import Trial
+
+
+@dataclass(frozen=True)
+class Score:
+    """How one trial came out: eps_RMSn of each output, and the simulated response."""
+
+    trial: Trial
+    response: Response
+    compared: Mask
+    eps_rmsn: Mapping[str, float]
+    counts: Mapping[str, int]
+
+
+def pool_errors(scored: Sequence[Score]) -> dict[str, float]:
+    """Root mean square of each output over all compared samples of these trials."""
+    squares, counts = dict[str, float](), dict[str, int]()
+    for score in scored:
+        for c, eps in score.eps_rmsn.items():
+            squares[c] = squares.get(c, 0.0) + eps**2 * max(score.counts[c], 1)
+            counts[c] = counts.get(c, 0) + max(score.counts[c], 1)
+    return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
+
+
+def of_trial(
+    problem: Problem, theta: Vector, trial: Trial, level: float | None = None
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Parameters and initial states with which a fit simulates one trial.
+
+    A trial to check has nothing of its own but its start and its current, if the fit leaves them
+    free too: sensors keep the mean of the fitted ones. `level` is the fit's, else found.
+    """
+    if trial.use == "fit":
+        place = [t.name for t in problem.trials].index(trial.name)
+        values = problem.values(theta, place)
+        return values, starts_of(values)
+    values = _mean_values(problem, theta)
+    compared = compared_mask(trial, problem.simulator)
+    if level is None:
+        point = linearise(problem, theta)
+        level = 0.0 if isinstance(point, Departure) else level_of(problem, point[0])
+    own = own_start(problem, trial, compared, values, level)
+    return values | {n: own[n] for n in own if n in values}, starts_of(own)
+
+
+def score_trial(problem: Problem, theta: Vector, trial: Trial, level: float) -> Score:
+    """Simulate one trial with the fitted parameters."""
+    compared = compared_mask(trial, problem.simulator)
+    values, start = of_trial(problem, theta, trial, level)
+    response = respond(problem.simulator, trial, values, start, sensitivities=False)
+    if response.departure is None:
+        eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
+    else:  # what was lost has no error, however good its beginning
+        compared = compared & np.isfinite(response.y)
+        eps = dict.fromkeys(problem.outputs, np.inf)
+    counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
+    return Score(trial, response, compared, eps, counts)
+
+
+def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:
+    """Shared parameters, and the mean over the trials of what belongs to a sensor."""
+    gathered: dict[str, list[float]] = {}
+    for x, a in zip(problem.unknowns, theta, strict=True):
+        if not x.column.endswith("(0)"):
+            gathered.setdefault(x.column, []).append(float(a))
+    return {n: float(np.mean(a)) for n, a in gathered.items()}
