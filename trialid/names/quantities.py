@@ -175,6 +175,25 @@ SIGNALS = _table(
         Quantity(
             "cog", "COG", "rad", "deg", "course over ground, clockwise from north", -1, angle=True
         ),
+        Quantity(
+            "a_x",
+            "a_x",
+            "m/s^2",
+            "m/s^2",
+            "what an accelerometer at the origin feels ahead, du/dt - v r",
+            length=-1,
+            speed=2,
+        ),
+        Quantity(
+            "a_y",
+            "a_y",
+            "m/s^2",
+            "m/s^2",
+            "what one feels to starboard, gravity with it: dv/dt + u r - g sin(phi)",
+            mirror=-1,
+            length=-1,
+            speed=2,
+        ),
         Quantity("lat", "lat", "rad", "deg", "latitude by WGS 84, positive north"),
         Quantity("lon", "lon", "rad", "deg", "longitude by WGS 84, positive east", angle=True),
         Quantity("U", "U", "m/s", "m/s", "speed through the water sqrt(u^2 + v^2)", speed=1),

@@ -42,7 +42,8 @@ def readings(
     recorded |= {a: rates.get(a[0], 0.0) for a in ACCELERATIONS}
     recorded |= {f"{a}_dot": rates[a] for a in POSITION if a in rates}
     signals = signals_now(model, recorded, theta)
-    measured = {**recorded, "U": signals["U"]} | dict.fromkeys(_from_reference(model), 0.0)
+    measured = {**recorded, "U": signals["U"]} | _felt(recorded, rates)
+    measured |= dict.fromkeys(_from_reference(model), 0.0)
     delay, lags = dict[str, Number](), dict[str, tuple[Number, ...]]()
     for effect in model.effects:
         if not set(SENSORS) & set(effect.forms):
@@ -58,6 +59,17 @@ def readings(
                 case Lagged():
                     lags |= {n: (*lags.get(n, ()), x) for n, x in part.items()}
     return Readings(measured | _course(measured), delay, lags)
+
+
+def _felt(recorded: Mapping[str, Number], rates: Mapping[str, Number]) -> dict[str, Number]:
+    """What accelerometers at the origin feel, gravity with it; of one elsewhere an effect tells."""
+    felt = dict[str, Number]()
+    if {"v", "r"} <= {*recorded} and "u" in rates:
+        felt["a_x"] = rates["u"] - recorded["v"] * recorded["r"]
+    if {"r", "phi"} <= {*recorded} and "v" in rates:
+        turning = recorded["u"] * recorded["r"]
+        felt["a_y"] = rates["v"] + turning - recorded["g"] * sin(recorded["phi"])
+    return felt
 
 
 def _course(measured: Mapping[str, Number]) -> dict[str, Number]:

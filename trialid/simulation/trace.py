@@ -205,8 +205,17 @@ def _jacobian(
     return {k: J[k] for k in sorted(J) if not J[k].is_constant(0.0)}
 
 
+NEEDS_MOTION: Final = {
+    "a_x": "; it needs u simulated, v and r",
+    "a_y": "; it needs v simulated, r and phi: an accelerometer feels gravity in a heel",
+}
+
+
 def _output(graph: Graph, model: ShipModel, measured: Mapping[str, object], name: str) -> Node:
     if name not in measured:
         states = ", ".join(model.all_states)
-        raise EffectError(f"output {name!r} is not simulated; simulated states: {states}")
+        raise EffectError(
+            f"output {name!r} is not simulated; simulated states: {states}"
+            f"{NEEDS_MOTION.get(name, '')}"
+        )
     return lift(graph, measured[name])
