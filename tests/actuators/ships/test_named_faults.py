@@ -82,8 +82,8 @@ def test_a_fault_of_pods_screws_and_tunnel_is_named(fault: Fault) -> None:
     [
         pytest.param("cargo", "screw stuck", marks=pytest.mark.study(turn=0)),
         pytest.param("ferry", "pod's revolutions stuck", marks=pytest.mark.study(turn=1)),
-        pytest.param("supply", "screw stuck", marks=pytest.mark.study(turn=1)),
-        pytest.param("supply", "bow stuck", marks=pytest.mark.study(turn=0)),
+        pytest.param("supply", "screw stuck", marks=pytest.mark.study(turn=2)),
+        pytest.param("supply", "bow stuck", marks=pytest.mark.study(turn=3)),
     ],
 )
 def test_revolutions_that_do_not_change_are_named_on_their_side(ship: str, words: str) -> None:

@@ -142,7 +142,7 @@ def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progres
     """The model with a fault, fitted; None where that fails or the fault is at its range's end."""
     progress(f"trying {effect.name}", 0.68)
     start = {n: p.start if effect.is_whole else 0.9 * p.high for n, p in effect.parameters.items()}
-    model = (fit.model + effect).with_values(start)
+    model = (_as_begun(fit) + effect).with_values(start)
     try:
         fitted = _arrived(fit, trials, model, effect)
     except TrialidError:  # it cannot act on this record: it is not the one
@@ -162,6 +162,12 @@ def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progres
         carried=carried,
     )
     return Refit(candidate, fitted, carried)
+
+
+def _as_begun(fit: Fit) -> ShipModel:
+    """The model where its own search began: far from a fault it may have ended anywhere."""
+    shared = {x.column: x.start for x in fit.problem.unknowns if x.trial is None}
+    return fit.model.with_values(shared)
 
 
 def _arrived(fit: Fit, trials: Sequence[Trial], model: ShipModel, effect: Effect) -> Fit | None:
