@@ -128,21 +128,22 @@ def test_surge_damping_comes_back_in_its_linear_and_its_quadratic_part(first: in
 @pytest.mark.study(turn="each")
 @pytest.mark.parametrize("place", range(0, 10, 2))
 def test_faults_are_named_on_their_side_and_no_other(place: int) -> None:
-    """A record of each at a turn: the name that is right, alone, and no wrong one.
+    """A record of every second at a turn: the name that is right, alone, and no wrong one.
 
     Many more, of this and other boats: `ships/fault_table.py`.
     """
+    faults = AT_EACH_TURN[place // 2 % 2 :: 2]
     right: Counter[str] = Counter()
     wrong: list[str] = []
     seed = STUDIED[place]
-    for fault in AT_EACH_TURN:
+    for fault in faults:
         found = verdict(seed, fault)
         if found.effect == effect_of(fault, seed) and len(found.family) <= 1:
             right[fault] += 1
         elif found.effect is not None:
             wrong.append(f"{seed} {fault or 'nothing'}: {found.sentence}")
     print(dict(right), wrong)
-    assert sum(right.values()) >= 0.85 * len(AT_EACH_TURN)
+    assert sum(right.values()) >= len(faults) - 1
     assert wrong == []
 
 

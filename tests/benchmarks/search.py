@@ -31,6 +31,7 @@ from trialid.effects import CATALOGUE
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
+from trialid.identification.weighing import Weighing, colour_of
 from trialid.ship.model import ShipModel
 from trialid.ship.particulars import read_ship
 from trialid.threads import one_thread
@@ -43,7 +44,7 @@ SETTINGS: Final = Settings(
     nuisance=("initial_state", "bias", "rudder_offset", "delay"),
 )  # fmt: skip
 SAME: Final = 0.001
-"""Relative difference of the error within which two searches ended at one optimum."""
+"""Relative difference of the error, with what priors add, within which two ends are one optimum."""
 GM_WRONG: Final = 1.5
 LATEST: Final = 2.9  # s; bounds of delays are at 3
 ZERO_OFF: Final = np.deg2rad(4.6)
@@ -110,11 +111,20 @@ def examine(seed: int) -> Ended:
     other = from_truth(drawn, model, fit)
     found = why_no_fit(fit)
     return Ended(
-        drawn, fit.eps_rmsn <= (1.0 + SAME) * other.eps_rmsn, found.reason if found else "",
+        drawn, greater(fit, other) <= SAME, found.reason if found else "",
         fit.eps_rmsn, fit.eps_check or np.nan, absurd(drawn, fit), fit.value("GM"),
         tuple(values["GM"] for values in fit.rivals),
         seconds, fit.agreeing[1],
     )  # fmt: skip
+
+
+def greater(fit: Fit, other: Fit) -> float:
+    """Share by which one error is the greater, what priors add to it counted as a search does."""
+    parts = Weighing(fit.problem).parts
+    colour = colour_of(fit.residual, parts)
+    weighing, rows = Weighing(fit.problem, None, colour), len(fit.residual) / colour
+    pulls = weighing.pulls(fit.theta) - weighing.pulls(other.theta)
+    return float(np.sqrt(fit.V / other.V) * np.exp(0.5 * pulls / rows)) - 1.0
 
 
 def absurd(drawn: Drawn, fit: Fit) -> tuple[str, ...]:

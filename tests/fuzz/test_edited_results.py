@@ -36,7 +36,7 @@ speed = 7.0
 delta = {{ channel = "d", unit = "deg", positive = "starboard" }}
 r = {{ channel = "r", unit = "deg/s" }}
 """
-EACH_TIME, STUDY = 150, 4_000
+EACH_TIME, STUDY = 150, 2_000
 
 
 @pytest.fixture(scope="module")

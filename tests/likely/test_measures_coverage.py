@@ -9,7 +9,7 @@ from trialid.design.following import vessel_of
 from trialid.design.standard import predict
 from trialid.effects import CATALOGUE
 
-RECORDS, FIRST = 24, 30000
+RECORDS, FIRST = 16, 30000
 COUNTED = (0, 1, 3, 5, 7, 9, 13)
 """The cases of the page that are counted here: each kind of thing that may be wrong once."""
 

@@ -141,7 +141,7 @@ def without_python_path() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=1)
 def test_a_wheel_is_enough(installed: Path, tmp_path: Path) -> None:
     """In a fresh environment: demo, run, add, drop, report, start; an extra is named, and works."""
 

@@ -8,7 +8,7 @@ from trialid.diagnosis.one_standard_error import CLEARLY
 from trialid.pipeline_file import load
 from trialid.workflow.structures.compare_structures import compare_structures
 
-SEEDS = range(200, 203)
+SEEDS = range(200, 202)
 AS_GOOD = {
     "modulus": {"modulus", "cross-flow"},
     "modulus, race": {"modulus, race", "cross-flow, race"},
@@ -51,7 +51,7 @@ def test_the_true_structure_is_chosen(tmp_path, truth) -> None:
 @pytest.mark.parametrize("trials", [3, 4, 5])
 def test_it_is_chosen_with_little_noise_and_few_trials(tmp_path, trials) -> None:
     truths = list(known_truth.TRUTHS)
-    found = {(t, s): compared(tmp_path, t, s, trials, noise=0.3) for t in truths for s in SEEDS[:2]}
+    found = {(t, s): compared(tmp_path, t, s, trials, noise=0.3) for t in truths for s in SEEDS[:1]}
     wrong = {key: each.chosen for key, each in found.items() if each.chosen != key[0]}
     print(f"{trials} trials: {len(found) - len(wrong)} of {len(found)} right; else {wrong}")
     assert len(wrong) <= 0.1 * len(found)

@@ -120,7 +120,7 @@ def test_a_turn_out_of_another_manoeuvre_or_broken_off_is_none() -> None:
     assert (found_in(replace(trial, valid=lost))) == []
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=2)
 @one_thread
 def test_intervals_hold_the_truth() -> None:
     """Advance more often: a ramp tells the order better than the half sample allowed for.

@@ -19,7 +19,7 @@ from trialid.ship.model import ShipModel
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
 
-DRAWS, FIRST = 50, 7100
+DRAWS, FIRST = 35, 7100
 RATE = float(np.deg2rad(3.0))
 HULL = ("linear_hull", "linear_rudder", "linear_roll")
 FREE = ("Yv", "Nv", "Nr", "Ndelta", "GM")
@@ -95,7 +95,7 @@ def kept(model: ShipModel, seed: int) -> list[tuple[bool, bool]]:
 @pytest.mark.study(turn="each")
 @pytest.mark.parametrize("ship", [container, small_boat, naval])
 def test_a_true_ship_is_steered_as_promised(ship) -> None:
-    """Nine of ten times at the least, of 50 records: by rate and heading, overshoot, settling."""
+    """Nine of ten times at the least, of 35 records: by rate and heading, overshoot, settling."""
     found = np.array([kept(ship(), seed) for seed in range(FIRST, FIRST + DRAWS)])
     shares = found.mean(axis=0)
     print(f"{ship.__name__}: overshoot, settling {shares.round(2).tolist()} of {DRAWS} records")

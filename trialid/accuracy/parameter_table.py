@@ -260,12 +260,11 @@ def _with_rivals(row: ParameterAccuracy, rivals: Sequence[float]) -> ParameterAc
     if row.likely is None or not rivals or not row.value:
         return row
     low, high = row.likely
-    shares = [max(1.0, abs(rival / row.value)) for rival in rivals]
-    lows = [rival - share * (row.value - low) for rival, share in zip(rivals, shares, strict=True)]
-    highs = [
-        rival + share * (high - row.value) for rival, share in zip(rivals, shares, strict=True)
-    ]
-    whole = (min(low, *lows), max(high, *highs))
+    reached = [(low, high)]
+    for rival in rivals:
+        share = max(1.0, abs(rival / row.value))
+        reached.append((rival - share * (row.value - low), rival + share * (high - row.value)))
+    whole = (min(x for x, _ in reached), max(x for _, x in reached))
     wider = whole[1] - whole[0] > 2.0 * (high - low)
     return replace(row, likely=whole, widened_by=ANOTHER_GM if wider else row.widened_by)
 

@@ -53,10 +53,10 @@ FEASIBLE: Final[Mapping[str, tuple[str, Mapping[str, float]]]] = {
     "zig-zag 20/20": ("zigzag", {"angle": 20 * _D, "heading": 20 * _D}),
     "zig-zag 20/40": ("zigzag", {"angle": 20 * _D, "heading": 40 * _D}),
     "zig-zag 35/20": ("zigzag", {"angle": 35 * _D, "heading": 20 * _D}),
-    "turning circle 15": ("turning_circle", {"angle": 15 * _D, "turn": 720 * _D}),
-    "turning circle 35": ("turning_circle", {"angle": 35 * _D, "turn": 720 * _D}),
-    "pull-out from 20": ("pull_out", {"angle": 20 * _D, "turn": 120 * _D}),
-    "rolling by the rudder at 10": ("roll", {"angle": 10 * _D}),
+    "turning circle at 15 deg": ("turning_circle", {"angle": 15 * _D, "turn": 720 * _D}),
+    "turning circle at 35 deg": ("turning_circle", {"angle": 35 * _D, "turn": 720 * _D}),
+    "pull-out from 20 deg": ("pull_out", {"angle": 20 * _D, "turn": 120 * _D}),
+    "rolling by 10 deg of rudder": ("roll", {"angle": 10 * _D}),
 }
 """Tests any crew can run, tried for a proposal."""
 

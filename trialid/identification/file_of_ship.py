@@ -22,8 +22,8 @@ CLEARLY: Final = 3.0
 FEWEST: Final = 3
 LEAVES: Final = 2.0
 """Times the fit's error that the ship of a file which is not hers leaves at her best. Of 17 fits of
-two real ships by their own files, 9 of which have coefficients unlike them, the most is 1.4; three
-other ships' files left 2.6 to 6.7. Half of it refuses all, twice of it misses one of the three.
+two real ships by their own files 6 have most coefficients unlike them, and the most is 1.4; three
+other ships' files left 2.7, 3.6 and 6.7. Half of it refuses the six, twice misses two of the three.
 """
 PLACEHOLDER: Final = "PLACEHOLDER"
 """How the source of a ship file begins that says itself that it is not hers."""

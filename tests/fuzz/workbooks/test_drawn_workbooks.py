@@ -35,4 +35,4 @@ def test_some_drawn_workbooks(tmp_path):
 @pytest.mark.study(turn="each")
 @pytest.mark.parametrize("seed", range(2, 7))
 def test_many_drawn_workbooks(tmp_path, seed):
-    check(tmp_path, seed, 800)
+    check(tmp_path, seed, 400)

@@ -17,9 +17,10 @@ SHAFTS: Final = ("n", "n_p", "n_s")
 PUSHING: Final = ("thruster", "azimuth", "waterjet")
 """Kinds of actuators that drive a ship ahead."""
 ABOUT: Final = 0.2
-"""Share by which revolutions are other ones. The resistance and thrust of a ship file are known to
-15 to 40 %, so that a model's own revolutions are off by half of that, and those of the record are
-the better known; a quarter of it lost a sixth of the true numbers, twice is another speed."""
+"""Share by which revolutions are other ones: those of the record are better known than the ones a
+model holds its speed by. Twelve ships whose held coefficients were off by up to 15 % had models up
+to 12 % from their revolutions. Half of it left 93 % of their numbers in their ranges, with it all
+were; twice takes the median of a pond's trials at several speeds, a third off, for her own."""
 DOUBLINGS: Final = 60
 """Of a thousandth, until an order is found that holds the speed."""
 

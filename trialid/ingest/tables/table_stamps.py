@@ -61,15 +61,20 @@ def _order(dates: Sequence[re.Match[str]]) -> str | None:
     first = dates[0]
     if any(one["mark"] != first["mark"] for one in dates):
         return None
-    if len(first["first"]) == 4:
-        return "ymd"
-    if first["mark"] == "." or first["second"].isalpha():
-        return "dmy"
+    if (written := _order_as_written(first)) is not None:
+        return written
     day_first = any(int(one["first"]) > 12 for one in dates)
     month_first = any(one["second"].isdigit() and int(one["second"]) > 12 for one in dates)
     if day_first == month_first:
         return None
     return "dmy" if day_first else "mdy"
+
+
+def _order_as_written(one: re.Match[str]) -> str | None:
+    """The order that a date shows by itself; None where other dates must say it."""
+    if len(one["first"]) == 4:
+        return "ymd"
+    return "dmy" if one["mark"] == "." or one["second"].isalpha() else None
 
 
 def _order_of(one: re.Match[str], order: str) -> str | None:
@@ -116,11 +121,12 @@ def stamps_of_block(texts: Sequence[str], form: str | None) -> Stamps | None:
     (array([2000000000]), True)
     >>> stamps_of_block(["13/06/2026 09:12:00"], None), stamps_of_block(["2026-06-03"], None)
     (None, None)
+    >>> stamps_of_block(["13-06-2026 09:12:00"], None)
     """
     plain: list[str] | None = [write_point(text.strip(), form) for text in texts]
     if form is None and plain and not ISO.match(plain[0]):
-        alike = "/" not in plain[0] or plain[0][:4].isdigit()
-        plain = as_iso(plain) if alike else None
+        first = DATED.fullmatch(plain[0])
+        plain = as_iso(plain) if first and _order_as_written(first) else None
     if not plain or (form is None and len(plain[0]) <= len("2026-06-03")):
         return None
     return stamps(plain, form)

@@ -53,11 +53,11 @@ def fit_whole(structure: Structure, trials: Sequence[Trial]) -> KeptFit:
         fit = identify(trials, structure.model, structure.settings)
     except TrialidError as error:
         return KeptFit(why_not=str(error))
+    if unlike := most_are_unlike(fit):
+        return KeptFit(why_not=unlike)
     own = replace(fit, scores=tuple(s for s in fit.scores if s.trial.use == "fit"))
     if trouble := why_no_fit(own):
         return KeptFit(why_not=trouble.reason)
-    if unlike := most_are_unlike(fit):
-        return KeptFit(why_not=unlike)
     shared = [i for i, x in enumerate(fit.problem.unknowns) if x.trial is None]
     check = fit.eps_check
     return KeptFit(
