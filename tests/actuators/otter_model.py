@@ -99,8 +99,8 @@ def record(
     Parameters
     ----------
     fault
-        `weak` (a fifth of its thrust is gone), `half`, `dead`, `reversed`, `late` (0.5 s) of the
-        thruster on this side, or both `exchanged`, `saturated` (at 0.65 of full) or with a
+        `weak` (a fifth of its thrust is gone), `half`, `dead`, `stuck`, `reversed`, `late` (0.5 s)
+        of the thruster on this side, or both `exchanged`, `saturated` (at 0.65 of full) or with a
         `deadband` (of 0.05); the log shows the orders all the same.
     quadratic
         Xuu [kg/m] in her truth beside the published linear resistance.
@@ -111,6 +111,8 @@ def record(
     weak[side] = {"weak": 0.2, "half": 0.5, "dead": 1.0}.get(fault, 0.0)
     if fault == "reversed":
         acting[:, side] *= -1.0
+    elif fault == "stuck":
+        acting[:, side] = stuck_at(seed)
     elif fault == "late":
         acting[5:, side], acting[:5, side] = orders[:-5, side], 0.0
     elif fault == "exchanged":
@@ -126,6 +128,12 @@ def record(
     units = {"u": "m/s", "r": "rad/s"} | dict.fromkeys(ORDERED, "rad/s")
     own = dict.fromkeys(ORDERED, "rad/s")
     return Trial.from_arrays(f"otter {seed}", t, given, units=units, own=own)
+
+
+def stuck_at(seed: int) -> float:
+    """Revolutions [rad/s] that a stuck thruster keeps, ahead or astern, 30 to 90 % of full."""
+    rng = np.random.default_rng([seed, 3])
+    return float(rng.uniform(0.3, 0.9) * rng.choice([otter.N_MIN, otter.N_MAX]))
 
 
 def _motions(sailed: otter.Sailed) -> dict[str, Vector]:

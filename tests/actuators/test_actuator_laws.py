@@ -244,19 +244,6 @@ def test_coefficients_of_a_file_with_port_rudders_are_turned_over_for_several_to
     assert model.value("Xdd") == -0.002
 
 
-@pytest.mark.parametrize("kept", [0.0, 0.5, 0.8])
-def test_what_is_weak_keeps_its_share_of_the_force(kept: float) -> None:
-    """Whatever drives it: also where the thrust goes with the square."""
-    for name in ("left", "pod", "jet", "bow", "rudder_port"):
-        push = next(e for e in EFFECTS.values() if name in e.signals and e.name.endswith("s"))
-        at = values(push, 3)
-        [moved] = EFFECTS[f"{name}_weak"]({name: at[name], f"weak_{name}": 1.0 - kept})
-        still = push(at | {s: 0.0 for s in push.signals if s == name})[0]
-        whole, less = push(at)[0], push(at | {name: at[name] + moved[name]})[0]
-        expected = [c + kept * (b - c) for b, c in zip(whole, still, strict=True)]
-        assert list(less) == pytest.approx(expected, rel=1e-6, abs=1e-4 * abs(whole.N))
-
-
 def test_the_jet_of_a_tunnel_sucks_at_the_hull_as_she_moves() -> None:
     """By hand: Fr times a share of the push, whether ahead or astern; no moment, none at rest."""
     effect, (one,) = EFFECTS["tunnels_hull"], [a for a in SHIP.actuators if a.kind == "tunnel"]
@@ -270,18 +257,13 @@ def test_the_jet_of_a_tunnel_sucks_at_the_hull_as_she_moves() -> None:
     assert effect(at | {"u": 0.0})[0] == pytest.approx((0.0, 0.0, 0.0, 0.0))
 
 
-def test_reversed_and_exchanged_do_what_they_say() -> None:
-    [moved] = EFFECTS["left_reversed"]({"left": 4.0, "reversed_left": 2.0})
-    assert 4.0 + moved["left"] == pytest.approx(-4.0)
-    [moved] = EFFECTS["rudder_port_rudder_stbd_exchanged"](
-        {"rudder_port": 0.1, "rudder_stbd": -0.3, "swap_rudder_port_rudder_stbd": 1.0}
-    )
-    assert 0.1 + moved["rudder_port"] == pytest.approx(-0.3)
-    assert -0.3 + moved["rudder_stbd"] == pytest.approx(0.1)
-
-
-def test_compiled_and_numpy_agree_on_eight_actuators() -> None:
+@pytest.mark.parametrize("fault", [(), ("pod_2_revolutions_stuck", "bow_1_stuck", "stbd_stuck")])
+def test_compiled_and_numpy_agree_on_eight_actuators(fault) -> None:
     model, free, trial = eight_actuators()
+    own = actuator_effects(model.ship)
+    for name in fault:
+        put = {n: -0.3 if n.startswith("held") else 0.9 for n in own[name].parameters}
+        model, free = (model + own[name]).with_values(put), (*free, *put)
     values = {n: model.value(n) for n in free}
     start = {"u": 5.0, "v": 0.1, "r": 0.001}
     found = [
@@ -290,6 +272,7 @@ def test_compiled_and_numpy_agree_on_eight_actuators() -> None:
     ]
     assert found[0].departure is None
     assert np.ptp(found[0].y[:, 1]) > 0.001
+    assert all(np.ptp(found[0].S[..., free.index(n)]) > 0.0 for n in free)
     for compiled, plain in zip(*((one.y, one.S) for one in found), strict=True):
         size = np.abs(plain).max(axis=0)
         assert np.all(np.abs(compiled - plain) <= 1e-9 * size + 1e-300)

@@ -9,14 +9,16 @@ import numpy as np
 import otter
 import otter_model
 import pytest
-from otter_model import CANDIDATES, TRUTH, fitted, record
+from otter_model import CANDIDATES, SHIP, TRUTH, fitted, record, stuck_at
 from typical import distances
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.diagnosis.verdict import Verdict
+from trialid.effects.actuators.instances import typical_drive
 
 STUDIED = range(1000, 1040)
-FAULTS = ("", "weak", "half", "dead", "reversed", "late", "exchanged")
+FAULTS = ("", "weak", "half", "dead", "stuck", "reversed", "late", "exchanged")
+AT_EACH_TURN = [fault for fault in FAULTS if fault != "stuck"]
 SIDES = ("left", "right")
 
 
@@ -78,6 +80,18 @@ def test_a_dead_thruster_is_named_although_nothing_fits_without_it() -> None:
 
 
 @pytest.mark.study(turn=4)
+def test_a_thruster_that_keeps_its_revolutions_is_named_and_where_it_keeps_them() -> None:
+    """88 rad/s astern, within 2 %."""
+    few = {n: e for n, e in CANDIDATES.items() if e.bound_by_meaning}
+    fit = fitted(record(1107, "stuck", side=1, duration=60.0))
+    found = diagnose(fit, DiagnoseSettings(candidates=few))
+    assert found.verdict.family == ("right_stuck",)
+    share = found.refits[0].fit.value("held_right")
+    kept = np.sign(share) * np.sqrt(abs(share)) * typical_drive(SHIP, "revolutions")
+    assert kept == pytest.approx(stuck_at(1107), rel=0.02)
+
+
+@pytest.mark.study(turn=4)
 def test_a_weak_thruster_is_fitted_where_slopes_foretell_more_than_blocks_left_out() -> None:
     """It leaves 0.029 of 0.129; by blocks it was no candidate, and a lever arm had the name."""
     assert verdict(60012, "weak").family == ("left_weak",)
@@ -118,7 +132,7 @@ def test_faults_are_named_on_their_side_and_no_other(place: int) -> None:
 
     Many more, of this and other boats: `ships/fault_table.py`.
     """
-    faults = list(FAULTS)[place // 2 % 2 :: 2]
+    faults = AT_EACH_TURN[place // 2 % 2 :: 2]
     right: Counter[str] = Counter()
     wrong: list[str] = []
     seed = STUDIED[place]

@@ -146,6 +146,15 @@ def test_blocks_that_agree_are_apart_although_one_holds_most_of_the_error():
     assert as_good(fits, [*fits[:5], 3.28])  # one block alone may be chance
 
 
+def test_six_blocks_of_six_agree_although_two_of_them_differ_by_far_more_than_four():
+    """A weak screw against terms of another shape, which fit four blocks hardly worse."""
+    weak = [2301.0, 2659.0, 2554.0, 2564.0, 2285.0, 2262.0]
+    bent = [3484.0, 2956.0, 2725.0, 2770.0, 2475.0, 3768.0]
+    assert lead_in_errors(weak, bent) < 2.57
+    assert not as_good(weak, bent)
+    assert as_good(weak, [*bent[:3], 2500.0, *bent[4:]])  # five of six may be chance
+
+
 def test_slopes_are_believed_where_that_of_the_named_effect_foretold_its_fall():
     by_slope = refit("by_slope", 0.55, 0.07, wobble=0.3)
     believed = refit("named", 0.50, 0.07, family=("twin",))
@@ -159,7 +168,7 @@ def test_slopes_are_believed_where_that_of_the_named_effect_foretold_its_fall():
     assert rivals(named, ranking, [named]) == ("twin",)
 
 
-@pytest.mark.parametrize(("gap", "good"), [(1.5, True), (2.4, True), (2.7, False)])
+@pytest.mark.parametrize(("gap", "good"), [(1.5, True), (2.2, True), (2.7, False)])
 def test_two_lists_differ_by_student_s_97_5_per_cent(gap, good):
     """Six blocks: 2.57 standard errors."""
     one = np.array(BEFORE)

@@ -60,7 +60,7 @@ def mask_all(
     """
     left, remarks = [], []
     for one, source, place in zip(series, sources, places, strict=True):
-        zero = 0.0 if source.offset == 0.0 else np.nan
+        zero = 0.0 if source.offset == 0.0 and source.curve is None else np.nan
         kept, found = mask_faults(one, grid, keep.get(source.quantity, ()), zero, place)
         left.append(kept)
         remarks += found

@@ -27,9 +27,16 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     channel = channel or find(source.channel, recordings, where)
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
     t = channel.t - round(source.delay * 1e9)
-    y = sensor_values(channel.y)
-    value = (source.gain * y + source.offset) * factor
+    value = _read(source, sensor_values(channel.y)) * factor
     return Series(quantity, t, value, channel.clock, channel.received)
+
+
+def _read(source: SignalSource, y: Vector) -> Vector:
+    """The signal in its own unit, from the logged numbers."""
+    if source.curve is None:
+        return source.gain * y + source.offset
+    logged, signal = np.transpose(source.curve)
+    return np.interp(y, logged, signal, left=np.nan, right=np.nan)
 
 
 def sensor_values(y: Vector) -> Vector:
@@ -64,16 +71,17 @@ def _side(source: SignalSource) -> float:
 
 
 def _unit(source: SignalSource, channel: Channel, quantity: Quantity, where: str) -> str:
-    """The one unit that pipeline and log agree on."""
-    stated = source.unit or channel.unit
+    """The one unit that pipeline and log agree on; a curve's is the pipeline's alone."""
+    logged = channel.unit if source.curve is None else None
+    stated = source.unit or logged
     if stated is None:
         raise AlignmentError(
             f"{where}: neither the log nor the pipeline states the unit of {channel.name!r}; "
             f'add unit = "{quantity.shown}" or whatever it is in'
         )
-    if source.unit and channel.unit and not _same(source.unit, channel.unit, quantity, where):
+    if source.unit and logged and not _same(source.unit, logged, quantity, where):
         raise AlignmentError(
-            f"{where}: the log states {channel.unit!r} for {channel.name!r}, the pipeline "
+            f"{where}: the log states {logged!r} for {channel.name!r}, the pipeline "
             f"{source.unit!r}; remove unit if the log is right, correct the log's header if not"
         )
     return stated

@@ -44,6 +44,9 @@ class SignalSource:
         How much later than the motion the sensor stamps it [s].
     gain, offset
         The signal is gain times the logged number plus offset, in `unit`.
+    curve
+        In their place points of logged number and signal, straight lines between them, in `unit`;
+        beyond the ends the signal is not known.
     combine
         "mean" where the quantity is the mean of several sources, each with this; else None.
     of
@@ -58,6 +61,7 @@ class SignalSource:
     delay: float = 0.0
     gain: float = 1.0
     offset: float = 0.0
+    curve: tuple[tuple[float, float], ...] | None = None
     combine: Literal["mean"] | None = None
     of: Quantity | None = None
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
@@ -110,7 +110,8 @@ def diagnose(
     asked = settings or DiagnoseSettings()
     trials = [s.trial for s in fit.scores]
     before, ranking, augmented = examine_fit(fit, asked, progress)
-    if faults := gross_faults(fit, trials, asked.candidates, progress):
+    by_noise = partial(_leaves_noise, asked=asked)
+    if faults := gross_faults(fit, trials, asked.candidates, progress, by_noise):
         return _gross(fit, before, augmented, faults, asked)
     if (failed := why_no_fit(fit)) is not None:
         return _no_fit(fit, before, augmented, failed)
@@ -153,7 +154,7 @@ def _whole(
         ranking,
         others=refits,
         progress=progress,
-        leaves_noise=lambda found: _leaves_noise(found, asked),
+        leaves_noise=partial(_leaves_noise, asked=asked),
     )
 
 

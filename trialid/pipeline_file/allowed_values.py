@@ -1,6 +1,7 @@
 """What numbers, names and texts of a file may be, each checked where it stands."""
 
 from datetime import datetime
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, AllowInfNan, Field, Strict
@@ -43,6 +44,16 @@ def not_zero(number: float) -> float:
     return number
 
 
+def _through_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+    """Give a curve that tells one value for each logged number, and not the same for all."""
+    logged = [x for x, _ in points]
+    if any(after <= x for x, after in pairwise(logged)):
+        raise ValueError("the logged numbers must rise from point to point; write [logged, signal]")
+    if len({y for _, y in points}) < 2:
+        raise ValueError("two points or more of different signals make a curve")
+    return points
+
+
 def _countable(period: float) -> float:
     if period < 1e-12:
         raise ValueError(f"{period:g} s are less than any clock tells apart")
@@ -70,6 +81,7 @@ Period = Annotated[Positive, Field(le=1e6), AfterValidator(_countable)]
 """So that samples can be counted; whether there are too many or too few is said with the record."""
 Factor = Annotated[Number, Field(ge=-1e15, le=1e15)]
 """Of counts of any width to a unit; beyond, the square of a value overflows in a sum."""
+Curve = Annotated[tuple[tuple[Factor, Factor], ...], AfterValidator(_through_points)]
 Whole = Annotated[int, Strict(), Field(ge=0)]
 Unit = Annotated[str, AfterValidator(_unit_text)]
 Names = tuple[str, ...]

@@ -84,10 +84,10 @@ def _signal_problems(
             if not own:
                 yield dotted_key(*steps, name), f"unknown quantity; {nearest_signal(name, known)}"
                 continue
-            for key, words in _channel_problems(source, Quantity(name, name, "1", "1", name)):
+            for key, words in _source_problems(source, Quantity(name, name, "1", "1", name)):
                 yield dotted_key(*steps, name, key), words
             continue
-        for key, words in _channel_problems(source, known[name]):
+        for key, words in _source_problems(source, known[name]):
             yield dotted_key(*steps, name, key), words
         if trouble := _side_trouble(known[name], source.positive):
             yield dotted_key(*steps, name, "positive"), trouble
@@ -107,6 +107,12 @@ def nearest_signal(name: str, known: Quantities = SIGNALS) -> str:
     return nearest(name, known)
 
 
+def _source_problems(source: SignalSource, quantity: Quantity) -> Iterator[Problem]:
+    """Which key says wrongly what the signal is read from and how, and why."""
+    yield from _channel_problems(source, quantity)
+    yield from _curve_problems(source)
+
+
 def _channel_problems(source: SignalSource, quantity: Quantity) -> Iterator[Problem]:
     """Which key says wrongly what the signal is read from, and why."""
     if not source.names:
@@ -122,6 +128,16 @@ def _channel_problems(source: SignalSource, quantity: Quantity) -> Iterator[Prob
         yield "combine", 'missing; write combine = "mean" where the channels measure the same'
     elif quantity.name in POSITIONS:
         yield "channels", "two antennas stand in two places; take one"
+
+
+def _curve_problems(source: SignalSource) -> Iterator[Problem]:
+    """What stands beside a curve that says the same, and what it needs."""
+    if source.curve is None:
+        return
+    if (source.gain, source.offset) != (1.0, 0.0):
+        yield "curve", "gain or offset is given too; the curve says it all, leave them out"
+    if source.unit is None:
+        yield "unit", "missing; write the unit of the second number of each point of the curve"
 
 
 def _side_trouble(quantity: Quantity, positive: str | None) -> str:

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, Pri
 
 from trialid.pipeline_file.allowed_values import (
     Bounds,
+    Curve,
     Delay,
     Factor,
     Fault,
@@ -53,6 +54,10 @@ class SignalSource(Section):
     """What the logged number is multiplied by, in the channel's unit."""
     offset: Factor = 0.0
     """What is added after that, in the channel's unit."""
+    curve: Curve | None = None
+    """In place of `gain` and `offset`: points `[logged number, signal]`, straight lines between
+    them, in `unit`, as of a motor's thrust over its pulse width; beyond its ends nothing is known.
+    """
     positive: Literal["starboard", "port"] | None = None
     """The side the channel counts positive; left out: as the guide's nomenclature; a rudder's is
     never left out."""

@@ -69,6 +69,7 @@ def _sources(trial: TrialSection, known: Mapping[str, Quantity]) -> list[SignalS
             delay=s.delay,
             gain=s.gain,
             offset=s.offset,
+            curve=s.curve,
             combine=s.combine,
             of=None if name in SIGNALS else known[name],
         )

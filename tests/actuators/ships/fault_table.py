@@ -3,7 +3,7 @@
     PYTHONPATH=. python tests/actuators/ships/fault_table.py [--records 40] [--first N] [--jobs 2]
 
 writes `tests/benchmarks/results/actuator_faults.md`. A record depends on its ship, its fault and
-its seed alone. Seeds below 61000 were looked at while building; those from there on were not.
+its seed alone. Seeds below 61200 were looked at while building; those from there on were not.
 """
 
 import argparse
@@ -26,7 +26,7 @@ from at_commit import commit_of
 from trialid.diagnosis.verdict import Verdict
 
 RESULTS: Final = Path(__file__).parents[2] / "benchmarks" / "results" / "actuator_faults.md"
-FIRST: Final = 61000
+FIRST: Final = 61200
 RIGHT, WRONG = 0.95, 0.02
 """Share of records at least named right, and at most named wrong, over all."""
 

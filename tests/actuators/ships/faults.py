@@ -14,6 +14,8 @@ from trialid.effects.actuators import actuator_effects
 
 HELD: Final = (0.1, -0.07, 0.15, -0.12)
 """Angles [rad] at which something sticks, by its number."""
+TURNING: Final = (0.6, -0.5, 0.4, 0.7)
+"""Revolutions at which something sticks, over the most that are ordered ahead, by its number."""
 TWO_PODS: Final = (("pod_1", "pod_2"), ("pod_3", "pod_4"), ("pod_1", "pod_3"), ("pod_2", "pod_4"))
 
 
@@ -71,6 +73,11 @@ def _stuck_pod(now: truth.Row, who: tuple[str, ...], number: int) -> Mapping[str
     return {f"{who[0]}_angle": HELD[number]}
 
 
+def _kept(most: float) -> Callable[[truth.Row, tuple[str, ...], int], Mapping[str, float]]:
+    """Its revolutions stay at a share of the most that are ordered."""
+    return lambda _, who, number: {who[0]: most * TURNING[number]}
+
+
 def _exchanged(now: truth.Row, who: tuple[str, ...], _: int) -> Mapping[str, float]:
     one, other = who
     ends = [n.removeprefix(one) for n in now if n in (one, f"{one}_angle")]
@@ -78,6 +85,10 @@ def _exchanged(now: truth.Row, who: tuple[str, ...], _: int) -> Mapping[str, flo
     return swapped | {f"{other}{end}": now[f"{one}{end}"] for end in ends}
 
 
+SCREW_KEPT, POD_KEPT, MAIN_KEPT, BOW_KEPT = DRIVES_KEPT = tuple(
+    map(_kept, (18.0, 22.0, 10.0, 25.0))
+)
+"""Revolutions of each ship's drives that stay, whatever is ordered."""
 RUDDERS, SCREWS, MAINS, PODS = (
     tuple((n,) for n in names)
     for names in (
@@ -91,6 +102,7 @@ RUDDERS, SCREWS, MAINS, PODS = (
 FAULTS: Final = (
     Fault(ship=CARGO, words="nothing"),
     Fault(ship=CARGO, words="screw 20 % weak", called="weak", of=SCREWS, act=_lost(0.2)),
+    Fault(ship=CARGO, words="screw stuck", called="stuck", of=SCREWS, act=SCREW_KEPT),
     Fault(ship=CARGO, words="rudder stuck", called="stuck", of=RUDDERS, act=_stuck),
     Fault(
         ship=CARGO,
@@ -102,10 +114,19 @@ FAULTS: Final = (
     Fault(ship=FERRY, words="nothing"),
     Fault(ship=FERRY, words="pod 20 % weak", called="weak", of=PODS[:3], act=_lost(0.2)),
     Fault(ship=FERRY, words="pod stuck", called="stuck", of=PODS, act=_stuck_pod),
+    Fault(
+        ship=FERRY,
+        words="pod's revolutions stuck",
+        called="revolutions_stuck",
+        of=PODS,
+        act=POD_KEPT,
+    ),
     Fault(ship=FERRY, words="pod reversed", called="reversed", of=PODS, act=_turned_over),
     Fault(ship=FERRY, words="pods exchanged", called="exchanged", of=TWO_PODS, act=_exchanged),
     Fault(ship=SUPPLY, words="nothing"),
     Fault(ship=SUPPLY, words="screw 20 % weak", called="weak", of=MAINS, act=_lost(0.2)),
+    Fault(ship=SUPPLY, words="screw stuck", called="stuck", of=MAINS, act=MAIN_KEPT),
+    Fault(ship=SUPPLY, words="bow stuck", called="stuck", of=(("bow",),), act=BOW_KEPT),
     Fault(ship=SUPPLY, words="screw reversed", called="reversed", of=MAINS, act=_turned_over),
     Fault(
         ship=SUPPLY,

@@ -152,12 +152,28 @@ def lead_in_errors(one: Sequence[float], other: Sequence[float]) -> float:
     As logarithms: blocks differ in how much there is to explain, and one with most of the motion
     would hide that the others agree.
     """
-    gaps = np.log(np.maximum(other, TINY)) - np.log(np.maximum(one, TINY))
-    if len(gaps) < 2:
-        return 0.0
-    return float(gaps.mean() / max(np.std(gaps, ddof=1) / np.sqrt(len(gaps)), TINY))
+    return _in_standard_errors(_gaps(one, other)) if len(one) > 1 else 0.0
 
 
 def as_good(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Whether the second list of squared errors is not greater than the first beyond chance."""
-    return len(one) < 2 or lead_in_errors(one, other) < stdtrit(len(one) - 1, CHANCE)
+    """Whether the second list of squared errors is not greater than the first beyond chance.
+
+    By how far they lie apart, or because they agree: where two blocks of six differ by much and
+    four by little, six of six are no chance although their spread is large.
+    """
+    if len(one) < 2:
+        return True
+    gaps = _gaps(one, other)
+    apart = _in_standard_errors(gaps) >= stdtrit(len(one) - 1, CHANCE)
+    return not (apart or signed_rank_p(gaps) < 1.0 - CHANCE)
+
+
+def _gaps(one: Sequence[float], other: Sequence[float]) -> Vector:
+    """By how much the second list is the larger one, as logarithms."""
+    gaps: Vector = np.log(np.maximum(other, TINY)) - np.log(np.maximum(one, TINY))
+    return gaps
+
+
+def _in_standard_errors(gaps: Vector) -> float:
+    """Their mean over its standard error."""
+    return float(gaps.mean() / max(np.std(gaps, ddof=1) / np.sqrt(len(gaps)), TINY))

@@ -5,6 +5,7 @@ ranges keep them apart: what is weak has lost a share of its force, what is reve
 its partner may not be the stronger for it, which is how port and starboard are told apart.
 """
 
+import math
 from collections.abc import Callable, Collection, Iterator
 from itertools import combinations
 
@@ -12,12 +13,13 @@ from trialid.effects.actuators.instances import (
     GAIN_UNITS,
     NOWHERE,
     make_effect,
+    typical_drive,
     typical_gain,
 )
 from trialid.effects.actuators.push_kinds import Driven, Push, thrust
 from trialid.effects.actuators.pushes import turned
 from trialid.maths import Number, sqrt
-from trialid.ship.actuators import Actuator
+from trialid.ship.actuators import COMMANDS, Actuator
 from trialid.ship.effect import Delayed, Effect, Force, Parameter, Steered
 from trialid.ship.particulars import Ship
 
@@ -25,6 +27,7 @@ SOURCE = "by its letters: a share, a time, an angle; ranges by judgement"
 _REVERSED = Parameter(2.0, low=1.2, high=3.0, scan=(2.0,), by_meaning=True)
 _STUCK = Parameter(1.0, low=0.8, high=1.2, scan=(1.0,), by_meaning=True)
 _HELD = Parameter(0.05, "rad", low=-1.6, high=1.6, null=None)
+_HELD_THRUST = Parameter(0.25, low=-10.0, high=10.0, null=None)
 _EXCHANGED = Parameter(1.0, low=0.7, high=1.3, scan=(1.0,), by_meaning=True)
 
 
@@ -41,8 +44,8 @@ def fault_effects(ship: Ship, ordered: Collection[str]) -> Iterator[Effect]:
         yield _reversed(one)
         yield _late(one, ordered)
         yield _turned_angle(one) if one.angle else _turned_thrust(ship, one)
-        if one.angle:
-            yield _stuck(one)
+        for signal in one.signals:
+            yield _stuck(ship, one, signal)
     for one, other in combinations(ship.actuators, 2):
         if one.kind == other.kind and one.command == other.command:
             yield _exchanged(one, other)
@@ -116,21 +119,41 @@ def _turned_angle(one: Actuator) -> Effect:
     )
 
 
-def _stuck(one: Actuator) -> Effect:
-    """Its angle stays, whatever the record shows: an order, or a feedback that is torn off."""
-    stuck, held = f"stuck_{one.name}", f"held_{one.name}"
+def _stuck(ship: Ship, one: Actuator, signal: str) -> Effect:
+    """It stays, whatever the record shows: an order, or a feedback that is torn off."""
+    name = one.name if signal == one.signals[-1] else f"{one.name}_{one.command}"
+    stuck, held = f"stuck_{name}", f"held_{name}"
+    what, value, kept = _held_drive(ship, one, held) if signal == one.drive else _held_angle(held)
 
     def stays(**values: Number) -> Steered:
-        return Steered(**{one.angle: values[stuck] * (values[held] - values[one.angle])})
+        return Steered(**{signal: values[stuck] * (value(values[held]) - values[signal])})
 
     return make_effect(
         stays,
-        name=f"{one.name}_stuck",
-        equation=f"angle of {one.name} = {held} at {stuck} = 1: it does not move",
+        name=f"{name}_stuck",
+        equation=f"{what} at {stuck} = 1: {signal} does not change",
         source=SOURCE,
-        signals=[one.angle],
-        parameters={stuck: _STUCK, held: _HELD},
+        signals=[signal],
+        parameters={stuck: _STUCK, held: kept},
     )
+
+
+def _held_angle(held: str) -> tuple[str, Callable[[Number], Number], Parameter]:
+    """What is held of an angle: it itself."""
+    return f"angle = {held}", lambda angle: angle, _HELD
+
+
+def _held_drive(
+    ship: Ship, one: Actuator, held: str
+) -> tuple[str, Callable[[Number], Number], Parameter]:
+    """What is held of a drive: a share of its thrust, whose slope does not vanish at rest."""
+    full = one.limit if math.isfinite(one.limit) else typical_drive(ship, one.command)
+
+    def drive(share: Number) -> Number:
+        return full * (share if one.command == "thrust" else share / sqrt(abs(share) + NOWHERE))
+
+    unit = "" if one.command == "share" else f" {COMMANDS[one.command]}"
+    return f"thrust = {held} of that at {full:.3g}{unit}", drive, _HELD_THRUST
 
 
 def _turned_thrust(ship: Ship, one: Actuator) -> Effect:

@@ -1,0 +1,125 @@
+"""Pulse widths of two motors by their thrust curve: newtons, and gains of one come back of them.
+
+A motor gives less thrust astern, and none for 30 us to either side of its middle: no gain and
+offset says that.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_own_signals import changed
+
+from trialid import pipeline_file
+from trialid.errors import TrialidError
+from trialid.ingest import read as read_log
+from trialid.progress import silent
+from trialid.workflow.read_trials import align_trials
+from trialid.workflow.run import run
+
+CURVE = [[1100, -30.0], [1300, -9.0], [1470, 0.0], [1530, 0.0], [1700, 12.0], [1900, 42.0]]
+SHIP = """
+name = "boat"
+source = "made up"
+system = "dimensional"
+rudder_positive = "starboard"
+particulars = { L = 2.0, nabla = 0.08, rho = 1000.0, g = 9.81, U0 = 1.0 }
+mass = { m = 80.0, I_zz = 20.0, Xudot = -5.0, Nrdot = -30.0 }
+""" + "".join(
+    f'[[actuator]]\nname = "{name}"\nkind = "thruster"\nat = [0.0, {y}]\ncommand = "thrust"\n'
+    for name, y in (("left", -0.4), ("right", 0.4))
+)
+PIPELINE = f"""
+ship = "boat.toml"
+[[trial]]
+name = "pulses"
+logs = ["a.csv"]
+[signals]
+left = {{ channel = "pwm_left", unit = "N", curve = {CURVE} }}
+right = {{ channel = "pwm_right", unit = "N", curve = {CURVE} }}
+u = {{ channel = "u", unit = "m/s" }}
+r = {{ channel = "r", unit = "rad/s" }}
+[align]
+period = 0.2
+[model]
+states = ["u", "r"]
+effects = ["thrusters", "still_water_surge", "still_water_yaw"]
+[identify]
+free = ["k_ahead", "k_astern", "Xu0", "Nr0"]
+outputs = ["u", "r"]
+nuisance = ["initial_state"]
+"""
+TRUTH = {"k_ahead": 1.0, "k_astern": 1.0, "Xu0": -40.0, "Nr0": -25.0}
+
+
+def thrust(width: np.ndarray) -> np.ndarray:
+    """The curve by cases, not by a table."""
+    ahead = np.where(width < 1700, 12 / 170 * (width - 1530), 12 + 30 / 200 * (width - 1700))
+    astern = np.where(width > 1300, 9 / 170 * (width - 1470), -9 + 21 / 200 * (width - 1300))
+    return np.maximum(ahead, 0.0) + np.minimum(astern, 0.0)
+
+
+@cache
+def log() -> str:
+    """85 kg ahead and 50 kg m^2 in yaw against linear drag; widths held 4 s, from rest."""
+    rng = np.random.default_rng(31)
+    widths = np.repeat(rng.uniform(1150.0, 1880.0, (40, 2)), 20, axis=0)
+    rows, state, h = ["time_s,u,r,pwm_left [us],pwm_right [us]"], np.zeros(2), 0.04
+    damping = np.array([40.0 / 85.0, 25.0 / 50.0])
+    for k, now in enumerate(widths):
+        u, r = state + rng.normal(0.0, (0.01, 0.002))
+        rows.append(f"{0.2 * k:.1f},{u:.5f},{r:.6f},{now[0]:.4f},{now[1]:.4f}")
+        after = thrust(widths[min(k + 1, len(widths) - 1)])
+        for i in range(5):
+            left, right = thrust(now) + (after - thrust(now)) * (i + 0.5) / 5.0
+            push = np.array([(left + right) / 85.0, 0.4 * (left - right) / 50.0])
+            state = ((1.0 - 0.5 * h * damping) * state + h * push) / (1.0 + 0.5 * h * damping)
+    return "\n".join(rows) + "\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    files = {"boat.toml": SHIP, "p.toml": PIPELINE, "a.csv": log()}
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def test_gains_of_one_come_back_of_stated_thrusts(folder: Path) -> None:
+    """The log states microseconds, which a curve in newtons does not contradict."""
+    assert read_log(folder / "a.csv").channels["pwm_left"].unit == "us"
+    done = run(pipeline_file.load(folder / "p.toml"))
+    found = {row.name: row for row in done.findings.before.accuracy.physical}
+    for name, true in TRUTH.items():
+        assert abs(found[name].value - true) < 3.0 * found[name].standard_error < 0.1 * abs(true)
+
+
+def test_beyond_the_ends_of_a_curve_nothing_is_known(folder: Path) -> None:
+    """A width of 0 is that of an output switched off, not 40 newton astern."""
+    path = folder / "a.csv"
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    for k in range(300, 340):
+        rows[k] = ",".join([*rows[k].split(",")[:3], "0", "0"])
+    path.write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    [trial] = align_trials(pipeline_file.load(folder / "p.toml"), silent)
+    assert not trial.valid["left"][305:335].any()
+    assert trial.valid["left"][:299].all()
+    assert np.min(trial.signals["left"]) > -30.0
+
+
+WRONG = [
+    ("[1300, -9.0]", "[1100, -9.0]", "left.curve: the logged numbers must rise"),
+    (str(CURVE), "[[1100, 1.0], [1900, 1.0]]", "left.curve: two points or more of different"),
+    (", unit =", ", gain = 2.0, unit =", "left.curve: gain or offset is given too; the curve"),
+    ('unit = "N", curve', "curve", "left.unit: missing; write the unit of the second number"),
+    ('"N", curve', '"deg", curve', "left.unit: unit 'deg' cannot become 'N'"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "says"), WRONG)
+def test_what_is_wrong_with_a_curve_is_one_line(folder: Path, old: str, new: str, says: str):
+    path = changed(folder, "p.toml", old, new)
+    with pytest.raises(TrialidError, match=says) as caught:
+        pipeline_file.load(path)
+    assert "\n" not in str(caught.value)
