@@ -31,7 +31,7 @@ class Pace:
 def position_at(pace: Pace, now: float) -> float:
     """Where in the record a replay stands [s].
 
-    >>> at(Pace(10.0, 5.0, 100.0), 102.0)
+    >>> position_at(Pace(10.0, 5.0, 100.0), 102.0)
     25.0
     """
     if not pace.running:

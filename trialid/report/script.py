@@ -37,7 +37,7 @@ def join_modules(modules: Sequence[str]) -> str:
 
     Imports stand on one line each, exports before what they export, and no name occurs twice.
 
-    >>> joined(["export const two = 2;", 'import { two } from "./two.js";\nwrite(two);'])
+    >>> join_modules(["export const two = 2;", 'import { two } from "./two.js";\nwrite(two);'])
     'const two = 2;\nwrite(two);'
     """
     return "\n".join(_EXPORT.sub("", _IMPORT.sub("", module)) for module in modules)

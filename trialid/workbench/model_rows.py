@@ -178,7 +178,7 @@ def _value(model: ShipModel | None, name: str) -> float | None:
 def number_text(value: float) -> str:
     """A number as one types it; an open end is empty.
 
-    >>> as_typed(-0.0125), as_typed(inf)
+    >>> number_text(-0.0125), number_text(inf)
     ('-0.0125', '')
     """
     return "" if abs(value) == inf else f"{value:.12g}"

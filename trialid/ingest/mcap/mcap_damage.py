@@ -55,9 +55,9 @@ def _lost(book: Book) -> str:
 def span_words(first: int, last: int) -> str:
     """Two times [ns]: as dates where they count from 1970, else in seconds.
 
-    >>> between(1_700_000_846_000_000_000, 1_700_000_875_500_000_000)
+    >>> span_words(1_700_000_846_000_000_000, 1_700_000_875_500_000_000)
     '2023-11-14 22:27:26-22:27:55'
-    >>> between(12_000_000_000, 13_500_000_000)
+    >>> span_words(12_000_000_000, 13_500_000_000)
     '12.00-13.50 s'
     """
     if not DATED[0] <= first <= last < DATED[1]:
