@@ -449,15 +449,6 @@ WAVE = np.array([2.0, -1.0, 0.0, 0.0])
 """Orthogonal to X."""
 
 
-def test_no_start() -> None:
-    end = minimise(lambda b: None, np.array([1.0, 2.0]), np.ones(2))
-    assert end.reason == "start"
-    assert not end.converged
-    assert end.evaluations == 1
-    assert end.iterations == ()
-    np.testing.assert_array_equal(end.theta, [1.0, 2.0])
-
-
 def test_step_out_of_the_domain_is_shortened() -> None:
     refused = []
 

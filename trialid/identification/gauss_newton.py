@@ -141,9 +141,10 @@ def minimise(
 
 
 def _finite(point: Linearised) -> bool:
-    """Whether the sum of squares and every sensitivity are numbers."""
+    """Whether the sums of squares of the residual and of each sensitivity are numbers."""
     with np.errstate(over="ignore", invalid="ignore"):
-        return bool(np.isfinite(point[0] @ point[0]) and np.isfinite(point[1]).all())
+        squares = np.einsum("ij,ij->j", point[1], point[1])
+        return bool(np.isfinite(point[0] @ point[0]) and np.isfinite(squares).all())
 
 
 class _Search:
@@ -232,11 +233,9 @@ class _Search:
         with np.errstate(over="ignore", invalid="ignore"):
             point = self.evaluate(there)
             actual = 0.0 if point is None else loss - self._loss(point)
-        if point is None or not actual > 0.0:
+        if point is None or not actual > 0.0 or not _finite(point):
             return False
         fold = Fold.of(*point)
-        if not np.isfinite(fold.R).all():
-            return False
         predicted = loss - self.fold.loss(taken)
         ratio = actual / predicted if predicted > 0.0 else 0.0
         self.damping *= max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
