@@ -5,8 +5,13 @@ import threading
 import numpy as np
 import pytest
 import scipy.linalg
+from s175q import MODEL, SETTINGS, zigzag
 from threadpoolctl import threadpool_info
 
+from trialid import threads
+from trialid.identification.output_error import linearise
+from trialid.identification.problem import pose_problem
+from trialid.simulation.integrate import Departure
 from trialid.threads import one_thread
 
 PATIENCE = 20.0
@@ -57,3 +62,29 @@ def test_a_function_that_fails_gives_the_limit_back() -> None:
     with pytest.raises(ValueError, match="a fit that fails"):
         fails()
     assert _blas() == before
+
+
+@pytest.mark.parametrize("at_once", ["1", "2", "3"])
+def test_long_trials_side_by_side_give_what_they_give_in_turn(
+    at_once: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every digit of residual and gradient, and the first departure where there are several."""
+    monkeypatch.setenv("OMP_NUM_THREADS", at_once)
+    problem = pose_problem([zigzag(a) for a in (5, 10, 20)], MODEL, SETTINGS)
+    wild = problem.start * 30.0
+    alone, alone_wild = linearise(problem, problem.start), linearise(problem, wild)
+    monkeypatch.setattr(threads, "LONG", 0)
+    together = linearise(problem, problem.start)
+    assert not isinstance(alone, Departure)
+    assert not isinstance(together, Departure)
+    for a, b in zip(alone, together, strict=True):
+        assert np.array_equal(a, b)
+    assert isinstance(alone_wild, Departure)
+    assert linearise(problem, wild) == alone_wild
+
+
+def test_few_numbers_are_worked_out_as_they_are_asked_for() -> None:
+    done: list[int] = []
+    results = threads.side_by_side(lambda i: done.append(i) or i, 3, threads.LONG - 1)
+    assert next(results) == 0
+    assert done == [0]

@@ -7,6 +7,7 @@ V = 1/(2 n_y) sum_c 1/N_c sum_k (eps_c(k) / y_RMS,c)^2, which for one output and
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,7 @@ from trialid.identification.roll.roll_range import RollRange
 from trialid.simulation.by_parts import respond_by_parts
 from trialid.simulation.delay import margin
 from trialid.simulation.integrate import Departure, Response, Simulator, record_for, respond
+from trialid.threads import side_by_side
 from trialid.trial import Trial
 from trialid.trial_rows import Kind, Stretch
 
@@ -133,16 +135,23 @@ def respond_all(
     problem: Problem, theta: Vector, sensitivities: bool = True
 ) -> list[Response] | Departure:
     """Responses of all trials, or the first departure from the model's domain."""
+    count, numbers = len(problem.trials), _numbers(problem, sensitivities)
     responses = []
-    for i in range(len(problem.trials)):
-        response = _respond(problem, theta, i, sensitivities)
-        if response.departure is not None:
-            return response.departure
-        responses.append(response)
+    for one in side_by_side(partial(_respond, problem, theta, sensitivities), count, numbers):
+        if one.departure is not None:
+            return one.departure
+        responses.append(one)
     return responses
 
 
-def _respond(problem: Problem, theta: Vector, trial: int, sensitivities: bool) -> Response:
+def _numbers(problem: Problem, sensitivities: bool) -> int:
+    """How many numbers a simulation of all trials works out."""
+    equations = problem.simulator.equations
+    columns = 1 + (equations.columns if sensitivities else 0)
+    return sum(t.samples for t in problem.trials) * len(equations.states) * columns
+
+
+def _respond(problem: Problem, theta: Vector, sensitivities: bool, trial: int) -> Response:
     values, start = _values_and_start(problem, theta, trial)
     return respond(problem.simulator, problem.trials[trial], values, start, sensitivities)
 
@@ -163,17 +172,19 @@ def linearise(problem: Problem, theta: Vector, more: int = 0) -> tuple[Vector, V
     parts, scale = stretches(problem), row_scale(problem)
     residual = np.zeros(parts[-1].rows.stop + more)
     psi = np.zeros((len(residual), len(problem.unknowns)))
-    for i, trial in enumerate(problem.trials):
+
+    def fill(i: int) -> Departure | None:
         mine = [p for p in parts if p.trial == i]
         response = _fill(problem, theta, i, [psi[p.rows] for p in mine], mine, scale)
-        if response.departure is not None:
-            return response.departure
-        for part in mine:
-            eps = output_error(
-                trial.signals[problem.outputs[part.output]], response.y[:, part.output]
-            )
+        for part in mine if response.departure is None else ():
+            measured = problem.trials[i].signals[problem.outputs[part.output]]
+            eps = output_error(measured, response.y[:, part.output])
             residual[part.rows] = part.taken(eps) * scale[part.output]
-    return residual, psi
+        return response.departure
+
+    departures = side_by_side(fill, len(problem.trials), _numbers(problem, True))
+    departure = next((d for d in departures if d is not None), None)
+    return departure or (residual, psi)
 
 
 def _fill(
