@@ -20,11 +20,9 @@ from trialid.diagnosis.search.refit import (
     objection,
     worse_held_out,
 )
-from trialid.diagnosis.search.rivals import motion_left_out, rivals
+from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
-from trialid.names.quantities import SIGNALS
-from trialid.ship.effect import Effect
 
 NAMED: Final = 1.10
 """Ratio of squared errors that a further effect must be worth to be named beside the first: below
@@ -94,8 +92,6 @@ def _judged(
     if (share := _explained(fit, named, parts)) < SHARE:
         return Verdict("not in catalogue", None, (), _little(named, share, parts))
     others = rivals(named, ranking, refits)
-    if (lacking := motion_left_out(named, others, ranking)) is not None:
-        return Verdict("cannot tell", None, (), _as_well(fit, named, lacking))
     if _open(named, others, ranking, level):
         return Verdict("cannot tell", None, (), _one_of(fit, named, others))
     return _missing(fit, named, others)
@@ -246,15 +242,6 @@ def _open(
     meant = {named.candidate.effect.name, *others}
     return not meant <= {*named.candidate.family} and all(
         c.p_value >= level for c in ranking if c.effect.name in meant
-    )
-
-
-def _as_well(fit: Fit, named: Refit, lacking: Effect) -> str:
-    motion = SIGNALS[lacking.stands_for].meaning.partition(",")[0]
-    return (
-        f"with {named.candidate.effect.name} {_falls(fit, named.fit)}; the {motion} that the model "
-        f"does not have, and every ship has, may do the same: record {lacking.stands_for}, or "
-        f"`trialid add PIPELINE {lacking.name}`"
     )
 
 

@@ -6,7 +6,6 @@ from typing import Final
 from trialid.diagnosis.search.carried import Carried, as_good
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
-from trialid.ship.effect import Effect
 
 RIVAL: Final = 0.5
 """Share of the named effect's fall, as a logarithm, below which another explains too little to be
@@ -42,16 +41,6 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
     close = [c.effect.name for c in ranking if c.effect.name in good and c.allowed]
     alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
     return (*close, *alike)
-
-
-def motion_left_out(
-    named: Refit, others: Sequence[str], ranking: Sequence[Candidate]
-) -> Effect | None:
-    """What explains as much as the named effect and is there for certain: a motion left out."""
-    if named.candidate.effect.stands_for:
-        return None
-    meant = (c.effect for c in ranking if c.effect.name in others)
-    return next((effect for effect in meant if effect.stands_for), None)
 
 
 def _foretold(named: Refit) -> bool:
