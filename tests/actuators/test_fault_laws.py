@@ -49,3 +49,14 @@ def test_reversed_and_exchanged_do_what_they_say() -> None:
     )
     assert 0.1 + moved["rudder_port"] == pytest.approx(-0.3)
     assert -0.3 + moved["rudder_stbd"] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("held", [0.0, 0.6, 1.0])
+def test_a_bucket_that_sticks_stays_open_or_closed(held: float) -> None:
+    """Both ends lie inside of its range: at an end it would be taken for another fault."""
+    fault = EFFECTS["jet_bucket_stuck"]
+    [moved] = fault({"jet_bucket": 0.3, "stuck_jet_bucket": 1.0, "held_jet_bucket": held})
+    assert 0.3 + moved["jet_bucket"] == pytest.approx(held)
+    assert fault.parameters["held_jet_bucket"].low < held < fault.parameters["held_jet_bucket"].high
+    assert fault.is_whole
+    assert fault.signals == ("jet_bucket",)

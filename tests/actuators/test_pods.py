@@ -1,5 +1,7 @@
 """Struts of pods and the race of one on another: by hand, and compiled."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from boats import eight_actuators, ship_with
@@ -65,6 +67,25 @@ def test_a_pod_in_the_race_of_another_loses_thrust() -> None:
     assert pytest.approx(-1.5, rel=1e-3) == far.X
     aside = race(at | {"aft_angle": np.pi / 2.0})[0]
     assert pytest.approx((0.0, -3.0, 30.0), rel=1e-3, abs=0.01) == (aside.X, aside.Y, aside.N)
+
+
+def test_a_pod_behind_a_fixed_screw_loses_thrust_and_the_screw_does_not() -> None:
+    """As pods of contra-rotating drives: 3 m behind it, in line. By hand k_lost n n_screw.
+
+    Turned across it pushes there, so that is where thrust is lost; a screw of another command has
+    another unit, and is left out.
+    """
+    pod = Actuator(name="pod", kind="azimuth", x=-10.0, y=0.0)
+    screw = Actuator(name="screw", kind="thruster", x=-7.0, y=0.0)
+    race = actuator_effects(ship_with((pod, screw)))["azimuths_race"]
+    assert set(race.signals) == {"pod", "pod_angle", "screw"}
+    at = {"pod": 2.0, "pod_angle": 0.0, "screw": 3.0, "k_lost": 0.5}
+    assert race(at)[0] == pytest.approx((-3.0, 0.0, 0.0, 0.0), rel=1e-3)
+    across = race(at | {"pod_angle": np.pi / 2.0})[0]
+    assert pytest.approx((0.0, -3.0, 30.0), rel=1e-3, abs=1e-6) == (across.X, across.Y, across.N)
+    assert abs(race(at | {"screw": -3.0})[0].X) < 0.01
+    other = replace(screw, command="thrust")
+    assert "azimuths_race" not in actuator_effects(ship_with((pod, other)))
 
 
 def test_compiled_and_numpy_agree_on_struts_races_and_what_holds_drives_back() -> None:

@@ -95,6 +95,12 @@ def test_rudders_that_move_as_one_do_not_tell_which_of_them_is_weak() -> None:
     assert found(501, (1.0, 0.5), apart=False).effect is None
 
 
+@pytest.mark.study(turn=2)
+def test_a_stuck_rudder_is_named_where_its_ship_looks_like_another() -> None:
+    """Four coefficients of 0.04 to 0.5 of the file's, and an error of 0.30: her file was blamed."""
+    assert found(73100, stuck=0).family == ("port_stuck",)
+
+
 @pytest.mark.study(turn=3)
 def test_one_rudder_half_as_effective_is_named_with_its_side() -> None:
     """Forty records moved apart, half of them healthy; the side that is right, and no other."""

@@ -6,12 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from trialid.diagnosis import left_out_motion
+from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import Carried, as_good, lead_in_errors
 from trialid.diagnosis.search.completeness import Completeness, _Search
-from trialid.diagnosis.search.refit import Refit, best_of
+from trialid.diagnosis.search.refit import NOT_ARRIVED, Refit, best_of
 from trialid.diagnosis.search.rivals import rivals, to_fit
-from trialid.diagnosis.verdict import decide
+from trialid.diagnosis.verdict import Verdict, decide
 
 BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
 
@@ -27,7 +29,7 @@ def fit(eps, check=None, converged=True):
     )
 
 
-def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=()):
+def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=(), stands_for=""):
     """A refit that carries over so far; `wobble` makes its blocks disagree."""
     after = tuple(ratio * x * (1.0 + wobble * (-1) ** i) for i, x in enumerate(BEFORE))
     carried = Carried(BEFORE, after)
@@ -38,6 +40,7 @@ def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=()):
             forms=(),
             bound_by_meaning=False,
             held=None,
+            stands_for=stands_for,
         ),
         shown=lambda level: True,
         carried=carried,
@@ -223,3 +226,37 @@ def test_where_one_output_hides_another_the_error_of_that_one_is_told():
         found.sentence
     )
     assert "of all outputs from 14.20% to 14.19%" in found.sentence
+
+
+NAMED, SWAY = refit("a", 0.78, 0.08), refit("moves", 0.78, 0.08, stands_for="v")
+SAID = Verdict("missing", "a", ("a", "b", "moves"), "a is missing")
+
+
+def judged(monkeypatch, verdict: Verdict, beside: str, refits=(NAMED, SWAY)) -> Verdict:
+    """The verdict where this speaks against the named effect in a model that has the motion."""
+    before = fit(0.10)
+    before.scores = ()
+    monkeypatch.setattr(left_out_motion, "objection", lambda *_: beside)
+    monkeypatch.setattr(left_out_motion, "refit", lambda *asked: [NAMED for _ in asked[2]])
+    ranking = [NAMED.candidate, SWAY.candidate]
+    return with_motion(before, verdict, ranking, refits, 0.05)
+
+
+@pytest.mark.parametrize("refits", [(NAMED, SWAY), (NAMED,)])
+def test_no_name_where_the_motion_does_as_well_and_leaves_nothing_to_name(monkeypatch, refits):
+    found = judged(monkeypatch, SAID, "the error hardly falls", refits)
+    assert (found.kind, found.effect, found.family) == ("cannot tell", None, ())
+    assert "the sway speed that the model does not have" in found.sentence
+    assert "record v, or `trialid add PIPELINE moves`" in found.sentence
+
+
+def test_what_is_worth_a_name_beside_the_motion_keeps_it(monkeypatch):
+    assert judged(monkeypatch, SAID, "") is SAID
+
+
+def test_the_motion_itself_and_what_it_does_not_do_keep_their_names(monkeypatch):
+    alone = replace(SAID, family=("a", "b"))
+    itself = replace(SAID, effect="moves", family=("moves", "a"))
+    nothing = Verdict("nothing missing", None, (), "")
+    for said in (alone, itself, nothing):
+        assert judged(monkeypatch, said, NOT_ARRIVED) is said

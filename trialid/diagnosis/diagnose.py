@@ -6,6 +6,7 @@ from functools import cached_property, partial
 
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
+from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.may_be_off import Doubts, doubts
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.noise_bound import held_against
@@ -123,6 +124,7 @@ def diagnose(
     fits = [r.fit for r in refits]
     before = _bounded(before, fits, whole)
     verdict = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
+    verdict = with_motion(fit, verdict, ranking, refits, asked.level)
     named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
     after = _bounded(examine_fit(named.fit, asked, progress)[0], fits) if named else None
     wanted = force or verdict.kind == "not in catalogue"

@@ -115,19 +115,19 @@ def _froude_gain(u: Number, g: Number, U0: Number) -> Number:
     return (u - U0) / sqrt(g)
 
 
-@effect(source=PCC)
+@effect(source=PCC, corrects="Yv")
 def sway_froude(u, v, g, U0, *, Yv_F=Parameter(-0.006, low=-0.3, high=0.3)):
     """Y = Yv_F v (F - F0), F = u / sqrt(g L): drift force that changes with the Froude number."""
     return Force(Y=Yv_F * v * _froude_gain(u, g, U0))
 
 
-@effect(source=PCC)
+@effect(source=PCC, corrects="Nv")
 def yaw_froude_v(u, v, g, U0, *, Nv_F=Parameter(0.0075, low=-0.3, high=0.3)):
     """N = Nv_F v (F - F0): drift moment that changes with the Froude number."""
     return Force(N=Nv_F * v * _froude_gain(u, g, U0))
 
 
-@effect(source=PCC)
+@effect(source=PCC, corrects="Nr")
 def yaw_froude_r(u, r, g, U0, *, Nr_F=Parameter(-0.0035, low=-0.3, high=0.3)):
     """N = Nr_F r (F - F0): yaw damping that changes with the Froude number."""
     return Force(N=Nr_F * r * _froude_gain(u, g, U0))

@@ -30,6 +30,7 @@ from trialid.ship.forms import (
     Result,
     Steered,
 )
+from trialid.ship.parameter import Parameter, Signal
 
 __all__ = [
     "FORMS",
@@ -52,50 +53,6 @@ System = Literal["prime", "SI"]
 
 
 @dataclass(frozen=True)
-class Parameter:
-    """A number to be identified.
-
-    Parameters
-    ----------
-    start
-        Typical value: where a fit starts, and the scale of everything relative.
-    unit
-        `1` for a primed coefficient, else its SI unit.
-    low, high
-        Physical range.
-    null
-        The value at which the effect is absent; None for a number that shapes the effect and
-        cannot switch it off, as the frequency of a tank.
-    scan
-        Values tried where the effect is not linear at its null, as the speed of a steering gear,
-        or may be far from it, as a sensor of many seconds.
-    by_meaning
-        Whether its range is what it means: beyond it is another effect, as strong is beyond weak.
-    """
-
-    start: float
-    unit: str = "1"
-    low: float = -math.inf
-    high: float = math.inf
-    null: float | None = 0.0
-    scan: tuple[float, ...] = ()
-    by_meaning: bool = False
-
-
-@dataclass(frozen=True)
-class Signal:
-    """A signal of one's own that an effect reads: any that the pipeline names.
-
-    Parameters
-    ----------
-    unit
-        Unit in which the effect wants it; the pipeline may state another of the same kind.
-    """
-
-    unit: str
-
-
-@dataclass(frozen=True)
 class Effect:
     """One named physical effect.
 
@@ -113,6 +70,11 @@ class Effect:
         Signals that are in no dictionary, with their units.
     held
         Value of the coefficient that it frees, one of the model's; None for an effect of its own.
+    corrects
+        Coefficient of the model that it makes depend on more; without it there is none to correct.
+    stands_for
+        Motion that it stands for in a model that neither simulates nor records it: every ship has
+        that motion, so that no other effect has a name where this one does as well.
     """
 
     name: str
@@ -125,6 +87,8 @@ class Effect:
     source: str
     own: Mapping[str, Signal] = field(default_factory=dict)
     held: float | None = None
+    corrects: str = ""
+    stands_for: str = ""
 
     @property
     def equation(self) -> str:
@@ -196,7 +160,12 @@ class Effect:
 
 
 def effect(
-    source: str, system: System = "prime", states: Mapping[str, str | None] | None = None
+    source: str,
+    system: System = "prime",
+    states: Mapping[str, str | None] | None = None,
+    *,
+    corrects: str = "",
+    stands_for: str = "",
 ) -> Callable[[Callable[..., Any]], Effect]:
     """Turn a function into an `Effect`; its signature is the declaration.
 
@@ -244,6 +213,8 @@ def effect(
             system=made,
             source=source,
             own=asked,
+            corrects=corrects,
+            stands_for=stands_for,
         )
 
     return declare

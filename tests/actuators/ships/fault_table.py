@@ -43,7 +43,7 @@ class Kind:
 
 
 def kinds() -> Iterator[Kind]:
-    """Two thrusters, two rudders, twin screws with rudders, four pods, screws and a bow tunnel."""
+    """Two thrusters, two rudders, twin screws with rudders, four pods, screws and tunnel, jets."""
     for fault in otter.FAULTS:
         yield Kind(
             "Otter, two thrusters",
@@ -61,6 +61,7 @@ SHIPS: Final = {
     "cargo": "cargo ship, twin screw, two rudders",
     "ferry": "ferry, four azimuths",
     "supply": "supply vessel, two screws, bow thruster",
+    "jets": "fast ferry, two waterjets",
 }
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import three_ships as truth
+from jets import JETS, SIDES
 from three_models import CARGO, FERRY, SUPPLY, Case
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
@@ -16,6 +17,8 @@ HELD: Final = (0.1, -0.07, 0.15, -0.12)
 """Angles [rad] at which something sticks, by its number."""
 TURNING: Final = (0.6, -0.5, 0.4, 0.7)
 """Revolutions at which something sticks, over the most that are ordered ahead, by its number."""
+BUCKETS: Final = (0.7, 0.0)
+"""Where a bucket sticks, open or nearly closed, by its number."""
 TWO_PODS: Final = (("pod_1", "pod_2"), ("pod_3", "pod_4"), ("pod_1", "pod_3"), ("pod_2", "pod_4"))
 
 
@@ -73,6 +76,10 @@ def _stuck_pod(now: truth.Row, who: tuple[str, ...], number: int) -> Mapping[str
     return {f"{who[0]}_angle": HELD[number]}
 
 
+def _stuck_bucket(_: truth.Row, who: tuple[str, ...], number: int) -> Mapping[str, float]:
+    return {f"{who[0]}_bucket": BUCKETS[number]}
+
+
 def _kept(most: float) -> Callable[[truth.Row, tuple[str, ...], int], Mapping[str, float]]:
     """Its revolutions stay at a share of the most that are ordered."""
     return lambda _, who, number: {who[0]: most * TURNING[number]}
@@ -89,12 +96,13 @@ SCREW_KEPT, POD_KEPT, MAIN_KEPT, BOW_KEPT = DRIVES_KEPT = tuple(
     map(_kept, (18.0, 22.0, 10.0, 25.0))
 )
 """Revolutions of each ship's drives that stay, whatever is ordered."""
-RUDDERS, SCREWS, MAINS, PODS = (
+RUDDERS, SCREWS, MAINS, BOTH_JETS, PODS = (
     tuple((n,) for n in names)
     for names in (
         ("rudder_port", "rudder_stbd"),
         ("screw_port", "screw_stbd"),
         ("main_port", "main_stbd"),
+        SIDES,
         truth.PODS,
     )
 )
@@ -136,4 +144,8 @@ FAULTS: Final = (
         act=_exchanged,
     ),
     Fault(ship=SUPPLY, words="bow reversed", called="reversed", of=(("bow",),), act=_turned_over),
+    Fault(ship=JETS, words="nothing"),
+    Fault(ship=JETS, words="jet 20 % weak", called="weak", of=BOTH_JETS, act=_lost(0.2)),
+    Fault(ship=JETS, words="nozzle stuck", called="stuck", of=BOTH_JETS, act=_stuck_pod),
+    Fault(ship=JETS, words="bucket stuck", called="bucket_stuck", of=BOTH_JETS, act=_stuck_bucket),
 )

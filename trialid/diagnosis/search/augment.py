@@ -118,10 +118,13 @@ def why_unusable(model: ShipModel, trial: Trial, effect: Effect) -> str:
     given = {*model.all_states}
     if effect.scanned:  # it is tried in the place of the other
         given -= {s for e in model.effects if takes_place(effect, e) for s in e.states}
-    doubled = sorted(set(effect.states) & {*given, *trial.signals})
+    gives = {*effect.states, *filter(None, [effect.stands_for])}
+    doubled = sorted(gives & {*given, *trial.signals})
     if doubled:
         held = "simulated" if doubled[0] in model.all_states else "recorded"
         return f"gives {doubled[0]}, which is {held} already"
+    if effect.corrects and effect.corrects not in model.parameters:
+        return f"corrects {effect.corrects}, which the model does not have"
     return _steers_wrongly(model, trial, effect)
 
 

@@ -67,8 +67,12 @@ def gross_faults(
     progress: Progress,
     leaves_noise: LeavesNoise,
 ) -> tuple[Refit, ...]:
-    """Faults that explain a record which the fit does not, the best first; mostly none."""
-    if np.isfinite(fit.eps_rmsn) and fit.eps_rmsn < GROSS and fit.converged:
+    """Faults that explain a record which the fit does not, the best first; mostly none.
+
+    Nor does a fit whose coefficients are of no such ship: a rudder that sticks is no hull.
+    """
+    follows = np.isfinite(fit.eps_rmsn) and fit.eps_rmsn < GROSS and fit.converged
+    if follows and why_no_fit(fit) is None:
         return ()
     found = _of_these(fit, trials, _absent(fit, candidates), progress)
     return found if found and _explains(found[0], fit.eps_rmsn, leaves_noise) else ()

@@ -27,6 +27,7 @@ SOURCE = "by its letters: a share, a time, an angle; ranges by judgement"
 _REVERSED = Parameter(2.0, low=1.2, high=3.0, scan=(2.0,), by_meaning=True)
 _STUCK = Parameter(1.0, low=0.8, high=1.2, scan=(1.0,), by_meaning=True)
 _HELD = Parameter(0.05, "rad", low=-1.6, high=1.6, null=None)
+_HELD_BUCKET = Parameter(0.5, low=-0.2, high=1.2, null=None)  # open and closed are inside
 _HELD_THRUST = Parameter(0.25, low=-10.0, high=10.0, null=None)
 _EXCHANGED = Parameter(1.0, low=0.7, high=1.3, scan=(1.0,), by_meaning=True)
 
@@ -44,7 +45,7 @@ def fault_effects(ship: Ship, ordered: Collection[str]) -> Iterator[Effect]:
         yield _reversed(one)
         yield _late(one, ordered)
         yield _turned_angle(one) if one.angle else _turned_thrust(ship, one)
-        for signal in one.signals:
+        for signal in (*one.signals, *_buckets(one)):
             yield _stuck(ship, one, signal)
     for one, other in combinations(ship.actuators, 2):
         if one.kind == other.kind and one.command == other.command:
@@ -121,9 +122,12 @@ def _turned_angle(one: Actuator) -> Effect:
 
 def _stuck(ship: Ship, one: Actuator, signal: str) -> Effect:
     """It stays, whatever the record shows: an order, or a feedback that is torn off."""
-    name = one.name if signal == one.signals[-1] else f"{one.name}_{one.command}"
+    name = _called(one, signal)
     stuck, held = f"stuck_{name}", f"held_{name}"
-    what, value, kept = _held_drive(ship, one, held) if signal == one.drive else _held_angle(held)
+    if signal == one.drive:
+        what, value, kept = _held_drive(ship, one, held)
+    else:
+        what, value, kept = f"{signal} = {held}", _itself, _held_as(one, signal)
 
     def stays(**values: Number) -> Steered:
         return Steered(**{signal: values[stuck] * (value(values[held]) - values[signal])})
@@ -138,9 +142,24 @@ def _stuck(ship: Ship, one: Actuator, signal: str) -> Effect:
     )
 
 
-def _held_angle(held: str) -> tuple[str, Callable[[Number], Number], Parameter]:
-    """What is held of an angle: it itself."""
-    return f"angle = {held}", lambda angle: angle, _HELD
+def _buckets(one: Actuator) -> tuple[str, ...]:
+    return (one.bucket,) if one.kind == "waterjet" else ()
+
+
+def _called(one: Actuator, signal: str) -> str:
+    """What is stuck, in its name: the actuator where it is steered, else the part with it."""
+    if signal in _buckets(one):
+        return one.bucket
+    return one.name if signal == one.signals[-1] else f"{one.name}_{one.command}"
+
+
+def _held_as(one: Actuator, signal: str) -> Parameter:
+    return _HELD_BUCKET if signal in _buckets(one) else _HELD
+
+
+def _itself(held: Number) -> Number:
+    """What is held of an angle or a bucket."""
+    return held
 
 
 def _held_drive(

@@ -33,13 +33,16 @@ WIDTH: Final = 130.0 * math.radians(1.0) ** 3 / (1.0 - LOST) ** 3
 
 
 def pod_effects(ship: Ship) -> Iterator[Effect]:
-    """Struts of all pods; races of two and more that are driven by one kind of command."""
+    """Struts of all pods; races of pods and fixed screws that one kind of command drives."""
     pods = [one for one in ship.actuators if one.kind == "azimuth"]
     if pods:
         yield _struts(ship, pods)
         yield _advance(ship, pods)
-    if len(pods) > 1 and len({one.command for one in pods}) == 1:
-        yield _races(ship, pods)
+    if len({one.command for one in pods}) == 1:
+        screws = [one for one in ship.actuators if one.kind == "thruster"]
+        blow = [*pods, *(one for one in screws if one.command == pods[0].command)]
+        if len(blow) > 1:
+            yield _races(ship, pods, blow)
 
 
 def _struts(ship: Ship, pods: Sequence[Actuator]) -> Effect:
@@ -93,8 +96,8 @@ def _advance(ship: Ship, pods: Sequence[Actuator]) -> Effect:
     )
 
 
-def _races(ship: Ship, pods: Sequence[Actuator]) -> Effect:
-    pairs = [(one, other) for one in pods for other in pods if one is not other]
+def _races(ship: Ship, pods: Sequence[Actuator], blow: Sequence[Actuator]) -> Effect:
+    pairs = [(one, other) for one in pods for other in blow if one is not other]
     nearest = min(_apart(one, other) for one, other in pairs)
 
     def race(**values: Number) -> Force:
@@ -113,7 +116,7 @@ def _races(ship: Ship, pods: Sequence[Actuator]) -> Effect:
         name="azimuths_race",
         equation="T = -k_lost n n_other where the race of another meets a pod: thrust it loses",
         source=DANG,
-        signals=[s for one in pods for s in one.signals],
+        signals=[s for one in blow for s in one.signals],
         parameters={own_name("k_lost", one): Parameter(size, unit, low=0.0) for one in pods},
     )
 
@@ -131,7 +134,8 @@ def _turns(one: Actuator, values: dict[str, Number]) -> Number:
 
 def _hit(one: Actuator, other: Actuator, values: dict[str, Number]) -> Number:
     """The other's revolutions as far as its race, behind its push, goes to this one."""
-    angle, n = values[other.angle] + other.direction, _turns(other, values)
+    turned_by = values[other.angle] if other.angle else 0.0
+    angle, n = turned_by + other.direction, _turns(other, values)
     towards = (cos(angle) * (one.x - other.x) + sin(angle) * (one.y - other.y)) / _apart(one, other)
     ahead, astern = 0.5 * (abs(n) + n), 0.5 * (abs(n) - n)
     return ahead * _inside(-towards) + astern * _inside(towards)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from trialid.effects.actuators.instances import usual_speed
 from trialid.effects.actuators.push_kinds import F11
-from trialid.ship.effect import Effect, Force, Parameter, effect
+from trialid.ship.effect import Effect, Force, Parameter, Rate, effect
 from trialid.ship.particulars import Ship
 
 MUNK = "Munk (1924), NACA report 184"
@@ -41,26 +41,56 @@ def munk_moment(u, v, *, Nuv=Parameter(-0.007, low=-0.1, high=0.0)):
     return Force(N=Nuv * u * v)
 
 
+@effect(source=F11, system="SI", states={"sway": None}, stands_for="v")
+def sway_in_turns(
+    u,
+    r,
+    sway,
+    *,
+    X_sway=Parameter(1.0, "kg", low=0.0),
+    N_sway=Parameter(-1.0, "kg"),
+    T_sway=Parameter(1.0, "s", low=0.05, high=60.0, null=None),
+):
+    """X = X_sway w r,  N = N_sway u w,  dw/dt = -u r - w / T_sway: sway that nothing records.
+
+    w is the sway speed but for its scale, which no record without it tells: of a boat that nothing
+    pushes aside X_sway is her mass with the water ahead, N_sway the Munk moment of that scale.
+    """
+    return (
+        Force(X=X_sway * sway * r, N=N_sway * u * sway),
+        Rate(sway=-u * r - sway / T_sway),
+    )
+
+
 EFFECTS = (
     still_water_surge,
     still_water_sway,
     still_water_yaw,
     still_water_yaw_quadratic,
     munk_moment,
+    sway_in_turns,
 )
-SHARE = {"Xu0": (0.004, 2), "Yv0": (0.02, 2), "Nr0": (0.002, 4), "Nrar0": (0.01, 5)}
-"""Coefficient over 1/2 rho L^k U, and k; by the Otter's published numbers, only where a search
-starts."""
+SHARE = {
+    "Xu0": (-0.004, 2, 1),
+    "Yv0": (-0.02, 2, 1),
+    "Nr0": (-0.002, 4, 1),
+    "Nrar0": (-0.01, 5, 0),
+    "X_sway": (0.02, 3, 0),
+    "N_sway": (-0.01, 3, 0),
+    "T_sway": (1.0, 1, -1),
+}
+"""Coefficient over 1/2 rho L^k U^i, k and i, of a time without the water; by the Otter's published
+numbers, only where a search starts."""
 
 
 def standstill_effects(ship: Ship) -> Iterator[Effect]:
-    """Damping at rest, with starts of the ship's own size, and the Munk moment."""
+    """Damping at rest, the Munk moment and unrecorded sway, with starts of the ship's own size."""
     L, rho, U = ship.particulars["L"], ship.particulars["rho"], usual_speed(ship)
     for one in EFFECTS:
         sized = {}
         for name, p in one.parameters.items():
-            share, power = SHARE.get(name, (0.0, 0))
-            speed = 1.0 if power == 5 else U
-            start = -share * 0.5 * rho * L**power * speed if share else p.start
+            share, length, speed = SHARE.get(name, (0.0, 0, 0))
+            water = 1.0 if p.unit == "s" else 0.5 * rho
+            start = share * water * L**length * U**speed if share else p.start
             sized[name] = replace(p, start=start)
         yield replace(one, parameters=sized)

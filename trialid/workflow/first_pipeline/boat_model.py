@@ -20,7 +20,7 @@ def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     free = [name for name in gains if astern or name.startswith("k_ahead")]
     held = ", ".join(f"{n} = {p.start:.4g}" for n, p in gains.items() if n not in free)
     yield "[model]"
-    yield 'states = ["u", "r"]  # sway is not simulated: no log of a boat like this tells it'
+    yield 'states = ["u", "r"]  # no log of a boat like this records sway; the run says if it shows'
     yield "# thrust k n |n| (k T where thrust is logged) at the places the ship file states"
     yield (
         'effects = ["thrusters", "surge_resistance", "still_water_yaw", '
