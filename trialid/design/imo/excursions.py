@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask, Vector
 from trialid.trial import Trial
+from trialid.white_noise import white_noise
 
 Indices = NDArray[np.intp]
 
@@ -38,6 +39,10 @@ With half and twice of it the orders of four turning tests in wind come out with
 of up to 8 deg to the side of the turn had one of them ordered 14 s too early."""
 LENGTHS: Final = 1.0
 """Ship lengths of straight course before the order."""
+STEP: Final = float(1.0 / np.sqrt(12.0))
+"""Standard deviation of an order that lies anywhere between two samples."""
+STRAIGHT_RAMP: Final = 2
+"""Samples on a rudder's way from which on its shape shows."""
 
 
 @dataclass(frozen=True)
@@ -152,18 +157,57 @@ def given_back(record: SteeredRecord, last: Excursion, before: int) -> int:
     return last.begin + reached + int(left[0]) if len(left) else before
 
 
+@dataclass(frozen=True)
+class Ramp:
+    """A rudder's way from near midships to its angle, seen from sample `k` up to `reached`.
+
+    Where it came from, [rad], how fast it went [rad/sample] and how far single angles lie off that.
+    """
+
+    k: int
+    reached: int
+    before: float
+    rate: float
+    off: float
+
+
 def order_sample(rudder: Vector, k: int, angle: float) -> float:
     """Sample, with its fraction, at which a rudder left midships that is beyond them from `k` on.
 
     Its way to the angle is a ramp and told back to where it was; half a sample before `k` where it
     is a step. A rudder to the same side that kept the course before is no part of it.
     """
-    ahead = np.sign(angle) * rudder
-    reached = k + int(np.argmax(ahead[k:] >= (1.0 - ALIKE) * abs(angle)))
-    keeping = np.flatnonzero(ahead[k:reached] < max(MIDSHIPS, KEEPING * abs(angle)))
-    k += int(keeping[-1]) + 1 if len(keeping) else 0
-    before = float(np.median(ahead[max(k - LATE, 0) : max(k - 1, 1)]))
-    if reached == k or ahead[reached] <= ahead[k]:
+    k, ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
+    if ramp is None:
         return k - 0.5
-    ramp = float(ahead[reached] - ahead[k]) / (reached - k)
-    return float(np.clip(k - (float(ahead[k]) - before) / ramp, k - LATE, k))
+    back = (float(np.sign(angle) * rudder[k]) - ramp.before) / ramp.rate
+    return float(np.clip(k - back, k - max(LATE, ramp.reached - k), k))
+
+
+def order_doubt(rudder: Vector, k: int, angle: float) -> float:
+    """Standard deviation of that [samples]: of a step anywhere between two, of a ramp by its shape.
+
+    Two single angles make the ramp, each off by what angles lie off it or scatter before. Of 100
+    circles sampled each 2 s, orders at any time between, advance then holds in 98, 94 and 91 % with
+    0, 0.3 and 1 deg of noise on the rudder, in 100 % and three times as wide by half a sample.
+    """
+    _, ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
+    if ramp is None or ramp.reached - ramp.k < STRAIGHT_RAMP:
+        return STEP
+    return float(min(np.sqrt(2.0) * ramp.off / ramp.rate, LATE))
+
+
+def _ramp_to(ahead: Vector, k: int, angle: float) -> tuple[int, Ramp | None]:
+    """The first sample on the way to an angle, both to the same side, and the way; None: a step."""
+    reached = k + int(np.argmax(ahead[k:] >= (1.0 - ALIKE) * angle))
+    keeping = np.flatnonzero(ahead[k:reached] < max(MIDSHIPS, KEEPING * angle))
+    k += int(keeping[-1]) + 1 if len(keeping) else 0
+    if reached == k or ahead[reached] <= ahead[k]:
+        return k, None
+    span = max(LATE, 2 * (reached - k))  # so that the way itself is the lesser part of it
+    flat = ahead[max(k - span, 0) : max(k - 1, 1)]
+    before, rate = float(np.median(flat)), float(ahead[reached] - ahead[k]) / (reached - k)
+    line = ahead[k] + rate * np.arange(reached - k + 1)
+    bent = float(np.sqrt(np.mean((ahead[k : reached + 1] - line) ** 2)))
+    noise = white_noise(flat)
+    return k, Ramp(k=k, reached=reached, before=before, rate=rate, off=max(bent, noise))
