@@ -159,16 +159,11 @@ def given_back(record: SteeredRecord, last: Excursion, before: int) -> int:
 
 @dataclass(frozen=True)
 class Ramp:
-    """A rudder's way from near midships to its angle, seen from sample `k` up to `reached`.
+    """A rudder's way from near midships to its angle, `begin` to `end`, and what is before it."""
 
-    Where it came from, [rad], how fast it went [rad/sample] and how far single angles lie off that.
-    """
-
-    k: int
-    reached: int
-    before: float
-    rate: float
-    off: float
+    begin: int
+    end: int
+    flat: slice
 
 
 def order_sample(rudder: Vector, k: int, angle: float) -> float:
@@ -177,37 +172,44 @@ def order_sample(rudder: Vector, k: int, angle: float) -> float:
     Its way to the angle is a ramp and told back to where it was; half a sample before `k` where it
     is a step. A rudder to the same side that kept the course before is no part of it.
     """
-    k, ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
-    if ramp is None:
-        return k - 0.5
-    back = (float(np.sign(angle) * rudder[k]) - ramp.before) / ramp.rate
-    return float(np.clip(k - back, k - max(LATE, ramp.reached - k), k))
+    ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
+    first, last = float(rudder[ramp.begin]), float(rudder[ramp.end])
+    steps = ramp.end - ramp.begin
+    if not steps:
+        return ramp.begin - 0.5
+    back = (first - float(np.median(rudder[ramp.flat]))) * steps / (last - first)
+    return float(np.clip(ramp.begin - back, ramp.begin - max(LATE, steps), ramp.begin))
 
 
 def order_doubt(rudder: Vector, k: int, angle: float) -> float:
-    """Standard deviation of that [samples]: of a step anywhere between two, of a ramp by its shape.
+    """Standard deviation of that [samples].
 
-    Two single angles make the ramp, each off by what angles lie off it or scatter before. Of 100
-    circles sampled each 2 s, orders at any time between, advance then holds in 98, 94 and 91 % with
-    0, 0.3 and 1 deg of noise on the rudder, in 100 % and three times as wide by half a sample.
+    Of 100 circles sampled each 2 s, orders at any time between, the advance then holds in 98, 94
+    and 91 % with 0, 0.3 and 1 deg of noise on the rudder; by half a sample in 100 % and three times
+    as wide.
     """
-    _, ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
-    if ramp is None or ramp.reached - ramp.k < STRAIGHT_RAMP:
+    ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
+    return ramp_doubt(rudder[ramp.begin : ramp.end + 1], rudder[ramp.flat])
+
+
+def ramp_doubt(way: Vector, flat: Vector) -> float:
+    """Standard deviation of where a rudder's way began [samples]: anywhere between two for a step.
+
+    Else two single angles make the ramp, each off by what angles lie off it or scatter before.
+    """
+    steps = len(way) - 1
+    if steps < STRAIGHT_RAMP:
         return STEP
-    return float(min(np.sqrt(2.0) * ramp.off / ramp.rate, LATE))
+    rate = float(way[-1] - way[0]) / steps
+    bent = float(np.sqrt(np.mean((way - way[0] - rate * np.arange(steps + 1)) ** 2)))
+    return float(min(np.sqrt(2.0) * max(bent, white_noise(flat)) / abs(rate), LATE))
 
 
-def _ramp_to(ahead: Vector, k: int, angle: float) -> tuple[int, Ramp | None]:
-    """The first sample on the way to an angle, both to the same side, and the way; None: a step."""
+def _ramp_to(ahead: Vector, k: int, angle: float) -> Ramp:
+    """The way to an angle, both to the same side; it ends where it begins where it is a step."""
     reached = k + int(np.argmax(ahead[k:] >= (1.0 - ALIKE) * angle))
     keeping = np.flatnonzero(ahead[k:reached] < max(MIDSHIPS, KEEPING * angle))
     k += int(keeping[-1]) + 1 if len(keeping) else 0
-    if reached == k or ahead[reached] <= ahead[k]:
-        return k, None
+    reached = reached if ahead[reached] > ahead[k] else k
     span = max(LATE, 2 * (reached - k))  # so that the way itself is the lesser part of it
-    flat = ahead[max(k - span, 0) : max(k - 1, 1)]
-    before, rate = float(np.median(flat)), float(ahead[reached] - ahead[k]) / (reached - k)
-    line = ahead[k] + rate * np.arange(reached - k + 1)
-    bent = float(np.sqrt(np.mean((ahead[k : reached + 1] - line) ** 2)))
-    noise = white_noise(flat)
-    return k, Ramp(k=k, reached=reached, before=before, rate=rate, off=max(bent, noise))
+    return Ramp(k, reached, slice(max(k - span, 0), max(k - 1, 1)))
