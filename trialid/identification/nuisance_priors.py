@@ -16,7 +16,7 @@ from trialid.effects.track import CURRENT as WATER
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import guess
 from trialid.trial import Trial
-from trialid.white_noise import white_noise
+from trialid.white_noise import FEWEST, white_noise
 
 Vector = NDArray[np.float64]
 Known = tuple[float, float]
@@ -110,13 +110,28 @@ def _initial(model: ShipModel, trial: Trial, state: str) -> Known:
     if state == "v":
         r = _as_recorded(model, trial, "r")[0] if "r" in trial.signals else 0.0
         return start, float(np.hypot(DRIFT * U, SWING * abs(r) * L))
-    rolled = 2.0 * np.pi / _shortest_roll(L)
-    known: Mapping[str, float] = {
-        "u": 0.1 * U,
-        "p": (_moved(trial, "phi") if "phi" in trial.signals else 0.05) * rolled + 1e-4,
-        "r": 0.05 * U / L,
-    }
+    if state == "p":
+        return _first_roll_rate(trial, _shortest_roll(L))
+    known: Mapping[str, float] = {"u": 0.1 * U, "r": 0.05 * U / L}
     return start, known.get(state, 0.1)
+
+
+def _first_roll_rate(trial: Trial, shortest: float) -> Known:
+    """How fast she ever rolls, and where heel is recorded, how it begins to change.
+
+    A parabola through the first half of the shortest roll [s]; three of its slope's errors and a
+    tenth of all roll, as for what is recorded. A struck sample makes that error large.
+    """
+    if "phi" not in trial.signals:
+        return 0.0, 0.05 * 2.0 * np.pi / shortest + 1e-4
+    likely = _moved(trial, "phi") * 2.0 * np.pi / shortest + 1e-4
+    phi = trial.signals["phi"][: max(FEWEST, round(0.5 * shortest / trial.period))]
+    if len(phi) < FEWEST or not trial.valid["phi"][: len(phi)].all():
+        return 0.0, likely
+    (_, slope, _), covariance = np.polyfit(trial.period * np.arange(len(phi)), phi, 2, cov=True)
+    off = np.hypot(3.0 * np.sqrt(covariance[1, 1]), 0.1 * likely)
+    share = likely**2 / (likely**2 + off**2)
+    return float(share * slope), float(np.sqrt(share) * off)
 
 
 def _as_recorded(model: ShipModel, trial: Trial, state: str) -> Known:
