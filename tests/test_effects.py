@@ -41,12 +41,12 @@ ASYMMETRIC = PUSHES | {
 }
 """Port and starboard differ."""
 
-FORCED_AT_REST = {"static_list", "steady_wind"}
+FORCED_AT_REST = {"static_list", "steady_wind", "propeller_unrecorded"}
 """Forces that do not ask for speed."""
 
 NO_NULL = {
-    "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "rudder_backlash",
-    "propeller_thrust", "propeller_rudder", "rudder_race", "rudder_race_shaft",
+    "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "propeller_unrecorded",
+    "rudder_backlash", "propeller_thrust", "propeller_rudder", "rudder_race", "rudder_race_shaft",
 }  # fmt: skip
 """Never absent: parameters inside the formula (time constants), or instead of another effect."""
 

@@ -268,6 +268,9 @@ def test_screws_push_to_the_side_they_should() -> None:
     assert forces("twin_screws", {"N_twin": 2e-10}, n_p=8.0, n_s=7.0)["N"] > 0.0
     slowed = CATALOGUE["shaft_speed_drop"]({"n": 8.0, "u": 0.5 * U0, "U0": U0, "k_n": 0.4})[0]
     assert slowed["n"] == pytest.approx(8.0 * 0.4 * -0.5)
+    kept = {"X_P0": 8e-4, "k_P": 2.1}
+    course, half = (forces("propeller_unrecorded", kept, u=x * U0)["X"] for x in (1.0, 0.5))
+    assert half == pytest.approx(2.05 * course)
 
 
 def test_loading_changes_the_masses() -> None:

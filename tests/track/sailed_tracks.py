@@ -37,10 +37,11 @@ SETTINGS = Settings(FREE, OUTPUTS, nuisance=("initial_state", "current"))
 
 @cache
 def sailed(name: str, water: tuple[float, float], use: str = "fit", course: float = 0.7) -> Trial:
-    """A turning circle or a 20/20 zig-zag without noise, from a course that is not north."""
+    """A turning circle, a 20/20 or a 10/10 zig-zag without noise, from a course not north."""
     told = {
         "circle": lambda: manoeuvres.turning_circle(np.deg2rad(35.0)),
         "zigzag": lambda: manoeuvres.zigzag(np.deg2rad(20.0), np.deg2rad(20.0), 4),
+        "small zigzag": lambda: manoeuvres.zigzag(np.deg2rad(10.0), np.deg2rad(10.0), 4),
     }
     ship = vessel(MODEL, PERIOD, {"n": SHAFT}, np.deg2rad(3.0))
     run = carry_out(ship, told[name](), APPROACH, 500.0, name).trial
@@ -69,7 +70,9 @@ def trials(seed: int, still: bool = False) -> list[Trial]:
 def accuracy(fit: Fit) -> Accuracy:
     """Errors of every unknown by the formula of a run."""
     subjects = [
-        replace(Subject(x.name, x.kind, x.unit, v, v if x.kind == "physical" else x.size), prior=p)
+        replace(
+            Subject(x.name, x.kind, x.unit, v, v if x.kind == "physical" and v else x.size), prior=p
+        )
         for x, v in zip(fit.problem.unknowns, fit.theta, strict=True)
         for p in [None if x.prior is None else x.prior[1]]
     ]

@@ -25,11 +25,11 @@ SETTINGS = Settings(
 )
 
 
-def apparent(y: np.ndarray, names: list[str]) -> dict[str, np.ndarray]:
+def apparent(y: np.ndarray, names: list[str], wind: tuple[float, float]) -> dict[str, np.ndarray]:
     """What an anemometer on board reads of the wind over the ground."""
     psi, north, east = (y[:, names.index(n)] for n in ("psi", "x", "y"))
-    air_n = AIR[0] - np.gradient(north, 2.0)
-    air_e = AIR[1] - np.gradient(east, 2.0)
+    air_n = wind[0] - np.gradient(north, 2.0)
+    air_e = wind[1] - np.gradient(east, 2.0)
     return {
         "V_aw": np.hypot(air_n, air_e),
         "gamma_aw": np.unwrap(np.arctan2(-air_e, -air_n) - psi),
@@ -37,17 +37,20 @@ def apparent(y: np.ndarray, names: list[str]) -> dict[str, np.ndarray]:
 
 
 @cache
-def blown(name: str) -> Trial:
+def blown(
+    name: str, water: tuple[float, float] | None = None, wind: tuple[float, float] = AIR
+) -> Trial:
     """A manoeuvre of calm air under the same rudder in the wind; what is read goes with it."""
-    calm = sailed(name, WATERS[name])
+    water = WATERS[name] if water is None else water
+    calm = sailed(name, (0.0, 0.0))  # the current turns no rudder
     inputs = {n: calm.signals[n] for n in ("delta", "n")}
     air = {n: np.zeros(calm.samples) for n in ("V_aw", "gamma_aw")}
-    true = (WINDY + current).with_values(dict(zip(("V_cn", "V_ce"), WATERS[name], strict=True)))
+    true = (WINDY + current).with_values(dict(zip(("V_cn", "V_ce"), water, strict=True)))
     model = prepare(true, (), OUTPUTS)
     for _ in range(6):  # the apparent wind depends on how she goes, and she on it
         blank = Trial(name, "fit", 2.0, {**inputs, **air}, {})
         y = respond(model, blank, {}, {"psi": 0.7}, sensitivities=False).y
-        air = apparent(y, [*OUTPUTS])
+        air = apparent(y, [*OUTPUTS], wind)
     signals = {**inputs, **air, **{c: y[:, i].copy() for i, c in enumerate(OUTPUTS)}}
     return Trial(name, "fit", 2.0, signals, {n: np.ones(len(y), dtype=bool) for n in signals})
 

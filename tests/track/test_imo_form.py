@@ -76,7 +76,8 @@ def column(file: Path, name: str) -> list[str]:
 def test_its_numbers_are_those_of_the_run(tmp_path: Path) -> None:
     page, count = write_form(finished(), tmp_path)
     text = page.read_text(encoding="utf-8")
-    assert count == 4 * 3 + 1
+    assert count == 5 * 3 + 1
+    assert column(tmp_path / "imo" / "manoeuvres.csv", "manoeuvre") == ["none"]
     assert [float(x) for x in column(tmp_path / "imo" / "imo.csv", "predicted")] == [502.0]
     assert column(tmp_path / "imo" / "turns.csv", "measured [m]") == ["522.6"]
     assert column(tmp_path / "imo" / "turns.csv", "model [m]") == ["501.8"]

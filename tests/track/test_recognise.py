@@ -13,7 +13,7 @@ from sailed_tracks import SETTINGS, SHIP, noisy, sailed, spread
 
 from trialid.design.helm import Passage
 from trialid.design.imo import excursions, measures, recognise, spirals, stops, williamson
-from trialid.design.imo.excursions import order_sample
+from trialid.design.imo.excursions import STEP, order_doubt, order_sample
 from trialid.design.imo.measured import heading_numbers
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.track_numbers import Around
@@ -104,6 +104,20 @@ def test_a_rudder_that_keeps_the_course_is_no_order(kept: float) -> None:
     for side in (1.0, -1.0):
         found = order_sample(side * rudder, first, side * hard) * period
         assert found == pytest.approx(60.0, abs=0.5)
+
+
+@pytest.mark.parametrize("period", [2.0, 0.5, 0.1, 0.02])
+def test_a_ramp_is_told_back_to_where_it_began_at_any_rate(period: float) -> None:
+    """As slow as SOLAS allows; by ten samples before it was seen it was 2.4 s late at 50 Hz."""
+    t, hard = np.arange(0.7, 120.0, period), np.deg2rad(35.0)
+    noise = np.deg2rad(0.1) * np.random.default_rng(8).standard_normal(len(t))
+    rudder = np.clip(np.deg2rad(65.0 / 28.0) * (t - 60.0), 0.0, hard) + noise
+    first = int(np.argmax(rudder > np.deg2rad(3.0)))
+    found = 0.7 + order_sample(rudder, first, hard) * period
+    assert found == pytest.approx(60.0, abs=0.2)
+    assert order_doubt(rudder, first, hard) * period < 0.2
+    step = np.where(t > 60.0, hard, 0.0)
+    assert order_doubt(step, int(np.argmax(step > 0.0)), hard) == STEP
 
 
 def test_what_is_broken_off_is_a_line() -> None:
@@ -262,5 +276,5 @@ def test_intervals_of_overshoots_hold_the_truth() -> None:
         inside += [check(row, x) for row, x in zip(rows, truth, strict=True)]
     record, model = np.mean(inside, axis=0)
     print(f"overshoots within 95 %: record {record:.3f}, model {model:.3f} of {len(inside)}")
-    assert record > 0.92
+    assert 0.9 < record < 0.98
     assert model > 0.9

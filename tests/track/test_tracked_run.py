@@ -1,15 +1,21 @@
 """A log with latitudes through the whole of a run: the plane, the current, the turning circle."""
 
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 from s175q import EFFECTS, ROOT
 from sailed_tracks import CURRENTS, noisy, sailed
 
 from trialid.alignment.track.position import FLATTENING, RADIUS
+from trialid.design.wind_and_current import WORDS
 from trialid.pipeline_file import load
 from trialid.progress import silent
+from trialid.report.pages.folder import Finished
+from trialid.report.pages.imo_form import form
+from trialid.report.terminal.summary import summary
 from trialid.result.schema import Result
 from trialid.trial import Trial
 from trialid.workflow.run import run
@@ -74,6 +80,16 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
     file = folder / "tracked.toml"
     file.write_text(PIPELINE.replace("EFFECTS", f"[{effects}]"), encoding="utf-8")
     return run(load(file), silent).result
+
+
+def test_that_wind_and_current_are_not_told_apart_is_said_wherever_the_current_is(
+    result: Result,
+) -> None:
+    """Her model has no wind in it."""
+    console = Console(width=80, record=True, file=StringIO())
+    console.print(summary(result))
+    for page in (form(Finished("run", result, (), ())), console.export_text()):
+        assert WORDS in " ".join(page.split())
 
 
 def test_it_fits_to_the_noise_of_the_receiver(result: Result) -> None:

@@ -43,6 +43,22 @@ def shaft_speed_drop(n, u, U0, *, k_n=Parameter(0.2, low=0.0, high=1.5)):
     return Steered(n=k_n * n * (u - U0) * U0 / (U0 * U0 + STANDSTILL))
 
 
+@effect(source="thrust and torque as lines of J: Son & Nomoto (1982), S-175, at its J of 0.79")
+def propeller_unrecorded(
+    u,
+    U0,
+    *,
+    X_P0=Parameter(0.0004, low=0.0, high=0.01, null=None),
+    k_P=Parameter(2.1, low=0.0, high=6.0, null=None),
+):
+    """X = X_P0 U0 (U0 + k_P (U0 - u)): thrust where nobody recorded n; X_P0 is -Xuu on a course.
+
+    k_P is 2.1 where the revolutions stay, 0.6 where the power does, 0.2 where the torque does; at
+    half the speed the line is off by 0, 0.5 and 1.6 %. In hard turns the record tells which it was.
+    """
+    return Force(X=X_P0 * U0 * (U0 + k_P * (U0 - u)))
+
+
 @effect(source="wheel effect of a single screw; right-handed ahead: bow to port; size by judgement")
 def propeller_side_force(n, *, N_n=Parameter(-1e-9, low=-2e-8, high=2e-8)):
     """N = N_n n^2,  Y = -2 N: a turning screw, aft, also pushes sideways."""
@@ -73,6 +89,7 @@ EFFECTS = (
     rudder_slipstream,
     surge_loss,
     shaft_speed_drop,
+    propeller_unrecorded,
     propeller_side_force,
     propeller_astern,
     twin_screws,

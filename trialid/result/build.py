@@ -1,7 +1,7 @@
 """The result of a run, from what it found."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
@@ -13,6 +13,7 @@ from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Oversho
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
 from trialid.design.steering.nomoto import Nomoto
+from trialid.design.wind_and_current import cannot_tell
 from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.where.finding import Finding
@@ -76,7 +77,7 @@ def result_from(found: Findings, **beside: Any) -> Result:
             file=found.pipeline,
             trials=tuple(trial_row(s, found.before.band) for s in fit.scores),
             model=_model(fit),
-            fit=_fit(fit, found.before.band),
+            fit=_fit(found.before),
             split=_split(found.before.split, found.before.routes),
             accuracy=replace(
                 accuracy_part(fit, found.before.accuracy),
@@ -134,7 +135,8 @@ def _model(fit: Fit) -> ModelPart:
     )
 
 
-def _fit(fit: Fit, band: Mapping[str, float]) -> FitPart:
+def _fit(done: Diagnosed) -> FitPart:
+    fit = done.fit
     return FitPart(
         eps_rmsn=fit.eps_rmsn,
         eps_rmsn_by_output=fit.eps_by_output,
@@ -152,9 +154,9 @@ def _fit(fit: Fit, band: Mapping[str, float]) -> FitPart:
         substeps=fit.settings.substeps,
         weighting=weighting(fit),
         y_rms=dict(zip(fit.problem.outputs, map(float, fit.problem.y_rms), strict=True)),
-        band=dict(band),
+        band=dict(done.band),
         search=fit.told,
-        remarks=remarks(fit),
+        remarks=(*remarks(fit), *cannot_tell(fit, done.accuracy)),
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask, Vector
 from trialid.trial import Trial
+from trialid.white_noise import white_noise
 
 Indices = NDArray[np.intp]
 
@@ -38,6 +39,10 @@ With half and twice of it the orders of four turning tests in wind come out with
 of up to 8 deg to the side of the turn had one of them ordered 14 s too early."""
 LENGTHS: Final = 1.0
 """Ship lengths of straight course before the order."""
+STEP: Final = float(1.0 / np.sqrt(12.0))
+"""Standard deviation of an order that lies anywhere between two samples."""
+STRAIGHT_RAMP: Final = 2
+"""Samples on a rudder's way from which on its shape shows."""
 
 
 @dataclass(frozen=True)
@@ -152,18 +157,59 @@ def given_back(record: SteeredRecord, last: Excursion, before: int) -> int:
     return last.begin + reached + int(left[0]) if len(left) else before
 
 
+@dataclass(frozen=True)
+class Ramp:
+    """A rudder's way from near midships to its angle, `begin` to `end`, and what is before it."""
+
+    begin: int
+    end: int
+    flat: slice
+
+
 def order_sample(rudder: Vector, k: int, angle: float) -> float:
     """Sample, with its fraction, at which a rudder left midships that is beyond them from `k` on.
 
     Its way to the angle is a ramp and told back to where it was; half a sample before `k` where it
     is a step. A rudder to the same side that kept the course before is no part of it.
     """
-    ahead = np.sign(angle) * rudder
-    reached = k + int(np.argmax(ahead[k:] >= (1.0 - ALIKE) * abs(angle)))
-    keeping = np.flatnonzero(ahead[k:reached] < max(MIDSHIPS, KEEPING * abs(angle)))
+    ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
+    first, last = float(rudder[ramp.begin]), float(rudder[ramp.end])
+    steps = ramp.end - ramp.begin
+    if not steps:
+        return ramp.begin - 0.5
+    back = (first - float(np.median(rudder[ramp.flat]))) * steps / (last - first)
+    return float(np.clip(ramp.begin - back, ramp.begin - max(LATE, steps), ramp.begin))
+
+
+def order_doubt(rudder: Vector, k: int, angle: float) -> float:
+    """Standard deviation of that [samples].
+
+    Of 100 circles sampled each 2 s, orders at any time between, the advance then holds in 98, 94
+    and 91 % with 0, 0.3 and 1 deg of noise on the rudder; by half a sample in 100 % and three times
+    as wide.
+    """
+    ramp = _ramp_to(np.sign(angle) * rudder, k, abs(angle))
+    return ramp_doubt(rudder[ramp.begin : ramp.end + 1], rudder[ramp.flat])
+
+
+def ramp_doubt(way: Vector, flat: Vector) -> float:
+    """Standard deviation of where a rudder's way began [samples]: anywhere between two for a step.
+
+    Else two single angles make the ramp, each off by what angles lie off it or scatter before.
+    """
+    steps = len(way) - 1
+    if steps < STRAIGHT_RAMP:
+        return STEP
+    rate = float(way[-1] - way[0]) / steps
+    bent = float(np.sqrt(np.mean((way - way[0] - rate * np.arange(steps + 1)) ** 2)))
+    return float(min(np.sqrt(2.0) * max(bent, white_noise(flat)) / abs(rate), LATE))
+
+
+def _ramp_to(ahead: Vector, k: int, angle: float) -> Ramp:
+    """The way to an angle, both to the same side; it ends where it begins where it is a step."""
+    reached = k + int(np.argmax(ahead[k:] >= (1.0 - ALIKE) * angle))
+    keeping = np.flatnonzero(ahead[k:reached] < max(MIDSHIPS, KEEPING * angle))
     k += int(keeping[-1]) + 1 if len(keeping) else 0
-    before = float(np.median(ahead[max(k - LATE, 0) : max(k - 1, 1)]))
-    if reached == k or ahead[reached] <= ahead[k]:
-        return k - 0.5
-    ramp = float(ahead[reached] - ahead[k]) / (reached - k)
-    return float(np.clip(k - (float(ahead[k]) - before) / ramp, k - LATE, k))
+    reached = reached if ahead[reached] > ahead[k] else k
+    span = max(LATE, 2 * (reached - k))  # so that the way itself is the lesser part of it
+    return Ramp(k, reached, slice(max(k - span, 0), max(k - 1, 1)))

@@ -1,7 +1,7 @@
 """What manoeuvres of a record come to, with intervals, beside the fitted model's.
 
 Angles are read from the recorded heading, through parabolas and lines that take its noise off:
-white, by third differences. Half a sample of the order is part of every interval. Headings and
+white, by third differences. What an order is uncertain by is part of every interval. Headings and
 rates are those through the water: a current does not turn the ship. A wind does, and where the
 model has one, overshoots are given without it.
 """
@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.imo.excursions import LATE, order_sample, rudder_of
+from trialid.design.imo.excursions import LATE, STEP, order_sample, ramp_doubt, rudder_of
 from trialid.design.imo.recognise import UNSETTLED
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.sailed_trial import Drift
@@ -133,13 +133,12 @@ def zigzag_reader(trial: Trial, one: Recognised) -> Read:
     def read(psi: Vector, noise: float) -> dict[str, Value]:
         found = {}
         legs = zip(orders, ends, sides, strict=True)
-        for place, (at, end, side) in enumerate(legs):
+        for place, ((at, doubt), end, side) in enumerate(legs):
             peak = _peak(side * psi[int(at) : end + 1], noise)
             if peak is None:
                 break
             start, error, rate = _between(side * psi, at, noise)
-            late = rate / np.sqrt(12.0)
-            whole = float(np.sqrt(peak[1] ** 2 + error**2 + late**2))
+            whole = float(np.sqrt(peak[1] ** 2 + error**2 + (doubt * rate) ** 2))
             found[f"{ordinal(place)} overshoot"] = peak[0] - start, whole
         return found
 
@@ -159,19 +158,23 @@ def ordinal(place: int) -> str:
     return f"{number}{ending}"
 
 
-def left_angle(rudder: Vector, k: int) -> float:
+def left_angle(rudder: Vector, k: int) -> tuple[float, float]:
     """Sample, with its fraction, at which a rudder left the angle it is below from `k` on.
 
-    The way there is a ramp, by its crossing of midships; where it is a step, half a sample before.
+    And its standard deviation. The way there is a ramp, by its crossing of midships; where it is a
+    step, half a sample before.
     """
-    before = float(np.median(rudder[max(k - STILL, 0) : max(k, 1)]))
-    over = np.flatnonzero(rudder[k:] * np.sign(before) <= 0.0)
-    across = k + int(over[0]) if len(over) else k
-    fall = abs(float(rudder[k] - rudder[across]))
-    if across == k or fall == 0.0:
-        return k - 0.5
-    ramp = fall / (across - k)
-    return float(np.clip(k - abs(before - rudder[k]) / ramp, k - LATE, k))
+    side = np.sign(np.median(rudder[max(k - STILL, 0) : max(k, 1)]))
+    over = np.flatnonzero(rudder[k:] * side <= 0.0)
+    steps = int(over[0]) if len(over) else 0
+    fall = abs(float(rudder[k] - rudder[k + steps]))
+    if fall == 0.0:
+        return k - 0.5, STEP
+    span = max(STILL, steps)  # a fifth of it is the way at most
+    flat = rudder[max(k - span, 0) : max(k, 1)]
+    back = abs(float(np.median(flat)) - float(rudder[k])) * steps / fall
+    at = float(np.clip(k - back, k - max(LATE, steps), k))
+    return at, ramp_doubt(rudder[k : k + steps + 1], flat)
 
 
 def pull_out_reader(trial: Trial, one: Recognised) -> Read:

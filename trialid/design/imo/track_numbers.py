@@ -2,8 +2,8 @@
 
 Corrected for the current that the fit found, and for the wind where the model has one: by what the
 model drifts with and without it under the recorded rudder. Intervals hold the noise of position,
-heading and logged speed, taken as white, half a sample of the order, the current's error and the
-drift's own range. What the same ship does on another day they do not hold.
+heading and logged speed, taken as white, what the order is uncertain by, the current's error and
+the drift's own range. What the same ship does on another day they do not hold.
 """
 
 import contextlib
@@ -15,6 +15,7 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.design.imo.calm_air import FromOrder
+from trialid.design.imo.excursions import STEP
 from trialid.design.imo.sailed_trial import (
     Drift,
     Numbers,
@@ -51,12 +52,15 @@ class TrackReader:
     read
         Takes that part, its clock [s], and by how much later [s] the order is taken to be;
         DesignError where there is nothing to read.
+    doubt
+        Standard deviation of the order [samples].
     """
 
     span: slice
     order: float
     units: Mapping[str, str]
     read: Read
+    doubt: float = STEP
 
 
 @dataclass(frozen=True)
@@ -216,7 +220,7 @@ def _spread(
 
 
 def _by_timing(reader: TrackReader, t: Vector, track: Track, period: float) -> dict[str, float]:
-    """Standard deviation of each number by an order that may be half a sample off.
+    """Standard deviation of each number by an order that may be somewhat off.
 
     By itself: between samples a noisy track is smoother, and draws of both would be too narrow.
     """
@@ -224,4 +228,4 @@ def _by_timing(reader: TrackReader, t: Vector, track: Track, period: float) -> d
         early, late = (reader.read(track, t, side * period) for side in (-0.5, 0.5))
     except DesignError:
         return {}
-    return {n: abs(x - early[n]) / np.sqrt(12.0) for n, x in late.items()}
+    return {n: abs(x - early[n]) * reader.doubt for n, x in late.items()}

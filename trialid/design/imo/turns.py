@@ -10,13 +10,15 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.helm import Passage
 from trialid.design.imo import measures
-from trialid.design.imo.excursions import order_sample, rudder_of
+from trialid.design.imo.excursions import STEP, order_doubt, order_sample, rudder_of
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.sailed_trial import Track
 from trialid.design.imo.track_numbers import TrackReader
 from trialid.trial import Trial
 
 NEEDED: Final = ("x", "y", "psi")
+ORDER: Final = (order_sample, order_doubt)
+"""When a rudder was ordered over, and how well that is known."""
 SAGITTA: Final = 0.005
 """Share of the turn's own size by which a straight line over a gap in its positions may be off the
 arc: an eighth of the chord times the angle turned. Of 60 circles of a 175 m ship with 1 m of noise
@@ -28,7 +30,8 @@ and a gap of up to 0.3 of the turn, 8 are taken and the worst number is off by 1
 class Turn:
     """A turn by a held rudder, recognised: order at `t` [s], angle [rad], samples it spans.
 
-    `course` is the mean heading before the order [rad].
+    `course` is the mean heading before the order [rad], `doubt` the order's standard deviation
+    [samples].
     """
 
     t: float
@@ -36,6 +39,7 @@ class Turn:
     begin: int
     end: int
     course: float
+    doubt: float = STEP
 
 
 def find_turns(trial: Trial, found: Sequence[Recognised]) -> Iterator[Turn]:
@@ -46,9 +50,14 @@ def find_turns(trial: Trial, found: Sequence[Recognised]) -> Iterator[Turn]:
     for one in found:
         if one.kind != "turning circle":
             continue
-        t = order_sample(rudder[: one.end], one.execute, one.rudder)
+        t, doubt = (f(rudder[: one.end], one.execute, one.rudder) for f in ORDER)
         turn = Turn(
-            t=t * trial.period, rudder=one.rudder, begin=int(t), end=one.end, course=one.course
+            t=t * trial.period,
+            rudder=one.rudder,
+            begin=int(t),
+            end=one.end,
+            course=one.course,
+            doubt=doubt,
         )
         if is_seen(trial, slice(turn.begin, turn.end)):
             yield turn
@@ -94,4 +103,4 @@ def turn_reader(turn: Turn, before: int) -> TrackReader:
         return measure(replace(near, t=turn.t + late, course=course), t, track)
 
     units = dict.fromkeys(("advance", "transfer", "tactical diameter"), "m")
-    return TrackReader(slice(first, turn.end), turn.t, units, read)
+    return TrackReader(slice(first, turn.end), turn.t, units, read, turn.doubt)

@@ -17,6 +17,7 @@ from trialid.arrays import Vector
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
 from trialid.identification.trial_score import Score
+from trialid.white_noise import white_noise
 
 Track = Mapping[str, Vector]
 PLACES: Final = 40
@@ -34,11 +35,14 @@ class UnexplainedMotion:
     ----------
     rates
         Rate of turn [rad/s], speed ahead and to starboard [m/s], a trial after the other; (M, 3).
+    noise
+        The same of noise alone, as much of it as is white in the record; (M, 3).
     trials
         How many; each counts as one value of what there may be.
     """
 
     rates: Vector
+    noise: Vector
     period: float
     trials: int
 
@@ -47,23 +51,33 @@ class UnexplainedMotion:
     ) -> dict[str, float]:
         """By how much numbers read from a track differ by it from a sample on: one standard error.
 
-        As few trials tell it, so much more, that 1.96 of it are 95 %.
+        What noise of sensors does of that is taken off. As few trials tell it, so much more, that
+        1.96 of it are 95 %.
         """
+        whole, noise = (self._squares(read, track, begin, x) for x in (self.rates, self.noise))
+        wider = float(student(float(self.trials))) / NORMAL
+        return {
+            n: wider * float(np.sqrt(max(x - noise.get(n, 0.0), 0.0))) for n, x in whole.items()
+        }
+
+    def _squares(
+        self, read: Callable[[Track], Mapping[str, float]], track: Track, begin: int, rates: Vector
+    ) -> dict[str, float]:
+        """Mean squares of what numbers differ by."""
         found, apart = read(track), dict[str, list[float]]()
-        for other in self._laid_over(track, begin):
+        for other in self._laid_over(track, begin, rates):
             try:
                 moved = read(other)
             except DesignError:
                 continue  # it would not come so far
             for name in found.keys() & moved.keys():
                 apart.setdefault(name, []).append(moved[name] - found[name])
-        wider = float(student(float(self.trials))) / NORMAL
-        return {n: wider * float(np.sqrt(np.mean(np.square(x)))) for n, x in apart.items()}
+        return {n: float(np.mean(np.square(x))) for n, x in apart.items()}
 
-    def _laid_over(self, track: Track, begin: int) -> Iterator[Track]:
+    def _laid_over(self, track: Track, begin: int, rates: Vector) -> Iterator[Track]:
         samples = len(track["psi"]) - begin - 1
-        for first in np.linspace(0, len(self.rates), PLACES, endpoint=False).astype(int):
-            rows = np.take(self.rates, range(first, first + samples), axis=0, mode="wrap")
+        for first in np.linspace(0, len(rates), PLACES, endpoint=False).astype(int):
+            rows = np.take(rates, range(first, first + samples), axis=0, mode="wrap")
             for side in (np.ones(3), MIRROR):
                 yield _moved(track, begin, rows * side * self.period)
 
@@ -87,18 +101,23 @@ def unexplained_motion(fit: Fit, samples: int) -> UnexplainedMotion | None:
     ----------
     samples
         Of the time in which she sails her length. Noise of sensors is no motion: what is faster
-        than that is taken off by a mean over so many.
+        than that is taken off by a mean over so many, and what that leaves is known.
     """
+    rng = np.random.default_rng(0)
     fitted = [s for s in fit.scores if s.trial.use == "fit" and s.trial.samples > 2 * samples]
     rates = [x for s in fitted if (x := _rates(fit, s, samples)) is not None]
     if not rates:
         return None
-    return UnexplainedMotion(np.concatenate(rates), fitted[0].trial.period, len(rates))
+    noise = [x for s in fitted if (x := _rates(fit, s, samples, rng)) is not None]
+    period = fitted[0].trial.period
+    return UnexplainedMotion(np.concatenate(rates), np.concatenate(noise), period, len(rates))
 
 
-def _rates(fit: Fit, score: Score, samples: int) -> Vector | None:
-    """Of one trial; what was not compared is as the model has it."""
-    left = {n: _left(fit, score, n, samples) for n in fit.problem.outputs}
+def _rates(
+    fit: Fit, score: Score, samples: int, rng: np.random.Generator | None = None
+) -> Vector | None:
+    """Of one trial, or of noise drawn for it; what was not compared is as the model has it."""
+    left = {n: _left(fit, score, n, samples, rng) for n in fit.problem.outputs}
     turn, period = left.get("r"), score.trial.period
     if "psi" in left:  # a rate's noise would add up in the heading
         turn = np.gradient(left["psi"], period)
@@ -111,13 +130,17 @@ def _rates(fit: Fit, score: Score, samples: int) -> Vector | None:
     return np.column_stack([turn, ahead, aside])
 
 
-def _left(fit: Fit, score: Score, name: str, samples: int) -> Vector:
-    """Recorded less simulated, smooth, gaps bridged."""
+def _left(
+    fit: Fit, score: Score, name: str, samples: int, rng: np.random.Generator | None
+) -> Vector:
+    """Recorded less simulated, or as much noise as is in it, smooth, gaps bridged."""
     place = fit.problem.outputs.index(name)
     known = np.flatnonzero(score.compared[:, place])
     if not len(known):
         return np.zeros(score.trial.samples - samples + 1)
     off = (score.trial.signals[name] - score.response.y[:, place])[known]
+    if rng is not None:
+        off = white_noise(off) * rng.standard_normal(len(off))
     whole = np.interp(np.arange(score.trial.samples), known, off)
     return np.convolve(whole, np.full(samples, 1.0 / samples), mode="valid")
 

@@ -19,6 +19,7 @@ UNCORRECTED: Final = {
     "current": "Not corrected for current: the fit finds none.",
     "wind": "Not corrected for wind: the model has none in it.",
 }
+NONE: Final = "nothing held or reversed out of a ship length of straight course"
 READINGS: Final = (
     *("measured", "95 % from", "to", "corrected", "95 % from", "to", "corrected for"),
     *("model", "95 % from", "to"),
@@ -131,10 +132,16 @@ def corrections(run: Result) -> str:
 
 
 def manoeuvres(run: Result) -> Table:
-    """Every manoeuvre that was recognised in the trials."""
-    rows = tuple(_manoeuvre(each) for each in (run.imo or ImoPart()).manoeuvres)
+    """Every manoeuvre that was recognised in the trials, and a line for each trial without any."""
+    found = () if run.imo is None else run.imo.manoeuvres
+    rows = [_manoeuvre(each) for each in found]
+    named, nothing = {each.trial for each in found}, (Figure(None),) * 3
+    if run.imo is not None:
+        rows += [(t.name, "none", *nothing, NONE) for t in run.trials if t.name not in named]
+    places = {trial.name: k for k, trial in enumerate(run.trials)}
+    rows.sort(key=lambda row: places.get(str(row[0]), len(places)))
     headings = ("trial", "manoeuvre", "order [s]", "end [s]", "rudder [deg]", "remark")
-    return Table("manoeuvres", "Manoeuvres in the trials", headings, rows)
+    return Table("manoeuvres", "Manoeuvres in the trials", headings, tuple(rows))
 
 
 def _manoeuvre(each: Manoeuvre) -> tuple[Cell, ...]:

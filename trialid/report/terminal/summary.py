@@ -198,7 +198,7 @@ def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     if known := beforehand.prior_words(found):
         yield Words(plain(known), 2)
     if run.fit.remarks:
-        yield Words(f"{'; '.join(run.fit.remarks)}.", 2)
+        yield Words(f"{'; '.join(run.fit.remarks)}.", 3)
 
 
 def _doubt(row: ParameterRow) -> float:
