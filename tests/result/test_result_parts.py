@@ -7,9 +7,11 @@ import pytest
 from s175q import MODEL, SETTINGS, zigzag
 
 from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
+from trialid.diagnosis.diagnose import DiagnoseSettings, examine_fit
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.identification.fit import identify
 from trialid.identification.problem import replace
+from trialid.progress import silent
 from trialid.result import build
 from trialid.result.accuracy_part import accuracy_part
 from trialid.ship.motion import motion
@@ -113,9 +115,11 @@ def test_noise_stays_noise_output_by_output():
 
 def test_a_search_ends_at_the_error_of_the_fit():
     few = replace(SETTINGS, free=("Nr", "Kp"), nuisance=())
-    fit = identify([zigzag(10)], MODEL.with_values({"Nv": -0.0045}), few)
-    made = build._fit(fit, {"r": 0.01, "phi": 0.02})
-    assert made.band == {"r": 0.01, "phi": 0.02}
+    fit = identify([zigzag(10), zigzag(20)], MODEL.with_values({"Nv": -0.0045}), few)
+    done, _, _ = examine_fit(fit, DiagnoseSettings(), silent)
+    made = build._fit(done)
+    assert made.band == done.band
+    assert min(made.band.values()) > 0.0
     assert made.iterations[-1].eps_rmsn == pytest.approx(fit.eps_rmsn, rel=1e-6)
     assert made.iterations[0].eps_rmsn > made.iterations[-1].eps_rmsn
     assert made.eps_rmsn == fit.eps_rmsn

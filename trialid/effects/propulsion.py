@@ -51,10 +51,11 @@ def propeller_unrecorded(
     X_P0=Parameter(0.0004, low=0.0, high=0.01, null=None),
     k_P=Parameter(2.1, low=0.0, high=6.0, null=None),
 ):
-    """X = X_P0 U0 (U0 + k_P (U0 - u)): thrust where nobody recorded n; X_P0 is -Xuu on a course.
+    """X = X_P0 U0 (U0 + k_P (U0 - u)): thrust where nobody recorded the shaft.
 
-    k_P is 2.1 where the revolutions stay, 0.6 where the power does, 0.2 where the torque does; at
-    half the speed the line is off by 0, 0.5 and 1.6 %. In hard turns the record tells which it was.
+    On a course X_P0 is -Xuu. k_P is 2.1 where the revolutions stay, 0.6 where the power does, 0.2
+    where the torque does; at half the speed the line is off by 0, 0.5 and 1.6 %. In hard turns the
+    record tells which it was.
     """
     return Force(X=X_P0 * U0 * (U0 + k_P * (U0 - u)))
 

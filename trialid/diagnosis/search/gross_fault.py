@@ -90,10 +90,10 @@ def whole_faults(
     """Faults that explain what none of the others does, by slopes or whole; mostly none.
 
     They leave half of what the best of the others leaves, or nothing but noise where each block
-    says that the others leave more. A fault that is there whole is far from the ship without it,
-    and so are the parameters fitted there; of the rest those are tried that by their slopes leave
-    less than all others, whatever blocks left out say of them, which go by slopes too. Where one of
-    the others explains the record none is tried.
+    says that the others leave more, so much that it is worth a name. A fault that is there whole is
+    far from the ship without it, and so are the parameters fitted there; of the rest those are
+    tried that by their slopes leave less than all others, whatever blocks left out say of them,
+    which go by slopes too. Where one of the others explains the record none is tried.
     """
     others = [r for r in others if not r.candidate.effect.is_whole]
     least = min((r.fit.eps_rmsn for r in others), default=fit.eps_rmsn)
@@ -107,7 +107,8 @@ def whole_faults(
         return found
     first = found[0].carried
     rest = [r.carried.after for r in others] or [first.before]
-    if any(as_good(first.after, after) for after in rest) or not leaves_noise(found[0].fit):
+    unlike = first.falls and not any(as_good(first.after, after) for after in rest)
+    if not unlike or not leaves_noise(found[0].fit):
         return ()
     return tuple(r for r in found if as_good(first.after, r.carried.after))
 
