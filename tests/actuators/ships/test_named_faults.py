@@ -49,6 +49,13 @@ def test_pods_exchanged_are_named_where_one_misaligned_leaves_little_more() -> N
     assert exchange.verdict(50013).family == ("pod_3_pod_4_exchanged",)
 
 
+@pytest.mark.study(turn=4)
+def test_a_fault_that_takes_next_to_nothing_off_the_error_has_no_name() -> None:
+    """A sound vessel: a weak screw was better in six blocks of six, by 0.01 of 10.7 %."""
+    [sound] = [f for f in FAULTS if (f.ship.name, f.words) == ("supply", "nothing")]
+    assert sound.verdict(73102).effect is None
+
+
 @pytest.mark.parametrize(
     ("words", "seeds"),
     [

@@ -84,7 +84,7 @@ def measured(tree: Path, kind: str, place: Path) -> dict[str, Any]:
     """What a process of its own finds, with the package of that folder."""
     command = [sys.executable, __file__, "--child", kind, str(place)]
     environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONWARNINGS": "ignore"}
-    for library in ("OMP", "OPENBLAS", "MKL"):
+    for library in ("OPENBLAS", "MKL"):
         environment[f"{library}_NUM_THREADS"] = "1"
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
