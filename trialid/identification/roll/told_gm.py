@@ -13,6 +13,7 @@ from trialid.identification.output_error import Problem, ranges, stretches
 from trialid.identification.record_starts import Part, of_roll, rows_of
 from trialid.identification.roll.roll_range import FACTOR, GM_OVER_L
 from trialid.identification.weighing import Weighing
+from trialid.linear_algebra import triangle
 
 Vector = NDArray[np.float64]
 
@@ -67,11 +68,12 @@ def _plainly_told(problem: Problem, place: int, best: End) -> bool:
     weighing = Weighing(problem)
     if (point := weighing(best.minimum.theta)) is None:
         return False
-    others, rows = np.delete(point[1], place, axis=1), rows_of(problem, ("phi", "p"))
+    R, rows = triangle(point[1]), rows_of(problem, ("phi", "p"))
+    others = np.delete(R, place, axis=1)
     sizes = np.maximum(np.linalg.norm(others, axis=0), 1e-300)
-    made_good = np.linalg.lstsq(others / sizes, point[1][:, place], rcond=1e-9)[0] / sizes
-    moved = point[1][:, place] - others @ made_good
-    moved = moved[: weighing.rows] * best.minimum.theta[place] * (1.0 - 1.0 / FAR)
+    made_good = np.linalg.lstsq(others / sizes, R[:, place], rcond=1e-9)[0] / sizes
+    moved = point[1][: weighing.rows] @ np.insert(-made_good, place, 1.0)
+    moved *= best.minimum.theta[place] * (1.0 - 1.0 / FAR)
     lost = len(best.residual) / best.colour * (moved @ moved) / (2.0 * best.V)
     grown = np.sum(moved[rows] ** 2) / np.sum(best.residual[rows] ** 2)
     return bool(lost > SPARE**2 * TOLD_BY and grown > SPARE**2 * GROWS)
