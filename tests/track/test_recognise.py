@@ -276,5 +276,5 @@ def test_intervals_of_overshoots_hold_the_truth() -> None:
         inside += [check(row, x) for row, x in zip(rows, truth, strict=True)]
     record, model = np.mean(inside, axis=0)
     print(f"overshoots within 95 %: record {record:.3f}, model {model:.3f} of {len(inside)}")
-    assert 0.9 < record < 0.98
+    assert 0.92 < record < 0.98
     assert model > 0.9
