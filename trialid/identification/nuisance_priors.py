@@ -120,7 +120,11 @@ def _first_roll_rate(trial: Trial, shortest: float) -> Known:
     """How fast she ever rolls, and where heel is recorded, how it begins to change.
 
     A parabola through the first half of the shortest roll [s]; three of its slope's errors and a
-    tenth of all roll, as for what is recorded. A struck sample makes that error large.
+    tenth of all roll, as for what is recorded. A struck sample makes that error large. At forty
+    places of records with white noise and with waves the error of the slope is 0.32 and 0.26 of its
+    deviation (rms), 0.84 and 0.61 at most, and 0.0066 and 0.0044 rad/s are left open; through a
+    quarter it is the same, for want of samples, through a whole roll 0.22 and 0.31, 0.62 and 0.92,
+    0.0049 and 0.0044 rad/s.
     """
     if "phi" not in trial.signals:
         return 0.0, 0.05 * 2.0 * np.pi / shortest + 1e-4
