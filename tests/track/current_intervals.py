@@ -8,7 +8,6 @@ in calm air, and with the wind's forces fitted from an anemometer on board. Resu
 both have noise.
 """
 
-import argparse
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,7 +18,9 @@ import numpy as np
 from scipy.stats import t as student
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 import sailed_wind
+from counted import counted
 from sailed_tracks import CURRENTS, SETTINGS, SHIP, accuracy, trials
 
 from trialid.accuracy.parameter_table import ParameterAccuracy
@@ -27,7 +28,6 @@ from trialid.effects.track import CURRENT
 from trialid.identification.fit import Fit, identify
 from trialid.threads import one_thread
 
-RESULTS: Final = Path(__file__).parents[1] / "benchmarks" / "results" / "currents.md"
 Waters = dict[str, tuple[float, float]]
 
 
@@ -77,7 +77,7 @@ def count(case: Case, seeds: Sequence[int]) -> tuple[list[bool], float]:
     return inside, float(np.median(errors))
 
 
-def page(records: int, first: int) -> tuple[str, bool]:
+def page(seeds: range) -> tuple[str, bool]:
     """The table, and whether every share that is judged is as it should be."""
     lines = [
         "| | records, intervals | held | median standard error |",
@@ -85,38 +85,16 @@ def page(records: int, first: int) -> tuple[str, bool]:
     ]
     good = True
     for case in CASES:
-        inside, error = count(case, range(first, first + records))
+        inside, error = count(case, seeds)
         share = float(np.mean(inside))
         lines.append(
-            f"| {case.name} | {records}, {len(inside)} | {share:.1%} | {1000.0 * error:.2f} mm/s |"
+            f"| {case.name} | {len(seeds)}, {len(inside)} | {share:.1%} "
+            f"| {1000.0 * error:.2f} mm/s |"
         )
         print(lines[-1], flush=True)
         good = good and (not case.judged or 0.93 <= share <= 0.97)
     return "\n".join(lines) + "\n", good
 
 
-def main() -> int:
-    """Count, and write."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--records", type=int, default=300)
-    parser.add_argument("--first-seed", type=int, default=5000)
-    parser.add_argument("--write", action="store_true")
-    asked = parser.parse_args()
-    table, good = page(asked.records, asked.first_seed)
-    if asked.write:
-        sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
-        from at_commit import commit_of
-
-        last = asked.first_seed + asked.records - 1
-        head = (
-            "# Currents within their 95 % intervals\n\n"
-            "`python tests/track/current_intervals.py` at "
-            f"{commit_of(RESULTS.parent)}, seeds {asked.first_seed} to {last}, none of them used\n"
-            "while building.\n\n"
-        )
-        RESULTS.write_text(head + table, encoding="utf-8")
-    return 0 if good else 1
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(counted(__doc__, page, "currents", records=300, first=5000))
