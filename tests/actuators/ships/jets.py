@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 import three_ships as truth
-from three_models import Case
+from three_models import SLOW_HULL, Case
 
 from trialid.ship.actuators import Actuator
 
@@ -45,13 +45,7 @@ JETS: Final = Case(
     effects=(
         "waterjets",
         "waterjets_bucket",
-        "surge_resistance",
-        "still_water_surge",
-        "still_water_sway",
-        "still_water_yaw",
-        "cross_flow_drag",
-        "centripetal_added_mass",
-        "munk_moment",
+        *SLOW_HULL,
     ),
     sought={
         "k_jet_ahead": JET,

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import numpy as np
 import three_ships as truth
@@ -109,6 +110,18 @@ def _primed(hull: truth.Hull, force: float) -> float:
     return force / (0.5 * truth.RHO * hull.L**2)
 
 
+SLOW_HULL: Final = (
+    "surge_resistance",
+    "still_water_surge",
+    "still_water_sway",
+    "still_water_yaw",
+    "cross_flow_drag",
+    "centripetal_added_mass",
+    "munk_moment",
+)
+"""Effects of a hull that goes ahead, aside and astern alike."""
+
+
 def _pod(name: str, x: float, y: float) -> Actuator:
     return Actuator(name=name, kind="azimuth", x=x, y=y, own=name == "pod_4")
 
@@ -121,13 +134,7 @@ FERRY = Case(
     actuators=tuple(_pod(n, *at) for n, at in truth.PODS.items()),
     effects=(
         "azimuths",
-        "surge_resistance",
-        "still_water_surge",
-        "still_water_sway",
-        "still_water_yaw",
-        "cross_flow_drag",
-        "centripetal_added_mass",
-        "munk_moment",
+        *SLOW_HULL,
     ),
     sought={
         "k_pod_ahead": truth.POD_AHEAD,
@@ -202,13 +209,7 @@ SUPPLY = Case(
     effects=(
         "thrusters",
         "tunnels",
-        "surge_resistance",
-        "still_water_surge",
-        "still_water_sway",
-        "still_water_yaw",
-        "cross_flow_drag",
-        "centripetal_added_mass",
-        "munk_moment",
+        *SLOW_HULL,
     ),
     sought={
         "k_ahead": truth.MAIN_AHEAD,
