@@ -237,7 +237,7 @@ def judged(monkeypatch, verdict: Verdict, beside: str, refits=(NAMED, SWAY)) -> 
     before = fit(0.10)
     before.scores = ()
     monkeypatch.setattr(left_out_motion, "objection", lambda *_: beside)
-    monkeypatch.setattr(left_out_motion, "refit", lambda *asked: [NAMED for _ in asked[2]])
+    monkeypatch.setattr(left_out_motion, "refit", lambda *asked: [NAMED for _ in asked[1]])
     ranking = [NAMED.candidate, SWAY.candidate]
     return with_motion(before, verdict, ranking, refits, 0.05)
 

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.carried import EACH, FAINT, FALL, Carried, as_good
 from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.score import Candidate
@@ -13,7 +14,6 @@ from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
 from trialid.ship.effect import Effect, Force, Mass, Rate
-from trialid.trial import Trial
 
 HELD_OUT: Final = "the held-out error rises"
 NOT_ARRIVED: Final = "the search does not arrive"
@@ -37,27 +37,26 @@ class Refit:
 Progress = Callable[[str], None]
 
 
-def refit(
-    fit: Fit, trials: Sequence[Trial], candidates: Sequence[Candidate], progress: Progress
-) -> list[Refit]:
+def refit(fit: Fit, candidates: Sequence[Candidate], progress: Progress) -> list[Refit]:
     """Each candidate added and fitted from its expected value; those that fail are left out."""
     done = []
     if not candidates:
         return []
-    before, weights = own_errors(fit), levels(fit)
+    fit = with_means(fit)
+    before, weights = own_errors(fit.examined), levels(fit.examined)
     for candidate in candidates:
         progress(f"trying {candidate.effect.name}")
         try:
-            fitted = _fitted(fit, trials, candidate)
+            found = _fitted(fit.examined, candidate)
         except TrialidError:  # it cannot be fitted on this record: it is not the missing one
             continue
-        after = Carried.between(before, own_errors(fitted, weights), candidate.carried.seen)
-        lean = replace(fitted)  # its gradient is let go: it is larger than all else
-        done.append(Refit(candidate, lean, after))
+        after = Carried.between(before, own_errors(found, weights), candidate.carried.seen)
+        lean = replace(found)  # its gradient is let go: it is larger than all else
+        done.append(Refit(candidate, on_every_sample(fit, lean), after))
     return done
 
 
-def _fitted(fit: Fit, trials: Sequence[Trial], candidate: Candidate) -> Fit:
+def _fitted(fit: Fit, candidate: Candidate) -> Fit:
     """The model with a candidate, from its expected value.
 
     A value that was tried may lie far from all that the rest was fitted to: where the search does
@@ -66,19 +65,18 @@ def _fitted(fit: Fit, trials: Sequence[Trial], candidate: Candidate) -> Fit:
     effect = candidate.effect
     start = {n: _inside(effect, n, x) for n, x in candidate.expected.items()}
     model, settings = (fit.model + effect).with_values(start), _settings_with(fit, effect)
-    found = identify(trials, model, settings, near=fit.estimates | start, smaller=fit)
+    found = identify(fit.trials, model, settings, near=fit.estimates | start, smaller=fit)
     if found.converged or not effect.scanned:
         return found
     shape = {n for n, p in effect.parameters.items() if not p.scan}
     kept = tuple(n for n in settings.free if n not in shape)
-    rest = identify(trials, model, replace(settings, free=kept), near=start)
-    again = identify(trials, model, settings, near=start | rest.estimates, smaller=fit)
+    rest = identify(fit.trials, model, replace(settings, free=kept), near=start)
+    again = identify(fit.trials, model, settings, near=start | rest.estimates, smaller=fit)
     return again if again.converged else found
 
 
 def refit_best(
     fit: Fit,
-    trials: Sequence[Trial],
     candidates: Sequence[Candidate],
     most: int,
     level: float,
@@ -88,11 +86,11 @@ def refit_best(
 
     Twins stand side by side in the ranking, and what speaks against one speaks against all.
     """
-    done = refit(fit, trials, candidates[:most], progress)
+    done = refit(fit, candidates[:most], progress)
     if likeliest_refit(fit, done, level) is None:
         known = {n for c in candidates[:most] for n in (c.effect.name, *c.family)}
         others = [c for c in candidates[most:] if c.effect.name not in known]
-        done += refit(fit, trials, others[:most], progress)
+        done += refit(fit, others[:most], progress)
     return done
 
 
