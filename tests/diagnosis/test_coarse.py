@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from trialid import pipeline_file
+from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.diagnosis.noise import thinning as module
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import mean_trial, samples_together, with_means
@@ -17,6 +18,8 @@ from trialid.trial import Trial
 from trialid.workflow import build_model, fit_model, read_trials
 
 ROOT = Path(__file__).parents[2]
+PERIOD = 0.5
+"""Of the shipped records [s]."""
 FEW = ("righting_arm_cubic", "heel_roll_cubic", "yaw_drag_rav", "sway_drag_rar", "rudder_stall")
 
 
@@ -85,3 +88,26 @@ def test_a_trial_in_which_an_output_rests_does_not_stand_in_the_way(
     still = replace(first.response, y=first.response.y * np.array([1.0, 0.0]))
     resting = replace(fit, scores=(replace(first, response=still), *others))
     assert samples_together(resting) == samples_together(fit) == 3
+
+
+def test_what_is_tried_is_fitted_to_means_and_its_error_is_that_of_every_sample(
+    fit: Fit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = DiagnoseSettings(candidates={n: CATALOGUE[n] for n in FEW}, coefficients=False)
+    whole = diagnose(fit, asked)
+    monkeypatch.setattr(module, "LONGEST", 800)
+    short = diagnose(fit, asked)
+    assert short.verdict.effect == whole.verdict.effect == "righting_arm_cubic"
+    assert whole.after is not None
+    assert short.after is not None
+    one, other = whole.after.fit, short.after.fit
+    assert other.by_means is not None
+    assert other.by_means.trials[0].period == 3.0 * other.trials[0].period == 3.0 * PERIOD
+    assert len(other.residual) == len(one.residual)
+    assert other.eps_rmsn == pytest.approx(one.eps_rmsn, rel=5e-3)
+    assert other.eps_rmsn >= one.eps_rmsn * (1.0 - 1e-9)  # the least is on every sample
+    assert other.value("GM3") == pytest.approx(one.value("GM3"), rel=0.02)
+    pairs = zip(whole.before.accuracy.physical, short.before.accuracy.physical, strict=True)
+    for fine, rough in pairs:  # by how many lags each counts; of 100 000 samples 3 % at most
+        assert rough.value == fine.value
+        assert rough.standard_error == pytest.approx(fine.standard_error, rel=0.2)
