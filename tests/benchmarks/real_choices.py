@@ -1,11 +1,11 @@
 """What the loop does on two real sets of zig-zags, whichever two trials are held out.
 
-    python tests/benchmarks/real_choices.py [--jobs 2] [--write]
+    python tests/benchmarks/real_choices.py [--only "Esso Osaka"] [--jobs 2] [--write]
 
 Esso Osaka in measured wind and KVLCC2 in a basin, each in all 21 choices of the two, and KVLCC2
 from other bases: the first name, what stays in the end, the error of the trials held out from the
-first stage to the last. Results stand in `results/real_choices.md` with `--write`. Exit status 1
-where a held-out error rises.
+first stage to the last. Results stand in `results/real_choices.md` with `--write`, each table with
+its commit; those not asked for stay. Exit status 1 where a held-out error rises.
 """
 
 import argparse
@@ -77,53 +77,59 @@ def loop(kind: str, choice: str, pipeline: Path) -> Loop:
     )
 
 
-def choices(folder: Path) -> list[tuple[str, str, Path]]:
-    """All pipelines, written below the folder."""
+def choices(folder: Path, only: str) -> list[tuple[str, str, Path]]:
+    """The pipelines of all kinds whose name begins so, written below the folder."""
     (pond := folder / "pond").mkdir()
     (basin := folder / "basin").mkdir()
     on, at = on_pond(pond), in_basin(basin)
     held = ("Z_10_10_S", "Z_20_10_S")
-    return [
+    every = [
         *((POND, " ".join(c), held_on_pond(pond, c)) for c in on),
         *((BASIN, " ".join(c), held_in_basin(basin, c)) for c in at),
         *((FROM, name, held_in_basin(basin, held, *base)) for name, base in BASES.items()),
     ]
+    return [one for one in every if one[0].startswith(only)]
 
 
-def report(loops: Sequence[Loop]) -> str:
-    """The tables, a line of counts over each."""
-    lines = []
-    for kind in dict.fromkeys(x.kind for x in loops):
-        of = [x for x in loops if x.kind == kind]
-        begun, ended = (float(np.mean([x.held_out[k] for x in of])) for k in (0, -1))
-        ratio = np.median([x.held_out[-1] / x.held_out[0] for x in of])
-        lines += [
-            f"## {kind}\n",
-            f"Of {len(of)}: wind first in {sum(x.first in WIND for x in of)}; a sensor or clock "
-            f"named in {sum(any(map(of_a_clock, {*x.named, x.first or ''})) for x in of)}; the "
-            f"held-out error rises in {sum(x.rises for x in of)}; held out {begun:.1%} to "
-            f"{ended:.1%} on average, median of the ratios {ratio:.2f}.\n",
-            "| choice | first | steps | named in the end | held out, % | end |",
-            "|---|---|---|---|---|---|",
-            *(x.row() for x in of),
-            "",
-        ]
-    return "\n".join(lines)
+def table(of: Sequence[Loop]) -> str:
+    """The table of one kind, a line of counts over it."""
+    begun, ended = (float(np.mean([x.held_out[k] for x in of])) for k in (0, -1))
+    ratio = np.median([x.held_out[-1] / x.held_out[0] for x in of])
+    lines = [
+        f"Of {len(of)}: wind first in {sum(x.first in WIND for x in of)}; a sensor or clock "
+        f"named in {sum(any(map(of_a_clock, {*x.named, x.first or ''})) for x in of)}; the "
+        f"held-out error rises in {sum(x.rises for x in of)}; held out {begun:.1%} to "
+        f"{ended:.1%} on average, median of the ratios {ratio:.2f}.\n",
+        "| choice | first | steps | named in the end | held out, % | end |",
+        "|---|---|---|---|---|---|",
+        *(x.row() for x in of),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def kept(page: str) -> dict[str, str]:
+    """The tables of a page by their kind."""
+    parts = (part.split("\n\n", 1) for part in page.split("## ")[1:])
+    return {kind.strip(): text.strip() + "\n" for kind, text in parts}
 
 
 def main() -> int:
     """Run, print, and write the tables where asked."""
     asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("--only", default="", help="what the kinds begin with")
     asked.add_argument("--jobs", type=int, default=2)
     asked.add_argument("--write", action="store_true")
     options = asked.parse_args()
     with tempfile.TemporaryDirectory() as folder, multiprocessing.Pool(options.jobs) as pool:
-        loops = pool.starmap(loop, choices(Path(folder)), chunksize=1)
-    said = report(loops)
-    print(said)
+        loops = pool.starmap(loop, choices(Path(folder), options.only), chunksize=1)
+    found = {x.kind: table([y for y in loops if y.kind == x.kind]) for x in loops}
+    print("\n".join(f"## {kind}\n\n{text}" for kind, text in found.items()))
     if options.write:
-        commit = commit_of(RESULTS.parent)
-        head = f"# Real zig-zags\n\n`python tests/benchmarks/real_choices.py` at {commit}\n\n"
+        at = f"At {commit_of(RESULTS.parent)}. "
+        before = kept(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
+        every = before | {kind: at + text for kind, text in found.items()}
+        said = "\n".join(f"## {kind}\n\n{text}" for kind, text in every.items())
+        head = "# Real zig-zags\n\n`python tests/benchmarks/real_choices.py`\n\n"
         RESULTS.write_text(head + said, encoding="utf-8")
     return int(any(x.rises for x in loops))
 
