@@ -70,7 +70,7 @@ def known_by(name: str, deviation: float) -> LikelySpread:
 def spread_of(fit: Fit, candidates: Mapping[str, Effect]) -> LikelySpread:
     """What predictions of a fit are uncertain by, of these effects one may be missing."""
     augmented = augment(fit, candidates)
-    off = doubts(fit, augmented)
+    off = doubts(augmented)
     parts, _ = split(fit, augmented, {})
     covariance = accuracy_of(fit, parts, off.averaged).covariance
     return likely_spread(fit, covariance, off.standing, off.held, off.missing)
@@ -81,5 +81,5 @@ def distances(fit: Fit, truth: Mapping[str, float]) -> dict[str, float]:
     assert fit.converged
     augmented = augment(fit, {})
     parts, _ = split(fit, augmented, {})
-    rows = accuracy_of(fit, parts, may_be_off(fit, augmented)).physical
+    rows = accuracy_of(fit, parts, may_be_off(augmented)).physical
     return {r.name: (r.value - truth[r.name]) / r.standard_error for r in rows}

@@ -10,35 +10,22 @@ from trialid.arrays import Mask, Vector
 
 @dataclass(frozen=True)
 class Stretch:
-    """Rows of A that are one output of one trial; `compared` places them on the trial's clock.
-
-    With `every` above 1 a row is so many samples of the trial's as one, and so is an instant of
-    the clock; what is left over at the end is left out.
-    """
+    """Rows of A that are one output of one trial; `compared` places them on the trial's clock."""
 
     trial: int
     output: int
     rows: slice
     compared: Mask
-    every: int = 1
 
     def taken(self, values: Vector) -> Vector:
-        """The rows that samples of the whole trial make; (N, ...) to (rows, ...).
-
-        Several samples as one are their sum over sqrt(every): a slow signal's squares add up to
-        what they were, and white noise keeps its variance a row.
-        """
-        if self.every == 1:
-            return np.asarray(values[self.compared])
-        whole = values[: len(self.compared) * self.every]
-        sums = whole.reshape(len(self.compared), self.every, *values.shape[1:]).sum(axis=1)
-        return np.asarray(sums[self.compared] / np.sqrt(self.every))
+        """The rows that samples of the whole trial make; (N, ...) to (rows, ...)."""
+        return np.asarray(values[self.compared])
 
     def within(self, samples: slice, first: int) -> "Stretch":
-        """The rows that some samples make, from a multiple of `every` on; the first is `first`."""
-        compared = self.compared[samples.start // self.every : samples.stop // self.every]
+        """The rows that some samples make; the first is `first`."""
+        compared = self.compared[samples]
         rows = slice(first, first + int(compared.sum()))
-        return Stretch(self.trial, self.output, rows, compared, self.every)
+        return Stretch(self.trial, self.output, rows, compared)
 
 
 Kind = Literal["physical", "nuisance"]

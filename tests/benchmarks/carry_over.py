@@ -61,7 +61,7 @@ def look(name: str, noise: str, seed: int) -> Seen:
     for blocks in (3, 6, 12):
         with mock.patch.object(carry_over, "BLOCKS", blocks):
             found[blocks], augmented = rank(fit, CATALOGUE, DEFAULTS.family_cos)
-    whole = completeness(fit, augmented)
+    whole = completeness(augmented)
     assert whole is not None
     return Seen(scenario, noise, found, whole)
 

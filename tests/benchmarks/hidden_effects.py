@@ -122,9 +122,9 @@ def diagnosed(
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        refits = refits_of(fit, trials, ranking, asked, lambda words: None)
+        refits = refits_of(fit, ranking, asked, lambda words: None)
     with watch("decide"):
-        whole = completeness(fit, augmented)
+        whole = completeness(augmented)
         parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)
         verdict = decide(fit, ranking, refits, parts, whole, asked.level)
         named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)

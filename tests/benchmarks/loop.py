@@ -49,7 +49,7 @@ def ranking() -> float:
     settings = build_model.settings_of(asked, model)
     fitting, fit = least(lambda: identify(trials, model, settings))
     ranked, (candidates, augmented) = least(lambda: rank(fit, catalogue))
-    compared, _ = least(lambda: completeness(fit, augmented))
+    compared, _ = least(lambda: completeness(augmented))
     print(f"fit {fitting:.2f} s; {len(candidates)} effects ranked {ranked:.2f} s; "
           f"compared with forces of any shape {compared:.2f} s")  # fmt: skip
     return (ranked + compared) / fitting

@@ -35,7 +35,7 @@ def fit():
 def examined(fit, catalogue):
     """The standard measures of a fit by name, and the covariance of its unknowns by noise."""
     augmented = augment(fit, catalogue)
-    off = doubts(fit, augmented)
+    off = doubts(augmented)
     parts, _ = split(fit, augmented, {})
     covariance = accuracy_of(fit, parts, off.averaged).covariance
     found = following.standard_measures(fit, covariance, off.standing, off.held, off.missing)

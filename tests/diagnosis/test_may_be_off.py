@@ -27,7 +27,9 @@ def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None):
         simulator=SimpleNamespace(model=ship),
         unknowns=[SimpleNamespace(prior=None), SimpleNamespace(prior=prior)],
     )
+    fit = SimpleNamespace(problem=problem, level=0.02, theta=np.array([1.0, 3e-3]))
     augmented = SimpleNamespace(
+        fit=fit,
         residual=np.ones(5),
         psi=np.ones((5, 2)),
         H=np.ones((5, 1)),
@@ -35,7 +37,7 @@ def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None):
         held=("Nv",),
         traces=traces,
     )
-    doubts(SimpleNamespace(problem=problem, level=0.02, theta=np.array([1.0, 3e-3])), augmented)
+    doubts(augmented)
     return given[0]
 
 

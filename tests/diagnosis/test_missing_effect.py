@@ -35,13 +35,13 @@ def diagnosed(trials, model):
     fit = identify(trials, model, FIT)
     ranking, augmented = rank(fit, CATALOGUE)
     standing = [c for c in ranking if c.worth_a_name(0.05)][:3]
-    refits = refit(fit, trials, standing, lambda words: None)
+    refits = refit(fit, standing, lambda words: None)
     parts, _ = split(fit, augmented, {})
     return (
         fit,
         ranking,
         refits,
-        decide(fit, ranking, refits, parts, completeness(fit, augmented), 0.05),
+        decide(fit, ranking, refits, parts, completeness(augmented), 0.05),
     )
 
 

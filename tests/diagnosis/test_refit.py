@@ -7,19 +7,36 @@ import numpy as np
 import pytest
 
 from trialid.diagnosis.search.carried import Carried
-from trialid.diagnosis.search.refit import HELD_OUT, Refit, best_of, objection, worse_held_out
+from trialid.diagnosis.search.refit import (
+    AS_SLOW,
+    HELD_OUT,
+    Refit,
+    best_of,
+    objection,
+    worse_held_out,
+)
 from trialid.ship.effect import Force, Lagged
 
 FORMS = ((Force,), (Lagged,))
 """Of an effect of the ship, and of a sensor."""
 
 
-def refit(name, before, after, eps=(0.10, 0.08), check=(0.2, 0.15), seen=1.0, converged=True):
+def refit(
+    name,
+    before,
+    after,
+    eps=(0.10, 0.08),
+    check=(0.2, 0.15),
+    seen=1.0,
+    converged=True,
+    p_value=0.001,
+):
     """A refit as far as its errors go, and the fit before it."""
     candidate = SimpleNamespace(
         effect=SimpleNamespace(name=name, parameters=("a",), forms=FORMS[name == "lag"]),
         shown=lambda level: level > 0.0,
         carried=SimpleNamespace(seen=seen),
+        p_value=p_value,
     )
     old, new = (
         SimpleNamespace(
@@ -68,17 +85,42 @@ def test_the_best_leaves_least_and_what_is_hardly_seen_gives_way_to_its_equal():
     lag = refit("lag", BEFORE, tuple(0.69 * x + 0.02 * (-1) ** i for i, x in enumerate(BEFORE)),
                 seen=0.01)[1]  # fmt: skip
     assert lag.carried.ratio < force.carried.ratio
-    assert best_of([lag, force]) is force
-    assert best_of([replace(lag, carried=replace(lag.carried, seen=0.2)), force]) is not force
+    assert best_of([lag, force], 0.05) is force
+    assert best_of([replace(lag, carried=replace(lag.carried, seen=0.2)), force], 0.05) is not force
     far = refit("far", BEFORE, tuple(0.3 * x for x in BEFORE), seen=0.01)[1]
-    assert best_of([far, force]) is far  # no equal: what it takes off is three times as much
-    assert best_of([]) is None
+    assert best_of([far, force], 0.05) is far  # no equal: what it takes off is three times as much
+    assert best_of([], 0.05) is None
 
 
 def test_beside_effects_that_were_added_a_lag_gives_way_to_what_is_of_the_ship_and_as_good():
     force = refit("force", BEFORE, LESS)[1]
     lag = refit("lag", BEFORE, ALIKE)[1]
-    assert best_of([force, lag]) is lag
-    assert best_of([force, lag], grown=True) is force
+    assert best_of([force, lag], 0.05) is lag
+    assert best_of([force, lag], 0.05, grown=True) is force
     better = refit("lag", BEFORE, tuple(0.5 * x for x in BEFORE))[1]
-    assert best_of([force, better], grown=True) is better
+    assert best_of([force, better], 0.05, grown=True) is better
+
+
+@pytest.mark.parametrize(
+    ("late", "words"), [(0.3, ""), (-0.3, ""), (0.7, AS_SLOW), (-5.0, AS_SLOW)]
+)
+def test_in_a_grown_model_a_sensor_as_slow_as_the_ship_is_not_told_from_her_memory(late, words):
+    """A model of 3 m at 0.6 m/s: a tenth of her own time is half a second."""
+    old, new = refit("lag", BEFORE, LESS)
+    new.candidate.effect.parameters = {"T_r": SimpleNamespace(unit="s")}
+    ship = SimpleNamespace(particulars={"L": 3.0, "g": 9.81, "U0": 0.6})
+    new.fit.model = SimpleNamespace(ship=ship, value=lambda name: {"T_r": late}[name])
+    new.fit.problem.trials = (SimpleNamespace(signals={}),)
+    assert objection(old, new, 0.05) == ""
+    assert objection(old, new, 0.05, grown=True) == words
+    new.candidate.effect.forms = (Force,)  # what is late in the ship is the ship's
+    assert objection(old, new, 0.05, grown=True) == ""
+
+
+def test_of_two_as_good_the_one_that_stands_out_against_the_noise_is_taken():
+    blocks = refit("blocks", BEFORE, ALIKE, p_value=0.23)[1]
+    sure = refit("sure", BEFORE, LESS, p_value=0.04)[1]
+    assert best_of([blocks, sure], 0.05) is sure
+    assert best_of([blocks, sure], 0.01) is blocks
+    far = refit("far", BEFORE, tuple(0.5 * x for x in BEFORE), p_value=0.23)[1]
+    assert best_of([far, sure], 0.05) is far  # no equal

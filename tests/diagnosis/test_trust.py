@@ -32,10 +32,9 @@ def fit_of(theta, sizes):
     problem = SimpleNamespace(
         unknowns=[unknown(f"x{i}", s) for i, s in enumerate(sizes)],
         compared=(np.ones((N, 1), dtype=bool),),
-        every=1,
         trials=(),  # no record that drives anything
     )
-    return SimpleNamespace(
+    fit = SimpleNamespace(
         problem=problem,
         theta=np.array(theta),
         psi=psi,
@@ -44,6 +43,8 @@ def fit_of(theta, sizes):
         settings=SimpleNamespace(loss="squares"),
         rivals=(),
     )
+    fit.examined = fit
+    return fit
 
 
 def averaged(columns):

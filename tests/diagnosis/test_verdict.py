@@ -36,7 +36,7 @@ def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=(), sta
     candidate = SimpleNamespace(
         effect=SimpleNamespace(
             name=name,
-            parameters=tuple("abcdef"[:parameters]),
+            parameters={n: SimpleNamespace(unit="1") for n in "abcdef"[:parameters]},
             forms=(),
             bound_by_meaning=False,
             held=None,
@@ -91,10 +91,10 @@ def test_beside_effects_that_were_added_a_name_costs_a_tenth(ratio, kind):
 def test_of_two_that_leave_as_much_the_one_of_fewer_parameters_is_taken():
     """One per cent of the squared error for each further one."""
     simple, many = refit("simple", 0.800, 0.08), refit("many", 0.790, 0.08, parameters=3)
-    assert best_of([simple, many]) is simple
-    assert best_of([refit("more", 0.770, 0.08, parameters=3), simple]).candidate.effect.name == (
-        "more"
-    )
+    assert best_of([simple, many], 0.05) is simple
+    assert best_of(
+        [refit("more", 0.770, 0.08, parameters=3), simple], 0.05
+    ).candidate.effect.name == ("more")
 
 
 def test_what_held_out_trials_lose_by_is_not_named():
@@ -237,7 +237,7 @@ def judged(monkeypatch, verdict: Verdict, beside: str, refits=(NAMED, SWAY)) -> 
     before = fit(0.10)
     before.scores = ()
     monkeypatch.setattr(left_out_motion, "objection", lambda *_: beside)
-    monkeypatch.setattr(left_out_motion, "refit", lambda *asked: [NAMED for _ in asked[2]])
+    monkeypatch.setattr(left_out_motion, "refit", lambda *asked: [NAMED for _ in asked[1]])
     ranking = [NAMED.candidate, SWAY.candidate]
     return with_motion(before, verdict, ranking, refits, 0.05)
 

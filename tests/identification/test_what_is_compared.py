@@ -168,9 +168,7 @@ def test_a_prior_weighs_against_as_many_rows_as_say_different_things(rho):
     n = 20_000
     e = lfilter([1.0], [1.0, -rho], np.random.default_rng(4).standard_normal(n))
     residual = 0.2 * e / np.linalg.norm(e)
-    problem = SimpleNamespace(
-        compared=(np.ones((n, 1), dtype=bool),), every=1, unknowns=(None, None, None)
-    )
+    problem = SimpleNamespace(compared=(np.ones((n, 1), dtype=bool),), unknowns=(None, None, None))
     expected = 0.2 * np.sqrt((1.0 + rho) / (1.0 - rho) / (n - 3))
     assert level_of(problem, residual) == pytest.approx(expected, rel=0.1)
 

@@ -133,7 +133,7 @@ def counted(fit: Fit, ship: World, catalogue: Mapping[str, Effect]) -> Counted:
     """Which intervals of a fit hold the truth."""
     augmented = augment(fit, catalogue)
     parts, _ = split(fit, augmented, {})
-    rows = accuracy_of(fit, parts, may_be_off(fit, augmented)).physical
+    rows = accuracy_of(fit, parts, may_be_off(augmented)).physical
     return Counted(
         {kind: tuple(_holds(r, kind, ship) for r in rows) for kind in KINDS},
         {kind: tuple(_width(r, kind, ship) for r in rows) for kind in KINDS},

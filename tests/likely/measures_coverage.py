@@ -146,7 +146,7 @@ def fit_of(case: Case, ship: World, seed: int) -> Fit:
 def ranges(fit: Fit, catalogue: Mapping[str, Effect]) -> tuple[Measure, ...]:
     """The measures of a fit with their ranges."""
     augmented = augment(fit, catalogue)
-    off = doubts(fit, augmented)
+    off = doubts(augmented)
     parts, _ = split(fit, augmented, {})
     covariance = accuracy_of(fit, parts, off.averaged).covariance
     return standard_measures(fit, covariance, off.standing, off.held, off.missing)

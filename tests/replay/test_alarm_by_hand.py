@@ -44,12 +44,12 @@ def test_the_filter_takes_what_was_before_from_what_is_now():
 def test_a_band_is_of_the_noise_alone_in_the_outputs_unit():
     mask = np.ones((50, 1), dtype=bool)
     problem = SimpleNamespace(
-        outputs=("r",), y_rms=np.array([0.01]), compared=(mask,), weights=np.ones(1), every=1
+        outputs=("r",), y_rms=np.array([0.01]), compared=(mask,), weights=np.ones(1)
     )
     fit = SimpleNamespace(problem=problem, residual=np.zeros(50), eps_by_output={"r": 0.3})
     split = Split("quiet stretch", "", noise=0.1, undermodelling=0.28, by_output={"r": (0.1, 0.28)})
     augmented = SimpleNamespace(
-        traces=(1,), stretches=(), evidence=SimpleNamespace(colour=[np.array([1.0, -0.5])])
+        fit=fit, traces=(1,), stretches=(), evidence=SimpleNamespace(colour=[np.array([1.0, -0.5])])
     )
     found = bands(fit, split, augmented)
     assert found.of[0].sigma == pytest.approx(0.001)

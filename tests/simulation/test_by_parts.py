@@ -16,20 +16,17 @@ OUTPUTS = ("u", "v", "p", "r", "phi")
 START = {"u": 7.2, "v": 0.1, "p": 0.01, "r": 0.002, "phi": 0.02}
 
 
-def together(simulator: Simulator, trial: Trial, every: int) -> tuple[Response, np.ndarray, int]:
+def together(simulator: Simulator, trial: Trial) -> tuple[Response, np.ndarray, int]:
     """The response, its sensitivities put together from their parts, and how many these were."""
     found = np.full((trial.samples, len(OUTPUTS), len(simulator.columns)), np.nan)
     given = [0]
 
     def take(samples: slice, slopes: np.ndarray) -> None:
         assert samples.start == given[-1]
-        assert samples.stop % every == 0 or samples.stop == trial.samples
         given.append(samples.stop)
         found[samples] = slopes
 
-    response, added = by_parts.respond_by_parts(
-        simulator, trial, values(simulator), START, take, every
-    )
+    response, added = by_parts.respond_by_parts(simulator, trial, values(simulator), START, take)
     for c, i, more in added:
         found[:, c, i] += more
     return response, found, len(given) - 1
@@ -39,7 +36,6 @@ def values(simulator: Simulator) -> dict[str, float]:
     return {n: simulator.model.value(n) for n in simulator.equations.free}
 
 
-@pytest.mark.parametrize("every", [1, 7])
 @pytest.mark.parametrize(
     ("late", "more"),
     [
@@ -52,7 +48,6 @@ def values(simulator: Simulator) -> dict[str, float]:
 def test_parts_do_not_show(
     late: dict[str, float],
     more: tuple[str, ...],
-    every: int,
     everything: ShipModel,
     lively: Callable[..., Trial],
     monkeypatch: pytest.MonkeyPatch,
@@ -65,7 +60,7 @@ def test_parts_do_not_show(
     trial = lively(samples=100)
     simulator = prepare(model, tuple(model.parameters), OUTPUTS)
     monkeypatch.setattr(by_parts, "NUMBERS", 5 * len(simulator.columns) * 11)
-    response, slopes, parts = together(simulator, trial, every)
+    response, slopes, parts = together(simulator, trial)
     told = respond(simulator, trial, values(simulator), START)
     assert parts > 5
     np.testing.assert_array_equal(response.states, told.states)
@@ -78,7 +73,7 @@ def test_a_slow_output_comes_whole(everything: ShipModel, lively: Callable[..., 
     model = (everything + effect).with_values(dict.fromkeys(effect.parameters, 0.8))
     trial = lively(samples=100)
     simulator = prepare(model, tuple(model.parameters), OUTPUTS)
-    _, slopes, parts = together(simulator, trial, 1)
+    _, slopes, parts = together(simulator, trial)
     assert parts == 1
     np.testing.assert_array_equal(slopes, respond(simulator, trial, values(simulator), START).S)
 
@@ -92,7 +87,7 @@ def test_a_departure_is_told_and_nothing_given_from_there_on(
     told = respond(simulator, trial, values(simulator), START)
     assert told.departure is not None
     monkeypatch.setattr(by_parts, "NUMBERS", 1)
-    response, slopes, _ = together(simulator, trial, 1)
+    response, slopes, _ = together(simulator, trial)
     assert response.departure == told.departure
     assert np.isnan(slopes[int(told.departure.t) :]).all()
 

@@ -11,6 +11,7 @@ from trialid.diagnosis.may_be_off import Doubts, doubts
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.prediction_band import prediction_band
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.completeness import Completeness, completeness
@@ -28,7 +29,6 @@ from trialid.identification.fit import Fit
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect
 from trialid.threads import one_thread
-from trialid.trial import Trial
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,18 +109,18 @@ def diagnose(
     says that effects were added to the model before.
     """
     asked = settings or DiagnoseSettings()
-    trials = [s.trial for s in fit.scores]
+    fit = with_means(fit)
     before, ranking, augmented = examine_fit(fit, asked, progress)
     by_noise = partial(_leaves_noise, asked=asked)
-    if faults := gross_faults(fit, trials, asked.candidates, progress, by_noise):
-        return _gross(fit, before, augmented, faults, asked)
+    if faults := gross_faults(fit, asked.candidates, progress, by_noise):
+        return _gross(fit, before, augmented.left_out, faults, asked)
     if (failed := why_no_fit(fit)) is not None:
-        return _no_fit(fit, before, augmented, failed)
-    refits = refits_of(fit, trials, ranking, asked, lambda words: progress(words, 0.7), grown)
-    if faults := _whole(fit, ranking, refits, asked, progress):
-        return _gross(fit, before, augmented, faults, asked)
-    whole, left_out = _any_shape(fit, augmented), augmented.left_out
+        return _no_fit(fit, before, augmented.left_out, failed)
+    whole, left_out = _any_shape(augmented), augmented.left_out
     del augmented  # columns of the whole catalogue, before there are those of the next model
+    refits = refits_of(fit, ranking, asked, lambda words: progress(words, 0.7), grown)
+    if faults := _whole(fit, ranking, refits, asked, progress):
+        return _gross(fit, before, left_out, faults, asked)
     fits = [r.fit for r in refits]
     before = _bounded(before, fits, whole)
     verdict = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
@@ -151,7 +151,6 @@ def _whole(
     """Faults of actuators that explain what no refit does; mostly none."""
     return whole_faults(
         fit,
-        [s.trial for s in fit.scores],
         asked.candidates,
         ranking,
         others=refits,
@@ -160,9 +159,9 @@ def _whole(
     )
 
 
-def _any_shape(fit: Fit, augmented: Augmented) -> Completeness | None:
+def _any_shape(augmented: Augmented) -> Completeness | None:
     """Whether forces of any simple shape explain more; among sensors alone no force is missing."""
-    return completeness(fit, augmented) if fit.model.states else Completeness(0.0, 0.0)
+    return completeness(augmented) if augmented.fit.model.states else Completeness(0.0, 0.0)
 
 
 def _force(fit: Fit, level: float, progress: Progress) -> MissingForce | None:
@@ -173,12 +172,14 @@ def _force(fit: Fit, level: float, progress: Progress) -> MissingForce | None:
     return missing_force(fit, level)
 
 
-def _no_fit(fit: Fit, before: Diagnosed, augmented: Augmented, failed: Inadequate) -> Diagnosis:
+def _no_fit(
+    fit: Fit, before: Diagnosed, left_out: Mapping[str, str], failed: Inadequate
+) -> Diagnosis:
     """Nothing is concluded from a fit that carries no verdict: no ranking, no names."""
     return Diagnosis(
         before=before,
         ranking=(),
-        left_out=augmented.left_out,
+        left_out=left_out,
         refits=(),
         verdict=Verdict("no fit", None, (), f"no fit: {failed}"),
         where=where(fit),
@@ -188,7 +189,7 @@ def _no_fit(fit: Fit, before: Diagnosed, augmented: Augmented, failed: Inadequat
 def _gross(
     fit: Fit,
     before: Diagnosed,
-    augmented: Augmented,
+    left_out: Mapping[str, str],
     faults: Sequence[Refit],
     asked: DiagnoseSettings,
 ) -> Diagnosis:
@@ -196,7 +197,7 @@ def _gross(
     return Diagnosis(
         before=before,
         ranking=tuple(r.candidate for r in faults),
-        left_out=augmented.left_out,
+        left_out=left_out,
         refits=tuple(faults),
         verdict=gross_verdict(fit, faults),
         where=where(fit),
@@ -212,7 +213,7 @@ def examine_fit(
     candidates = {**asked.candidates, **(candidates_to_free(fit) if asked.coefficients else {})}
     ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
-    return Diagnosed(fit, best, routes, doubts(fit, augmented)), ranking, augmented
+    return Diagnosed(fit, best, routes, doubts(augmented)), ranking, augmented
 
 
 def _leaves_noise(fit: Fit, asked: DiagnoseSettings) -> bool:
@@ -228,7 +229,6 @@ def _bounded(done: Diagnosed, fits: Sequence[Fit], whole: Completeness | None = 
 
 def refits_of(
     fit: Fit,
-    trials: Sequence[Trial],
     ranking: Sequence[Candidate],
     asked: DiagnoseSettings,
     progress: Callable[[str], None],
@@ -236,7 +236,7 @@ def refits_of(
 ) -> tuple[Refit, ...]:
     """The best candidates fitted, and whatever else would be said to do as well."""
     worth = [c for c in ranking if c.worth_a_name(asked.level)]
-    best = refit_best(fit, trials, worth, asked.refit, asked.level, progress)
+    best = refit_best(fit, worth, asked.refit, asked.level, progress)
     named = likeliest_refit(fit, best, asked.level, grown)
     others = to_fit(named, ranking, best) if named else ()
-    return (*best, *refit(fit, trials, others, progress))
+    return (*best, *refit(fit, others, progress))

@@ -45,10 +45,9 @@ def _stands_beside(
     fit: Fit, named: Refit, motion: Candidate, refits: Sequence[Refit], level: float
 ) -> bool:
     """Whether an effect is worth its name in a model that has the motion already."""
-    trials = [s.trial for s in fit.scores]
     done = [r for r in refits if r.candidate.effect.name == motion.effect.name]
-    for moving in done or refit(fit, trials, [motion], _quiet):
-        both = refit(moving.fit, trials, [named.candidate], _quiet)
+    for moving in done or refit(fit, [motion], _quiet):
+        both = refit(moving.fit, [named.candidate], _quiet)
         return any(not objection(moving.fit, r, level) for r in both)
     return False
 

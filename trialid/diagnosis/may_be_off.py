@@ -13,7 +13,6 @@ from trialid.accuracy.one_missing import Rival
 from trialid.arrays import Vector
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
-from trialid.identification.fit import Fit
 from trialid.ship.effect import Parameter
 
 SMALLEST: Final = 1e-12
@@ -43,17 +42,18 @@ class Doubts:
         return self.standing.average()
 
 
-def may_be_off(fit: Fit, augmented: Augmented) -> Averaged:
+def may_be_off(augmented: Augmented) -> Averaged:
     """The parameters' moves, averaged over the catalogue and the model as it is."""
-    return doubts(fit, augmented).averaged
+    return doubts(augmented).averaged
 
 
-def doubts(fit: Fit, augmented: Augmented) -> Doubts:
+def doubts(augmented: Augmented) -> Doubts:
     """What the rows of a fit say of the catalogue and of the model as it is.
 
     What is there whole or not at all has no size that could be small and unseen: it is left out,
     and so is the freeing of what was held fixed, which counts with its own uncertainty.
     """
+    fit = augmented.fit
     ship = fit.problem.simulator.model
     deviations = [abs(ship.value(n)) * ship.ship.share_off(n) for n in augmented.held]
     S, traces = _may_be_missing(augmented)

@@ -19,7 +19,7 @@ def accuracy_of(fit: Fit, parts: Split, averaged: Averaged) -> Accuracy:
 
     Eq. 14 is a bound, so it takes the upper end of what may be the model's part of the error.
     """
-    model = parts.undermodelling_interval
+    model, seen = parts.undermodelling_interval, fit.examined
     subjects = []
     for unknown, value in zip(fit.problem.unknowns, fit.theta, strict=True):
         near_zero = abs(value) < NEAR_ZERO * unknown.size
@@ -31,12 +31,12 @@ def accuracy_of(fit: Fit, parts: Split, averaged: Averaged) -> Accuracy:
         )
     made = assess(
         subjects=subjects,
-        psi=fit.psi,
-        residual=influence(fit.residual) if fit.settings.loss == "huber" else fit.residual,
-        stretches=stretches(fit.problem),
+        psi=seen.psi,
+        residual=influence(seen.residual) if fit.settings.loss == "huber" else seen.residual,
+        stretches=stretches(seen.problem),
         noise=parts.noise,
         undermodelling=parts.undermodelling if model is None else model[1],
-        level=fit.level,
-        felt=felt_noise(fit),
+        level=seen.level,
+        felt=felt_noise(seen),
     )
     return with_rivals(with_ranges(made, averaged), fit.rivals)

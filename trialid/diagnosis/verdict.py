@@ -10,6 +10,7 @@ from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import FALL, as_good
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import (
+    AS_SLOW,
     HELD_OUT,
     NOT_ARRIVED,
     Refit,
@@ -68,8 +69,10 @@ def decide(
         return Verdict("not in catalogue", None, (), _gap(named, whole))
     if named is not None:
         return _judged(fit, named, ranking, refits, parts, level=level, grown=grown)
-    if (against := _contradicted(fit, refits, level)) is not None:
+    if (against := _standing_but(HELD_OUT, fit, refits, level)) is not None:
         return Verdict("cannot tell", None, (), _against(fit, against))
+    if grown and (slow := _standing_but(AS_SLOW, fit, refits, level)) is not None:
+        return Verdict("cannot tell", None, (), _as_slow(fit, slow))
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
     return _unnamed(parts, whole, small)
 
@@ -158,9 +161,17 @@ def _gap(named: Refit | None, whole: Completeness) -> str:
     )
 
 
-def _contradicted(fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
-    """The best effect that stands every check but that held-out trials become worse."""
-    return best_of([r for r in refits if objection(fit, r, level) == HELD_OUT and falls(fit, r)])
+def _standing_but(why: str, fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
+    """The best effect that stands every check but this one, in a model that has grown."""
+    able = [r for r in refits if objection(fit, r, level, True) == why and falls(fit, r)]
+    return best_of(able, level)
+
+
+def _as_slow(fit: Fit, found: Refit) -> str:
+    return (
+        f"with {found.candidate.effect.name} {_falls(fit, found.fit)}, but beside the effects that "
+        f"were added {AS_SLOW}, which does as much"
+    )
 
 
 def _against(fit: Fit, found: Refit) -> str:
@@ -183,7 +194,7 @@ def _ahead(fit: Fit, named: Refit, refits: Sequence[Refit], level: float) -> Ref
         and not as_good(r.carried.after, named.carried.after)
         and not worse_held_out(fit, r.fit)
     ]
-    return best_of(better)
+    return best_of(better, level)
 
 
 def _behind(fit: Fit, named: Refit, ahead: Refit) -> str:

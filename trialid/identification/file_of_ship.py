@@ -109,8 +109,9 @@ def _near(x: Unknown, stated: float, scatter: float) -> Unknown:
 
 def _standard_errors(fit: Fit) -> Vector:
     """By the level of the error with its colour, priors counted; (n_theta,)."""
-    held = [fit.level / x.prior[1] if x.prior else 0.0 for x in fit.problem.unknowns]
-    rows = np.concatenate([triangle(fit.psi), np.diag(held)])  # a long record's are not copied
+    seen = fit.examined
+    held = [seen.level / x.prior[1] if x.prior else 0.0 for x in fit.problem.unknowns]
+    rows = np.concatenate([triangle(seen.psi), np.diag(held)])
     sizes = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
     R = np.linalg.qr(rows / sizes, mode="r")
-    return np.asarray(fit.level * np.linalg.norm(np.linalg.pinv(R), axis=1) / sizes)
+    return np.asarray(seen.level * np.linalg.norm(np.linalg.pinv(R), axis=1) / sizes)

@@ -12,7 +12,14 @@ from trialid.errors import NotIdentifiable, SimulationError
 from trialid.identification.arrive import arrive
 from trialid.identification.gauss_newton import REASONS, Iteration
 from trialid.identification.one_search import End, Progress
-from trialid.identification.output_error import Problem, linearise, loss, respond_all, step_halving
+from trialid.identification.output_error import (
+    Problem,
+    linearise,
+    loss,
+    residual_at,
+    respond_all,
+    step_halving,
+)
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.smaller import point_of_smaller
 from trialid.identification.trial_score import Score, pool_errors, score_trial
@@ -54,6 +61,8 @@ class Fit:
     rivals
         Values of all unknowns by name, by GM, the smallest first, that fit as well or hardly worse:
         the record does not tell GM, whatever its standard error. Empty where it does.
+    by_means
+        The same fitted to means of several samples each, where trials are long and it was examined.
     """
 
     model: ShipModel
@@ -69,6 +78,7 @@ class Fit:
     level: float = 0.0
     told: tuple[str, ...] = ()
     rivals: tuple[Mapping[str, float], ...] = ()
+    by_means: "Fit | None" = None
 
     @cached_property
     def psi(self) -> Vector:
@@ -76,6 +86,16 @@ class Fit:
         point = linearise(self.problem, self.theta)
         assert not isinstance(point, Departure)
         return point[1]
+
+    @property
+    def examined(self) -> "Fit":
+        """What is looked at to judge it: itself, but where trials are long."""
+        return self.by_means or self
+
+    @property
+    def trials(self) -> tuple[Trial, ...]:
+        """Every trial, those to check too."""
+        return tuple(s.trial for s in self.scores)
 
     @property
     def V(self) -> float:
@@ -201,11 +221,9 @@ def _searched(
 ) -> Fit:
     """The best end of all starts, with the steps as they are."""
     problem = pose_problem(trials, model, settings, near)
-    embedded = (
-        None
-        if smaller is None
-        else point_of_smaller(problem, smaller.estimates, smaller.problem.simulator.model)
-    )
+    embedded = None
+    if smaller is not None:
+        embedded = point_of_smaller(problem, smaller.estimates, smaller.problem.simulator.model)
     arrival = arrive(problem, settings, progress, embedded)
     if not arrival.best.began:
         raise SimulationError(_why_no_start(problem))
@@ -231,9 +249,6 @@ def revive(
     missing = [x.name for x in problem.unknowns if x.name not in estimates]
     if missing:
         raise NotIdentifiable(f"there is no value for {', '.join(missing[:3])}")
-    point = linearise(problem, problem.start)
-    if isinstance(point, Departure):
-        raise SimulationError(f"the model cannot be simulated with these values: {point}")
     return _finish(model, problem, trials, settings, None, (1, 1))
 
 
@@ -263,9 +278,10 @@ def _finish(
 ) -> Fit:
     """The fit at the end of a search; at the start, without any search, where there is none."""
     theta = problem.start if end is None else end.minimum.theta
-    point = linearise(problem, theta)
-    assert not isinstance(point, Departure)
-    level = level_of(problem, point[0])
+    residual = residual_at(problem, theta)
+    if isinstance(residual, Departure):
+        raise SimulationError(f"the model cannot be simulated with these values: {residual}")
+    level = level_of(problem, residual)
     ended = zip(problem.unknowns, theta, strict=True)
     shared = {x.column: float(a) for x, a in ended if x.trial is None}
     return Fit(
@@ -273,7 +289,7 @@ def _finish(
         settings=settings,
         problem=problem,
         theta=theta,
-        residual=point[0],
+        residual=residual,
         scores=tuple(score_trial(problem, theta, t, level) for t in trials),
         iterations=() if end is None else end.path,
         reason="orthogonal" if end is None else end.minimum.reason,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.identification.gauss_newton import Iteration, Minimum, minimise
-from trialid.identification.output_error import Problem, linearise, ranges
+from trialid.identification.output_error import Problem, ranges, residual_at
 from trialid.identification.problem import Settings
 from trialid.identification.weighing import Weighing, colour_of
 from trialid.simulation.integrate import Departure
@@ -132,9 +132,9 @@ def _minimise(
 
 def _plain(problem: Problem, theta: Vector) -> Vector:
     """Residual of the record without weights; (M,)."""
-    point = linearise(problem, theta)
-    assert not isinstance(point, Departure)
-    return point[0]
+    residual = residual_at(problem, theta)
+    assert not isinstance(residual, Departure)
+    return residual
 
 
 def _end(weighing: Weighing, minimum: Minimum, path: tuple[Iteration, ...]) -> End:

@@ -5,7 +5,7 @@ own y_RMS (Eq. 8) and all outputs count alike unless weights are given, so that
 V = 1/(2 n_y) sum_c 1/N_c sum_k (eps_c(k) / y_RMS,c)^2, which for one output and y_RMS = 1 is Eq. 4.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
@@ -13,7 +13,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask
 from trialid.identification.roll.roll_range import RollRange
 from trialid.simulation.by_parts import respond_by_parts
@@ -63,8 +62,6 @@ class Problem:
         Per trial where measurement and simulation are compared; (N, n_y) each.
     y_rms, weights
         Norm of each output [SI] and its weight; (n_y,).
-    every
-        How many samples make one row of the residual: 1 but where a long record is examined.
     roll
         What is known of any ship's roll, where her GM is free.
     """
@@ -75,7 +72,6 @@ class Problem:
     compared: tuple[Mask, ...]
     y_rms: Vector
     weights: Vector
-    every: int = 1
     roll: RollRange | None = None
 
     @property
@@ -164,6 +160,23 @@ def _values_and_start(
     return values, {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
 
 
+def residual_at(problem: Problem, theta: Vector) -> Vector | Departure:
+    """Normed residual (M,), rows as in `stretches`."""
+    responses = respond_all(problem, theta, sensitivities=False)
+    if isinstance(responses, Departure):
+        return responses
+    scale = row_scale(problem)
+    rows = [_rows_of(problem, p, responses[p.trial], scale) for p in stretches(problem)]
+    return np.concatenate(rows)
+
+
+def _rows_of(problem: Problem, part: Stretch, response: Response, scale: Vector) -> Vector:
+    """Normed residual of one output of one trial; (rows,)."""
+    measured = problem.trials[part.trial].signals[problem.outputs[part.output]]
+    eps = output_error(measured, response.y[:, part.output])
+    return np.asarray(part.taken(eps) * scale[part.output])
+
+
 def linearise(problem: Problem, theta: Vector, more: int = 0) -> tuple[Vector, Vector] | Departure:
     """Normed residual (M,) and normed gradient (M, n_theta), rows as in `stretches`.
 
@@ -177,9 +190,7 @@ def linearise(problem: Problem, theta: Vector, more: int = 0) -> tuple[Vector, V
         mine = [p for p in parts if p.trial == i]
         response = _fill(problem, theta, i, [psi[p.rows] for p in mine], mine, scale)
         for part in mine if response.departure is None else ():
-            measured = problem.trials[i].signals[problem.outputs[part.output]]
-            eps = output_error(measured, response.y[:, part.output])
-            residual[part.rows] = part.taken(eps) * scale[part.output]
+            residual[part.rows] = _rows_of(problem, part, response, scale)
         return response.departure
 
     departures = side_by_side(fill, len(problem.trials), _numbers(problem, True))
@@ -212,7 +223,7 @@ def _fill(
 
     values, start = _values_and_start(problem, theta, trial)
     response, added = respond_by_parts(
-        problem.simulator, problem.trials[trial], values, start, take, problem.every
+        problem.simulator, problem.trials[trial], values, start, take
     )
     for c, column, slopes in added if response.departure is None else ():
         for k, part in enumerate(parts):
@@ -229,12 +240,11 @@ def row_scale(problem: Problem) -> Vector:
 
 def stretches(problem: Problem) -> tuple[Stretch, ...]:
     """Which rows are which output of which trial."""
-    made, at, every = [], 0, problem.every
+    made, at = list[Stretch](), 0
     for i, masks in enumerate(problem.compared):
         for c in range(masks.shape[1]):
-            blocks = np.all(masks[: len(masks) // every * every, c].reshape(-1, every), axis=1)
-            count = int(blocks.sum())
-            made.append(Stretch(i, c, slice(at, at + count), blocks, every))
+            count = int(masks[:, c].sum())
+            made.append(Stretch(i, c, slice(at, at + count), masks[:, c]))
             at += count
     return tuple(made)
 
@@ -266,18 +276,6 @@ def _edge(simulator: Simulator, output: str, period: float) -> int:
                 value = simulator.model.value(name)
                 return margin(value, value, period) if value else 0
     return 0
-
-
-def scores(
-    trial: Trial, response: Response, compared: Mask, outputs: Sequence[str], y_rms: Vector
-) -> Mapping[str, float]:
-    """eps_RMSn of each output in one trial, by the norm of the fit."""
-    eps = output_error(output_matrix(trial, outputs), response.y)
-    return {
-        c: normed_rms(eps[compared[:, i], i], y_rms[i])
-        for i, c in enumerate(outputs)
-        if compared[:, i].any()
-    }
 
 
 def step_halving(problem: Problem, theta: Vector) -> dict[str, float]:

@@ -5,8 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask, Vector
-from trialid.identification.output_error import Problem, compared_mask, linearise, scores
+from trialid.identification.output_error import (
+    Problem,
+    compared_mask,
+    output_error,
+    output_matrix,
+    residual_at,
+)
 from trialid.identification.own_start import own_start, starts_of
 from trialid.identification.weighing import level_of
 from trialid.simulation.integrate import Departure, Response, respond
@@ -49,8 +56,8 @@ def of_trial(
     values = _mean_values(problem, theta)
     compared = compared_mask(trial, problem.simulator)
     if level is None:
-        point = linearise(problem, theta)
-        level = 0.0 if isinstance(point, Departure) else level_of(problem, point[0])
+        residual = residual_at(problem, theta)
+        level = 0.0 if isinstance(residual, Departure) else level_of(problem, residual)
     own = own_start(problem, trial, compared, values, level)
     return values | {n: own[n] for n in own if n in values}, starts_of(own)
 
@@ -61,12 +68,24 @@ def score_trial(problem: Problem, theta: Vector, trial: Trial, level: float) -> 
     values, start = of_trial(problem, theta, trial, level)
     response = respond(problem.simulator, trial, values, start, sensitivities=False)
     if response.departure is None:
-        eps = scores(trial, response, compared, problem.outputs, problem.y_rms)
+        eps = _errors(trial, response, compared, problem.outputs, problem.y_rms)
     else:  # what was lost has no error, however good its beginning
         compared = compared & np.isfinite(response.y)
         eps = dict.fromkeys(problem.outputs, np.inf)
     counts = dict(zip(problem.outputs, map(int, compared.sum(axis=0)), strict=True))
     return Score(trial, response, compared, eps, counts)
+
+
+def _errors(
+    trial: Trial, response: Response, compared: Mask, outputs: Sequence[str], y_rms: Vector
+) -> Mapping[str, float]:
+    """eps_RMSn of each output in one trial, by the norm of the fit."""
+    eps = output_error(output_matrix(trial, outputs), response.y)
+    return {
+        c: normed_rms(eps[compared[:, i], i], y_rms[i])
+        for i, c in enumerate(outputs)
+        if compared[:, i].any()
+    }
 
 
 def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:

@@ -107,7 +107,7 @@ def bands(fit: Fit, split: Split, augmented: Augmented) -> Bands:
 
 def _colour(fit: Fit, augmented: Augmented) -> Colour:
     """The noise's colour, sample by sample; of the residual where the record was too long."""
-    if any(part.every > 1 for part in augmented.stretches):
+    if augmented.fit is not fit:  # a long one, by its means
         return colour_of(fit.residual, stretches(fit.problem))
     return augmented.evidence.colour
 

@@ -36,9 +36,8 @@ def respond_by_parts(
     values: Mapping[str, float],
     start: Mapping[str, float],
     take: Take,
-    every: int = 1,
 ) -> tuple[Response, list[Added]]:
-    """As `respond`, the sensitivities given away part by part, each of a multiple of `every`.
+    """As `respond`, the sensitivities given away part by part.
 
     Also what is to be added to those that were given: what outputs' own times do. After a departure
     nothing more is given.
@@ -50,7 +49,7 @@ def respond_by_parts(
         if response.S is not None and response.departure is None:
             take(slice(0, trial.samples), response.S)
         return response, []
-    window = _Window(lags, trial.samples, every, take)
+    window = _Window(lags, trial.samples, take)
     X, left = _states(simulator, simulator.engine, trial.period, (theta, x0, u, limit), window)
     added: list[Added] = []
     y = late_outputs(simulator, trial.period, len(X), [*X.T, *u.T, *theta], None, added)
@@ -105,13 +104,10 @@ def _states(
 
 
 class _Window:
-    """Sensitivities of outputs that may be late, given away as soon as their neighbours are there.
+    """Sensitivities of outputs that may be late, given away once their neighbours are there."""
 
-    They are given by multiples of `every` samples, but for the last.
-    """
-
-    def __init__(self, lags: Sequence[float | None], samples: int, every: int, take: Take) -> None:
-        self.lags, self.samples, self.every, self.take = lags, samples, every, take
+    def __init__(self, lags: Sequence[float | None], samples: int, take: Take) -> None:
+        self.lags, self.samples, self.take = lags, samples, take
         known = [lag for lag in lags if lag is not None]
         self.behind = max((reach(lag)[0] for lag in known), default=0)
         self.ahead = max(0, *(reach(lag)[1] for lag in known)) if known else 0
@@ -122,8 +118,7 @@ class _Window:
         """The next samples; (n, n_y, n_columns)."""
         rows = more if self.rows is None else np.concatenate([self.rows, more])
         end = self.begin + len(rows)
-        ready = (end - self.ahead) // self.every * self.every
-        ready = end if end == self.samples else max(ready, self.given)
+        ready = end if end == self.samples else max(end - self.ahead, self.given)
         if ready > self.given:
             self.take(slice(self.given, ready), self._late(rows, slice(self.given, ready)))
         self.given = ready

@@ -65,7 +65,7 @@ def find_out(
         **vars(found),
         name=pipeline.name,
         pipeline=pipeline.path.name,
-        proposal=proposal(fit, found.verdict, catalogue),
+        proposal=proposal(found.before.fit.examined, found.verdict, catalogue),
         narrowing=narrowing_trial(found, catalogue),
         ship=ship,
         **_imo(pipeline, found.before, ship),
@@ -94,7 +94,7 @@ def _noise(fit: Fit) -> dict[str, float]:
 
 def narrowing_trial(found: Diagnosis, catalogue: Mapping[str, Effect]) -> Narrowing | None:
     """The trial that would narrow the widest likely range, where an effect makes it so."""
-    fit, rows = found.before.fit, found.before.accuracy.physical
+    fit, rows = found.before.fit.examined, found.before.accuracy.physical
     rows = tuple(r for r in rows if r.may_be_off is not None)
     if found.verdict.kind == "no fit" or not rows:
         return None

@@ -78,7 +78,8 @@ class _Path:
             return None
         fit = run.findings.before.fit
         able = [r for r in run.findings.refits if r.candidate.effect.name not in self.gone]
-        return best_of([r for r in able if not objection(fit, r, level)], grown=bool(self.own))
+        grown = bool(self.own)
+        return best_of([r for r in able if not objection(fit, r, level, grown)], level, grown)
 
     def end(self, run: Run) -> str:
         """Why nothing more is to be added, empty where something is."""

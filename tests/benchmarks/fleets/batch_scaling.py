@@ -3,9 +3,9 @@ r"""How a batch scales: generated ships by Dask on the cores of this machine, ag
     PYTHONPATH=. python tests/benchmarks/fleets/batch_scaling.py --ships 60 --out fleet.md
 
 Ships of drawn sizes, a third each logged as CSV, MCAP and Parquet; two thirds have an effect that
-the fitted model lacks, and the names given are counted. The same runs are done in this process one
-after another, then by Dask; both must give the same bytes. Processor seconds are told beside those
-of the clock: where others share the machine, only they compare.
+the fitted model lacks, and the names given are counted. The same runs, or the first `--alone` of
+them, are done in this process one after another; both must give the same bytes. Processor seconds
+are told beside those of the clock: where others share the machine, only they compare.
 """
 
 import argparse
@@ -50,6 +50,8 @@ HIDDEN: Final = {
     "quadratic_roll_damping": {"Kpap": -2e-5},
 }
 """What the ships have in turn, and how much of it."""
+FEW: Final = 60
+"""Ships whose runs do nothing."""
 MANY: Final = 5
 """Seeds a ship, where runs do nothing."""
 FREE: Final = '["Nr", "Ndelta", "Kp", "GM", "Xuu"]'
@@ -65,9 +67,9 @@ class Taken:
     memory: list[float]
 
 
-def generated(folder: Path, ships: int) -> dict[str, str | None]:
-    """The fleet's files; what each ship hides, by her name."""
-    text, hides = "", {}
+def generated(folder: Path, ships: int, alone: int) -> dict[str, str | None]:
+    """The fleet's files, one of all and one of the first; what each ship hides, by her name."""
+    entries, hides = [], {}
     for n in range(ships):
         ship = drawn_ship(folder, n)
         form, hidden = FORMATS[n % 3], list(HIDDEN)[(n // 3) % 3]
@@ -75,9 +77,10 @@ def generated(folder: Path, ships: int) -> dict[str, str | None]:
         write_voyage(place, ship, n, form, values=HIDDEN[hidden], hidden=hidden)
         path = template(folder, ship.name, f"{form}/ship-{n}", form, free=FREE, candidates='"all"')
         path.rename(folder / f"pipeline-{n}.toml")
-        text += f'[fleet.ship-{n}]\npipelines = "pipeline-{n}.toml"\n'
+        entries.append(f'[fleet.ship-{n}]\npipelines = "pipeline-{n}.toml"\n')
         hides[f"ship-{n}"] = hidden
-    (folder / "fleet.toml").write_text(text, encoding="utf-8")
+    (folder / "dask.toml").write_text("".join(entries), encoding="utf-8")
+    (folder / "alone.toml").write_text("".join(entries[:alone]), encoding="utf-8")
     return hides
 
 
@@ -91,7 +94,7 @@ def taken(folder: Path, name: str, compute: Callable[..., object]) -> Taken:
             yield task, done
 
     begun, before = time.perf_counter(), time.process_time()
-    done = batch(load_fleet(folder / "fleet.toml"), folder / name, measured)
+    done = batch(load_fleet(folder / f"{name}.toml"), folder / name, measured)
     seconds, cpu = time.perf_counter() - begun, time.process_time() - before
     return Taken(seconds=seconds, cpu=cpu, batch=done, memory=memory)
 
@@ -133,6 +136,7 @@ def overhead(folder: Path) -> tuple[float, float]:
     Planned, sent, brought back, kept, told: the line through two batches whose runs do nothing.
     """
     ships = [path.stem.removeprefix("pipeline-") for path in folder.glob("pipeline-*.toml")]
+    ships = ships[:FEW]
     few, many = ((len(ships) * each, _of_nothing(folder, ships, each)) for each in (1, MANY))
     run = (many[1] - few[1]) / (many[0] - few[0])
     return few[1] - run * few[0], run
@@ -177,19 +181,23 @@ def names(done: Batch, hides: dict[str, str | None]) -> str:
     return ", ".join(f"{words}: {number}" for words, number in sorted(counted.items()))
 
 
-def report(ships: int, jobs: int, folder: Path) -> str:
-    """The table of a fleet of so many ships."""
-    hides = generated(folder, ships)
+def report(ships: int, alone_of: int, jobs: int, folder: Path) -> str:
+    """The table of a fleet of so many ships, the first of them by one process too."""
+    hides = generated(folder, ships, alone_of)
+    each = alone_of / ships
     warmed = Workers(jobs)
     dask = taken(folder, "dask", warmed.compute)
     warm = time.perf_counter() - warmed.ready
     alone = taken(folder, "alone", one_by_one)
-    one, other = contents(folder / "dask"), contents(folder / "alone")
-    different = [name for name in {**one, **other} if one.get(name) != other.get(name)]
+    kept = {n: x for n, x in contents(folder / "alone").items() if "/" in n}  # of runs
+    different = [n for n, x in kept.items() if (folder / "dask" / n).read_bytes() != x]
     once, over = overhead(folder)
     rows = [
         ("runs", f"{ships}, {sum(r.failure is not None for r in dask.batch.runs)} failed"),
-        ("one process", f"{alone.seconds:.1f} s of clock, {alone.cpu:.1f} s of processor"),
+        (
+            f"one process, {alone_of} runs",
+            f"{alone.seconds:.1f} s of clock, {alone.cpu:.1f} s of processor",
+        ),
         (
             f"Dask, {jobs} warm workers",
             f"{warm:.1f} s of clock, {warmed.cpu:.1f} s of processor in them, {dask.cpu:.1f} s "
@@ -197,24 +205,25 @@ def report(ships: int, jobs: int, folder: Path) -> str:
         ),
         (
             "throughput over workers times one process, by the clock",
-            f"{alone.seconds / warm / jobs:.2f}",
+            f"{alone.seconds / (each * warm) / jobs:.2f}",
         ),
-        ("the same by processor seconds", f"{alone.cpu / (warmed.cpu + dask.cpu):.2f}"),
+        ("the same by processor seconds", f"{alone.cpu / (each * (warmed.cpu + dask.cpu)):.2f}"),
         ("overhead, processor", f"{1e3 * over:.0f} ms a run, {once:.1f} s a batch"),
         ("largest worker as they go [MB]", ", ".join(map(str, warmed.memory))),
         (
             "memory of this process, first and last run [MB]",
             f"{dask.memory[0]:.0f}, {dask.memory[-1]:.0f}",
         ),
-        ("files that differ", ", ".join(different[:5]) or f"none of {len(one)}"),
+        ("files that differ", ", ".join(different[:5]) or f"none of {len(kept)}"),
         ("names", names(dask.batch, hides)),
     ]
-    return heading(ships) + "".join(f"| {a} | {b} |\n" for a, b in rows)
+    return heading(ships, alone_of) + "".join(f"| {a} | {b} |\n" for a, b in rows)
 
 
-def heading(ships: int) -> str:
+def heading(ships: int, alone_of: int) -> str:
     """What was run, where."""
-    command = f"python tests/benchmarks/fleets/batch_scaling.py --ships {ships}"
+    asked = f"--ships {ships} --alone {alone_of}"
+    command = f"python tests/benchmarks/fleets/batch_scaling.py {asked}"
     return (
         f"# Batches\n\n`{command}`, commit {commit_of(ROOT)},\n{os.cpu_count()} cores, load "
         f"{os.getloadavg()[1]:.1f} (others share them).\n\n| | |\n| :--- | :--- |\n"
@@ -225,12 +234,13 @@ def main() -> None:
     """Run, print, write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--ships", type=int, default=60)
+    parser.add_argument("--alone", type=int, help="ships that one process does too, else all")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--out", type=Path)
     asked = parser.parse_args()
     np.seterr(all="ignore")
     with TemporaryDirectory() as place:
-        text = report(asked.ships, asked.jobs, Path(place))
+        text = report(asked.ships, asked.alone or asked.ships, asked.jobs, Path(place))
     print(text)
     if asked.out is not None:
         asked.out.write_text(text, encoding="utf-8")

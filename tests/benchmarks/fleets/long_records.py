@@ -58,7 +58,7 @@ def judged(pipeline: Path) -> dict[str, Any]:
     fit = fit_of(asked, trials, catalogue, silent)
     clock.passed("fitted")
     found = find_out(asked, fit, catalogue, silent, force=False, grown=False)
-    rows = found.before.accuracy.parameters
+    rows = found.before.accuracy.physical
     clock.passed("judged")
     numbers = {p.name: [p.value, p.standard_error, *(p.likely or ())] for p in rows}
     return {"stages": clock.stages, "found": found.verdict.sentence, "numbers": numbers}
@@ -145,8 +145,8 @@ def report(asked: argparse.Namespace, folder: Path) -> str:
         if len(found) > 1:
             off = largest(found[0]["numbers"], found[1]["numbers"])
             said.append(
-                f"The verdict is {'the same' if same else 'ANOTHER'}; estimates, standard errors "
-                f"and likely ranges differ by at most {off:.1e} of their size."
+                f"The verdict is {'the same' if same else 'ANOTHER'}; the ship's estimates, "
+                f"standard errors and likely ranges differ by at most {off:.1e} of their size."
             )
     if asked.text:
         log = folder / "long-text.csv"

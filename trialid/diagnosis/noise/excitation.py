@@ -25,6 +25,9 @@ QUIET_SECONDS: Final = 60.0
 SAME: Final = 0.02
 """Mean square difference over variance below which two records are the same."""
 
+SHORT: Final = 256
+"""Samples in which most rest of a moving ship ends: what follows is only looked at where not."""
+
 
 def rudder(trial: Trial) -> Vector | None:
     """The rudder's record, the measured angle before the order; None where there is neither."""
@@ -111,8 +114,14 @@ def _gaps(x: Vector) -> Vector:
 
 def rest_ends(moves: Vector, start: int) -> int:
     """Where rest of all that drives and steers, (N, m), ends that begins at `start`."""
-    broken = np.flatnonzero(_range(moves[start:]).max(axis=1) > 1.0)
-    return start + int(broken[0]) if len(broken) else len(moves)
+    length = SHORT
+    while True:
+        broken = np.flatnonzero(_range(moves[start : start + length]).max(axis=1) > 1.0)
+        if len(broken):
+            return start + int(broken[0])
+        if start + length >= len(moves):
+            return len(moves)
+        length *= 2
 
 
 def _range(x: Vector) -> Vector:

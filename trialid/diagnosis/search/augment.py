@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.diagnosis.noise.thinning import coarse
+from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.projection import Evidence, gather
 from trialid.diagnosis.search.scan import secants
 from trialid.identification.fit import Fit
@@ -48,12 +48,15 @@ class Augmented:
 
     Attributes
     ----------
+    fit
+        What they are of: where trials are long a fit to means of several samples each.
     traces
         What the columns of `S` are.
     held, H
         Coefficients of the model that were held fixed, and their columns.
     """
 
+    fit: Fit
     traces: tuple[Trace, ...]
     residual: Vector
     psi: Vector
@@ -157,7 +160,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     A candidate that cannot be simulated, or acts on nothing that is an output, is left out with
     the reason.
     """
-    fit = coarse(fit)
+    fit = with_means(fit).examined
     problem = fit.problem
     base = _fitted_model(fit)
     able, left_out = candidates_for(base, problem.trials[0], catalogue)
@@ -177,6 +180,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     ]
     tried_, columns = _scanned(fit, base, [e for e in able.values() if e.tried], len(names))
     return Augmented(
+        fit=fit,
         traces=(*traces, *tried_),
         residual=residual,
         psi=psi,

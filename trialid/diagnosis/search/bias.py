@@ -57,7 +57,7 @@ def foresee_adding(fit: Fit, effect: Effect) -> Foreseen | str:
 def _by_trace(fit: Fit, augmented: Augmented, trace: Trace) -> Foreseen:
     """What one trace of an effect foresees: by its slopes at the null, or by one value tried."""
     S = augmented.S[:, list(trace.columns)]
-    residual, psi, S = _with_priors(fit, augmented.residual, augmented.psi, S)
+    residual, psi, S = _with_priors(augmented.fit, augmented.residual, augmented.psi, S)
     shift = _mimicked(psi, S)
     visible = S - psi @ shift
     sizes = np.maximum(np.linalg.norm(S, axis=0), 1e-300)
@@ -68,7 +68,7 @@ def _by_trace(fit: Fit, augmented: Augmented, trace: Trace) -> Foreseen:
     return Foreseen(
         _named(fit.problem.unknowns, -shift @ beta),
         {**typical, **trace.tried, **slopes},
-        _eps(fit, residual - visible @ beta),
+        _eps(fit, augmented.residual, residual - visible @ beta),
     )
 
 
@@ -91,7 +91,9 @@ def foresee_dropping(fit: Fit, effect: Effect) -> Foreseen | str:
     step = np.array([effect.nulls[n] - fit.model.value(n) for n in linear])
     left = residual - (S - psi @ shift) @ step
     return Foreseen(
-        _named(theirs, -shift @ step), {n: effect.nulls[n] for n in linear}, _eps(fit, left)
+        _named(theirs, -shift @ step),
+        {n: effect.nulls[n] for n in linear},
+        _eps(fit, fit.residual, left),
     )
 
 
@@ -141,8 +143,8 @@ def _named(unknowns: Sequence[Unknown], moves: Vector) -> dict[str, float]:
     return {x.name: float(d) for x, d in zip(unknowns, moves, strict=True)}
 
 
-def _eps(fit: Fit, left: Vector) -> float:
-    """eps_RMSn by the squares that are left; the record's own rows come first."""
-    rows = left[: len(fit.residual)]
-    fall = float(fit.residual @ fit.residual - rows @ rows)
+def _eps(fit: Fit, residual: Vector, left: Vector) -> float:
+    """eps_RMSn by what is left of a residual; the record's own rows come first."""
+    rows = left[: len(residual)]
+    fall = float(residual @ residual - rows @ rows)
     return float(np.sqrt(max(fit.eps_rmsn**2 - fall, 0.0)))

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, chdtri  # scipy.stats would take another 0.4 s to import
 
 from trialid.diagnosis.force.force_terms import MOTIONS
-from trialid.diagnosis.noise.thinning import coarse
 from trialid.diagnosis.noise.whitening import whiten_columns
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.carried import Carried
@@ -22,7 +21,6 @@ from trialid.diagnosis.search.projection import (
     residual_after,
 )
 from trialid.diagnosis.search.simple_forces import Probes, probes
-from trialid.identification.fit import Fit
 from trialid.ship.rigid_body import ROWS
 
 Vector = NDArray[np.float64]
@@ -76,18 +74,18 @@ class Completeness:
         return named.log_ratio > NEARLY * self.carried.log_ratio
 
 
-def completeness(fit: Fit, augmented: Augmented) -> Completeness | None:
+def completeness(augmented: Augmented) -> Completeness | None:
     """Forward selection from the catalogue, and from the catalogue and forces of any shape.
 
     None where there is nothing to compare, no equation that a force acts in, or, as of a ship that
     only goes ahead, no motion that a force could follow.
     """
-    equations = fit.problem.simulator.equations
+    equations = augmented.fit.problem.simulator.equations
     moved = set(ROWS) & set(equations.states)
     follows = set(MOTIONS) & {*equations.states, *equations.inputs}
     if not augmented.traces or not moved or not follows:
         return None
-    tried = probes(coarse(fit))
+    tried = probes(augmented.fit)
     evidence = _with_colour(augmented, tried)
     white, _ = whiten_columns(tried.columns, augmented.stretches, evidence.colour)
     sizes = _lengths(white)
@@ -103,16 +101,18 @@ def completeness(fit: Fit, augmented: Augmented) -> Completeness | None:
     effects = [t.columns for t in augmented.traces]
     forces = [tuple(first + i for i in g) for g in tried.groups]
     found = Completeness(search.gain(effects, []), search.gain(effects, forces))
-    return replace(found, carried=_best_force(fit, augmented, tried)) if found.gap else found
+    return replace(found, carried=_best_force(augmented, tried)) if found.gap else found
 
 
 def _lengths(columns: Vector) -> Vector:
     return np.asarray(np.linalg.norm(columns, axis=0))
 
 
-def _best_force(fit: Fit, augmented: Augmented, tried: Probes) -> Carried:
+def _best_force(augmented: Augmented, tried: Probes) -> Carried:
     """What carries over of the force that leaves least on blocks that did not choose it."""
-    blocks = left_out(fit, augmented.residual, augmented.psi, tried.columns, augmented.stretches)
+    blocks = left_out(
+        augmented.fit, augmented.residual, augmented.psi, tried.columns, augmented.stretches
+    )
     return min((blocks.carried(g) for g in tried.groups), key=lambda c: c.log_ratio)
 
 

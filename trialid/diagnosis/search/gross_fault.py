@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.carried import Carried, as_good
 from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.refit import Refit
@@ -20,7 +21,6 @@ from trialid.identification.fit import Fit, identify
 from trialid.progress import Progress
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
-from trialid.trial import Trial
 
 WHOLE: Final = 0.1
 """Error from which on faults are fitted that are there whole or not at all: rudders of two screws
@@ -62,7 +62,6 @@ LeavesNoise = Callable[[Fit], bool]
 
 def gross_faults(
     fit: Fit,
-    trials: Sequence[Trial],
     candidates: Mapping[str, Effect],
     progress: Progress,
     leaves_noise: LeavesNoise,
@@ -74,13 +73,12 @@ def gross_faults(
     follows = np.isfinite(fit.eps_rmsn) and fit.eps_rmsn < GROSS and fit.converged
     if follows and why_no_fit(fit) is None:
         return ()
-    found = _of_these(fit, trials, _absent(fit, candidates), progress)
+    found = _of_these(fit, _absent(fit, candidates), progress)
     return found if found and _explains(found[0], fit.eps_rmsn, leaves_noise) else ()
 
 
 def whole_faults(
     fit: Fit,
-    trials: Sequence[Trial],
     candidates: Mapping[str, Effect],
     ranking: Sequence[Candidate],
     others: Sequence[Refit],
@@ -102,7 +100,7 @@ def whole_faults(
     able = {c.effect.name for c in ranking if c.allowed and c.eps_predicted < least}
     faults = [e for e in _absent(fit, candidates) if e.is_whole or e.name in able]
     soon = replace(fit, settings=replace(fit.settings, max_iterations=SOON))
-    found = _of_these(soon, trials, faults, progress)
+    found = _of_these(soon, faults, progress)
     if not found or _explains(found[0], min(least, fit.eps_rmsn), leaves_noise):
         return found
     first = found[0].carried
@@ -118,11 +116,10 @@ def _absent(fit: Fit, candidates: Mapping[str, Effect]) -> list[Effect]:
     return [e for n, e in candidates.items() if e.bound_by_meaning and n not in present]
 
 
-def _of_these(
-    fit: Fit, trials: Sequence[Trial], faults: Sequence[Effect], progress: Progress
-) -> tuple[Refit, ...]:
+def _of_these(fit: Fit, faults: Sequence[Effect], progress: Progress) -> tuple[Refit, ...]:
     """Those of which the fit can be trusted, the best first, and what leaves hardly more."""
-    found = [r for e in faults if (r := _fitted(fit, trials, e, progress)) is not None]
+    fit = with_means(fit) if faults else fit
+    found = [r for e in faults if (r := _fitted(fit, e, progress)) is not None]
     found.sort(key=lambda r: r.fit.eps_rmsn)
     close = [r for r in found if r.fit.eps_rmsn < ALIKE * found[0].fit.eps_rmsn]
     return tuple(r for r in close if not any(_says_as_much(one, r) for one in close))
@@ -143,18 +140,18 @@ def _explains(fault: Refit, error: float, leaves_noise: LeavesNoise) -> bool:
     return left <= GROSS or leaves_noise(fault.fit)
 
 
-def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progress) -> Refit | None:
+def _fitted(fit: Fit, effect: Effect, progress: Progress) -> Refit | None:
     """The model with a fault, fitted; None where that fails or the fault is at its range's end."""
     progress(f"trying {effect.name}", 0.68)
     start = {n: p.start if effect.is_whole else 0.9 * p.high for n, p in effect.parameters.items()}
     model = (_as_begun(fit) + effect).with_values(start)
     try:
-        fitted = _arrived(fit, trials, model, effect)
+        fitted = _arrived(fit.examined, model, effect)
     except TrialidError:  # it cannot act on this record: it is not the one
         return None
     if fitted is None or fitted.eps_rmsn > ALIKE * GROSS or why_no_fit(fitted):
         return None
-    carried = Carried.between(own_errors(fit), own_errors(fitted, levels(fit)))
+    carried = Carried.between(own_errors(fit.examined), own_errors(fitted, levels(fit.examined)))
     candidate = Candidate(
         effect=effect,
         expected=start,
@@ -166,7 +163,7 @@ def _fitted(fit: Fit, trials: Sequence[Trial], effect: Effect, progress: Progres
         allowed=True,
         carried=carried,
     )
-    return Refit(candidate, fitted, carried)
+    return Refit(candidate, on_every_sample(fit, fitted), carried)
 
 
 def _as_begun(fit: Fit) -> ShipModel:
@@ -175,11 +172,12 @@ def _as_begun(fit: Fit) -> ShipModel:
     return fit.model.with_values(shared)
 
 
-def _arrived(fit: Fit, trials: Sequence[Trial], model: ShipModel, effect: Effect) -> Fit | None:
+def _arrived(fit: Fit, model: ShipModel, effect: Effect) -> Fit | None:
     """A fault with the value found, or all of it where any value does; None at its range's end."""
 
     def added(names: Iterable[str]) -> Fit:
-        return identify(trials, model, replace(fit.settings, free=(*fit.settings.free, *names)))
+        settings = replace(fit.settings, free=(*fit.settings.free, *names))
+        return identify(fit.trials, model, settings)
 
     freed = added(effect.parameters)
     if _inside(freed, effect):

@@ -111,7 +111,9 @@ def rank(
     groups = [t.columns for t in visible]
     chances = against_chance(white.residual, white.Q, white.S, groups, evidence.parts)
     tested = dict(zip(map(id, visible), chances, strict=True))
-    blocks = left_out(fit, augmented.residual, augmented.psi, augmented.S, augmented.stretches)
+    blocks = left_out(
+        augmented.fit, augmented.residual, augmented.psi, augmented.S, augmented.stretches
+    )
     made = [
         replace(_candidate(fit, augmented, t, tested.get(id(t))), carried=blocks.carried(t.columns))
         for t in seen

@@ -118,10 +118,9 @@ def _responses(along: Path, rows: Sequence[str], shapes: Vector) -> Vector:
 
 def _fill(columns: Vector, part: Stretch, y: Vector, every: int) -> None:
     """Rows of one output of a trial, some at a time: all its samples are far more."""
-    step = part.every * max(TOGETHER // part.every, 1)
     at = 0
-    for start in range(0, len(part.compared) * part.every, step):
-        stop = min(start + step, len(part.compared) * part.every)
+    for start in range(0, len(part.compared), TOGETHER):
+        stop = min(start + TOGETHER, len(part.compared))
         some = part.within(slice(start, stop), at)
         columns[some.rows] = some.taken(_between(y, every, slice(start, stop)))
         at = some.rows.stop

@@ -71,7 +71,7 @@ def where(fit: Fit, level: float = LEVEL) -> Where:
     level
         Chance of any finding in a record that leaves nothing but noise.
     """
-    left = leftover(fit)
+    whole, left = leftover(fit), leftover(fit.examined)
     hue = colour(left)
     asked: list[Examined] = []
     absent: dict[str, None] = {}
@@ -85,9 +85,9 @@ def where(fit: Fit, level: float = LEVEL) -> Where:
                 absent[f"{subject}: {answer}"] = None
             else:
                 asked.append(answer)
-        seen = spectrum.spectra(left, c)
+        seen = spectrum.spectra(whole, c)
         if not isinstance(seen, str):
-            rest.append(Rest(output, spectrum.rest(left, c, seen), spectrum.picture(seen)))
+            rest.append(Rest(output, spectrum.rest(whole, c, seen), spectrum.picture(seen)))
     p = holm([max(a.p_value, hue.least) for a in asked])
     standing = [replace(f, p_value=x) for a, x in zip(asked, p, strict=True) if x <= level
                 for f in a.findings]  # fmt: skip

@@ -91,7 +91,7 @@ def diagnosed_run(fit: Fit, settings: DiagnoseSettings, name: str) -> FitRun:
         **vars(found),
         name=name,
         pipeline="",
-        proposal=proposal(fit, found.verdict, settings.candidates),
+        proposal=proposal(found.before.fit.examined, found.verdict, settings.candidates),
         narrowing=narrowing_trial(found, settings.candidates),
     )
     result = result_from(findings, history=steps_from(findings))
