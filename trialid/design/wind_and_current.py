@@ -127,7 +127,8 @@ def _leading(
 
 def _moved_by(fit: Fit, held: Sequence[Unknown]) -> Vector:
     """By how much the unknowns move with what is held; (n_theta, n_held)."""
-    problem = fit.problem
+    seen = fit.examined
+    problem = seen.problem
     free = [*problem.simulator.equations.free, *(x.name for x in held)]
     model, steps = problem.simulator.model, fit.settings.substeps
     wider = replace(
@@ -135,12 +136,12 @@ def _moved_by(fit: Fit, held: Sequence[Unknown]) -> Vector:
         simulator=prepare(model, free, problem.outputs, substeps=steps),
         unknowns=(*problem.unknowns, *held),
     )
-    point = linearise(wider, np.append(fit.theta, [x.start for x in held]))
+    point = linearise(wider, np.append(seen.theta, [x.start for x in held]))
     assert not isinstance(point, Departure)  # it is where the fit is
-    known = len(fit.theta)
+    known = len(seen.theta)
     sizes = np.array([x.size for x in problem.unknowns])
     A, by_held = point[1][:, :known] * sizes, point[1][:, known:]
-    weighs = [fit.level / x.prior[1] if x.prior else 0.0 for x in problem.unknowns]
+    weighs = [seen.level / x.prior[1] if x.prior else 0.0 for x in problem.unknowns]
     narrow = np.linalg.pinv(with_priors(A, np.array(weighs) * sizes))
     return np.asarray(-sizes[:, None] * (narrow @ (narrow.T @ (A.T @ by_held))))
 
