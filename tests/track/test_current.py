@@ -8,7 +8,7 @@ from s175q import MODEL
 from sailed_tracks import CURRENTS, FREE, SETTINGS, SHIP, accuracy, noisy, sailed, trials
 from sailed_wind import WINDY
 from scipy.stats import t as student
-from wind_and_current import MODELS, one, record
+from wind_and_current import MODELS, one, record, weather
 
 from trialid.design.wind_and_current import WORDS, cannot_tell
 from trialid.effects.track import CURRENT
@@ -109,10 +109,26 @@ def test_a_wind_that_is_held_is_said_to_be() -> None:
     assert "the model's wind is held: free it" in said
 
 
+def test_a_held_coefficient_that_leads_the_current_off_is_named() -> None:
+    """Where the wind grips is held, by mistake on the other side; its range does not know."""
+    seed, (unread, free) = 7321, MODELS["unread"]
+    held = record("circle", seed, unread, ("F_N", "F_E"))
+    rows = {p.name: p for p in accuracy(held).parameters}
+    off = [
+        abs(rows[f"{n} [circle]"].value - x) for n, x in zip(CURRENT, weather(seed)[0], strict=True)
+    ]
+    assert max(off) > 3.0 * rows["V_cn [circle]"].standard_error  # what it is about
+    [said] = cannot_tell(held, accuracy(held))
+    assert said.startswith(f"{WORDS}: x_wind of the wind, held at a value, ")
+    assert said.endswith("free it")
+    told = record("circle", seed, unread, free)
+    assert not any("held at a value" in x for x in cannot_tell(told, accuracy(told)))
+
+
 @pytest.mark.study(turn=1)
 @one_thread
 def test_a_full_turn_tells_and_what_is_told_is_right() -> None:
-    for name, least in (("circle", 0.95), ("zigzag", 0.0)):
+    for name, least in (("circle", 0.8), ("zigzag", 0.0)):
         found = [one(name, seed, *READ) for seed in range(40)]
         told = [x for x in found if x.told]
         right = np.mean([h for x in told for h in x.holds])

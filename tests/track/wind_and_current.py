@@ -4,10 +4,10 @@
 
 A turning circle, a 20/20 and a 10/10 zig-zag, each alone, in winds of 3 to 14 m/s and currents of
 0.1 to 0.6 m/s from anywhere; a receiver of 1 m, a compass, a gyro and an anemometer. Free is what
-`trialid start` frees, and the wind's coefficients: of a wind that was read, and of one unread.
+`trialid start` frees, and the wind's coefficients: of a wind that was read, and of one unread,
+whose grip is begun from the other side of the ship than the true one.
 Results stand in `tests/benchmarks/results/wind_and_current.md` with `--write`. Exit status 1 where
-with a wind that was read a full turn tells in under 95 %, or under 93 % of what is told is right;
-a wind that nobody read is counted, and not judged.
+with a wind that was read a full turn tells in under 80 %, or under 93 % of what is told is right.
 """
 
 import sys
@@ -47,8 +47,8 @@ UNREAD: Final = (SHIP + CATALOGUE["steady_wind"]).with_values(
     {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.05, "z_wind": 0.05}
 )
 MODELS: Final[dict[str, tuple[ShipModel, tuple[str, ...]]]] = {
-    "read": (sailed_wind.WINDY, ("C_aw", "N_aw")),
-    "unread": (UNREAD, ("F_N", "F_E")),
+    "read": (sailed_wind.WINDY, ("C_aw", "N_aw", "N_2aw")),
+    "unread": (UNREAD, ("F_N", "F_E", "x_wind")),
 }
 
 
@@ -118,8 +118,8 @@ def page(seeds: range) -> tuple[str, bool]:
             f"{len(right)} | {np.mean(every):.1%} of {len(every)} |"
         )
         print(lines[-1], flush=True)
-        if wind == "read":
-            good = good and not share < 0.93 and (told >= 0.95 or name != "circle")
+        least = 0.8 if (wind, name) == ("read", "circle") else 0.0
+        good = good and not share < 0.93 and told >= least
     return "\n".join(lines) + "\n", good
 
 

@@ -30,8 +30,17 @@ from trialid.identification.fit import Fit
 from trialid.identification.trial_score import of_trial
 from trialid.simulation.integrate import initial
 from trialid.trial import Trial
+from trialid.white_noise import white_noise
 
-MOTION: Final[tuple[str, ...]] = ("u", "v", "r", "psi")
+MOTION: Final[tuple[str, ...]] = ("u", "v", "p", "r", "phi", "psi")
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How she moves at an order: by state, and the standard deviation of what noise left of it."""
+
+    values: Mapping[str, float]
+    noise: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -62,22 +71,26 @@ def sail_from_order(
     return None if blown is None or calm is None else FromOrder(blown, calm)
 
 
-def _motion_at(fit: Fit, trial: Trial, k: int) -> dict[str, float]:
+def _motion_at(fit: Fit, trial: Trial, k: int) -> Motion:
     """Speeds, rate and heading at a sample: the model's, by as much off as it was just before.
 
-    Just before is half a ship length of way: a mean over it takes off noise.
+    Just before is half a ship length of way: a mean over it takes off noise. The heading counts
+    from the course, a mean over the whole length, which has the same noise in that half.
     """
     [score] = [s for s in fit.scores if s.trial.name == trial.name]
     size, states = fit.model.ship.particulars, fit.problem.simulator.model.all_states
-    before = slice(max(k + 1 - samples_a_length(trial, size["L"], size["U0"]) // 2, 0), k + 1)
-    there = [n for n in MOTION if n in states]
-    motion = {n: float(score.response.states[k, states.index(n)]) for n in there}
+    length = samples_a_length(trial, size["L"], size["U0"])
+    before = slice(max(k + 1 - length // 2, 0), k + 1)
+    values = {n: float(score.response.states[k, states.index(n)]) for n in MOTION if n in states}
+    noise = {}
     for place, name in enumerate(fit.problem.outputs):
         known = score.compared[before, place]
-        if name in motion and known.any():
+        if name in values and known.any():
             off = trial.signals[name][before] - score.response.y[before, place]
-            motion[name] += float(np.mean(off[known]))
-    return motion
+            values[name] += float(np.mean(off[known]))
+            means = 1.0 / np.sum(known) - (1.0 / (length + 1) if name == "psi" else 0.0)
+            noise[name] = white_noise(trial.signals[name]) * float(np.sqrt(max(means, 0.0)))
+    return Motion(values, noise)
 
 
 def _sail_on(
@@ -85,7 +98,7 @@ def _sail_on(
     trial: Trial,
     windy: SailedTrial,
     span: slice,
-    motion: Mapping[str, float],
+    motion: Motion,
     calm: bool,
 ) -> SailedTrial | None:
     """On from the order."""
@@ -94,10 +107,15 @@ def _sail_on(
     made = sail(fit, begun, replace(windy.spread, missing=missing), len(begun.starts))
     if made is None:
         return None
+    k, speed_at = span.start, begun.starts.get(initial("u"))
     by = made.by[..., : windy.by.shape[-1]]
-    if begun.starts and windy.speed_by is not None:
-        by = by + made.by[..., -1:] * windy.speed_by[span.start]
-    k = span.start
+    if speed_at is not None and windy.speed_by is not None and "u" not in motion.noise:
+        by = by + made.by[..., speed_at, None] * windy.speed_by[k]
+    turned = {*MOTION} - {"u"} if calm else set()  # there she is straight on her course, whatever
+    noise = [
+        made.by[..., begun.starts[initial(n)]] * (0.0 if n in turned else x)
+        for n, x in motion.noise.items()
+    ]
     speed = begun.start.get("u", float(trial.signals["u"][k]) if "u" in trial.signals else 0.0)
     before = _approach(speed, begun.start["psi"], k, trial.period)
     if not calm:  # held on her course against the wind, she is not on it all the time
@@ -105,10 +123,16 @@ def _sail_on(
         before["psi"] = own["psi"][:k]
     return SailedTrial(
         track=_joined(before, made.track),
-        by=np.concatenate([np.zeros((k, *by.shape[1:])), by]),
+        by=_begun_late(by, k),
         others=tuple((_joined(before, other), columns) for other, columns in made.others),
         spread=windy.spread,
+        noise=_begun_late(np.stack(noise, axis=-1), k) if noise else None,
     )
+
+
+def _begun_late(by: Vector, k: int) -> Vector:
+    """Slopes with none before a sample."""
+    return np.concatenate([np.zeros((k, *by.shape[1:])), by])
 
 
 def _without_wind(spread: LikelySpread) -> tuple[Shows, ...]:
@@ -120,7 +144,7 @@ def _sailing(
     trial: Trial,
     windy: SailedTrial,
     span: slice,
-    motion: Mapping[str, float],
+    motion: Motion,
     calm: bool,
 ) -> Sailing:
     """What she is and how she moves at the order; in calm air straight ahead."""
@@ -128,12 +152,13 @@ def _sailing(
     for effect in (e for e in model.effects if calm and is_wind(e)):
         model = model - effect.name
     values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
-    begun = {"psi": float(windy.track["psi"][span.start]), **motion}
+    begun = {"psi": float(windy.track["psi"][span.start]), **motion.values}
     kept = {n: x for n, x in begun.items() if n in ("u", "psi") or not calm}
     start = dict.fromkeys(model.states, 0.0) | kept
-    starts = {}
-    if windy.speed is not None and "u" not in fit.problem.outputs:
-        starts[initial("u")] = windy.by.shape[-1]
+    wanted = [*motion.noise]
+    if windy.speed is not None and "u" not in motion.noise:
+        wanted.append("u")
+    starts = {initial(n): windy.by.shape[-1] + i for i, n in enumerate(wanted)}
     part = replace(
         trial,
         signals={n: x[span] for n, x in trial.signals.items()},

@@ -28,6 +28,7 @@ from trialid.simulation.integrate import Simulator, initial, prepare, respond
 from trialid.trial import Trial
 
 PLACE: Final = ("psi", "x", "y")
+NORMAL: Final = 1.96
 Track = Mapping[str, Vector]
 Numbers = Callable[[Track], Mapping[str, float]]
 """What is read from a track; DesignError where it does not come so far."""
@@ -47,6 +48,8 @@ class SailedTrial:
         Tracks with an effect at a value tried, and the columns of it.
     speed, speed_by
         Where it is simulated, the speed ahead [m/s] (N,), and its slopes (N, n).
+    noise
+        Slopes by what noise of each sensor leaves open where it begins, times that; (N, 3, m).
     """
 
     track: Track
@@ -55,6 +58,7 @@ class SailedTrial:
     spread: LikelySpread
     speed: Vector | None = None
     speed_by: Vector | None = None
+    noise: Vector | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -246,11 +250,26 @@ def drift(windy: SailedTrial | None, calm: SailedTrial, read: Numbers) -> dict[s
         names = [n for n in calmly if n in blown]
         with_wind, without = ({n: x[n] for n in names} for x in (blown, calmly))
         by = _slopes(calm, read, without) - _slopes(windy, read, with_wind)
+        noise = _by_noise(calm, read, without) - _by_noise(windy, read, with_wind)
     except DesignError:
         return {}
     values = [x - with_wind[n] for n, x in without.items()]
-    each = zip(without, values, calm.spread.ranges(values, by), strict=True)
-    return {n: Drift(x, r) for n, x, r in each}
+    off = NORMAL * np.linalg.norm(noise, axis=1)
+    each = zip(without, values, calm.spread.ranges(values, by), off, strict=True)
+    return {n: Drift(x, None if r is None else _wider(r, x, o)) for n, x, r, o in each}
+
+
+def _by_noise(sailed: SailedTrial, read: Numbers, found: Mapping[str, float]) -> Vector:
+    """By how much noise of each sensor moves the numbers; (n_numbers, m)."""
+    if sailed.noise is None:
+        return np.zeros((len(found), 1))
+    return _slopes(replace(sailed, by=sailed.noise, others=()), read, found)
+
+
+def _wider(known: Range, value: float, off: float) -> Range:
+    """A range about a value with as much again to either side, independent of it."""
+    low, high = known
+    return value - float(np.hypot(value - low, off)), value + float(np.hypot(high - value, off))
 
 
 def _slopes(sailed: SailedTrial, read: Numbers, found: Mapping[str, float]) -> Vector:
