@@ -63,7 +63,8 @@ def _compile(text: str) -> bytes:
     """Machine code; two passes are what matters.
 
     `sroa` turns the places in memory into registers, `reassociate` makes long sums and products
-    short chains: a tenth less time with sensitivities, a fifth without.
+    short chains: a tenth less time with sensitivities, a fifth without. `reassociate` keeps 0.4 MB
+    of each kernel for as long as the process lives, whoever lets go of it (llvmlite 0.50).
     """
     import llvmlite.binding as llvm
 
