@@ -10,13 +10,14 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Final
 
-from trialid.simulation.graph import SYMBOL, Node, order
+from trialid.simulation.graph import SYMBOL
 from trialid.simulation.ir_text import DECLARATIONS, VECTOR, IrText, evaluate, literal
+from trialid.simulation.ship_numbers import is_written, nodes_of, ship_numbers
 from trialid.simulation.trace import BLOCK, Equations
 
 ARGUMENTS: Final = (
-    "i64 %N, i64 %sub, double %h, ptr noalias %theta, ptr noalias %u, ptr noalias %limit, "
-    "ptr noalias %X"
+    "i64 %N, i64 %sub, double %h, ptr noalias %numbers, ptr noalias %theta, ptr noalias %u, "
+    "ptr noalias %limit, ptr noalias %X"
 )
 WORK: Final = ", ptr noalias %S, ptr noalias %s, ptr noalias %g, ptr noalias %j"
 
@@ -44,8 +45,9 @@ class _Writer:
         self.known: dict[int, str] = {}
         self.n_x = len(equations.states)
         self.J = list(equations.J.items())
-        self.W = [(k, w) for k, w in sorted(equations.W.items()) if not w.is_constant()]
+        self.W = [(k, w) for k, w in sorted(equations.W.items()) if not is_written(w)]
         self.G = [(c, row, g) for c, drive in enumerate(equations.G) for row, g in drive.items()]
+        self.nodes = nodes_of(equations, sensitivities)
 
     def write(self) -> str:
         """The function's text."""
@@ -57,23 +59,16 @@ class _Writer:
         t.raw("}")
         return "\n".join(t.lines)
 
-    def _wanted(self) -> list[Node]:
-        wanted = list(self.eq.f)
-        if self.sens:
-            wanted += [node for _, node in self.J]
-            wanted += [node for _, node in self.W]
-            wanted += [g for _, _, g in self.G]
-        return order(wanted)
-
     def _prologue(self) -> _Frame:
         """Everything that depends on the parameters alone is computed once."""
         t = self.text
-        nodes = self._wanted()
-        for node in nodes:
+        for node in self.nodes:
             if node.op == SYMBOL and not node.moving:
                 self.known[node.index] = t.load("%theta", self.eq.parameters.index(node.value))
-        evaluate(t, [n for n in nodes if not n.moving], self.known)
-        self.moving = [n for n in nodes if n.moving]
+        for at, node in enumerate(ship_numbers(self.nodes)):
+            self.known[node.index] = t.load("%numbers", at)
+        evaluate(t, [n for n in self.nodes if not n.moving], self.known)
+        self.moving = [n for n in self.nodes if n.moving]
         count = t.new("uitofp i64 %sub to double")
         step = t.new(f"fdiv double %h, {count}")
         zero = literal(0.0)
@@ -245,7 +240,7 @@ class _Writer:
         for (i, row), w in sorted(self.eq.W.items()):
             if row not in g:
                 continue
-            if w.is_constant():
+            if is_written(w):
                 factor = t.splat(literal(w.value))
             elif w.moving:
                 at = len(self.J) + moving_W.index((i, row))

@@ -15,10 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.simulation.emit import module_text
+from trialid.simulation.ship_numbers import nodes_of, ship_numbers
 from trialid.simulation.trace import Equations
 
 Vector = NDArray[np.float64]
 CHECKSUM: Final = 32
+LOADED: Final = 256
+"""Kernels that stay loaded, about 0.1 MB each."""
 LOOPS: Final[list[Any]] = [ctypes.c_int64, ctypes.c_int64, ctypes.c_double]
 
 
@@ -132,7 +135,9 @@ def _ours_alone(path: Path) -> bool:
     return found.st_uid == os.getuid() and not found.st_mode & 0o022
 
 
+@functools.lru_cache(maxsize=LOADED)
 def _function(text: str, name: str, pointers: int) -> Callable[..., int]:
+    """The machine code of a text, loaded; kernels of one structure share it."""
     import llvmlite.binding as llvm
 
     _machine()  # initialises the compiler once
@@ -161,12 +166,19 @@ class Kernel:
         self.equations = equations
 
     @functools.cached_property
-    def _sim(self) -> Callable[..., int]:
-        return _function(module_text(self.equations, False), "sim", 4)
+    def _sim(self) -> tuple[Callable[..., int], Vector]:
+        return self._code(False, 5)
 
     @functools.cached_property
-    def _sens(self) -> Callable[..., int]:
-        return _function(module_text(self.equations, True), "sens", 8)
+    def _sens(self) -> tuple[Callable[..., int], Vector]:
+        return self._code(True, 9)
+
+    def _code(self, sensitivities: bool, pointers: int) -> tuple[Callable[..., int], Vector]:
+        """The machine code of this structure, and this ship's numbers for it."""
+        name = "sens" if sensitivities else "sim"
+        code = _function(module_text(self.equations, sensitivities), name, pointers)
+        numbers = ship_numbers(nodes_of(self.equations, sensitivities))
+        return code, np.array([n.value for n in numbers])
 
     def simulate(
         self, theta: Vector, x0: Vector, u: Vector, limit: Vector, h: float, substeps: int
@@ -185,8 +197,9 @@ class Kernel:
         X = _room(x0, len(u))
         if len(u) < 2:
             return X, 0
-        arrays = (theta, _rows(u), limit, X)  # named: a copied u must outlive the call
-        left = self._sim(len(u) - 1, substeps, h, *map(_at, arrays))
+        run, numbers = self._sim
+        arrays = (numbers, theta, _rows(u), limit, X)  # named: a copied u must outlive the call
+        left = run(len(u) - 1, substeps, h, *map(_at, arrays))
         return X, left
 
     def sensitivities(
@@ -213,8 +226,9 @@ class Kernel:
             return X, S, 0
         g = np.zeros((4, n_x, width))
         j = np.zeros((4, max(len(eq.J) + len(eq.W), 1)))
-        arrays = (theta, _rows(u), limit, X, S, s, g, j)
-        left = self._sens(len(u) - 1, substeps, h, *map(_at, arrays))
+        run, numbers = self._sens
+        arrays = (numbers, theta, _rows(u), limit, X, S, s, g, j)
+        left = run(len(u) - 1, substeps, h, *map(_at, arrays))
         if left:
             S[left + 1 :] = np.nan  # what the kernel did not write is not a number
         return X, S, left
