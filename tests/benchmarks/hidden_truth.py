@@ -76,6 +76,8 @@ class Scenario:
         Signal to the factor its sensor is wrong by.
     gear
         Ordered rudder and step [s] to the true rudder; the record then holds the order alone.
+    ship
+        The true ship, before what is hidden is put into her.
     """
 
     name: str
@@ -86,6 +88,7 @@ class Scenario:
     twins: frozenset[str] = frozenset()
     scale: Mapping[str, float] = field(default_factory=dict)
     gear: Gear | None = None
+    ship: ShipModel = MODEL
 
     @property
     def exact(self) -> frozenset[str]:
@@ -133,8 +136,8 @@ def generator(seed: int, *names: str) -> np.random.Generator:
 
 
 def without(scenario: Scenario) -> ShipModel:
-    """The reference model less what the scenario hides."""
-    model = MODEL
+    """The true ship less what the scenario hides."""
+    model = scenario.ship
     for effect in scenario.effects:
         if effect.name in {e.name for e in model.effects}:
             model = model - effect.name
@@ -151,7 +154,8 @@ def restored(scenario: Scenario, model: ShipModel) -> ShipModel:
 @functools.cache
 def _truth(scenario: Scenario) -> Simulator:
     """The true ship, ready to run."""
-    model = replace(without(scenario), states=(*MODEL.states, "psi")) + CATALOGUE["outer_force"]
+    states = dict.fromkeys((*scenario.ship.states, "psi"))
+    model = replace(without(scenario), states=(*states,)) + CATALOGUE["outer_force"]
     return prepare(restored(scenario, model.with_values({"scale_ext": 1.0})), (), OUTPUTS)
 
 

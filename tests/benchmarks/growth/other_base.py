@@ -1,0 +1,57 @@
+"""A base of another structure than the truth: the second-order model on the cubic S-175.
+
+The true ship is `tests/cubic_truth.py`'s: hull cubic in sway, yaw and heel, rudder in the race of
+the propeller. The fitted model has second-order terms, most of them held at another ship's values.
+"""
+
+import sys
+from pathlib import Path
+from typing import Final
+
+ROOT: Final = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "benchmarks")]
+import cubic_truth  # noqa: E402
+from hidden_scenarios import SCENARIOS, TWINS  # noqa: E402
+from hidden_truth import SHIP  # noqa: E402
+
+from trialid.effects import CATALOGUE  # noqa: E402
+from trialid.ship.model import ShipModel  # noqa: E402
+
+TRUTH: Final = cubic_truth.ship()
+BASE: Final = ShipModel(
+    SHIP,
+    ("v", "p", "r", "phi"),
+    tuple(
+        CATALOGUE[n]
+        for n in (
+            "linear_hull", "linear_rudder", "linear_roll", "centripetal_added_mass",
+            "heel_roll", "heel_sway", "heel_yaw", "roll_rate_yaw",
+            "sway_drag_vav", "sway_drag_var", "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rar",
+            "roll_drag_vav", "roll_drag_var",
+        )
+    ),
+)  # fmt: skip
+"""The model of `tests/cubic_truth.toml`."""
+
+FREE: Final = ("Yv", "Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM", "Yvav", "Nrar")
+
+RACE: Final = {"rudder_slipstream", "rudder_race", "propeller_rudder", "rudder_race_shaft"}
+"""What stands for the rudder of the truth, which lies in the propeller's race."""
+
+OWN: Final = frozenset(
+    {e.name for e in TRUTH.effects}
+    | RACE
+    | {n for t in TWINS if t & {e.name for e in TRUTH.effects} for n in t}
+)
+"""The truth's own structure, and names that no manoeuvre of a rudder separates from it."""
+
+DRAWN: Final = tuple(
+    s
+    for s in SCENARIOS.values()
+    if s.group in ("physics", "sensor")
+    and not s.right & OWN
+    and not {*s.values} & {*TRUTH.parameters, *BASE.parameters}
+    and s.name != "surge_rudder"
+    and not {p for e in s.effects for p in e.parameters} & {*TRUTH.parameters}
+)
+"""What can be hidden in her: neither she nor the base has it, and it acts not on speed alone."""
