@@ -10,7 +10,6 @@ held-out error of at most 1.1 times the sensors' noise.
 """
 
 import argparse
-import multiprocessing
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -21,7 +20,7 @@ from typing import Final
 import numpy as np
 
 HERE: Final = Path(__file__).parent
-sys.path[:0] = [str(HERE.parent), str(HERE.parents[2] / ".ci")]
+sys.path[:0] = [str(HERE.parent / part) for part in ("", "fleets", "../../.ci")]
 from at_commit import commit_of  # noqa: E402
 from hidden_scenarios import SCENARIOS, guessed  # noqa: E402
 from hidden_truth import (  # noqa: E402
@@ -35,6 +34,7 @@ from hidden_truth import (  # noqa: E402
     generator,
     record,
 )
+from spread import add_options, spread  # noqa: E402
 
 from trialid import pipeline_file  # noqa: E402
 from trialid.diagnosis.search.backward import worth_naming  # noqa: E402
@@ -190,12 +190,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--records", type=int, default=20)
     parser.add_argument("--first-seed", type=int, default=500)
-    parser.add_argument("--jobs", type=int, default=2)
+    add_options(parser, jobs=2)
     parser.add_argument("--write", action="store_true")
     asked = parser.parse_args()
     seeds = range(asked.first_seed, asked.first_seed + asked.records)
-    with multiprocessing.Pool(asked.jobs) as pool:
-        said, good = page(pool.map(one, seeds, chunksize=1))
+    said, good = page(list(spread(one, seeds, asked.jobs, asked.on)))
     print(said)
     if asked.write:
         head = (
