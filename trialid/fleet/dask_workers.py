@@ -110,7 +110,9 @@ def _described_cluster(path: Path) -> Any:
         found = yaml.safe_load(text(path))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         said = "write local, tcp://HOST:PORT or a YAML file"
-        raise TrialidError(f"--on {path}: cannot be read ({reason_of(error)}); {said}") from error
+        why = (error.strerror or "").lower() if isinstance(error, OSError) else ""
+        why = why or reason_of(error)
+        raise TrialidError(f"--on {path}: cannot be read ({why}); {said}") from error
     if not isinstance(found, dict) or not {"module", "class"} <= found.keys():
         raise TrialidError(
             f"--on {path}: lacks module and class of a cluster; see: trialid guide batch"
