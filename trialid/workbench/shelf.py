@@ -27,7 +27,7 @@ class Shelf:
 
         `so_far` is told those that are there before another is read.
         """
-        done = {}
+        done: dict[str, Trial] = {}
         for i, trial in enumerate(pipeline.trials):
             key = _key(pipeline, trial)
             if done:
