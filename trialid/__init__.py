@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from trialid.alignment import SignalSource, align
     from trialid.effects import CATALOGUE
     from trialid.fleet.fleet_view import batch
+    from trialid.fleet.structures_view import structures
     from trialid.identification.fit import Fit
     from trialid.ingest import read
     from trialid.result.schema import Result
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from trialid.ship.particulars import read_ship
     from trialid.trial import Trial
     from trialid.workflow.notebook.front import diagnose, identify, run, simulate
-    from trialid.workflow.notebook.structures_view import structures
 
 __version__ = VERSION
 
@@ -64,7 +64,7 @@ _HOMES: Final = {
     "diagnose": "workflow.notebook.front",
     "run": "workflow.notebook.front",
     "simulate": "workflow.notebook.front",
-    "structures": "workflow.notebook.structures_view",
+    "structures": "fleet.structures_view",
     "batch": "fleet.fleet_view",
     "Fit": "identification.fit",
     "Result": "result.schema",

@@ -8,23 +8,23 @@ r"""Hide one effect after the other in a simulated ship and count how well the d
 
 Every run makes a record of the true ship (`hidden_truth`), fits the model that lacks what is hidden
 (`hidden_scenarios`) and takes the package's own way from fit to verdict. A run depends on its
-scenario, noise, trial set and seed alone, so results do not depend on `--jobs`, nor on what else
-was asked for. `--scenarios typical` hides every other effect of the catalogue at the size its file
-calls typical. `--out` takes `.csv` (one row a run) or `.md` (the tables, with the rows beside them
-in a `.csv`). Exit status 1 where a threshold is missed.
+scenario, noise, trial set and seed alone, so results do not depend on `--jobs` or `--on` (see
+`fleets/spread.py`), nor on what else was asked for. `--scenarios typical` hides every other effect
+of the catalogue at the size its file calls typical. `--out` takes `.csv` (one row a run) or `.md`
+(the tables, with the rows beside them in a `.csv`). Exit status 1 where a threshold is missed.
 """
 
 import argparse
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Final
 
+sys.path.append(str(Path(__file__).parent / "fleets"))
 from hidden_scenarios import SCENARIOS, TYPICAL, guessed
 from hidden_score import plainness
 from hidden_tables import FULL, SHORT, Row, report, thresholds, write
@@ -38,6 +38,7 @@ from hidden_truth import (
     restored,
     without,
 )
+from spread import add_options, spread
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, refits_of
 from trialid.diagnosis.noise.noise_bound import held_against
@@ -208,14 +209,11 @@ def tasks(asked: argparse.Namespace) -> list[Task]:
     ]
 
 
-def run_all(todo: Sequence[Task], jobs: int) -> list[Row]:
-    """Rows in the order of the tasks, whatever the number of processes."""
-    if jobs == 1:
-        return [_told(row, i, len(todo)) for i, row in enumerate(map(run, todo), 1)]
-    with ProcessPoolExecutor(jobs) as pool:
-        # few at a time: neighbours share the compiled truth of their scenario
-        rows = pool.map(run, todo, chunksize=4)
-        return [_told(row, i, len(todo)) for i, row in enumerate(rows, 1)]
+def run_all(todo: Sequence[Task], jobs: int, on: str | None = None) -> list[Row]:
+    """Rows in the order of the tasks, wherever they are done."""
+    # few at a time: neighbours share the compiled truth of their scenario
+    rows = spread(run, todo, jobs, on, together=4)
+    return [_told(row, i, len(todo)) for i, row in enumerate(rows, 1)]
 
 
 def _told(row: Row, done: int, of: int) -> Row:
@@ -256,7 +254,7 @@ def options() -> argparse.Namespace:
     parser.add_argument(
         "--fixed-off", type=float, default=0.0, help="share by which what is held fixed is off"
     )
-    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    add_options(parser)
     parser.add_argument("--out", type=Path, help="FILE.md or FILE.csv")
     asked = parser.parse_args()
     if asked.out is not None and asked.out.suffix not in (".md", ".csv"):
@@ -273,7 +271,7 @@ def main() -> int:
     """Run, print, write; 1 where a threshold is missed."""
     asked = options()
     began = time.perf_counter()
-    rows = run_all(tasks(asked), asked.jobs)
+    rows = run_all(tasks(asked), asked.jobs, asked.on)
     limits = SHORT if asked.short else FULL
     text = report(rows, limits)
     print(text)

@@ -9,7 +9,6 @@ its commit; those not asked for stay. Exit status 1 where a held-out error rises
 """
 
 import argparse
-import multiprocessing
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -21,10 +20,12 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "real_records"))
 sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
+sys.path.insert(0, str(Path(__file__).parent / "fleets"))
 from at_commit import commit_of
 from basin import BASES, held_in_basin, in_basin
 from pond import WIND, held_on_pond, on_pond
 from real_record import of_a_clock, stages
+from spread import add_options, spread
 
 from trialid.diagnosis.search.backward import worth_naming
 from trialid.threads import one_thread
@@ -62,8 +63,9 @@ class Loop:
 
 
 @one_thread
-def loop(kind: str, choice: str, pipeline: Path) -> Loop:
+def loop(asked: tuple[str, str, Path]) -> Loop:
     """Fit, diagnose, add and again."""
+    kind, choice, pipeline = asked
     done = stages(pipeline, {})
     kept = [s for s in done if s.kept]
     return Loop(
@@ -117,11 +119,12 @@ def main() -> int:
     """Run, print, and write the tables where asked."""
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("--only", default="", help="what the kinds begin with")
-    asked.add_argument("--jobs", type=int, default=2)
+    add_options(asked, jobs=2)
     asked.add_argument("--write", action="store_true")
     options = asked.parse_args()
-    with tempfile.TemporaryDirectory() as folder, multiprocessing.Pool(options.jobs) as pool:
-        loops = pool.starmap(loop, choices(Path(folder), options.only), chunksize=1)
+    with tempfile.TemporaryDirectory() as folder:
+        asked_for = choices(Path(folder), options.only)
+        loops = list(spread(loop, asked_for, options.jobs, options.on))
     found = {x.kind: table([y for y in loops if y.kind == x.kind]) for x in loops}
     print("\n".join(f"## {kind}\n\n{text}" for kind, text in found.items()))
     if options.write:

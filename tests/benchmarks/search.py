@@ -9,7 +9,6 @@ Results stand in `results/search.md` with `--write`.
 """
 
 import argparse
-import multiprocessing
 import sys
 import tempfile
 import time
@@ -23,9 +22,11 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
+sys.path.insert(0, str(Path(__file__).parent / "fleets"))
 
 from at_commit import commit_of
 from search_ships import KINDS, Drawn, draw, placeholder
+from spread import add_options, spread
 
 from trialid.effects import CATALOGUE
 from trialid.identification.adequacy import why_no_fit
@@ -178,15 +179,15 @@ def main() -> int:
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("--count", type=int, default=30)
     asked.add_argument("--seed", type=int, default=0)
-    asked.add_argument("--jobs", type=int, default=1)
+    add_options(asked)
     asked.add_argument("--write", action="store_true")
     options = asked.parse_args()
     warnings.simplefilter("ignore")
     ends, seeds = [], range(options.seed, options.seed + options.count)
-    with multiprocessing.Pool(options.jobs) as pool:
-        for seed, end in zip(seeds, pool.imap(examine, seeds), strict=True):
-            ends.append(end)
-            print(line(seed, end), flush=True)
+    found = spread(examine, seeds, options.jobs, options.on)
+    for seed, end in zip(seeds, found, strict=True):
+        ends.append(end)
+        print(line(seed, end), flush=True)
     counted = table(ends)
     print(counted)
     if options.write:

@@ -12,6 +12,8 @@ from trialid.cli.main import commands
 from trialid.errors import TrialidError
 from trialid.fleet.batch import Batch, batch
 from trialid.pipeline_file.fleet_file import load_fleet
+from trialid.report.pictures.voyage_picture import voyage_picture
+from trialid.result.fleet_rows import FittedRow, RunLabel
 from trialid.result.json_file import read
 from trialid.workflow.repeat import earlier, repeat
 
@@ -130,8 +132,24 @@ def test_the_page_leads_to_the_runs_and_holds_what_is_found(finished: Path) -> N
     page = (finished / "out" / "fleet.html").read_text(encoding="utf-8")
     assert 'href="runs/alpha-2025-01-10/report.html"' in page
     assert 'href="runs/alpha-2025-02-10/report.html"' not in page
+    assert page.count('<a href="runs/alpha-2025-03-10/report.html"><title>') == 2  # her parameters
     assert "No result" in page
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org", "")
+
+
+def test_a_picture_over_ships_parts_them_and_tells_ranges() -> None:
+    def row(ship: str, voyage: int) -> FittedRow:
+        label = RunLabel(run=f"{ship}-{voyage}", ship=ship, voyage=f"{voyage}")
+        fitted = {"kind": "physical", "unit": "m", "value": 0.3, "standard_error": 0.01}
+        return FittedRow(**vars(label), parameter="GM", **fitted, likely_low=0.25, likely_high=0.4)
+
+    rows = [row(ship, voyage) for ship in ("a", "b") for voyage in (1, 2)]
+    picture = voyage_picture("GM", rows, [each.ship for each in rows], ())
+    assert picture.borders == (280.0,)
+    assert picture.whiskers[0].words == "a-1: 0.300 m, likely 0.250 to 0.400"
+    assert voyage_picture("GM", rows, [each.run for each in rows], ()).borders == ()
+    many = [row(f"{n}", 1) for n in range(50) for _ in (1, 2)]
+    assert voyage_picture("GM", many, [each.ship for each in many], ()).borders == ()
 
 
 def test_without_dask_one_line_says_how_to_get_it(

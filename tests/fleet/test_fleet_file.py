@@ -45,6 +45,11 @@ def test_a_mistake_is_one_line_with_its_key(
     assert "\n" not in str(caught.value)
 
 
+def test_a_fleet_that_is_not_there_is_one(fleet_folder: Path) -> None:
+    with pytest.raises(PipelineError, match=r"flet\.toml: no such fleet file .*'fleet\.toml'"):
+        load_fleet(fleet_folder / "flet.toml")
+
+
 def test_a_fleet_given_for_a_pipeline_is_told_where_it_belongs(fleet_folder: Path) -> None:
     for wrong, right in (("run", "batch"), ("batch", "run")):
         file = "fleet.toml" if wrong == "run" else "template-csv.toml"

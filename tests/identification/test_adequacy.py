@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
-from trialid.identification.adequacy import SLOWEST_TIMES, UNEXPLAINED, why_no_fit
+from trialid.identification.adequacy import (
+    RUDDER_RANGE,
+    SLOWEST_TIMES,
+    UNEXPLAINED,
+    why_no_fit,
+)
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
 from trialid.identification.remarks import remarks
@@ -196,6 +201,10 @@ def test_a_voyage_of_few_manoeuvres_says_where_they_are(sound):
     found = why_no_fit(replace(sound, scores=scores))
     assert found.reason.startswith("she manoeuvres in less than a tenth of day")
     assert "window = [40, 162], [29941, 31859] s from where its logs begin" in found.advice
+    corrected = delta.copy()
+    corrected[50_000:50_060] = 0.6 * RUDDER_RANGE  # her course corrected: no manoeuvre
+    steered = replace(scores[0], trial=replace(day, signals={**day.signals, "delta": corrected}))
+    assert why_no_fit(replace(sound, scores=(steered, *scores[1:]))) == found
     cut = (replace(scores[0], trial=replace(day, opening=500.0)), *scores[1:])
     found = why_no_fit(replace(sound, scores=cut))
     assert "window = [540, 662], [30441, 32359] s from where its logs begin" in found.advice

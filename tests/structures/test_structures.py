@@ -12,7 +12,7 @@ from trialid.errors import NotIdentifiable
 from trialid.identification import fit as search
 from trialid.pipeline_file import load
 from trialid.workflow.read_trials import align_trials
-from trialid.workflow.structures import leave_out, rounds
+from trialid.workflow.structures import comparison, leave_out
 from trialid.workflow.structures.asked_structures import asked_structures
 from trialid.workflow.structures.compare_structures import compare_structures
 
@@ -225,7 +225,7 @@ def test_gaps_of_a_signal_that_one_structure_reads_are_left_out_of_all(copy) -> 
         return original(structure, trials)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(rounds, "fit_whole", seen)
+        patch.setattr(comparison, "fit_whole", seen)
         compare_structures(load(copy), stability=False)
     assert compared == [compared[0]] * 4
     assert max(compared[0]) <= 600 - 60

@@ -7,10 +7,11 @@ from contextlib import ExitStack, contextmanager
 from importlib import import_module
 from itertools import islice
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from trialid.errors import TrialidError, reason_of
-from trialid.fleet.do_run import Done, OtherVersion, Parcel, do_run, failure_row
+from trialid.fleet.do_run import Done, Parcel, do_run, failure_row
+from trialid.fleet.inputs import OtherVersion
 from trialid.fleet.task import Task
 from trialid.user_files import text
 
@@ -31,6 +32,7 @@ to the system at once, and 150 000 pages of a run are asked for anew: an eighth 
 time. A tick of 20 ms and a look at memory every 100 ms take 2 % of a core in each process."""
 
 Pack = Callable[[Task], Parcel]
+Item = TypeVar("Item")
 
 
 @contextmanager
@@ -82,8 +84,7 @@ def _distributed() -> Any:
         import distributed
     except ImportError as error:
         raise TrialidError(
-            "a batch needs Dask, which is not installed; install it by: "
-            "pip install 'trialid[batch]'"
+            "this needs Dask, which is not installed; install it by: pip install 'trialid[batch]'"
         ) from error
     return distributed
 
@@ -109,7 +110,9 @@ def _described_cluster(path: Path) -> Any:
         found = yaml.safe_load(text(path))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         said = "write local, tcp://HOST:PORT or a YAML file"
-        raise TrialidError(f"--on {path}: cannot be read ({reason_of(error)}); {said}") from error
+        why = (error.strerror or "").lower() if isinstance(error, OSError) else ""
+        why = why or reason_of(error)
+        raise TrialidError(f"--on {path}: cannot be read ({why}); {said}") from error
     if not isinstance(found, dict) or not {"module", "class"} <= found.keys():
         raise TrialidError(
             f"--on {path}: lacks module and class of a cluster; see: trialid guide batch"
@@ -139,8 +142,14 @@ def check_threads(client: Any) -> None:
             )
 
 
-def results(client: Any, tasks: Iterable[Task], pack: Pack) -> Iterator[tuple[Task, Done]]:
-    """Every run with what came of it, as they are done.
+def answers(
+    client: Any,
+    does: Callable[[Any], Any],
+    items: Iterable[Item],
+    key: Callable[[Item], str],
+    pack: Callable[[Item], Any],
+) -> Iterator[tuple[Item, Any]]:
+    """Each item with the future that holds what `does` made of its parcel, as they are done.
 
     Raises
     ------
@@ -148,37 +157,50 @@ def results(client: Any, tasks: Iterable[Task], pack: Pack) -> Iterator[tuple[Ta
         The scheduler is lost.
     """
     pool: Any = _distributed().as_completed()
-    waiting, todo = dict[str, Task](), iter(tasks)
+    waiting, todo = dict[str, Item](), iter(items)
 
-    def send(some: Iterable[Task]) -> None:
-        for task in some:
-            future = client.submit(
-                do_run, pack(task), key=f"{task.label.run}-{task.key}", pure=False
-            )
-            waiting[future.key] = task
+    def send(some: Iterable[Item]) -> None:
+        for item in some:
+            future = client.submit(does, pack(item), key=key(item), pure=False)
+            waiting[future.key] = item
             pool.add(future)
 
     send(islice(todo, BACKLOG + 2 * sum(client.nthreads().values())))
     for future in pool:
-        task = waiting.pop(future.key)
-        yield task, _done(task, future)
+        if future.status not in ("finished", "error"):
+            raise TrialidError(
+                "the scheduler is lost; what was done is kept: give the command again"
+            )
+        yield waiting.pop(future.key), future
         del future
         send(islice(todo, 1))
 
 
-def _done(task: Task, future: Any) -> Done:
-    """What came of a run; that of a worker's own trouble is not kept, and done anew next time."""
-    if future.status == "finished":
-        found: Done = future.result()
-        return found
-    if future.status != "error":
-        raise TrialidError("the scheduler is lost; what was done is kept: give the command again")
+def trouble(future: Any) -> str:
+    """Why nothing came of a task, in one line: the worker's own trouble, or a bug."""
     error = future.exception()
     name = type(error).__name__
     if name == "KilledWorker":
-        said = "its workers died, each of several that tried it; out of memory?"
-    elif isinstance(error, OtherVersion | OSError | ImportError):
-        said = reason_of(error)
-    else:
-        said = f"this is a bug in trialid, not a mistake of yours: {name}: {error}"
-    return Done(row=failure_row(task.label, task.key, str(TrialidError(said))), kept=False)
+        return "its workers died, each of several that tried it; out of memory?"
+    if isinstance(error, TrialidError):
+        return str(error)
+    if isinstance(error, OtherVersion | OSError | ImportError):
+        return reason_of(error)
+    return f"this is a bug in trialid, not a mistake of yours: {name}: {error}"
+
+
+def results(client: Any, tasks: Iterable[Task], pack: Pack) -> Iterator[tuple[Task, Done]]:
+    """Every run with what came of it, as they are done.
+
+    What came of a worker's own trouble is not kept, and done anew next time.
+    """
+    for task, future in answers(client, do_run, tasks, _name, pack):
+        if future.status == "finished":
+            yield task, future.result()
+        else:
+            said = str(TrialidError(trouble(future)))
+            yield task, Done(row=failure_row(task.label, task.key, said), kept=False)
+
+
+def _name(task: Task) -> str:
+    return f"{task.label.run}-{task.key}"

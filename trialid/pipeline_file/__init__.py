@@ -118,12 +118,12 @@ def table_of(content: bytes, path: Path, wanted: Kind) -> dict[str, Any]:
     return table
 
 
-def content_of(path: Path) -> bytes:
+def content_of(path: Path, wanted: Kind = "pipeline") -> bytes:
     """What a file of the user's holds; PipelineError when it cannot be read."""
     try:
         return user_files.content(path)
     except FileNotFoundError as error:
-        raise PipelineError(f"{path}: no such pipeline file ({neighbours(path)})") from error
+        raise PipelineError(f"{path}: no such {wanted} file ({neighbours(path)})") from error
     except IsADirectoryError as error:
         names = sorted(other.name for other in path.glob("*.toml"))
         inside = f"; there are {list_names(names)}" if names else ""

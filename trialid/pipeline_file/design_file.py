@@ -175,7 +175,7 @@ def load_design(path: Path) -> DesignFile:
     PipelineError
         In one line: the file, the key's full path, what is wrong, the nearest valid names.
     """
-    content = content_of(path)
+    content = content_of(path, "design")
     table = table_of(content, path, "design")
     pipeline = check_form(DesignFile, {**_lent(table, path), **table}, Origin(path, content))
     if problems := [*_of_tests(pipeline), *_of_signals(pipeline), *_of_gear(pipeline)]:

@@ -83,7 +83,7 @@ def load_fleet(path: Path) -> FleetFile:
     PipelineError
         In one line: the file, the key's full path, what is wrong, the nearest valid names.
     """
-    content = content_of(path)
+    content = content_of(path, "fleet")
     table = table_of(content, path, "fleet")
     fleet = check_form(FleetFile, table, Origin(path, content))
     if problems := list(_contradictions(fleet)):

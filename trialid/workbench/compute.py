@@ -109,7 +109,13 @@ def work_out(task: Task, shelf: Shelf, seat: Seat) -> None:
     shown = Shown(task.pipeline, catalogue, model, before=outcome)
     if task.before is None:
         seat.show(shown)
-    trials = shelf.trials(task.pipeline, seat.progress)
+
+    def so_far(read: tuple[Trial, ...]) -> None:
+        """The first long trial can be looked at while the others are read."""
+        if task.before is None:
+            seat.show(replace(shown, trials=read, series=_measured(task.pipeline, read)))
+
+    trials = shelf.trials(task.pipeline, seat.progress, so_far)
     shown = replace(shown, trials=trials, series=_so_far(task, trials))
     if task.kept is not None:
         _restored(task, task.kept, model, shown, seat)

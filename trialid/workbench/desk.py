@@ -17,7 +17,7 @@ from trialid.result.change_rows import StepRow
 from trialid.workbench.compute import Job, LetGo, Seat, Task, work_out
 from trialid.workbench.document import Document, Step
 from trialid.workbench.shelf import Shelf
-from trialid.workbench.shown import Shown, Trouble, Working, place_of
+from trialid.workbench.shown import Shown, Trouble, Working, goes_on, place_of
 from trialid.workbench.status import Counts, Status, status_of
 from trialid.workbench.watch import Files, source_states, watch_list
 from trialid.workbench.wishes import Granted, find_edit, grant, read_wish
@@ -270,7 +270,7 @@ class _Seat(Seat):
             if shown.run is not None:
                 kept = {**desk._kept, _name(shown.pipeline, self.job.files): shown.run}
                 desk._kept = dict(list(kept.items())[-KEPT:])
-            series = shown.series is not desk._shown.series
+            series = shown.series is not desk._shown.series and not goes_on(desk._shown, shown)
             desk._shown = shown
             desk._count(screen=True, series=series)
 

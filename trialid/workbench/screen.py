@@ -145,7 +145,7 @@ def _advised(run: Result) -> list[advice.Advice]:
 def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
     """Each trial in the order of its curves: name, use, error, remarks, signals, findings."""
     written = {trial.name: trial for trial in shown.pipeline.trials}
-    names = [s.name for s in shown.series] or [*written]
+    names = list(dict.fromkeys([*(s.name for s in shown.series), *written]))
     tracks = {s.name: s.track for s in shown.series}
     for place, name in enumerate(names):
         errors = error_number.by_output(shown, name, run)

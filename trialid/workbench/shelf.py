@@ -1,5 +1,7 @@
 """Aligned trials, kept while their logs and what the pipeline says of them stay the same."""
 
+from collections.abc import Callable
+
 from trialid import ingest
 from trialid.ingest import LogFile
 from trialid.pipeline_file import Pipeline, TrialSection
@@ -15,11 +17,21 @@ class Shelf:
     def __init__(self) -> None:
         self._kept: dict[str, Trial] = {}
 
-    def trials(self, pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
-        """The pipeline's trials; those that are kept are not read again."""
-        done = {}
+    def trials(
+        self,
+        pipeline: Pipeline,
+        progress: Progress,
+        so_far: Callable[[tuple[Trial, ...]], None] = lambda read: None,
+    ) -> tuple[Trial, ...]:
+        """The pipeline's trials; those that are kept are not read again.
+
+        `so_far` is told those that are there before another is read.
+        """
+        done: dict[str, Trial] = {}
         for i, trial in enumerate(pipeline.trials):
             key = _key(pipeline, trial)
+            if done:
+                so_far(tuple(done.values()))
             progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
             done[key] = self._kept.get(key) or align_trial(pipeline, trial)
         self._kept = done

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from operator import is_
 from typing import Literal
 
 from trialid.errors import EffectError, LogError, PipelineError, TrialidError
@@ -76,6 +77,14 @@ class Shown:
         if self.fit is not None:
             return "fitted"
         return "measured" if self.trials else "reading"
+
+
+def goes_on(shown: Shown, further: Shown) -> bool:
+    """Whether only trials came after those shown, measured and no more: their curves stay."""
+    read = shown.trials
+    measured = shown.fit is further.fit is None and shown.run is further.run is None
+    same = measured and shown.pipeline is further.pipeline and shown.before is further.before
+    return same and bool(read) and all(map(is_, read, further.trials))
 
 
 def place_of(error: TrialidError) -> Place:

@@ -12,18 +12,18 @@ wrong effect, or fewer than 85 % with a held-out error of at most 1.1 times the 
 """
 
 import argparse
-import multiprocessing
 import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 HERE: Final = Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parents[2] / ".ci")]
+sys.path[:0] = [str(HERE), *(str(HERE.parent / part) for part in ("", "fleets", "../../.ci"))]
 import other_base  # noqa: E402
 from at_commit import commit_of  # noqa: E402
 from hidden_scenarios import SCENARIOS, guessed  # noqa: E402
@@ -39,6 +39,7 @@ from hidden_truth import (  # noqa: E402
     generator,
     record,
 )
+from spread import add_options, spread  # noqa: E402
 
 from trialid import pipeline_file  # noqa: E402
 from trialid.diagnosis.search.backward import worth_naming  # noqa: E402
@@ -206,12 +207,12 @@ def main() -> int:
     parser.add_argument("--base", choices=HEADS, default="right")
     parser.add_argument("--records", type=int, default=20)
     parser.add_argument("--first-seed", type=int, default=500)
-    parser.add_argument("--jobs", type=int, default=2)
+    add_options(parser, jobs=2)
     parser.add_argument("--write", action="store_true")
     asked = parser.parse_args()
     seeds = range(asked.first_seed, asked.first_seed + asked.records)
-    with multiprocessing.Pool(asked.jobs) as pool:
-        said, good = page(pool.starmap(one, [(s, asked.base) for s in seeds], chunksize=1))
+    each = partial(one, base=asked.base)
+    said, good = page(list(spread(each, seeds, asked.jobs, asked.on)))
     print(said)
     if asked.write:
         _write(

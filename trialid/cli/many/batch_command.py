@@ -6,30 +6,20 @@ from pathlib import Path
 import click
 
 from trialid.cli.answering import write_or_say_why
-from trialid.cli.console import complain, note, progress_bar, say
+from trialid.cli.console import complain, progress_bar, say
+from trialid.cli.many.where_done import check_jobs, jobs_option, on_option, teller
 
 
 @click.command(short_help="Do the runs of a fleet on many cores; only what is new.")
 @click.argument("fleet", type=click.Path(path_type=Path))
-@click.option(
-    "--on",
-    default="local",
-    metavar="WHERE",
-    help="local (the default), a Dask scheduler's address (tcp://HOST:PORT), or a YAML file that "
-    "describes a cluster.",
-)
+@on_option("local", "the default")
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     metavar="DIR",
     help="Folder for runs, tables and report; by default fleets/ and the fleet file's name.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(1, 1024),
-    metavar="N",
-    help="Worker processes on this machine; by default a core each.",
-)
+@jobs_option
 @click.option("--quiet", is_flag=True, help="No progress and no summary.")
 def batch(fleet: Path, on: str, out: Path | None, jobs: int | None, quiet: bool) -> None:
     """Do every run that FLEET, a TOML file, names: ships, their voyages, and what varies.
@@ -39,8 +29,7 @@ def batch(fleet: Path, on: str, out: Path | None, jobs: int | None, quiet: bool)
     stops no other. What comes out: a folder for each run, runs.parquet, parameters.parquet,
     changes.parquet, and fleet.html with parameters over voyages and ships.
     """
-    if jobs is not None and on != "local":
-        raise click.UsageError("--jobs is of this machine; workers elsewhere are started there")
+    check_jobs(on, jobs)
     from trialid.fleet.parquet_tables import check_parquet
     from trialid.pipeline_file.fleet_file import load_fleet
 
@@ -50,16 +39,12 @@ def batch(fleet: Path, on: str, out: Path | None, jobs: int | None, quiet: bool)
     from trialid.fleet.batch import batch as done_batch
     from trialid.fleet.batch import by_dask
 
-    def tell(words: str) -> None:
-        if not quiet:
-            note(words)
-
     with (
         progress_bar(shown=not quiet and sys.stderr.isatty()) as progress,
         write_or_say_why(folder),
     ):
         try:
-            done = done_batch(asked, folder, by_dask(on, jobs, tell), progress)
+            done = done_batch(asked, folder, by_dask(on, jobs, teller(quiet)), progress)
         except KeyboardInterrupt:
             complain(f"{folder}: what is done is kept; the same command goes on")
             raise

@@ -66,24 +66,33 @@ def whiten_columns(
     columns: Vector, parts: Sequence[Stretch], colour: Colour
 ) -> tuple[Vector, tuple[Stretch, ...]]:
     """Columns filtered by the inverse of the colour, and which rows they now are; (M, n)."""
-    rows, made, at = [], [], 0
+    made, at = [], 0
     for part in parts:
+        valid = _whole(part.compared, len(colour[part.output]))
+        stop = at + int(valid.sum())
+        made.append(Stretch(part.trial, part.output, slice(at, stop), valid))
+        at = stop
+    white = np.empty((at, columns.shape[1]))
+    for part, to in zip(parts, made, strict=True):
         full = np.zeros((len(part.compared), columns.shape[1]))
         full[part.compared] = columns[part.rows]
-        out, valid = _filtered(full, part.compared, colour[part.output])
-        count = int(valid.sum())
-        rows.append(out[valid])
-        made.append(Stretch(part.trial, part.output, slice(at, at + count), valid))
-        at += count
-    return np.concatenate(rows), tuple(made)
+        white[to.rows] = _filtered(full, colour[part.output])[to.compared]
+    return white, tuple(made)
 
 
-def _filtered(full: Vector, compared: Mask, a: Vector) -> tuple[Vector, Mask]:
-    """FIR-filtered columns, and where every tap fell on a compared sample."""
+def _whole(compared: Mask, taps: int) -> Mask:
+    """Where every tap falls on a compared sample."""
+    valid = np.zeros(len(compared), dtype=bool)
+    if len(compared) >= taps:
+        windows = np.lib.stride_tricks.sliding_window_view(compared, taps)
+        valid[taps - 1 :] = windows.all(axis=1)
+    return valid
+
+
+def _filtered(full: Vector, a: Vector) -> Vector:
+    """FIR-filtered columns."""
     n, reach = len(full), len(a) - 1
-    out, valid = np.zeros_like(full), np.zeros(n, dtype=bool)
-    if n > reach:
-        valid[reach:] = np.lib.stride_tricks.sliding_window_view(compared, reach + 1).all(axis=1)
+    out = np.zeros_like(full)
     band = np.zeros((BLOCK, BLOCK + reach))
     for i in range(BLOCK):
         band[i, i : i + reach + 1] = a[::-1]
@@ -91,4 +100,4 @@ def _filtered(full: Vector, compared: Mask, a: Vector) -> tuple[Vector, Mask]:
         part = full[k - reach : k + BLOCK]
         rows = len(part) - reach
         out[k : k + rows] = band[:rows, : len(part)] @ part
-    return out, valid
+    return out

@@ -18,7 +18,9 @@ from trialid.diagnosis.search.projection import (
     Projected,
     gather,
     likeliest,
+    remainder,
     residual_after,
+    take_out,
 )
 from trialid.diagnosis.search.simple_forces import Probes, probes
 from trialid.ship.rigid_body import ROWS
@@ -89,7 +91,7 @@ def completeness(augmented: Augmented) -> Completeness | None:
     evidence = _with_colour(augmented, tried)
     white, _ = whiten_columns(tried.columns, augmented.stretches, evidence.colour)
     sizes = _lengths(white)
-    white -= evidence.white.Q @ (evidence.white.Q.T @ white)
+    take_out(evidence.white.Q, white)
     first = evidence.white.S.shape[1]
     effects_left = _lengths(evidence.raw.S) > SEEN * _lengths(augmented.S)
     probes_left = _lengths(white) > SEEN * sizes
@@ -105,7 +107,7 @@ def completeness(augmented: Augmented) -> Completeness | None:
 
 
 def _lengths(columns: Vector) -> Vector:
-    return np.asarray(np.linalg.norm(columns, axis=0))
+    return np.sqrt(np.einsum("ij,ij->j", columns, columns))  # a norm would copy them
 
 
 def _best_force(augmented: Augmented, tried: Probes) -> Carried:
@@ -122,7 +124,7 @@ def _with_colour(augmented: Augmented, tried: Probes) -> Evidence:
     Else what is missing would pass for the colour of the noise, and nothing would show.
     """
     known = augmented.evidence
-    left = tried.columns - known.raw.Q @ (known.raw.Q.T @ tried.columns)
+    left = remainder(known.raw.Q, tried.columns)
     forces = Projected(known.raw.residual, left, known.raw.Q, left.T @ left,
                        left.T @ known.raw.residual)  # fmt: skip
     effects = [t.columns for t in augmented.traces]

@@ -9,12 +9,15 @@ from trialid.result.fleet_rows import ChangeRow, FittedRow
 WIDE = 560.0
 HIGH = 120.0
 MARGIN = 4.0
+MOST_SHIPS = 40
+"""Whose borders a picture of 230 px shows: six pixels for each."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Whisker:
-    """One run: where it stands, its estimate and its likely range; and what a pointer is told."""
+    """A run: where it stands, its estimate and its likely range; and what a pointer is told."""
 
+    run: str
     x: float
     y: float
     low: float | None
@@ -42,6 +45,7 @@ class VoyagePicture:
     last: str
     whiskers: tuple[Whisker, ...]
     marks: tuple[Mark, ...]
+    borders: tuple[float, ...]
 
 
 def voyage_picture(
@@ -68,11 +72,12 @@ def voyage_picture(
         last=names[-1],
         whiskers=tuple(
             Whisker(
+                run=row.run,
                 x=_across(place, len(rows)),
                 y=down(row.value or 0.0),
                 low=None if row.likely_low is None else down(row.likely_low),
                 high=None if row.likely_high is None else down(row.likely_high),
-                words=f"{row.run}: {wording.number((row.value or 0.0) * factor)} {unit}",
+                words=_words(row),
             )
             for place, row in enumerate(rows)
         ),
@@ -83,7 +88,25 @@ def voyage_picture(
             )
             for each in changes
         ),
+        borders=_borders(names),
     )
+
+
+def _words(row: FittedRow) -> str:
+    """A run's estimate and its likely range."""
+    unit, factor = wording.shown_unit(row.unit)
+    ends = (row.value, row.likely_low, row.likely_high)
+    value, low, high = (None if x is None else wording.number(x * factor, 3) for x in ends)
+    likely = "" if low is None or high is None else f", likely {low} to {high}"
+    return f"{row.run}: {value} {unit}{likely}"
+
+
+def _borders(names: Sequence[str]) -> tuple[float, ...]:
+    """Between one ship and the next, while there are few enough to be seen."""
+    places = [k for k in range(1, len(names)) if names[k] != names[k - 1]]
+    if len(set(names)) == len(names) or len(places) >= MOST_SHIPS:
+        return ()
+    return tuple(_across(k - 0.5, len(names)) for k in places)
 
 
 def _across(place: float, count: int) -> float:

@@ -1,6 +1,5 @@
 """Structures compared: each trial left out in turn, and once more without any use of each trial."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -17,12 +16,11 @@ from trialid.result.fit_rows import LogRow
 from trialid.result.json_file import text_of
 from trialid.result.structure_rows import NAME, StructureRow, Structures
 from trialid.threads import one_thread
-from trialid.trial import Trial
 from trialid.version import VERSION
 from trialid.workflow.origin import sources_of
-from trialid.workflow.read_trials import align_trials
-from trialid.workflow.structures.asked_structures import Structure, asked_structures
-from trialid.workflow.structures.rounds import FITS, Rounds
+from trialid.workflow.structures.asked_structures import Structure
+from trialid.workflow.structures.comparison import Comparison
+from trialid.workflow.structures.rounds import FITS, Compute, Rounds
 
 
 @one_thread
@@ -31,6 +29,7 @@ def compare_structures(
     progress: Progress = silent,
     folder: Path | None = None,
     stability: bool = True,
+    compute: Compute | None = None,
 ) -> Structures:
     """Every structure with its error on trials left out, and the simplest that is as good.
 
@@ -41,6 +40,8 @@ def compare_structures(
         None writes nothing.
     stability
         Whether the choice is made again without any use of each trial.
+    compute
+        What does many fits at once; None does one after the other, here. The digits are the same.
 
     Raises
     ------
@@ -51,24 +52,17 @@ def compare_structures(
     if folder is not None:
         own_files.check_folder(folder, (NAME, FITS), "comparison")
     _check_trials(pipeline)
-    trials = align_trials(pipeline, progress)
-    structures, left_out = asked_structures(pipeline, trials)
-    rounds = Rounds(
-        structures=structures,
-        trials=_on_common_samples(trials, structures),
-        sources=tuple(row.sha256 for row in sources_of(pipeline)),
-        folder=folder,
-        progress=progress,
-    )
+    compared = Comparison(pipeline, progress)
+    rounds = Rounds(compared=compared, folder=folder, progress=progress, compute=compute)
     rounds.fit([()])
-    if all(reasons := [rounds.why_not(s) for s in structures]):
+    if all(reasons := [rounds.why_not(s) for s in rounds.structures]):
         raise NotIdentifiable(f"no structure can be fitted: {reasons[0]}")
     rounds.fit([(name,) for name in rounds.names])
     again = dict[str, Choice | None]()
     if stability and len(rounds.names) > 2:
         rounds.fit(list(combinations(rounds.names, 2)))
         again = {name: rounds.choice(name) for name in rounds.names}
-    found = _result(pipeline, left_out, rounds, again)
+    found = _result(pipeline, rounds, again)
     if folder is not None:
         with own_files.replacing(folder, below=(NAME,)) as work:
             (work / NAME).write_text(text_of(found), encoding="utf-8")
@@ -84,31 +78,10 @@ def _check_trials(pipeline: Pipeline) -> None:
         )
 
 
-def _on_common_samples(
-    trials: Sequence[Trial], structures: Sequence[Structure]
-) -> tuple[Trial, ...]:
-    """The trials with outputs only where every structure's inputs were measured."""
-    wanted = {name for s in structures for name in s.model.recorded}
-    outputs = structures[0].settings.outputs
-    made = []
-    for trial in trials:
-        there = np.ones(trial.samples, dtype=bool)
-        for name in wanted & trial.valid.keys():
-            there &= trial.valid[name]
-        shown = {c: trial.valid[c] & there for c in outputs if c in trial.valid}
-        made.append(replace(trial, valid={**trial.valid, **shown}))
-    return tuple(made)
-
-
-def _result(
-    pipeline: Pipeline,
-    left_out: dict[str, str],
-    rounds: Rounds,
-    again: dict[str, Choice | None],
-) -> Structures:
+def _result(pipeline: Pipeline, rounds: Rounds, again: dict[str, Choice | None]) -> Structures:
     choice = rounds.choice()
     rows = [_row(s, rounds, choice) for s in rounds.structures]
-    logs = [g for t in rounds.trials for g in t.logs]
+    logs = [g for t in rounds.compared.trials for g in t.logs]
     found = Structures(
         version=VERSION,
         pipeline=pipeline.name,
@@ -117,7 +90,7 @@ def _result(
         logs=tuple(LogRow(path=g.path, sha256=g.sha256, adapter=g.adapter) for g in logs),
         sources=sources_of(pipeline),
         rows=tuple(sorted(rows, key=lambda row: (row.why_not is not None, row.behind or 0.0))),
-        not_tried=left_out,
+        not_tried=rounds.compared.not_tried,
         best=choice.best if choice else None,
         chosen=choice.simplest if choice else None,
         chosen_without={name: each.simplest if each else None for name, each in again.items()},

@@ -1,7 +1,7 @@
 """The fits that comparing structures takes, kept as they are done, and the choice from them."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from math import comb
 from pathlib import Path
@@ -14,15 +14,15 @@ from trialid.diagnosis.one_standard_error import Choice, choose_structure
 from trialid.errors import TrialidError
 from trialid.progress import Progress
 from trialid.result.json_file import read_object, row_of
-from trialid.trial import Trial
 from trialid.workflow.structures.asked_structures import Structure
-from trialid.workflow.structures.leave_out import KeptFit, digest, fit_whole, fit_without, key_of
+from trialid.workflow.structures.comparison import Comparison, FitTask, Out
+from trialid.workflow.structures.leave_out import KeptFit
 
 FITS: Final = "fits.json"
 """The fits that are done, by a hash of all that went into them."""
 
-Out = tuple[str, ...]
-"""Names of the trials that a fit leaves out, in the order of the pipeline."""
+Compute = Callable[[Sequence[FitTask]], Iterator[tuple[FitTask, KeptFit]]]
+"""What does fits elsewhere and gives each back with what came of it, in any order."""
 
 
 @dataclass(kw_only=True)
@@ -31,50 +31,62 @@ class Rounds:
 
     Attributes
     ----------
-    sources
-        Hashes of the files beside the logs that the fits rest on.
     folder
         Where fits are found again, and kept whatever comes after; None keeps none.
+    compute
+        What does many fits at once; None does one after the other, here.
     """
 
-    structures: tuple[Structure, ...]
-    trials: tuple[Trial, ...]
-    sources: tuple[str, ...]
+    compared: Comparison
     folder: Path | None
     progress: Progress
+    compute: Compute | None = None
     done: dict[tuple[str, Out], KeptFit] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.fitted = tuple(t for t in self.trials if t.use == "fit")
-        self.names = tuple(t.name for t in self.fitted)
-        self.digests = {t.name: digest(t) for t in self.trials}
+        self.structures, self.names = self.compared.structures, self.compared.names
         self.kept = {} if self.folder is None else kept_fits(self.folder / FITS)
+        self.fits = len(self.structures) * (1 + len(self.names) + comb(len(self.names), 2))
 
     def fit(self, leaving: Sequence[Out]) -> None:
         """Fit every structure that stands without each of these groups of trials."""
-        fits = len(self.structures) * (1 + len(self.names) + comb(len(self.names), 2))
+        self._elsewhere(leaving)
         for structure in self.structures:
             for out in leaving:
                 if not self.why_not(structure):
                     without = f" without {' and '.join(out)}" if out else ""
-                    self.progress(f"fitting {structure.name}{without}", len(self.done) / fits)
-                    self.done[structure.name, out] = self._fit(structure, out)
+                    self.progress(f"fitting {structure.name}{without}", len(self.done) / self.fits)
+                    self.done[structure.name, out] = self._fit(self._task(structure, out))
 
-    def _fit(self, structure: Structure, out: Out) -> KeptFit:
-        used = self.fitted if out else self.trials
-        key = key_of(structure, [self.digests[t.name] for t in used], self.sources, out)
-        if key not in self.kept:
-            whole = self.done.get((structure.name, ()))
-            made = fit_without(structure, used, out, whole) if whole else fit_whole(structure, used)
-            self.kept[key] = made
-            self._keep()
-        return self.kept[key]
+    def _elsewhere(self, leaving: Sequence[Out]) -> None:
+        """Have them done all at once, to be found among those kept.
 
-    def _keep(self) -> None:
+        Without knowing which structure falls in the midst: some fits may be done that nobody needs.
+        """
+        if self.compute is None:
+            return
+        standing = [s for s in self.structures if not self.why_not(s)]
+        asked = [self._task(structure, out) for structure in standing for out in leaving]
+        todo = [task for task in asked if task.key not in self.kept]
+        for number, (task, made) in enumerate(self.compute(todo) if todo else (), 1):
+            self._keep(task, made)
+            words = f"{number} of {len(todo)} fits done"
+            self.progress(words, (len(self.done) + number) / self.fits)
+
+    def _task(self, structure: Structure, out: Out) -> FitTask:
+        return self.compared.task(structure, out, self.done.get((structure.name, ())))
+
+    def _fit(self, task: FitTask) -> KeptFit:
+        if task.key not in self.kept:
+            self._keep(task, self.compared.fit(task))
+        return self.kept[task.key]
+
+    def _keep(self, task: FitTask, made: KeptFit) -> None:
+        self.kept[task.key] = made
         if self.folder is not None:
-            text = json.dumps({key: asdict(fit) for key, fit in self.kept.items()}, allow_nan=False)
+            fits = {key: asdict(self.kept[key]) for key in sorted(self.kept)}
             with own_files.replacing(self.folder, below=(FITS,)) as work:
-                (work / FITS).write_text(text + "\n", encoding="utf-8")
+                (work / FITS).write_text(json.dumps(fits, allow_nan=False) + "\n", "utf-8")
 
     def why_not(self, structure: Structure) -> str:
         """The first reason against a structure, empty where it stands.

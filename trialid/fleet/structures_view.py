@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from trialid.fleet.structure_fits import compute_of
 from trialid.pipeline_file import load
 from trialid.progress import Progress, silent
 from trialid.result.structure_rows import Structures
@@ -43,6 +44,8 @@ def structures(
     folder: str | Path | None = None,
     *,
     stability: bool = True,
+    on: str | None = None,
+    jobs: int | None = None,
     progress: Progress = silent,
 ) -> StructuresView:
     """Compare whole model structures, as `trialid structures` does, digit for digit.
@@ -53,11 +56,14 @@ def structures(
         Where fits are kept as they are done, and the result is written; None writes nothing.
     stability
         Whether the choice is made again without any use of each trial.
+    on, jobs
+        Which workers do the fits, as for `batch`; None does them here, one after the other.
 
     Raises
     ------
     TrialidError
         The input is wrong; one line says what, where and what to do.
     """
-    place = None if folder is None else Path(folder)
-    return StructuresView(compare_structures(load(Path(pipeline)), progress, place, stability))
+    asked, place = load(Path(pipeline)), None if folder is None else Path(folder)
+    with compute_of(asked, on, jobs, lambda words: progress(words, None)) as compute:
+        return StructuresView(compare_structures(asked, progress, place, stability, compute))
