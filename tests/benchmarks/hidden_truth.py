@@ -76,8 +76,6 @@ class Scenario:
         Signal to the factor its sensor is wrong by.
     gear
         Ordered rudder and step [s] to the true rudder; the record then holds the order alone.
-    ship
-        The true ship, before what is hidden is put into her.
     """
 
     name: str
@@ -88,7 +86,7 @@ class Scenario:
     twins: frozenset[str] = frozenset()
     scale: Mapping[str, float] = field(default_factory=dict)
     gear: Gear | None = None
-    ship: ShipModel = MODEL
+    ship: ShipModel = MODEL  # the true one, before what is hidden is put into her
 
     @property
     def exact(self) -> frozenset[str]:
@@ -154,8 +152,8 @@ def restored(scenario: Scenario, model: ShipModel) -> ShipModel:
 @functools.cache
 def _truth(scenario: Scenario) -> Simulator:
     """The true ship, ready to run."""
-    states = dict.fromkeys((*scenario.ship.states, "psi"))
-    model = replace(without(scenario), states=(*states,)) + CATALOGUE["outer_force"]
+    states = tuple(dict.fromkeys((*scenario.ship.states, "psi")))
+    model = replace(without(scenario), states=states) + CATALOGUE["outer_force"]
     return prepare(restored(scenario, model.with_values({"scale_ext": 1.0})), (), OUTPUTS)
 
 

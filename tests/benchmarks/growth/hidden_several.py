@@ -16,7 +16,6 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -133,9 +132,9 @@ def _listed(names) -> str:
 
 
 @one_thread
-def one(seed: int, base: str) -> Ended:
-    """A record made, and the loop's end."""
-    scenario = several(seed, base)
+def one(task: tuple[int, str]) -> Ended:
+    """A record made by its seed and base, and the loop's end."""
+    (seed, base), scenario = task, several(*task)
     hidden = tuple(e.name for e in scenario.effects)
     trials = record(scenario, "white", "mixed", seed)
     if base == "other":
@@ -211,8 +210,8 @@ def main() -> int:
     parser.add_argument("--write", action="store_true")
     asked = parser.parse_args()
     seeds = range(asked.first_seed, asked.first_seed + asked.records)
-    each = partial(one, base=asked.base)
-    said, good = page(list(spread(each, seeds, asked.jobs, asked.on)))
+    tasks = [(seed, asked.base) for seed in seeds]
+    said, good = page(list(spread(one, tasks, asked.jobs, asked.on)))
     print(said)
     if asked.write:
         _write(

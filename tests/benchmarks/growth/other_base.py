@@ -18,19 +18,14 @@ from trialid.effects import CATALOGUE  # noqa: E402
 from trialid.ship.model import ShipModel  # noqa: E402
 
 TRUTH: Final = cubic_truth.ship()
+TERMS: Final = (
+    "linear_hull linear_rudder linear_roll centripetal_added_mass heel_roll heel_sway heel_yaw "
+    "roll_rate_yaw sway_drag_vav sway_drag_var yaw_drag_vav yaw_drag_var yaw_drag_rar "
+    "roll_drag_vav roll_drag_var"
+)
 BASE: Final = ShipModel(
-    SHIP,
-    ("v", "p", "r", "phi"),
-    tuple(
-        CATALOGUE[n]
-        for n in (
-            "linear_hull", "linear_rudder", "linear_roll", "centripetal_added_mass",
-            "heel_roll", "heel_sway", "heel_yaw", "roll_rate_yaw",
-            "sway_drag_vav", "sway_drag_var", "yaw_drag_vav", "yaw_drag_var", "yaw_drag_rar",
-            "roll_drag_vav", "roll_drag_var",
-        )
-    ),
-)  # fmt: skip
+    SHIP, ("v", "p", "r", "phi"), tuple(CATALOGUE[name] for name in TERMS.split())
+)
 """The model of `tests/cubic_truth.toml`."""
 
 FREE: Final = ("Yv", "Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM", "Yvav", "Nrar")
