@@ -17,9 +17,9 @@ from trialid.arrays import Vector
 from trialid.design.imo.excursions import LATE, STEP, order_sample, ramp_doubt, rudder_of
 from trialid.design.imo.recognise import UNSETTLED
 from trialid.design.imo.recognition import Recognised
-from trialid.design.imo.sailed_trial import Drift
 from trialid.design.imo.track_numbers import Around, foretold
 from trialid.design.imo.trial_numbers import ManoeuvreNumber, Range
+from trialid.design.prediction.sailed_numbers import Drift
 from trialid.errors import DesignError
 from trialid.trial import Trial
 from trialid.white_noise import white_noise
