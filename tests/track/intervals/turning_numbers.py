@@ -147,6 +147,8 @@ def add(table: Table, seed: int, receiver: str) -> None:
     """Count one seed's record in all the ways it is looked at."""
     over, still = truth_of(CURRENTS["circle"]), truth_of(STILL)
     for words, held, allows, missing in CASES:
+        if receiver == "RTK" and allows:
+            continue  # nothing new beside 1 m
         fit = fitted(seed, RECEIVERS[receiver], held, missing)
         found, true = measured(fit, allows), truth_of(STILL, seed) if missing else still
         rows = [*found.turns, *(() if held else found.numbers)]
