@@ -43,6 +43,11 @@ def cut(trial: Trial, end: int) -> Trial:
     return replace(trial, signals=signals, valid={n: x[:end] for n, x in trial.valid.items()})
 
 
+def late(trial: Trial, begin: int) -> Trial:
+    signals = {n: x[begin:].copy() for n, x in trial.signals.items()}
+    return replace(trial, signals=signals, valid={n: x[begin:] for n, x in trial.valid.items()})
+
+
 def found(trial: Trial) -> tuple[Recognised, ...]:
     return recognise.recognise(trial, LENGTH, SPEED)
 
@@ -90,6 +95,24 @@ def test_a_zigzag_and_a_circle_to_either_side() -> None:
             assert one.kind == kind
             assert np.sign(one.rudder) == side
             assert one.execute * trial.period == pytest.approx(30.0, abs=2.0 * trial.period)
+
+
+@pytest.mark.parametrize("name", ["zigzag", "circle"])
+@pytest.mark.parametrize("before", [4, 8])
+def test_a_record_that_begins_with_the_order_is_no_other_manoeuvre(name: str, before: int) -> None:
+    """8 s or 16 s before it, where she sails her length in 24; what begins in a turn is none."""
+    trial = without_order(noisy(sailed(name, STILL), np.random.default_rng(4)))
+    [whole] = found(trial)
+    [one] = found(late(trial, whole.execute - before))
+    assert one.kind == whole.kind
+    assert (one.execute, one.rudder) == (before, pytest.approx(whole.rudder))
+    assert [k - before for k in one.reversals] == [k - whole.execute for k in whole.reversals]
+    assert one.course == pytest.approx(whole.course, abs=np.deg2rad(0.5))
+    midships = trial.signals["delta"].copy()
+    midships[: whole.execute + 40] = 0.0  # a rudder that lies: she turns already
+    turning = replace(trial, signals={**trial.signals, "delta": midships})
+    kinds = [m.kind for m in found(late(turning, whole.execute + 40 - before))]
+    assert whole.kind not in kinds[:1]
 
 
 @pytest.mark.parametrize("kept", [-8.0, -4.0, 0.0, 4.0, 8.0])
