@@ -11,7 +11,7 @@ from trialid.result.schema import Result
 ON_TRACK: Final = ("Williamson turn", "stop")
 CORRECTED: Final = {
     "current": "Corrected for current: through the water, by the current that the fit found "
-    "(a trial held out finds its own, without an interval).",
+    "(a trial held out finds its own; in a wind without an interval).",
     "wind": "Corrected for wind: less what the model drifts by it under the recorded rudder, from "
     "the order on.",
 }
