@@ -124,9 +124,13 @@ def start_error(
     place = np.broadcast_to(np.arange(compared.shape[1]), compared.shape)[compared]
     squares = np.bincount(place, gap[: len(place)] ** 2) / np.maximum(np.bincount(place), 1)
     sizes = np.append(np.sqrt(squares[place]), np.full(len(names), level))
-    inverse = np.linalg.pinv(own.T @ own, hermitian=True)
-    noise = np.linalg.qr((own * sizes[:, None]) @ inverse, mode="r").T
-    return StartError(names, shared, -inverse @ own[: len(place)].T @ psi, noise)
+    scale = np.linalg.norm(own, axis=0)
+    scale[scale == 0.0] = 1.0
+    inverse = np.linalg.pinv((own / scale).T @ (own / scale), hermitian=True) / np.outer(
+        scale, scale
+    )
+    root = np.asarray(np.linalg.qr((own * sizes[:, None]) @ inverse, mode="r"))
+    return StartError(names, shared, -inverse @ own[: len(place)].T @ psi, root.T)
 
 
 def starts_of(values: Mapping[str, float]) -> dict[str, float]:

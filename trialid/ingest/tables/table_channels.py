@@ -8,7 +8,7 @@ from dataclasses import replace
 from trialid.errors import LogError, UnitError
 from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
 from trialid.ingest.tables.clock import table_clock
-from trialid.ingest.tables.clock.table_clock import Clock
+from trialid.ingest.tables.clock.table_time import Clock
 from trialid.ingest.tables.table import Head, Table, check_width, numbers
 from trialid.ingest.tables.templates.template import Template
 from trialid.ingest.tables.written_angles import written_angles
