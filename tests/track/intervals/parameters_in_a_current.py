@@ -120,4 +120,4 @@ def _row(receiver: str, water: str, what: str, values: Vector, how: str) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(counted(__doc__, page, "parameters_in_a_current", records=300, first=6000))
+    sys.exit(counted(__doc__, page, "parameters_in_a_current", records=300, first=6500))

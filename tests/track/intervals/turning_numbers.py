@@ -201,4 +201,4 @@ def _cells(one: Counts) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(counted(__doc__, page, "turning_numbers", records=100, first=6000))
+    sys.exit(counted(__doc__, page, "turning_numbers", records=100, first=6500))
