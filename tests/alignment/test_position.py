@@ -7,7 +7,7 @@ import pytest
 from made_recordings import channel, recording
 
 from trialid.alignment import SignalSource, align
-from trialid.alignment.track.antenna import at_origin
+from trialid.alignment.track.antenna import at_origin, check_stated_speed
 from trialid.alignment.track.position import FLATTENING, RADIUS, plane
 from trialid.errors import AlignmentError, ShipError
 from trialid.ship.particulars import read_ship
@@ -177,3 +177,23 @@ def test_a_course_over_ground_is_in_the_turn_of_the_heading():
     off = channel("cog", T, course - 360.0, "deg"), SignalSource("cog", "cog")
     trial = aligned(*geographic(north, east), off)
     assert np.abs(trial.signals["cog"] - trial.signals["psi"] - 0.1).max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("share", "said"),
+    [(1.0, ""), (0.6, "dd.mmmm, degrees and minutes"), (0.4, "a wrong unit"), (1.9, "a strong")],
+)
+def test_a_track_at_another_speed_than_was_stated(share, said):
+    """She loses a third of her speed in the turn: her fastest counts."""
+    t = np.arange(0.0, 300.0, 2.0)
+    speed = share * np.where(t < 60.0, 7.0, 4.5)
+    psi = np.where(t < 60.0, 0.0, 0.02 * (t - 60.0))
+    rng = np.random.default_rng(3)
+    signals = {
+        n: np.cumsum(2.0 * speed * f(psi)) + rng.standard_normal(len(t))
+        for n, f in (("x", np.cos), ("y", np.sin))
+    }
+    trial = Trial("turn", "fit", 2.0, signals, {n: np.ones(len(t), bool) for n in signals})
+    found = " ".join(check_stated_speed(trial, 7.0))
+    assert said in found
+    assert (found == "") == (said == "")

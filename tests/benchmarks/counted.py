@@ -9,6 +9,7 @@ from typing import Final
 sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 from at_commit import commit_of
 
+ROOT: Final = Path(__file__).parents[2]
 RESULTS: Final = Path(__file__).parent / "results"
 
 
@@ -34,9 +35,10 @@ def counted(
     seeds = range(asked.first_seed, asked.first_seed + asked.records)
     table, good = page(seeds)
     if asked.write:
+        script = Path(sys.argv[0]).resolve().relative_to(ROOT)
         head = (
             f"# {name[0].upper()}{name[1:].replace('_', ' ')}\n\n{(doc or '').splitlines()[0]}\n\n"
-            f"`python tests/track/{Path(sys.argv[0]).name}` at {commit_of(RESULTS)}, seeds "
+            f"`python {script}` at {commit_of(RESULTS)}, seeds "
             f"{seeds[0]} to {seeds[-1]}, none of them used\nwhile building.\n\n"
         )
         (RESULTS / f"{name}.md").write_text(head + table, encoding="utf-8")

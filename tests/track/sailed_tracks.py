@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
+from types import MappingProxyType
 
 import numpy as np
 from s175q import MODEL, SHAFT
@@ -19,6 +20,7 @@ from trialid.identification.fit import Fit
 from trialid.identification.output_error import stretches
 from trialid.identification.problem import Settings
 from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
 
@@ -36,17 +38,28 @@ SETTINGS = Settings(FREE, OUTPUTS, nuisance=("initial_state", "current"))
 
 
 @cache
-def sailed(name: str, water: tuple[float, float], use: str = "fit", course: float = 0.7) -> Trial:
-    """A turning circle, a 20/20 or a 10/10 zig-zag without noise, from a course not north."""
+def sailed(
+    name: str,
+    water: tuple[float, float],
+    use: str = "fit",
+    course: float = 0.7,
+    hidden: tuple[str, float] | None = None,
+) -> Trial:
+    """A turning circle, a 20/20 or a 10/10 zig-zag without noise, from a course not north.
+
+    Of a ship with one effect more, at a share of its typical size, where it is hidden.
+    """
     told = {
         "circle": lambda: manoeuvres.turning_circle(np.deg2rad(35.0)),
         "zigzag": lambda: manoeuvres.zigzag(np.deg2rad(20.0), np.deg2rad(20.0), 4),
         "small zigzag": lambda: manoeuvres.zigzag(np.deg2rad(10.0), np.deg2rad(10.0), 4),
     }
-    ship = vessel(MODEL, PERIOD, {"n": SHAFT}, np.deg2rad(3.0))
-    run = carry_out(ship, told[name](), APPROACH, 500.0, name).trial
+    ship = true_ship(hidden)
+    helm = vessel(ship, PERIOD, {"n": SHAFT}, np.deg2rad(3.0))
+    run = carry_out(helm, told[name](), APPROACH, 500.0, name).trial
     inputs = {s: run.signals[s] for s in ("delta", "delta_order", "n")}
-    true = (SHIP + current).with_values(dict(zip(("V_cn", "V_ce"), water, strict=True)))
+    on_track = replace(ship, states=SHIP.states)
+    true = (on_track + current).with_values(dict(zip(("V_cn", "V_ce"), water, strict=True)))
     blank = Trial(name, "fit", PERIOD, inputs, {})
     y = respond(prepare(true, (), OUTPUTS), blank, {}, {"psi": course}, sensitivities=False).y
     signals = {**inputs, **{c: y[:, i].copy() for i, c in enumerate(OUTPUTS)}}
@@ -54,9 +67,19 @@ def sailed(name: str, water: tuple[float, float], use: str = "fit", course: floa
     return Trial(name, "check" if use == "check" else "fit", PERIOD, signals, valid)
 
 
-def noisy(trial: Trial, rng: np.random.Generator) -> Trial:
+def true_ship(hidden: tuple[str, float] | None) -> ShipModel:
+    """The ship, or one that has an effect more."""
+    if hidden is None:
+        return MODEL
+    effect, share = CATALOGUE[hidden[0]], hidden[1]
+    return (MODEL + effect).with_values({n: share * p.start for n, p in effect.parameters.items()})
+
+
+def noisy(
+    trial: Trial, rng: np.random.Generator, sizes: Mapping[str, float] = MappingProxyType(NOISE)
+) -> Trial:
     """The trial as its sensors log it."""
-    added = {c: s * rng.standard_normal(trial.samples) for c, s in NOISE.items()}
+    added = {c: s * rng.standard_normal(trial.samples) for c, s in sizes.items()}
     return replace(trial, signals={n: x + added.get(n, 0.0) for n, x in trial.signals.items()})
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from trialid.design.imo.recognise import recognise
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -71,3 +72,11 @@ def test_the_track_follows_from_rates_alone() -> None:
     assert len(held) == 3
     assert max(held) < 0.02
     assert max(errors.values()) < 0.04
+
+
+def test_zigzags_that_were_recorded_from_a_second_before_the_order_are_known() -> None:
+    """Six of seven; of the 5/1 the heading changes by less than a course is kept within."""
+    for path in HSVA.glob("*.dat"):
+        trial = record(path)
+        kinds = [(m.kind, m.remark) for m in recognise(trial, LENGTH, 1.18)]
+        assert kinds == ([] if "05_01" in trial.name else [("zig-zag", "")]), trial.name

@@ -14,9 +14,9 @@ from trialid.identification.output_error import (
     output_matrix,
     residual_at,
 )
-from trialid.identification.own_start import own_start, starts_of
+from trialid.identification.own_start import StartError, own_start, start_error, starts_of
 from trialid.identification.weighing import level_of
-from trialid.simulation.integrate import Departure, Response, respond
+from trialid.simulation.integrate import Departure, Response, initial, respond
 from trialid.trial import Trial
 
 
@@ -60,6 +60,17 @@ def of_trial(
         level = 0.0 if isinstance(residual, Departure) else level_of(problem, residual)
     own = own_start(problem, trial, compared, values, level)
     return values | {n: own[n] for n in own if n in values}, starts_of(own)
+
+
+def own_start_error(
+    problem: Problem, theta: Vector, trial: Trial, level: float
+) -> StartError | None:
+    """How sure the start of a trial to check is; None where the fit itself says so, or none is."""
+    if trial.use == "fit":
+        return None
+    values, start = of_trial(problem, theta, trial, level)
+    all_values = values | {initial(n): x for n, x in start.items()}
+    return start_error(problem, trial, compared_mask(trial, problem.simulator), all_values, level)
 
 
 def score_trial(problem: Problem, theta: Vector, trial: Trial, level: float) -> Score:

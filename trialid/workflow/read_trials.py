@@ -7,7 +7,7 @@ import numpy as np
 
 from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
-from trialid.alignment.track.antenna import at_origin
+from trialid.alignment.track.antenna import at_origin, check_stated_speed
 from trialid.ingest import Aids, LogFile
 from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline, TrialSection
@@ -54,7 +54,8 @@ def align_trial(
     signals = {**made.signals, "u": np.full(made.samples, trial.speed)}
     valid = {**made.valid, "u": np.ones(made.samples, dtype=bool)}
     remark = f"u is the stated approach speed {trial.speed:g} m/s, not a record"
-    return replace(made, signals=signals, valid=valid, remarks=(*made.remarks, remark))
+    remarks = (*made.remarks, remark, *check_stated_speed(made, trial.speed))
+    return replace(made, signals=signals, valid=valid, remarks=remarks)
 
 
 def _sources(trial: TrialSection, known: Mapping[str, Quantity]) -> list[SignalSource]:

@@ -20,6 +20,9 @@ MOVING: Final = 0.3
 MINUTES: Final = 0.6
 """What becomes of a distance where dd.mmmm, degrees and minutes, is read as degrees: 60 for 100."""
 
+WAY: Final = 30.0
+"""m, on which a receiver of 1 m tells a speed to 5 %."""
+
 
 def at_origin(trial: Trial, antenna: Mapping[str, float]) -> Trial:
     """The trial with `x` and `y` moved from the antenna to the ship's origin, by heading and roll.
@@ -117,9 +120,30 @@ def _against_speed(trial: Trial, north: Vector, east: Vector) -> tuple[str, ...]
     if u is None or not float(np.median(np.abs(u))) > 0.5:
         return ()
     ratio = float(np.median(np.hypot(north, east)) / np.median(np.abs(u)))
+    return _told(ratio, f"the track is sailed at {ratio:.2f} times the recorded speed u")
+
+
+def check_stated_speed(trial: Trial, speed: float) -> tuple[str, ...]:
+    """A remark where a track is not sailed at the approach speed that was stated [m/s].
+
+    At its fastest, for turns cost speed: what nine tenths of the ways of `WAY` do not exceed.
+    """
+    if not {"x", "y"} <= {*trial.signals} or not speed > 0.5:
+        return ()
+    steps = max(round(WAY / (speed * trial.period)), 1)
+    both = trial.valid["x"] & trial.valid["y"]
+    known = both[steps:] & both[:-steps]
+    if known.sum() < 10:
+        return ()
+    x, y = (trial.signals[n][steps:] - trial.signals[n][:-steps] for n in ("x", "y"))
+    sog = np.hypot(x, y)[known] / (steps * trial.period)
+    ratio = float(np.quantile(sog, 0.9)) / speed
+    return _told(ratio, f"the track is sailed at up to {ratio:.2f} times the stated speed")
+
+
+def _told(ratio: float, words: str) -> tuple[str, ...]:
     if 0.7 < ratio < 1.5:
         return ()
-    words = f"the track is sailed at {ratio:.2f} times the recorded speed u"
     if abs(ratio - MINUTES) < 0.05:
         return (f"{words}: dd.mmmm, degrees and minutes, read as degrees gives {MINUTES:g}",)
     return (f"{words}: a strong current along it, or a wrong unit of one of them",)

@@ -29,6 +29,10 @@ STRAIGHT: Final = float(np.deg2rad(3.0))
 """From the middle of the headings before the order; a turn out of another one has no advance. The
 lengths below change nothing on those days by half and twice; this changes where a Williamson turn
 ends, which 11 then do elsewhere."""
+SHORTEST: Final = 3
+"""Samples that show how fast she turned, where the record begins with the order: of seven zig-zags
+in a tank, recorded from a second before it, six are known so (the seventh is a 5/1), by half as
+well, by twice three; a compass of 0.2 deg leaves 0.14 deg a sample open then."""
 SLOWEST_GEAR: Final = 2.0 * 6.0 / (65.0 / 28.0)
 """[s] Twice what SOLAS leaves a gear for the 6 deg about midships: 65 deg in 28 s."""
 LATE: Final = 10
@@ -79,17 +83,28 @@ class SteeredRecord:
         self.excursions = list(excursions(rudder))
 
     def straight(self, begin: int) -> float | None:
-        """The mean heading of the course before a sample; None where it was none."""
+        """The mean heading of the course before a sample; None where it was none.
+
+        A record that begins less than a length before shows it by how fast she turned meanwhile.
+        """
         span = round(LENGTHS * self.clock)
-        if begin < span:
+        before = self.psi[max(begin - span, 0) : begin]
+        if len(before) < SHORTEST or np.ptp(before) > 2.0 * STRAIGHT:
             return None
-        before = self.psi[begin - span : begin]
-        return None if np.ptp(before) > 2.0 * STRAIGHT else float(np.mean(before))
+        if len(before) < span and abs(_slope(before)) * span > 2.0 * STRAIGHT:
+            return None
+        return float(np.mean(before))
 
     def turned(self, one: Excursion) -> float:
         """How far the heading went to the side of the rudder, up to where it was given back."""
         last = min(one.end, len(self.psi) - 1)
         return float(np.sign(one.angle) * (self.psi[last] - self.psi[one.begin]))
+
+
+def _slope(y: Vector) -> float:
+    """Of a line through equally spaced values, a sample."""
+    x = np.arange(len(y)) - (len(y) - 1) / 2.0
+    return float(x @ y / (x @ x))
 
 
 def excursions(rudder: Vector) -> Iterator[Excursion]:

@@ -13,22 +13,22 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.imo.measure_slopes import SMALL, Shows
+from trialid.design.imo.measure_slopes import Shows
 from trialid.design.imo.speed_loss import logged_loss, speed_loss
-from trialid.design.prediction.likely_spread import LikelySpread, Range
+from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.standard import AT_SEA
 from trialid.effects.environment import steady_wind
 from trialid.effects.track import current
-from trialid.errors import DesignError, EffectError, NotIdentifiable
+from trialid.errors import EffectError, NotIdentifiable
 from trialid.identification.fit import Fit
-from trialid.identification.trial_score import of_trial
+from trialid.identification.own_start import StartError
+from trialid.identification.trial_score import of_trial, own_start_error
 from trialid.ship.effect import SENSORS, Effect
 from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import Simulator, initial, prepare, respond
 from trialid.trial import Trial
 
 PLACE: Final = ("psi", "x", "y")
-NORMAL: Final = 1.96
 Track = Mapping[str, Vector]
 Numbers = Callable[[Track], Mapping[str, float]]
 """What is read from a track; DesignError where it does not come so far."""
@@ -49,7 +49,8 @@ class SailedTrial:
     speed, speed_by
         Where it is simulated, the speed ahead [m/s] (N,), and its slopes (N, n).
     noise
-        Slopes by what noise of each sensor leaves open where it begins, times that; (N, 3, m).
+        Slopes by what noise leaves open of where it begins, where no parameter of the fit says so,
+        times that; (N, 3, m).
     """
 
     track: Track
@@ -82,16 +83,42 @@ def sail_trial(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | No
     """The trial as the fitted ship sails it; None where she cannot, or leaves her model."""
     try:
         values, start = of_trial(fit.problem, fit.theta, trial, fit.level)
+        known = (
+            own_start_error(fit.problem, fit.theta, trial, fit.level)
+            if trial.use == "check"
+            else None
+        )
         one = Sailing(
             model=with_track(fit, trial),
             trial=trial,
             values=values,
             start=start,
-            starts=_own_starts(fit, trial),
+            starts=_own_starts(fit, trial) if known is None else _found_starts(known, spread),
         )
-        return sail(fit, one, spread)
+        if known is None:
+            return sail(fit, one, spread)
+        sailed = sail(fit, one, spread, len(known.names))
+        return None if sailed is None else _from_found_start(sailed, known)
     except (EffectError, NotIdentifiable):
         return None  # a motion that carries her along is neither simulated nor recorded
+
+
+def _found_starts(known: StartError, spread: LikelySpread) -> dict[str, int]:
+    """Place of what a trial to check has for itself, beyond all else; what turns her turns all."""
+    first = len(spread.known) + spread.width
+    return {n: first + i for i, n in enumerate(known.names) if n != initial("psi")}
+
+
+def _from_found_start(sailed: SailedTrial, known: StartError) -> SailedTrial:
+    """A trial to check begins where it was found to for these parameters, as far as noise lets."""
+    first = sailed.by.shape[-1] - len(known.names)
+    places = [sailed.spread.fitted.index(c) for c in known.shared]
+    by, start = sailed.by[..., :first].copy(), sailed.by[..., first:]
+    by[..., places] += start @ known.by
+    ahead = None if sailed.speed_by is None else sailed.speed_by[..., :first].copy()
+    if ahead is not None and sailed.speed_by is not None:
+        ahead[..., places] += sailed.speed_by[..., first:] @ known.by
+    return replace(sailed, by=by, speed_by=ahead, noise=start @ known.noise)
 
 
 def has_wind(model: ShipModel) -> bool:
@@ -206,88 +233,3 @@ def _plain(model: ShipModel) -> Simulator:
 
 def _track(y: Vector) -> Track:
     return dict(zip(PLACE, y[:, :3].T, strict=True))
-
-
-def numbers(
-    sailed: SailedTrial, read: Numbers, beyond: Mapping[str, float] | None = None
-) -> dict[str, tuple[float, Range | None]]:
-    """What the model comes to by name, each with its 95 % range; empty where it does not get there.
-
-    Parameters
-    ----------
-    read
-        Reads the numbers from a track; DesignError where there are none.
-    beyond
-        Standard error of each by what acts on a single run and is not in the model.
-    """
-    try:
-        found = read(sailed.track)
-        slopes = _slopes(sailed, read, found)
-    except DesignError:
-        return {}
-    own = np.array([(beyond or {}).get(n, 0.0) for n in found])
-    ranges = sailed.spread.ranges([*found.values()], slopes, own)
-    return {n: (x, r) for (n, x), r in zip(found.items(), ranges, strict=True)}
-
-
-@dataclass(frozen=True)
-class Drift:
-    """What the wind does to a number: without it less with it, and where 95 % of that lies."""
-
-    value: float
-    range: Range | None
-
-
-def drift(windy: SailedTrial | None, calm: SailedTrial, read: Numbers) -> dict[str, Drift]:
-    """What is to be added to the numbers of a record to take the wind off, by the model.
-
-    Empty where the model does not get there with the wind or without.
-    """
-    if windy is None:
-        return {}
-    try:
-        blown, calmly = read(windy.track), read(calm.track)
-        names = [n for n in calmly if n in blown]
-        with_wind, without = ({n: x[n] for n in names} for x in (blown, calmly))
-        by = _slopes(calm, read, without) - _slopes(windy, read, with_wind)
-        noise = _by_noise(calm, read, without) - _by_noise(windy, read, with_wind)
-    except DesignError:
-        return {}
-    values = [x - with_wind[n] for n, x in without.items()]
-    off = NORMAL * np.linalg.norm(noise, axis=1)
-    each = zip(without, values, calm.spread.ranges(values, by), off, strict=True)
-    return {n: Drift(x, None if r is None else _wider(r, x, o)) for n, x, r, o in each}
-
-
-def _by_noise(sailed: SailedTrial, read: Numbers, found: Mapping[str, float]) -> Vector:
-    """By how much noise of each sensor moves the numbers; (n_numbers, m)."""
-    if sailed.noise is None:
-        return np.zeros((len(found), 1))
-    return _slopes(replace(sailed, by=sailed.noise, others=()), read, found)
-
-
-def _wider(known: Range, value: float, off: float) -> Range:
-    """A range about a value with as much again to either side, independent of it."""
-    low, high = known
-    return value - float(np.hypot(value - low, off)), value + float(np.hypot(high - value, off))
-
-
-def _slopes(sailed: SailedTrial, read: Numbers, found: Mapping[str, float]) -> Vector:
-    """Slopes of the numbers, by moving the track a little to either side; (n_numbers, n)."""
-    by, slopes = sailed.by, np.zeros((len(found), sailed.by.shape[-1]))
-    span = max(float(np.ptp(sailed.track["x"])), float(np.ptp(sailed.track["y"])), 1.0)
-    sizes = np.max(np.abs(by) / np.array([1.0, span, span])[:, None], axis=(0, 1))
-    for i in np.flatnonzero(sizes):
-        step = SMALL / sizes[i]
-        up, down = (read(_moved(sailed.track, side * by[..., i])) for side in (step, -step))
-        slopes[:, i] = [(up.get(n, x) - down.get(n, x)) / (2.0 * step) for n, x in found.items()]
-    for track, columns in sailed.others:
-        other = read(track)
-        slopes[:, list(columns)] = np.array([other.get(n, x) - x for n, x in found.items()])[
-            :, None
-        ]
-    return slopes
-
-
-def _moved(track: Track, change: Vector) -> Track:
-    return {n: track[n] + change[:, k] for k, n in enumerate(PLACE)}

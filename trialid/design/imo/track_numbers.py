@@ -16,15 +16,9 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.imo.calm_air import FromOrder
 from trialid.design.imo.excursions import STEP
-from trialid.design.imo.sailed_trial import (
-    Drift,
-    Numbers,
-    SailedTrial,
-    Track,
-    drift,
-    numbers,
-)
+from trialid.design.imo.sailed_trial import Numbers, SailedTrial, Track
 from trialid.design.imo.trial_numbers import Range
+from trialid.design.prediction.sailed_numbers import Drift, drift, numbers
 from trialid.design.prediction.unexplained_motion import UnexplainedMotion
 from trialid.errors import DesignError
 from trialid.trial import Trial

@@ -5,6 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from trialid.design.imo.calm_air import sail_from_order
 from trialid.design.imo.measured import READERS, heading_numbers, order_time
 from trialid.design.imo.recognise import recognise, samples_a_length
@@ -20,7 +22,7 @@ from trialid.design.prediction.unexplained_motion import unexplained_motion
 from trialid.effects.track import CURRENT
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
-from trialid.identification.trial_score import of_trial
+from trialid.identification.trial_score import of_trial, own_start_error
 from trialid.trial import Trial
 
 ON_TRACK: Final = ("turning circle", "Williamson turn", "stop")
@@ -102,18 +104,35 @@ def _around(
     size = fit.model.ship.particulars
     clock = samples_a_length(trial, size["L"], size["U0"])
     beyond = None if sailed is None else unexplained_motion(fit, clock)
-    water = _water(fit, trial, errors)
+    water = _water(fit, trial, errors, spread)
     return Around(water=water, sailed=sailed, calm=calm, unexplained=beyond)
 
 
-def _water(fit: Fit, trial: Trial, errors: Mapping[str, float]) -> Water | None:
+def _water(
+    fit: Fit, trial: Trial, errors: Mapping[str, float], spread: LikelySpread | None
+) -> Water | None:
     values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
     if not {*CURRENT} <= {*values}:
         return None
     north, east = (values[n] for n in CURRENT)
     own = [errors.get(f"{n} [{trial.name}]") for n in CURRENT]
     known = None if own[0] is None or own[1] is None else (own[0], own[1])
-    return Water((north, east), known)
+    return Water((north, east), known or _found_error(fit, trial, spread))
+
+
+def _found_error(fit: Fit, trial: Trial, spread: LikelySpread | None) -> tuple[float, float] | None:
+    """Of the current that a trial to check has found for itself.
+
+    None in a wind: what noise of its anemometer does to that trial's drift is not followed here.
+    """
+    found = own_start_error(fit.problem, fit.theta, trial, fit.level)
+    if found is None or spread is None or has_wind(fit.model) or not {*CURRENT} <= {*found.names}:
+        return None
+    places = [spread.fitted.index(c) for c in found.shared]
+    by_ship = found.by @ spread.covariance[np.ix_(places, places)] @ found.by.T
+    errors = np.sqrt(np.diag(found.noise @ found.noise.T + by_ship))
+    north, east = (float(errors[found.names.index(n)]) for n in CURRENT)
+    return north, east
 
 
 def _reader(trial: Trial, one: Recognised, clock: int) -> TrackReader | None:

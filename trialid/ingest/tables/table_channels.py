@@ -1,15 +1,17 @@
 """A table's columns as channels on the clock the table states."""
 
-import dataclasses
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from trialid.errors import LogError, UnitError
 from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
 from trialid.ingest.tables.clock import table_clock
+from trialid.ingest.tables.clock.table_time import Clock
 from trialid.ingest.tables.table import Head, Table, check_width, numbers
 from trialid.ingest.tables.templates.template import Template
+from trialid.ingest.tables.written_angles import written_angles
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
@@ -32,15 +34,26 @@ def recording(
     for i, one in enumerate(renamed.heads):
         if i in clock.columns or not is_wanted(one.name, wanted):
             continue
-        y = numbers(renamed, i)
-        if y is None:
+        channel = _channel(renamed, i, clock)
+        if channel is None:
             remarks.append(f"column {one.name!r} holds text, left out")
-        else:
-            quantity = named.get(one.name)
-            channels[one.name] = Channel(
-                one.name, clock.t, y, one.unit, clock.words, quantity=quantity
-            )
+            continue
+        if channel.description:
+            remarks.append(f"column {one.name!r}: {channel.description}")
+        channels[one.name] = replace(channel, quantity=named.get(one.name))
     return Recording(table.path, adapter, sha256(table.path), channels, tuple(remarks))
+
+
+def _channel(table: Table, place: int, clock: Clock) -> Channel | None:
+    """A column as a channel, its quantity left open; None where it is text."""
+    one, y = table.heads[place], numbers(table, place)
+    if y is not None:
+        return Channel(one.name, clock.t, y, one.unit, clock.words)
+    angles = written_angles(table.columns[place].tolist())
+    if angles is None:
+        return None
+    words = f"{angles[1]}, its degrees and minutes as text"
+    return Channel(one.name, clock.t, angles[0], "deg", clock.words, description=words)
 
 
 def columns_to_read(heads: Sequence[Head], wanted: Wanted, template: Template | None) -> set[int]:
@@ -57,7 +70,7 @@ def columns_to_read(heads: Sequence[Head], wanted: Wanted, template: Template | 
 
 def _by_template(table: Table, template: Template) -> Table:
     heads = tuple(_as_told(one, template) for one in table.heads)
-    return dataclasses.replace(table, heads=heads)
+    return replace(table, heads=heads)
 
 
 def _as_told(one: Head, template: Template) -> Head:

@@ -11,7 +11,7 @@ from trialid.result.schema import Result
 ON_TRACK: Final = ("Williamson turn", "stop")
 CORRECTED: Final = {
     "current": "Corrected for current: through the water, by the current that the fit found "
-    "(a trial held out finds its own, without an interval).",
+    "(a trial held out finds its own; in a wind without an interval).",
     "wind": "Corrected for wind: less what the model drifts by it under the recorded rudder, from "
     "the order on.",
 }
@@ -19,7 +19,7 @@ UNCORRECTED: Final = {
     "current": "Not corrected for current: the fit finds none.",
     "wind": "Not corrected for wind: the model has none in it.",
 }
-NONE: Final = "nothing held or reversed out of a ship length of straight course"
+NONE: Final = "nothing held or reversed by more than 3 deg of heading out of a straight course"
 READINGS: Final = (
     *("measured", "95 % from", "to", "corrected", "95 % from", "to", "corrected for"),
     *("model", "95 % from", "to"),

@@ -15,6 +15,7 @@ from trialid.alignment.clocks import CALENDAR_NS, moment
 from trialid.errors import printable
 from trialid.inspection.disagreements import findings
 from trialid.inspection.inspected import ChannelInspection, Inspection, Received
+from trialid.inspection.positions import position_words
 from trialid.names import labels
 from trialid.names.quantities import SIGNALS
 from trialid.report.terminal.terminal import Words, add_row, cut, new_table
@@ -269,6 +270,7 @@ def _remarks(survey: Inspection, found: Sequence[Finding]) -> Iterator[Any]:
         for remark in file.remarks
     ]
     said += [one.sentence for one in found if one.mend is None and one.kind != "differ"]
+    said += position_words(survey.channels.values())
     for title, lines in (("noticed", said), ("careful", list(survey.warnings))):
         if lines:
             yield _heading(title)

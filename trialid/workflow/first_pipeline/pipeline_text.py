@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Final
 
 from trialid.errors import printable
-from trialid.inspection.channel_names import words
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.positions import positions
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
@@ -22,11 +22,8 @@ HEAD: Final = """\
 # It begins with the simplest model. What is missing in it the run says; `trialid add` puts it in.
 """
 
-POSITION_NAMES: Final = {
-    "lat": frozenset(("lat", "latitude")),
-    "lon": frozenset(("lon", "lng", "longitude")),
-}
-"""Words of a channel that is a position."""
+UNITS: Final = {"lat": "deg", "lon": "deg", "x": "m", "y": "m"}
+"""Of positions that state none."""
 
 MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
@@ -84,16 +81,12 @@ def _trial(path: Path, name: str, trial: Chosen, *, checks: bool) -> Iterator[st
 
 def _track(channels: Iterable[ChannelInspection]) -> Iterator[str]:
     """Positions that the log holds, commented out: what they are for the guide says."""
-    moving = [one for one in channels if not one.constant]
-    found: dict[str, ChannelInspection] = {}
-    for name, called in POSITION_NAMES.items():
-        told = [c for c in moving if called & {*words(c.name.rpartition(":")[2])}]
-        found |= {name: told[0]} if told else {}
-    if len(found) < len(POSITION_NAMES):
+    found = positions(channels)
+    if not found:
         return
     yield "# the track, its current and the turning circle: `trialid guide track`"
     for name, one in found.items():
-        keys = {"channel": one.name} | ({} if one.unit else {"unit": "deg"})
+        keys = {"channel": one.name} | ({} if one.unit else {"unit": UNITS[name]})
         yield f"# {name} = {{ {', '.join(f'{k} = {quote(v)}' for k, v in keys.items())} }}"
 
 

@@ -1,6 +1,6 @@
 """How often a fit tells the current from the wind, and how often what it then says is right.
 
-    python tests/track/wind_and_current.py [--records 100] [--write]
+    python tests/track/intervals/wind_and_current.py [--records 100] [--write]
 
 A turning circle, a 20/20 and a 10/10 zig-zag, each alone, in winds of 3 to 14 m/s and currents of
 0.1 to 0.6 m/s from anywhere; a receiver of 1 m, a compass, a gyro and an anemometer. Free is what
@@ -18,8 +18,9 @@ from typing import Final
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[2]))
 sys.path.insert(0, str(Path(__file__).parents[1]))
-sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 import sailed_wind
 from counted import counted
 from current_intervals import holds

@@ -1,6 +1,6 @@
 """How often the 95 % interval of a steady current holds it, with and without noise of inputs.
 
-    python tests/track/current_intervals.py [--records 300] [--write]
+    python tests/track/intervals/current_intervals.py [--records 300] [--write]
 
 A turning circle and a 20/20 zig-zag with a current each, a receiver of 1 m, a compass and a gyro:
 in calm air, and with the wind's forces fitted from an anemometer on board. Results stand in
@@ -17,8 +17,9 @@ from typing import Final
 import numpy as np
 from scipy.stats import t as student
 
+sys.path.insert(0, str(Path(__file__).parents[2]))
 sys.path.insert(0, str(Path(__file__).parents[1]))
-sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 import sailed_wind
 from counted import counted
 from sailed_tracks import CURRENTS, SETTINGS, SHIP, accuracy, trials
