@@ -13,7 +13,7 @@ from sailed_tracks import SETTINGS, SHIP, noisy, sailed, spread
 
 from trialid.design.helm import Passage
 from trialid.design.imo import excursions, measures, recognise, spirals, stops, williamson
-from trialid.design.imo.excursions import STEP, order_doubt, order_sample
+from trialid.design.imo.excursions import STEP, heading, order_doubt, order_sample
 from trialid.design.imo.measured import heading_numbers
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.track_numbers import Around
@@ -236,6 +236,15 @@ def test_every_overshoot_of_a_long_zigzag_is_measured() -> None:
     assert [r.name for r in rows][6:] == [f"{n}th overshoot" for n in range(7, len(rows) + 1)]
     assert len(rows) >= 11
     assert [r.measured for r in rows] == pytest.approx([np.deg2rad(10.0)] * len(rows), abs=0.01)
+
+
+def test_a_heading_that_was_not_recorded_is_the_integral_of_the_rate() -> None:
+    """By hand: r = a t turns her by a t^2 / 2."""
+    t = np.arange(0.0, 100.0, 2.0)
+    trial = Trial("turn", "fit", 2.0, {"r": 0.001 * t}, {})
+    np.testing.assert_allclose(heading(trial), 0.0005 * t**2, atol=1e-12)
+    recorded = replace(trial, signals={**trial.signals, "psi": np.cos(t)})
+    np.testing.assert_array_equal(heading(recorded), np.cos(t))
 
 
 @pytest.mark.study(turn=3)
