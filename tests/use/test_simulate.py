@@ -256,7 +256,8 @@ def test_a_fit_without_a_verdict_is_refused(run_folder: Path, tmp_path: Path) ->
     assert told.stderr.count("\n") == 1
     assert "no fit: the search did not end; nothing is built on it" in told.stderr
     out = tmp_path / "circle.mcap"
-    marked = trialid_("simulate", str(spoilt), "circle", "35", "--anyway", "--out", str(out))
+    asked = ("circle", "35", "--anyway", "--out", str(out))
+    marked = trialid_("simulate", str(spoilt), *asked)
     assert marked.exit_code == 0
     assert "no fit: the search did not end" in marked.stdout
     with out.open("rb") as stream:
