@@ -10,7 +10,7 @@ from sailed_tracks import FREE, OUTPUTS, accuracy, noisy, sailed, spread
 
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.recognition import Recognised
-from trialid.design.imo.stop_numbers import stop_reader
+from trialid.design.imo.stop_numbers import _reaches, stop_reader
 from trialid.design.imo.track_numbers import Around, Water, track_numbers
 from trialid.design.imo.trial_measures import TrialMeasures, measure_trials
 from trialid.design.imo.trial_numbers import ManoeuvreNumber
@@ -148,6 +148,21 @@ def test_numbers_of_a_record_in_still_water_are_those_by_hand(name: str, within:
         off = rows[number]["measured"] - true
         assert abs(off) < (0.01 if reader.units[number] == "rad" else within), number
     assert max(abs(x) for n, x in truth.items() if reader.units[n] == "m") > 5.0 * within
+
+
+def test_reaches_of_a_bent_track_by_hand() -> None:
+    """On a course of 30 deg: 80 m along it, 60 m to starboard; half a second late is 5 m less."""
+    t = np.arange(0.0, 15.0)
+    ahead, aside = np.minimum(10.0 * t, 80.0), np.maximum(10.0 * (t - 8.0), 0.0)
+    course = 30.0 * DEG
+    track = {
+        "x": ahead * np.cos(course) - aside * np.sin(course),
+        "y": ahead * np.sin(course) + aside * np.cos(course),
+    }
+    assert _reaches(track, t, (0.0, 14.0), course) == pytest.approx(
+        {"head reach": 80.0, "track reach": 140.0, "lateral deviation": 60.0, "time": 14.0}
+    )
+    assert _reaches(track, t, (0.5, 14.0), course)["head reach"] == pytest.approx(75.0)
 
 
 def test_what_the_current_is_uncertain_by_widens_with_the_time() -> None:
