@@ -203,6 +203,24 @@ def test_what_a_page_of_results_says_is_quoted_and_what_is_lost_refused(tmp_path
         claims.commit(page)
 
 
+def test_what_the_page_of_tracks_says_of_wind_and_current_stands_on_its_page_of_results() -> None:
+    path = claims.RESULTS / "wind_and_current.md"
+    tests = ("full turn", "20/20", "10/10", "unread")
+    found = [
+        claims.figure(
+            {"from": [str(path)], "figure": f"{{{t}|told apart}} {{{t}|held, where told}}"}
+        )
+        for t in tests
+    ]
+    told, right = zip(*(re.findall(r"([\d.]+)%", cells) for cells in found), strict=True)
+    text = " ".join(source("track").split())
+    assert (
+        f"{told[0]} full turns, {told[1]} zig-zags of 20/20 and {told[2]} of 10/10 told, "
+        f"right in {right[0]}, {right[1]} and {right[2]} %"
+    ) in text
+    assert f"{told[3]} full turns told, right in {right[3]} %" in text
+
+
 # --- as they are shown --------------------------------------------------------------------------
 
 
