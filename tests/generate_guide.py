@@ -266,8 +266,7 @@ def _manoeuvre(name: str) -> str:
 
 def claimed() -> str:
     """What is claimed, the figure, on how many cases, and where it comes from."""
-    stated = f"Where no other commit stands, stated at `{claims.stated_at()}`.\n\n"
-    return stated + items(claims.claims())
+    return items(claims.claims())
 
 
 PARTS: Final[Mapping[str, Callable[[], str]]] = {

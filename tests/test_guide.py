@@ -3,10 +3,12 @@
 import re
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import generate_guide
 import pytest
 from click.testing import CliRunner, Result
+from generate_guide import claims
 
 from trialid.cli import guide_command
 from trialid.cli.main import commands
@@ -145,27 +147,78 @@ def test_every_column_is_explained() -> None:
         assert f"`{plain}`" in text, heading
 
 
-def test_every_claim_says_where_it_comes_from() -> None:
-    table = tomllib.loads(generate_guide.claims.CLAIMS.read_text(encoding="utf-8"))
-    assert re.fullmatch(r"[0-9a-f]{7,40}", table["commit"])
-    for row in table["claim"]:
-        assert set(row) <= {"claim", "figure", "cases", "from"}
-        assert row["from"]
-        assert [path for path in row["from"] if not (ROOT / path).exists()] == []
-        assert "cases" not in row or str(row["cases"]) in row["figure"] + row["claim"] or (
-            row["claim"].startswith("replay: 30 %")
-        )  # fmt: skip
+CLAIMED = tomllib.loads(claims.CLAIMS.read_text(encoding="utf-8"))["claim"]
 
 
-def test_a_cell_of_a_result_file_is_quoted_and_a_lost_one_refused(tmp_path: Path) -> None:
-    page, claims = tmp_path / "a.md", generate_guide.claims
-    page.write_text(
-        "| | x |\n| - | - |\n| b | 1 |\n\n| | likely | half |\n| - | - |\n| b | 9 % | 2 |"
+@pytest.mark.parametrize("row", CLAIMED, ids=lambda row: row["claim"][:40])
+def test_no_claim_outlives_what_it_comes_from(row: dict[str, Any]) -> None:
+    """Of a page of results nothing is typed but words; of a test, the lines that hold it stand."""
+    assert set(row) <= {"claim", "figure", "cases", "from", "held"}
+    sources = [(ROOT / path).read_text(encoding="utf-8") for path in row["from"]]
+    if claims.of_results(row):
+        assert claims.commit(ROOT / row["from"][0])
+        typed = claims.QUOTED.sub("", f"{row['figure']}{row.get('cases', '')}")
+        assert not re.search(r"\d", typed), f"quoted from {row['from'][0]}, not typed: {typed}"
+    else:
+        assert row["held"]
+        assert [line for line in row["held"] if not any(line in text for text in sources)] == []
+
+
+PAGE_OF_RESULTS = """\
+Made at `0123abc`: words that
+go on.
+
+* right, of all >= 95%: 96.1% (1407 of 1464) ok
+
+| | x |
+| - | - |
+| b | 1 |
+
+| | who | likely, half | half |
+| :- | -: | -: | -: |
+| b | 40, 360 | **9.5 %** | 2 |
+| | 39, 8 | 11.2 % of c | 3 |
+"""
+
+
+def test_what_a_page_of_results_says_is_quoted_and_what_is_lost_refused(tmp_path: Path) -> None:
+    page = tmp_path / "a.md"
+    page.write_text(PAGE_OF_RESULTS)
+
+    def quoted(figure: str) -> str:
+        return claims.figure({"from": [str(page)], "figure": figure})
+
+    assert quoted("{b|likely, half} left") == "9.5 % left"
+    assert quoted("{39, 8|half}") == "3"
+    assert quoted("{*|likely, half}; {+|who}") == "9.5 % to 11.2 %; 79"
+    assert quoted("{right, of all|}; {words that go on|=}") == (
+        "96.1% (1407 of 1464); words that go on"
     )
-    assert claims.cell(page, "b", "half") == "2"
-    assert claims.figure({"from": [str(page)], "figure": "{b|likely} left"}) == "9 % left"
-    with pytest.raises(KeyError, match="no 'likely' of 'c'"):
-        claims.cell(page, "c", "likely")
+    assert claims.commit(page) == "0123abc"
+    for lost in ("{c|half}", "{b|quarter}", "{*|quarter}", "{wrong|}", "{words that end|=}"):
+        with pytest.raises(KeyError, match="has no"):
+            quoted(lost)
+    page.write_text("of no commit")
+    with pytest.raises(KeyError, match="carries no commit"):
+        claims.commit(page)
+
+
+def test_what_the_page_of_tracks_says_of_wind_and_current_stands_on_its_page_of_results() -> None:
+    path = claims.RESULTS / "wind_and_current.md"
+    tests = ("full turn", "20/20", "10/10", "unread")
+    found = [
+        claims.figure(
+            {"from": [str(path)], "figure": f"{{{t}|told apart}} {{{t}|held, where told}}"}
+        )
+        for t in tests
+    ]
+    told, right = zip(*(re.findall(r"([\d.]+)%", cells) for cells in found), strict=True)
+    text = " ".join(source("track").split())
+    assert (
+        f"{told[0]} full turns, {told[1]} zig-zags of 20/20 and {told[2]} of 10/10 told, "
+        f"right in {right[0]}, {right[1]} and {right[2]} %"
+    ) in text
+    assert f"{told[3]} full turns told, right in {right[3]} %" in text
 
 
 # --- as they are shown --------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Struts of pods and the race of one on another: by hand, and compiled."""
+"""Pushes where they point, struts of pods, the race of one on another: by hand, and compiled."""
 
 from dataclasses import replace
 
@@ -7,8 +7,36 @@ import pytest
 from boats import eight_actuators, ship_with
 
 from trialid.effects.actuators import actuator_effects
+from trialid.effects.actuators.push_kinds import Push
+from trialid.effects.actuators.pushes import turned
 from trialid.ship.actuators import Actuator
 from trialid.simulation.integrate import prepare, respond
+
+
+@pytest.mark.parametrize("direction", [0.0, 30.0, 90.0, -120.0])
+def test_a_push_is_turned_with_its_actuator(direction: float) -> None:
+    """Ahead and to its right, as the ship sees both: rotated by hand; a pod's angle adds to it."""
+    one = Actuator(name="pod", kind="azimuth", x=-5.0, y=2.0, direction=np.deg2rad(direction))
+    ahead, right = (np.exp(1j * (one.direction + turn)) for turn in (0.0, np.pi / 2.0))
+    push = 3.0 * ahead + 2.0 * right
+    force = turned(one, Push(3.0, 2.0))
+    assert pytest.approx((push.real, push.imag)) == (force.X, force.Y)
+    assert pytest.approx(-5.0 * push.imag - 2.0 * push.real) == force.N
+    at = {"pod": 2.0, "pod_angle": 0.4, "k_pod_ahead": 1.0, "k_pod_astern": 1.0}
+    pushed = actuator_effects(ship_with((one,)))["azimuths"](at)[0]
+    along = 4.0 * np.exp(1j * (one.direction + 0.4))
+    assert pytest.approx((along.real, along.imag)) == (pushed.X, pushed.Y)
+
+
+def test_thrust_falls_with_the_speed_ahead_and_a_rudder_s_drag_turns_to_its_side() -> None:
+    screw = Actuator(name="screw", kind="thruster", x=-5.0, y=-2.0)
+    lost = actuator_effects(ship_with((screw,)))["thrusters_advance"]
+    at = {"screw": 3.0, "u": 2.0, "k_advance": 0.5}
+    assert lost(at)[0] == pytest.approx((-3.0, 0.0, 0.0, -6.0))
+    assert lost(at | {"screw": -3.0})[0] == pytest.approx((-3.0, 0.0, 0.0, -6.0))
+    ship = ship_with((Actuator(name="stbd", kind="rudder", x=-5.0, y=2.0),))
+    drag = actuator_effects(ship)["rudders_drag"]({"stbd": 0.5, "Xdd": -0.004})[0]
+    assert drag == pytest.approx((-0.001, 0.0, 0.0, 0.002 / ship.particulars["L"]))
 
 
 def test_a_strut_is_a_rudder_of_its_pod() -> None:

@@ -24,7 +24,9 @@ from itertools import product
 from pathlib import Path
 from typing import Final
 
-sys.path.append(str(Path(__file__).parent / "fleets"))
+sys.path += [str(Path(__file__).parent / "fleets"), str(Path(__file__).parents[2] / ".ci")]
+
+from at_commit import commit_of
 from hidden_scenarios import SCENARIOS, TYPICAL, guessed
 from hidden_score import plainness
 from hidden_tables import FULL, SHORT, Row, report, thresholds, write
@@ -279,7 +281,8 @@ def main() -> int:
     if asked.out is not None:
         write(asked.out.with_suffix(".csv"), rows)
         if asked.out.suffix == ".md":
-            asked.out.write_text(f"# Hidden effects\n\n{text}", encoding="utf-8")
+            head = f"# Hidden effects\n\nMade at commit {commit_of(Path(__file__).parent)}.\n\n"
+            asked.out.write_text(head + text, encoding="utf-8")
     return 0 if all(t.kept for t in thresholds(rows, limits)) else 1
 
 

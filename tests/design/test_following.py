@@ -168,7 +168,7 @@ def test_the_trial_that_narrows_a_range_does_so_when_it_is_sailed(fit):
     noise = {c: NOISE[c].sigma for c in OUTPUTS}
     found = following.narrowing_trial(fit, "Nr", effect, noise)
     assert found.share < 0.6
-    said = f" would narrow that most, to about {found.share:.0%}."
+    said = f" would narrow that most, to about {found.share:.0%} of its width."
     assert found.sentence.lower() == found.test + said
     ready = following.vessel_of(fit)
     sailed = {test.name: trial for test, trial in following._feasible(fit, ready)}

@@ -12,10 +12,11 @@ from trialid.diagnosis.search.completeness import Completeness
 OUTPUTS = ("r", "phi")
 
 
-def fit(eps, effects=(), converged=True):
-    """A fit as far as its errors go."""
+def fit(eps, effects=(), converged=True, level=0.0):
+    """A fit as far as its errors go, with a parameter for each effect."""
     return SimpleNamespace(
-        eps_rmsn=eps, eps_by_output=dict.fromkeys(OUTPUTS, eps), converged=converged,
+        eps_rmsn=eps, eps_by_output=dict.fromkeys(OUTPUTS, eps), converged=converged, level=level,
+        theta=[0.0] * len(effects),
         model=SimpleNamespace(effects=[SimpleNamespace(name=n) for n in effects]),
     )  # fmt: skip
 
@@ -46,6 +47,23 @@ def test_no_more_noise_than_another_model_leaves():
     for noise, model in held.by_output.values():
         assert noise == pytest.approx(0.075)
         assert noise**2 + model**2 == pytest.approx(0.10**2)
+
+
+@pytest.mark.parametrize(("added", "chance"), [(1, 5.02), (4, 11.14)])
+def test_what_its_parameters_take_of_noise_by_chance_may_be_noise(added, chance):
+    """Of 400 independent rows, with 7.5 % left: the chi-squared of as many parameters more."""
+    other = fit(0.075, ("a", *"bcde"[:added]), level=0.075 / 20.0)
+    held = held_against(QUIET, (QUIET,), fit(0.10, ("a",)), [other])
+    assert held.noise == pytest.approx(0.075)
+    assert held.noise_interval[1] == pytest.approx(0.075 * (1.0 + chance / 400.0) ** 0.5, rel=1e-4)
+
+
+def test_a_route_is_refused_beyond_chance_alone():
+    """At least 7 % of noise, and an effect more leaves 6.9 %: of 100 independent rows, chance."""
+    base, other = fit(0.10, ("a",)), ("a", "b")
+    few, many = (fit(0.069, other, level=0.069 / rows**0.5) for rows in (100, 1000))
+    assert held_against(QUIET, (QUIET,), base, [few]).available
+    assert not held_against(QUIET, (QUIET,), base, [many]).available
 
 
 def test_a_route_that_no_interval_saves_is_refused_with_both_figures():

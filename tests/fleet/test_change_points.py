@@ -96,6 +96,20 @@ def test_a_drift_and_a_step_the_other_way_in_one_parameter() -> None:
     assert found >= 9
 
 
+def test_when_a_change_began_lies_within_its_range() -> None:
+    """A step of twice the scatter is dated to a voyage or three: the range says so."""
+    held, alone = [], []
+    for seed in range(300, 360):
+        x = np.random.default_rng(seed).standard_normal(40) + 2.0 * (np.arange(40) >= 20)
+        for found in find_changes(Estimates(x, np.ones(40)), 0.05):
+            if found.course[0] == "step":
+                held.append(found.ends[0] <= 20 <= found.ends[1])
+                alone.append(found.course[1] == 20)
+    assert len(held) >= 40
+    assert np.mean(held) >= 0.9
+    assert np.mean(alone) <= 0.8
+
+
 @pytest.mark.study(turn=1)
 def test_no_change_is_found_where_there_is_none() -> None:
     """A hundred fleets: a false alarm in five of them at most; without the bound one in three."""

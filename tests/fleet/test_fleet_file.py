@@ -88,3 +88,12 @@ def test_a_voyage_without_its_log_is_a_row_and_not_the_end(
     changed(fleet_folder, "steps-20 =", "step-20 =")
     with pytest.raises(PipelineError, match=r"files\.step-20: .*did you mean 'steps-20'"):
         plan(load_fleet(path), tmp_path / "out")
+
+
+def test_a_pattern_that_two_logs_fit_takes_neither(fleet_folder: Path, tmp_path: Path) -> None:
+    folder = fleet_folder / "alpha" / "2025-02-10"
+    (folder / "steps-20 again.csv").write_bytes((folder / "steps-20.csv").read_bytes())
+    path = changed(fleet_folder, "[fleet.alpha]", '[files]\nsteps-20 = "steps-20*"\n[fleet.alpha]')
+    tasks = plan(load_fleet(path), tmp_path / "out")
+    assert [bool(task.problem) for task in tasks] == [False, True, False]
+    assert "holds 2 of the one log 'steps-20*' of trial 'steps-20'" in tasks[1].problem

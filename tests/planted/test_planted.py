@@ -54,8 +54,8 @@ def test_what_survives_stands_out_on_the_page() -> None:
         "survived",
         "explained",
     ]
-    text = page([(lost, passed), (known, passed), (lost, failed)], 90.0)
-    assert "3 planted, 1 noticed, 1\nsurvived, 1 explained; 2 min" in text
+    text = page([(lost, passed), (known, passed), (lost, failed)], 90.0, "0123abc")
+    assert "commit 0123abc: 3 planted, 1 noticed, 1\nsurvived, 1 explained; 2 min" in text
     assert "| ship | a\\|b | **survived** |" in text
     assert "| ship | c | explained: only words |" in text
     assert "`tests/test_x.py::test_y`" in text

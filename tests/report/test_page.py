@@ -129,10 +129,6 @@ def test_the_first_screen_says_it_all(html, result):
     assert "yaw_drag" in first.replace("_ ", "_")
 
 
-def test_the_bound_is_explained_in_one_sentence(html):
-    assert "about as large as the part that is left to see" in Reader(html).text
-
-
 def test_check_trials_are_labelled_held_out(html):
     assert Reader(html).text.count("held out, not fitted") == 1
 

@@ -1,10 +1,12 @@
 import base64
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from trialid.report.pictures.overlays import overlays
 from trialid.report.pictures.panels import trial_panels
 from trialid.result.json_file import result_of
 
@@ -79,3 +81,16 @@ def test_the_band_is_in_the_unit_shown(result, series):
     bands = {p["symbol"]: p["band"] for p in panels if p["kind"] == "output"}
     assert bands["r"] == pytest.approx(np.rad2deg(0.01))
     assert [b for s, b in bands.items() if s != "r"] == [None]
+
+
+def test_runs_are_laid_over_one_another_only_where_they_measured_the_same(series):
+    """A millionth apart is the same sample, a hundredth is another record of that name."""
+
+    def with_measured(factor):
+        outputs = [replace(o, measured=o.measured * factor) for o in series[0].outputs]
+        return [replace(series[0], outputs=outputs)]
+
+    same, other = with_measured(1.0 + 1e-8), with_measured(1.01)
+    one, *_ = overlays({"a": series[:1], "b": same, "c": other})
+    assert (one.labels, one.elsewhere) == (("a", "b"), ("c",))
+    assert overlays({"a": series[:1], "c": other}) == []

@@ -12,7 +12,7 @@ from sailed_days import sail_day
 from sailed_tracks import noisy, sailed
 
 from trialid.design.imo import excursions, recognise, spirals, stops, williamson
-from trialid.design.imo.excursions import STEP, order_doubt, order_sample
+from trialid.design.imo.excursions import STEP, heading, order_doubt, order_sample
 from trialid.design.imo.measured import heading_numbers
 from trialid.design.imo.recognition import Recognised
 from trialid.design.imo.track_numbers import Around
@@ -208,6 +208,33 @@ def test_reversals_at_unequal_headings_are_told_as_that() -> None:
     late[whole.reversals[1] - 5 :] += np.deg2rad(9.0)
     [uneven] = found(replace(zigzag, signals={**zigzag.signals, "psi": late}))
     assert uneven.remark == "the second reversal is at another change of heading"
+
+
+def test_every_overshoot_of_a_long_zigzag_is_measured() -> None:
+    """Ten reversals at 10 deg of a heading that swings by 20: each goes 10 deg too far."""
+    t = np.arange(0.0, 1400.0, 1.0)
+    psi = np.deg2rad(20.0) * np.sin(2.0 * np.pi * np.clip(t - 100.0, 0.0, None) / 200.0)
+    side, order = 0.0, []
+    for k, now in enumerate(psi):
+        if k == 100 or side * now >= np.deg2rad(10.0):
+            side = -side or 1.0
+        order.append(side * np.deg2rad(10.0))
+    signals = {"delta": np.array(order), "psi": psi}
+    trial = Trial("long", "fit", 1.0, signals, {n: np.ones(len(t), bool) for n in signals})
+    rows = list(heading_numbers(trial, found(trial), Around()))
+    assert [r.name for r in rows][:2] == ["first overshoot", "second overshoot"]
+    assert [r.name for r in rows][6:] == [f"{n}th overshoot" for n in range(7, len(rows) + 1)]
+    assert len(rows) >= 11
+    assert [r.measured for r in rows] == pytest.approx([np.deg2rad(10.0)] * len(rows), abs=0.01)
+
+
+def test_a_heading_that_was_not_recorded_is_the_integral_of_the_rate() -> None:
+    """By hand: r = a t turns her by a t^2 / 2."""
+    t = np.arange(0.0, 100.0, 2.0)
+    trial = Trial("turn", "fit", 2.0, {"r": 0.001 * t}, {})
+    np.testing.assert_allclose(heading(trial), 0.0005 * t**2, atol=1e-12)
+    recorded = replace(trial, signals={**trial.signals, "psi": np.cos(t)})
+    np.testing.assert_array_equal(heading(recorded), np.cos(t))
 
 
 @pytest.mark.study(turn=3)

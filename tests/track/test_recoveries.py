@@ -10,10 +10,11 @@ from sailed_tracks import FREE, OUTPUTS, accuracy, noisy, sailed, spread
 
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.recognition import Recognised
-from trialid.design.imo.stop_numbers import stop_reader
-from trialid.design.imo.track_numbers import Around, track_numbers
+from trialid.design.imo.stop_numbers import _reaches, stop_reader
+from trialid.design.imo.track_numbers import Around, Water, track_numbers
 from trialid.design.imo.trial_measures import TrialMeasures, measure_trials
 from trialid.design.imo.trial_numbers import ManoeuvreNumber
+from trialid.design.imo.williamson_numbers import williamson_reader
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
 from trialid.trial import Trial
@@ -91,10 +92,8 @@ def off_the_line(trial: Trial, part: slice, course: float) -> float:
     return float(y * np.cos(course) - x * np.sin(course))
 
 
-def true_turn(seed: int) -> dict[str, float]:
+def true_turn(trial: Trial, end: int) -> dict[str, float]:
     """In still water, by hand, while she kept her course: the approach is on 0.7 rad."""
-    trial = sailed_williamson()
-    end = round(measured(seed).manoeuvres[0].end / trial.period)
     back = float(np.mean(trial.signals["psi"][end - KEPT : end]))
     return {
         "deviation from the reciprocal course": back - (0.7 - np.pi),
@@ -102,10 +101,9 @@ def true_turn(seed: int) -> dict[str, float]:
     }
 
 
-def true_stop(seed: int) -> dict[str, float]:
+def true_stop(trial: Trial, end_of_it: int) -> dict[str, float]:
     """In still water, by hand: the shaft slows from 90 s on."""
-    del seed
-    trial = sailed_stop()
+    del end_of_it
     u, t = trial.signals["u"], trial.t
     begin, end = 91.0, float(np.interp(-0.733, -u, t))
     [dx, dy] = [
@@ -122,7 +120,63 @@ def true_stop(seed: int) -> dict[str, float]:
     }
 
 
-TRUTHS = {"turn": true_turn, "stop": true_stop}
+MADE = {"turn": (sailed_williamson, true_turn), "stop": (sailed_stop, true_stop)}
+
+
+def truth_of(name: str, seed: int) -> dict[str, float]:
+    make, by_hand = MADE[name]
+    [end] = [m.end for m in measured(seed).manoeuvres if m.trial == name]
+    return by_hand(make(), round(end / make().period))
+
+
+@pytest.mark.parametrize(("name", "within"), [("turn", 1.0), ("stop", 2.0)])
+def test_numbers_of_a_record_in_still_water_are_those_by_hand(name: str, within: float) -> None:
+    """In metres, and a hundredth of a radian."""
+    make, by_hand = MADE[name]
+    trial = make()
+    [one] = found(trial)
+    assert one.execute * trial.period == pytest.approx({"turn": 61.0, "stop": 91.0}[name], abs=2.0)
+    reader = (
+        williamson_reader(one, one.execute * trial.period, 12)
+        if name == "turn"
+        else stop_reader(one, 91.0, 12, trial.samples)
+    )
+    assert reader is not None
+    rows, truth = track_numbers(reader, trial, Around()), by_hand(trial, one.end)
+    assert [*rows] == [*truth]
+    for number, true in truth.items():
+        off = rows[number]["measured"] - true
+        assert abs(off) < (0.01 if reader.units[number] == "rad" else within), number
+    assert max(abs(x) for n, x in truth.items() if reader.units[n] == "m") > 5.0 * within
+
+
+def test_reaches_of_a_bent_track_by_hand() -> None:
+    """On a course of 30 deg: 80 m along it, 60 m to starboard; half a second late is 5 m less."""
+    t = np.arange(0.0, 15.0)
+    ahead, aside = np.minimum(10.0 * t, 80.0), np.maximum(10.0 * (t - 8.0), 0.0)
+    course = 30.0 * DEG
+    track = {
+        "x": ahead * np.cos(course) - aside * np.sin(course),
+        "y": ahead * np.sin(course) + aside * np.cos(course),
+    }
+    assert _reaches(track, t, (0.0, 14.0), course) == pytest.approx(
+        {"head reach": 80.0, "track reach": 140.0, "lateral deviation": 60.0, "time": 14.0}
+    )
+    assert _reaches(track, t, (0.5, 14.0), course)["head reach"] == pytest.approx(75.0)
+
+
+def test_what_the_current_is_uncertain_by_widens_with_the_time() -> None:
+    """A head reach without noise: by hand 1.96 times the error times how long the stop takes."""
+    trial = sailed_stop()
+    [one] = found(trial)
+    reader = stop_reader(one, 91.0, 12, trial.samples)
+    assert reader is not None
+    around = Around(water=Water((0.0, 0.0), (0.05, 0.05)))
+    row = track_numbers(reader, trial, around)["head reach"]
+    low, high = row["corrected_interval"]
+    time = true_stop(trial, 0)["time"]
+    assert (high - low) / 2.0 == pytest.approx(1.96 * 0.05 * time, rel=0.1)
+    assert row["interval"][1] - row["interval"][0] < 0.5 * (high - low)
 
 
 def inside(row: ManoeuvreNumber, truth: float) -> tuple[bool, bool]:
@@ -135,7 +189,7 @@ def inside(row: ManoeuvreNumber, truth: float) -> tuple[bool, bool]:
 @pytest.mark.parametrize("name", ["turn", "stop"])
 @pytest.mark.study(turn=0)
 def test_numbers_of_the_record_and_of_the_model(name: str) -> None:
-    truth, rows = TRUTHS[name](0), [r for r in measured(0).numbers if r.trial == name]
+    truth, rows = truth_of(name, 0), [r for r in measured(0).numbers if r.trial == name]
     assert [row.name for row in rows] == [*truth]
     for row in rows:
         assert row.corrected_for == "current"
@@ -163,7 +217,7 @@ def test_a_stop_whose_log_has_a_hole_is_read_from_the_track() -> None:
 def test_intervals_of_turns_and_stops_hold_the_truth() -> None:
     held: dict[str, list[tuple[bool, bool]]] = {}
     for seed in range(1, 13):
-        truths = {name: make(seed) for name, make in TRUTHS.items()}
+        truths = {name: truth_of(name, seed) for name in MADE}
         for row in measured(seed).numbers:
             held.setdefault(row.name, []).append(inside(row, truths[row.trial][row.name]))
     for name, each in held.items():

@@ -1,6 +1,8 @@
 """Turning numbers less the wind: what the same ship would have done in calm air."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from sailed_tracks import OUTPUTS, SHIP, accuracy, sailed, spread
 from sailed_wind import SETTINGS, WATERS, WINDY, blown, noisy
 
 from trialid.design.helm import Passage
+from trialid.design.imo.calm_air import _motion_at
 from trialid.design.imo.measures import overshoots
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.sailed_trial import is_wind
@@ -120,3 +123,25 @@ def test_corrected_intervals_hold_the_calm_truth() -> None:
     print(f"less current and wind within 95 %: record {record:.3f}, model {model:.3f}")
     assert record >= 0.9
     assert model >= 0.9
+
+
+def test_she_begins_with_what_the_record_has_before_the_order() -> None:
+    """The model was led elsewhere: its rate and heading are mended, what nobody compared is not."""
+    t, simulated = np.arange(400.0), np.array([7.0, 0.2, 0.001, 0.5])
+    measured = {"r": np.full(400, 0.003), "psi": np.full(400, 0.65)}
+    trial = Trial("turn", "check", 1.0, measured, {n: t >= 0.0 for n in measured})
+    response = SimpleNamespace(
+        states=np.tile(simulated, (400, 1)), y=np.tile(simulated[2:], (400, 1))
+    )
+    score = SimpleNamespace(trial=trial, response=response, compared=np.ones((400, 2), dtype=bool))
+    model = SimpleNamespace(
+        ship=SimpleNamespace(particulars={"L": 175.0, "U0": 7.0}), all_states=("u", "v", "r", "psi")
+    )
+    fit: Any = SimpleNamespace(
+        scores=[score],
+        model=model,
+        problem=SimpleNamespace(outputs=("r", "psi"), simulator=SimpleNamespace(model=model)),
+    )
+    motion = _motion_at(fit, trial, 200)
+    assert motion.values == pytest.approx({"u": 7.0, "v": 0.2, "r": 0.003, "psi": 0.65})
+    assert motion.noise == pytest.approx({"r": 0.0, "psi": 0.0}, abs=1e-9)

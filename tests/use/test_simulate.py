@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from mcap.reader import make_reader
 from test_bad_input import trialid_
 from typical import known_by
 
@@ -254,6 +255,11 @@ def test_a_fit_without_a_verdict_is_refused(run_folder: Path, tmp_path: Path) ->
     assert told.exit_code == 2
     assert told.stderr.count("\n") == 1
     assert "no fit: the search did not end; nothing is built on it" in told.stderr
-    marked = trialid_("simulate", str(spoilt), "circle", "35", "--anyway")
+    out = tmp_path / "circle.mcap"
+    asked = ("circle", "35", "--anyway", "--out", str(out))
+    marked = trialid_("simulate", str(spoilt), *asked)
     assert marked.exit_code == 0
     assert "no fit: the search did not end" in marked.stdout
+    with out.open("rb") as stream:
+        [about] = make_reader(stream).iter_attachments()
+    assert json.loads(about.data)["reliable"] is False

@@ -24,6 +24,16 @@ def test_noise_takes_its_part_of_the_squares():
     assert [row.kind for row in (first, second)] == ["step", "present"]
 
 
+def test_the_bar_of_what_is_being_computed_is_as_long_as_its_error():
+    """Beside those of the model before; its parts are not known yet."""
+    pending = SimpleNamespace(
+        run=None, before=None, fit=SimpleNamespace(eps_rmsn=0.03, eps_check=0.04)
+    )
+    *_, last = steps(pending, RUN).rows
+    assert (last.kind, last.check, last.bar.noise) == ("pending", 0.04, None)
+    assert last.bar.length == pytest.approx(30.0)
+
+
 def test_the_number_is_that_of_the_fitted_trials_and_beside_it_the_held_out():
     found = error_number.error_number(SHOWN)
     assert (found.eps, found.check) == (0.05, 0.07)

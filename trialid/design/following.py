@@ -185,7 +185,7 @@ class Narrowing:
         if self.share > WORTH_SAILING:
             return f"No standard test would narrow that by more than {1.0 - WORTH_SAILING:.0%}."
         test = self.test[:1].upper() + self.test[1:]
-        return f"{test} would narrow that most, to about {self.share:.0%}."
+        return f"{test} would narrow that most, to about {self.share:.0%} of its width."
 
 
 def narrowing_trial(

@@ -2,16 +2,18 @@
 
 A route rests on an assumption: that the quiet stretch was as noisy as the manoeuvre, that the
 model errs alike in every period. Where the assumption fails, the split is wrong by any factor, and
-its interval says nothing of it. But noise can never be more than what some fitted model leaves on
-the same rows, nor more than what of the residual does not depend on the input; and two routes that
-exclude each other leave nothing to state.
+its interval says nothing of it. But noise is hardly more than what some fitted model leaves on the
+same rows, with what its parameters take of noise by chance, nor more than what of the residual does
+not depend on the input; and two routes that exclude each other leave nothing to state.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import chdtri
 
+from trialid.accuracy.likely import CONFIDENCE
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
 from trialid.diagnosis.search.completeness import Completeness
@@ -53,7 +55,8 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
     assert chosen.undermodelling_interval is not None
     low, high = chosen.noise_interval
     total, left = fit.eps_rmsn, least.eps_rmsn
-    if low > left:
+    most = _most_noise(fit, least)
+    if low > most:
         known = {e.name for e in fit.model.effects}
         added = " and ".join(e.name for e in least.model.effects if e.name not in known)
         said = f"{_said(chosen)}, yet with {added} in the model only {left:.2%} is left in all"
@@ -71,10 +74,20 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
         chosen,
         noise=noise,
         undermodelling=model,
-        noise_interval=(min(low, noise), min(high, left)),
+        noise_interval=(min(low, noise), min(high, most)),
         undermodelling_interval=(floor, max(top, model)),  # by chance alone a fit leaves less, too
         by_output={c: (x, _rest(eps, x)) for c, (x, eps) in by_output.items()} or None,
     )
+
+
+def _most_noise(fit: Fit, least: Fit) -> float:
+    """What noise is at most where another fit leaves so little: its parameters took some away.
+
+    By chance each takes as much as one independent row is: together they go by chi-squared.
+    """
+    more = max(len(least.theta) - len(fit.theta), 1)
+    taken = least.level**2 * float(chdtri(more, 1.0 - CONFIDENCE))
+    return float(np.sqrt(least.eps_rmsn**2 + taken))
 
 
 def _rest(total: float, part: float) -> float:

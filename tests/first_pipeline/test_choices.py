@@ -1,0 +1,74 @@
+"""What a first pipeline chooses by numbers: what is held out, how far apart samples are, sides."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from trialid.workflow.first_pipeline.choice import approach_speed
+from trialid.workflow.first_pipeline.held_out import held_out
+from trialid.workflow.first_pipeline.pipeline_text import period
+from trialid.workflow.first_pipeline.twin_rudders import sides_of
+
+
+def logged(travel: float = 40.0, unit: str = "deg", rate: float = 10.0) -> Any:
+    """A trial whose rudder goes so far from one side to the other, all sampled so fast [Hz]."""
+    source = SimpleNamespace(high=travel / 2.0, low=-travel / 2.0, rate=rate, unit=unit)
+    signals = [SimpleNamespace(quantity=n, unit=unit, source=source) for n in ("delta", "r")]
+    return SimpleNamespace(signals=signals)
+
+
+def test_the_trial_in_the_middle_is_held_out() -> None:
+    """Of an even number the smaller of the middle two; alone none."""
+    assert held_out([logged(40.0), logged(20.0), logged(70.0)]) == 0
+    assert held_out([logged(70.0), logged(30.0), logged(40.0), logged(20.0)]) == 1
+    assert held_out([logged()]) is None
+
+
+def test_rudders_count_in_one_unit() -> None:
+    """A radian is 57 degrees, not one."""
+    assert held_out([logged(1.0, "rad"), logged(20.0), logged(70.0)]) == 0
+    assert held_out([logged(0.2, "rad"), logged(20.0), logged(70.0)]) == 1
+
+
+@pytest.mark.parametrize(
+    ("rates", "length", "speed", "wanted"),
+    [
+        ((10.0, 1.0), 175.0, 7.3, 1.0),  # the slowest signal
+        ((100.0, 50.0), 175.0, 7.3, 0.5),  # no faster than a ship
+        ((100.0, 50.0), 2.0, 1.0, 0.05),  # than a boat
+        ((10.0, 4.0), 2.0, 1.0, 0.25),
+    ],
+)
+def test_samples_are_as_far_apart_as_signals_and_ship_allow(
+    rates: tuple[float, ...], length: float, speed: float, wanted: float
+) -> None:
+    assert period([logged(rate=rate) for rate in rates], length, speed) == wanted
+
+
+def test_a_stated_speed_is_taken_as_it_is() -> None:
+    nothing = SimpleNamespace(channels={})
+    live: dict[str, Any] = {"u": ()}
+    assert approach_speed(nothing, live, 7.33) == (7.33, "as stated")
+    assert approach_speed(nothing, live, None) == (None, "")
+
+
+@pytest.mark.parametrize(
+    ("names", "descriptions"),
+    [
+        (("rudder_port", "rudder_starboard"), ("", "")),
+        (("a", "b"), ("Rudder, instance 0", "Rudder, instance 1")),
+    ],
+)
+def test_two_rudders_by_their_names_or_counted_from_port(
+    names: tuple[str, str], descriptions: tuple[str, str]
+) -> None:
+    """As NMEA 2000 counts them, and engines."""
+    port, starboard = (
+        SimpleNamespace(name=name, description=words, constant=False, missing=0.0)
+        for name, words in zip(names, descriptions, strict=True)
+    )
+    found: Any = (starboard, port)
+    survey = SimpleNamespace(sources=lambda quantity: found if quantity == "delta" else ())
+    trial: Any = SimpleNamespace(survey=survey)
+    assert sides_of(trial) == {"n_p": port, "n_s": starboard}
