@@ -21,7 +21,7 @@ from trialid import ingest
 from trialid.alignment import align
 from trialid.errors import LogError
 from trialid.ingest import Aids, packages, read
-from trialid.ingest.tables import excel_guard, parquet_log, table_quick
+from trialid.ingest.tables import excel_guard, parquet_log, table_quick, table_text
 
 RECORDS = Path(__file__).parents[3] / "shared/data/kvlcc2_hsva_zigzag"
 T = np.arange(0.0, 60.0, 0.1)
@@ -90,6 +90,7 @@ def test_the_records_of_a_model_basin(record):
 def test_a_quick_table_and_a_careful_one_are_the_same(tmp_path, monkeypatch):
     text = "t;a;b;mode\n0;1,5;;AUTO\n1;-2;n/a;HAND\n2;1e3;3,25;\n"
     (tmp_path / "log").write_text(text)
+    monkeypatch.setattr(table_text, "SHORT", 0)
     quick = read(tmp_path / "log")
     monkeypatch.setattr(table_quick, "columns", lambda *told: None)
     careful = read(tmp_path / "log")
@@ -112,6 +113,7 @@ def test_whatever_stands_in_the_fields_both_ways_agree(tmp_path_factory, rows, s
     found = []
     for quick in (True, False):
         with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(table_text, "SHORT", 0)
             if not quick:
                 patch.setattr(table_quick, "columns", lambda *told: None)
             found.append(outcome(path))
