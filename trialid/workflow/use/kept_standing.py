@@ -127,6 +127,7 @@ class KeptTrial:
     remarks: tuple[str, ...]
     logs: tuple[LogSource, ...]
     start: int
+    opening: float
     signals: tuple[str, ...]
     valid: tuple[str, ...]
 
@@ -184,6 +185,7 @@ def _without_arrays(trial: Trial) -> KeptTrial:
         remarks=trial.remarks,
         logs=trial.logs,
         start=trial.start,
+        opening=trial.opening,
         signals=tuple(trial.signals),
         valid=tuple(trial.valid),
     )
@@ -234,6 +236,7 @@ def _trial(place: int, row: KeptTrial, arrays: Mapping[str, Vector]) -> Trial:
         remarks=row.remarks,
         logs=row.logs,
         start=row.start,
+        opening=row.opening,
     )
 
 
