@@ -63,13 +63,8 @@ def test_it_is_what_would_be_worked_out(copied: Path, tmp_path: Path, reads: lis
         assert mine.numbers[name][1] == pytest.approx(ends, rel=1e-9)
     assert mine.ranges["r"][0] == pytest.approx(theirs.ranges["r"][0], rel=1e-9, abs=1e-12)
     for a, b in zip(model.done.fit.problem.trials, other.done.fit.problem.trials, strict=True):
-        assert (a.name, a.use, a.remarks, a.logs, a.start) == (
-            b.name,
-            b.use,
-            b.remarks,
-            b.logs,
-            b.start,
-        )
+        for said in ("name", "use", "remarks", "logs", "start", "opening"):
+            assert getattr(a, said) == getattr(b, said)
         assert all((a.valid[n] == b.valid[n]).all() for n in b.valid)
 
 

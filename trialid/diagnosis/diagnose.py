@@ -19,7 +19,7 @@ from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
 from trialid.diagnosis.search.rivals import to_fit
-from trialid.diagnosis.search.score import Candidate, ranked
+from trialid.diagnosis.search.score import Candidate, ranking_of
 from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
 from trialid.diagnosis.where.misfit import Where, where
@@ -111,7 +111,7 @@ def diagnose(
     asked = settings or DiagnoseSettings()
     fit = with_means(fit)
     before, augmented = examine_fit(fit, asked, progress)
-    ranking = ranked(fit, augmented, asked.family_cos, asked.level)
+    ranking = ranking_of(fit, augmented, asked.family_cos, asked.level)
     by_noise = partial(_leaves_noise, asked=asked)
     if faults := gross_faults(fit, asked.candidates, progress, by_noise):
         return _gross(fit, before, augmented.left_out, faults, asked)

@@ -35,7 +35,7 @@ from trialid.workflow.origin import sources_of
 from trialid.workflow.outcome import Run
 from trialid.workflow.read_trials import align_trials
 from trialid.workflow.run import examine
-from trialid.workflow.use.as_kept import KeptRun, as_kept
+from trialid.workflow.use.kept_run import KeptRun, kept_run
 from trialid.workflow.write_run import write
 
 AS_FORESEEN: Final = 1.01
@@ -69,7 +69,7 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     TrialidError
         The new model or the record does not allow it.
     """
-    kept = as_kept(folder, edit.before)
+    kept = kept_run(folder, edit.before)
     trials = align_trials(edit.before, progress) if kept is None else kept.trials
     known = _before(edit, trials, folder, progress, kept)
     before, foreseen = (None, known) if isinstance(known, str) else known

@@ -89,12 +89,12 @@ class Candidate:
 def rank(
     fit: Fit, catalogue: Mapping[str, Effect], family_cos: float = 0.9, level: float = 0.05
 ) -> tuple[tuple[Candidate, ...], Augmented]:
-    """The candidates of a catalogue `ranked`, and the traces that they were ranked by."""
+    """The `ranking_of` a catalogue, and the traces that they were ranked by."""
     augmented = augment(fit, catalogue)
-    return ranked(fit, augmented, family_cos, level), augmented
+    return ranking_of(fit, augmented, family_cos, level), augmented
 
 
-def ranked(
+def ranking_of(
     fit: Fit, augmented: Augmented, family_cos: float, level: float
 ) -> tuple[Candidate, ...]:
     """Candidates by how much of the error they take away where they were not fitted, best first.

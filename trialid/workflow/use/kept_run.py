@@ -23,7 +23,7 @@ class KeptRun:
     result: Result
 
 
-def as_kept(folder: Path, asked: Pipeline) -> KeptRun | None:
+def kept_run(folder: Path, asked: Pipeline) -> KeptRun | None:
     """The run of a pipeline.
 
     None where the folder keeps no run of this very pipeline by this very version, or a log, the
