@@ -33,8 +33,8 @@ USUAL: Final = {
     "km/h": ("m/s", 1 / 3.6),
     "m": ("m", 1.0),
 }
-"""Unit to the SI unit it becomes, and the factor: those that logs are full of, without the half a
-second, and the two seconds beside Dask, that a library of all units takes."""
+"""Unit to the SI unit it becomes, and the factor: those that logs are full of, without the
+0.35 s, beside Dask 0.5 s and more, that a library of all units takes."""
 
 COMMON = ("rad", "deg", "rad/s", "deg/s", "deg/min", "m/s", "kn", "km/h", "m", "s", "rpm", "1/s")
 

@@ -1,6 +1,7 @@
 """A run as its folder keeps it: what `trialid add` begins from, without reading or searching."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from trialid.progress import silent
 from trialid.workflow import edit_model
 from trialid.workflow.edit_pipeline import add_to_pipeline
 from trialid.workflow.read_trials import align_trials
+from trialid.workflow.use import kept_standing
 from trialid.workflow.use.kept_run import kept_run
 from trialid.workflow.use.kept_standing import FILE
 
@@ -38,6 +40,14 @@ def test_trials_and_fit_are_those_of_the_run(copied: Path, asked: Pipeline) -> N
         assert all(np.array_equal(mine.valid[n], read.valid[n]) for n in read.valid)
     for row in kept.result.accuracy.parameters:
         assert kept.fit.value(row.name) == row.value
+
+
+def test_where_a_window_begins_is_kept(copied: Path, asked: Pipeline) -> None:
+    trial = replace(align_trials(asked, silent)[0], opening=600.0)
+    arrays = {f"0 signal {n}": x for n, x in trial.signals.items()}
+    arrays |= {f"0 valid {n}": x for n, x in trial.valid.items()}
+    kept = kept_standing._trial(0, kept_standing._without_arrays(trial), arrays)
+    assert kept.opening == 600.0
 
 
 def test_what_changed_since_is_not_taken(copied: Path, asked: Pipeline) -> None:
