@@ -21,7 +21,7 @@ from trialid import ingest
 from trialid.alignment import align
 from trialid.errors import LogError
 from trialid.ingest import Aids, packages, read
-from trialid.ingest.tables import excel_guard, parquet_log, table_quick
+from trialid.ingest.tables import excel_guard, parquet_log, table_text
 
 RECORDS = Path(__file__).parents[3] / "shared/data/kvlcc2_hsva_zigzag"
 T = np.arange(0.0, 60.0, 0.1)
@@ -90,8 +90,9 @@ def test_the_records_of_a_model_basin(record):
 def test_a_quick_table_and_a_careful_one_are_the_same(tmp_path, monkeypatch):
     text = "t;a;b;mode\n0;1,5;;AUTO\n1;-2;n/a;HAND\n2;1e3;3,25;\n"
     (tmp_path / "log").write_text(text)
+    monkeypatch.setattr(table_text, "SHORT", 0)
     quick = read(tmp_path / "log")
-    monkeypatch.setattr(table_quick, "columns", lambda *told: None)
+    monkeypatch.setattr(table_text, "SHORT", 1 << 19)
     careful = read(tmp_path / "log")
     assert list(quick.channels) == list(careful.channels) == ["a", "b"]
     assert quick.remarks == careful.remarks == ("column 'mode' holds text, left out",)
@@ -110,10 +111,9 @@ def test_whatever_stands_in_the_fields_both_ways_agree(tmp_path_factory, rows, s
     body = "".join(f"{i}{separator}{a}{separator}{b}\n" for i, (a, b) in enumerate(rows))
     path.write_text(f"t{separator}a{separator}b\n{body}")
     found = []
-    for quick in (True, False):
+    for short in (0, 1 << 19):
         with pytest.MonkeyPatch.context() as patch:
-            if not quick:
-                patch.setattr(table_quick, "columns", lambda *told: None)
+            patch.setattr(table_text, "SHORT", short)
             found.append(outcome(path))
     assert found[0] == found[1]
 

@@ -67,7 +67,7 @@ def measures(tmp_path_factory):
     pipeline = load(path)
     trials = align_trials(pipeline, lambda words, share: None)
     fit = fit_of(pipeline, trials, available(pipeline), lambda words, share: None)
-    done, _, _ = examine_fit(fit, DiagnoseSettings(), lambda words, share: None)
+    done, _ = examine_fit(fit, DiagnoseSettings(), lambda words, share: None)
     off = done.doubts
     found = standard_measures(fit, done.accuracy.covariance, off.standing, off.held, off.missing)
     return {m.criterion.name: m for m in found}

@@ -93,7 +93,7 @@ def replayed(folder, lost, onset, seed, rudders):
     read = pipeline_file.load(late_effect.write(folder, lost, onset, seed, rudders))
     catalogue = available(read)
     fit = fit_of(read, align_trials(read, quietly), catalogue, quietly)
-    found, _, augmented = examine_fit(fit, diagnose_settings(read, catalogue), quietly)
+    found, augmented = examine_fit(fit, diagnose_settings(read, catalogue), quietly)
     playback = Playback(fit, align_trial(read, read.trials[-1]), bands(fit, found.split, augmented))
     playback.go_to(playback.trial.samples)
     return playback
@@ -130,7 +130,7 @@ def test_without_a_late_effect_there_is_no_alarm_and_unknown_noise_is_said(tmp_p
     assert playback.monitor.alarms == []
     fit = playback.fit
     read = pipeline_file.load(tmp_path / "late.toml")
-    augmented = examine_fit(fit, diagnose_settings(read, available(read)), quietly)[2]
+    augmented = examine_fit(fit, diagnose_settings(read, available(read)), quietly)[1]
     unknown = bands(fit, Split("not separable", "nothing holds"), augmented)
     assert not unknown.separated
     assert "could not be separated" in unknown.source

@@ -53,7 +53,7 @@ def ready(pipeline):
     read = pipeline_file.load(pipeline)
     catalogue = available(read)
     fit = fit_of(read, align_trials(read, quietly), catalogue, quietly)
-    found, _, augmented = examine_fit(fit, diagnose_settings(read, catalogue), quietly)
+    found, augmented = examine_fit(fit, diagnose_settings(read, catalogue), quietly)
     return read, fit, bands(fit, found.split, augmented)
 
 

@@ -116,7 +116,7 @@ def test_noise_stays_noise_output_by_output():
 def test_a_search_ends_at_the_error_of_the_fit():
     few = replace(SETTINGS, free=("Nr", "Kp"), nuisance=())
     fit = identify([zigzag(10), zigzag(20)], MODEL.with_values({"Nv": -0.0045}), few)
-    done, _, _ = examine_fit(fit, DiagnoseSettings(), silent)
+    done, _ = examine_fit(fit, DiagnoseSettings(), silent)
     made = build._fit(done)
     assert made.band == done.band
     assert min(made.band.values()) > 0.0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from test_bad_input import trialid_
 
-from trialid import plugins
+from trialid import plugins, source_digest
 from trialid.progress import silent
 from trialid.workflow import write_run
 from trialid.workflow.use import finished_model as taking_up
@@ -63,13 +63,8 @@ def test_it_is_what_would_be_worked_out(copied: Path, tmp_path: Path, reads: lis
         assert mine.numbers[name][1] == pytest.approx(ends, rel=1e-9)
     assert mine.ranges["r"][0] == pytest.approx(theirs.ranges["r"][0], rel=1e-9, abs=1e-12)
     for a, b in zip(model.done.fit.problem.trials, other.done.fit.problem.trials, strict=True):
-        assert (a.name, a.use, a.remarks, a.logs, a.start) == (
-            b.name,
-            b.use,
-            b.remarks,
-            b.logs,
-            b.start,
-        )
+        for said in ("name", "use", "remarks", "logs", "start", "opening"):
+            assert getattr(a, said) == getattr(b, said)
         assert all((a.valid[n] == b.valid[n]).all() for n in b.valid)
 
 
@@ -83,7 +78,7 @@ def test_another_result_is_worked_out_anew(copied: Path, reads: list[str]) -> No
 def test_other_sources_of_this_package_work_it_out_anew(
     copied: Path, reads: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(kept_standing, "_sources", lambda: "another")
+    monkeypatch.setattr(kept_standing, "source_digest", lambda: "another")
     finished_model(copied, silent)
     assert reads
 
@@ -109,14 +104,14 @@ def test_a_spoilt_file_is_worked_out_anew(copied: Path, reads: list[str], spoilt
 
 def test_every_source_of_the_package_counts(tmp_path: Path, monkeypatch) -> None:
     """One letter in one of them, or its name, and it is another package."""
-    assert (kept_standing.SOURCES / "version.py").is_file()
-    monkeypatch.setattr(kept_standing, "SOURCES", tmp_path)
+    assert (source_digest.SOURCES / "version.py").is_file()
+    monkeypatch.setattr(source_digest, "SOURCES", tmp_path)
     found = set()
     for name, text in (("a.py", "x = 1"), ("a.py", "x = 2"), ("deep/b.py", "x = 2")):
         shutil.rmtree(tmp_path)
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-        found.add(kept_standing._sources.__wrapped__())
+        found.add(source_digest.source_digest.__wrapped__())
     assert len(found) == 3
 
 

@@ -198,7 +198,7 @@ def _ready(
         else:
             fit = revived_fit(asked, trials, result, f"--run {folder}")
         how = diagnose_settings(asked, catalogue)
-        found, _, augmented = examine_fit(fit, how, progress)
+        found, augmented = examine_fit(fit, how, progress)
         about = found.band if result is None else result.fit.band
         return fit, own, bands(fit, found.split, augmented), about
 

@@ -13,13 +13,13 @@ from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.prediction_band import prediction_band
-from trialid.diagnosis.search.augment import Augmented
+from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.completeness import Completeness, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
 from trialid.diagnosis.search.rivals import to_fit
-from trialid.diagnosis.search.score import Candidate, rank
+from trialid.diagnosis.search.score import Candidate, ranking_of
 from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
 from trialid.diagnosis.where.misfit import Where, where
@@ -110,7 +110,8 @@ def diagnose(
     """
     asked = settings or DiagnoseSettings()
     fit = with_means(fit)
-    before, ranking, augmented = examine_fit(fit, asked, progress)
+    before, augmented = examine_fit(fit, asked, progress)
+    ranking = ranking_of(fit, augmented, asked.family_cos, asked.level)
     by_noise = partial(_leaves_noise, asked=asked)
     if faults := gross_faults(fit, asked.candidates, progress, by_noise):
         return _gross(fit, before, augmented.left_out, faults, asked)
@@ -207,13 +208,13 @@ def _gross(
 
 def examine_fit(
     fit: Fit, asked: DiagnoseSettings, progress: Progress
-) -> tuple[Diagnosed, tuple[Candidate, ...], Augmented]:
-    """The split, the accuracy that follows from it, and the ranking that both rest on."""
+) -> tuple[Diagnosed, Augmented]:
+    """The split, the accuracy that follows from it, and the traces that both rest on."""
     progress("looking for what is missing", 0.65)
     candidates = {**asked.candidates, **(candidates_to_free(fit) if asked.coefficients else {})}
-    ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
+    augmented = augment(fit, candidates)
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
-    return Diagnosed(fit, best, routes, doubts(augmented)), ranking, augmented
+    return Diagnosed(fit, best, routes, doubts(augmented)), augmented
 
 
 def _leaves_noise(fit: Fit, asked: DiagnoseSettings) -> bool:

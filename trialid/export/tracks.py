@@ -164,9 +164,10 @@ def _encoded(track: Track, message: "type[Message]") -> Iterator[bytes]:
     names = [field.name for field in message.DESCRIPTOR.fields if field.name != "timestamp"]
     absent = np.full(len(track.t), np.nan)
     columns = [track.fields.get(name, absent).tolist() for name in names]
+    seconds, nanos = (part.tolist() for part in np.divmod(track.t, 10**9))
     one: Any = message()
-    for t, *values in zip(track.t.tolist(), *columns, strict=True):
-        one.timestamp.seconds, one.timestamp.nanos = divmod(t, 10**9)
+    stamp = one.timestamp
+    for stamp.seconds, stamp.nanos, *values in zip(seconds, nanos, *columns, strict=True):
         for name, value in zip(names, values, strict=True):
             setattr(one, name, value)
         yield one.SerializeToString()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.identification.gauss_newton import REASONS
-from trialid.identification.one_search import End, Progress, random_starts, search
+from trialid.identification.one_search import End, Progress, cost_at, random_starts, search
 from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
 from trialid.identification.record_starts import record_starts
@@ -152,8 +152,7 @@ def _same(V: float, best: float) -> bool:
 
 def _is_worse(problem: Problem, settings: Settings, embedded: Vector, best: End) -> bool:
     """Whether a search ended above a point that it could have begun from."""
-    there = search(problem, settings, embedded, max_iterations=0)
-    return there.began and there.cost(best.colour) < best.cost(best.colour)
+    return cost_at(problem, settings, embedded, best.colour) < best.cost(best.colour)
 
 
 def _doubt(problem: Problem, end: End) -> str:

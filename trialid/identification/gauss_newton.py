@@ -235,16 +235,13 @@ class _Search:
             actual = 0.0 if point is None else loss - self._loss(point)
         if point is None or not actual > 0.0 or not _finite(point):
             return False
-        fold = Fold.of(*point)
         predicted = loss - self.fold.loss(taken)
         ratio = actual / predicted if predicted > 0.0 else 0.0
         self.damping *= max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
         self.growth = 2.0
-        weighed = self.again(there, point)
-        if weighed is not point:
-            point, fold = weighed, Fold.of(*weighed)
+        point = self.again(there, point)
         self.path.append(Iteration(self._of_record(point), self._relative(taken), self.damping))
-        self.theta, self.here, self.fold = there, self._kept(point), fold
+        self.theta, self.here, self.fold = there, self._kept(point), Fold.of(*point)
         return True
 
 

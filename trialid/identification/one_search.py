@@ -72,9 +72,29 @@ class End:
 
     def cost(self, colour: float) -> float:
         """What a search makes small: N log(2 V) and the pull of the priors, N = rows / colour."""
-        if not self.began:
-            return np.inf
-        return len(self.residual) / colour * float(np.log(max(2.0 * self.V, 1e-300))) + self.pulls
+        return _cost(self.residual, colour, self.pulls) if self.began else np.inf
+
+
+def _cost(residual: Vector, colour: float, pulls: float) -> float:
+    squares = float(residual @ residual)
+    return len(residual) / colour * float(np.log(max(squares, 1e-300))) + pulls
+
+
+def cost_at(problem: Problem, settings: Settings, theta: Vector, colour: float) -> float:
+    """What a search makes small, at a point where none is begun; inf where it cannot be simulated.
+
+    Parameters
+    ----------
+    colour
+        How many rows say the same at the end that it is held against.
+    """
+    residual = residual_at(problem, theta)
+    if isinstance(residual, Departure):
+        return np.inf
+    if settings.loss == "huber":
+        residual = residual * huber(residual)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _cost(residual, colour, Weighing(problem).pulls(theta))
 
 
 def search(

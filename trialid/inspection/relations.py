@@ -15,7 +15,8 @@ from trialid.alignment.agreement import signs
 from trialid.arrays import Mask
 from trialid.inspection.inspected import ChannelInspection, Guess
 from trialid.inspection.sketch import Vector, on_one_clock
-from trialid.inspection.usual_units import USUAL, to_si
+from trialid.inspection.usual_units import to_si
+from trialid.names.units import USUAL
 
 SLOPES: Final = {"r": "psi", "p": "phi"}
 """A rate and the angle it is the slope of."""

@@ -159,9 +159,6 @@ def _manifest(playback: Playback, version: str) -> dict[str, str]:
 
 @cache
 def _environment() -> "jinja2.Environment":
-    import jinja2
+    from trialid.report import templates
 
-    return jinja2.Environment(
-        loader=jinja2.PackageLoader("trialid", "replay/layouts"), autoescape=True,
-        undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
+    return templates.environment("trialid", "replay/layouts")

@@ -58,7 +58,7 @@ def _ready(shown: Shown, run: Outcome) -> FinishedModel:
     where = shown.pipeline.path.name
     fit = revived_fit(shown.pipeline, shown.trials, run.result, where)
     how = diagnose_settings(shown.pipeline, available(shown.pipeline))
-    done, _, _ = examine_fit(fit, how, silent)
+    done, _ = examine_fit(fit, how, silent)
     return FinishedModel(where, run.result, done, seen_ranges(fit))
 
 

@@ -35,6 +35,7 @@ from trialid.workflow.origin import sources_of
 from trialid.workflow.outcome import Run
 from trialid.workflow.read_trials import align_trials
 from trialid.workflow.run import examine
+from trialid.workflow.use.kept_run import KeptRun, kept_run
 from trialid.workflow.write_run import write
 
 AS_FORESEEN: Final = 1.01
@@ -61,15 +62,16 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     """Both models fitted and examined; nothing is written.
 
     What is known of the model before is taken from the run in `folder` where that is of the same
-    pipeline, logs and version.
+    pipeline, logs and version; with trials and fit, where it keeps them.
 
     Raises
     ------
     TrialidError
         The new model or the record does not allow it.
     """
-    trials = align_trials(edit.before, progress)
-    known = _before(edit, trials, folder, progress)
+    kept = kept_run(folder, edit.before)
+    trials = align_trials(edit.before, progress) if kept is None else kept.trials
+    known = _before(edit, trials, folder, progress, kept)
     before, foreseen = (None, known) if isinstance(known, str) else known
     edit, fit = fit_edit(edit, trials, foreseen, progress)
     run = examine(edit.after, trials, progress, fit)
@@ -157,13 +159,19 @@ def started_at(edit: Edit, values: Mapping[str, float]) -> Edit | None:
 
 
 def _before(
-    edit: Edit, trials: tuple[Trial, ...], folder: Path, progress: Progress
+    edit: Edit,
+    trials: tuple[Trial, ...],
+    folder: Path,
+    progress: Progress,
+    kept: KeptRun | None,
 ) -> tuple[Result, Foreseen | str] | str:
     """The present model's result and what linearisation foresees; words where it cannot be fitted.
 
     A model that cannot be fitted is a good reason to change it.
     """
     try:
+        if kept is not None:
+            return kept.result, foresee_edit(edit, kept.fit)
         fit = fit_of(edit.before, trials, available(edit.before), progress)
         foreseen = foresee_edit(edit, fit)
         found = earlier(folder, edit.before, fit)

@@ -55,6 +55,7 @@ PLAIN = list(TEXTS)[: list(TEXTS).index("a comma far below") + 1]
 def test_by_blocks_as_with_care(name, wanted, tmp_path, monkeypatch):
     path = tmp_path / "log.csv"
     path.write_bytes(TEXTS[name])
+    monkeypatch.setattr(table_text, "SHORT", 0)
     with monkeypatch.context() as patch:
         patch.setattr(table_quick, "columns", lambda *told: None)
         careful = outcome(path, wanted)
@@ -85,6 +86,7 @@ def test_a_template_with_its_form_and_its_end(tmp_path, monkeypatch):
         'time = {columns = ["time"], format = "%d.%m.%Y %H:%M:%S.%f", zone = "Europe/Oslo"}\n'
         '[columns.a]\nrename = "u"\n'
     )
+    monkeypatch.setattr(table_text, "SHORT", 0)
     with monkeypatch.context() as patch:
         patch.setattr(table_quick, "columns", lambda *told: None)
         careful = outcome(path, ["u", "c"], Aids(template=told))

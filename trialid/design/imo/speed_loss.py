@@ -5,7 +5,6 @@ speed fell says how it would: by squares of the rate of turn and of the rudder, 
 to the logs along the rates of turn that the model had there.
 """
 
-import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -15,6 +14,7 @@ import numpy as np
 from trialid.arrays import Mask, Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.identification.fit import Fit
+from trialid.identification.gauss_newton import minimise
 from trialid.identification.trial_score import Score
 from trialid.maths import Number
 from trialid.ship.effect import Parameter, Rate, Steered, effect
@@ -84,23 +84,20 @@ def speed_loss(fit: Fit) -> SpeedLoss | None:
     logged = [s for s in fit.scores if s.trial.use == "fit" and _logged(s.trial)]
     if not logged:
         return SpeedLoss(_named(NOTHING), np.diag(TYPICAL**2))
-    from scipy.optimize import least_squares  # a quarter of a second, for no run without a log
-
     simulator = prepare(ShipModel(fit.model.ship, ("psi",), (logged_loss,)), NAMES, ("U",))
     records = [_record(fit, s) for s in logged]
 
-    @functools.lru_cache(maxsize=1)
-    def at(*values: float) -> tuple[Vector, Vector]:
+    def at(values: Vector) -> tuple[Vector, Vector]:
         found = [_left(simulator, values, *record) for record in records]
         return np.concatenate([e for e, _ in found]), np.concatenate([psi for _, psi in found])
 
     ranges = logged_loss.parameters.values()
-    bounds = ([p.low for p in ranges], [p.high for p in ranges])
-    found = least_squares(
-        lambda x: at(*x)[0], TYPICAL, lambda x: at(*x)[1], bounds=bounds, x_scale=TYPICAL
+    low, high = np.array([p.low for p in ranges]), np.array([p.high for p in ranges])
+    found = minimise(at, TYPICAL, TYPICAL, low, high)
+    lost = loses_speed(_named(found.theta))
+    best, e, psi = (
+        (found.theta, found.residual, found.jacobian) if lost else (NOTHING, *at(NOTHING))
     )
-    best = found.x if loses_speed(_named(found.x)) else NOTHING
-    e, psi = at(*best)
     known = psi.T @ psi * len(records) / max(float(e @ e), TINY) + np.diag(TYPICAL**-2)
     return SpeedLoss(_named(best), np.asarray(np.linalg.inv(known) + np.diag((LAW * best) ** 2)))
 
@@ -147,12 +144,12 @@ def _record(fit: Fit, score: Score) -> tuple[Trial, Vector, Mask]:
 
 
 def _left(
-    simulator: Simulator, values: Sequence[float], blank: Trial, logged: Vector, valid: Mask
+    simulator: Simulator, values: Vector, blank: Trial, logged: Vector, valid: Mask
 ) -> tuple[Vector, Vector]:
-    """What the loss leaves of the logged speed less its mean, and the derivatives of that."""
+    """The logged speed less the simulated one and their mean, and the latter's derivatives."""
     response = respond(simulator, blank, _named(values), {})
     assert response.S is not None
     places = [simulator.columns.index(n) for n in NAMES]
-    e = (response.y[:, 0] - logged)[valid]
+    e = (logged - response.y[:, 0])[valid]
     slopes = response.S[valid, 0][:, places]
     return e - e.mean(), slopes - slopes.mean(axis=0)

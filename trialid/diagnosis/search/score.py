@@ -89,6 +89,14 @@ class Candidate:
 def rank(
     fit: Fit, catalogue: Mapping[str, Effect], family_cos: float = 0.9, level: float = 0.05
 ) -> tuple[tuple[Candidate, ...], Augmented]:
+    """The `ranking_of` a catalogue, and the traces that they were ranked by."""
+    augmented = augment(fit, catalogue)
+    return ranking_of(fit, augmented, family_cos, level), augmented
+
+
+def ranking_of(
+    fit: Fit, augmented: Augmented, family_cos: float, level: float
+) -> tuple[Candidate, ...]:
     """Candidates by how much of the error they take away where they were not fitted, best first.
 
     Those that are physical, stand out against chance and are worth a name come before the others:
@@ -96,14 +104,15 @@ def rank(
 
     Parameters
     ----------
+    augmented
+        Of this fit, or of one to means of its samples.
     family_cos
         |cos| between visible traces from which on two effects are one family.
     level
         Family-wise error rate over the whole catalogue.
     """
-    augmented = augment(fit, catalogue)
     if not augmented.traces:
-        return (), augmented
+        return ()
     evidence = augmented.evidence
     seen = [t for t in augmented.traces if _leaves_a_trace(augmented, t)]
     visible = [t for t in seen if _visibility(augmented, t) > VISIBLE]
@@ -123,7 +132,7 @@ def rank(
         return not c.allowed, not c.worth_a_name(level), not c.shown(level), c.price
 
     scored = _families(_best_of_each(made), augmented, family_cos)
-    return tuple(sorted(scored, key=standing)), augmented
+    return tuple(sorted(scored, key=standing))
 
 
 def _leaves_a_trace(augmented: Augmented, trace: Trace) -> bool:

@@ -27,8 +27,11 @@ from trialid.ingest.mcap.payload import (
 if TYPE_CHECKING:
     from mcap.records import Schema
 
-NANOS = ("nsec", "nanosec", "nanos", "nsecs")
-SECONDS = ("sec", "seconds", "secs")
+NANOS = frozenset({"nsec", "nanosec", "nanos", "nsecs"})
+SECONDS = frozenset({"sec", "seconds", "secs"})
+NUMBER = (int, float)
+NO_NUMBER = (bool, str)
+"""A union written out would be made anew for every value of every message."""
 FAILURES = (ValueError, OverflowError, RecursionError, TypeError)
 """What unreadable text, absurd numbers and nests without end raise."""
 
@@ -54,28 +57,26 @@ def _stamp(message: dict[str, Any]) -> int:
     header = message.get("header")
     inside = header.get("stamp") if isinstance(header, dict) else None
     for stamp in (inside, message.get("stamp"), message.get("timestamp")):
-        if isinstance(stamp, int | float) and 0 < stamp < math.inf:
+        if isinstance(stamp, NUMBER) and 0 < stamp < math.inf:
             return nanoseconds(0, round(stamp * 1e9))  # a bare number counts seconds
         if isinstance(stamp, dict) and _is_time(stamp):
-            return nanoseconds(int(_first(stamp, SECONDS)), int(_first(stamp, NANOS)))
+            parts = {key in NANOS: part for key, part in stamp.items()}
+            return nanoseconds(int(parts[False]), int(parts[True]))
     return 0
 
 
-def _first(stamp: dict[str, Any], keys: Sequence[str]) -> Any:
-    return next(stamp[key] for key in keys if key in stamp)
-
-
 def _is_time(value: dict[str, Any]) -> bool:
-    return len(value) == 2 and any(k in value for k in NANOS) and any(k in value for k in SECONDS)
+    """Whether it is of two parts, seconds and nanoseconds."""
+    return len(value) == 2 and not (NANOS.isdisjoint(value) or SECONDS.isdisjoint(value))
 
 
 def _leaves(value: Any, path: str, names: Sequence[str] = ()) -> Iterator[tuple[str, float]]:
     """Numbers below `value`; null is a number that is not available, NaN."""
-    if path in STAMP_FIELDS or isinstance(value, bool | str):
+    if path in STAMP_FIELDS or isinstance(value, NO_NUMBER):
         return
     if value is None:
         yield path, float("nan")
-    elif isinstance(value, int | float):
+    elif isinstance(value, NUMBER):
         yield path, value
     elif isinstance(value, list):
         called = names if len(names) == len(value) else _called(value)

@@ -65,15 +65,11 @@ class Sheet:
 
 def page(design: Mapping[str, Any], sheets: Sequence[Sheet], aborts: Sequence[str]) -> str:
     """The page for the bridge: one HTML file, black on white, made to be printed."""
-    import jinja2
+    from trialid.report import templates
 
     files = resources.files("trialid.report")
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("trialid", "report"), autoescape=True,
-        undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
     style = files.joinpath("bridge.css").read_text(encoding="utf-8")
-    template = environment.get_template("bridge.html.j2")
+    template = templates.environment("trialid", "report").get_template("bridge.html.j2")
     return template.render(design=design, sheets=sheets, aborts=aborts, style=style)
 
 

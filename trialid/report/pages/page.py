@@ -116,16 +116,9 @@ def _proposed(run: Result) -> Compared | None:
 @cache
 def environment() -> "jinja2.Environment":
     """The templates and what they write numbers with; every word is escaped."""
-    import jinja2
+    from trialid.report import templates
 
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("trialid", "report"),
-        autoescape=True,
-        finalize=_finalized,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates.environment("trialid", "report", finalize=_finalized)
     environment.filters |= _filters()
     return environment
 

@@ -13,7 +13,6 @@ import json
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import cache
 from pathlib import Path
 from typing import Final, Literal, Protocol
 
@@ -27,12 +26,12 @@ from trialid.diagnosis.may_be_off import Doubts
 from trialid.diagnosis.search.augment import Trace
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
+from trialid.source_digest import source_digest
 from trialid.trial import LogSource, Trial
 
 FILE: Final = "standing.npz"
 COVARIANCE: Final = "covariance"
 ARRAYS: Final = ("gram", "moves", "deviations")
-SOURCES: Final = Path(__file__).parents[2]
 
 
 class Named(Protocol):
@@ -128,6 +127,7 @@ class KeptTrial:
     remarks: tuple[str, ...]
     logs: tuple[LogSource, ...]
     start: int
+    opening: float
     signals: tuple[str, ...]
     valid: tuple[str, ...]
 
@@ -185,6 +185,7 @@ def _without_arrays(trial: Trial) -> KeptTrial:
         remarks=trial.remarks,
         logs=trial.logs,
         start=trial.start,
+        opening=trial.opening,
         signals=tuple(trial.signals),
         valid=tuple(trial.valid),
     )
@@ -235,21 +236,12 @@ def _trial(place: int, row: KeptTrial, arrays: Mapping[str, Vector]) -> Trial:
         remarks=row.remarks,
         logs=row.logs,
         start=row.start,
+        opening=row.opening,
     )
 
 
 def _key(result: bytes) -> str:
     """Of a run's result, and of all that it would be worked out anew with."""
     made = hashlib.sha256(result)
-    made.update(f"{_sources()} numpy {np.__version__}".encode())
-    return made.hexdigest()
-
-
-@cache
-def _sources() -> str:
-    """Of every source file of this package."""
-    made = hashlib.sha256()
-    for path in sorted(SOURCES.rglob("*.py")):
-        made.update(f"{path.relative_to(SOURCES)}\0".encode())
-        made.update(path.read_bytes())
+    made.update(f"{source_digest()} numpy {np.__version__}".encode())
     return made.hexdigest()
