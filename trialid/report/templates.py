@@ -2,14 +2,13 @@
 
 import contextlib
 import hashlib
-import os
 from pathlib import Path
 from typing import Any
 
 import jinja2
 from jinja2.bccache import Bucket
 
-from trialid.simulation.kernel import cache_folder
+from trialid.cache_folder import cache_folder, is_ours_alone
 from trialid.source_digest import source_digest
 
 
@@ -45,7 +44,7 @@ class _Compiled(jinja2.FileSystemBytecodeCache):
     def load_bytecode(self, bucket: Bucket) -> None:
         """Fill the bucket, where its file is ours alone."""
         with contextlib.suppress(OSError):
-            if _ours_alone(Path(self.directory)):
+            if is_ours_alone(Path(self.directory)):
                 super().load_bytecode(bucket)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
@@ -53,11 +52,3 @@ class _Compiled(jinja2.FileSystemBytecodeCache):
         with contextlib.suppress(OSError):
             Path(self.directory).mkdir(parents=True, exist_ok=True, mode=0o700)
             super().dump_bytecode(bucket)
-
-
-def _ours_alone(folder: Path) -> bool:
-    """Whether the folder is this user's, and nobody else may write into it."""
-    if not hasattr(os, "getuid"):
-        return True  # Windows: the home folder is the user's
-    found = folder.stat()
-    return found.st_uid == os.getuid() and not found.st_mode & 0o022

@@ -4,7 +4,6 @@ import contextlib
 import ctypes
 import functools
 import hashlib
-import os
 import sys
 import tempfile
 from collections.abc import Callable
@@ -14,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.cache_folder import cache_folder, is_ours_alone
 from trialid.simulation.emit import module_text
 from trialid.simulation.ship_numbers import nodes_of, ship_numbers
 from trialid.simulation.trace import Equations
@@ -23,15 +23,6 @@ CHECKSUM: Final = 32
 LOADED: Final = 256
 """Kernels that stay loaded, about 0.1 MB each."""
 LOOPS: Final[list[Any]] = [ctypes.c_int64, ctypes.c_int64, ctypes.c_double]
-
-
-def cache_folder() -> Path:
-    """Where compiled kernels are kept: private to the user; `TRIALID_CACHE` names another place."""
-    stated = os.environ.get("TRIALID_CACHE")
-    if stated:
-        return Path(stated)
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(home) / "trialid" / "kernels"
 
 
 @functools.cache
@@ -118,21 +109,13 @@ def _kept(path: Path) -> bytes | None:
     What somebody else may have written is not run: its checksum says nothing of who made it.
     """
     try:
-        if not (_ours_alone(path) and _ours_alone(path.parent)):
+        if not (is_ours_alone(path) and is_ours_alone(path.parent)):
             return None
         content = path.read_bytes()
     except OSError:
         return None
     checksum, code = content[:CHECKSUM], content[CHECKSUM:]
     return code if code and hashlib.sha256(code).digest() == checksum else None
-
-
-def _ours_alone(path: Path) -> bool:
-    """Whether a file or folder is this user's, and nobody else may write it."""
-    if not hasattr(os, "getuid"):
-        return True  # Windows: the home folder is the user's
-    found = path.stat()
-    return found.st_uid == os.getuid() and not found.st_mode & 0o022
 
 
 @functools.lru_cache(maxsize=LOADED)
