@@ -8,8 +8,7 @@ from typing import Any
 import jinja2
 from jinja2.bccache import Bucket
 
-from trialid.cache_folder import cache_folder, is_ours_alone
-from trialid.source_digest import source_digest
+from trialid.cache import cache_folder, is_ours_alone, source_digest
 
 
 def environment(package: str, folder: str, **more: Any) -> jinja2.Environment:

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.cache_folder import cache_folder, is_ours_alone
+from trialid.cache import cache_folder, is_ours_alone
 from trialid.simulation.emit import module_text
 from trialid.simulation.ship_numbers import nodes_of, ship_numbers
 from trialid.simulation.trace import Equations

@@ -22,11 +22,11 @@ from trialid import plugins
 from trialid.accuracy.likely import Standing
 from trialid.accuracy.one_missing import Reduced, Rival
 from trialid.arrays import Vector
+from trialid.cache import source_digest
 from trialid.diagnosis.may_be_off import Doubts
 from trialid.diagnosis.search.augment import Trace
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
-from trialid.source_digest import source_digest
 from trialid.trial import LogSource, Trial
 
 FILE: Final = "standing.npz"

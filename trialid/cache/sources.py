@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-SOURCES: Final = Path(__file__).parent
+SOURCES: Final = Path(__file__).parents[1]
 
 
 @cache
