@@ -152,7 +152,7 @@ def restored(scenario: Scenario, model: ShipModel) -> ShipModel:
 
 
 @functools.cache
-def _truth(scenario: Scenario) -> Simulator:
+def truth(scenario: Scenario) -> Simulator:
     """The true ship, ready to run."""
     states = dict.fromkeys((*scenario.ship.states, "psi"))
     model = replace(without(scenario), states=(*states,)) + CATALOGUE["outer_force"]
@@ -163,7 +163,7 @@ def record(
     scenario: Scenario, noise: str, trial_set: str, seed: int, rudder: bool = False
 ) -> tuple[Trial, ...]:
     """Every trial of a set as logged; with `rudder` the true rudder even where only orders are."""
-    simulator = _truth(scenario)
+    simulator = truth(scenario)
     made = []
     for manoeuvre in TRIAL_SETS[trial_set]:
         rng = generator(seed, scenario.name, noise, trial_set, manoeuvre.name)
@@ -193,6 +193,16 @@ def _sailed(
     rng: np.random.Generator,
 ) -> Passage:
     """The manoeuvre as it comes out on the true ship in its weather."""
+    sail = sailor(simulator, scenario, manoeuvre, forces)
+    if manoeuvre.heading is None:
+        return sail(binary(manoeuvre, rng))
+    return zigzag(manoeuvre, sail)
+
+
+def sailor(
+    simulator: Simulator, scenario: Scenario, manoeuvre: Manoeuvre, forces: Mapping[str, Vector]
+) -> Callable[[Vector], Passage]:
+    """From an order (N,) [rad] to the passage of the true ship in this weather."""
 
     def sail(order: Vector) -> Passage:
         delta = order if scenario.gear is None else scenario.gear(order, STEP)
@@ -205,9 +215,7 @@ def _sailed(
         states = dict(zip(simulator.model.all_states, response.states.T, strict=True))
         return Passage(order, delta, response.y, states)
 
-    if manoeuvre.heading is None:
-        return sail(binary(manoeuvre, rng))
-    return zigzag(manoeuvre, sail)
+    return sail
 
 
 def clock(manoeuvre: Manoeuvre) -> Vector:
