@@ -18,10 +18,11 @@ import csv
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, astuple, dataclass, fields, replace
+from dataclasses import astuple, dataclass, fields, replace
 from itertools import product
 from pathlib import Path
 from typing import Final, Literal
+from unittest import mock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,14 +35,36 @@ from hidden_effects import settings_of  # noqa: E402
 from hidden_scenarios import SCENARIOS, guessed  # noqa: E402
 from hidden_tables import table  # noqa: E402
 from hidden_truth import (  # noqa: E402
-    APPROACH, COMPASS, DEG, GYRO, INCLINOMETER, LOG, OUTPUTS, PERIOD, SHAFT, STEP, TRIAL_SETS,
-    Manoeuvre, Passage, Scenario, binary, clock, coloured, disturbance, generator, ramped, sailor,
-    truth, zigzag,
-)  # fmt: skip
+    APPROACH,
+    COMPASS,
+    DEG,
+    GYRO,
+    INCLINOMETER,
+    LOG,
+    OUTPUTS,
+    PERIOD,
+    SHAFT,
+    STEP,
+    TRIAL_SETS,
+    Manoeuvre,
+    Passage,
+    Scenario,
+    binary,
+    clock,
+    coloured,
+    disturbance,
+    generator,
+    ramped,
+    sailor,
+    truth,
+    zigzag,
+)
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, examine_fit, refits_of  # noqa: E402
+from trialid.diagnosis.noise import error_parts  # noqa: E402
 from trialid.diagnosis.noise.error_parts import Split  # noqa: E402
 from trialid.diagnosis.noise.noise_bound import held_against  # noqa: E402
+from trialid.diagnosis.noise.split import split  # noqa: E402
 from trialid.diagnosis.search.completeness import completeness  # noqa: E402
 from trialid.errors import TrialidError  # noqa: E402
 from trialid.identification.fit import Fit  # noqa: E402
@@ -91,7 +114,7 @@ GROWING: Final = (
 between two runs that are nearly the same."""
 
 Put = Callable[[np.random.Generator, Vector, Vector], Vector]
-"""What the sensors put on outputs (N, 2), from random numbers, times (N,) and the outputs (N, 2)."""
+"""What sensors put on the outputs, (N, 2): from random numbers, times (N,) and the outputs."""
 
 
 def white(rng: np.random.Generator, t: Vector, y: Vector) -> Vector:
@@ -99,16 +122,20 @@ def white(rng: np.random.Generator, t: Vector, y: Vector) -> Vector:
     return SENSORS * rng.standard_normal(y.shape)
 
 
+def swell(rng: np.random.Generator, t: Vector) -> Vector:
+    """What sensors see of a sea and the rudder does not; (N, 2)."""
+    return SWELL * np.column_stack([coloured(rng, len(t), 0.6, PERIOD) for _ in OUTPUTS])
+
+
 def waves(rng: np.random.Generator, t: Vector, y: Vector) -> Vector:
-    """Swell that sensors see and the rudder does not."""
-    swell = np.column_stack([coloured(rng, len(t), 0.6, PERIOD) for _ in OUTPUTS])
-    return white(rng, t, y) + SWELL * swell
+    """The same sea throughout."""
+    return white(rng, t, y) + swell(rng, t)
 
 
 def rising(rng: np.random.Generator, t: Vector, y: Vector) -> Vector:
-    """A swell that is a fifth during the approach, and all there two minutes after it."""
+    """A sea that is a fifth during the approach, and all there two minutes after it."""
     share = np.interp(t, [APPROACH, APPROACH + 120.0], [0.2, 1.0])[:, None]
-    return white(rng, t, y) + share * (waves(rng, t, y) - white(rng, t, y))
+    return white(rng, t, y) + share * swell(rng, t)
 
 
 def counts(rng: np.random.Generator, t: Vector, y: Vector) -> Vector:
@@ -150,7 +177,10 @@ CASES: Final[Mapping[str, Case]] = {
 
 @dataclass(frozen=True)
 class Row:
-    """One record: what is so, and what was said; errors as eps_RMSn."""
+    """One record: what is so, and what was said; errors as eps_RMSn.
+
+    `half_wrong`, `twice_wrong`: with half and twice of what parameters may have taken up.
+    """
 
     case: str
     hidden: str
@@ -166,6 +196,8 @@ class Row:
     model: float | None = None
     model_low: float = np.nan
     model_high: float = np.nan
+    half_wrong: bool = False
+    twice_wrong: bool = False
 
     @property
     def refused(self) -> bool:
@@ -209,7 +241,9 @@ def sailed(case: Case, scenario: Scenario, m: Manoeuvre, seed: int) -> tuple[Pas
         passage = sail(square(m, 0.03) if m.name == SQUARE else binary(m, rng))
     if case.weather == "none":
         return passage, passage.y
-    return passage, sailor(truth(scenario), scenario, m, disturbance("none", m, rng))(passage.delta).y
+    return passage, sailor(truth(scenario), scenario, m, disturbance("none", m, rng))(
+        passage.delta
+    ).y
 
 
 def recorded(
@@ -262,13 +296,18 @@ def parts_of(fit: Fit, clean: Mapping[str, Vector]) -> tuple[float, float]:
     return float(noise), float(model)
 
 
-def said_of(fit: Fit) -> tuple[Split, tuple[Split, ...]]:
-    """The split as the diagnosis states it, and the routes."""
+def said_of(fit: Fit, shares: Sequence[float]) -> list[Split]:
+    """The split as the diagnosis states it, with `TAKEN` at these shares of what it is."""
     asked = DiagnoseSettings()
-    done, ranking, augmented = examine_fit(fit, asked, silent)
+    _, ranking, augmented = examine_fit(fit, asked, silent)
     whole = completeness(augmented)
     fits = [r.fit for r in refits_of(fit, ranking, asked, lambda words: None)]
-    return held_against(done.split, done.routes, fit, fits, whole), done.routes
+    said = []
+    for share in shares:
+        with mock.patch.object(error_parts, "TAKEN", share * error_parts.TAKEN):
+            chosen, routes = split(fit, augmented, {})
+            said.append(held_against(chosen, routes, fit, fits, whole))
+    return said
 
 
 @one_thread
@@ -282,21 +321,29 @@ def one(task: tuple[str, int]) -> Row:
         fit = fitted(case, scenario, seed, trials)
     except TrialidError as error:
         return Row(name, scenario.name, seed, "no fit", str(error), np.nan, np.nan, np.nan)
-    split, _ = said_of(fit)
-    row = Row(name, scenario.name, seed, split.method, split.why, fit.eps_rmsn,
-              *parts_of(fit, clean))  # fmt: skip
-    if split.noise is None or split.noise_interval is None or split.undermodelling_interval is None:
+    parts = parts_of(fit, clean)
+    rows = [
+        _row(Row(name, scenario.name, seed, x.method, x.why, fit.eps_rmsn, *parts), x)
+        for x in said_of(fit, (1.0, 0.5, 2.0))
+    ]
+    return replace(rows[0], half_wrong=rows[1].wrong, twice_wrong=rows[2].wrong)
+
+
+def _row(row: Row, said: Split) -> Row:
+    """With what was stated, if anything was."""
+    if said.noise is None or said.noise_interval is None or said.undermodelling_interval is None:
         return row
     return replace(
-        row, noise=split.noise, noise_low=split.noise_interval[0],
-        noise_high=split.noise_interval[1], model=split.undermodelling,
-        model_low=split.undermodelling_interval[0], model_high=split.undermodelling_interval[1],
+        row, noise=said.noise, noise_low=said.noise_interval[0],
+        noise_high=said.noise_interval[1], model=said.undermodelling,
+        model_low=said.undermodelling_interval[0], model_high=said.undermodelling_interval[1],
     )  # fmt: skip
 
 
 def page(rows: Sequence[Row]) -> str:
     """Counts by case and by case and method, and every record that is wrong."""
-    head = ("case", "records", "both held", "refused", "noise wrong", "model wrong", "not wrong")
+    head = ("case", "records", "both held", "refused", "noise wrong", "model wrong", "not wrong",
+            "at half", "at twice")  # fmt: skip
     by = [(n, [r for r in rows if r.case == n]) for n in dict.fromkeys(r.case for r in rows)]
     lines = [_line(n, mine) for n, mine in by]
     methods = [
@@ -318,7 +365,11 @@ def _line(name: str, rows: Sequence[Row]) -> Sequence[str]:
         len(rows), sum(not r.wrong for r in stated), len(rows) - len(stated),
         sum(not r.noise_held for r in stated), sum(not r.model_held for r in stated),
     )  # fmt: skip
-    return name, *map(str, counts), f"{np.mean([not r.wrong for r in rows]):.0%}"
+    kept = [
+        f"{1.0 - np.mean([wrong(r) for r in rows]):.0%}"
+        for wrong in (lambda r: r.wrong, lambda r: r.half_wrong, lambda r: r.twice_wrong)
+    ]
+    return name, *map(str, counts), *kept
 
 
 def _said(r: Row) -> str:

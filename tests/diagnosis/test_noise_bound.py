@@ -2,22 +2,35 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from trialid.diagnosis.noise import noise_bound
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
+from trialid.diagnosis.search.carried import Errors
 from trialid.diagnosis.search.completeness import Completeness
 
 OUTPUTS = ("r", "phi")
 
 
-def fit(eps, effects=(), converged=True):
+@pytest.fixture(autouse=True)
+def _left_out(monkeypatch):
+    """What a stand-in leaves on rows that it was not fitted to, it says."""
+    monkeypatch.setattr(noise_bound, "own_errors", lambda fit: Errors((fit.outside**2,), ()))
+
+
+def fit(eps, effects=(), converged=True, outside=0.0):
     """A fit as far as its errors go."""
-    return SimpleNamespace(
+    made = SimpleNamespace(
         eps_rmsn=eps, eps_by_output=dict.fromkeys(OUTPUTS, eps), converged=converged,
         model=SimpleNamespace(effects=[SimpleNamespace(name=n) for n in effects]),
+        residual=np.full(10**6, eps / 1000.0), outside=outside or eps,
+        problem=SimpleNamespace(unknowns=[SimpleNamespace(trial=t) for t in (None, 0, 1)]),
     )  # fmt: skip
+    made.examined = made
+    return made
 
 
 def route(method, noise, interval, total=0.10):
@@ -38,7 +51,7 @@ def test_no_more_noise_than_another_model_leaves():
     held = held_against(QUIET, (QUIET,), base, [fit(0.075, ("a", "b")), fit(0.09, ("a", "c"))])
     assert held.method == "quiet stretch"
     assert held.noise == pytest.approx(0.075)
-    assert held.noise_interval == (0.07, 0.075)
+    assert held.noise_interval == pytest.approx((0.07, 0.075), rel=1e-4)
     assert held.noise**2 + held.undermodelling**2 == pytest.approx(0.10**2)
     low, high = held.undermodelling_interval
     assert low == QUIET.undermodelling_interval[0]
@@ -46,6 +59,18 @@ def test_no_more_noise_than_another_model_leaves():
     for noise, model in held.by_output.values():
         assert noise == pytest.approx(0.075)
         assert noise**2 + model**2 == pytest.approx(0.10**2)
+
+
+def test_what_parameters_took_up_of_the_noise_is_in_the_interval_and_not_in_the_figure():
+    """One that the trials share tells by what the error grows; two more are the trials' own."""
+    held = held_against(QUIET, (QUIET,), fit(0.10), [fit(0.075, outside=0.076)])
+    assert held.noise == pytest.approx(0.075)
+    assert held.noise_interval[1] == pytest.approx(
+        (0.075**2 + 3.0 * (0.076**2 - 0.075**2)) ** 0.5, rel=1e-4
+    )
+    barely = held_against(QUIET, (QUIET,), fit(0.10), [fit(0.0695, outside=0.0705)])
+    assert barely.available
+    assert barely.noise == pytest.approx(0.0695)
 
 
 def test_a_route_that_no_interval_saves_is_refused_with_both_figures():

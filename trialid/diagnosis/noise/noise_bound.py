@@ -3,8 +3,8 @@
 A route rests on an assumption: that the quiet stretch was as noisy as the manoeuvre, that the
 model errs alike in every period. Where the assumption fails, the split is wrong by any factor, and
 its interval says nothing of it. But noise can never be more than what some fitted model leaves on
-the same rows, nor more than what of the residual does not depend on the input; and two routes that
-exclude each other leave nothing to state.
+the same rows and its parameters took up, nor more than what of the residual does not depend on the
+input; and two routes that exclude each other leave nothing to state.
 """
 
 from collections.abc import Sequence
@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.noise.error_parts import Split, may_be_noise
 from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
+from trialid.diagnosis.search.carry_over import own_errors
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.identification.fit import Fit
 
@@ -53,7 +54,8 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
     assert chosen.undermodelling_interval is not None
     low, high = chosen.noise_interval
     total, left = fit.eps_rmsn, least.eps_rmsn
-    if low > left:
+    most = left * _room(least)
+    if low > most:
         known = {e.name for e in fit.model.effects}
         added = " and ".join(e.name for e in least.model.effects if e.name not in known)
         said = f"{_said(chosen)}, yet with {added} in the model only {left:.2%} is left in all"
@@ -71,10 +73,17 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
         chosen,
         noise=noise,
         undermodelling=model,
-        noise_interval=(min(low, noise), min(high, left)),
+        noise_interval=(min(low, noise), min(high, most)),
         undermodelling_interval=(floor, max(top, model)),  # by chance alone a fit leaves less, too
         by_output={c: (x, _rest(eps, x)) for c, (x, eps) in by_output.items()} or None,
     )
+
+
+def _room(fit: Fit) -> float:
+    """How much larger than what a fit leaves noise may be, for the parameters took some up."""
+    seen = fit.examined
+    inside, outside = float(seen.residual @ seen.residual), sum(own_errors(seen).whole)
+    return float(np.sqrt(may_be_noise(seen, inside, outside) / max(inside, 1e-300)))
 
 
 def _rest(total: float, part: float) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask
-from trialid.diagnosis.noise.error_parts import Interval, Split, split_by_noise
+from trialid.diagnosis.noise.error_parts import Interval, Split, may_be_noise, split_by_noise
 from trialid.diagnosis.noise.excitation import (
     are_same,
     excitation,
@@ -32,12 +32,14 @@ from trialid.diagnosis.noise.residual import (
     OutputNoise,
     Residual,
     about_mean,
+    heavy_tail,
     pool_variance,
     residuals,
     slowness,
 )
 from trialid.diagnosis.noise.variance import hac
 from trialid.diagnosis.search.augment import Augmented
+from trialid.diagnosis.search.carry_over import left_out
 from trialid.identification.fit import Fit
 from trialid.trial_rows import Stretch
 
@@ -176,15 +178,11 @@ def _stated(fit: Fit, stated: Mapping[str, float]) -> Split:
 
 def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], why: str) -> Split:
     """A split from pieces of pure noise; (n, n_y) each."""
-    every = residuals(fit)
-    found = [
-        pool_variance(
-            [p[:, c] for p, _ in pieces],
-            [m[:, c] for _, m in pieces],
-            slowness([r.eps[:, c] for r in every], [r.compared[:, c] for r in every]),
-        )
-        for c in range(len(fit.problem.outputs))
-    ]
+    every, found = residuals(fit), []
+    for c in range(len(fit.problem.outputs)):
+        whole = [r.eps[:, c] for r in every], [r.compared[:, c] for r in every]
+        own = [p[:, c] for p, _ in pieces], [m[:, c] for _, m in pieces]
+        found.append(pool_variance(*own, slowness(*whole), heavy_tail(*whole)))
     for c, noise in zip(fit.problem.outputs, found, strict=True):
         if noise is None:
             return Split(method, f"{why}: nothing compared in {c}")
@@ -217,7 +215,25 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
         for c in range(len(fit.problem.outputs))
     ]
     why = f"what {Z.shape[1]} directions of candidate effects explain beyond chance is model"
-    return split_by_noise(fit, method, why, found)
+    return split_by_noise(fit, method, why, found, at_most=_at_most(fit, augmented, T, beta))
+
+
+def _at_most(fit: Fit, augmented: Augmented, T: Vector, beta: Vector) -> float:
+    """What noise may be though these directions explain some of it, as eps_RMSn.
+
+    Noise may run with the rudder by chance, or because the helmsman answers it: what then seems to
+    depend on the input does not carry over. The directions' coefficients `beta` are chosen on
+    these rows, T are the directions by candidates' columns.
+    """
+    seen, raw, residual = augmented.fit, augmented.evidence.raw, augmented.residual
+    blocks = left_out(seen, residual, augmented.psi, augmented.S @ T, augmented.stretches)
+    whole, left = float(residual @ residual), raw.residual - raw.S @ (T @ beta)
+    without, with_all = (sum(blocks.errors(c).whole) for c in ((), range(len(beta))))
+    most = min(
+        may_be_noise(seen, whole, without),
+        may_be_noise(seen, float(left @ left), with_all, len(beta)),
+    )
+    return fit.eps_rmsn * float(np.sqrt(most / whole))
 
 
 def _visible_directions(raw: Vector, whole: Vector, white: Vector) -> Vector:
