@@ -152,7 +152,7 @@ def restored(scenario: Scenario, model: ShipModel) -> ShipModel:
 
 
 @functools.cache
-def truth(scenario: Scenario) -> Simulator:
+def _truth(scenario: Scenario) -> Simulator:
     """The true ship, ready to run."""
     states = dict.fromkeys((*scenario.ship.states, "psi"))
     model = replace(without(scenario), states=(*states,)) + CATALOGUE["outer_force"]
@@ -163,12 +163,11 @@ def record(
     scenario: Scenario, noise: str, trial_set: str, seed: int, rudder: bool = False
 ) -> tuple[Trial, ...]:
     """Every trial of a set as logged; with `rudder` the true rudder even where only orders are."""
-    simulator = truth(scenario)
     made = []
     for manoeuvre in TRIAL_SETS[trial_set]:
         rng = generator(seed, scenario.name, noise, trial_set, manoeuvre.name)
         forces = disturbance(noise, manoeuvre, rng)
-        passage = _sailed(simulator, scenario, manoeuvre, forces, rng)
+        passage = _sailed(scenario, manoeuvre, forces, rng)
         made.append(_logged(scenario, passage, manoeuvre, noise, rng))
         if scenario.gear is not None and not rudder:
             made[-1] = _ordered(made[-1], passage)
@@ -186,21 +185,15 @@ class Passage:
 
 
 def _sailed(
-    simulator: Simulator,
-    scenario: Scenario,
-    manoeuvre: Manoeuvre,
-    forces: Mapping[str, Vector],
-    rng: np.random.Generator,
+    scenario: Scenario, manoeuvre: Manoeuvre, forces: Mapping[str, Vector], rng: np.random.Generator
 ) -> Passage:
     """The manoeuvre as it comes out on the true ship in its weather."""
-    sail = sailor(simulator, scenario, manoeuvre, forces)
-    if manoeuvre.heading is None:
-        return sail(binary(manoeuvre, rng))
-    return zigzag(manoeuvre, sail)
+    sail = sailor(scenario, manoeuvre, forces)
+    return sail(binary(manoeuvre, rng)) if manoeuvre.heading is None else zigzag(manoeuvre, sail)
 
 
 def sailor(
-    simulator: Simulator, scenario: Scenario, manoeuvre: Manoeuvre, forces: Mapping[str, Vector]
+    scenario: Scenario, manoeuvre: Manoeuvre, forces: Mapping[str, Vector]
 ) -> Callable[[Vector], Passage]:
     """From an order (N,) [rad] to the passage of the true ship in this weather."""
 
@@ -209,10 +202,10 @@ def sailor(
         signals = {"delta": delta, "n": np.full(len(delta), SHAFT), **forces}
         trial = Trial(manoeuvre.name, "fit", STEP, signals, {})
         start = {"u": SHIP.particulars["U0"], "psi": manoeuvre.course}
-        response = respond(simulator, trial, {}, start, sensitivities=False)
+        response = respond(_truth(scenario), trial, {}, start, sensitivities=False)
         if response.departure is not None:
             raise RuntimeError(f"{scenario.name}: {response.departure}")
-        states = dict(zip(simulator.model.all_states, response.states.T, strict=True))
+        states = dict(zip(_truth(scenario).model.all_states, response.states.T, strict=True))
         return Passage(order, delta, response.y, states)
 
     return sail

@@ -70,10 +70,13 @@ def split_by_noise(
     total, spread = _total(fit)
     noise2 = float(np.mean([n.variance for n in found]))
     deviation = float(np.sqrt(np.sum([n.deviation**2 for n in found])) / len(found))
-    if CONFIDENCE * deviation > 2.0 * TIGHT * noise2:
+    unlike = float(np.mean([n.unlike for n in found]))
+    if CONFIDENCE * deviation + 0.5 * unlike > 2.0 * TIGHT * noise2:
+        if unlike > CONFIDENCE * deviation:
+            return Split(method, f"{why}: the motion is not alike enough, {np.sqrt(unlike):.2%}")
         share = 0.5 * CONFIDENCE * deviation / noise2
         return Split(method, f"{why}: too short, the noise is known to +-{share:.0%} only")
-    low2, high2 = noise2 - CONFIDENCE * deviation, noise2 + CONFIDENCE * deviation
+    low2, high2 = noise2 - CONFIDENCE * deviation - unlike, noise2 + CONFIDENCE * deviation
     if low2 > (total**2 + CONFIDENCE * spread):
         said = f"noise of {np.sqrt(low2):.2%} and more, and {total:.2%} is the whole error"
         return Split(method, f"{why}: not typical, {said}")
@@ -83,7 +86,7 @@ def split_by_noise(
         by_output[c] = (float(np.sqrt(x2)), float(np.sqrt(eps**2 - x2)))
     x2, m2 = (float(np.mean([part[k] ** 2 for part in by_output.values()])) for k in (0, 1))
     gap = CONFIDENCE * float(np.hypot(deviation, spread))
-    model2 = total**2 - noise2 - gap, total**2 - noise2 + gap
+    model2 = total**2 - noise2 - gap, total**2 - noise2 + gap + unlike
     if at_most > 0.0:
         high2, model2 = max(high2, at_most**2), (min(model2[0], total**2 - at_most**2), model2[1])
     return Split(

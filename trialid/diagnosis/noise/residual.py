@@ -1,7 +1,7 @@
 """What a fit leaves over, on each trial's clock, and how many independent values that is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,16 @@ class Residual:
     compared: Mask
     predicted: Vector
 
+    def between(self, start: int, stop: int | None) -> "Residual":
+        """The samples from one to another."""
+        here = slice(start, stop)
+        return replace(
+            self,
+            eps=self.eps[here],
+            compared=self.compared[here],
+            predicted=self.predicted[here],
+        )
+
 
 def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
     """Normed output errors of a fit, trial by trial, on the trial's clock."""
@@ -42,10 +52,14 @@ def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
 
 @dataclass(frozen=True)
 class OutputNoise:
-    """Noise of one output by one route: normed variance, its standard error, effective samples."""
+    """Noise of one output by one route: normed variance and its standard error.
+
+    `unlike` is what of the variance may be the model's: it may err differently in what is compared.
+    """
 
     variance: float
     deviation: float
+    unlike: float = 0.0
 
 
 def pool_variance(
