@@ -166,8 +166,9 @@ def record(
     made = []
     for manoeuvre in TRIAL_SETS[trial_set]:
         rng = generator(seed, scenario.name, noise, trial_set, manoeuvre.name)
-        forces = disturbance(noise, manoeuvre, rng)
-        passage = _sailed(scenario, manoeuvre, forces, rng)
+        sail = sailor(scenario, manoeuvre, disturbance(noise, manoeuvre, rng))
+        steered = manoeuvre.heading is not None
+        passage = zigzag(manoeuvre, sail) if steered else sail(binary(manoeuvre, rng))
         made.append(_logged(scenario, passage, manoeuvre, noise, rng))
         if scenario.gear is not None and not rudder:
             made[-1] = _ordered(made[-1], passage)
@@ -182,14 +183,6 @@ class Passage:
     delta: Vector
     y: Vector
     states: Mapping[str, Vector]
-
-
-def _sailed(
-    scenario: Scenario, manoeuvre: Manoeuvre, forces: Mapping[str, Vector], rng: np.random.Generator
-) -> Passage:
-    """The manoeuvre as it comes out on the true ship in its weather."""
-    sail = sailor(scenario, manoeuvre, forces)
-    return sail(binary(manoeuvre, rng)) if manoeuvre.heading is None else zigzag(manoeuvre, sail)
 
 
 def sailor(

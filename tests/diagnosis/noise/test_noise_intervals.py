@@ -78,3 +78,44 @@ def test_a_quiet_stretch_noisier_than_the_whole_record_is_not_typical():
     chosen, routes = split(fit_of(trial("calmer", loud * noise(8, n), delta=delta)), NOTHING, {})
     assert not chosen.available
     assert "not typical" in routes[2].why
+
+
+def counted(step):
+    """A record whose sensor counts in such steps, and of which the model misses nothing."""
+    n = 3000
+    motion = np.sin(np.arange(n) / 15.0) * (np.arange(n) >= 240)
+    seen = np.round((motion + SIGMA * noise(6, n)) / step) * step
+    delta = np.where(np.arange(n) < 240, 0.0, steered(n))
+    return fit_of(trial("counted", seen - motion, predicted=motion, delta=delta))
+
+
+@pytest.mark.parametrize(("step", "coarse"), [(1.0, False), (3.0, True)])
+def test_a_count_coarser_than_the_noise_follows_the_motion_and_is_no_noise(step, coarse):
+    """Of once the noise it is noise itself; of three times nearly nothing changes at rest."""
+    fit = counted(step * SIGMA)
+    chosen, _ = split(fit, NOTHING, {})
+    assert chosen.available is not coarse
+    if coarse:
+        assert "counts coarser than the noise: r" in chosen.why
+        assert split(fit, NOTHING, {"r": 0.25})[0].method == "stated sensor figure"
+    else:
+        low, high = chosen.noise_interval
+        assert low <= np.sqrt(1.0 + step**2 / 12.0) * SIGMA <= high
+
+
+def test_runs_that_the_model_foretells_to_differ_may_differ_by_its_error():
+    """The second run's motion is a fifth more, and so is what the model misses of it."""
+    n = 3000
+    motion = np.sin(np.arange(n) / 9.0)
+    runs = [
+        trial(f"{k}", 0.15 * size * motion + SIGMA * noise(k, n), size * motion, steered(n))
+        for k, size in ((30, 1.0), (31, 1.2))
+    ]
+    chosen, _ = split(fit_of(*runs), NOTHING, {})
+    low, high = chosen.noise_interval
+    assert low < 0.99 * SIGMA < high
+    alike = [
+        trial(f"{k}", 0.15 * motion + SIGMA * noise(k, n), motion, steered(n)) for k in (30, 31)
+    ]
+    sure = split(fit_of(*alike), NOTHING, {})[0].noise_interval
+    assert low < 0.95 * sure[0] < SIGMA

@@ -92,6 +92,8 @@ def _rest(total: float, part: float) -> float:
 
 def _contradiction(chosen: Split, others: Sequence[Split], whole: Completeness | None) -> str:
     """What speaks against a route, in words with both figures; empty where nothing does."""
+    if chosen.method == INPUT_DRIVEN and whole is not None and whole.gap:
+        return f"{_said(chosen)} at most: the catalogue does not hold all that depends on the input"
     for other in others:
         if _excludes(chosen, other, whole):
             return f"routes contradict each other: {_said(chosen)}; {_said(other)}"
