@@ -11,9 +11,9 @@ from trialid.diagnosis.noise.residual import Residual
 Vector = NDArray[np.float64]
 
 STEEP: Final = 3.0
-"""How much faster than the motion a model's error may change from run to run: a cubic's. Of 44 tests
-taken for periodic the noise is inside in 36 and 7 are refused; with half 24 are inside and none is
-refused, with twice 12 are and 32 refused."""
+"""How much faster than the motion a model's error may change from run to run: a cubic's. Of 44
+tests taken for periodic the noise is inside in 36, 7 are refused; with half 24 are inside and none
+is refused, with twice 12 are and 32 refused."""
 
 
 def differences(one: Residual, other: Residual) -> tuple[Vector, Mask]:

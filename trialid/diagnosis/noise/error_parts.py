@@ -100,7 +100,7 @@ def split_by_noise(
 
 
 def _hardly_known(noise2: float, off: float, unlike: float) -> str:
-    """Why a noise is no estimate whose square is known to `off`, and to `unlike` less; or nothing."""
+    """Why a noise known to `off` and `unlike`, as squares, is no estimate; empty where it is."""
     if off + 0.5 * unlike <= 2.0 * TIGHT * noise2:
         return ""
     if unlike > off:

@@ -14,6 +14,7 @@ import numpy as np
 
 from trialid.diagnosis.noise.error_parts import Split, may_be_noise
 from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
+from trialid.diagnosis.search.carried import FALL
 from trialid.diagnosis.search.carry_over import own_errors
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.identification.fit import Fit
@@ -44,6 +45,9 @@ def held_against(
     if not able:
         return chosen
     least = min(able, key=lambda f: f.eps_rmsn)
+    if chosen.method == INPUT_DRIVEN and (least.eps_rmsn / fit.eps_rmsn) ** 2 < FALL:
+        said = f"{_said(chosen)} at most: slopes of a model that lacks {_added(fit, least)}"
+        return Split("not separable", said)
     return _bounded(chosen, fit, least)
 
 
@@ -56,8 +60,7 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
     total, left = fit.eps_rmsn, least.eps_rmsn
     most = left * _room(least)
     if low > most:
-        known = {e.name for e in fit.model.effects}
-        added = " and ".join(e.name for e in least.model.effects if e.name not in known)
+        added = _added(fit, least)
         said = f"{_said(chosen)}, yet with {added} in the model only {left:.2%} is left in all"
         return Split("not separable", said)
     by_output = {
@@ -84,6 +87,12 @@ def _room(fit: Fit) -> float:
     seen = fit.examined
     inside, outside = float(seen.residual @ seen.residual), sum(own_errors(seen).whole)
     return float(np.sqrt(may_be_noise(seen, inside, outside) / max(inside, 1e-300)))
+
+
+def _added(fit: Fit, larger: Fit) -> str:
+    """What a larger model has more, by name."""
+    known = {e.name for e in fit.model.effects}
+    return " and ".join(e.name for e in larger.model.effects if e.name not in known)
 
 
 def _rest(total: float, part: float) -> float:
