@@ -161,12 +161,12 @@ def record(
     scenario: Scenario, noise: str, trial_set: str, seed: int, rudder: bool = False
 ) -> tuple[Trial, ...]:
     """Every trial of a set as logged; with `rudder` the true rudder even where only orders are."""
-    simulator = _truth(scenario)
     made = []
     for manoeuvre in TRIAL_SETS[trial_set]:
         rng = generator(seed, scenario.name, noise, trial_set, manoeuvre.name)
-        forces = disturbance(noise, manoeuvre, rng)
-        passage = _sailed(simulator, scenario, manoeuvre, forces, rng)
+        sail = sailor(scenario, manoeuvre, disturbance(noise, manoeuvre, rng))
+        steered = manoeuvre.heading is not None
+        passage = zigzag(manoeuvre, sail) if steered else sail(binary(manoeuvre, rng))
         made.append(_logged(scenario, passage, manoeuvre, noise, rng))
         if scenario.gear is not None and not rudder:
             made[-1] = _ordered(made[-1], passage)
@@ -183,29 +183,23 @@ class Passage:
     states: Mapping[str, Vector]
 
 
-def _sailed(
-    simulator: Simulator,
-    scenario: Scenario,
-    manoeuvre: Manoeuvre,
-    forces: Mapping[str, Vector],
-    rng: np.random.Generator,
-) -> Passage:
-    """The manoeuvre as it comes out on the true ship in its weather."""
+def sailor(
+    scenario: Scenario, manoeuvre: Manoeuvre, forces: Mapping[str, Vector]
+) -> Callable[[Vector], Passage]:
+    """From an order (N,) [rad] to the passage of the true ship in this weather."""
 
     def sail(order: Vector) -> Passage:
         delta = order if scenario.gear is None else scenario.gear(order, STEP)
         signals = {"delta": delta, "n": np.full(len(delta), SHAFT), **forces}
         trial = Trial(manoeuvre.name, "fit", STEP, signals, {})
         start = {"u": SHIP.particulars["U0"], "psi": manoeuvre.course}
-        response = respond(simulator, trial, {}, start, sensitivities=False)
+        response = respond(_truth(scenario), trial, {}, start, sensitivities=False)
         if response.departure is not None:
             raise RuntimeError(f"{scenario.name}: {response.departure}")
-        states = dict(zip(simulator.model.all_states, response.states.T, strict=True))
+        states = dict(zip(_truth(scenario).model.all_states, response.states.T, strict=True))
         return Passage(order, delta, response.y, states)
 
-    if manoeuvre.heading is None:
-        return sail(binary(manoeuvre, rng))
-    return zigzag(manoeuvre, sail)
+    return sail
 
 
 def clock(manoeuvre: Manoeuvre) -> Vector:

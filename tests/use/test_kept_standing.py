@@ -10,7 +10,7 @@ import pytest
 from test_bad_input import trialid_
 
 from trialid import plugins
-from trialid.cache import sources
+from trialid.cache import package_digest
 from trialid.progress import silent
 from trialid.workflow import write_run
 from trialid.workflow.use import finished_model as taking_up
@@ -105,14 +105,14 @@ def test_a_spoilt_file_is_worked_out_anew(copied: Path, reads: list[str], spoilt
 
 def test_every_source_of_the_package_counts(tmp_path: Path, monkeypatch) -> None:
     """One letter in one of them, or its name, and it is another package."""
-    assert (sources.SOURCES / "version.py").is_file()
-    monkeypatch.setattr(sources, "SOURCES", tmp_path)
+    assert (package_digest.SOURCES / "version.py").is_file()
+    monkeypatch.setattr(package_digest, "SOURCES", tmp_path)
     found = set()
     for name, text in (("a.py", "x = 1"), ("a.py", "x = 2"), ("deep/b.py", "x = 2")):
         shutil.rmtree(tmp_path)
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-        found.add(sources.source_digest.__wrapped__())
+        found.add(package_digest.source_digest.__wrapped__())
     assert len(found) == 3
 
 

@@ -2,20 +2,20 @@
 
 A route rests on an assumption: that the quiet stretch was as noisy as the manoeuvre, that the
 model errs alike in every period. Where the assumption fails, the split is wrong by any factor, and
-its interval says nothing of it. But noise is hardly more than what some fitted model leaves on the
-same rows, with what its parameters take of noise by chance, nor more than what of the residual does
-not depend on the input; and two routes that exclude each other leave nothing to state.
+its interval says nothing of it. But noise can never be more than what some fitted model leaves on
+the same rows and its parameters took up, nor more than what of the residual does not depend on the
+input; and two routes that exclude each other leave nothing to state.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import chdtri
 
-from trialid.accuracy.likely import CONFIDENCE
-from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.noise.error_parts import Split, may_be_noise
 from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
+from trialid.diagnosis.search.carried import FALL
+from trialid.diagnosis.search.carry_over import own_errors
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.identification.fit import Fit
 
@@ -45,6 +45,9 @@ def held_against(
     if not able:
         return chosen
     least = min(able, key=lambda f: f.eps_rmsn)
+    if chosen.method == INPUT_DRIVEN and (least.eps_rmsn / fit.eps_rmsn) ** 2 < FALL:
+        said = f"{_said(chosen)} at most: slopes of a model that lacks {_added(fit, least)}"
+        return Split("not separable", said)
     return _bounded(chosen, fit, least)
 
 
@@ -55,10 +58,9 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
     assert chosen.undermodelling_interval is not None
     low, high = chosen.noise_interval
     total, left = fit.eps_rmsn, least.eps_rmsn
-    most = _most_noise(fit, least)
+    most = left * _room(least)
     if low > most:
-        known = {e.name for e in fit.model.effects}
-        added = " and ".join(e.name for e in least.model.effects if e.name not in known)
+        added = _added(fit, least)
         said = f"{_said(chosen)}, yet with {added} in the model only {left:.2%} is left in all"
         return Split("not separable", said)
     by_output = {
@@ -80,14 +82,17 @@ def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:
     )
 
 
-def _most_noise(fit: Fit, least: Fit) -> float:
-    """What noise is at most where another fit leaves so little: its parameters took some away.
+def _room(fit: Fit) -> float:
+    """How much larger than what a fit leaves noise may be, for the parameters took some up."""
+    seen = fit.examined
+    inside, outside = float(seen.residual @ seen.residual), sum(own_errors(seen).whole)
+    return float(np.sqrt(may_be_noise(seen, inside, outside) / max(inside, 1e-300)))
 
-    By chance each takes as much as one independent row is: together they go by chi-squared.
-    """
-    more = max(len(least.theta) - len(fit.theta), 1)
-    taken = least.level**2 * float(chdtri(more, 1.0 - CONFIDENCE))
-    return float(np.sqrt(least.eps_rmsn**2 + taken))
+
+def _added(fit: Fit, larger: Fit) -> str:
+    """What a larger model has more, by name."""
+    known = {e.name for e in fit.model.effects}
+    return " and ".join(e.name for e in larger.model.effects if e.name not in known)
 
 
 def _rest(total: float, part: float) -> float:
@@ -96,6 +101,8 @@ def _rest(total: float, part: float) -> float:
 
 def _contradiction(chosen: Split, others: Sequence[Split], whole: Completeness | None) -> str:
     """What speaks against a route, in words with both figures; empty where nothing does."""
+    if chosen.method == INPUT_DRIVEN and whole is not None and whole.gap:
+        return f"{_said(chosen)} at most: the catalogue does not hold all that depends on the input"
     for other in others:
         if _excludes(chosen, other, whole):
             return f"routes contradict each other: {_said(chosen)}; {_said(other)}"

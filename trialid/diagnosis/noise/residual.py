@@ -1,7 +1,7 @@
 """What a fit leaves over, on each trial's clock, and how many independent values that is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,16 @@ class Residual:
     compared: Mask
     predicted: Vector
 
+    def between(self, start: int, stop: int | None) -> "Residual":
+        """The samples from one to another."""
+        here = slice(start, stop)
+        return replace(
+            self,
+            eps=self.eps[here],
+            compared=self.compared[here],
+            predicted=self.predicted[here],
+        )
+
 
 def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
     """Normed output errors of a fit, trial by trial, on the trial's clock."""
@@ -42,19 +52,24 @@ def residuals(fit: Fit, uses: Sequence[str] = ("fit",)) -> list[Residual]:
 
 @dataclass(frozen=True)
 class OutputNoise:
-    """Noise of one output by one route: normed variance, its standard error, effective samples."""
+    """Noise of one output by one route: normed variance and its standard error.
+
+    `unlike` is what of the variance may be the model's: it may err differently in what is compared.
+    """
 
     variance: float
     deviation: float
+    unlike: float = 0.0
 
 
 def pool_variance(
-    pieces: Sequence[Vector], masks: Sequence[Mask], slow: float = 1.0
+    pieces: Sequence[Vector], masks: Sequence[Mask], slow: float = 1.0, tail: float = 0.0
 ) -> OutputNoise | None:
     """Variance over pieces, and its standard error.
 
     `slow` is the least number of samples that count as one; short pieces alone would make slow
-    noise look independent.
+    noise look independent. `tail` is the noise's fourth cumulant: rare large values that a short
+    piece mostly lacks.
     """
     count = sum(int(m.sum()) for m in masks)
     if count < 10:
@@ -63,7 +78,21 @@ def pool_variance(
     own = sum(effective_in(p, m) for p, m in zip(pieces, masks, strict=True))
     degrees = max(own - len(pieces), 1.0)
     sure = max(min(own, count / slow) - len(pieces), 1.0)
-    return OutputNoise(variance * own / degrees, variance * np.sqrt(2.0 / sure))
+    deviation = np.hypot(variance * np.sqrt(2.0 / sure), np.sqrt(tail / count))
+    return OutputNoise(variance * own / degrees, float(deviation))
+
+
+def heavy_tail(pieces: Sequence[Vector], masks: Sequence[Mask]) -> float:
+    """Fourth cumulant of what changes from sample to sample, over whole trials; >= 0.
+
+    Smooth errors of the model, however peaked, are nearly gone from first differences; values far
+    off stand in them twice.
+    """
+    steps = [np.diff(p)[m[1:] & m[:-1]] for p, m in zip(pieces, masks, strict=True)]
+    d = np.concatenate(steps) if steps else np.zeros(0)
+    if len(d) == 0:
+        return 0.0
+    return max(float(np.mean(d**4) - 3.0 * np.mean(d**2) ** 2), 0.0) / 2.0
 
 
 def slowness(pieces: Sequence[Vector], masks: Sequence[Mask]) -> float:
@@ -98,13 +127,3 @@ def effective_in(e: Vector, mask: Mask) -> float:
     lags = window(c / n, len(e))
     rho = c[1:lags] / c[0]
     return n / (1.0 + 2.0 * float(rho @ rho))
-
-
-def effective_samples(fit: Fit) -> float:
-    """Effective number of compared values for the variance of the residual."""
-    found = residuals(fit)
-    return sum(
-        effective_in(r.eps[:, c], r.compared[:, c])
-        for r in found
-        for c in range(len(fit.problem.outputs))
-    )

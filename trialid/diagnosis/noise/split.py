@@ -13,13 +13,16 @@ First differences are not a route: on wave noise they find about a tenth of the 
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask
-from trialid.diagnosis.noise.error_parts import Interval, Split, split_by_noise
+from trialid.diagnosis.noise.between_runs import differences, may_be_unlike
+from trialid.diagnosis.noise.coarse_counts import coarse_counts
+from trialid.diagnosis.noise.error_parts import Interval, Split, may_be_noise, split_by_noise
 from trialid.diagnosis.noise.excitation import (
     are_same,
     excitation,
@@ -32,12 +35,14 @@ from trialid.diagnosis.noise.residual import (
     OutputNoise,
     Residual,
     about_mean,
+    heavy_tail,
     pool_variance,
     residuals,
     slowness,
 )
 from trialid.diagnosis.noise.variance import hac
 from trialid.diagnosis.search.augment import Augmented
+from trialid.diagnosis.search.carry_over import left_out
 from trialid.identification.fit import Fit
 from trialid.trial_rows import Stretch
 
@@ -73,18 +78,23 @@ def split(
     quiet
         Stretches [s] by trial name that the user declares to be without excitation.
     """
-    routes = (
-        _repeated(fit),
-        _periodic(fit),
-        _quiet(fit, quiet or {}),
-        _input_driven(fit, augmented),
-        _stated(fit, stated),
-    )
+    coarse = coarse_counts(fit)
+    able = _by_record(fit, augmented, quiet or {})
+    if coarse:
+        able = tuple(Split(r.method, coarse) for r in able)
+    routes = (*able, _stated(fit, stated))
     for route in routes:
         if route.available:
             return route, routes
     why = "; ".join(f"{r.method}: {r.why}" for r in routes)
-    return Split("not separable", why), routes
+    return Split("not separable", coarse or why), routes
+
+
+def _by_record(
+    fit: Fit, augmented: Augmented, quiet: Mapping[str, Sequence[Interval]]
+) -> tuple[Split, ...]:
+    """Routes a to d."""
+    return _repeated(fit), _periodic(fit), _quiet(fit, quiet), _input_driven(fit, augmented)
 
 
 def _repeated(fit: Fit) -> Split:
@@ -99,34 +109,30 @@ def _repeated(fit: Fit) -> Split:
     ]
     if not pairs:
         return Split(method, f"no two trials have the same {what_drives(ship)} record")
-    pieces = [_differences(one, other) for one, other in pairs]
+    pieces = [differences(one, other) for one, other in pairs]
     names = " and ".join(repr(r.trial.name) for r in pairs[0])
-    return _from_pieces(fit, method, pieces, f"what differs between {names}")
-
-
-def _differences(one: Residual, other: Residual) -> tuple[Vector, Mask]:
-    """Half-difference scaled to one run's noise: the model's own error cancels; (N, n_y)."""
-    n = min(len(one.eps), len(other.eps))
-    both = one.compared[:n] & other.compared[:n]
-    return np.where(both, (one.eps[:n] - other.eps[:n]) / np.sqrt(2.0), 0.0), both
+    unlike = [may_be_unlike(one, other) for one, other in pairs]
+    return _from_pieces(fit, method, pieces, f"what differs between {names}", unlike)
 
 
 def _periodic(fit: Fit) -> Split:
     """Route b: periods of one trial's record of what steers and drives against each other."""
     method, ship = "periods of a periodic test", fit.model.ship
-    pieces, words = [], []
+    pieces, words, unlike = [], [], []
     for r in residuals(fit):
         moves = excitation(ship, r.trial)
         found = None if moves is None else period_of(moves)
         if found is not None:
             start, lag = found
-            late = Residual(r.trial, r.eps[start + lag :], r.compared[start + lag :], r.predicted)
-            early = Residual(r.trial, r.eps[start:-lag], r.compared[start:-lag], r.predicted)
-            pieces.append(_differences(late, early))
+            late, early = r.between(start + lag, None), r.between(start, -lag)
+            pieces.append(differences(late, early))
+            unlike.append(may_be_unlike(late, early))
             words.append(f"{lag * r.trial.period:.0f} s in {r.trial.name!r}")
     if not pieces:
         return Split(method, f"no {what_drives(ship)} record repeats itself")
-    return _from_pieces(fit, method, pieces, "scatter between periods of " + ", ".join(words))
+    return _from_pieces(
+        fit, method, pieces, "scatter between periods of " + ", ".join(words), unlike
+    )
 
 
 def _quiet(fit: Fit, declared: Mapping[str, Sequence[Interval]]) -> Split:
@@ -174,21 +180,28 @@ def _stated(fit: Fit, stated: Mapping[str, float]) -> Split:
     return split_by_noise(fit, method, "as stated in [diagnose] noise", found)
 
 
-def _from_pieces(fit: Fit, method: str, pieces: Sequence[tuple[Vector, Mask]], why: str) -> Split:
-    """A split from pieces of pure noise; (n, n_y) each."""
-    every = residuals(fit)
-    found = [
-        pool_variance(
-            [p[:, c] for p, _ in pieces],
-            [m[:, c] for _, m in pieces],
-            slowness([r.eps[:, c] for r in every], [r.compared[:, c] for r in every]),
-        )
-        for c in range(len(fit.problem.outputs))
-    ]
-    for c, noise in zip(fit.problem.outputs, found, strict=True):
+def _from_pieces(
+    fit: Fit,
+    method: str,
+    pieces: Sequence[tuple[Vector, Mask]],
+    why: str,
+    unlike: Sequence[Vector] = (),
+) -> Split:
+    """A split from pieces of noise, (n, n_y) each, but for what is `unlike` in each, (n_y,)."""
+    every, found = residuals(fit), []
+    for c in range(len(fit.problem.outputs)):
+        whole = [r.eps[:, c] for r in every], [r.compared[:, c] for r in every]
+        own = [p[:, c] for p, _ in pieces], [m[:, c] for _, m in pieces]
+        found.append(pool_variance(*own, slowness(*whole), heavy_tail(*whole)))
+    for name, noise in zip(fit.problem.outputs, found, strict=True):
         if noise is None:
-            return Split(method, f"{why}: nothing compared in {c}")
-    return split_by_noise(fit, method, why, [n for n in found if n is not None])
+            return Split(method, f"{why}: nothing compared in {name}")
+    known = [n for n in found if n is not None]
+    if unlike:
+        known = [
+            replace(n, unlike=float(u)) for n, u in zip(known, np.mean(unlike, 0), strict=True)
+        ]
+    return split_by_noise(fit, method, why, known)
 
 
 def _input_driven(fit: Fit, augmented: Augmented) -> Split:
@@ -217,7 +230,25 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
         for c in range(len(fit.problem.outputs))
     ]
     why = f"what {Z.shape[1]} directions of candidate effects explain beyond chance is model"
-    return split_by_noise(fit, method, why, found)
+    return split_by_noise(fit, method, why, found, at_most=_at_most(fit, augmented, T, beta))
+
+
+def _at_most(fit: Fit, augmented: Augmented, T: Vector, beta: Vector) -> float:
+    """What noise may be though these directions explain some of it, as eps_RMSn.
+
+    Noise may run with the rudder by chance, or because the helmsman answers it: what then seems to
+    depend on the input does not carry over. The directions' coefficients `beta` are chosen on
+    these rows, T are the directions by candidates' columns.
+    """
+    seen, raw, residual = augmented.fit, augmented.evidence.raw, augmented.residual
+    blocks = left_out(seen, residual, augmented.psi, augmented.S @ T, augmented.stretches)
+    whole, left = float(residual @ residual), raw.residual - raw.S @ (T @ beta)
+    without, with_all = (sum(blocks.errors(c).whole) for c in ((), range(len(beta))))
+    most = min(
+        may_be_noise(seen, whole, without),
+        may_be_noise(seen, float(left @ left), with_all, len(beta)),
+    )
+    return fit.eps_rmsn * float(np.sqrt(most / whole))
 
 
 def _visible_directions(raw: Vector, whole: Vector, white: Vector) -> Vector:

@@ -1,0 +1,40 @@
+"""Whether a sensor counts so coarsely that its error is no noise: it follows the motion."""
+
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.diagnosis.noise.residual import residuals
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import output_matrix
+
+DITHER: Final = 0.5
+"""Noise, in counts, from which on rounding is noise of its own: by Widrow & Kollar (2008,
+Quantization Noise) its error keeps exp(-2 pi^2 DITHER^2) of the motion, 0.7 %; 29 % at half as
+much, and nothing at twice, where sensors whose rounding is no trouble would be refused."""
+
+GRAIN: Final = 1e-6
+"""Share of the range below which two values are one that was converted twice."""
+
+
+def coarse_counts(fit: Fit) -> str:
+    """Which outputs are counted more coarsely than they are noisy, in words; empty where none is.
+
+    All that is left over is taken for noise, so that what is said to be coarse is.
+    """
+    found = residuals(fit)
+    names = []
+    for c, (name, rms) in enumerate(zip(fit.problem.outputs, fit.problem.y_rms, strict=True)):
+        y = np.concatenate([output_matrix(r.trial, (name,))[r.compared[:, c], 0] for r in found])
+        step = count_of(y) / rms
+        if fit.eps_by_output[name] ** 2 < (DITHER**2 + 1.0 / 12.0) * step**2:
+            names.append(f"{name} (steps of {step:.1%} of its size)")
+    return f"counts coarser than the noise: {', '.join(names)}" if names else ""
+
+
+def count_of(y: Vector) -> float:
+    """Least difference between two values; (N,)."""
+    steps = np.diff(np.unique(y))
+    steps = steps[steps > GRAIN * np.sum(steps)]
+    return float(steps.min()) if len(steps) else 0.0
