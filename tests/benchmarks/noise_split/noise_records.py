@@ -172,7 +172,7 @@ def recorded(
         y, clean[m.name] = passage.y[::each], calm[::each]
         rng, n = generator(seed, m.name, "sensors"), len(y)
         # the noise is smaller where its size is, and so is the motion that a count is a share of
-        seen = y + size * case.put(rng, np.arange(n) * PERIOD, y / size)
+        seen = np.add(y, size * case.put(rng, np.arange(n) * PERIOD, y / size))
         signals = {
             "delta": passage.delta[::each].copy(),
             "n": np.full(n, true.SHAFT),

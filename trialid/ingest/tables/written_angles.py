@@ -11,14 +11,15 @@ from trialid.arrays import Vector
 from trialid.ingest.tables.table import MISSING
 
 _ANGLE: Final = re.compile(
-    r"(?P<before>[NSEW])?\s*"
+    r"(?P<before>[NSEW])?\s*+"
     r"(?:(?P<run>\d{4,5}(?:[.,]\d+)?)"  # ddmm.mmmm
-    r"|(?P<deg>\d{1,3}(?P<part>[.,]\d+)?)\s*(?P<sign>[°º])?"
-    r"(?:[\s:-]*(?P<min>\d{1,2}(?:[.,]\d+)?)\s*['\u2032\u2019]?"
-    r"(?:[\s:]*(?P<sec>\d{1,2}(?:[.,]\d+)?)\s*(?:\"|\u2033|'')?)?)?)"
-    r"\s*(?P<after>[NSEW])?",
+    r"|(?P<deg>\d{1,3}(?P<part>[.,]\d+)?)\s*+(?P<sign>[°º])?"
+    r"(?:[\s:-]*+(?P<min>\d{1,2}(?:[.,]\d+)?)\s*+['\u2032\u2019]?"
+    r"(?:[\s:]*+(?P<sec>\d{1,2}(?:[.,]\d+)?)\s*+(?:\"|\u2033|'')?)?)?)"
+    r"\s*+(?P<after>[NSEW])?",
     re.IGNORECASE,
 )
+"""Spaces are given back by none of its parts: a long row of them is passed over once."""
 AXES: Final = {"N": "latitude", "S": "latitude", "E": "longitude", "W": "longitude"}
 MOST: Final = {"latitude": 90.0, "longitude": 180.0}
 """How far it goes to either side [deg]."""

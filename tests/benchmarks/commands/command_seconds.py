@@ -1,6 +1,6 @@
 """How much of the processor a command takes whose parts are warm: run, add, the workbench's curves.
 
-    python tests/benchmarks/commands/quick.py [--against CHECKOUT] [--repeats N] [--where]
+    python tests/benchmarks/commands/command_seconds.py [--against CHECKOUT] [--repeats N] [--where]
 
 Processor seconds (user and system) of the least disturbed of a few runs of the shipped sample, each
 a new process. With `--against` those of another checkout too, in turn with these, so that both meet
