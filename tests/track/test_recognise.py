@@ -210,24 +210,6 @@ def test_reversals_at_unequal_headings_are_told_as_that() -> None:
     assert uneven.remark == "the second reversal is at another change of heading"
 
 
-def test_every_overshoot_of_a_long_zigzag_is_measured() -> None:
-    """Ten reversals at 10 deg of a heading that swings by 20: each goes 10 deg too far."""
-    t = np.arange(0.0, 1400.0, 1.0)
-    psi = np.deg2rad(20.0) * np.sin(2.0 * np.pi * np.clip(t - 100.0, 0.0, None) / 200.0)
-    side, order = 0.0, []
-    for k, now in enumerate(psi):
-        if k == 100 or side * now >= np.deg2rad(10.0):
-            side = -side or 1.0
-        order.append(side * np.deg2rad(10.0))
-    signals = {"delta": np.array(order), "psi": psi}
-    trial = Trial("long", "fit", 1.0, signals, {n: np.ones(len(t), bool) for n in signals})
-    rows = list(heading_numbers(trial, found(trial), Around()))
-    assert [r.name for r in rows][:2] == ["first overshoot", "second overshoot"]
-    assert [r.name for r in rows][6:] == [f"{n}th overshoot" for n in range(7, len(rows) + 1)]
-    assert len(rows) >= 11
-    assert [r.measured for r in rows] == pytest.approx([np.deg2rad(10.0)] * len(rows), abs=0.01)
-
-
 def test_a_heading_that_was_not_recorded_is_the_integral_of_the_rate() -> None:
     """By hand: r = a t turns her by a t^2 / 2."""
     t = np.arange(0.0, 100.0, 2.0)
