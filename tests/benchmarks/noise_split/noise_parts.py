@@ -39,6 +39,7 @@ from trialid.diagnosis.noise.error_parts import Split  # noqa: E402
 from trialid.diagnosis.noise.noise_bound import held_against  # noqa: E402
 from trialid.diagnosis.noise.split import split  # noqa: E402
 from trialid.diagnosis.search.completeness import completeness  # noqa: E402
+from trialid.diagnosis.search.score import ranking_of  # noqa: E402
 from trialid.errors import TrialidError  # noqa: E402
 from trialid.identification.fit import Fit  # noqa: E402
 from trialid.identification.output_error import output_matrix  # noqa: E402
@@ -67,7 +68,8 @@ def parts_of(fit: Fit, clean: Mapping[str, Vector]) -> tuple[float, float]:
 def said_of(fit: Fit, shares: Sequence[float]) -> list[Split]:
     """The split as the diagnosis states it, with `TAKEN` at these shares of what it is."""
     asked = DiagnoseSettings()
-    _, ranking, augmented = examine_fit(fit, asked, silent)
+    _, augmented = examine_fit(fit, asked, silent)
+    ranking = ranking_of(fit, augmented, asked.family_cos, asked.level)
     whole = completeness(augmented)
     fits = [r.fit for r in refits_of(fit, ranking, asked, lambda words: None)]
     said = []
