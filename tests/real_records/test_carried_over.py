@@ -120,4 +120,5 @@ def test_no_noise_part_is_above_what_any_model_leaves(basin):
 @pytest.mark.study(turn=2)
 def test_no_noise_part_is_above_what_any_model_of_the_pond_leaves(tmp_path):
     path = held_on_pond(tmp_path, on_pond(tmp_path)[0])
-    _no_more_noise_than([run.run(pipeline_file.load(path)).result])
+    result = run.run(pipeline_file.load(path)).result
+    assert _no_more_noise_than([result]) < 0.95 * result.fit.eps_rmsn  # what is tried bounds it
