@@ -44,6 +44,7 @@ def sailed(
     use: str = "fit",
     course: float = 0.7,
     hidden: tuple[str, float] | None = None,
+    period: float = PERIOD,
 ) -> Trial:
     """A turning circle, a 20/20 or a 10/10 zig-zag without noise, from a course not north.
 
@@ -55,16 +56,16 @@ def sailed(
         "small zigzag": lambda: manoeuvres.zigzag(np.deg2rad(10.0), np.deg2rad(10.0), 4),
     }
     ship = true_ship(hidden)
-    helm = vessel(ship, PERIOD, {"n": SHAFT}, np.deg2rad(3.0))
+    helm = vessel(ship, period, {"n": SHAFT}, np.deg2rad(3.0))
     run = carry_out(helm, told[name](), APPROACH, 500.0, name).trial
     inputs = {s: run.signals[s] for s in ("delta", "delta_order", "n")}
     on_track = replace(ship, states=SHIP.states)
     true = (on_track + current).with_values(dict(zip(("V_cn", "V_ce"), water, strict=True)))
-    blank = Trial(name, "fit", PERIOD, inputs, {})
+    blank = Trial(name, "fit", period, inputs, {})
     y = respond(prepare(true, (), OUTPUTS), blank, {}, {"psi": course}, sensitivities=False).y
     signals = {**inputs, **{c: y[:, i].copy() for i, c in enumerate(OUTPUTS)}}
     valid = {c: np.ones(len(y), dtype=bool) for c in signals}
-    return Trial(name, "check" if use == "check" else "fit", PERIOD, signals, valid)
+    return Trial(name, "check" if use == "check" else "fit", period, signals, valid)
 
 
 def true_ship(hidden: tuple[str, float] | None) -> ShipModel:
