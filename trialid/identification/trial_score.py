@@ -7,6 +7,8 @@ import numpy as np
 
 from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask, Vector
+from trialid.identification.check.own_start import own_start
+from trialid.identification.check.start_error import StartError, start_error
 from trialid.identification.output_error import (
     Problem,
     compared_mask,
@@ -14,9 +16,8 @@ from trialid.identification.output_error import (
     output_matrix,
     residual_at,
 )
-from trialid.identification.own_start import StartError, own_start, start_error, starts_of
 from trialid.identification.weighing import level_of
-from trialid.simulation.integrate import Departure, Response, initial, respond
+from trialid.simulation.integrate import Departure, Response, initial, respond, starts_of
 from trialid.trial import Trial
 
 

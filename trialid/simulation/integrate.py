@@ -108,6 +108,11 @@ def initial(state: str) -> str:
     return f"{state}(0)"
 
 
+def starts_of(values: Mapping[str, float]) -> dict[str, float]:
+    """Initial states among the columns of a simulation, by the state's name."""
+    return {n[:-3]: a for n, a in values.items() if n.endswith("(0)")}
+
+
 def prepare(
     model: ShipModel,
     free: Sequence[str],

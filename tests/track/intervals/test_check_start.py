@@ -4,12 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import sailed_wind
 from sailed_tracks import CURRENTS, SETTINGS, SHIP, accuracy, noisy, sailed, spread
-from turning_numbers import EXACT, truth_of
+from sailed_wind import WINDY, blown
+from turning_numbers import EXACT, RECEIVERS, fitted, truth_of
 
 from trialid.design.imo.trial_measures import measure_trials
 from trialid.effects.track import CURRENT
+from trialid.identification.check.own_start import OwnRows, priors_of
 from trialid.identification.fit import Fit, identify
+from trialid.identification.gauss_newton import minimise
+from trialid.identification.output_error import compared_mask
 from trialid.identification.trial_score import of_trial, own_start_error
 from trialid.threads import one_thread
 
@@ -66,8 +71,43 @@ def test_noise_leaves_it_as_open_as_is_said(fit: Fit) -> None:
     np.testing.assert_allclose([errors[n] for n in ("u(0)", *CURRENT)], scatter, rtol=0.35)
 
 
+def test_it_is_found_however_exact_positions_are() -> None:
+    """Of 2 cm: where it ends is where a search from there ends, within a tenth of its error."""
+    fit = fitted(6106, RECEIVERS["RTK"], held=True)
+    [circle] = [s.trial for s in fit.scores if s.trial.use == "check"]
+    values, start = of_trial(fit.problem, fit.theta, circle, fit.level)
+    ended = values | {f"{n}(0)": x for n, x in start.items()}
+    known = own_start_error(fit.problem, fit.theta, circle, fit.level)
+    assert known is not None
+    compared = compared_mask(circle, fit.problem.simulator)
+    priors = priors_of(fit.problem, circle, known.names)
+    rows = OwnRows(fit.problem, circle, compared, values, priors, fit.level)
+    at = np.array([ended[n] for n in known.names])
+    further = minimise(rows, at, known.noise.std(axis=1), max_iterations=50, tolerance=1e-9)
+    assert np.all(np.abs(further.theta - at) < 0.1 * np.linalg.norm(known.noise, axis=1))
+
+
 def test_a_fitted_trial_has_its_errors_from_the_fit(fit: Fit) -> None:
     assert own_start_error(fit.problem, fit.theta, fit.scores[0].trial, fit.level) is None
+
+
+def test_noise_of_an_anemometer_is_in_it() -> None:
+    """Half of what its noise moves a current by comes through the wind that drives the ship."""
+    rng = np.random.default_rng([9, 1])
+    zigzag, circle = (sailed_wind.noisy(blown(n), rng, air=3.0) for n in ("zigzag", "circle"))
+    logs = [replace(zigzag, use="check"), circle]
+    fit = identify(logs, WINDY, sailed_wind.SETTINGS)
+    known = own_start_error(fit.problem, fit.theta, fit.scores[0].trial, fit.level)
+    assert known is not None
+    each = []
+    for _ in range(40):
+        trial = replace(sailed_wind.noisy(blown("zigzag"), rng, air=3.0), use="check")
+        values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
+        each.append([values[n] for n in CURRENT])
+    errors = np.linalg.norm(known.noise, axis=1)[[known.names.index(n) for n in CURRENT]]
+    white = np.linalg.norm(known.noise[:, : len(known.names)], axis=1)
+    np.testing.assert_allclose(errors, np.std(each, axis=0), rtol=0.35)
+    assert np.all(white[[known.names.index(n) for n in CURRENT]] < 0.6 * errors)
 
 
 @pytest.mark.study(turn=1)

@@ -9,8 +9,9 @@ from sailed_tracks import accuracy, sailed
 from sailed_wind import SETTINGS, WATERS, WINDY, blown, noisy
 
 from trialid.accuracy.coloured import coloured_covariance
-from trialid.diagnosis.noise.recorded_inputs import felt_noise, input_noise
+from trialid.diagnosis.noise.recorded_inputs import felt_noise
 from trialid.identification.fit import identify
+from trialid.identification.input_noise import input_noise
 from trialid.trial_rows import Stretch
 from trialid.white_noise import white_noise_of_most
 
@@ -71,7 +72,7 @@ def test_the_noise_of_an_anemometer_is_read_from_its_record() -> None:
     rng = np.random.default_rng(7)
     fit = identify([noisy(blown(n), rng) for n in WATERS], WINDY, SETTINGS)
     for trial in fit.problem.trials:
-        assert input_noise(fit.problem, trial) == {
+        assert input_noise(fit.problem.simulator, trial) == {
             "V_aw": pytest.approx(0.3, rel=0.25),
             "gamma_aw": pytest.approx(np.deg2rad(2.0), rel=0.25),
         }
@@ -85,14 +86,14 @@ def test_a_filter_of_the_clock_takes_none_of_what_is_slow() -> None:
     quick = replace(trial, period=0.5, signals={**trial.signals, "V_aw": 12.0 + smooth}, valid={})
     fit = identify([noisy(trial, np.random.default_rng(2))], WINDY, SETTINGS)
     assert white_noise_of_most(smooth) < 0.4
-    assert input_noise(fit.problem, quick)["V_aw"] == pytest.approx(1.0, abs=0.1)
+    assert input_noise(fit.problem.simulator, quick)["V_aw"] == pytest.approx(1.0, abs=0.1)
 
 
 def test_a_rudder_that_is_held_or_put_over_has_no_noise() -> None:
     fit = identify(
         [noisy(blown(n), np.random.default_rng(5), air=0.0) for n in WATERS], WINDY, SETTINGS
     )
-    assert "delta" not in input_noise(fit.problem, sailed("zigzag", (0.0, 0.0)))
+    assert "delta" not in input_noise(fit.problem.simulator, sailed("zigzag", (0.0, 0.0)))
 
 
 def test_only_the_noise_of_inputs_widens() -> None:

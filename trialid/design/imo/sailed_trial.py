@@ -20,8 +20,8 @@ from trialid.design.standard import AT_SEA
 from trialid.effects.environment import steady_wind
 from trialid.effects.track import current
 from trialid.errors import EffectError, NotIdentifiable
+from trialid.identification.check.start_error import StartError
 from trialid.identification.fit import Fit
-from trialid.identification.own_start import StartError
 from trialid.identification.trial_score import of_trial, own_start_error
 from trialid.ship.effect import SENSORS, Effect
 from trialid.ship.model import STATES, ShipModel

@@ -104,13 +104,14 @@ def _around(
     size = fit.model.ship.particulars
     clock = samples_a_length(trial, size["L"], size["U0"])
     beyond = None if sailed is None else unexplained_motion(fit, clock)
-    water = _water(fit, trial, errors, spread)
+    water = water_of(fit, trial, errors, spread)
     return Around(water=water, sailed=sailed, calm=calm, unexplained=beyond)
 
 
-def _water(
+def water_of(
     fit: Fit, trial: Trial, errors: Mapping[str, float], spread: LikelySpread | None
 ) -> Water | None:
+    """The current of a trial; None where the fit looks for none."""
     values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
     if not {*CURRENT} <= {*values}:
         return None
@@ -121,12 +122,9 @@ def _water(
 
 
 def _found_error(fit: Fit, trial: Trial, spread: LikelySpread | None) -> tuple[float, float] | None:
-    """Of the current that a trial to check has found for itself.
-
-    None in a wind: what noise of its anemometer does to that trial's drift is not followed here.
-    """
+    """Of the current that a trial to check has found for itself."""
     found = own_start_error(fit.problem, fit.theta, trial, fit.level)
-    if found is None or spread is None or has_wind(fit.model) or not {*CURRENT} <= {*found.names}:
+    if found is None or spread is None or not {*CURRENT} <= {*found.names}:
         return None
     places = [spread.fitted.index(c) for c in found.shared]
     by_ship = found.by @ spread.covariance[np.ix_(places, places)] @ found.by.T

@@ -8,30 +8,14 @@ hardly shows it, and what is slow in the track takes it up. So it is drawn, simu
 
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
 from trialid.accuracy.felt import Draw
-from trialid.arrays import Mask, Vector
+from trialid.arrays import Vector
 from trialid.identification.fit import Fit
-from trialid.identification.output_error import Problem, row_scale, stretches
-from trialid.identification.own_start import starts_of
-from trialid.simulation.integrate import record_for, respond
-from trialid.trial import Trial
-from trialid.white_noise import white_noise_of_most
-
-QUICK: Final = 0.5
-"""Blocks of this times sqrt(L/g) tell the noise: two seconds for 175 m. The filter of a trial's
-clock, or a sensor slower than that clock, takes away from what single samples show of it. Of a wind
-with white noise of 1, logged at 2 Hz, the mean of 200 records: 1.06 as it is, 0.89 and 0.22 after
-means of three and of nine samples, 1.33 with gusts of 1 m/s and 10 s. Half of it: 1.04, 0.51, 0.14
-and 1.13; twice: 1.08, 0.98, 0.69 and 1.62."""
-
-GROWS: Final = 1.5
-"""Times as much that blocks of twice the length show where motion or gusts begin: gusts, whose
-spectrum falls with f^(-5/3), 1.8 times; what is left of a sensor at half its clock 1.2."""
+from trialid.identification.input_noise import input_noise, moved_by
+from trialid.identification.output_error import row_scale, stretches
 
 
 def felt_noise(fit: Fit) -> Draw | None:
@@ -40,7 +24,7 @@ def felt_noise(fit: Fit) -> Draw | None:
     None where no input has noise that could be seen. The noise is taken as white; what cannot be
     simulated is left out.
     """
-    levels = [input_noise(fit.problem, trial) for trial in fit.problem.trials]
+    levels = [input_noise(fit.problem.simulator, trial) for trial in fit.problem.trials]
     return functools.partial(_drawn, fit, levels) if any(levels) else None
 
 
@@ -56,42 +40,11 @@ def _drawn(fit: Fit, levels: Sequence[Mapping[str, float]], draws: int) -> Vecto
 def _felt_in(fit: Fit, place: int, level: Mapping[str, float], made: Vector) -> None:
     """Write the rows of one trial."""
     problem, trial = fit.problem, fit.problem.trials[place]
-    values = problem.values(fit.theta, place)
-    parts, scale = [p for p in stretches(problem) if p.trial == place], row_scale(problem)
-    run = functools.partial(
-        respond, problem.simulator, values=values, start=starts_of(values), sensitivities=False
-    )
-    clean, rng = run(trial).y, np.random.default_rng([0, place])
-    for row in made:
-        moved = run(with_noise(trial, level, rng)).y - clean
+    values, scale = problem.values(fit.theta, place), row_scale(problem)
+    parts = [p for p in stretches(problem) if p.trial == place]
+    rng = np.random.default_rng([0, place])
+    for row, moved in zip(
+        made, moved_by(problem.simulator, trial, values, level, rng), strict=False
+    ):
         for part in parts:
             row[part.rows] = part.taken(moved[:, part.output]) * scale[part.output]
-
-
-def with_noise(trial: Trial, level: Mapping[str, float], rng: np.random.Generator) -> Trial:
-    """The trial with more white noise on some of its signals."""
-    more = {n: trial.signals[n] + s * rng.standard_normal(trial.samples) for n, s in level.items()}
-    return replace(trial, signals={**trial.signals, **more})
-
-
-def input_noise(problem: Problem, trial: Trial) -> dict[str, float]:
-    """White noise of each record that drives the simulation, as it has any [SI]."""
-    L, g = (problem.simulator.model.ship.particulars[n] for n in ("L", "g"))
-    block = max(1, int(QUICK * np.sqrt(L / g) / trial.period))
-    records = (record_for(trial, n) for n in problem.simulator.equations.inputs)
-    sources = sorted({n for n in records if n is not None})
-    level = {n: _level(trial.signals[n], trial.valid.get(n), block) for n in sources}
-    return {n: s for n, s in level.items() if s > 0.0}
-
-
-def _level(y: Vector, valid: Mask | None, block: int) -> float:
-    """Deviation of a sample whose slow part is that of the blocks' means."""
-    short, long = (_of_blocks(y, valid, size) for size in (block, 2 * block))
-    return long if short < long < GROWS * short else short
-
-
-def _of_blocks(y: Vector, valid: Mask | None, block: int) -> float:
-    whole = len(y) // block * block
-    means = y[:whole].reshape(-1, block).mean(axis=1)
-    seen = None if valid is None else np.all(valid[:whole].reshape(-1, block), axis=1)
-    return float(np.sqrt(block)) * white_noise_of_most(means, seen)
