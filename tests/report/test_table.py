@@ -70,6 +70,10 @@ def test_a_hostile_name_is_text_in_latex():
     assert "\n" not in text
 
 
+def test_signs_of_the_field_are_mathematics_in_latex():
+    assert latex_text("\u2207 \u03c1 \u03b4") == r"$\nabla$ $\rho$ $\delta$"
+
+
 def test_a_line_of_latex_may_begin_with_a_bracket():
     assert r"{}[a] & 1.000 \\" in as_latex(table(("[a]", Figure(1.0))))
 

@@ -18,7 +18,7 @@ from sailed_tracks import (
 )
 
 from trialid.design.imo.recognise import recognise
-from trialid.design.imo.trial_measures import measure_trials
+from trialid.design.imo.trial_measures import approach_speed, measure_trials
 from trialid.design.imo.trial_numbers import TurnMeasure
 from trialid.design.imo.turns import Turn, find_turns, measure
 from trialid.identification.fit import identify
@@ -70,6 +70,29 @@ def test_measures_over_the_ground_and_through_the_water() -> None:
         assert m.predicted_interval[0] < still[name] < m.predicted_interval[1]
         assert m.predicted_interval[1] - m.predicted_interval[0] < 10.0
     assert abs(over["tactical diameter"] - still["tactical diameter"]) > 100.0  # what it is about
+
+
+def test_the_approach_is_told_by_what_was_recorded() -> None:
+    """Through the water as she sailed; over the ground 0.58 m/s of current are in it."""
+    circle, zigzag = (noisy(sailed(n, CURRENTS[n]), np.random.default_rng(2)) for n in CURRENTS)
+    full = np.full(circle.samples, 7.1)
+    logged = replace(
+        circle,
+        signals={**circle.signals, "u": full},
+        valid={**circle.valid, "u": np.ones(circle.samples, dtype=bool)},
+    )
+    fit = identify([circle, zigzag], SHIP, BY_NOISE)
+    [one, _] = measure_trials(fit, {}, None).manoeuvres
+    assert (one.course, one.speed_by) == (pytest.approx(0.7, abs=0.01), "track less the current")
+    assert one.speed == pytest.approx(SHIP.ship.particulars["U0"], abs=0.15)
+    span = slice(0, 15)
+    ground, by = approach_speed(circle, span, None)
+    course = np.array([np.cos(0.7), np.sin(0.7)])
+    drift = np.hypot(*(one.speed * course + CURRENTS["circle"]))
+    assert (ground, by) == (pytest.approx(drift, abs=0.15), "track over the ground")
+    assert abs(drift - one.speed) > 0.15
+    assert approach_speed(logged, span, None) == (7.1, "log")
+    assert approach_speed(circle, slice(0, 2), None) == (None, "")
 
 
 def held_out(seed: int) -> tuple[TurnMeasure, ...]:

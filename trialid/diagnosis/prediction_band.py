@@ -2,11 +2,11 @@
 
 Each fitted trial is left out in turn and predicted from the others, to first order and with no
 further simulation: the parameters come from the other trials, what belongs to a sensor takes the
-mean of theirs, and only where the motion starts is the trial's own, as for a trial held out. What
-is left holds noise, what the model lacks, and what parameters and sensors differ by from trial to
-trial. What only the trial left out tells stays within what is typical of it. Where the trials are
-unlike, few tell how large it may be: as many degrees of freedom as the scatter of their mean
-squares leaves (Satterthwaite 1946, Biometrics Bulletin 2).
+mean of theirs, and only where the motion starts and its current are the trial's own, as for a trial
+held out. What is left holds noise, what the model lacks, and what parameters and sensors differ by
+from trial to trial. What only the trial left out tells stays within what is typical of it. Where
+the trials are unlike, few tell how large it may be: as many degrees of freedom as the scatter of
+their mean squares leaves (Satterthwaite 1946, Biometrics Bulletin 2).
 """
 
 from collections.abc import Sequence
@@ -20,6 +20,7 @@ from scipy.special import stdtrit  # scipy.stats would take another 0.4 s to imp
 from trialid.accuracy.likely import WIDE
 from trialid.arrays import Vector
 from trialid.diagnosis.search.carry_over import prior_rows, take_out
+from trialid.identification.check.own_start import columns_of_its_own
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import stretches
 from trialid.trial_rows import Stretch
@@ -106,9 +107,9 @@ def _solution(gram: Vector) -> Vector:
 
 
 def _started(fit: Fit, trial: _Rows, e: Vector, priors: Vector) -> Vector:
-    """The residual with sensors at the mean of the other trials', the motion's start at its own."""
-    names = [x.column for x in fit.problem.unknowns]
-    starts = [i for i in trial.own if names[i].endswith("(0)")]
+    """The residual with sensors at the mean of the other trials', its own kept."""
+    names, its_own = [x.column for x in fit.problem.unknowns], columns_of_its_own(fit.problem)
+    starts = [i for i in trial.own if names[i] in its_own]
     for i in (i for i in trial.own if i not in starts):
         others = [fit.theta[j] for j, name in enumerate(names) if name == names[i] and j != i]
         if others:

@@ -11,6 +11,7 @@ from scipy.stats import t as student
 from wind_and_current import MODELS, one, record, weather
 
 from trialid.design.wind_and_current import WORDS, cannot_tell
+from trialid.diagnosis.prediction_band import prediction_band
 from trialid.effects.track import CURRENT
 from trialid.errors import NotIdentifiable
 from trialid.identification.fit import identify
@@ -52,6 +53,14 @@ def test_a_trial_to_check_finds_its_own_current() -> None:
     values, _ = of_trial(fit.problem, fit.theta, check)
     assert values["V_ce"] == pytest.approx(CURRENTS["zigzag"][1], abs=0.08)
     assert fit.eps_check_by_output["y"] < 0.05
+
+
+def test_the_band_of_a_trial_not_fitted_is_that_of_a_trial_with_a_current_of_its_own() -> None:
+    """1 m of noise, and little by the parameters; by the other's current it was 250 m."""
+    fit = identify(trials(0), SHIP, replace(SETTINGS, weights=BY_NOISE))
+    band = prediction_band(fit)
+    assert 1.8 < band["x"] < 3.0
+    assert 1.8 < band["y"] < 3.0
 
 
 def test_a_current_without_a_track_is_refused() -> None:

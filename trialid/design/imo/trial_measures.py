@@ -25,6 +25,8 @@ from trialid.identification.fit import Fit
 from trialid.identification.trial_score import of_trial, own_start_error
 from trialid.trial import Trial
 
+FEWEST: Final = 3
+"""Positions that tell a speed."""
 ON_TRACK: Final = ("turning circle", "Williamson turn", "stop")
 
 
@@ -63,11 +65,12 @@ def _of_trial(
     size = fit.model.ship.particulars
     found = recognise(trial, size["L"], size["U0"])
     clock = samples_a_length(trial, size["L"], size["U0"])
-    around = _around(fit, trial, errors, spread, {m.kind for m in found})
+    water = water_of(fit, trial, errors, spread) if found else None
+    around = _around(fit, trial, water, spread, {m.kind for m in found})
     circles = [(turn, turn_reader(turn, clock)) for turn in find_turns(trial, found)]
     readers = [(m, r) for m in found if (r := _reader(trial, m, clock)) is not None]
     return TrialMeasures(
-        manoeuvres=tuple(_manoeuvre(trial, m) for m in found),
+        manoeuvres=tuple(_manoeuvre(trial, m, clock, water) for m in found),
         numbers=(
             *heading_numbers(trial, found, around),
             *_track_numbers(fit, trial, readers, around),
@@ -76,21 +79,42 @@ def _of_trial(
     )
 
 
-def _manoeuvre(trial: Trial, one: Recognised) -> Manoeuvre:
+def _manoeuvre(trial: Trial, one: Recognised, clock: int, water: Water | None) -> Manoeuvre:
+    order = order_time(trial, one)
+    last = max(int(order / trial.period), 0)
+    speed, speed_by = approach_speed(trial, slice(max(last - clock, 0), last + 1), water)
     return Manoeuvre(
         trial=trial.name,
         kind=one.kind,
-        t=order_time(trial, one),
+        t=order,
         end=min(one.end, trial.samples - 1) * trial.period,
         rudder=one.rudder,
+        course=float(one.course % (2.0 * np.pi)) if "psi" in trial.signals else None,
+        speed=speed,
+        speed_by=speed_by,
         remark=one.remark,
     )
+
+
+def approach_speed(trial: Trial, span: slice, water: Water | None) -> tuple[float | None, str]:
+    """Speed [m/s] in a span and what tells it; None where neither a log nor positions do."""
+    if "u" in trial.signals and trial.valid["u"][span].all():
+        return float(np.median(trial.signals["u"][span])), "log"
+    seen = [n in trial.signals and trial.valid[n][span].all() for n in ("x", "y")]
+    t = trial.t[span]
+    if not all(seen) or len(t) < FEWEST:
+        return None, ""
+    north, east = (float(np.polyfit(t - t[0], trial.signals[n][span], 1)[0]) for n in ("x", "y"))
+    if water is None:
+        return float(np.hypot(north, east)), "track over the ground"
+    speed = np.hypot(north - water.speed[0], east - water.speed[1])
+    return float(speed), "track less the current"
 
 
 def _around(
     fit: Fit,
     trial: Trial,
-    errors: Mapping[str, float],
+    water: Water | None,
     spread: LikelySpread | None,
     kinds: set[str],
 ) -> Around:
@@ -104,7 +128,6 @@ def _around(
     size = fit.model.ship.particulars
     clock = samples_a_length(trial, size["L"], size["U0"])
     beyond = None if sailed is None else unexplained_motion(fit, clock)
-    water = water_of(fit, trial, errors, spread)
     return Around(water=water, sailed=sailed, calm=calm, unexplained=beyond)
 
 

@@ -11,13 +11,24 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Manoeuvre:
-    """A manoeuvre recognised in a trial: order and end [s], angle held [rad], what it lacks."""
+    """A manoeuvre recognised in a trial: order and end [s], angle held [rad], what it lacks.
+
+    Attributes
+    ----------
+    course, speed
+        Heading [rad] and speed [m/s] over the length before the order; None where not recorded.
+    speed_by
+        What tells the speed: its log, or the track over the ground, or less the current.
+    """
 
     trial: str
     kind: str
     t: float
     end: float
     rudder: float
+    course: float | None = None
+    speed: float | None = None
+    speed_by: str = ""
     remark: str = ""
 
 

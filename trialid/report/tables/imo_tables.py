@@ -11,7 +11,7 @@ from trialid.result.schema import Result
 ON_TRACK: Final = ("Williamson turn", "stop")
 CORRECTED: Final = {
     "current": "Corrected for current: through the water, by the current that the fit found "
-    "(a trial held out finds its own; in a wind without an interval).",
+    "(a trial held out finds its own).",
     "wind": "Corrected for wind: less what the model drifts by it under the recorded rudder, from "
     "the order on.",
 }
@@ -135,19 +135,23 @@ def manoeuvres(run: Result) -> Table:
     """Every manoeuvre that was recognised in the trials, and a line for each trial without any."""
     found = () if run.imo is None else run.imo.manoeuvres
     rows = [_manoeuvre(each) for each in found]
-    named, nothing = {each.trial for each in found}, (Figure(None),) * 3
+    named, nothing = {each.trial for each in found}, (Figure(None),) * 5
     if run.imo is not None:
-        rows += [(t.name, "none", *nothing, NONE) for t in run.trials if t.name not in named]
+        rows += [(t.name, "none", *nothing, "", NONE) for t in run.trials if t.name not in named]
     places = {trial.name: k for k, trial in enumerate(run.trials)}
     rows.sort(key=lambda row: places.get(str(row[0]), len(places)))
-    headings = ("trial", "manoeuvre", "order [s]", "end [s]", "rudder [deg]", "remark")
+    headings = (
+        *("trial", "manoeuvre", "order [s]", "end [s]", "rudder [deg]", "course before [deg]"),
+        *("approach speed [m/s]", "speed by", "remark"),
+    )
     return Table("manoeuvres", "Manoeuvres in the trials", headings, tuple(rows))
 
 
 def _manoeuvre(each: Manoeuvre) -> tuple[Cell, ...]:
     times = Figure(each.t), Figure(each.end)
-    angle = Figure(_degrees(each.rudder), 3)
-    return each.trial, each.kind, *times, angle, each.remark or "whole"
+    angles = Figure(_degrees(each.rudder), 3), Figure(_degrees(each.course), 4)
+    speed = Figure(each.speed, 3)
+    return each.trial, each.kind, *times, *angles, speed, each.speed_by, each.remark or "whole"
 
 
 def manoeuvre_numbers(run: Result) -> Table:
@@ -167,6 +171,6 @@ def _measured(each: ManoeuvreNumber) -> tuple[Cell, ...]:
     return each.trial, each.kind, *start, each.name, unit, *_corrected(each, factor)
 
 
-def _degrees(angle: float) -> float:
+def _degrees(angle: float | None) -> float | None:
     _, factor = wording.shown_unit("rad")
-    return angle * factor
+    return None if angle is None else angle * factor

@@ -171,6 +171,11 @@ def _shown(cell: Cell, escape: "Escape") -> str:
 
 Escape = Callable[[str], str]
 
+_GREEK: Final = "αβγδεζηθικλμνξπρστυφχψω"
+_GREEK_NAMES: Final = (
+    "alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau "
+    "upsilon phi chi psi omega"
+)
 _SPECIAL: Final = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#",
     "%": r"\%", "_": r"\_", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
@@ -179,11 +184,8 @@ _SPECIAL: Final = {
     "\N{NO-BREAK SPACE}": "~", "\N{MULTIPLICATION SIGN}": r"$\times$", "\N{PLUS-MINUS SIGN}":
     r"$\pm$", "\N{PRIME}": "$'$", "\N{RIGHTWARDS ARROW}": r"$\rightarrow$", "\N{DEGREE SIGN}":
     r"$^{\circ}$", "\N{MIDDLE DOT}": r"$\cdot$", "\N{LESS-THAN OR EQUAL TO}": r"$\le$",
-    "\N{SQUARE ROOT}": r"$\surd$",
-    "\N{GREEK SMALL LETTER PHI}": r"$\phi$", "\N{GREEK SMALL LETTER PSI}": r"$\psi$",
-    "\N{GREEK SMALL LETTER DELTA}": r"$\delta$", "\N{GREEK SMALL LETTER GAMMA}": r"$\gamma$",
-    "\N{GREEK SMALL LETTER ALPHA}": r"$\alpha$", "\N{GREEK SMALL LETTER EPSILON}":
-    r"$\varepsilon$",
+    "\N{SQUARE ROOT}": r"$\surd$", "\N{NABLA}": r"$\nabla$",
+    **{letter: rf"$\{name}$" for letter, name in zip(_GREEK, _GREEK_NAMES.split(), strict=True)},
     **{raised: f"$^{{{plain}}}$" for plain, raised in wording.RAISED.items()},
 }  # fmt: skip
 
