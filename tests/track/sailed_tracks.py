@@ -34,6 +34,8 @@ PERIOD, APPROACH = 2.0, 30.0
 CURRENTS = {"circle": (0.5, -0.3), "zigzag": (-0.2, 0.8)}
 FEW = ("yaw_drag_rav", "sway_drag_vav", "rudder_offset", "yaw_drag_rar")
 MISSING = {n: CATALOGUE[n] for n in FEW}
+EXACT = {"default": 0.0}
+"""What is held fixed of this ship is right; without that word a tenth or so of it is doubted."""
 SETTINGS = Settings(FREE, OUTPUTS, nuisance=("initial_state", "current"))
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sailed_wind
-from sailed_tracks import CURRENTS, SETTINGS, SHIP, accuracy, noisy, sailed, spread
+from sailed_tracks import CURRENTS, EXACT, SETTINGS, SHIP, accuracy, noisy, sailed, spread
 from sailed_wind import WINDY, blown
-from turning_numbers import EXACT, RECEIVERS, fitted, truth_of
+from turning_numbers import RECEIVERS, fitted, truth_of
 
 from trialid.design.imo.trial_measures import measure_trials
 from trialid.effects.track import CURRENT

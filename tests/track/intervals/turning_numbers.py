@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from counted import counted
 from parameters_in_a_current import RECEIVERS, noise_with, settings
-from sailed_tracks import APPROACH, CURRENTS, SHIP, accuracy, noisy, sailed, spread
+from sailed_tracks import APPROACH, CURRENTS, EXACT, SHIP, accuracy, noisy, sailed, spread
 
 from trialid.design.helm import Passage
 from trialid.design.imo import measures
@@ -52,8 +52,6 @@ the median half-width; `all` with its 95 % interval by draws of whole records. W
 than there is holds more than 95 %: that is its price.
 
 """
-EXACT: Final = {"default": 0.0}
-"""What is held fixed of this ship is right; without that word a tenth or so of it is doubted."""
 Span = tuple[float, float]
 
 
