@@ -70,7 +70,7 @@ def test_a_weak_thruster_is_named_on_its_side_and_nothing_where_nothing_is() -> 
     assert verdict(1103, "", 60.0).kind == "nothing missing"
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=6)
 def test_a_dead_thruster_is_named_although_nothing_fits_without_it() -> None:
     few = {n: e for n, e in CANDIDATES.items() if e.bound_by_meaning or n == "delay_r"}
     fit = fitted(record(1104, "dead", side=0, duration=60.0))

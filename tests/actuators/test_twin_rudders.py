@@ -120,7 +120,7 @@ def test_one_rudder_half_as_effective_is_named_with_its_side() -> None:
     assert len(wrong) <= 0.02 * 40
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=6)
 def test_one_rudder_stuck_is_named_with_its_side() -> None:
     """Twenty records; a name of the other side or of another cause is a wrong one."""
     right, wrong = 0, []

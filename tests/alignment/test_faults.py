@@ -187,7 +187,7 @@ def test_healthy_simulated_records_keep_every_value():
     assert not false_ones(range(42))
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=6)
 def test_many_healthy_simulated_records_keep_every_value():
     assert not false_ones(range(42, 420))
 

@@ -83,7 +83,7 @@ def test_a_fitted_ship_is_sailed_with_the_engine_of_her_trial(fit):
     assert ready.rudder_rate == pytest.approx(2.5 * D, rel=0.01)
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=5)
 def test_the_interval_holds_what_the_true_ship_does(fit, whole):
     """Ten degrees of rudder were sailed: a circle of 35 is foretold from far off."""
     for one in predict([following.vessel_of(fit, MODEL)]):

@@ -42,7 +42,7 @@ def run(pipeline, *options):
     return CliRunner().invoke(commands, ["run", str(pipeline), *map(str, options)])
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=5)
 def test_the_file_declares_the_effect_and_the_error_falls(hidden, tmp_path):
     fit, found = hidden
     path = tmp_path / "mine.py"

@@ -77,7 +77,7 @@ def test_what_is_changed_by_hand_leaves_the_word(tmp_path: Path) -> None:
     assert said == ()
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=5)
 def test_a_run_says_what_was_known_in_terminal_and_report(tmp_path: Path) -> None:
     """The shipped logs, from the length alone: begun, run, and told."""
     logs = ROOT / "sample_data" / "hidden_effect"

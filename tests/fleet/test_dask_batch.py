@@ -47,7 +47,7 @@ def fresh(many: tuple[Path, dict], tmp_path: Path) -> Path:
     return folder
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=6)
 def test_workers_killed_at_random_lose_and_double_nothing(
     many: tuple[Path, dict], fresh: Path
 ) -> None:
@@ -136,7 +136,7 @@ def notes(todo: list[str]):
     return compute
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=6)
 def test_a_scheduler_and_two_workers_with_folders_of_their_own(
     many: tuple[Path, dict], fresh: Path, tmp_path: Path
 ) -> None:
@@ -191,7 +191,7 @@ def test_workers_of_several_threads_are_refused(tmp_path: Path) -> None:
         check_threads(client)
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=6)
 def test_no_scheduler_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_workers, "ANSWER", "2s")
     with (

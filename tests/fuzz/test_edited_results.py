@@ -86,7 +86,7 @@ def check(folder, tmp_path, count, seed):
         (folder / "result.json").write_text(json.dumps(sound), encoding="utf-8")
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=6)
 def test_results_changed_by_hand(folder, tmp_path):
     assert shown(folder, tmp_path / "sound") is None
     check(folder, tmp_path, EACH_TIME, 5)

@@ -25,7 +25,7 @@ def test_some_damaged_logs_of_every_format(tmp_path):
 
 @pytest.mark.study(turn="each")
 @pytest.mark.parametrize("seed", range(8, 13))
-def test_two_thousand_damaged_logs_in_five_turns(tmp_path, seed):
+def test_two_thousand_damaged_logs_in_turns(tmp_path, seed):
     rows = check(tmp_path, STUDY // 5, seed)
     kinds = {name: sum(row.count[name] for row in rows) for name in rows[0].count}
     assert min(kinds.values()) > 0

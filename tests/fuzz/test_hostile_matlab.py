@@ -9,7 +9,7 @@ import scipy.io
 from test_hostile_files import MB, reading, refused, saved
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=5)
 def test_a_matlab_variable_that_unpacks_to_a_gigabyte(tmp_path):
     packer = zlib.compressobj(9)
     body = b"".join(packer.compress(bytes(MB)) for _ in range(1000)) + packer.flush()

@@ -79,7 +79,7 @@ def test_one_search_alone_would_have_stayed_elsewhere():
     assert "one of them went further" in fit.told[0]
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=5)
 def test_a_search_is_repeated_to_the_last_bit(trials):
     far = MODEL.with_values({**FAR, "GM": 1.0})
     one, two = identify(trials, far, SETTINGS), identify(trials, far, SETTINGS)
@@ -120,7 +120,7 @@ def test_a_metacentric_height_that_is_wrong_is_not_called_known(seed):
     [
         (7162, 0.01),
         pytest.param(7234, 0.01, marks=pytest.mark.study(turn=2)),
-        pytest.param(7385, 0.36, marks=pytest.mark.study(turn=2)),
+        pytest.param(7385, 0.36, marks=pytest.mark.study(turn=5)),
     ],
 )
 def test_a_roll_damped_as_no_ships_is_tells_no_gm(seed, ratio):

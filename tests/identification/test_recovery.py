@@ -40,7 +40,7 @@ def test_without_noise_the_truth_comes_back_to_rounding():
     assert fit.eps_rmsn < 1e-6
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=6)
 def test_at_least_95_of_100_starts_reach_the_same_optimum():
     rng = np.random.default_rng(20)
     trials = noisy(white, 1)

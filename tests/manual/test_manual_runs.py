@@ -109,7 +109,7 @@ def copy(project: Path, tmp_path: Path) -> Path:
 def in_turn(documents: list[str]) -> list[Any]:
     """One page after another."""
     return [
-        pytest.param(document, marks=pytest.mark.study(turn=k % 5))
+        pytest.param(document, marks=pytest.mark.study(turn=k % 7))
         for k, document in enumerate(documents)
     ]
 
@@ -158,7 +158,7 @@ def test_what_is_left_of_a_block() -> None:
     assert to_run(f"a\n{SAMPLE}\nb \\\n  c\n") == "a\nb    c"
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=5)
 def test_a_command_that_fails_is_found(project: Path) -> None:
     with pytest.raises(AssertionError, match="no such pipeline"):
         shell(project, "trialid run nothing.toml | cat")

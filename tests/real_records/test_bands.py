@@ -13,7 +13,7 @@ from trialid.workflow.fit_model import fit_of
 from trialid.workflow.read_trials import align_trials
 
 pytestmark = [
-    pytest.mark.study(turn=2),
+    pytest.mark.study(turn=6),
     pytest.mark.real_data,
     pytest.mark.skipif(not DATA.is_dir(), reason=f"no real records {DATA}"),
 ]

@@ -21,7 +21,7 @@ from trialid.workflow.fit_model import fit_of
 from trialid.workflow.read_trials import align_trials
 
 pytestmark = [
-    pytest.mark.study(turn=4),
+    pytest.mark.study(turn=5),
     pytest.mark.real_data,
     pytest.mark.skipif(not ESSO.is_dir(), reason=f"no real records {ESSO}"),
 ]

@@ -50,7 +50,7 @@ def test_noise_alone_raises_as_many_alarms_as_stated():
     assert 60 <= counted <= 150
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=5)
 def test_noise_alone_raises_one_alarm_a_day():
     """Ten days of slow noise by the stated rate of one in 24 hours."""
     counted = sum(alarms_of_noise(24.0, 60.0, seed) for seed in range(4))
@@ -123,7 +123,7 @@ def test_every_sea_finds_it(tmp_path, rudders, seed):
     assert 600.0 < first.raised <= 610.0
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=6)
 def test_without_a_late_effect_there_is_no_alarm_and_unknown_noise_is_said(tmp_path, rudders):
     playback = replayed(tmp_path, 0.0, 600.0, 0, rudders)
     assert playback.bands.separated

@@ -58,7 +58,7 @@ def shipped() -> dict[str, str]:
     return {n: h for n, h in found.items() if not n.endswith(".png")}
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=6)
 def test_it_writes_the_bytes_that_are_shipped(made: Path) -> None:
     """The logs come from the simulator, so that this also says the shipped ones do."""
     written = state(made)
@@ -89,7 +89,7 @@ def test_what_to_try_is_said(copy: Path) -> None:
         assert f"\n  trialid {command} {HIDDEN_EFFECT}" in told
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=6)
 def test_a_missing_extra_is_named(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(demo_command, "find_spec", lambda name: util.find_spec("json"))
     assert "pip install" not in demo(copy).stdout

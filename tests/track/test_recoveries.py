@@ -213,7 +213,7 @@ def test_a_stop_whose_log_has_a_hole_is_read_from_the_track() -> None:
         assert "corrected" not in row
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=6)
 def test_intervals_of_turns_and_stops_hold_the_truth() -> None:
     held: dict[str, list[tuple[bool, bool]]] = {}
     for seed in range(1, 13):

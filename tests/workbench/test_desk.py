@@ -223,7 +223,7 @@ def test_what_is_stopped_without_an_edit_is_said(path: Path, gate: Gate) -> None
         assert result(desk) == run(load(path)).result
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=5)
 def test_a_second_edit_during_a_refit_keeps_both(path: Path, gate: Gate) -> None:
     with opened(path) as desk:
         diagnosed(desk)

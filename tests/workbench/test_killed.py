@@ -87,7 +87,7 @@ def works_again(path: Path, effects: Sequence[str]) -> None:
     assert (steps[-1].dropped if name in effects else steps[-1].added) == name
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=6)
 def test_an_edit_answered_for_is_never_lost(tmp_path: Path) -> None:
     killed(tmp_path, seed=1)
 

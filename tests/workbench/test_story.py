@@ -161,7 +161,7 @@ def test_zooming_moves_all_panels_together(sample: Path, tmp_path: Path) -> None
         assert page.locator("output.window").inner_text() == told  # a refit keeps the window
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=6)
 def test_two_windows_do_not_lose_each_others_edits(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page, other = screen.page, screen.page.context.new_page()

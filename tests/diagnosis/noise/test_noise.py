@@ -93,7 +93,7 @@ def test_after_the_effect_is_added_the_model_part_falls_and_the_noise_stays():
     assert after.undermodelling_interval[0] == 0.0
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=5)
 def test_a_repeated_manoeuvre_is_trusted_most():
     clean = CLEAN[True]
     again = Trial("again", "fit", 0.5, clean[0].signals, clean[0].valid)

@@ -147,7 +147,7 @@ def test_the_signals_to_see_are_chosen_for_all_trials(opened, report):
 
 
 @pytest.mark.parametrize("width", [390, 1366])
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=6)
 def test_what_is_seen_is_saved_as_a_picture(opened, report, tmp_path, width):
     page = opened(report, width)
     heights = []
