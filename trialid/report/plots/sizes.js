@@ -4,7 +4,7 @@ export const HEIGHTS = { input: 92, output: 178, residual: 112 };
 export const PAPER = { input: 76, output: 150, residual: 96 };    // a trial with two outputs fills a page
 export const AXIS = 52;          // px; the same in every panel, so that they stand under one another
 export const CLOCK = 30;         // px below the panels that carry the time axis
-export const LOW = 72;           // px; a panel below this height would else have a single number on its axis
+export const LOW = 100;          // px; a panel below this height, as of an input, would else have a single number on its axis
 
 const PRINTED = 690;             // px; the width of an A4 page between its margins
 
