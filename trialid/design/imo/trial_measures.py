@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from trialid.design.imo.calm_air import sail_from_order
+from trialid.design.imo.excursions import Indices
 from trialid.design.imo.measured import READERS, heading_numbers, order_time
 from trialid.design.imo.recognise import recognise, samples_a_length
 from trialid.design.imo.recognition import Recognised
@@ -98,17 +99,25 @@ def _manoeuvre(trial: Trial, one: Recognised, clock: int, water: Water | None) -
 
 def approach_speed(trial: Trial, span: slice, water: Water | None) -> tuple[float | None, str]:
     """Speed [m/s] in a span and what tells it; None where neither a log nor positions do."""
-    if "u" in trial.signals and trial.valid["u"][span].all():
-        return float(np.median(trial.signals["u"][span])), "log"
-    seen = [n in trial.signals and trial.valid[n][span].all() for n in ("x", "y")]
-    t = trial.t[span]
-    if not all(seen) or len(t) < FEWEST:
+    logged = _seen(trial, ("u",), span)
+    if len(logged):
+        return float(np.median(trial.signals["u"][logged])), "log"
+    there = _seen(trial, ("x", "y"), span)
+    if len(there) < FEWEST:
         return None, ""
-    north, east = (float(np.polyfit(t - t[0], trial.signals[n][span], 1)[0]) for n in ("x", "y"))
+    t = trial.t[there] - trial.t[there[0]]
+    north, east = (float(np.polyfit(t, trial.signals[n][there], 1)[0]) for n in ("x", "y"))
     if water is None:
         return float(np.hypot(north, east)), "track over the ground"
     speed = np.hypot(north - water.speed[0], east - water.speed[1])
     return float(speed), "track less the current"
+
+
+def _seen(trial: Trial, names: Sequence[str], span: slice) -> Indices:
+    """Samples of a span at which all of these were recorded; none where one is no signal."""
+    if not {*names} <= {*trial.signals}:
+        return np.zeros(0, dtype=np.intp)
+    return span.start + np.flatnonzero(np.all([trial.valid[n][span] for n in names], axis=0))
 
 
 def _around(

@@ -149,7 +149,7 @@ def manoeuvres(run: Result) -> Table:
 
 def _manoeuvre(each: Manoeuvre) -> tuple[Cell, ...]:
     times = Figure(each.t), Figure(each.end)
-    angles = Figure(_degrees(each.rudder), 3), Figure(_degrees(each.course), 4)
+    angles = Figure(_degrees(each.rudder), 3), Figure(_course(each.course), 4)
     speed = Figure(each.speed, 3)
     return each.trial, each.kind, *times, *angles, speed, each.speed_by, each.remark or "whole"
 
@@ -171,6 +171,11 @@ def _measured(each: ManoeuvreNumber) -> tuple[Cell, ...]:
     return each.trial, each.kind, *start, each.name, unit, *_corrected(each, factor)
 
 
-def _degrees(angle: float | None) -> float | None:
+def _degrees(angle: float) -> float:
     _, factor = wording.shown_unit("rad")
-    return None if angle is None else angle * factor
+    return angle * factor
+
+
+def _course(angle: float | None) -> float | None:
+    """In degrees from 0 to 359.9, to the tenth."""
+    return None if angle is None else round(_degrees(angle), 1) % 360.0
