@@ -100,9 +100,12 @@ def _foretold(
     def numbers_of(track: Mapping[str, Vector]) -> dict[str, float]:
         return {n: x for n, (x, _) in read(track["psi"], 0.0).items()}
 
+    def doubts(track: Mapping[str, Vector]) -> dict[str, float]:
+        return {n: error for n, (_, error) in read(track["psi"], 0.0).items()}
+
     if one.kind != "zig-zag":  # a pull-out begins in a turn, a spiral settles in the wind
         around = replace(around, calm=None)
-    return foretold(around, order, one.end + 1, numbers_of)
+    return foretold(around, order, one.end + 1, numbers_of, doubts)
 
 
 def _without_wind(value: float, error: float, off: Drift | None) -> dict[str, Any]:

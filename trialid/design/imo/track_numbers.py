@@ -109,7 +109,10 @@ def track_numbers(reader: TrackReader, trial: Trial, around: Around) -> dict[str
     def read(whole: Track) -> dict[str, float]:
         return reader.read({n: x[reader.span] for n, x in whole.items()}, t, 0.0)
 
-    predicted, off = foretold(around, reader.order, reader.span.stop, read)
+    def doubts(whole: Track) -> dict[str, float]:
+        return _by_timing(reader, t, {n: x[reader.span] for n, x in whole.items()}, trial.period)
+
+    predicted, off = foretold(around, reader.order, reader.span.stop, read, doubts)
     found = {}
     for name, value in plain.items():
         half, own = spread.get(name), predicted.get(name, (None, None))
@@ -121,7 +124,7 @@ def track_numbers(reader: TrackReader, trial: Trial, around: Around) -> dict[str
 
 
 def foretold(
-    around: Around, order: float, end: int, read: Numbers
+    around: Around, order: float, end: int, read: Numbers, doubts: Numbers
 ) -> tuple[dict[str, tuple[float, Range | None]], dict[str, Drift]]:
     """The model's numbers of a manoeuvre by name, in calm air, and what the wind did to them.
 
@@ -129,23 +132,32 @@ def foretold(
     ----------
     order, end
         When it was ordered [s], and the sample up to which it is read.
+    doubts
+        Standard errors of the numbers of a track by when the order was given.
     """
     if around.calm is None:
-        return {} if around.sailed is None else _numbers(around, around.sailed, order, read), {}
+        plain = around.sailed
+        return {} if plain is None else _numbers(around, plain, order, read, doubts), {}
     sailed = around.calm(order, end)
     if sailed is None:
         return {}, {}
-    return _numbers(around, sailed.calm, order, read), drift(sailed.windy, sailed.calm, read)
+    known = _numbers(around, sailed.calm, order, read, doubts)
+    return known, drift(sailed.windy, sailed.calm, read)
 
 
 def _numbers(
-    around: Around, sailed: SailedTrial, order: float, read: Numbers
+    around: Around, sailed: SailedTrial, order: float, read: Numbers, doubts: Numbers
 ) -> dict[str, tuple[float, Range | None]]:
-    """The model's numbers with the range of a single run."""
-    if around.unexplained is None:
-        return numbers(sailed, read)
-    begin = int(order / around.unexplained.period)
-    return numbers(sailed, read, around.unexplained.errors(read, sailed.track, begin))
+    """The model's numbers with the range of a single run, whenever the order was given."""
+    try:
+        beyond = dict(doubts(sailed.track))
+        if around.unexplained is not None:
+            begin = int(order / around.unexplained.period)
+            for n, x in around.unexplained.errors(read, sailed.track, begin).items():
+                beyond[n] = float(np.hypot(beyond.get(n, 0.0), x))
+    except DesignError:
+        return {}
+    return numbers(sailed, read, beyond)
 
 
 def _is_read(trial: Trial, name: str, span: slice) -> bool:
