@@ -1,4 +1,4 @@
-"""Whose turn it is: what takes long is tried at every seventh commit, and all of it in seven.
+"""Whose turn it is: what takes long is tried at every tenth commit, and all of it in ten.
 
 `pytest -m study` runs all studies; with `TRIALID_STUDIES=turn` the long ones only where it is their
 turn by the number of commits. `python .ci/turns.py` prints that turn, for the benchmarks.
@@ -14,7 +14,7 @@ from typing import Final
 
 import pytest
 
-TURNS: Final = 7
+TURNS: Final = 10
 VARIABLE: Final = "TRIALID_STUDIES"
 
 

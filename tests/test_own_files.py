@@ -167,7 +167,7 @@ def test_a_replay_replaces_nothing_unasked(tmp_path: Path, sample_run: Path, suf
     assert [p.read_text() for p in tmp_path.iterdir()] == ["theirs"]
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=9)
 def test_notes_in_a_runs_own_folder_stay(tmp_path: Path, sample_run: Path) -> None:
     folder = tmp_path / "run"
     shutil.copytree(sample_run, folder)
@@ -181,7 +181,7 @@ def test_notes_in_a_runs_own_folder_stay(tmp_path: Path, sample_run: Path) -> No
     assert json.loads((folder / "result.json").read_text())["schema"] == "trialid-result/1"
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=7)
 def test_a_run_folder_of_an_earlier_version_is_replaced(tmp_path: Path, sample_run: Path) -> None:
     folder = tmp_path / "run"
     shutil.copytree(sample_run, folder)

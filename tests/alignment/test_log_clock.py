@@ -130,7 +130,7 @@ def test_a_match_puts_the_logs_on_one_clock_and_finds_the_drift():
     assert drift == pytest.approx(500, abs=60)
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=8)
 def test_the_interval_of_a_match_holds_the_truth_as_often_as_it_says():
     from trialid.alignment.clock_match import Signal, match_clocks
 

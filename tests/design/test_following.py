@@ -96,7 +96,7 @@ def test_the_interval_holds_what_the_true_ship_does(fit, whole):
     assert whole["advance"].kept
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=9)
 def test_with_nothing_else_to_be_wrong_it_is_what_noise_leaves(fit, alone):
     """Against 50 ships drawn from the covariance of the parameters, each sailed."""
     found, covariance = alone

@@ -97,7 +97,7 @@ def test_series_are_read_as_written(hidden, tmp_path):
                 assert (values == read[name]).all(), (part, name)
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=7)
 def test_run_drafts_what_the_pipeline_then_runs_with(sample, tmp_path):
     file = sample.parent / "mine.py"
     before = run(sample, "--out", tmp_path / "before", "--draft", file)

@@ -116,7 +116,7 @@ def test_the_right_equation_is_named(hidden, row):
         assert np.mean(shares) > (0.8 if row == "K" else 0.9)  # roll noise is slow near resonance
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=7)
 def test_noise_alone_names_no_equation():
     """In at most 1 of 12 records, waves and white noise; of 40 it was none."""
     found = [

@@ -61,7 +61,7 @@ def signals(folder, place=0):
     return tomllib.loads((folder / "p.toml").read_text())["trial"][place]["signals"]
 
 
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=7)
 def test_the_sample_logs_give_a_pipeline_that_runs_at_once(tmp_path):
     assert begun(tmp_path, LOGS, length=175.0).to_fill == ()
     done = run_pipeline(pipeline_file.load(tmp_path / "p.toml"))

@@ -107,7 +107,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=9)
 def test_a_run_that_kills_its_workers_is_a_row_and_is_done_anew(fresh: Path) -> None:
     """The effect that its pipeline brings along does; the other run is none the worse."""
     text = (fresh / "template-csv.toml").read_text(encoding="utf-8")
@@ -181,7 +181,7 @@ def test_a_scheduler_killed_and_started_again(
     assert contents(fresh / "out") == many[1]
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=8)
 def test_workers_of_several_threads_are_refused(tmp_path: Path) -> None:
     with (
         processes(tmp_path, threads=2) as apart,
@@ -191,7 +191,7 @@ def test_workers_of_several_threads_are_refused(tmp_path: Path) -> None:
         check_threads(client)
 
 
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=8)
 def test_no_scheduler_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_workers, "ANSWER", "2s")
     with (

@@ -156,7 +156,7 @@ def test_a_row_of_two_hundred_megabytes(tmp_path, filler):
     _long_line(tmp_path / "log", "csv", filler)
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=7)
 def test_a_sentence_of_two_hundred_megabytes(tmp_path):
     _long_line(tmp_path / "log", "nmea", b"$")
 

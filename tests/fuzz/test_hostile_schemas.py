@@ -158,7 +158,7 @@ def test_nests_of_json(tmp_path, payload):
 
 
 @pytest.mark.parametrize("payload", JSON.values(), ids=JSON)
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=9)
 def test_nests_of_json_in_a_delta(tmp_path, payload):
     """Signal K: the nest as a whole line, and as the value of one."""
     update = b'{"context":"vessels.self","updates":[{"$source":"a","values":[{"path":"b","value":'

@@ -69,7 +69,7 @@ def test_a_ship_that_lies_still_while_the_helm_is_tried_never_moves():
     assert "never moves: r and phi" in why_no_fit(identify([still], MODEL, SETTINGS)).reason
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=8)
 def test_a_motion_that_is_not_the_rudders_is_not_explained():
     """A slow wander of the heading under a rudder that has nothing to do with it."""
     trial = zigzag(10)

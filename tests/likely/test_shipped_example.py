@@ -25,7 +25,7 @@ def after():
     return ti.run(ROOT / "pipelines" / "hidden_effect.toml").add("righting_arm_cubic").result
 
 
-@pytest.fixture(params=["before", pytest.param("after", marks=pytest.mark.study(turn=6))])
+@pytest.fixture(params=["before", pytest.param("after", marks=pytest.mark.study(turn=9))])
 def parameters(request):
     """Physical parameters of the run without the effect, or with it."""
     return request.getfixturevalue(request.param).physical
@@ -55,7 +55,7 @@ def test_with_the_effect_in_the_model_they_do(after):
     assert max(off.values()) < 1.0
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=9)
 def test_what_is_said_of_the_noise_holds_the_noise(before):
     """Of what the right model leaves, 3.84 %, nothing is the model's: the noise is that at least.
 

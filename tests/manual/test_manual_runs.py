@@ -109,7 +109,7 @@ def copy(project: Path, tmp_path: Path) -> Path:
 def in_turn(documents: list[str]) -> list[Any]:
     """One page after another."""
     return [
-        pytest.param(document, marks=pytest.mark.study(turn=k % 7))
+        pytest.param(document, marks=pytest.mark.study(turn=k % 10))
         for k, document in enumerate(documents)
     ]
 
@@ -127,7 +127,7 @@ def test_its_commands_run_and_print_what_is_shown(document: str, copy: Path, sam
             assert block.text == last, f"{where}: stale; run: python tests/manual/printed.py"
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=7)
 def test_the_readme_shows_the_first_screen_whole(sample: str) -> None:
     """80 columns of 40 lines, one of them for the prompt, and it is the one that comes out."""
     assert [block.text for block in blocks("README") if block.kind == PRINTED] == [sample]

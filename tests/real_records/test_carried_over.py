@@ -56,7 +56,7 @@ def test_a_force_is_named_whatever_is_held_out(basin, part):
     assert all(name and moves_the_ship(name) for name in first), first
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=8)
 @pytest.mark.parametrize("base", BASES)
 def test_from_another_base_the_first_name_is_a_force(basin, base):
     held = ("Z_10_10_S", "Z_20_10_S")

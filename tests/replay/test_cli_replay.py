@@ -88,7 +88,7 @@ def test_the_recording_holds_the_runs_numbers_bit_for_bit(done, trial, start):
     assert out.with_suffix(".plotjuggler.xml").is_file()
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=9)
 def test_alarms_are_told_as_they_come_and_fitting_first_gives_the_same(done):
     pipeline, run = done
     given = trialid_("replay", pipeline, "--run", run, "--fast")
@@ -102,7 +102,7 @@ def test_alarms_are_told_as_they_come_and_fitting_first_gives_the_same(done):
     assert trialid_("replay", pipeline, "--run", run, "--fast", "--quiet").stdout == ""
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=9)
 def test_a_log_that_grows_no_more_is_followed_to_its_end(done):
     pipeline, run = done
     outcome = trialid_("replay", pipeline, "--run", run, "--follow", "--idle", "0.5")

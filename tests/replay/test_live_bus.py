@@ -99,7 +99,7 @@ def followed(channel, sent, *arguments, seconds=0.0):
     return outcome
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=8)
 def test_a_trial_over_the_bus_is_the_trial_of_its_log(done, sent, tmp_path):
     pipeline, run = done
     kept = pipeline.parent / "at_sea.log"

@@ -118,7 +118,7 @@ def same(one: Path, other: Path) -> None:
         assert (one / name).read_bytes() == (other / name).read_bytes()
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=7)
 def test_a_lost_worker_is_one_line_and_what_was_done_is_kept(turning, tmp_path) -> None:
     """An effect file that ends its worker; the others' fits are there the next time."""
     pytest.importorskip("distributed")

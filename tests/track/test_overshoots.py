@@ -76,7 +76,7 @@ def test_every_overshoot_of_a_long_zigzag_is_measured() -> None:
     assert [r.measured for r in rows] == pytest.approx([np.deg2rad(10.0)] * len(rows), abs=0.01)
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=8)
 def test_intervals_of_overshoots_hold_the_truth() -> None:
     truth = true_overshoots()
     inside = []

@@ -230,7 +230,7 @@ def test_days_of_trials_are_found_and_bounded_right() -> None:
     assert sum(besides.values()) < 0.02 * sum(whole.values())
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=8)
 def test_half_and_twice_of_each_threshold(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a threshold has no other origin: what becomes of the same days with others."""
     modules = (excursions, recognise, spirals, stops, williamson)

@@ -198,7 +198,7 @@ def test_cancel_when_nothing_is_done(path: Path) -> None:
     assert path.read_bytes() != text
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=7)
 def test_what_is_stopped_without_an_edit_is_said(path: Path, gate: Gate) -> None:
     """An undo that is cancelled leaves the file as it is: the screen then says what it shows."""
     with opened(path) as desk:

@@ -139,7 +139,7 @@ def test_an_effect_file_edited_broken_and_mended(tmp_path: Path) -> None:
         assert result(desk).fit == first.fit
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=9)
 def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
     """The file is as it was before the edit; what cannot be fitted now is, once it is mended."""
     path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
@@ -163,7 +163,7 @@ def test_an_undo_while_the_effect_file_is_broken(tmp_path: Path) -> None:
         assert path.read_bytes() == text
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=9)
 def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: Any) -> None:
     """Between the same two looks as an edit on the screen: it is seen all the same."""
     path, mine = quick.with_own(tmp_path), tmp_path / "mine.py"
@@ -182,7 +182,7 @@ def test_an_effect_file_edited_with_the_pipeline(tmp_path: Path, monkeypatch: An
         assert result(desk) == run(load(path)).result
 
 
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=9)
 def test_a_file_edited_while_it_is_taken_over(path: Path, monkeypatch: Any) -> None:
     """The second of two edits elsewhere, made while the first is being read, is seen too."""
     text = path.read_bytes()

@@ -137,7 +137,7 @@ def test_by_keyboard_alone_in_the_dark(sample: Path, tmp_path: Path) -> None:
         assert sum(map(int, re.findall(r"\d+", dark)[:3])) < 150
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=8)
 def test_zooming_moves_all_panels_together(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page = screen.page
@@ -181,7 +181,7 @@ def test_two_windows_do_not_lose_each_others_edits(sample: Path, tmp_path: Path)
         assert "roll_rate_yaw" not in text
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=9)
 def test_a_mistake_is_told_where_it_was_made(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page = screen.page
@@ -260,7 +260,7 @@ def test_title_verdict_and_legends_are_whole(untouched: str, tmp_path: Path, wid
             assert head["height"] < 60  # a name is not broken into a column of syllables
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=8)
 def test_signals_stay_chosen_and_what_is_seen_is_saved(sample: Path, tmp_path: Path) -> None:
     with browser.started(sample) as address, browser.opened(address, tmp_path) as screen:
         page = screen.page

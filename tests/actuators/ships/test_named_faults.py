@@ -35,7 +35,7 @@ def test_rudders_exchanged_are_named_where_their_races_differ() -> None:
     assert found.family == ("rudder_port_rudder_stbd_exchanged",)
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=8)
 def test_the_only_tunnel_reversed_is_named_although_any_value_does_as_well() -> None:
     """Its gain is its own: what it is reversed by ends anywhere in its range, here at its end."""
     [reverse] = [f for f in OF_OTHERS if f.words == "bow reversed"]
@@ -60,7 +60,7 @@ def test_a_fault_that_takes_next_to_nothing_off_the_error_has_no_name() -> None:
     ("words", "seeds"),
     [
         pytest.param(
-            ("nothing", "rudders exchanged"), range(2240, 2250), marks=pytest.mark.study(turn=1)
+            ("nothing", "rudders exchanged"), range(2240, 2250), marks=pytest.mark.study(turn=7)
         ),
         pytest.param(
             ("screw 20 % weak", "rudder stuck"), range(2220, 2230), marks=pytest.mark.study(turn=3)
@@ -90,7 +90,7 @@ def test_a_fault_of_pods_screws_and_tunnel_is_named(fault: Fault) -> None:
         pytest.param("cargo", "screw stuck", marks=pytest.mark.study(turn=0)),
         pytest.param("ferry", "pod's revolutions stuck", marks=pytest.mark.study(turn=5)),
         pytest.param("supply", "screw stuck", marks=pytest.mark.study(turn=2)),
-        pytest.param("supply", "bow stuck", marks=pytest.mark.study(turn=3)),
+        pytest.param("supply", "bow stuck", marks=pytest.mark.study(turn=8)),
     ],
 )
 def test_revolutions_that_do_not_change_are_named_on_their_side(ship: str, words: str) -> None:

@@ -83,7 +83,7 @@ def test_noise_alone_gives_a_model_part_whose_interval_holds_zero(kind):
         assert route.undermodelling_interval[0] == 0.0, route.method
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=8)
 def test_after_the_effect_is_added_the_model_part_falls_and_the_noise_stays():
     trials = noisy(CLEAN[True], waves, 5)
     before, _ = routes_of(identify(trials, MODEL, FIT))

@@ -176,7 +176,7 @@ def test_what_is_seen_is_saved_as_a_picture(opened, report, tmp_path, width):
 # --- side by side -----------------------------------------------------------------------------
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=8)
 def test_runs_are_laid_over_one_another_where_they_saw_the_same(opened, comparison):
     page = opened(comparison, 1366)
     assert page.locator("#overlays article").count() == 4

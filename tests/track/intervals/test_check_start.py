@@ -110,7 +110,7 @@ def test_noise_of_an_anemometer_is_in_it() -> None:
     assert np.all(white[[known.names.index(n) for n in CURRENT]] < 0.6 * errors)
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=9)
 @one_thread
 def test_numbers_of_a_circle_to_check_hold_the_truth() -> None:
     """The model's and those less its current; before, 70 % of the model's advances did."""
