@@ -107,8 +107,19 @@ def test_the_approach_is_told_by_what_was_recorded() -> None:
     drift = np.hypot(*(one.speed * course + CURRENTS["circle"]))
     assert (ground, by) == (pytest.approx(drift, abs=0.15), "track over the ground")
     assert abs(drift - one.speed) > 0.15
-    assert approach_speed(logged, span, None) == (7.1, "log")
+    by_log = approach_speed(logged, span, None)
+    assert by_log == (pytest.approx(7.1), "log")
     assert approach_speed(circle, slice(0, 2), None) == (None, "")
+
+
+def test_a_speed_that_positions_do_not_tell_is_not_told() -> None:
+    """By 1 m at 10 Hz a second and a half leaves 1.2 m/s of 7 open; five seconds 0.2 m/s."""
+    t, rng = np.arange(0.0, 5.0, 0.1), np.random.default_rng(5)
+    signals = {n: s * t + rng.standard_normal(len(t)) for n, s in (("x", 6.0), ("y", 3.6))}
+    valid = {n: np.ones(len(t), dtype=bool) for n in signals}
+    trial = Trial("begun late", "fit", 0.1, signals, valid)
+    assert approach_speed(trial, slice(0, 15), None) == (None, "")
+    assert approach_speed(trial, slice(0, 50), None)[0] == pytest.approx(7.0, abs=0.35)
 
 
 def held_out(seed: int) -> tuple[TurnMeasure, ...]:

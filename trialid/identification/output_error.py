@@ -240,8 +240,13 @@ def row_scale(problem: Problem) -> Vector:
 
 def stretches(problem: Problem) -> tuple[Stretch, ...]:
     """Which rows are which output of which trial."""
+    return stretches_of(problem.compared)
+
+
+def stretches_of(compared: Sequence[Mask]) -> tuple[Stretch, ...]:
+    """The same of trials whose outputs were compared at these samples; (N, n_y) each."""
     made, at = list[Stretch](), 0
-    for i, masks in enumerate(problem.compared):
+    for i, masks in enumerate(compared):
         for c in range(masks.shape[1]):
             count = int(masks[:, c].sum())
             made.append(Stretch(i, c, slice(at, at + count), masks[:, c]))

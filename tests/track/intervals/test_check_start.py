@@ -83,7 +83,9 @@ def test_it_is_found_however_exact_positions_are() -> None:
     priors = priors_of(fit.problem, circle, known.names)
     rows = OwnRows(fit.problem, circle, compared, values, priors, fit.level)
     at = np.array([ended[n] for n in known.names])
-    further = minimise(rows, at, known.noise.std(axis=1), max_iterations=50, tolerance=1e-9)
+    further = minimise(
+        rows, at, np.linalg.norm(known.noise, axis=1), max_iterations=50, tolerance=1e-9
+    )
     assert np.all(np.abs(further.theta - at) < 0.1 * np.linalg.norm(known.noise, axis=1))
 
 

@@ -83,7 +83,10 @@ def priors_of(
 
 
 class OwnRows:
-    """Residual of one trial and its gradient by what is its own, with rows of priors."""
+    """Residual of one trial and its gradient by what is its own, with rows of priors.
+
+    One output after the other, as the rows of a fit.
+    """
 
     def __init__(
         self,
@@ -99,7 +102,7 @@ class OwnRows:
         self.means = np.array([mean for mean, _ in known.values()])
         self.weigh = level / np.array([deviation for _, deviation in known.values()])
         self.columns = [problem.simulator.columns.index(c) for c in known]
-        self.scale = np.broadcast_to(row_scale(problem), compared.shape)[compared]
+        self.scale = np.repeat(row_scale(problem), compared.sum(axis=0))
 
     def __call__(self, own: Vector) -> tuple[Vector, Vector] | None:
         """At these values of its own; None where the model is left."""
@@ -113,7 +116,12 @@ class OwnRows:
         """Rows of a simulation by what is its own."""
         assert response.S is not None
         y = output_matrix(self.trial, self.problem.outputs)
-        gap = output_error(y, response.y)[self.compared] * self.scale
-        slopes = response.S[:, :, self.columns][self.compared] * self.scale[:, None]
+        gap = self.taken(output_error(y, response.y))
+        slopes = self.taken(response.S[:, :, self.columns])
         priors = (self.means - own) * self.weigh
         return np.append(gap, priors), np.concatenate([slopes, np.diag(self.weigh)])
+
+    def taken(self, values: Vector) -> Vector:
+        """Normed rows of what there is at every sample; (N, n_y, ...) to (M, ...)."""
+        rows = np.swapaxes(values, 0, 1)[self.compared.T]
+        return np.asarray(rows * self.scale.reshape(-1, *(1,) * (rows.ndim - 1)))

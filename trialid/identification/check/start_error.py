@@ -1,8 +1,7 @@
 """How sure it is where a trial that is not fitted was found to start."""
 
-import functools
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +12,7 @@ from trialid.accuracy.felt import felt_by
 from trialid.arrays import Mask
 from trialid.identification.check.own_start import OwnRows, columns_of_its_own, priors_of
 from trialid.identification.input_noise import input_noise, moved_by
-from trialid.identification.output_error import Problem
+from trialid.identification.output_error import Problem, stretches_of
 from trialid.simulation.integrate import respond, starts_of
 from trialid.trial import Trial
 from trialid.trial_rows import Stretch
@@ -61,14 +60,15 @@ def start_error(
     rows = OwnRows(problem, trial, compared, values, priors_of(problem, trial, names), level)
     shared = tuple(x.column for x in problem.unknowns if x.trial is None)
     columns = [problem.simulator.columns.index(c) for c in shared]
-    psi = response.S[:, :, columns][compared] * rows.scale[:, None]
+    psi = rows.taken(response.S[:, :, columns])
     gap, own = rows.of(response, np.array([values[n] for n in names]))
     inverse = _inverse(own)
-    measured = slice(len(gap) - len(names))
-    sizes = np.append(_sizes(compared, gap[measured]), np.full(len(names), level))
-    white = np.asarray(np.linalg.qr((own * sizes[:, None]) @ inverse, mode="r")).T
+    parts, measured = stretches_of((compared,)), slice(len(gap) - len(names))
+    sizes = [np.full(p.rows.stop - p.rows.start, _rms(gap[p.rows])) for p in parts]
+    weights = np.concatenate([*sizes, np.full(len(names), level)])
+    white = np.asarray(np.linalg.qr((own * weights[:, None]) @ inverse, mode="r")).T
     gain = inverse @ own[measured].T
-    felt = _felt(rows, own[measured], gain, gap[measured])
+    felt = _felt(rows, own[measured], gain, gap[measured], parts)
     return StartError(names, shared, -gain @ psi, np.hstack([white, felt]))
 
 
@@ -81,40 +81,26 @@ def _inverse(own: Vector) -> Vector:
     )
 
 
-def _sizes(compared: Mask, gap: Vector) -> Vector:
-    """The size of the residual of its output, for each row; (M,)."""
-    place = np.nonzero(compared)[1]
-    squares = np.bincount(place, gap**2) / np.maximum(np.bincount(place), 1)
-    return np.asarray(np.sqrt(squares[place]))
+def _rms(gap: Vector) -> float:
+    return float(np.sqrt(np.mean(gap**2))) if len(gap) else 0.0
 
 
-def _felt(rows: OwnRows, own: Vector, gain: Vector, gap: Vector) -> Vector:
+def _felt(
+    rows: OwnRows, own: Vector, gain: Vector, gap: Vector, parts: Sequence[Stretch]
+) -> Vector:
     """Root of what noise of recorded inputs adds; (n_own, n_own), or no column."""
     simulator, trial = rows.problem.simulator, rows.trial
-    noise = input_noise(simulator, trial)
+    none, noise = np.zeros((len(gain), 0)), input_noise(simulator, trial)
     if not noise:
-        return np.zeros((len(gain), 0))
-    place = np.nonzero(rows.compared)[1]
-    order = np.argsort(place, kind="stable")
-    moved = functools.partial(moved_by, simulator, trial, rows.values, noise)
+        return none
 
     def draw(draws: int) -> Vector:
-        each = itertools.islice(moved(np.random.default_rng(0)), draws)
-        made = np.array([(y[rows.compared] * rows.scale)[order] for y in each])
+        moved = moved_by(simulator, trial, rows.values, noise, np.random.default_rng(0))
+        made = np.array([rows.taken(y) for y in itertools.islice(moved, draws)])
         return np.asarray(made[np.isfinite(made).all(axis=1)])
 
-    parts = _stretches(rows.compared)
-    felt = felt_by(own[order], gain[:, order], gap[order], parts, draw, draws_for(len(gap)))
+    felt = felt_by(own, gain, gap, parts, draw, draws_for(len(gap)))
     if felt is None:
-        return np.zeros((len(gain), 0))
+        return none
     size, direction = np.linalg.eigh(felt.covariance)
     return np.asarray(direction * np.sqrt(np.maximum(size, 0.0)))
-
-
-def _stretches(compared: Mask) -> list[Stretch]:
-    """Rows of each output, one output after the other."""
-    ends = np.cumsum([0, *compared.sum(axis=0)])
-    return [
-        Stretch(0, c, slice(int(ends[c]), int(ends[c + 1])), compared[:, c])
-        for c in range(compared.shape[1])
-    ]
