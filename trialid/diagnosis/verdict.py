@@ -13,6 +13,7 @@ from trialid.diagnosis.search.refit import (
     AS_SLOW,
     HELD_OUT,
     NOT_ARRIVED,
+    SLIGHT,
     Refit,
     best_of,
     fall,
@@ -73,6 +74,8 @@ def decide(
         return Verdict("cannot tell", None, (), _against(fit, against))
     if grown and (slow := _standing_but(AS_SLOW, fit, refits, level)) is not None:
         return Verdict("cannot tell", None, (), _as_slow(fit, slow))
+    if grown and (slight := _standing_but(SLIGHT, fit, refits, level)) is not None:
+        return Verdict("cannot tell", None, (), _correction(slight))
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
     return _unnamed(parts, whole, small)
 

@@ -9,6 +9,7 @@ are told beside those of the clock: where others share the machine, only they co
 """
 
 import argparse
+import multiprocessing
 import os
 import resource
 import sys
@@ -16,6 +17,7 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
@@ -119,6 +121,28 @@ class Workers:
             self.cpu = sum(client.run(time.process_time).values()) - before
 
 
+def beside_each_other(folder: Path, jobs: int) -> float:
+    """Mean seconds of as many processes as workers, each doing the first runs, without Dask.
+
+    What the machine gives each of its cores when all are busy: more nobody can hand on.
+    """
+    places = [f"beside-{i}" for i in range(jobs)]
+    for name in places:
+        (folder / f"{name}.toml").write_bytes((folder / "alone.toml").read_bytes())
+    with multiprocessing.get_context("spawn").Pool(jobs) as pool:
+        pool.map(_imported, places, chunksize=1)
+        return float(np.mean(pool.map(partial(_seconds, folder), places, chunksize=1)))
+
+
+def _imported(place: str) -> None:
+    import_all()
+
+
+def _seconds(folder: Path, name: str) -> float:
+    np.seterr(all="ignore")
+    return taken(folder, name, one_by_one).seconds
+
+
 def import_all() -> None:
     """Import what a run needs, so that a worker is warm."""
     import trialid.workflow.write_run  # noqa: F401
@@ -189,6 +213,7 @@ def report(ships: int, alone_of: int, jobs: int, folder: Path) -> str:
     dask = taken(folder, "dask", warmed.compute)
     warm = time.perf_counter() - warmed.ready
     alone = taken(folder, "alone", one_by_one)
+    beside = beside_each_other(folder, jobs)
     kept = {n: x for n, x in contents(folder / "alone").items() if "/" in n}  # of runs
     different = [n for n, x in kept.items() if (folder / "dask" / n).read_bytes() != x]
     once, over = overhead(folder)
@@ -198,6 +223,7 @@ def report(ships: int, alone_of: int, jobs: int, folder: Path) -> str:
             f"one process, {alone_of} runs",
             f"{alone.seconds:.1f} s of clock, {alone.cpu:.1f} s of processor",
         ),
+        (f"{jobs} such processes at once, no Dask", f"{beside:.1f} s of clock each"),
         (
             f"Dask, {jobs} warm workers",
             f"{warm:.1f} s of clock, {warmed.cpu:.1f} s of processor in them, {dask.cpu:.1f} s "
@@ -206,6 +232,10 @@ def report(ships: int, alone_of: int, jobs: int, folder: Path) -> str:
         (
             "throughput over workers times one process, by the clock",
             f"{alone.seconds / (each * warm) / jobs:.2f}",
+        ),
+        (
+            "throughput over that of as many processes without Dask",
+            f"{beside / (each * warm) / jobs:.2f}",
         ),
         ("the same by processor seconds", f"{alone.cpu / (each * (warmed.cpu + dask.cpu)):.2f}"),
         ("overhead, processor", f"{1e3 * over:.0f} ms a run, {once:.1f} s a batch"),

@@ -18,6 +18,7 @@ from trialid.ship.effect import Effect, Force, Mass, Rate
 
 HELD_OUT: Final = "the held-out error rises"
 NOT_ARRIVED: Final = "the search does not arrive"
+SLIGHT: Final = "held-out trials hardly show it"
 AS_SLOW: Final = "a sensor as slow as that looks like the ship's own memory"
 """Objections in their words."""
 
@@ -162,6 +163,8 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
         return HELD_OUT
     if not falls(fit, refit):
         return "the error hardly falls"
+    if grown and not shown_by_held_out(fit, refit.fit):
+        return SLIGHT
     return AS_SLOW if grown and _slow(refit) else ""
 
 
@@ -187,6 +190,19 @@ def worse_held_out(before: Fit, after: Fit) -> bool:
     if old is None or new is None:
         return False
     return not np.isfinite(new) or new > old
+
+
+def shown_by_held_out(before: Fit, after: Fit) -> bool:
+    """Whether the error of an output falls on held-out trials, where there are any, by what counts.
+
+    Asked beside effects that were added: by their shapes any error is mended a little where it was
+    fitted, and what belongs to the ship is there in the next trial. Of 36 such additions to 11
+    ships whose blocks fell by less than 4.5 %, four were of nothing hidden and fell there by 1.4 %
+    at most, one of the others by less than `FALL`. Half of it lets one of the four by, twice keeps
+    four more of the others out.
+    """
+    old, new = before.eps_check_by_output, after.eps_check_by_output
+    return not old or any((new[c] / old[c]) ** 2 < FALL for c in old)
 
 
 def fall(fit: Fit, refit: Refit) -> float:
