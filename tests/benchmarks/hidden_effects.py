@@ -125,7 +125,7 @@ def diagnosed(
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        refits = refits_of(fit, ranking, asked, lambda words: None)
+        refits = refits_of(fit, ranking, asked, lambda words: None).refits
     with watch("decide"):
         whole = completeness(augmented)
         parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)

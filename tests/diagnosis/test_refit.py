@@ -10,6 +10,7 @@ from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import (
     AS_SLOW,
     HELD_OUT,
+    SLIGHT,
     Refit,
     best_of,
     objection,
@@ -44,6 +45,7 @@ def refit(
             eps_check=c,
             converged=True,
             eps_by_output={"r": e},
+            eps_check_by_output={} if c is None else {"r": c},
             problem=SimpleNamespace(weights=np.ones(1)),
         )
         for e, c in zip(eps, check, strict=True)
@@ -114,6 +116,30 @@ def test_in_a_grown_model_a_sensor_as_slow_as_the_ship_is_not_told_from_her_memo
     assert objection(old, new, 0.05) == ""
     assert objection(old, new, 0.05, grown=True) == words
     new.candidate.effect.forms = (Force,)  # what is late in the ship is the ship's
+    assert objection(old, new, 0.05, grown=True) == ""
+
+
+@pytest.mark.parametrize(
+    ("r", "phi", "words"),
+    [
+        (0.199, 0.1995, SLIGHT),  # 1.0 and 0.5 % of the square
+        (0.1995, 0.198, ""),  # 2.0 %: one output is enough
+        (0.198, 0.201, ""),
+        (0.1975, None, ""),
+    ],
+)
+def test_beside_effects_that_were_added_held_out_trials_must_show_it(r, phi, words):
+    old, new = refit("a", BEFORE, LESS, check=(0.2, 0.199))
+    new.candidate.effect.parameters = {}
+    old.eps_check_by_output = {"r": 0.2, "phi": 0.2} if phi else {"r": 0.2}
+    new.fit.eps_check_by_output = {"r": r, "phi": phi} if phi else {"r": r}
+    assert objection(old, new, 0.05) == ""
+    assert objection(old, new, 0.05, grown=True) == words
+
+
+def test_where_no_trial_is_held_out_the_blocks_alone_tell():
+    old, new = refit("a", BEFORE, LESS, check=(None, None))
+    new.candidate.effect.parameters = {}
     assert objection(old, new, 0.05, grown=True) == ""
 
 

@@ -20,6 +20,7 @@ from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
 from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate, ranking_of
+from trialid.diagnosis.search.stand_in import Covered, covered
 from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
 from trialid.diagnosis.where.misfit import Where, where
@@ -119,7 +120,8 @@ def diagnose(
         return _no_fit(fit, before, augmented.left_out, failed)
     whole, left_out = _any_shape(augmented), augmented.left_out
     del augmented  # columns of the whole catalogue, before there are those of the next model
-    refits = refits_of(fit, ranking, asked, lambda words: progress(words, 0.7), grown)
+    tried = refits_of(fit, ranking, asked, lambda words: progress(words, 0.7), grown)
+    refits = tried.refits
     if faults := _whole(fit, ranking, refits, asked, progress):
         return _gross(fit, before, left_out, faults, asked)
     fits = [r.fit for r in refits]
@@ -127,7 +129,8 @@ def diagnose(
     verdict = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     verdict = with_motion(fit, verdict, ranking, refits, asked.level)
     named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
-    after = _bounded(examine_fit(named.fit, asked, progress)[0], fits) if named else None
+    known = tried.augmented if named is tried.best else None
+    after = _bounded(examine_fit(named.fit, asked, progress, known)[0], fits) if named else None
     wanted = force or verdict.kind == "not in catalogue"
     sought = _force(named.fit if named else fit, asked.level, progress) if wanted else None
     return Diagnosis(
@@ -207,12 +210,14 @@ def _gross(
 
 
 def examine_fit(
-    fit: Fit, asked: DiagnoseSettings, progress: Progress
+    fit: Fit, asked: DiagnoseSettings, progress: Progress, known: Augmented | None = None
 ) -> tuple[Diagnosed, Augmented]:
-    """The split, the accuracy that follows from it, and the traces that both rest on."""
+    """The split, the accuracy that follows from it, and the traces that both rest on.
+
+    `known` are the traces, where they are.
+    """
     progress("looking for what is missing", 0.65)
-    candidates = {**asked.candidates, **(candidates_to_free(fit) if asked.coefficients else {})}
-    augmented = augment(fit, candidates)
+    augmented = known or augment(fit, _tried(fit, asked))
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
     return Diagnosed(fit, best, routes, doubts(augmented)), augmented
 
@@ -234,10 +239,23 @@ def refits_of(
     asked: DiagnoseSettings,
     progress: Callable[[str], None],
     grown: bool = False,
-) -> tuple[Refit, ...]:
-    """The best candidates fitted, and whatever else would be said to do as well."""
+) -> Covered:
+    """The best candidates fitted, whatever else would be said to do as well, and what they cover."""
     worth = [c for c in ranking if c.worth_a_name(asked.level)]
     best = refit_best(fit, worth, asked.refit, asked.level, progress)
     named = likeliest_refit(fit, best, asked.level, grown)
     others = to_fit(named, ranking, best) if named else ()
-    return (*best, *refit(fit, others, progress))
+    return covered(
+        fit,
+        ranking,
+        (*best, *refit(fit, others, progress)),
+        _tried(fit, asked),
+        level=asked.level,
+        grown=grown,
+        progress=progress,
+    )
+
+
+def _tried(fit: Fit, asked: DiagnoseSettings) -> dict[str, Effect]:
+    """What is tried: effects, and coefficients that are held."""
+    return {**asked.candidates, **(candidates_to_free(fit) if asked.coefficients else {})}

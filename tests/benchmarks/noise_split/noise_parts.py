@@ -71,7 +71,7 @@ def said_of(fit: Fit, shares: Sequence[float]) -> list[Split]:
     _, augmented = examine_fit(fit, asked, silent)
     ranking = ranking_of(fit, augmented, asked.family_cos, asked.level)
     whole = completeness(augmented)
-    fits = [r.fit for r in refits_of(fit, ranking, asked, lambda words: None)]
+    fits = [r.fit for r in refits_of(fit, ranking, asked, lambda words: None).refits]
     said = []
     for share in shares:
         with mock.patch.object(error_parts, "TAKEN", share * error_parts.TAKEN):
