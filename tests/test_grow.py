@@ -100,7 +100,7 @@ def fit_in(world: World, effects: str) -> Any:
         raise SimulationError(f"lost with {effects} at t = 3 s")
     eps, check = world[effects]
     return SimpleNamespace(effects=effects, eps_rmsn=eps, eps_check=check, converged=True,
-                           eps_by_output={"r": eps},
+                           eps_by_output={"r": eps}, eps_check_by_output={},
                            model=SimpleNamespace(values={}, displaced_by=lambda effect: ()),
                            problem=SimpleNamespace(weights=np.ones(1)))  # fmt: skip
 

@@ -24,6 +24,7 @@ def fit(eps, check=None, converged=True):
         eps_check=check,
         converged=converged,
         eps_by_output={"r": eps},
+        eps_check_by_output={} if check is None else {"r": check},
         problem=SimpleNamespace(weights=np.ones(1)),
         model=SimpleNamespace(displaced_by=lambda effect: ()),
     )

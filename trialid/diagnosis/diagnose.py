@@ -240,7 +240,7 @@ def refits_of(
     progress: Callable[[str], None],
     grown: bool = False,
 ) -> Covered:
-    """The best candidates fitted, whatever else would be said to do as well, and what they cover."""
+    """The best candidates fitted, what else would be said to do as well, and what they cover."""
     worth = [c for c in ranking if c.worth_a_name(asked.level)]
     best = refit_best(fit, worth, asked.refit, asked.level, progress)
     named = likeliest_refit(fit, best, asked.level, grown)
