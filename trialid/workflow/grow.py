@@ -184,7 +184,7 @@ def _backward(path: _Path, stage: Stage) -> Stage | None:
     if len(path.own) < 2:
         return None
     fit = stage.run.findings.before.fit
-    idle = to_drop(fit, worths(fit, path.trials, path.own))
+    idle = to_drop(fit, worths(fit, path.trials, path.own, known=stage.worths))
     if idle is None:
         return None
     try:

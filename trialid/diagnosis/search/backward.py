@@ -69,6 +69,7 @@ def worths(
     trials: Sequence[Trial],
     effects: Sequence[Effect],
     kin: Mapping[str, frozenset[str]] | None = None,
+    known: Sequence[Worth] = (),
 ) -> tuple[Worth, ...]:
     """Each of these effects left out, the dearest first.
 
@@ -76,16 +77,20 @@ def worths(
     ----------
     kin
         Effects that records could not separate from one: they are left out with it.
+    known
+        What was found out about this fit already: no model is fitted twice.
     """
     after, weights, found = own_errors(fit), levels(fit), list[Worth]()
+    done = {w.together: w for w in known}
     for effect in effects:
         near = (kin or {}).get(effect.name, frozenset())
         out = [e for e in effects if e is effect or e.name in near]
-        less = model_without(fit, trials, out)
-        before = own_errors(less, weights) if less is not None else _linearly(fit, out)
-        found.append(
-            Worth(effect.name, tuple(e.name for e in out), less, Carried.between(before, after))
-        )
+        together = tuple(e.name for e in out)
+        if together not in done:
+            less = model_without(fit, trials, out)
+            before = own_errors(less, weights) if less is not None else _linearly(fit, out)
+            done[together] = Worth(effect.name, together, less, Carried.between(before, after))
+        found.append(replace(done[together], effect=effect.name))
     return tuple(sorted(found, key=lambda w: -w.costs))
 
 

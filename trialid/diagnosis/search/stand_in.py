@@ -49,7 +49,7 @@ def covered(
     for _ in range(MOST):
         best = likeliest_refit(fit, done, level, grown)
         if best is None:
-            return Covered(done)
+            break
         progress(f"looking beside {best.candidate.effect.name}")
         augmented = augment(best.fit, catalogue)
         fitted = {r.candidate.effect.name for r in done}
@@ -57,7 +57,10 @@ def covered(
         if beside is None or beside.effect.name in fitted:
             return Covered(done, best, augmented)
         del augmented  # of a long record there is no room for two
-        done = (*done, *refit(fit, [beside], progress))
+        more = refit(fit, [beside], progress)
+        if not more:
+            break
+        done = (*done, *more)
     return Covered(done)
 
 
