@@ -155,7 +155,9 @@ def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
         effect = SimpleNamespace(name=name, parameters={name: None})
         return Edit(step, effect, asked, recipe(effects))  # type: ignore[arg-type]
 
-    def worths(fit: Any, trials: Any, own: Any, kin: Any = None) -> tuple[Worth, ...]:
+    def worths(
+        fit: Any, trials: Any, own: Any, kin: Any = None, known: Any = ()
+    ) -> tuple[Worth, ...]:
         made = []
         for effect in own:
             rest = fit.effects.replace(effect.name, "")

@@ -246,7 +246,7 @@ def test_damping_of_the_wrong_sign_makes_left_out_blocks_worse(sailed):
     assert Carried.between(before, own_errors(with_damping(trials, +1e-5))).ratio > 1.0
 
 
-def test_leaving_it_out_again_costs_what_it_brought(sailed):
+def test_leaving_it_out_again_costs_what_it_brought(sailed, monkeypatch):
     trials, _ = sailed
     full = with_damping(trials)
     effect = CATALOGUE["quadratic_roll_damping"]
@@ -260,6 +260,11 @@ def test_leaving_it_out_again_costs_what_it_brought(sailed):
     both = backward.worths(grown, trials, [effect, CATALOGUE["sway_froude"]])
     assert [w.effect for w in both] == [effect.name, "sway_froude"]
     assert not both[1].pays
+    fitted = []
+    monkeypatch.setattr(backward, "identify", lambda *_, **__: fitted.append(1))
+    known = backward.worths(grown, trials, [effect, CATALOGUE["sway_froude"]], known=both)
+    assert known == both
+    assert not fitted  # no model twice
 
 
 BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
