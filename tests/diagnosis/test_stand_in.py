@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from s175q import MODEL, OUTPUTS, SHAFT, with_noise, white
+from s175q import MODEL, OUTPUTS, SHAFT, white, with_noise
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.diagnosis.search.refit import likeliest_refit
