@@ -145,11 +145,7 @@ SHORT: Final = Limits(0.80, 0.10, 0.25, 0.25, 0.50, 0.0, 0.0, 0.75)
 
 
 def thresholds(rows: Sequence[Row], limits: Limits) -> list[Threshold]:
-    """What the mixed trials are held to.
-
-    A coefficient that was held off its true value is right to name whatever is hidden beside it,
-    and then nothing is asked of the rest: one thing is said at a time.
-    """
+    """What the mixed trials are held to; to name a coefficient that is held off is never wrong."""
     mixed = [r for r in rows if r.trials == "mixed"]
     seen = [r for r in mixed if r.group in IN_CATALOGUE and r.detectable]
     odd = [r for r in mixed if r.group == "outside" and r.detectable]
@@ -162,21 +158,17 @@ def thresholds(rows: Sequence[Row], limits: Limits) -> list[Threshold]:
         _held("predicted fall of the error within 20 % of the achieved", drops, _near,
               limits.near, True),
         _held("outside the catalogue: named", odd, lambda r: r.wrong, limits.outside_wrong),
-        _held("outside the catalogue: said to be", [r for r in odd if not r.right],
-              lambda r: r.kind == "not in catalogue", limits.outside_seen, True),
+        _held("outside the catalogue: said to be", [r for r in odd if not r.right], _gap,
+              limits.outside_seen, True),
         _held("sensor fault named a physical effect", sensors, lambda r: r.physical and r.wrong,
               limits.sensor_physical),
         _held("control named", controls, lambda r: r.wrong, limits.control),
     ]  # fmt: skip
     for noise in dict.fromkeys(r.noise for r in mixed):
         quiet = [r for r in mixed if r.group == "nothing" and r.noise == noise]
-        made += [
-            _held(f"false alarms, {noise}", quiet, lambda r: r.wrong, limits.alarms),
-            _held(f"gaps claimed, {noise}", quiet, lambda r: r.kind == "not in catalogue",
-                  limits.alarms),
-        ]  # fmt: skip
-    broken = [r for r in rows if r.kind == "error"]
-    return [*made, Threshold("runs that broke off", len(broken), len(rows), 0.0)]
+        made.append(_held(f"false alarms, {noise}", quiet, lambda r: r.wrong, limits.alarms))
+        made.append(_held(f"gaps claimed, {noise}", quiet, _gap, limits.alarms))
+    return [*made, _held("runs that broke off", rows, lambda r: r.kind == "error", 0.0)]
 
 
 def _held(
@@ -187,6 +179,10 @@ def _held(
     least: bool = False,
 ) -> Threshold:
     return Threshold(words, sum(map(counts, rows)), len(rows), limit, least)
+
+
+def _gap(row: Row) -> bool:
+    return row.kind == "not in catalogue"
 
 
 def _near(row: Row) -> bool:
@@ -202,10 +198,7 @@ HEAD: Final = (
 
 
 def scenario_line(rows: Sequence[Row]) -> list[str]:
-    """One scenario under one noise; the verdicts in the middle are those of detectable runs.
-
-    Where plainness has no meaning (nothing hidden, a wrong scale) they are those of all runs.
-    """
+    """One scenario under one noise; verdicts of detectable runs, of all where plainness is none."""
     scored = any(r.plain is not None for r in rows)
     strong = [r for r in rows if r.detectable] if scored else list(rows)
     weak = [r for r in rows if not r.detectable] if scored else []

@@ -8,7 +8,7 @@ from s175q import MODEL, OUTPUTS, SHAFT, white, with_noise
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.diagnosis.search.refit import likeliest_refit
-from trialid.diagnosis.search.stand_in import covered
+from trialid.diagnosis.search.stand_in import look_beside
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -75,7 +75,9 @@ def test_without_the_look_beside_it_another_would_be_the_best(found):
     fit = found.before.fit
     best = likeliest_refit(fit, first, 0.05)
     assert best is not None
-    more = covered(fit, found.ranking, [best], CATALOGUE, level=0.05, grown=False, progress=print)
+    more = look_beside(
+        fit, found.ranking, [best], CATALOGUE, level=0.05, grown=False, progress=print
+    )
     assert [r.candidate.effect.name for r in more.refits[1:]] == ["rudder_slipstream"]
     assert more.best is more.refits[-1]
     assert more.augmented is not None
@@ -85,5 +87,7 @@ def test_without_the_look_beside_it_another_would_be_the_best(found):
 def test_beside_what_is_missing_nothing_large_is_found(found):
     named = [r for r in found.refits if r.candidate.effect.name == "rudder_slipstream"]
     fit = found.before.fit
-    more = covered(fit, found.ranking, named, CATALOGUE, level=0.05, grown=False, progress=print)
+    more = look_beside(
+        fit, found.ranking, named, CATALOGUE, level=0.05, grown=False, progress=print
+    )
     assert more.refits == tuple(named)

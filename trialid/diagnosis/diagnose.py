@@ -20,7 +20,7 @@ from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
 from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate, ranking_of
-from trialid.diagnosis.search.stand_in import Covered, covered
+from trialid.diagnosis.search.stand_in import Beside, look_beside
 from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
 from trialid.diagnosis.where.misfit import Where, where
@@ -124,15 +124,12 @@ def diagnose(
     refits = tried.refits
     if faults := _whole(fit, ranking, refits, asked, progress):
         return _gross(fit, before, left_out, faults, asked)
-    fits = [r.fit for r in refits]
-    before = _bounded(before, fits, whole)
+    before = _bounded(before, refits, whole)
     verdict = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     verdict = with_motion(fit, verdict, ranking, refits, asked.level)
-    named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
-    known = tried.augmented if named is tried.best else None
-    after = _bounded(examine_fit(named.fit, asked, progress, known)[0], fits) if named else None
+    after = _after(verdict, tried, asked, progress)
     wanted = force or verdict.kind == "not in catalogue"
-    sought = _force(named.fit if named else fit, asked.level, progress) if wanted else None
+    sought = _force(after.fit if after else fit, asked.level, progress) if wanted else None
     return Diagnosis(
         before=before,
         ranking=ranking,
@@ -143,6 +140,17 @@ def diagnose(
         after=after,
         force=sought,
     )
+
+
+def _after(
+    verdict: Verdict, tried: Beside, asked: DiagnoseSettings, progress: Progress
+) -> Diagnosed | None:
+    """The model with what is named; None where nothing is."""
+    named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
+    if named is None:
+        return None
+    known = tried.augmented if named is tried.best else None
+    return _bounded(examine_fit(named.fit, asked, progress, known)[0], tried.refits)
 
 
 def _whole(
@@ -228,8 +236,11 @@ def _leaves_noise(fit: Fit, asked: DiagnoseSettings) -> bool:
     return inside is not None and inside[0] == 0.0
 
 
-def _bounded(done: Diagnosed, fits: Sequence[Fit], whole: Completeness | None = None) -> Diagnosed:
+def _bounded(
+    done: Diagnosed, refits: Sequence[Refit], whole: Completeness | None = None
+) -> Diagnosed:
     """The same with no more noise than any of these fits leaves, and no split routes deny."""
+    fits = [r.fit for r in refits]
     return replace(done, split=held_against(done.split, done.routes, done.fit, fits, whole))
 
 
@@ -239,13 +250,13 @@ def refits_of(
     asked: DiagnoseSettings,
     progress: Callable[[str], None],
     grown: bool = False,
-) -> Covered:
+) -> Beside:
     """The best candidates fitted, what else would be said to do as well, and what they cover."""
     worth = [c for c in ranking if c.worth_a_name(asked.level)]
     best = refit_best(fit, worth, asked.refit, asked.level, progress)
     named = likeliest_refit(fit, best, asked.level, grown)
     others = to_fit(named, ranking, best) if named else ()
-    return covered(
+    return look_beside(
         fit,
         ranking,
         (*best, *refit(fit, others, progress)),

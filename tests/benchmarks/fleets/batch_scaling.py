@@ -216,18 +216,16 @@ def report(ships: int, alone_of: int, jobs: int, folder: Path) -> str:
     beside = beside_each_other(folder, jobs)
     kept = {n: x for n, x in contents(folder / "alone").items() if "/" in n}  # of runs
     different = [n for n, x in kept.items() if (folder / "dask" / n).read_bytes() != x]
+    failed = sum(r.failure is not None for r in dask.batch.runs)
     once, over = overhead(folder)
     rows = [
-        ("runs", f"{ships}, {sum(r.failure is not None for r in dask.batch.runs)} failed"),
-        (
-            f"one process, {alone_of} runs",
-            f"{alone.seconds:.1f} s of clock, {alone.cpu:.1f} s of processor",
-        ),
+        ("runs", f"{ships}, {failed} failed"),
+        (f"one process, {alone_of} runs", _seconds_of(alone.seconds, alone.cpu)),
         (f"{jobs} such processes at once, no Dask", f"{beside:.1f} s of clock each"),
         (
             f"Dask, {jobs} warm workers",
-            f"{warm:.1f} s of clock, {warmed.cpu:.1f} s of processor in them, {dask.cpu:.1f} s "
-            "in scheduler and client together",
+            f"{_seconds_of(warm, warmed.cpu)} in them, {dask.cpu:.1f} s in scheduler and client "
+            "together",
         ),
         (
             "throughput over workers times one process, by the clock",
@@ -248,6 +246,10 @@ def report(ships: int, alone_of: int, jobs: int, folder: Path) -> str:
         ("names", names(dask.batch, hides)),
     ]
     return heading(ships, alone_of) + "".join(f"| {a} | {b} |\n" for a, b in rows)
+
+
+def _seconds_of(clock: float, processor: float) -> str:
+    return f"{clock:.1f} s of clock, {processor:.1f} s of processor"
 
 
 def heading(ships: int, alone_of: int) -> str:

@@ -23,7 +23,7 @@ MOST: Final = 3
 
 
 @dataclass(frozen=True)
-class Covered:
+class Beside:
     """All refits, the best of them, and the slopes of the catalogue with it in the model.
 
     `best` and `augmented` are None where no refit stands every check.
@@ -34,7 +34,7 @@ class Covered:
     augmented: Augmented | None = None
 
 
-def covered(
+def look_beside(
     fit: Fit,
     ranking: Sequence[Candidate],
     refits: Sequence[Refit],
@@ -43,7 +43,7 @@ def covered(
     level: float,
     grown: bool,
     progress: Progress,
-) -> Covered:
+) -> Beside:
     """The refits, and what explains much beside the best of them fitted without it."""
     done = tuple(refits)
     for _ in range(MOST):
@@ -55,13 +55,13 @@ def covered(
         fitted = {r.candidate.effect.name for r in done}
         beside = _most_beside(augmented, [c for c in ranking if c.allowed])
         if beside is None or beside.effect.name in fitted:
-            return Covered(done, best, augmented)
+            return Beside(done, best, augmented)
         del augmented  # of a long record there is no room for two
         more = refit(fit, [beside], progress)
         if not more:
             break
         done = (*done, *more)
-    return Covered(done)
+    return Beside(done)
 
 
 def _most_beside(augmented: Augmented, known: Sequence[Candidate]) -> Candidate | None:
