@@ -76,7 +76,7 @@ def test_without_the_look_beside_it_another_would_be_the_best(found):
     best = likeliest_refit(fit, first, 0.05)
     assert best is not None
     more = look_beside(
-        fit, found.ranking, [best], CATALOGUE, level=0.05, grown=False, progress=print
+        fit, found.ranking, [best], CATALOGUE, most=1, level=0.05, grown=False, progress=print
     )
     assert [r.candidate.effect.name for r in more.refits[1:]] == ["rudder_slipstream"]
     assert more.best is more.refits[-1]
@@ -88,6 +88,6 @@ def test_beside_what_is_missing_nothing_large_is_found(found):
     named = [r for r in found.refits if r.candidate.effect.name == "rudder_slipstream"]
     fit = found.before.fit
     more = look_beside(
-        fit, found.ranking, named, CATALOGUE, level=0.05, grown=False, progress=print
+        fit, found.ranking, named, CATALOGUE, most=1, level=0.05, grown=False, progress=print
     )
     assert more.refits == tuple(named)

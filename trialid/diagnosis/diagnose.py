@@ -261,6 +261,7 @@ def refits_of(
         ranking,
         (*best, *refit(fit, others, progress)),
         _tried(fit, asked),
+        most=asked.refit,
         level=asked.level,
         grown=grown,
         progress=progress,

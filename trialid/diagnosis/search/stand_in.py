@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.diagnosis.search.augment import Augmented, Trace, augment
+from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.refit import Progress, Refit, likeliest_refit, refit
 from trialid.diagnosis.search.score import Candidate
@@ -40,11 +40,18 @@ def look_beside(
     refits: Sequence[Refit],
     catalogue: Mapping[str, Effect],
     *,
+    most: int,
     level: float,
     grown: bool,
     progress: Progress,
 ) -> Beside:
-    """The refits, and what explains much beside the best of them fitted without it."""
+    """The refits, and what explains much beside the best of them fitted without it.
+
+    Parameters
+    ----------
+    most
+        How many are fitted beside one effect.
+    """
     done = tuple(refits)
     for _ in range(MOST):
         best = likeliest_refit(fit, done, level, grown)
@@ -53,29 +60,27 @@ def look_beside(
         progress(f"looking beside {best.candidate.effect.name}")
         augmented = augment(best.fit, catalogue)
         fitted = {r.candidate.effect.name for r in done}
-        beside = _most_beside(augmented, [c for c in ranking if c.allowed])
-        if beside is None or beside.effect.name in fitted:
+        able = [c for c in ranking if c.allowed and c.effect.name not in fitted]
+        large = _large_beside(augmented, able)[:most]
+        if not large:
             return Beside(done, best, augmented)
         del augmented  # of a long record there is no room for two
-        more = refit(fit, [beside], progress)
-        if not more:
+        done = (*done, *refit(fit, large, progress))
+        if likeliest_refit(fit, done, level, grown) is best:
             break
-        done = (*done, *more)
     return Beside(done)
 
 
-def _most_beside(augmented: Augmented, known: Sequence[Candidate]) -> Candidate | None:
-    """The candidate that takes most off what is left of blocks left out, where that is much."""
+def _large_beside(augmented: Augmented, able: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates that take much off what is left of blocks left out, most first."""
     blocks = left_out(
         augmented.fit, augmented.residual, augmented.psi, augmented.S, augmented.stretches
     )
-    by_name = {c.effect.name: c for c in known}
-
-    def price(trace: Trace) -> float:
-        return blocks.carried(trace.columns).price(len(trace.effect.parameters))
-
-    tried = [t for t in augmented.traces if t.effect.name in by_name]
-    most = min(tried, key=price, default=None)
-    if most is None or not blocks.carried(most.columns).large:
-        return None
-    return by_name[most.effect.name]
+    by_name = {c.effect.name: c for c in able}
+    found = dict[str, float]()
+    for trace in augmented.traces:
+        carried, name = blocks.carried(trace.columns), trace.effect.name
+        if name in by_name and carried.large:
+            price = carried.price(len(trace.effect.parameters))
+            found[name] = min(price, found.get(name, price))
+    return [by_name[name] for name in sorted(found, key=lambda name: found[name])]
