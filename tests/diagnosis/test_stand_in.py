@@ -7,8 +7,10 @@ import pytest
 from s175q import MODEL, OUTPUTS, SHAFT, white, with_noise
 
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.search import carried
+from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.search.refit import likeliest_refit
-from trialid.diagnosis.search.stand_in import look_beside
+from trialid.diagnosis.search.stand_in import _large_beside, look_beside
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -45,6 +47,10 @@ def trial(name, use, delta, rng):
     return with_noise(Trial(name, use, 0.5, signals, valid), *white(rng, len(y)))
 
 
+def whole(fit):
+    return CATALOGUE
+
+
 @pytest.fixture(scope="module", params=[31, 32])
 def found(request):
     rng = np.random.default_rng(request.param)
@@ -76,7 +82,7 @@ def test_without_the_look_beside_it_another_would_be_the_best(found):
     best = likeliest_refit(fit, first, 0.05)
     assert best is not None
     more = look_beside(
-        fit, found.ranking, [best], CATALOGUE, most=1, level=0.05, grown=False, progress=print
+        fit, found.ranking, [best], whole, most=1, level=0.05, grown=False, progress=print
     )
     assert [r.candidate.effect.name for r in more.refits[1:]] == ["rudder_slipstream"]
     assert more.best is more.refits[-1]
@@ -88,6 +94,16 @@ def test_beside_what_is_missing_nothing_large_is_found(found):
     named = [r for r in found.refits if r.candidate.effect.name == "rudder_slipstream"]
     fit = found.before.fit
     more = look_beside(
-        fit, found.ranking, named, CATALOGUE, most=1, level=0.05, grown=False, progress=print
+        fit, found.ranking, named, whole, most=1, level=0.05, grown=False, progress=print
     )
     assert more.refits == tuple(named)
+
+
+def test_what_explains_most_comes_first_and_what_explains_little_not_at_all(found, monkeypatch):
+    monkeypatch.setattr(carried, "LARGE", 0.97)  # a little less counts, so that there are several
+    large = _large_beside(augment(found.before.fit, CATALOGUE), found.ranking)
+    prices = [c.price for c in large]
+    assert len(set(prices)) > 1
+    assert prices == pytest.approx(sorted(prices))
+    assert all(c.carried.large for c in large)
+    assert any(not c.carried.large for c in found.ranking)

@@ -260,7 +260,7 @@ def refits_of(
         fit,
         ranking,
         (*best, *refit(fit, others, progress)),
-        _tried(fit, asked),
+        partial(_tried, asked=asked),
         most=asked.refit,
         level=asked.level,
         grown=grown,

@@ -7,7 +7,7 @@ cubic takes 20 % off, and beside it the race stands out; fitted alone that takes
 explains much beside the best effect is fitted without it, and the better of the two is the best.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -38,7 +38,7 @@ def look_beside(
     fit: Fit,
     ranking: Sequence[Candidate],
     refits: Sequence[Refit],
-    catalogue: Mapping[str, Effect],
+    catalogue: Callable[[Fit], Mapping[str, Effect]],
     *,
     most: int,
     level: float,
@@ -49,6 +49,8 @@ def look_beside(
 
     Parameters
     ----------
+    catalogue
+        What can be tried on a fit: an effect in the place of another has other coefficients.
     most
         How many are fitted beside one effect.
     """
@@ -58,7 +60,7 @@ def look_beside(
         if best is None:
             break
         progress(f"looking beside {best.candidate.effect.name}")
-        augmented = augment(best.fit, catalogue)
+        augmented = augment(best.fit, catalogue(best.fit))
         fitted = {r.candidate.effect.name for r in done}
         able = [c for c in ranking if c.allowed and c.effect.name not in fitted]
         large = _large_beside(augmented, able)[:most]
