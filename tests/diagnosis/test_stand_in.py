@@ -38,7 +38,7 @@ def heading(delta):
 
 
 def trial(name, use, delta, rng):
-    """Ten samples of the helmsman's to a sample of the record."""
+    """What is logged each half second of what the helmsman did."""
     every = round(0.5 / helm.PERIOD)
     y = motion(delta, helm.PERIOD).y[::every]
     signals = {"delta": delta[::every], "n": np.full(len(y), SHAFT)}
@@ -81,9 +81,16 @@ def test_without_the_look_beside_it_another_would_be_the_best(found):
     fit = found.before.fit
     best = likeliest_refit(fit, first, 0.05)
     assert best is not None
+    asked = []
+
+    def catalogue(fit):  # an effect in the place of another has other coefficients than the base
+        asked.append(fit)
+        return CATALOGUE
+
     more = look_beside(
-        fit, found.ranking, [best], whole, most=1, level=0.05, grown=False, progress=print
+        fit, found.ranking, [best], catalogue, most=1, level=0.05, grown=False, progress=print
     )
+    assert [id(f) for f in asked] == [id(best.fit), id(more.best.fit)]
     assert [r.candidate.effect.name for r in more.refits[1:]] == ["rudder_slipstream"]
     assert more.best is more.refits[-1]
     assert more.augmented is not None

@@ -89,6 +89,19 @@ def test_beside_effects_that_were_added_a_name_costs_a_tenth(ratio, kind):
     assert [f.kind for f in found] == [kind, "missing"]
 
 
+@pytest.mark.parametrize(("check", "kind"), [(0.1990, "cannot tell"), (0.1980, "missing")])
+def test_beside_effects_that_were_added_held_out_trials_must_show_what_is_named(check, kind):
+    """Of their squared error 1.0 and 2.0 %."""
+    named = refit("a", 0.7, 0.08, check=check)
+    grown, first = (
+        decide(fit(0.10, 0.20), (), [named], split(0.04), None, 0.05, grown=g)
+        for g in (True, False)
+    )
+    assert (grown.kind, first.kind) == (kind, "missing")
+    said = "30.0% off the squared error where it was not fitted, but held-out trials hardly show it"
+    assert (said in grown.sentence) is (kind == "cannot tell")
+
+
 def test_of_two_that_leave_as_much_the_one_of_fewer_parameters_is_taken():
     """One per cent of the squared error for each further one."""
     simple, many = refit("simple", 0.800, 0.08), refit("many", 0.790, 0.08, parameters=3)

@@ -20,7 +20,7 @@ from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
 from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate, ranking_of
-from trialid.diagnosis.search.stand_in import Beside, look_beside
+from trialid.diagnosis.search.stand_in import Tried, look_beside
 from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
 from trialid.diagnosis.where.misfit import Where, where
@@ -143,7 +143,7 @@ def diagnose(
 
 
 def _after(
-    verdict: Verdict, tried: Beside, asked: DiagnoseSettings, progress: Progress
+    verdict: Verdict, tried: Tried, asked: DiagnoseSettings, progress: Progress
 ) -> Diagnosed | None:
     """The model with what is named; None where nothing is."""
     named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
@@ -225,7 +225,7 @@ def examine_fit(
     `known` are the traces, where they are.
     """
     progress("looking for what is missing", 0.65)
-    augmented = known or augment(fit, _tried(fit, asked))
+    augmented = known or augment(fit, _catalogue(fit, asked))
     best, routes = split(fit, augmented, asked.noise, asked.quiet)
     return Diagnosed(fit, best, routes, doubts(augmented)), augmented
 
@@ -250,7 +250,7 @@ def refits_of(
     asked: DiagnoseSettings,
     progress: Callable[[str], None],
     grown: bool = False,
-) -> Beside:
+) -> Tried:
     """The best candidates fitted, what else would be said to do as well, and what they cover."""
     worth = [c for c in ranking if c.worth_a_name(asked.level)]
     best = refit_best(fit, worth, asked.refit, asked.level, progress)
@@ -260,7 +260,7 @@ def refits_of(
         fit,
         ranking,
         (*best, *refit(fit, others, progress)),
-        partial(_tried, asked=asked),
+        partial(_catalogue, asked=asked),
         most=asked.refit,
         level=asked.level,
         grown=grown,
@@ -268,6 +268,6 @@ def refits_of(
     )
 
 
-def _tried(fit: Fit, asked: DiagnoseSettings) -> dict[str, Effect]:
+def _catalogue(fit: Fit, asked: DiagnoseSettings) -> dict[str, Effect]:
     """What is tried: effects, and coefficients that are held."""
     return {**asked.candidates, **(candidates_to_free(fit) if asked.coefficients else {})}

@@ -75,7 +75,7 @@ def decide(
     if grown and (slow := _standing_but(AS_SLOW, fit, refits, level)) is not None:
         return Verdict("cannot tell", None, (), _as_slow(fit, slow))
     if grown and (slight := _standing_but(SLIGHT, fit, refits, level)) is not None:
-        return Verdict("cannot tell", None, (), _correction(slight))
+        return Verdict("cannot tell", None, (), _correction(slight, f", but {SLIGHT}"))
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
     return _unnamed(parts, whole, small)
 
@@ -209,11 +209,11 @@ def _behind(fit: Fit, named: Refit, ahead: Refit) -> str:
     )
 
 
-def _correction(named: Refit) -> str:
+def _correction(named: Refit, against: str = "") -> str:
     return (
         f"{named.candidate.effect.name} would take another {1.0 - named.carried.ratio:.1%} off the "
-        "squared error where it was not fitted: beside the effects that were added this is a "
-        "correction of their shape, and has no name"
+        f"squared error where it was not fitted{against}: beside the effects that were added this "
+        "is a correction of their shape, and has no name"
     )
 
 

@@ -1,8 +1,9 @@
 """The loop that adds what is missing until nothing is: fit, diagnose, decide, add, and again.
 
-Forward by the refit whose fall carries over best to blocks left out; then backward, each effect
-that was added left out in turn, and what no longer pays is dropped for good. It stops where the
-evidence ends, and never keeps what raised the error of held-out trials. Names are given at the end,
+Forward by the refit whose fall carries over best to blocks left out, and shows on held-out trials
+once effects were added; then backward, each effect that was added left out in turn, and what no
+longer pays is dropped for good. It stops where the evidence ends, and never keeps what raised the
+error of held-out trials. Names are given at the end,
 to what survives: what leaving it out costs says how much it is worth. Nothing is written here.
 """
 

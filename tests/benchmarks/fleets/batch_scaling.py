@@ -231,11 +231,11 @@ def report(ships: int, alone_of: int, jobs: int, folder: Path) -> str:
             "throughput over workers times one process, by the clock",
             f"{alone.seconds / (each * warm) / jobs:.2f}",
         ),
+        ("the same by processor seconds", f"{alone.cpu / (each * (warmed.cpu + dask.cpu)):.2f}"),
         (
             "throughput over that of as many processes without Dask",
             f"{beside / (each * warm) / jobs:.2f}",
         ),
-        ("the same by processor seconds", f"{alone.cpu / (each * (warmed.cpu + dask.cpu)):.2f}"),
         ("overhead, processor", f"{1e3 * over:.0f} ms a run, {once:.1f} s a batch"),
         ("largest worker as they go [MB]", ", ".join(map(str, warmed.memory))),
         (

@@ -91,7 +91,8 @@ class SteeredRecord:
         before = self.psi[max(begin - span, 0) : begin]
         if len(before) < SHORTEST or np.ptp(before) > 2.0 * STRAIGHT:
             return None
-        if len(before) < span and abs(_slope(before)) * span > 2.0 * STRAIGHT:
+        slope = np.polyfit(np.arange(len(before)), before, 1)[0]
+        if len(before) < span and abs(slope) * span > 2.0 * STRAIGHT:
             return None
         return float(np.mean(before))
 
@@ -99,12 +100,6 @@ class SteeredRecord:
         """How far the heading went to the side of the rudder, up to where it was given back."""
         last = min(one.end, len(self.psi) - 1)
         return float(np.sign(one.angle) * (self.psi[last] - self.psi[one.begin]))
-
-
-def _slope(y: Vector) -> float:
-    """Of a line through equally spaced values, a sample."""
-    x = np.arange(len(y)) - (len(y) - 1) / 2.0
-    return float(x @ y / (x @ x))
 
 
 def excursions(rudder: Vector) -> Iterator[Excursion]:

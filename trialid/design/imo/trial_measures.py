@@ -127,10 +127,8 @@ def _known(speed: float, error: float, words: str) -> tuple[float | None, str]:
 
 def _slope(t: Vector, y: Vector) -> tuple[float, float]:
     """Of a line, and its standard error by what lies off it."""
-    x = t - np.mean(t)
-    slope = float(x @ y / (x @ x))
-    left = y - np.mean(y) - slope * x
-    return slope, float(np.sqrt(left @ left / (len(y) - 2) / (x @ x)))
+    line, covariance = np.polyfit(t - np.mean(t), y, 1, cov=True)
+    return float(line[0]), float(np.sqrt(covariance[0, 0]))
 
 
 def _seen(trial: Trial, names: Sequence[str], span: slice) -> Indices:

@@ -1,10 +1,11 @@
 """Whether the best effect stands in for another, which shows only once it is in the model.
 
 Slopes are those of the model as it was fitted, and where much is missing that fit lies far from the
-truth: a rudder in the race of a propeller had pushed the linear rudder's side force over to the
-other side, there the race foretold 3 % of the squared error and a cubic rudder 16 %. Fitted, the
-cubic takes 20 % off, and beside it the race stands out; fitted alone that takes 51 %. So what
-explains much beside the best effect is fitted without it, and the better of the two is the best.
+truth. A rudder that stands in the race of a propeller, fitted by one in free flow, has its side
+force over on the other side; there the race foretells 12 % of the squared error and a cubic rudder
+14 %. Fitted, the cubic takes 16 % off, and beside it the race stands out; fitted alone that takes
+49 % (`tests/diagnosis/test_stand_in.py`, seed 31). So what explains much beside the best effect is
+fitted without it, and the better of the two is the best.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,7 +24,7 @@ MOST: Final = 3
 
 
 @dataclass(frozen=True)
-class Beside:
+class Tried:
     """All refits, the best of them, and the slopes of the catalogue with it in the model.
 
     `best` and `augmented` are None where no refit stands every check.
@@ -44,7 +45,7 @@ def look_beside(
     level: float,
     grown: bool,
     progress: Progress,
-) -> Beside:
+) -> Tried:
     """The refits, and what explains much beside the best of them fitted without it.
 
     Parameters
@@ -65,12 +66,12 @@ def look_beside(
         able = [c for c in ranking if c.allowed and c.effect.name not in fitted]
         large = _large_beside(augmented, able)[:most]
         if not large:
-            return Beside(done, best, augmented)
+            return Tried(done, best, augmented)
         del augmented  # of a long record there is no room for two
         done = (*done, *refit(fit, large, progress))
         if likeliest_refit(fit, done, level, grown) is best:
             break
-    return Beside(done)
+    return Tried(done)
 
 
 def _large_beside(augmented: Augmented, able: Sequence[Candidate]) -> list[Candidate]:
