@@ -90,6 +90,19 @@ def test_no_chance_is_smaller_than_the_blocks_support():
     assert found.p_value >= 1.0 / 2.0**blocks
 
 
+@pytest.mark.parametrize("columns", [(40,), (40, 41)])
+def test_what_shows_in_one_block_alone_does_not_beat_all_others(columns):
+    """It fits that block whatever its sign, so chance does as well, and the clear one is clear."""
+    rng = np.random.default_rng(6)
+    psi, S, groups, e = problem(rng, white)
+    brief = np.zeros((N, 2))
+    brief[: lag_window(PARTS)] = rng.standard_normal((lag_window(PARTS), 2))
+    S = np.hstack([S, brief])
+    found = against_chance(e + 0.3 * S[:, 3], psi[:, :0], S, [*groups, columns], PARTS)
+    assert found[3].p_value <= 0.002
+    assert found[-1].p_value > 0.5
+
+
 def test_the_same_every_time():
     one, _ = least_p(np.random.default_rng(5), red)
     other, _ = least_p(np.random.default_rng(5), red)

@@ -140,10 +140,10 @@ def _forces(names):
 
 @pytest.mark.study(turn=1)
 def test_the_loop_more_than_halves_the_held_out_error(folder, tmp_path):
-    """Ours: 22.7 to 7.4 %, held out 21.2 to 8.2 %, by five effects; what is left is said.
+    """Ours: 22.6 to 6.4 %, held out 21.0 to 5.5 %, by six effects; what is left is said.
 
     The speed is stated, not read, so what it loses in a turn (`surge_loss`) is really missing. What
-    is named pushes the ship; a clock's drift of 2.6 % joins without a name.
+    is named pushes the ship.
     """
     copy = shutil.copytree(folder, tmp_path / "kvlcc2")
     done = stages(copy / PIPELINE, {'candidates = "none"': 'candidates = "all"'})
@@ -157,7 +157,8 @@ def test_the_loop_more_than_halves_the_held_out_error(folder, tmp_path):
     assert held_out == sorted(held_out, reverse=True)
     before, after = (s.run.result.fit.eps_rmsn_check for s in (done[0], done[-1]))
     assert after < 0.5 * before
-    if done[-1].run.result.split.interval.undermodelling[0] > 0.0:
+    told = done[-1].run.result.split.interval
+    if told is None or told.undermodelling[0] > 0.0:
         assert done[-1].run.result.verdict.kind != "nothing missing"
 
 

@@ -16,10 +16,14 @@ from trialid.result.finding_rows import (
 
 
 def missing_rows(found: Diagnosis) -> tuple[CandidateRow, ...]:
-    """Every candidate by rank, the named one first."""
+    """Every candidate by rank, the named one first, then what fitted does as well."""
     refitted = {r.candidate.effect.name: r.fit for r in found.refits}
-    # the named one first: what was foreseen by linearisation gives way to what was fitted
-    ordered = sorted(found.ranking, key=lambda c: c.effect.name != found.verdict.effect)
+    # what was foreseen by linearisation gives way to what was fitted
+    fitted = set(refitted).intersection(found.verdict.family)
+    named = found.verdict.effect
+    ordered = sorted(
+        found.ranking, key=lambda c: (c.effect.name != named, c.effect.name not in fitted)
+    )
     return tuple(
         _candidate(i + 1, c, refitted.get(c.effect.name), found) for i, c in enumerate(ordered)
     )

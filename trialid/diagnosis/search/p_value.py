@@ -30,6 +30,11 @@ BLOCK_LAGS: Final = 3
 LEAST_BLOCKS: Final = 12
 """Shorter records have shorter blocks: fewer of them could not tell an effect from chance."""
 
+NO_DEGREES: Final = 1e-6
+"""Degrees of freedom of a trace in a single block: it fits what is there, and any score is likely.
+With one or two granted to it, it beats the whole catalogue in every draw (a tank that the first
+seconds of a roll decay show alone)."""
+
 SEED: Final = 1999
 """Any other would do; the same makes a second run give the same numbers."""
 
@@ -153,9 +158,9 @@ def _scores(
     variance = np.einsum("rbi,rbj->rij", terms, terms)
     scores = np.einsum("ri,rij,rj->r", totals, _inverse(variance), totals)
     weight = np.trace(grams, axis1=1, axis2=2)
-    degrees = max(float(weight.sum() ** 2 / (weight @ weight)) - 1.0, q + 1.0)
-    rest = degrees - q + 1.0
-    return scores, np.asarray(fdtrc(q, rest, scores * rest / (degrees * q)))
+    effective = float(weight.sum() ** 2 / (weight @ weight))
+    rest = max(effective - q, NO_DEGREES)
+    return scores, np.asarray(fdtrc(q, rest, scores * rest / ((rest + q - 1.0) * q)))
 
 
 def _inverse(matrices: Vector) -> Vector:
