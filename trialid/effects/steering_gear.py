@@ -46,7 +46,7 @@ def rudder_servo_second_order(
 def rudder_backlash(
     delta_order, delta, *,
     b_play=Parameter(0.01, "rad", low=0.0, high=0.1, scan=(0.004, 0.01, 0.025)),
-    T_play=Parameter(0.5, "s", low=0.3, high=20.0, null=None),
+    T_play=Parameter(0.5, "s", low=0.05, high=20.0, null=None),
 ):  # fmt: skip
     """d(delta)/dt = (e - clip(e, b_play)) / T_play,  e = delta_order - delta: play in the linkage.
 
