@@ -46,7 +46,7 @@ FORCED_AT_REST = {"static_list", "steady_wind", "propeller_unrecorded"}
 
 NO_NULL = {
     "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "propeller_unrecorded",
-    "rudder_backlash", "propeller_thrust", "propeller_rudder", "rudder_race", "rudder_race_shaft",
+    "rudder_backlash", "propeller_thrust", "propeller_rudder", "rudder_race",
 }  # fmt: skip
 """Never absent: parameters inside the formula (time constants), or instead of another effect."""
 

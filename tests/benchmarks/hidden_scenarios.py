@@ -46,6 +46,7 @@ TWINS: Final = (
     {"delay_r", "lag_r", "lag_twice_r"},
     {"delay_phi", "lag_phi"},
     {"rudder_servo", "rudder_servo_limited", "rudder_servo_second_order"},
+    {"rudder_slipstream", "rudder_race_shaft"},
 )
 """Names that no manoeuvre of a rudder separates: |cos| of their traces is 0.97 to 1.00, or the one
 holds the other as a limit."""

@@ -143,28 +143,36 @@ def rudder_race_shaft(
     n,
     delta,
     *,
-    N_un=Parameter(2e-6, low=0.0, high=1e-4, null=None),
-    N_nn=Parameter(3e-8, low=0.0, high=1e-6, null=None),
+    N_un=Parameter(2e-6, low=0.0, high=1e-4),
+    N_nn=Parameter(3e-8, low=0.0, high=1e-6),
     z_race=Parameter(0.03, low=0.0, high=0.2, null=None),
 ):
     """N = (N_un u n + N_nn n^2) delta,  Y = -2 N,  K = 2 z_race N: the race as the shaft turns.
 
-    Instead of linear_rudder, whose force goes as U^2, where trials are at several revolutions or
-    speed falls far: rudder_race and rudder_slipstream know one approach speed. With the shaft
-    stopped or astern there is no race and no force.
+    Beside linear_rudder, whose force goes as U^2, or instead of it, where trials are at several
+    revolutions or speed falls far: rudder_race and rudder_slipstream know one approach speed. With
+    the shaft stopped or astern there is no race and no force.
     """
     ahead = _ahead(n)
     N = (N_un * u + N_nn * ahead) * ahead * delta
     return Force(Y=-2.0 * N, K=2.0 * z_race * N, N=N)
 
 
+# the S-175 and her screw; between the ends lie screws and hulls of every kind
+DIAMETER = Parameter(6.533, "m", low=0.01, high=13.0, null=None)
+KT_AT_REST = Parameter(0.527, low=0.05, high=1.2, null=None)
+KT_SLOPE = Parameter(-0.455, low=-1.5, high=0.0, null=None)
+DEDUCTION = Parameter(0.175, low=-0.2, high=0.6, null=None)
+WAKE = Parameter(0.184, low=-0.2, high=0.8, null=None)
+WAKE_IN_DRIFT = Parameter(1.09, low=-5.0, high=10.0, null=None)
+SCREW_AT = Parameter(-0.526, low=-0.7, high=0.0, null=None)
+
+
 @effect(source=SN82, system="SI")
 def propeller_thrust(
     u, v, r, n, L, rho, *,
-    D_P=Parameter(6.533, "m", null=None), KT0=Parameter(0.527, null=None),
-    KT1=Parameter(-0.455, null=None), t_P=Parameter(0.175, null=None),
-    w_P=Parameter(0.184, null=None), tau_P=Parameter(1.09, null=None),
-    x_P=Parameter(-0.526, null=None),
+    D_P=DIAMETER, KT0=KT_AT_REST, KT1=KT_SLOPE, t_P=DEDUCTION,
+    w_P=WAKE, tau_P=WAKE_IN_DRIFT, x_P=SCREW_AT,
 ):  # fmt: skip
     """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s).
 
@@ -178,16 +186,20 @@ def propeller_thrust(
 @effect(source=SN82, system="SI")
 def propeller_rudder(
     u, v, r, n, delta, L, rho, *,
-    D_P=Parameter(6.533, "m", null=None), A_R=Parameter(33.0376, "m^2", null=None),
-    Lambda_R=Parameter(1.8219, null=None), KT0=Parameter(0.527, null=None),
-    KT1=Parameter(-0.455, null=None), t_P=Parameter(0.175, null=None),
-    w_P=Parameter(0.184, null=None), tau_P=Parameter(1.09, null=None),
-    x_P=Parameter(-0.526, null=None), k_R=Parameter(0.631, null=None),
-    eps_R=Parameter(0.921, null=None), x_R=Parameter(-0.5, null=None),
-    gamma_R=Parameter(0.088, null=None), l_R=Parameter(-0.156, null=None),
+    D_P=DIAMETER, KT0=KT_AT_REST, KT1=KT_SLOPE, t_P=DEDUCTION,
+    w_P=WAKE, tau_P=WAKE_IN_DRIFT, x_P=SCREW_AT,
+    A_R=Parameter(33.0376, "m^2", low=1e-4, high=300.0, null=None),
+    Lambda_R=Parameter(1.8219, low=0.3, high=6.0, null=None),
+    k_R=Parameter(0.631, low=0.0, high=1.5, null=None),
+    eps_R=Parameter(0.921, low=0.3, high=2.0, null=None),
+    x_R=Parameter(-0.5, low=-0.7, high=0.7, null=None),
+    gamma_R=Parameter(0.088, low=-1.0, high=2.0, null=None),
+    l_R=Parameter(-0.156, low=-2.0, high=2.0, null=None),
     l_Rrrr=Parameter(-0.275, null=None), l_Rrrv=Parameter(1.96, null=None),
-    c_RX=Parameter(0.71, null=None), a_H=Parameter(0.237, null=None),
-    z_R=Parameter(0.033, null=None), x_H=Parameter(-0.48, null=None),
+    c_RX=Parameter(0.71, low=0.0, high=1.5, null=None),
+    a_H=Parameter(0.237, low=-0.5, high=1.5, null=None),
+    z_R=Parameter(0.033, low=-0.1, high=0.2, null=None),
+    x_H=Parameter(-0.48, low=-1.0, high=0.5, null=None),
 ):  # fmt: skip
     """F_N = -1/2 rho A_R f (u_R^2 + v_R^2) sin(alpha_R): a rudder in the propeller's race.
 

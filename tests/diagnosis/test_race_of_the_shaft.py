@@ -1,0 +1,59 @@
+"""A kick ahead in a turn: the rudder's force goes with the shaft, and a free-flow rudder's not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import MODEL, OUTPUTS, SHAFT, white, with_noise
+
+from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.effects import CATALOGUE
+from trialid.identification.fit import identify
+from trialid.identification.problem import Settings
+from trialid.sample import rudder_orders as helm
+from trialid.simulation.integrate import prepare, respond
+from trialid.trial import Trial
+
+FREE = ("Yv", "Ydelta", "Nv", "Nr", "Ndelta", "Kv", "Kdelta", "Kp", "GM")
+IN_THE_RACE = (MODEL - "linear_rudder" + CATALOGUE["rudder_race_shaft"]).with_values(
+    {"N_un": 4.15e-6, "N_nn": 2.39e-8, "z_race": 0.033}
+)
+EVERY = round(0.5 / helm.PERIOD)
+
+
+def kicked(truth, orders, use, rng):
+    """Half a minute slow and half a minute fast in turn, whatever the rudder does."""
+    delta = orders[::EVERY]
+    kicks = np.where(np.arange(len(delta)) // 60 % 2, 1.5, 0.6) * SHAFT
+    signals = {"delta": delta, "n": kicks}
+    valid = {n: np.ones(len(delta), dtype=bool) for n in (*signals, *OUTPUTS)}
+    blank = Trial(use, use, 0.5, signals, valid)
+    y = respond(prepare(truth, (), OUTPUTS), blank, {}, {"u": 7.33}, sensitivities=False).y
+    moved = {**signals, **dict(zip(OUTPUTS, (c.copy() for c in y.T), strict=True))}
+    return with_noise(replace(blank, signals=moved), *white(rng, len(y)))
+
+
+def verdict(truth, seed):
+    rng = np.random.default_rng(seed)
+    trials = tuple(
+        replace(kicked(truth, helm.multi_frequency_binary(a, s), use, rng), name=f"{a}")
+        for a, s, use in ((10.0, seed, "fit"), (20.0, seed + 1, "fit"), (15.0, seed + 2, "check"))
+    )
+    fit = identify(trials, MODEL, Settings(FREE, OUTPUTS, nuisance=("initial_state",)))
+    return diagnose(fit, DiagnoseSettings()).verdict
+
+
+@pytest.mark.parametrize("seed", [41, 42])
+def test_it_is_named_where_the_shaft_changes(seed):
+    """Without it the slopes led to a thrust deduction of -22, 32.6 to 22.0 %."""
+    found = verdict(IN_THE_RACE, seed)
+    print(found.sentence)
+    assert found.effect == "rudder_race_shaft"
+    assert "rudder_slipstream" not in found.family
+
+
+@pytest.mark.parametrize("seed", [41, 42])
+def test_it_is_not_where_the_rudder_stands_in_free_flow(seed):
+    found = verdict(MODEL, seed)
+    print(found.sentence)
+    assert found.kind == "nothing missing"
