@@ -130,8 +130,8 @@ def minimise(
     low = np.full(len(start), -np.inf) if low is None else low
     high = np.full(len(start), np.inf) if high is None else high
     theta = np.clip(start, low, high)
-    here = evaluate(theta)
-    if here is None or not _finite(here):
+    here = _finite_at(evaluate, theta)
+    if here is None:
         empty = np.zeros(0)
         return Minimum(theta, empty, np.zeros((0, len(start))), (), "start", 1)
     search = _Search(evaluate, scale, low, high, theta, here, tolerance, again, rows, keep)
@@ -148,11 +148,15 @@ def minimise(
     return search.minimum("iterations")
 
 
-def _finite(point: Linearised) -> bool:
-    """Whether the sums of squares of the residual and of each sensitivity are numbers."""
+def _finite_at(evaluate: Callable[[Vector], Linearised | None], theta: Vector) -> Linearised | None:
+    """Residual and Jacobian, None where a sum of squares of them is no number."""
     with np.errstate(over="ignore", invalid="ignore"):
+        point = evaluate(theta)
+        if point is None:
+            return None
         squares = np.einsum("ij,ij->j", point[1], point[1])
-        return bool(np.isfinite(point[0] @ point[0]) and np.isfinite(squares).all())
+        finite = np.isfinite(point[0] @ point[0]) and np.isfinite(squares).all()
+    return point if finite else None
 
 
 class _Search:
@@ -238,10 +242,9 @@ class _Search:
         there = np.clip(self.theta + step, self.low, self.high)
         taken = there - self.theta
         self.count += 1
-        with np.errstate(over="ignore", invalid="ignore"):
-            point = self.evaluate(there)
-            actual = 0.0 if point is None else loss - self._loss(point)
-        if point is None or not actual > 0.0 or not _finite(point):
+        point = _finite_at(self.evaluate, there)
+        actual = 0.0 if point is None else loss - self._loss(point)
+        if point is None or not actual > 0.0:
             return False
         predicted = loss - self.fold.loss(taken)
         ratio = actual / predicted if predicted > 0.0 else 0.0
