@@ -485,16 +485,6 @@ def test_overflow() -> None:
     np.testing.assert_allclose(end.theta, 1.0, rtol=1e-9)
 
 
-def test_overflow_at_the_start() -> None:
-    """No number there, and no warning either."""
-
-    def steep(b: Vector) -> tuple[Vector, Vector]:
-        y = np.exp(1e4 * b)
-        return 1.0 - 0.0 * y, y[:, None]
-
-    assert minimise(steep, np.array([1.0]), np.ones(1)).reason == "start"
-
-
 def test_infinite_sensitivity_is_a_step_too_long() -> None:
     """Model sqrt(b - 1), measured 0.5 and -0.6: the first step goes to its edge, b = 1."""
 
