@@ -180,7 +180,9 @@ class IdentifySection(Section):
     """What is known of a parameter beforehand, by its name; `"ship"`: of each that the ship file
     states, its number there, with the standard deviation of its `[uncertainty]`."""
     bounds: Mapping[str, Bounds] = {}
-    """`[low, high]` a parameter may not leave, by its name, in its own unit; `inf` is allowed."""
+    """`[low, high]` a parameter may not leave, by its name, in its own unit; `inf` is allowed.
+    Without it the range of its effect holds, and for a gear's time constant half an integration
+    step: what is quicker cannot be simulated."""
     starts: Rounds = 1
     """Searches from different first values; the run says how many agree."""
     spread: Positive = 0.3
