@@ -6,7 +6,7 @@ could be two quantities, that speaks of a limit or an error, or whose unit does 
 
 import functools
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from trialid.inspection.usual_units import to_si
@@ -191,17 +191,23 @@ def _several(told: Sequence[str]) -> bool:
 
 
 def _best(told: Sequence[str]) -> set[str]:
-    found = [(len(phrase), q) for q, phrase in _phrases() if _holds(told, phrase)]
-    size = max((length for length, _ in found), default=0)
-    best = {q for length, q in found if length == size}
-    return best - {"n"} if best & {"n_p", "n_s"} else best  # one of two shafts is a shaft
+    """The quantities of the longest phrases that stand in some words."""
+    for size, phrases in _phrases().items():
+        runs = (tuple(told[i : i + size]) for i in range(len(told) - size + 1))
+        if best := set[str]().union(*(phrases.get(run, ()) for run in runs)):
+            return best - {"n"} if best & {"n_p", "n_s"} else best  # one of two shafts is a shaft
+    return set()
 
 
 @functools.cache
-def _phrases() -> tuple[tuple[str, tuple[str, ...]], ...]:
+def _phrases() -> Mapping[int, Mapping[tuple[str, ...], set[str]]]:
+    """What quantities a phrase calls, by how many words it has, the longest first."""
     ours = [(q, tuple(one.split())) for q, text in PHRASES.items() for one in text.split(", ")]
     known = [(q, tuple(a.split("_"))) for q, signal in SIGNALS.items() for a in signal.aliases]
-    return (*ours, *known)
+    found = dict[int, dict[tuple[str, ...], set[str]]]()
+    for q, phrase in (*ours, *known):
+        found.setdefault(len(phrase), {}).setdefault(phrase, set()).add(q)
+    return dict(sorted(found.items(), reverse=True))
 
 
 def _holds(told: Sequence[str], phrase: Sequence[str]) -> bool:
