@@ -158,21 +158,23 @@ def rudder_race_shaft(
     return Force(Y=-2.0 * N, K=2.0 * z_race * N, N=N)
 
 
-# the S-175 and her screw; between the ends lie screws and hulls of every kind
-DIAMETER = Parameter(6.533, "m", low=0.01, high=13.0, null=None)
+# Values are the S-175's. The ends are wide of what is built: open screws have K_T of 0.1 to 0.7 at
+# rest, hulls a thrust deduction of 0 to 0.4 and a wake of 0 to 0.6; what a search finds beyond them
+# is another effect's.
+PROPELLER_DIAMETER = Parameter(6.533, "m", low=0.01, high=13.0, null=None)
 KT_AT_REST = Parameter(0.527, low=0.05, high=1.2, null=None)
 KT_SLOPE = Parameter(-0.455, low=-1.5, high=0.0, null=None)
-DEDUCTION = Parameter(0.175, low=-0.2, high=0.6, null=None)
-WAKE = Parameter(0.184, low=-0.2, high=0.8, null=None)
-WAKE_IN_DRIFT = Parameter(1.09, low=-5.0, high=10.0, null=None)
-SCREW_AT = Parameter(-0.526, low=-0.7, high=0.0, null=None)
+THRUST_DEDUCTION = Parameter(0.175, low=-0.2, high=0.6, null=None)
+WAKE_FRACTION = Parameter(0.184, low=-0.2, high=0.8, null=None)
+WAKE_BY_DRIFT = Parameter(1.09, low=-5.0, high=10.0, null=None)
+PROPELLER_AT = Parameter(-0.526, low=-0.7, high=0.0, null=None)
 
 
 @effect(source=SN82, system="SI")
 def propeller_thrust(
     u, v, r, n, L, rho, *,
-    D_P=DIAMETER, KT0=KT_AT_REST, KT1=KT_SLOPE, t_P=DEDUCTION,
-    w_P=WAKE, tau_P=WAKE_IN_DRIFT, x_P=SCREW_AT,
+    D_P=PROPELLER_DIAMETER, KT0=KT_AT_REST, KT1=KT_SLOPE, t_P=THRUST_DEDUCTION,
+    w_P=WAKE_FRACTION, tau_P=WAKE_BY_DRIFT, x_P=PROPELLER_AT,
 ):  # fmt: skip
     """X = (1 - t_P) rho n^2 D_P^4 K_T(J): thrust at the recorded shaft speed (n in rev/s).
 
@@ -186,8 +188,8 @@ def propeller_thrust(
 @effect(source=SN82, system="SI")
 def propeller_rudder(
     u, v, r, n, delta, L, rho, *,
-    D_P=DIAMETER, KT0=KT_AT_REST, KT1=KT_SLOPE, t_P=DEDUCTION,
-    w_P=WAKE, tau_P=WAKE_IN_DRIFT, x_P=SCREW_AT,
+    D_P=PROPELLER_DIAMETER, KT0=KT_AT_REST, KT1=KT_SLOPE, t_P=THRUST_DEDUCTION,
+    w_P=WAKE_FRACTION, tau_P=WAKE_BY_DRIFT, x_P=PROPELLER_AT,
     A_R=Parameter(33.0376, "m^2", low=1e-4, high=300.0, null=None),
     Lambda_R=Parameter(1.8219, low=0.3, high=6.0, null=None),
     k_R=Parameter(0.631, low=0.0, high=1.5, null=None),

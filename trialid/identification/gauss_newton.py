@@ -48,6 +48,7 @@ REASONS: Final = {
     "orthogonal": "the residual is orthogonal to every sensitivity",
     "exact": "the residual is zero to rounding",
     "flat": "what is left to win is far below a standard error",
+    "kink": "no step lowers the error, and next to nothing is left to win",
     "stalled": "no step, however short, lowers the error",
     "iterations": "the number of iterations is used up",
     "start": "the model cannot be simulated at the start values",
@@ -83,7 +84,7 @@ class Minimum:
     @property
     def converged(self) -> bool:
         """Whether the search ended at a minimum."""
-        return self.reason in {"step", "orthogonal", "exact", "flat"}
+        return self.reason in {"step", "orthogonal", "exact", "flat", "kink"}
 
     @property
     def V(self) -> float:
@@ -139,9 +140,10 @@ def minimise(
     for count in range(max_iterations):
         reason = search.advance()
         progress(search.path[-1])
-        slow = count >= PATIENCE * max_iterations and not reason
-        enough = worth() * (AT_A_KINK if reason == "stalled" else float(slow))
-        if search.left * np.sqrt(len(search.here[0])) < enough:
+        left = search.left * np.sqrt(len(search.here[0]))
+        if reason == "stalled" and left < AT_A_KINK * worth():
+            reason = "kink"
+        elif not reason and count >= PATIENCE * max_iterations and left < worth():
             reason = "flat"
         if reason:
             return search.minimum(reason)

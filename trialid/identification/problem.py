@@ -186,25 +186,27 @@ def with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> Sh
     return model.with_values(missing) if missing else model
 
 
-def is_time_constant(model: ShipModel, name: str) -> bool:
-    """Whether a parameter is how quickly a state of its own effect follows."""
-    forms = [e.forms for e in model.effects if name in e.parameters]
-    return model.parameters[name].unit == "s" and any(Rate in f for f in forms)
-
-
 def is_sensor(model: ShipModel, name: str) -> bool:
     """Whether a parameter belongs to a sensor or an offset, not to the ship."""
-    for effect in model.effects:
-        if name in effect.parameters:
-            return not (Force in effect.forms or Rate in effect.forms)
-    return False
+    forms = _forms_of(model, name)
+    return bool(forms) and not {Force, Rate}.intersection(forms)
+
+
+def _forms_of(model: ShipModel, name: str) -> tuple[type, ...]:
+    """What the effect that a parameter belongs to returns; nothing where it is a mass."""
+    return next((e.forms for e in model.effects if name in e.parameters), ())
+
+
+def _range(model: ShipModel, name: str, step: float) -> tuple[float, float]:
+    """The physical range, of a state's time constant less what a step [s] cannot follow."""
+    p = model.parameters[name]
+    follows = p.unit == "s" and Rate in _forms_of(model, name)
+    return (min(max(p.low, FASTEST * step), p.high) if follows else p.low), p.high
 
 
 def _shared(simulator: Simulator, name: str, settings: Settings, step: float) -> Unknown:
     parameter = simulator.model.parameters[name]
-    follows = FASTEST * step if is_time_constant(simulator.model, name) else parameter.low
-    possible = (max(parameter.low, min(follows, parameter.high)), parameter.high)
-    low, high = settings.bounds.get(name, possible)
+    low, high = settings.bounds.get(name) or _range(simulator.model, name, step)
     start = simulator.model.value(name)
     size = abs(start) if start else abs(parameter.start)
     beside = is_sensor(simulator.model, name) and simulator.model.states
