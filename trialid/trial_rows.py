@@ -1,9 +1,10 @@
 """Which rows of a fit are which output of which trial."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trialid.arrays import Mask, Vector
 
@@ -20,6 +21,12 @@ class Stretch:
     def taken(self, values: Vector) -> Vector:
         """The rows that samples of the whole trial make; (N, ...) to (rows, ...)."""
         return np.asarray(values[self.compared])
+
+    def on_clock(self, rows: NDArray[np.floating[Any]]) -> Vector:
+        """Its rows back on the trial's clock, zero where nothing was compared; (N, ...)."""
+        full = np.zeros((len(self.compared), *rows.shape[1:]))
+        full[self.compared] = rows
+        return full
 
     def within(self, samples: slice, first: int) -> "Stretch":
         """The rows that some samples make; the first is `first`."""

@@ -42,7 +42,9 @@ from hidden_truth import (
 )
 from spread import add_options, spread
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, refits_of
+from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, refits_of
+from trialid.diagnosis.left_by_check import with_held_out
+from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.completeness import completeness
@@ -130,6 +132,10 @@ def diagnosed(
         whole = completeness(augmented)
         parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)
         verdict = decide(fit, ranking, refits, parts, whole, asked.level)
+        before = Diagnosed(fit, parts, routes, doubts(augmented))
+        verdict = with_held_out(
+            fit.examined, verdict, lambda: before.accuracy.covariance, asked.level
+        )
         named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
     return Diagnosis(fit, ranking, refits, named, verdict)
 

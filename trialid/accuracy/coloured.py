@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trialid.accuracy.felt import Draw, Felt, felt_by, freedom_of_sum
 from trialid.arrays import Mask, Vector
@@ -132,11 +131,11 @@ class _Part:
     def of(
         cls, inverse: Vector, residual: Vector, stretch: Stretch, by_inputs: Felt | None
     ) -> "_Part":
-        e = _on_clock(residual[stretch.rows], stretch.compared)
-        a = _on_clock(inverse[:, stretch.rows].T, stretch.compared)
+        e = stretch.on_clock(residual[stretch.rows])
+        a = stretch.on_clock(inverse[:, stretch.rows].T)
         c = autocovariance(e, stretch.compared)
         if by_inputs is not None:
-            left = _on_clock(by_inputs.left[:, stretch.rows].T, stretch.compared).T
+            left = stretch.on_clock(by_inputs.left[:, stretch.rows].T).T
             c = _without(c, _weighted(left, stretch.compared, len(c)).mean(axis=0))
         return cls(stretch, a, c)
 
@@ -177,13 +176,6 @@ def _drawn(A: Vector, inverse: Vector, parts: Sequence[_Part], draws: int) -> Ve
         noise[:, part.stretch.rows] = part.noise(draws, rng)
     left = noise - (noise @ inverse.T) @ A.T
     return np.asarray(sum(part.assessed(left[:, part.stretch.rows]) for part in parts))
-
-
-def _on_clock(values: NDArray[np.floating[Any]], compared: Mask) -> Vector:
-    """Rows back on the trial's clock, zero where nothing was compared."""
-    full = np.zeros((len(compared), *values.shape[1:]))
-    full[compared] = values
-    return full
 
 
 def autocovariance(e: Vector, compared: Mask) -> Vector:

@@ -6,6 +6,7 @@ from functools import cached_property, partial
 
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
+from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.may_be_off import Doubts, doubts
 from trialid.diagnosis.noise.error_parts import Split
@@ -127,6 +128,7 @@ def diagnose(
     before = _bounded(before, refits, whole)
     verdict = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     verdict = with_motion(fit, verdict, ranking, refits, asked.level)
+    verdict = with_held_out(fit.examined, verdict, lambda: before.accuracy.covariance, asked.level)
     after = _after(verdict, tried, asked, progress)
     wanted = force or verdict.kind == "not in catalogue"
     sought = _force(after.fit if after else fit, asked.level, progress) if wanted else None

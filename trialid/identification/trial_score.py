@@ -8,6 +8,7 @@ import numpy as np
 from trialid.accuracy.equations import normed_rms
 from trialid.arrays import Mask, Vector
 from trialid.identification.check.own_start import own_start
+from trialid.identification.check.own_taken_out import OwnTakenOut, own_taken_out
 from trialid.identification.check.start_error import StartError, start_error
 from trialid.identification.output_error import (
     Problem,
@@ -69,9 +70,20 @@ def own_start_error(
     """How sure the start of a trial to check is; None where the fit itself says so, or none is."""
     if trial.use == "fit":
         return None
+    values = _with_start(problem, theta, trial, level)
+    return start_error(problem, trial, compared_mask(trial, problem.simulator), values, level)
+
+
+def check_rows(problem: Problem, theta: Vector, trial: Trial, level: float) -> OwnTakenOut | None:
+    """The rows of a trial to check less what is its own: see `own_taken_out`."""
+    values = _with_start(problem, theta, trial, level)
+    return own_taken_out(problem, trial, compared_mask(trial, problem.simulator), values, level)
+
+
+def _with_start(problem: Problem, theta: Vector, trial: Trial, level: float) -> dict[str, float]:
+    """All a trial to check is simulated with, its start by the name of the column."""
     values, start = of_trial(problem, theta, trial, level)
-    all_values = values | {initial(n): x for n, x in start.items()}
-    return start_error(problem, trial, compared_mask(trial, problem.simulator), all_values, level)
+    return values | {initial(n): x for n, x in start.items()}
 
 
 def score_trial(problem: Problem, theta: Vector, trial: Trial, level: float) -> Score:

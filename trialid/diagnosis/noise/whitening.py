@@ -74,8 +74,7 @@ def whiten_columns(
         at = stop
     white = np.empty((at, columns.shape[1]))
     for part, to in zip(parts, made, strict=True):
-        full = np.zeros((len(part.compared), columns.shape[1]))
-        full[part.compared] = columns[part.rows]
+        full = part.on_clock(columns[part.rows])
         white[to.rows] = _filtered(full, colour[part.output])[to.compared]
     return white, tuple(made)
 

@@ -1,0 +1,112 @@
+"""Whether trials that were not fitted leave what noise of the fitted ones would leave in them.
+
+Were noise all that is left, the mean square of a trial held out would be that of the fitted ones
+and what the parameters, uncertain by that noise, move it by. Where it is much more, the trial was
+noisier or does not follow this model, and nobody can say that nothing is missing. Its start and its
+sensors are its own and count for nothing.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import fdtrc  # scipy.stats would take another 0.4 s to import
+
+from trialid.arrays import Mask, Vector
+from trialid.diagnosis.noise.residual import OutputNoise, heavy_tail, pool_variance, residuals
+from trialid.diagnosis.verdict import Verdict
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import row_scale, stretches_of
+from trialid.identification.trial_score import check_rows
+
+
+@dataclass(frozen=True)
+class LeftByCheck:
+    """What trials held out leave of one output, and what noise alone would; shares of y_RMS.
+
+    `p_value` is the chance that noise alone leaves as much.
+    """
+
+    output: str
+    left: float
+    by_noise: float
+    p_value: float
+
+
+def with_held_out(
+    fit: Fit, verdict: Verdict, covariance: Callable[[], Vector], level: float
+) -> Verdict:
+    """The verdict; `cannot tell` for `nothing missing` where trials held out leave more than noise.
+
+    Parameters
+    ----------
+    covariance
+        Of all unknowns of the fit, by noise; asked for where it is needed.
+    level
+        Chance of as much by noise, over all outputs, below which it is not believed.
+    """
+    if verdict.kind != "nothing missing" or fit.eps_check is None:
+        return verdict
+    found = left_by_check(fit, covariance())
+    worst = min(found, key=lambda one: one.p_value, default=None)
+    if worst is None or worst.p_value >= level / len(found):
+        return verdict
+    said = (
+        f"no effect stands out in the fitted trials, but those held out leave {worst.left:.1%} of "
+        f"{worst.output} where noise would leave {worst.by_noise:.1%} (p = {worst.p_value:.2g}): "
+        "something is missing that acts there, or it was rougher; fit them too and hold others out"
+    )
+    return Verdict("cannot tell", None, (), said)
+
+
+def left_by_check(fit: Fit, covariance: Vector) -> tuple[LeftByCheck, ...]:
+    """What the trials held out leave, output by output; none where that has no measure.
+
+    They leave the model, or something moves them that no fitted trial tells.
+    """
+    problem, checks = fit.problem, [s for s in fit.scores if s.trial.use == "check"]
+    rows = [check_rows(problem, fit.theta, s.trial, fit.level) for s in checks]
+    known = [r for r in rows if r is not None]
+    if not known or len(known) < len(rows):
+        return ()
+    residual = np.concatenate([r.residual for r in known])
+    psi, C = _moving(fit, np.vstack([r.psi for r in known]), covariance)
+    if not np.isfinite(C).all():
+        return ()
+    scale = row_scale(problem) * problem.y_rms
+    parts, fitted, told = stretches_of([s.compared for s in checks]), residuals(fit), []
+    for c, output in enumerate(problem.outputs):
+        mine = [p for p in parts if p.output == c]
+        pieces = [p.on_clock(residual[p.rows] / scale[c]) for p in mine]
+        left = _mean_square(pieces, [p.compared for p in mine])
+        noise = _mean_square([r.eps[:, c] for r in fitted], [r.compared[:, c] for r in fitted])
+        if noise is not None and left is not None:
+            slopes = np.concatenate([psi[p.rows] for p in mine]) / scale[c]
+            told.append(_held_against(output, noise, left, C @ (slopes.T @ slopes) / len(slopes)))
+    return tuple(told)
+
+
+def _moving(fit: Fit, psi: Vector, covariance: Vector) -> tuple[Vector, Vector]:
+    """Columns and covariance of the shared parameters that move these rows at all."""
+    shared = [i for i, x in enumerate(fit.problem.unknowns) if x.trial is None]
+    moving = np.any(psi != 0.0, axis=0)
+    kept = np.array(shared, dtype=int)[moving]
+    return psi[:, moving], covariance[np.ix_(kept, kept)]
+
+
+def _mean_square(pieces: Sequence[Vector], masks: Sequence[Mask]) -> OutputNoise | None:
+    return pool_variance(pieces, masks, tail=heavy_tail(pieces, masks))
+
+
+def _held_against(output: str, noise: OutputNoise, left: OutputNoise, moved: Vector) -> LeftByCheck:
+    """F of the mean squares, with the degrees of freedom that their scatter leaves.
+
+    The trace of `moved` is what uncertain parameters add to the mean square.
+    """
+    expected = noise.variance + float(np.trace(moved))
+    own = left.deviation / left.variance * noise.variance
+    spread = own**2 + 2.0 * float(np.trace(moved @ moved))
+    upper = 2.0 * expected**2 / spread
+    lower = 2.0 * (noise.variance / noise.deviation) ** 2
+    chance = float(fdtrc(upper, lower, left.variance / expected))
+    return LeftByCheck(output, float(np.sqrt(left.variance)), float(np.sqrt(expected)), chance)
