@@ -1,94 +1,30 @@
-"""`trialid run --auto`: what is missing is added until the evidence ends."""
+"""The loop that adds what is missing: where it goes and stops, in made-up worlds."""
 
-import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from test_bad_input import trialid_
 
 from trialid.diagnosis.search import refit as refitted
 from trialid.diagnosis.search.backward import Worth, worth_naming
 from trialid.diagnosis.search.carried import Carried, Errors
 from trialid.errors import SimulationError
-from trialid.pipeline_file import load
 from trialid.ship.effect import Force
 from trialid.workflow import grow
 from trialid.workflow.edit_pipeline import Edit
 
-ROOT = Path(__file__).parent.parent
-ADDED = "righting_arm_cubic"
-
-
-@pytest.fixture
-def hidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy of the shipped pipeline, in the current folder."""
-    text = (ROOT / "pipelines" / "hidden_effect.toml").read_text(encoding="utf-8")
-    text = text.replace('"../sample_data', f'"{(ROOT / "sample_data").as_posix()}')
-    (tmp_path / "hidden.toml").write_text(text, encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    return Path("hidden.toml")
-
-
-@pytest.mark.study
-def test_the_hidden_effect_is_added_and_the_verdict_is_nothing_missing(hidden: Path) -> None:
-    text = hidden.read_bytes()
-    outcome = trialid_("run", str(hidden), "--auto")
-    assert (outcome.exit_code, outcome.stderr) == (0, "")
-    head, first, then, blank, *_, end, what, left, report = outcome.stdout.splitlines()
-    assert (blank, report) == ("", "Report: runs/hidden/report.html")
-    assert head.split() == ["step", "fitted", "held", "out", "noise", "model", "verdict"]
-    assert first.startswith("as written   ")
-    assert first.endswith("missing")
-    assert then.startswith(f"+ {ADDED} ")
-    assert then.endswith("nothing missing")
-    assert end == "Added no more: the verdict is `nothing missing`."
-    assert what == f"What was missing, the dearest to leave out first: {ADDED}."
-    assert left == f"hidden.toml is as it was; --write puts {ADDED} into it."
-    assert hidden.read_bytes() == text
-    assert sorted(p.name for p in Path().iterdir()) == ["hidden.toml", "runs"]
-    result = json.loads(Path("runs/hidden/result.json").read_text(encoding="utf-8"))
-    assert result["verdict"]["kind"] == "nothing missing"
-    assert result["model"]["effects"][-1] == ADDED
-    assert [(row["step"], row["added"]) for row in result["history"]] == [
-        ("as written", None), ("added", ADDED),
-    ]  # fmt: skip
-    errors = [row["eps_rmsn"] for row in result["history"]]
-    assert errors[1] < 0.75 * errors[0]
-
-
-@pytest.mark.study(turn=2)
-def test_what_was_added_is_written_when_asked_and_a_run_then_gives_the_same(hidden: Path) -> None:
-    text = hidden.read_text(encoding="utf-8")
-    outcome = trialid_("run", str(hidden), "--auto", "--write", "--json")
-    assert (outcome.exit_code, outcome.stderr) == (0, "")
-    result = json.loads(outcome.stdout)
-    written = hidden.read_text(encoding="utf-8")
-    assert load(hidden).model.effects[-1] == ADDED
-    assert [line for line in text.splitlines() if "#" in line and line not in written] == []
-    lines = Path("hidden.history.jsonl").read_text(encoding="utf-8").splitlines()
-    assert [json.loads(line) for line in lines] == result["history"]
-    again = trialid_("run", str(hidden), "--json")
-    (grown,) = result.pop("grown")  # what leaving it out again costs is the loop's to know
-    assert (grown["effect"], grown["named"], grown["left_out_with_it"]) == (ADDED, True, [])
-    assert grown["costs"] > 1.5
-    assert json.loads(again.stdout) == result | {"grown": []}
-    # and once more finds nothing to add, and writes nothing
-    once_more = trialid_("run", str(hidden), "--auto", "--write")
-    assert "Added no more" in once_more.stdout
-    assert hidden.read_text(encoding="utf-8") == written
-    assert len(Path("hidden.history.jsonl").read_text(encoding="utf-8").splitlines()) == 2
-
-
-# --- where it goes and stops, in made-up worlds ---------------------------------------------------
-
 World = Mapping[str, tuple[float, float | None]]
 """Effects in the model, letter by letter, to the error of the fitted and of the held-out trials."""
+
+STANDS_IN: World = {
+    "": (0.10, 0.2), "x": (0.07, 0.16), "a": (0.08, 0.17), "b": (0.085, 0.18),
+    "ax": (0.060, 0.15), "bx": (0.065, 0.155), "ab": (0.040, 0.1), "abx": (0.0399, 0.1),
+}  # fmt: skip
+"""x stands in for a and b, and is worth nothing beside both."""
 
 ERRORS = np.array([0.9, 1.1, 1.0, 0.95, 1.05, 1.0])
 """How unlike the blocks of time are."""
@@ -198,11 +134,7 @@ def test_it_goes_on_while_something_carries_over(monkeypatch: pytest.MonkeyPatch
 def test_what_only_stood_in_for_another_is_dropped_and_not_tried_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    world = {
-        "": (0.10, 0.2), "x": (0.07, 0.16), "a": (0.08, 0.17), "b": (0.085, 0.18),
-        "ax": (0.060, 0.15), "bx": (0.065, 0.155), "ab": (0.040, 0.1), "abx": (0.0399, 0.1),
-    }  # fmt: skip
-    done = loop(monkeypatch, world)
+    done = loop(monkeypatch, STANDS_IN)
     assert steps(done) == ["+x", "+a", "+b", "-x"]
     assert grow.survivors(done) == ("a", "b")
     assert done[-1].pipeline.effects == "ab"
@@ -251,6 +183,42 @@ def test_what_cannot_be_fitted_from_the_file_is_told_and_the_next_tried(
     assert (done[-1].kept, done[-1].end) == (False, "with a: lost at t = 3 s")
 
 
+def changed(
+    monkeypatch: pytest.MonkeyPatch, of: str, change: Callable[[Any], None]
+) -> list[grow.Stage]:
+    """The loop once more, where what is found of a model with these effects is changed."""
+    usual = grow.examine
+
+    def examine(asked: Any, *more: Any, **words: Any) -> Any:
+        run = usual(asked, *more, **words)
+        if asked.effects == of:
+            change(run.findings)
+        return run
+
+    monkeypatch.setattr(grow, "examine", examine)
+    recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
+    return list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
+
+
+def no_fit(findings: Any) -> None:
+    findings.verdict = SimpleNamespace(kind="no fit", effect=None, sentence="no fit: x")
+
+
+def test_a_model_whose_fit_carries_no_verdict_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    world: dict[str, tuple[float, float | None]] = {"": (0.10, None), "a": (0.05, None)}
+    loop(monkeypatch, world)  # sets the stubs
+    done = changed(monkeypatch, "a", no_fit)
+    assert (done[-1].kept, done[-1].end) == (False, "with a: no fit: x")
+    world["b"] = (0.06, None)
+    assert steps(changed(monkeypatch, "a", no_fit)) == ["!a", "+b"]
+
+
+def test_nor_is_anything_dropped_for_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What stands in for others stays where the model without it carries no verdict."""
+    loop(monkeypatch, STANDS_IN)
+    assert steps(changed(monkeypatch, "ab", no_fit)) == ["+x", "+a", "+b"]
+
+
 def test_it_ends_at_twelve(monkeypatch: pytest.MonkeyPatch) -> None:
     letters = "abcdefghijklmnop"
     sets = (letters[:n] for n in range(len(letters) + 1))
@@ -273,26 +241,9 @@ def test_what_the_file_without_it_foretells_worse_is_not_dropped(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Begun where its file begins, the model without it ends elsewhere: the effect stays."""
-    world = {
-        "": (0.10, 0.2),
-        "x": (0.07, 0.16),
-        "a": (0.08, 0.17),
-        "b": (0.085, 0.18),
-        "ax": (0.060, 0.15),
-        "bx": (0.065, 0.155),
-        "ab": (0.040, 0.1),
-        "abx": (0.0399, 0.1),
-    }
-    assert steps(loop(monkeypatch, world)) == ["+x", "+a", "+b", "-x"]
-    usual = grow.examine
+    assert steps(loop(monkeypatch, STANDS_IN)) == ["+x", "+a", "+b", "-x"]
 
-    def examine(asked: Any, *more: Any, **words: Any) -> Any:
-        run = usual(asked, *more, **words)
-        if asked.effects == "ab":
-            run.findings.before.fit.eps_check = 0.5
-        return run
+    def worse(findings: Any) -> None:
+        findings.before.fit.eps_check = 0.5
 
-    monkeypatch.setattr(grow, "examine", examine)
-    recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
-    done = list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
-    assert steps(done) == ["+x", "+a", "+b"]
+    assert steps(changed(monkeypatch, "ab", worse)) == ["+x", "+a", "+b"]

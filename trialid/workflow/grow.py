@@ -132,6 +132,8 @@ def _forward(path: _Path, stage: Stage) -> Stage:
         return _not_kept(path, stage, name, f"with {name}: {error}")
     if trouble:
         return _not_kept(path, stage, name, f"{trouble} with {name}")
+    if run.findings.verdict.kind == "no fit":
+        return _not_kept(path, stage, name, f"with {name}: {run.findings.verdict.sentence}")
     if not before.model.displaced_by(edit.effect):  # a gear's place is never empty
         path.own.append(edit.effect)
     return _told(path, edit, run, added=name)
@@ -194,7 +196,8 @@ def _backward(path: _Path, stage: Stage) -> Stage | None:
     except TrialidError:  # the file's own starts lead nowhere: the model stays as it is
         return None
     less = run.findings.before.fit
-    if not less.converged or worse_held_out(fit, less):
+    failed = not less.converged or run.findings.verdict.kind == "no fit"
+    if failed or worse_held_out(fit, less):
         return None
     path.own = [e for e in path.own if e.name != idle.effect]
     return _told(path, edit, run, None, idle.effect)
