@@ -94,6 +94,7 @@ def test_what_is_left_is_a_share_of_what_moved():
     for one, rms, noise in zip(
         left_by_check(fit, covariance(fit)), fit.problem.y_rms, (GYRO, INCLINOMETER), strict=True
     ):
+        assert one.left == pytest.approx(fit.eps_check_by_output[one.output], rel=0.01)
         assert one.left == pytest.approx(noise / rms, rel=0.1)
         assert one.by_noise == pytest.approx(noise / rms, rel=0.1)
 

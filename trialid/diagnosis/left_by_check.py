@@ -19,6 +19,9 @@ from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale, stretches_of
 from trialid.identification.trial_score import check_rows
 
+Piece = tuple[Vector, Mask]
+"""The residual of one output of one trial, and where it was compared; (N,) each."""
+
 
 @dataclass(frozen=True)
 class LeftByCheck:
@@ -77,13 +80,26 @@ def left_by_check(fit: Fit, covariance: Vector) -> tuple[LeftByCheck, ...]:
     parts, fitted, told = stretches_of([s.compared for s in checks]), residuals(fit), []
     for c, output in enumerate(problem.outputs):
         mine = [p for p in parts if p.output == c]
-        pieces = [p.on_clock(residual[p.rows] / scale[c]) for p in mine]
-        left = _mean_square(pieces, [p.compared for p in mine])
-        noise = _mean_square([r.eps[:, c] for r in fitted], [r.compared[:, c] for r in fitted])
-        if noise is not None and left is not None:
-            slopes = np.concatenate([psi[p.rows] for p in mine]) / scale[c]
-            told.append(_held_against(output, noise, left, C @ (slopes.T @ slopes) / len(slopes)))
-    return tuple(told)
+        held = [(p.on_clock(residual[p.rows] / scale[c]), p.compared) for p in mine]
+        own = [(r.eps[:, c], r.compared[:, c]) for r in fitted]
+        slopes = np.concatenate([psi[p.rows] for p in mine]) / scale[c]
+        told.append(_of_output(output, own, held, C @ (slopes.T @ slopes) / max(len(slopes), 1)))
+    return tuple(one for one in told if one is not None)
+
+
+def _of_output(
+    output: str, own: Sequence[Piece], held: Sequence[Piece], moved: Vector
+) -> LeftByCheck | None:
+    """What is left of one output in fitted trials and in those held out; None of too little.
+
+    The trace of `moved` is what uncertain parameters add to the mean square.
+    """
+    noise, left = _mean_square(own), _mean_square(held)
+    if noise is None or left is None:
+        return None
+    share, chance = _by_noise(noise, left, moved)
+    rms = np.sqrt(sum(e @ e for e, _ in held) / sum(mask.sum() for _, mask in held))
+    return LeftByCheck(output, float(rms), float(share * rms), chance)
 
 
 def _moving(fit: Fit, psi: Vector, covariance: Vector) -> tuple[Vector, Vector]:
@@ -94,14 +110,15 @@ def _moving(fit: Fit, psi: Vector, covariance: Vector) -> tuple[Vector, Vector]:
     return psi[:, moving], covariance[np.ix_(kept, kept)]
 
 
-def _mean_square(pieces: Sequence[Vector], masks: Sequence[Mask]) -> OutputNoise | None:
+def _mean_square(found: Sequence[Piece]) -> OutputNoise | None:
+    pieces, masks = [e for e, _ in found], [mask for _, mask in found]
     return pool_variance(pieces, masks, tail=heavy_tail(pieces, masks))
 
 
-def _held_against(output: str, noise: OutputNoise, left: OutputNoise, moved: Vector) -> LeftByCheck:
-    """F of the mean squares, with the degrees of freedom that their scatter leaves.
+def _by_noise(noise: OutputNoise, left: OutputNoise, moved: Vector) -> tuple[float, float]:
+    """What noise would leave, as a share of what is left, and the chance of so much.
 
-    The trace of `moved` is what uncertain parameters add to the mean square.
+    F of the mean squares, with the degrees of freedom that their scatter leaves.
     """
     expected = noise.variance + float(np.trace(moved))
     own = left.deviation / left.variance * noise.variance
@@ -109,4 +126,4 @@ def _held_against(output: str, noise: OutputNoise, left: OutputNoise, moved: Vec
     upper = 2.0 * expected**2 / spread
     lower = 2.0 * (noise.variance / noise.deviation) ** 2
     chance = float(fdtrc(upper, lower, left.variance / expected))
-    return LeftByCheck(output, float(np.sqrt(left.variance)), float(np.sqrt(expected)), chance)
+    return float(np.sqrt(expected / left.variance)), chance
