@@ -108,10 +108,23 @@ class Counted:
     widths: Mapping[str, float]
 
 
+def world_of(case: Case, seed: int) -> World:
+    """The true ship of one record."""
+    return hidden_world(case.conditions, seed, EVERY) if case.hides else as_known(case.conditions)
+
+
+def sails(case: Case, seed: int) -> bool:
+    """Whether she can be sailed at all: what is hidden may be of the size of a larger ship."""
+    try:
+        record(world_of(case, seed), seed)
+    except NoPassage:
+        return False
+    return True
+
+
 def fitted(case: Case, seed: int) -> tuple[World, Fit] | None:
     """The true ship and the fit of one record; None where she cannot be sailed, or no fit."""
-    known = as_known(case.conditions)
-    ship = hidden_world(case.conditions, seed, EVERY) if case.hides else known
+    ship = world_of(case, seed)
     try:
         fit = fit_of(case, ship, seed)
     except NoPassage:

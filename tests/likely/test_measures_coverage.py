@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from measures_coverage import CASES, MEASURES, count, fit_of, hidden_world, ranges, share
+from measures_coverage import CASES, MEASURES, count, fit_of, hidden_world, ranges, sails, share
 from worlds import EVERY
 
 from trialid.design.following import vessel_of
@@ -19,12 +19,14 @@ COUNTED = (0, 1, 3, 5, 7, 9, 13)
 def test_ranges_hold_what_the_true_ship_does(place):
     """Not fewer than asked for beyond chance; overshoots told to a tenth, the circle to a fifth."""
     case = CASES[place]
-    found = [count(case, seed) for seed in range(FIRST, FIRST + RECORDS)]
+    seeds = [seed for seed in range(FIRST, FIRST + RECORDS) if sails(case, seed)]
+    found = [count(case, seed) for seed in seeds]
     done = [c for c in found if c is not None]
     held, low, high = share(done)
     widths = {n: float(np.nanmedian([c.widths[n] for c in done])) for n in MEASURES}
     print(f"{case.name}: {held:.1%} ({low:.0%}-{high:.0%}) of {len(done)} records; {widths}")
-    assert len(done) > 0.9 * RECORDS
+    assert len(seeds) > 0.8 * RECORDS
+    assert len(done) > 0.9 * len(seeds)
     assert high >= case.asked
     assert max(widths.values()) < 0.2
     assert max(w for n, w in widths.items() if "overshoot" in n) < 0.1
