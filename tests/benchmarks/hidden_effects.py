@@ -42,15 +42,17 @@ from hidden_truth import (
 )
 from spread import add_options, spread
 
-from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, refits_of
+from trialid.arrays import Vector
+from trialid.diagnosis.diagnose import DiagnoseSettings, refits_of
 from trialid.diagnosis.left_by_check import with_held_out
-from trialid.diagnosis.may_be_off import doubts
+from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.completeness import completeness
 from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate, rank
+from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.verdict import Verdict, decide
 from trialid.effects import CATALOGUE
 from trialid.errors import TrialidError
@@ -132,10 +134,11 @@ def diagnosed(
         whole = completeness(augmented)
         parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)
         verdict = decide(fit, ranking, refits, parts, whole, asked.level)
-        before = Diagnosed(fit, parts, routes, doubts(augmented))
-        verdict = with_held_out(
-            fit.examined, verdict, lambda: before.accuracy.covariance, asked.level
-        )
+
+        def covariance() -> Vector:
+            return accuracy_of(fit, parts, may_be_off(augmented)).covariance
+
+        verdict = with_held_out(fit.examined, verdict, covariance, asked.level)
         named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
     return Diagnosis(fit, ranking, refits, named, verdict)
 
