@@ -71,12 +71,12 @@ def test_nothing_heavy_comes_before_it_is_asked_for() -> None:
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.study(turn=7)
+@pytest.mark.study(turn=12)
 def test_a_run_is_the_commands_digit_for_digit(run, sample_run: Path) -> None:
     assert same(run.result, json.loads((sample_run / "result.json").read_text(encoding="utf-8")))
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=15)
 def test_an_added_effect_is_the_commands_digit_for_digit(better, copy, tmp_path: Path) -> None:
     told = command("add", str(copy), EFFECT, "--out", str(tmp_path / "added"))
     found = json.loads(json.dumps(plain(better.result)))
@@ -84,7 +84,7 @@ def test_an_added_effect_is_the_commands_digit_for_digit(better, copy, tmp_path:
         assert found[part] == told[part], part
 
 
-@pytest.mark.study(turn=7)
+@pytest.mark.study(turn=12)
 def test_add_and_drop_write_nothing_and_undo_one_another(run, better) -> None:
     assert EFFECT not in PIPELINE.read_text(encoding="utf-8")
     assert not PIPELINE.with_name("hidden_effect.history.jsonl").exists()
@@ -191,7 +191,7 @@ def test_arrays_give_the_pipelines_numbers(run, fit) -> None:
         assert abs(fit.value(row.name) - row.value) < 0.05 * row.standard_error
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=15)
 def test_a_fit_from_arrays_is_diagnosed_and_grows(fit) -> None:
     found = ti.diagnose(fit, name="arrays")
     assert (found.verdict.kind, found.verdict.effect) == ("missing", EFFECT)

@@ -70,7 +70,7 @@ def test_a_weak_thruster_is_named_on_its_side_and_nothing_where_nothing_is() -> 
     assert verdict(1103, "", 60.0).kind == "nothing missing"
 
 
-@pytest.mark.study(turn=9)
+@pytest.mark.study(turn=10)
 def test_a_dead_thruster_is_named_although_nothing_fits_without_it() -> None:
     few = {n: e for n, e in CANDIDATES.items() if e.bound_by_meaning or n == "delay_r"}
     fit = fitted(record(1104, "dead", side=0, duration=60.0))
@@ -91,7 +91,7 @@ def test_a_thruster_that_keeps_its_revolutions_is_named_and_where_it_keeps_them(
     assert kept == pytest.approx(stuck_at(1107), rel=0.02)
 
 
-@pytest.mark.study(turn=9)
+@pytest.mark.study(turn=10)
 def test_a_weak_thruster_is_fitted_where_slopes_foretell_more_than_blocks_left_out() -> None:
     """It leaves 0.029 of 0.129; by blocks it was no candidate, and a lever arm had the name."""
     assert verdict(60012, "weak").family == ("left_weak",)

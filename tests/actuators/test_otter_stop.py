@@ -102,7 +102,7 @@ def test_the_words_of_a_crash_stop() -> None:
             stop_order(wrong)
 
 
-@pytest.mark.study(turn=9)
+@pytest.mark.study(turn=12)
 def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
     """Stopped, ordered astern, handed over with the units of her thrusters; gains by both."""
     done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv")], "--length 2")

@@ -64,7 +64,7 @@ def test_sides_that_the_turn_contradicts_are_asked(tmp_path, monkeypatch) -> Non
     assert not (tmp_path / "runs").exists()
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=10)
 def test_a_unit_that_nothing_tells_is_asked(tmp_path, monkeypatch) -> None:
     """Counts of an engine may be anything; what is called a thrust is read as one, with care."""
     made = log(tmp_path / "a.csv", drive="engine")
@@ -115,7 +115,7 @@ def test_a_stranger_without_a_rudder_is_told_that_what_is_left_is_noise(
 
 @pytest.mark.real_data
 @pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=12)
 def test_a_stranger_without_a_rudder_is_followed_to_the_noise(tmp_path, monkeypatch) -> None:
     """By second differences of the raw channels: 0.005 rad/s at 25 Hz and 0.03 m/s at 5 Hz."""
     logs = [NEWCOMER / f"usv{i}.mcap" for i in (1, 2)]

@@ -15,7 +15,7 @@ def test_a_clock_set_back_moves_the_fit_and_its_repair_does_not():
     assert row.unrepaired > 10.0
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=12)
 def test_no_fault_of_a_clock_moves_a_parameter_by_half_a_standard_error_when_repaired():
     done = list(rows())
     print(table(done))

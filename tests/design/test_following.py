@@ -83,7 +83,7 @@ def test_a_fitted_ship_is_sailed_with_the_engine_of_her_trial(fit):
     assert ready.rudder_rate == pytest.approx(2.5 * D, rel=0.01)
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=11)
 def test_the_interval_holds_what_the_true_ship_does(fit, whole):
     """Ten degrees of rudder were sailed: a circle of 35 is foretold from far off."""
     for one in predict([following.vessel_of(fit, MODEL)]):
@@ -96,7 +96,7 @@ def test_the_interval_holds_what_the_true_ship_does(fit, whole):
     assert whole["advance"].kept
 
 
-@pytest.mark.study(turn=9)
+@pytest.mark.study(turn=10)
 def test_with_nothing_else_to_be_wrong_it_is_what_noise_leaves(fit, alone):
     """Against 50 ships drawn from the covariance of the parameters, each sailed."""
     found, covariance = alone

@@ -62,7 +62,7 @@ def test_what_is_held_wrong_is_named_and_said(run) -> None:
     assert "Read what it stands for" not in told
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=15)
 def test_added_it_is_free_and_dropped_the_file_is_as_it_was(run, wrong: Path) -> None:
     before = wrong.read_bytes()
     done = CliRunner().invoke(commands, ["add", str(wrong), "Kdelta"])

@@ -56,7 +56,7 @@ def test_missing_roll_damping_is_named_and_the_error_falls():
     assert ranking[0].eps_predicted == pytest.approx(named.fit.eps_rmsn, rel=0.1)
 
 
-@pytest.mark.study(turn=9)
+@pytest.mark.study(turn=15)
 def test_twins_are_one_family():
     """r|r| and r^3 cannot be separated by zig-zags: both are named, neither alone."""
     _, ranking, _, verdict = diagnosed(record(MODEL, 2), WITHOUT)

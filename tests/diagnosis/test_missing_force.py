@@ -43,7 +43,7 @@ def test_linear_response_is_that_of_the_engine():
         assert np.abs(found - wanted).max() < 0.05 * np.abs(wanted).max(), row
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=13)
 def test_noise_has_no_force():
     for noise in ({}, {"noise": white}):
         found = missing_force(fit_of(None, 2, **noise)[0])
@@ -52,7 +52,7 @@ def test_noise_has_no_force():
         assert "no force" in found.sentence
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=15)
 def test_an_outer_force_is_found_with_its_course_and_follows_no_signal():
     fit, forces = fit_of("N", 3)
     found = missing_force(fit)
@@ -65,7 +65,7 @@ def test_an_outer_force_is_found_with_its_course_and_follows_no_signal():
     assert np.corrcoef(course.force, true)[0, 1] > 0.6
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=15)
 def test_a_hidden_effect_is_found_with_its_shape():
     found = missing_force(fit_of(rudder_in_heel, 4)[0])
     assert found.named == "N"
@@ -81,7 +81,7 @@ def test_a_hidden_effect_is_found_with_its_shape():
     )
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=14)
 def test_the_same_comes_out_again():
     fit, _ = fit_of(turning_in_heel, 5)
     found = missing_force(fit)
@@ -116,7 +116,7 @@ def test_the_right_equation_is_named(hidden, row):
         assert np.mean(shares) > (0.8 if row == "K" else 0.9)  # roll noise is slow near resonance
 
 
-@pytest.mark.study(turn=7)
+@pytest.mark.study(turn=14)
 def test_noise_alone_names_no_equation():
     """In at most 1 of 12 records, waves and white noise; of 40 it was none."""
     found = [

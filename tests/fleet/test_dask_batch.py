@@ -47,7 +47,7 @@ def fresh(many: tuple[Path, dict], tmp_path: Path) -> Path:
     return folder
 
 
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=15)
 def test_workers_killed_at_random_lose_and_double_nothing(
     many: tuple[Path, dict], fresh: Path
 ) -> None:
@@ -107,7 +107,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
-@pytest.mark.study(turn=9)
+@pytest.mark.study(turn=14)
 def test_a_run_that_kills_its_workers_is_a_row_and_is_done_anew(fresh: Path) -> None:
     """The effect that its pipeline brings along does; the other run is none the worse."""
     text = (fresh / "template-csv.toml").read_text(encoding="utf-8")
@@ -136,7 +136,7 @@ def notes(todo: list[str]):
     return compute
 
 
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=15)
 def test_a_scheduler_and_two_workers_with_folders_of_their_own(
     many: tuple[Path, dict], fresh: Path, tmp_path: Path
 ) -> None:
@@ -154,7 +154,7 @@ def test_a_scheduler_and_two_workers_with_folders_of_their_own(
     assert told[0].startswith("Dask: http://")
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=12)
 def test_a_scheduler_killed_and_started_again(
     many: tuple[Path, dict], fresh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -181,7 +181,7 @@ def test_a_scheduler_killed_and_started_again(
     assert contents(fresh / "out") == many[1]
 
 
-@pytest.mark.study(turn=8)
+@pytest.mark.study(turn=11)
 def test_workers_of_several_threads_are_refused(tmp_path: Path) -> None:
     with (
         processes(tmp_path, threads=2) as apart,
@@ -191,7 +191,7 @@ def test_workers_of_several_threads_are_refused(tmp_path: Path) -> None:
         check_threads(client)
 
 
-@pytest.mark.study(turn=8)
+@pytest.mark.study(turn=11)
 def test_no_scheduler_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_workers, "ANSWER", "2s")
     with (
@@ -201,7 +201,7 @@ def test_no_scheduler_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
         pass
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=12)
 def test_a_cluster_described_in_a_file(fresh: Path, tmp_path: Path) -> None:
     for later in sorted((fresh / "alpha").iterdir())[1:]:
         shutil.rmtree(later)

@@ -22,7 +22,7 @@ def rows(table: Path, *options: str) -> list[dict[str, str]]:
     return [{n: x for n, x in row.items() if "second" not in n} for row in found]
 
 
-@pytest.mark.study(turn=7)
+@pytest.mark.study(turn=11)
 def test_a_benchmark_on_workers_gives_the_same_rows(tmp_path: Path) -> None:
     here = rows(tmp_path / "here.csv")
     assert [row["scenario"] for row in here] == ["nothing", "bias_r", "righting_arm_cubic"]

@@ -62,7 +62,7 @@ def _mcap(path, contents):
     return path
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=11)
 def test_a_log_of_every_channel_that_two_bytes_can_number(tmp_path):
     rows = [_channel(i, f"/t{i}") + _message(i, STAMP) + _message(i, STAMP + 10**9)
             for i in range(1, 65_500)]  # fmt: skip
@@ -80,7 +80,7 @@ def test_chunks_of_millions_of_messages_each(tmp_path):
     assert "million messages" in costs(lambda: inspect_log(path))
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=11)
 def test_chunks_of_gigabytes_of_what_is_no_message(tmp_path):
     """Attachments of zeros; no message is counted, and yet all is unpacked."""
     nothing = _record(200, bytes(100 * 2**20))

@@ -156,7 +156,7 @@ def test_a_row_of_two_hundred_megabytes(tmp_path, filler):
     _long_line(tmp_path / "log", "csv", filler)
 
 
-@pytest.mark.study(turn=7)
+@pytest.mark.study(turn=13)
 def test_a_sentence_of_two_hundred_megabytes(tmp_path):
     _long_line(tmp_path / "log", "nmea", b"$")
 
@@ -327,7 +327,7 @@ def test_a_reader_that_dies_is_a_line(tmp_path, signal, monkeypatch):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no limits of a process here")
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=12)
 def test_a_long_text_that_many_cells_share(tmp_path, monkeypatch):
     """A megabyte in twenty thousand cells: 20 GB, of which no part of the file speaks."""
     cells = "".join(f'<row r="{i}"><c r="A{i}" t="s"><v>0</v></c></row>' for i in range(1, 20_000))

@@ -198,7 +198,7 @@ def test_a_pattern_is_linear(use):
     ],
     ids=["doubles", "squares", "the unit of before", "the number of before"],
 )
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=10)
 def test_a_pattern_that_is_not_is_seen(text):
     """The test can fail: in a square of the length, or twice as long for every letter."""
     assert slow(Use("here", re.compile(text), "fullmatch")) or slow(

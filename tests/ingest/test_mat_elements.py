@@ -38,7 +38,7 @@ def flat(found, prefix=""):
 
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(st.dictionaries(names, values, min_size=1, max_size=4), st.booleans())
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=15)
 def test_what_scipy_reads(tmp_path_factory, content, packed):
     path = tmp_path_factory.getbasetemp() / "log.mat"
     scipy.io.savemat(path, content, do_compression=packed)

@@ -65,7 +65,7 @@ def test_a_damaged_bag_gives_what_is_intact_or_one_line(log, share):
         assert found.channels.keys() <= whole.channels.keys()
 
 
-@pytest.mark.study(turn=8)
+@pytest.mark.study(turn=15)
 def test_random_damage_is_a_recording_or_one_line(log):
     path, _ = log
     content, rng = path.read_bytes(), np.random.default_rng(11)

@@ -32,12 +32,12 @@ def test_ranges_hold_what_the_true_ship_does(place):
     assert max(w for n, w in widths.items() if "overshoot" in n) < 0.1
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=13)
 def test_a_record_counts_the_same_twice():
     assert count(CASES[0], 3) == count(CASES[0], 3)
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=14)
 def test_what_noise_leaves_alone_does_not():
     """What the ranges are for: with an effect hidden the parameters' errors hold about half."""
     held = {"whole": [], "noise": []}

@@ -29,7 +29,7 @@ def test_its_clusters_say_what_a_cluster_needs() -> None:
     assert all({"module", "class", "kwargs"} == set(each) for each in found)
 
 
-@pytest.mark.study(turn=9)
+@pytest.mark.study(turn=15)
 @pytest.mark.filterwarnings("ignore")  # Dask's own
 def test_its_commands_and_queries_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in ("distributed", "pyarrow", "duckdb"):

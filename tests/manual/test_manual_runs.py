@@ -24,6 +24,7 @@ from printed import (
     to_run,
     told,
 )
+from turns import TURNS
 
 import trialid
 from trialid import effects, pipeline_file
@@ -109,7 +110,7 @@ def copy(project: Path, tmp_path: Path) -> Path:
 def in_turn(documents: list[str]) -> list[Any]:
     """One page after another."""
     return [
-        pytest.param(document, marks=pytest.mark.study(turn=k % 10))
+        pytest.param(document, marks=pytest.mark.study(turn=k % TURNS))
         for k, document in enumerate(documents)
     ]
 

@@ -94,7 +94,7 @@ def of_the_yacht(begun, name, changes):
     return result.fit, {p.name: p for p in result.accuracy.parameters}
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=14)
 def test_as_begun_there_is_no_fit_of_the_yacht(begun):
     """Her roll is the wind's: the search ends at r 103 %, not converged, and the run says `no fit`.
 

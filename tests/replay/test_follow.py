@@ -57,7 +57,7 @@ def ready(pipeline):
     return read, fit, bands(fit, found.split, augmented)
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=11)
 def test_a_growing_log_is_followed_and_ends_in_the_numbers_of_the_batch_run(pipeline, ready):
     read, fit, noise = ready
     path = pipeline.parent / "halfway.csv"
@@ -92,7 +92,7 @@ def test_a_growing_log_is_followed_and_ends_in_the_numbers_of_the_batch_run(pipe
     assert raised[0][1] < 640.0  # while it was still being written
 
 
-@pytest.mark.study(turn=4)
+@pytest.mark.study(turn=11)
 def test_it_waits_for_enough_of_a_log_and_gives_up_when_nothing_comes(pipeline, ready, tmp_path):
     read = ready[0]
     text = (pipeline.parent / "halfway.csv").read_text(encoding="utf-8")

@@ -73,7 +73,7 @@ def test_the_wheel_is_told_of_every_text() -> None:
     assert wheel["force-include"] == {name: f"trialid/sample/shipped/{name}" for name in SHIPPED}
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=12)
 def test_once_more_is_the_same(copy: Path) -> None:
     before = state(copy)
     told = demo(copy)
@@ -141,7 +141,7 @@ def without_python_path() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=13)
 def test_a_wheel_is_enough(installed: Path, tmp_path: Path) -> None:
     """In a fresh environment: demo, run, add, drop, report, start; an extra is named, and works."""
 

@@ -15,7 +15,7 @@ from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit
 
 pytestmark = [
-    pytest.mark.study(turn=5),
+    pytest.mark.study(turn=10),
     pytest.mark.real_data,
     pytest.mark.skipif(not ESSO.is_dir(), reason=f"no real records {ESSO}"),
 ]

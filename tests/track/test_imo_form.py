@@ -117,7 +117,7 @@ def test_a_run_without_measures_is_one_line(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=11)
 def test_run_report_and_design_say_one_number(tmp_path: Path) -> None:
     """The sample run with its standard measures: terminal, form, report, and the design of it."""
     shutil.copytree(ROOT / "sample_data", tmp_path / "sample_data")

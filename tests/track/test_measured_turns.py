@@ -170,7 +170,7 @@ def test_a_turn_out_of_another_manoeuvre_or_broken_off_is_none() -> None:
     assert (found_in(replace(trial, valid=lost))) == []
 
 
-@pytest.mark.study(turn=8)
+@pytest.mark.study(turn=14)
 @one_thread
 def test_intervals_hold_the_truth() -> None:
     """Those of the model hold more: they allow for four effects that are not missing."""

@@ -187,7 +187,7 @@ def inside(row: ManoeuvreNumber, truth: float) -> tuple[bool, bool]:
 
 
 @pytest.mark.parametrize("name", ["turn", "stop"])
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=13)
 def test_numbers_of_the_record_and_of_the_model(name: str) -> None:
     truth, rows = truth_of(name, 0), [r for r in measured(0).numbers if r.trial == name]
     assert [row.name for row in rows] == [*truth]
@@ -213,7 +213,7 @@ def test_a_stop_whose_log_has_a_hole_is_read_from_the_track() -> None:
         assert "corrected" not in row
 
 
-@pytest.mark.study(turn=6)
+@pytest.mark.study(turn=14)
 def test_intervals_of_turns_and_stops_hold_the_truth() -> None:
     held: dict[str, list[tuple[bool, bool]]] = {}
     for seed in range(1, 13):

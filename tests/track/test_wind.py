@@ -112,7 +112,7 @@ def test_what_is_wind_and_what_is_not() -> None:
     assert not is_wind(free_coefficient(WINDY, "Nphi"))
 
 
-@pytest.mark.study(turn=1)
+@pytest.mark.study(turn=14)
 def test_corrected_intervals_hold_the_calm_truth() -> None:
     calm, inside = in_calm_air(), []
     for seed in range(1, 25):

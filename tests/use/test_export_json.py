@@ -53,7 +53,7 @@ def test_its_covariance_is_as_wide_as_the_likely_ranges(run_folder: Path, tmp_pa
         assert np.sqrt(variance) >= 0.99 * p["standard_error"]
 
 
-@pytest.mark.study(turn=5)
+@pytest.mark.study(turn=14)
 def test_a_fit_without_a_verdict_is_marked(run_folder: Path, tmp_path: Path) -> None:
     shutil.copytree(run_folder.parents[1], tmp_path / "copy")
     spoilt = tmp_path / "copy" / run_folder.relative_to(run_folder.parents[1])

@@ -69,7 +69,7 @@ def test_a_port_that_is_none(path: Path, port: str) -> None:
     assert done.exit_code == 2
 
 
-@pytest.mark.study(turn=0)
+@pytest.mark.study(turn=12)
 def test_it_says_where_it_is_and_edits_the_file(path: Path) -> None:
     with quick.running(str(path), "--port", "0") as bench:
         port = bench.address.port
@@ -90,7 +90,7 @@ def test_it_says_where_it_is_and_edits_the_file(path: Path) -> None:
     assert load(path).model.effects[-1] == ADDED
 
 
-@pytest.mark.study(turn=2)
+@pytest.mark.study(turn=11)
 def test_the_next_port_is_taken_where_the_usual_one_is(path: Path) -> None:
     with contextlib.ExitStack() as stack:
         with contextlib.suppress(OSError):  # something else has it: as good
@@ -100,7 +100,7 @@ def test_the_next_port_is_taken_where_the_usual_one_is(path: Path) -> None:
         assert bench.address.get("/api/status").status == 200
 
 
-@pytest.mark.study(turn=3)
+@pytest.mark.study(turn=13)
 def test_ctrl_c_ends_it_with_pages_listening(path: Path) -> None:
     with quick.running(str(path), "--port", "0") as bench, contextlib.ExitStack() as stack:
         for _ in range(3):

@@ -107,7 +107,7 @@ def test_only_the_noise_of_inputs_widens() -> None:
     assert felt_noise(rough) is not None
 
 
-@pytest.mark.study(turn=8)
+@pytest.mark.study(turn=10)
 def test_currents_in_wind_lie_within_their_intervals() -> None:
     [case] = [c for c in CASES if c.name == "wind by anemometer"]
     inside, _ = count(case, range(8000, 8090))
