@@ -121,6 +121,7 @@ PUBLISHED = {
     "drift_with_rudder": {"Yvdd": (-4e-5,), "Nvdd": (13e-5,)},
     "rudder_slipstream": {"N_slip": (0.8 * 0.00148, 1.4 * 0.00148), "z_slip": (0.033,)},
     "rudder_race": {"Y_race": (-0.00298382,), "K_race": (9.847e-5,), "N_race": (0.00148048,)},
+    "shaft_thrust": {"X_nn": (4.28e-8,), "X_un": (-5.07e-6,)},
     "rudder_race_shaft": {"N_un": (4.8e-7,), "N_nn": (1.6e-8,)},
     "rudder_deadband": {"b_dead": (0.0035, 0.0175)},
     "rudder_backlash": {"b_play": (0.0035, 0.026)},

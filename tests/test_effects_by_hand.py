@@ -273,6 +273,21 @@ def test_screws_push_to_the_side_they_should() -> None:
     assert half == pytest.approx(2.05 * course)
 
 
+def test_the_thrust_of_a_shaft_is_that_of_its_screw() -> None:
+    """Of the S-175 on a course, by the numbers of her screw; nothing with the shaft stopped."""
+    D, KT0, KT1, left, wake = 6.533, 0.527, -0.455, 1.0 - 0.175, 1.0 - 0.184
+    known = {
+        "X_nn": 2.0 * left * KT0 * (D / L) ** 4 / (2.0 * np.pi) ** 2,
+        "X_un": 2.0 * left * KT1 * wake * (D / L) ** 3 / (2.0 * np.pi),
+    }
+    screw = CATALOGUE["propeller_thrust"]
+    known_of_her = screw.nulls | {"v": 0.0, "r": 0.0, "L": L, "rho": RHO}
+    for n, u in ((7.33, U0), (5.0, U0), (9.0, 0.6 * U0)):
+        [of_screw] = screw({**known_of_her, "u": u, "n": n})
+        assert forces("shaft_thrust", known, u=u, n=n)["X"] == pytest.approx(of_screw.X, rel=1e-6)
+    assert not any(forces("shaft_thrust", known, n=-3.0).values())
+
+
 def test_loading_changes_the_masses() -> None:
     """Twice the inertia, half the yaw acceleration."""
     inertia = MASSES["I_zz"] - MASSES["Nrdot"]

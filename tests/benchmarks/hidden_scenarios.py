@@ -169,6 +169,7 @@ _PHYSICS: Final[Mapping[str, Mapping[str, float]]] = {
     "rudder_in_drift": {"Yvvd": -0.012, "Nvvd": 0.005},
     "rudder_slipstream": {"N_slip": 0.0015, "z_slip": 0.03},
     "propeller_side_force": {"N_n": -1e-9},
+    "shaft_thrust": {"X_nn": 4e-9, "X_un": 0.0},  # a tenth more than her screw is said to have
     "shaft_speed_drop": {"k_n": 0.2},
     # weather
     "steady_wind": {"F_N": 0.0001, "F_E": 0.00015, "x_wind": 0.05, "z_wind": 0.05},  # 10 m/s

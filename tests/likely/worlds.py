@@ -49,7 +49,7 @@ POOL: Final = tuple(
     if s.group in ("physics", "sensor")
     and s.effects
     and not name.startswith("surge_")
-    and name not in ("clock_drift_r", "propeller_side_force", "shaft_speed_drop")
+    and name not in ("clock_drift_r", "propeller_side_force", "shaft_speed_drop", "shaft_thrust")
 )
 """What is hidden: what acts on sway, roll and yaw of a ship whose speed and shaft are steady."""
 

@@ -60,6 +60,20 @@ def propeller_unrecorded(
     return Force(X=X_P0 * U0 * (U0 + k_P * (U0 - u)))
 
 
+@effect(source="bilinear in shaft speed and speed of advance: Blanke (1981)")
+def shaft_thrust(
+    u, n, *,
+    X_nn=Parameter(4e-8, low=0.0, high=1e-6), X_un=Parameter(-5e-6, low=-1e-4, high=0.0),
+):  # fmt: skip
+    """X = (X_nn n + X_un u) n with the shaft ahead: thrust as the shaft turns.
+
+    Beside a thrust that knows one shaft speed, as propeller_unrecorded, or instead of it; what
+    propeller_thrust says by the numbers of the screw, where nobody has them.
+    """
+    ahead = 0.5 * (n + abs(n))
+    return Force(X=(X_nn * ahead + X_un * u) * ahead)
+
+
 @effect(source="wheel effect of a single screw; right-handed ahead: bow to port; size by judgement")
 def propeller_side_force(n, *, N_n=Parameter(-1e-9, low=-2e-8, high=2e-8)):
     """N = N_n n^2,  Y = -2 N: a turning screw, aft, also pushes sideways."""
@@ -91,6 +105,7 @@ EFFECTS = (
     surge_loss,
     shaft_speed_drop,
     propeller_unrecorded,
+    shaft_thrust,
     propeller_side_force,
     propeller_astern,
     twin_screws,
