@@ -20,12 +20,24 @@ collect_ignore_glob = ["*/conftest.py"]
 """They hold no doctests, and as modules of one name they could not be given in one command."""
 
 
+RUN = """\
+import sys
+from trialid.cli.main import main
+try:
+    main()
+finally:
+    with open("modules.txt", "w") as file:
+        print(*sys.modules, file=file)
+"""
+
+
 @pytest.fixture(scope="session")
 def sample_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder that `trialid run` makes of the sample, once for all workers; for reading only.
 
     Made by another process, from another folder, with two threads and its own order of hashes: who
-    gets the same bytes in this one has shown that none of that matters.
+    gets the same bytes in this one has shown that none of that matters. What it imported stands in
+    `modules.txt` beside the folder.
     """
     own = tmp_path_factory.getbasetemp()
     place = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
@@ -42,7 +54,7 @@ def _run_sample(folder: Path) -> None:
     pipeline = ROOT / "pipelines" / "hidden_effect.toml"
     paths = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     done = subprocess.run(
-        [sys.executable, "-m", "trialid", "run", str(pipeline), "--out", folder.name, "--quiet"],
+        [sys.executable, "-c", RUN, "run", str(pipeline), "--out", folder.name, "--quiet"],
         cwd=folder.parent,
         env={**os.environ, "PYTHONPATH": paths, "PYTHONHASHSEED": "7", "OMP_NUM_THREADS": "2"},
         capture_output=True,
