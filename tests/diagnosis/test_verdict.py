@@ -120,6 +120,25 @@ def test_what_held_out_trials_lose_by_is_not_named():
     assert decide(fit(0.10, 0.20), (), [better], split(0.04), None, 0.05).kind == "missing"
 
 
+@pytest.mark.parametrize(
+    ("ratio", "check", "kind"),
+    [
+        (0.74, 0.2001, "cannot tell"),  # the one with a name takes a tenth of its 26 %
+        (0.80, 0.2001, "missing"),  # and an eighth of 20 %
+        (0.74, np.inf, "cannot tell"),
+    ],
+)
+def test_who_explains_next_to_nothing_of_what_another_does_has_no_name(ratio, check, kind):
+    """Although held-out trials deny the other: what it does is no noise."""
+    named = refit("small", 0.975, 0.0985, check=0.19)
+    denied = refit("large", ratio, 0.08, check=check)
+    parts = Split("not separable", "no route")
+    found = decide(fit(0.10, 0.20), (), [named, denied], parts, None, 0.05)
+    assert found.kind == kind
+    assert found.effect == ("small" if kind == "missing" else None)
+    assert ("large lowers the squared error" in found.sentence) is (kind == "cannot tell")
+
+
 def unfinished(name, ratio, eps, **given):
     """A refit whose search did not arrive."""
     found = refit(name, ratio, eps, **given)

@@ -62,9 +62,12 @@ def propeller_unrecorded(
 
 @effect(source="bilinear in shaft speed and speed of advance: Blanke (1981)")
 def shaft_thrust(
-    u, n, *,
-    X_nn=Parameter(4e-8, low=0.0, high=1e-6), X_un=Parameter(-5e-6, low=-1e-4, high=0.0),
-):  # fmt: skip
+    u,
+    n,
+    *,
+    X_nn=Parameter(4e-8, low=0.0, high=1e-6),
+    X_un=Parameter(-5e-6, low=-1e-4, high=0.0),
+):
     """X = (X_nn n + X_un u) n with the shaft ahead: thrust as the shaft turns.
 
     Beside a thrust that knows one shaft speed, as propeller_unrecorded, or instead of it; what

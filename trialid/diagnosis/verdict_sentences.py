@@ -1,0 +1,127 @@
+"""What a verdict says: its sentence in words and figures."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.search.carried import FALL
+from trialid.diagnosis.search.completeness import Completeness
+from trialid.diagnosis.search.refit import AS_SLOW, Refit
+from trialid.diagnosis.search.score import Candidate
+from trialid.identification.fit import Fit
+
+
+def outdone_by_a_shape(named: Refit | None, whole: Completeness) -> str:
+    """A force of some simple shape explains far more than any effect."""
+    closest = f"; the closest is {named.candidate.effect.name}" if named else ""
+    share = max(whole.catalogue, 0.0) / whole.any_shape
+    return (
+        "something is missing that the catalogue does not hold: its effects gain "
+        f"{share:.0%} of what a force of a simple shape would{closest}"
+    )
+
+
+def as_slow(fit: Fit, found: Refit) -> str:
+    """A sensor is as late as the ship's own memory would be."""
+    return (
+        f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but beside the effects "
+        f"that were added {AS_SLOW}, which does as much"
+    )
+
+
+def contradiction(fit: Fit, found: Refit) -> str:
+    """With this effect trials held out become worse, or are lost."""
+    lost = found.fit.eps_check is None or not np.isfinite(found.fit.eps_check)
+    how = "are lost" if lost else f"go from {fit.eps_check:.2%} to {found.fit.eps_check:.2%}"
+    return (
+        f"{found.candidate.effect.name} lowers the squared error where it was not fitted by "
+        f"{1.0 - found.carried.ratio:.0%}, but with it the held-out trials {how}: the trials "
+        "contradict each other about it"
+    )
+
+
+def unfinished_lead(fit: Fit, named: Refit, ahead: Refit) -> str:
+    """An effect leaves less although its search never arrived."""
+    name = ahead.candidate.effect.name
+    return (
+        f"with {name} the error falls from {fit.eps_rmsn:.2%} to {ahead.fit.eps_rmsn:.2%} although "
+        f"its search has not arrived, with {named.candidate.effect.name} to "
+        f"{named.fit.eps_rmsn:.2%}: `trialid add PIPELINE {name}` and starts of its own may tell"
+    )
+
+
+def correction(named: Refit, against: str = "") -> str:
+    """It mends the shapes of the effects that were added."""
+    return (
+        f"{named.candidate.effect.name} would take another {1.0 - named.carried.ratio:.1%} off the "
+        f"squared error where it was not fitted{against}: beside the effects that were added this "
+        "is a correction of their shape, and has no name"
+    )
+
+
+def explains_little(named: Refit, share: float, parts: Split) -> str:
+    """The best effect explains next to nothing of what is not noise."""
+    return (
+        f"something is missing that the catalogue does not hold: its best effect, "
+        f"{named.candidate.effect.name}, explains {share:.0%} of what is not noise ({parts.method})"
+    )
+
+
+def no_split(parts: Split) -> str:
+    """Noise and model error cannot be told apart."""
+    return (
+        "no effect stands out, but noise and model error cannot be separated on this record: "
+        + parts.why
+    )
+
+
+def one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
+    """Something is missing by the blocks alone, and effects unlike each other mend it."""
+    freed = " freed" if named.candidate.effect.held is not None else ""
+    return (
+        f"something is missing, but this record cannot tell what: with "
+        f"{named.candidate.effect.name}{freed} {falls_by(fit, named.fit)}, and as well it may be "
+        f"{', '.join(others)}; against the noise none stands out "
+        f"(p = {named.candidate.p_value:.2g} over the catalogue)"
+    )
+
+
+def subject(fit: Fit, named: Refit) -> str:
+    """What is named: what the model lacks or has in its place, or a coefficient held wrong."""
+    name, held = named.candidate.effect.name, named.candidate.effect.held
+    if placed := fit.model.displaced_by(named.candidate.effect):
+        return f"{name} belongs in the place of {', '.join(placed)}: with it"
+    if held is None:
+        return f"{name} is missing: with it"
+    return f"{name} is held at {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
+
+
+def falls_by(before: Fit, after: Fit) -> str:
+    """How the error falls: of all outputs, or of the one that shows it where others hide it."""
+    whole = _from_to(before.eps_rmsn, after.eps_rmsn, before.eps_check, after.eps_check)
+    if (after.eps_rmsn / before.eps_rmsn) ** 2 < FALL:
+        return f"the error falls {whole}"
+    old, new = before.eps_by_output, after.eps_by_output
+    name = min(old, key=lambda output: new[output] / old[output])
+    held = (fit.eps_check_by_output.get(name) for fit in (before, after))
+    return (
+        f"the error of {name} falls {_from_to(old[name], new[name], *held)}; of all outputs {whole}"
+    )
+
+
+def _from_to(old: float, new: float, held: float | None, after: float | None) -> str:
+    said = f"from {old:.2%} to {new:.2%}"
+    both = held is not None and after is not None
+    return f"{said}, on held-out trials from {held:.2%} to {after:.2%}" if both else said
+
+
+def significant_and_small(shown: Sequence[Candidate]) -> str:
+    """What is significant although nobody would notice it."""
+    if not shown:
+        return ""
+    first = min(shown, key=lambda c: c.price)
+    return (
+        f"; {first.effect.name} is significant and small (p = {first.p_value:.2g}): where it was "
+        f"not fitted it changes the squared error by {first.carried.ratio - 1.0:+.1%}"
+    )
