@@ -28,6 +28,7 @@ from trialid.workflow.first_pipeline.choice import (
     rate_signal,
     through_water,
 )
+from trialid.workflow.first_pipeline.sway import with_sway
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
@@ -64,7 +65,7 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     live = {name: live_sources(survey, name) for name in SIGNALS}
     steered = any(live[name] for name in RUDDERS)
     if steered or not live.get("r") or len(drives_of(survey)) != 2:
-        return choose_signals(survey, speed)
+        return with_sway(choose_signals(survey, speed), live)
     return _choose_boat(survey, live, speed)
 
 
@@ -82,7 +83,8 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     if known is None and speed.source.angle == "speed":
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"
-    return Chosen(survey, survey.path, (*drives, rate, speed), known, told)
+    signals = (*drives, rate, speed)
+    return Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
 
 
 def _drive_signals(survey: Inspection, rate: Signal) -> list[Signal]:

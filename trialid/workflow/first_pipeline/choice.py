@@ -47,15 +47,19 @@ class Signal:
         return OPEN in (self.unit, self.positive)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Chosen:
-    """One trial: its log and signals, and its speed [m/s] with the words for where it is from."""
+    """One trial: its log and signals, and its speed [m/s] with the words for where it is from.
+
+    `beside` are signals that the log holds and that are left to the user, each with why.
+    """
 
     survey: Inspection
     path: Path
     signals: tuple[Signal, ...]
     speed: float | None
     speed_words: str
+    beside: tuple[tuple[Signal, str], ...] = ()
 
     @property
     def quantities(self) -> frozenset[str]:
@@ -87,14 +91,16 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
         )
     r = rate_signal(live) if live["r"] else None
     signals = [rudder_signal(rudder, live, r)]
-    signals += [r] if r else [_plain("psi", live, "no yaw rate is logged")]
-    signals += [_plain("phi", live, "")] if live["phi"] else []
+    signals += [r] if r else [plain_signal("psi", live, "no yaw rate is logged")]
+    signals += [plain_signal("phi", live, "")] if live["phi"] else []
     known, words = approach_speed(survey, live, speed)
     if live["u"]:
         signals.append(through_water(live, speed))
     elif speed is None and (other := other_speed(survey)) is not None:
         signals.append(other)
-    return Chosen(survey, survey.path, tuple(signals), known, words)
+    return Chosen(
+        survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words
+    )
 
 
 def _what_then(survey: Inspection) -> str:
@@ -116,7 +122,8 @@ def live_sources(survey: Inspection, quantity: str) -> tuple[ChannelInspection, 
     return tuple(c for c in survey.sources(quantity) if not c.constant and c.missing < 0.5)
 
 
-def _plain(quantity: str, live: Live, why: str) -> Signal:
+def plain_signal(quantity: str, live: Live, why: str) -> Signal:
+    """The first source of a quantity as a signal, its unit as stated, or as it must be."""
     source, *others = live[quantity]
     unit, doubt = _unit(source, quantity)
     words = ", ".join(word for word in (source.guess.words if source.guess else "", why) if word)
@@ -125,7 +132,7 @@ def _plain(quantity: str, live: Live, why: str) -> Signal:
 
 def rate_signal(live: Live) -> Signal:
     """The yaw rate; a heading settles its side and, where the log states none, its unit."""
-    plain = _plain("r", live, "")
+    plain = plain_signal("r", live, "")
     heading = next((h for h in live["psi"] if not h.constant), None)
     found = slope_agreement(plain.source, heading) if heading else 0.0
     unit, words = plain.unit, plain.why
@@ -142,7 +149,7 @@ def rate_signal(live: Live) -> Signal:
 
 def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     """The rudder or its order, its side measured where the motion tells it."""
-    plain = _plain(name, live, "")
+    plain = plain_signal(name, live, "")
     witness = rate.source if rate else live["psi"][0]
     towards = (rate.positive or "starboard") if rate else None
     found = side(plain.source, witness, towards)
@@ -167,7 +174,7 @@ def _with_side(plain: Signal, positive: str, words: str) -> Signal:
 
 def through_water(live: Live, speed: float | None) -> Signal:
     """The speed through the water; where the log states no unit, the user's speed settles it."""
-    plain = _plain("u", live, "")
+    plain = plain_signal("u", live, "")
     if plain.unit != OPEN or speed is None:
         return plain
     middle = float(np.median(plain.source.sketch.y))

@@ -29,6 +29,8 @@ MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
 
 PERIODS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
+SWAY: Final = ("Yv", "Ydelta")
+"""What a record of sway tells of it; most of Yr goes with the centrifugal force, which is known."""
 ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
 """All of the roll: a rudder's heeling moment held at another ship's would drag GM along."""
 
@@ -76,6 +78,9 @@ def _trial(path: Path, name: str, trial: Chosen, *, checks: bool) -> Iterator[st
         yield from _mean(signal)
         if len(signal.others) > MOST_OTHERS:
             yield f"# and {len(signal.others) - MOST_OTHERS} more sources: `trialid inspect`"
+    for signal, why in trial.beside:
+        yield f"# left to you: {signal.quantity}; {comment(why)}"
+        yield f"# {signal.quantity} = {{ {_source(signal, signal.source)} }}"
     yield from _track(trial.survey.channels.values())
 
 
@@ -183,7 +188,7 @@ def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
         yield from boat_model(trials, ship)
         return
     several = bool(known & rudder_signals(ship.actuators))
-    outputs = ["r" if "r" in known else "psi", *(["phi"] if "phi" in known else [])]
+    outputs = ["r" if "r" in known else "psi", *(n for n in ("v", "phi") if n in known)]
     rolls, order_only = "phi" in known, not several and "delta" not in known
     states = ["v", *(["p"] if rolls else []), "r", *(["phi"] if rolls else [])]
     states += ["psi"] if "psi" in outputs else []
@@ -200,11 +205,14 @@ def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     yield f"effects = {_list(effects)}  # `trialid effects` lists what there is"
     if order_only:
         yield "values = { T_delta = 1.0 }  # s, typical; put it into free once the rest fits"
-    free = ["Nv", "Nr", "Ndelta", *(ROLL if rolls else [])]
+    free = ["Nv", "Nr", "Ndelta", *(SWAY if "v" in known else []), *(ROLL if rolls else [])]
     yield ""
     yield "[identify]"
-    yield "# Masses and the sway coefficients stay as the ship file has them: the yaw alone does"
-    yield "# not tell them apart. Free them where the speed v is recorded."
+    if "v" in known:
+        yield "# Masses stay as the ship file has them: motions tell forces over masses alone."
+    else:
+        yield "# Masses and the sway coefficients stay as the ship file has them: the yaw alone"
+        yield "# does not tell them apart. Free them where the speed v is recorded."
     yield f"free = {_list(free)}"
     if any(name in ship.uncertainty for name in free):
         yield 'priors = "ship"  # held about her file\'s numbers, as far as it says they scatter'
