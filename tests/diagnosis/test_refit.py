@@ -13,6 +13,7 @@ from trialid.diagnosis.search.refit import (
     SLIGHT,
     Refit,
     best_of,
+    likeliest_refit,
     objection,
     worse_held_out,
 )
@@ -103,16 +104,49 @@ def test_beside_effects_that_were_added_a_lag_gives_way_to_what_is_of_the_ship_a
     assert best_of([force, better], 0.05, grown=True) is better
 
 
+def lag_of(late, after):
+    """A sensor so late [s], on a model of 3 m at 0.6 m/s."""
+    old, new = refit("lag", BEFORE, after)
+    new.candidate.effect.parameters = {"T_r": SimpleNamespace(unit="s")}
+    ship = SimpleNamespace(particulars={"L": 3.0, "g": 9.81, "U0": 0.6})
+    new.fit.model = SimpleNamespace(ship=ship, value=lambda name: {"T_r": late}[name])
+    new.fit.problem.trials = (SimpleNamespace(signals={}),)
+    return old, new
+
+
+@pytest.mark.parametrize(("late", "named"), [(0.3, "lag"), (0.7, "force"), (-5.0, "force")])
+def test_a_sensor_as_slow_as_the_ship_gives_way_to_what_of_her_does_as_much(late, named):
+    """The lag leaves less in all, and more in half of the blocks."""
+    old, lag = lag_of(late, ALIKE)
+    force = refit("force", BEFORE, LESS)[1]
+    force.candidate.effect.parameters = {}
+    assert likeliest_refit(old, [lag, force], 0.05).candidate.effect.name == named
+    assert likeliest_refit(old, [lag], 0.05) is lag
+    weak = refit("force", BEFORE, tuple(0.8 * x for x in BEFORE))[1]
+    weak.candidate.effect.parameters = {}
+    assert likeliest_refit(old, [lag, weak], 0.05) is lag  # it does less
+
+
+def test_nor_is_it_named_where_held_out_trials_deny_what_of_the_ship_does_as_much():
+    old, lag = lag_of(0.7, ALIKE)
+    denied = refit("force", BEFORE, LESS, check=(0.2, 0.21))[1]
+    denied.candidate.effect.parameters = {}
+    assert likeliest_refit(old, [lag, denied], 0.05) is None
+    lost = refit("force", BEFORE, LESS, converged=False)[1]
+    lost.candidate.effect.parameters = {}
+    assert likeliest_refit(old, [lag, lost], 0.05) is lag
+    chance = refit("force", BEFORE, LESS)[1]
+    chance.candidate.effect.parameters = {}
+    chance.candidate.shown = lambda level: False
+    assert likeliest_refit(old, [lag, chance], 0.05) is lag
+
+
 @pytest.mark.parametrize(
     ("late", "words"), [(0.3, ""), (-0.3, ""), (0.7, AS_SLOW), (-5.0, AS_SLOW)]
 )
 def test_in_a_grown_model_a_sensor_as_slow_as_the_ship_is_not_told_from_her_memory(late, words):
     """A model of 3 m at 0.6 m/s: a tenth of her own time is half a second."""
-    old, new = refit("lag", BEFORE, LESS)
-    new.candidate.effect.parameters = {"T_r": SimpleNamespace(unit="s")}
-    ship = SimpleNamespace(particulars={"L": 3.0, "g": 9.81, "U0": 0.6})
-    new.fit.model = SimpleNamespace(ship=ship, value=lambda name: {"T_r": late}[name])
-    new.fit.problem.trials = (SimpleNamespace(signals={}),)
+    old, new = lag_of(late, LESS)
     assert objection(old, new, 0.05) == ""
     assert objection(old, new, 0.05, grown=True) == words
     new.candidate.effect.forms = (Force,)  # what is late in the ship is the ship's

@@ -14,7 +14,7 @@ from typing import Final
 from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.carry_over import levels, own_errors
-from trialid.diagnosis.search.refit import Refit, best_of, objection, worse_held_out
+from trialid.diagnosis.search.refit import Refit, likeliest_refit, objection, worse_held_out
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
@@ -80,7 +80,7 @@ class _Path:
         fit = run.findings.before.fit
         able = [r for r in run.findings.refits if r.candidate.effect.name not in self.gone]
         grown = bool(self.own)
-        return best_of([r for r in able if not objection(fit, r, level, grown)], level, grown)
+        return likeliest_refit(fit, able, level, grown)
 
     def end(self, run: Run) -> str:
         """Why nothing more is to be added, empty where something is."""
