@@ -88,6 +88,17 @@ def test_masses_and_what_is_sought_are_no_candidates(run) -> None:
     assert all(name in fit.model.parameters for name in found)
 
 
+def test_a_coefficient_of_the_ships_file_keeps_its_sign() -> None:
+    effects = (ti.CATALOGUE["linear_hull"], ti.CATALOGUE["rudder_offset"])
+    model = ShipModel(SHIP, STATES, effects).with_values({"delta_0": 0.01})
+    freed = {n: free_coefficient(model, n).parameters[n] for n in ("Yv", "Nr", "Kv", "delta_0")}
+    assert [SHIP.coefficients[n] > 0.0 for n in ("Yv", "Nr", "Kv")] == [False, False, True]
+    assert (freed["Yv"].low, freed["Yv"].high) == (-math.inf, 0.0)
+    assert freed["Nr"].high == 0.0
+    assert (freed["Kv"].low, freed["Kv"].high) == (0.0, math.inf)
+    assert freed["delta_0"].low < 0.0 < freed["delta_0"].high  # no file states it
+
+
 def test_it_begins_where_it_is_held_and_keeps_the_effects_own_range() -> None:
     model = ShipModel(SHIP, STATES, (ti.CATALOGUE["linear_roll"],))
     effect = free_coefficient(model, "Kp")

@@ -35,7 +35,7 @@ def refit(
 ):
     """A refit as far as its errors go, and the fit before it."""
     candidate = SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters=("a",), forms=FORMS[name == "lag"]),
+        effect=SimpleNamespace(name=name, parameters=("a",), forms=FORMS[name == "lag"], held=None),
         shown=lambda level: level > 0.0,
         carried=SimpleNamespace(seen=seen),
         p_value=p_value,
@@ -81,6 +81,16 @@ def test_what_speaks_against_a_refit(changes, words):
     turned_old, turned = refit("a", LESS, BEFORE)  # what it does not carry over
     assert objection(turned_old, turned, 0.05) == "the error hardly falls"
     assert objection(old, new, 0.0).startswith("chance")
+
+
+@pytest.mark.parametrize(("found", "named"), [(-0.004, True), (-0.5, True), (0.003, False)])
+def test_a_coefficient_that_turns_round_when_it_is_freed_has_no_name(found, named):
+    old, new = refit("Yv", BEFORE, LESS)
+    new.candidate.effect.held = -0.02
+    new.candidate.effect.parameters = {"Yv": SimpleNamespace(low=-np.inf, high=0.0, unit="1")}
+    new.fit.estimates = {"Yv": found}
+    assert (objection(old, new, 0.05) == "") is named
+    assert (likeliest_refit(old, [new], 0.05) is new) is named
 
 
 def test_the_best_leaves_least_and_what_is_hardly_seen_gives_way_to_its_equal():

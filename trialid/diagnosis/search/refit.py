@@ -174,7 +174,7 @@ def _gives_way(refit: Refit, grown: bool) -> bool:
 
 def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
-    if not refit.candidate.shown(level):
+    if not refit.candidate.shown(level) or _turns_round(refit):
         return "chance would do it, or no ship has such a value"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
         return NOT_ARRIVED
@@ -185,6 +185,14 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     if grown and not shown_by_held_out(fit, refit.fit):
         return SLIGHT
     return AS_SLOW if grown and _slow(refit) else ""
+
+
+def _turns_round(refit: Refit) -> bool:
+    """Whether a coefficient that the model held leaves the range in which it may be named."""
+    held = refit.candidate.effect
+    return held.held is not None and not all(
+        p.low <= refit.fit.estimates[n] <= p.high for n, p in held.parameters.items()
+    )
 
 
 def _slow(refit: Refit) -> bool:
