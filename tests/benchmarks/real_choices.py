@@ -3,7 +3,7 @@
     python tests/benchmarks/real_choices.py [--only "Esso Osaka"] [--jobs 2] [--write]
 
 Esso Osaka in measured wind and KVLCC2 in a basin, each in all 21 choices of the two, and KVLCC2
-from other bases: the first name, what stays in the end, the error of the trials held out from the
+from the pipeline that `trialid start` writes and from other bases: the first name, what stays in the end, the error of the trials held out from the
 first stage to the last. Results stand in `results/real_choices.md` with `--write`, each table with
 its commit; those not asked for stay. Exit status 1 where a held-out error rises.
 """
@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "real_records"))
 sys.path.insert(0, str(Path(__file__).parents[2] / ".ci"))
 sys.path.insert(0, str(Path(__file__).parent / "fleets"))
 from at_commit import commit_of
-from basin import BASES, held_in_basin, in_basin
+from basin import BASES, begun_in_basin, held_as_begun, held_in_basin, in_basin
 from pond import WIND, held_on_pond, on_pond
 from real_record import of_a_clock, stages
 from spread import add_options, spread
@@ -33,6 +33,7 @@ from trialid.threads import one_thread
 RESULTS: Final = Path(__file__).parent / "results" / "real_choices.md"
 POND: Final = "Esso Osaka, two of seven held out"
 BASIN: Final = "KVLCC2, two of seven held out"
+BEGUN: Final = "KVLCC2 as `trialid start` begins it, two of seven held out"
 FROM: Final = "KVLCC2, another base"
 
 
@@ -83,11 +84,13 @@ def choices(folder: Path, only: str) -> list[tuple[str, str, Path]]:
     """The pipelines of all kinds whose name begins so, written below the folder."""
     (pond := folder / "pond").mkdir()
     (basin := folder / "basin").mkdir()
-    on, at = on_pond(pond), in_basin(basin)
+    (begun := folder / "begun").mkdir()
+    on, at, by = on_pond(pond), in_basin(basin), begun_in_basin(begun)
     held = ("Z_10_10_S", "Z_20_10_S")
     every = [
         *((POND, " ".join(c), held_on_pond(pond, c)) for c in on),
         *((BASIN, " ".join(c), held_in_basin(basin, c)) for c in at),
+        *((BEGUN, " ".join(c), held_as_begun(begun, c)) for c in by),
         *((FROM, name, held_in_basin(basin, held, *base)) for name, base in BASES.items()),
     ]
     return [one for one in every if one[0].startswith(only)]

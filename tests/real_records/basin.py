@@ -5,6 +5,7 @@ columns 5 and 6 are not u and v of the ship but the speed along and across the t
 dx0/dt and dy0/dt): the converter turns them by the heading.
 """
 
+import re
 import shutil
 from itertools import combinations
 from pathlib import Path
@@ -13,9 +14,13 @@ import numpy as np
 from real_record import DATA, HERE
 
 from trialid import ingest
+from trialid.inspection import inspect_log
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import starter
 
 RECORDS = DATA / "kvlcc2_hsva_zigzag"
 PIPELINE = "kvlcc2_zigzag.toml"
+BEGUN = "begun.toml"
 TEMPLATE = HERE / "kvlcc2_hsva.template.toml"
 
 BASES = {
@@ -64,5 +69,32 @@ def held_in_basin(
         assert old in text
         text = text.replace(old, old[:-1] + "".join(f', "{n}"' for n in more) + "]")
     path = basin / f"{'-'.join(held)}-{len(effects)}-{len(text)}.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def begun_in_basin(folder: Path) -> list[tuple[str, ...]]:
+    """Write the same records with their units, and the pipeline that a newcomer begins with."""
+    ship = Path(shutil.copy(HERE / "kvlcc2_hsva.toml", folder))
+    for record in RECORDS.glob("*.dat"):
+        c = columns(record)
+        table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
+        name = record.stem.removeprefix("HSVA_CPMC_KVLCC2_")
+        heads = "t [s],u [m/s],v [m/s],yaw rate [deg/s],rudder angle [deg]"
+        np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=heads, comments="")
+    logs = sorted(folder.glob("Z_*.csv"))
+    made = starter([inspect_log(log) for log in logs], folder / BEGUN, ship, Given())
+    for path, text in made.files.items():
+        path.write_text(text, encoding="utf-8")
+    return list(combinations([log.stem for log in logs], 2))
+
+
+def held_as_begun(folder: Path, held: tuple[str, ...]) -> Path:
+    """That pipeline with two trials held out."""
+    text = re.sub(r'use = "check".*\n', "", (folder / BEGUN).read_text(encoding="utf-8"))
+    for log in held:
+        assert f'logs = ["{log}.csv"]' in text
+        text = text.replace(f'logs = ["{log}.csv"]', f'use = "check"\nlogs = ["{log}.csv"]')
+    path = folder / f"{'-'.join(held)}.toml"
     path.write_text(text, encoding="utf-8")
     return path
