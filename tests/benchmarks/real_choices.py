@@ -2,10 +2,11 @@
 
     python tests/benchmarks/real_choices.py [--only "Esso Osaka"] [--jobs 2] [--write]
 
-Esso Osaka in measured wind and KVLCC2 in a basin, each in all 21 choices of the two, and KVLCC2
-from the pipeline that `trialid start` writes and from other bases: the first name, what stays in the end, the error of the trials held out from the
-first stage to the last. Results stand in `results/real_choices.md` with `--write`, each table with
-its commit; those not asked for stay. Exit status 1 where a held-out error rises.
+Esso Osaka in measured wind and KVLCC2 in a basin, each in all 21 choices of the two, KVLCC2 also
+from the pipeline that `trialid start` writes and from other bases: the first name, what stays in
+the end, the error of the trials held out from the first stage to the last. Results stand in
+`results/real_choices.md` with `--write`, each table with its commit; those not asked for stay. Exit
+status 1 where a held-out error rises.
 """
 
 import argparse
