@@ -1,5 +1,6 @@
 """A sway speed in the logs: an output where it goes outwards in turns, else left to the user."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -74,6 +75,36 @@ def test_a_sway_of_which_that_does_not_show_is_left_to_the_user(
     found = pipeline_file.load(tmp_path / "p.toml")
     assert found.identify.outputs == ("r",)
     assert not {"Yv", "Ydelta"} & {*found.identify.free}
+
+
+def test_a_sway_without_a_unit_is_left_to_the_user(tmp_path: Path) -> None:
+    """Nothing else is asked for by the pipeline, which runs as it is."""
+    begun(tmp_path)
+    log = tmp_path / "log.csv"
+    log.write_text(log.read_text(encoding="utf-8").replace("sway speed [m/s]", "sway speed"))
+    made = starter([inspect_log(log)], tmp_path / "q.toml", None, Given(length=100.0), 6.0)
+    assert not made.to_fill
+    assert "# left to you: v; the log states no unit" in made.files[tmp_path / "q.toml"]
+
+
+def test_shaft_and_wind_stand_there_commented_out(tmp_path: Path) -> None:
+    begun(tmp_path)
+    log, more = tmp_path / "log.csv", np.sin(0.1 * T)
+    columns = ("n [rpm]", "apparent wind speed [m/s]", "apparent wind angle [deg]")
+    rows = log.read_text(encoding="utf-8").splitlines()
+    given = [f"{60 + x:.4g},{8 + x:.4g},{40 + 5 * x:.4g}" for x in more]
+    wider = [f"{row},{end}" for row, end in zip(rows, (",".join(columns), *given), strict=True)]
+    log.write_text("\n".join(wider), encoding="utf-8")
+    made = starter([inspect_log(log)], tmp_path / "q.toml", None, Given(length=100.0), 6.0)
+    text = made.files[tmp_path / "q.toml"]
+    assert '# n = { channel = "n", unit = "rpm" }' in text
+    assert '# V_aw = { channel = "apparent wind speed", unit = "m/s" }' in text
+    assert "# left to you: gamma_aw; where it comes from" in text
+    for path, words in made.files.items():
+        taken = re.sub(r"(?m)^# (n|V_aw|gamma_aw) =", r"\1 =", words)
+        path.write_text(taken, encoding="utf-8")
+    signals = pipeline_file.load(tmp_path / "q.toml").trials[0].signals
+    assert {"n", "V_aw", "gamma_aw"} <= {*signals}
 
 
 def test_a_log_without_a_sway_says_nothing_of_it(tmp_path: Path) -> None:

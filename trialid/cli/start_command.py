@@ -82,6 +82,9 @@ def _told(begun: "Starter") -> Iterator[str]:
     yield f"{len(names)} trial{'s' * (len(names) > 1)}: {_few(names)}{held}."
     for signal in begun.trials[0].signals:
         yield f"{signal.quantity}: {signal.source.key}, {signal.why}."
+    if beside := begun.trials[0].beside:
+        left = ", ".join(f"{signal.quantity} ({signal.source.key})" for signal, _ in beside)
+        yield f"In the log too, commented out in the pipeline with why: {left}."
     yield f"Written, each choice with its reason: {' and '.join(map(str, begun.files))}."
     for words in begun.to_fill:
         yield f"To fill in: {words}"

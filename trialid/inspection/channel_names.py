@@ -30,8 +30,10 @@ PHRASES: Final = {
     "v": "sway speed, sway velocity",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
     "drehzahl, wellendrehzahl, propellerdrehzahl",
-    "V_aw": "aws, apparent wind speed, wind speed apparent",
-    "gamma_aw": "awa, apparent wind angle, wind angle apparent",
+    "V_aw": "aws, apparent wind speed, wind speed apparent, relative wind speed, "
+    "wind speed relative",
+    "gamma_aw": "awa, apparent wind angle, wind angle apparent, relative wind angle, "
+    "relative wind direction, wind angle relative, wind direction relative",
     "h": "depth, water depth, depth below keel, depth below transducer",
 }
 """What recorders call a quantity."""

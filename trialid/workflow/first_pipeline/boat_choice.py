@@ -28,7 +28,7 @@ from trialid.workflow.first_pipeline.choice import (
     rate_signal,
     through_water,
 )
-from trialid.workflow.first_pipeline.sway import with_sway
+from trialid.workflow.first_pipeline.further_signals import with_further
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
@@ -65,7 +65,7 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     live = {name: live_sources(survey, name) for name in SIGNALS}
     steered = any(live[name] for name in RUDDERS)
     if steered or not live.get("r") or len(drives_of(survey)) != 2:
-        return with_sway(choose_signals(survey, speed), live)
+        return with_further(choose_signals(survey, speed), live)
     return _choose_boat(survey, live, speed)
 
 

@@ -1,0 +1,77 @@
+"""What else a log holds: a sway speed that goes outwards in turns; shaft and wind for the user."""
+
+import dataclasses
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+import numpy as np
+
+from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.sketch import on_one_clock
+from trialid.workflow.first_pipeline.choice import OPEN, Chosen, Live, Signal, plain_signal
+
+LEFT: Final[Mapping[str, str]] = {
+    "n": "with it the run seeks what the screw does",
+    "n_p": "with both the run seeks what two screws do",
+    "n_s": "with both the run seeks what two screws do",
+    "V_aw": "with both the run seeks what the wind does",
+    "gamma_aw": "where it comes from: 0 from ahead, positive from starboard",
+}
+"""Inputs that no first model asks for, and what for."""
+
+OUTWARDS: Final = 0.5
+"""Correlation with the rate of turn from which a sway is taken to go outwards, or inwards. Between
+them a model of 3 m had -0.77 to -0.94 in twelve trials of eleven minutes and -0.44 under a rudder
+moved at random; with half of it that one is told too, with twice none is."""
+
+
+def with_further(trial: Chosen, live: Live) -> Chosen:
+    """The trial with what else its log holds: a sway speed, inputs that are left to the user."""
+    found = dataclasses.replace(trial, beside=tuple(_left(live)))
+    return _with_sway(found, plain_signal("v", live, "")) if live.get("v") else found
+
+
+def _left(live: Live) -> Iterator[tuple[Signal, str]]:
+    for name, why in LEFT.items():
+        if live.get(name):
+            yield plain_signal(name, live, ""), why
+
+
+def _with_sway(trial: Chosen, plain: Signal) -> Chosen:
+    """The trial with her sway speed as a signal, or left to the user with why.
+
+    A hull goes outwards in her turns. Inwards it may be positive to port, or that of her bow, and
+    nobody can tell.
+    """
+    sway = dataclasses.replace(plain, positive=_to_port(plain) or None)
+    rate = next((one for one in trial.signals if one.quantity == "r"), None)
+    found = _correlation(rate.source, sway.source) if rate else 0.0
+    found = -found if rate and bool(sway.positive) != bool(_to_port(rate)) else found
+    told = f"correlation with the rate of turn {found:+.2f}"
+    if sway.unit == OPEN:
+        why = "the log states no unit"
+    elif found <= -OUTWARDS:
+        sure = dataclasses.replace(sway, why=f"{sway.why}; outwards in turns ({told})")
+        return dataclasses.replace(trial, signals=(*trial.signals, sure))
+    elif found >= OUTWARDS:
+        why = f"it goes inwards in turns ({told}): positive to port, or measured at her bow?"
+    else:
+        why = f"whether it goes outwards in turns does not show ({told})"
+    return dataclasses.replace(trial, beside=(*trial.beside, (sway, why)))
+
+
+def _to_port(signal: Signal) -> str:
+    """`port` where it is positive to port, as chosen or by its format; else nothing."""
+    by_format = signal.source.guess.positive if signal.source.guess else None
+    return "port" if "port" in (signal.positive, by_format) else ""
+
+
+def _correlation(rate: ChannelInspection, sway: ChannelInspection) -> float:
+    """Of both where both are there; 0 where they have too little in common."""
+    common = on_one_clock(rate.sketch, sway.sketch)
+    if common is None:
+        return 0.0
+    _, (r, v), whole = common
+    if whole.sum() < 3 or not (np.ptp(r[whole]) and np.ptp(v[whole])):
+        return 0.0
+    return float(np.corrcoef(r[whole], v[whole])[0, 1])
