@@ -51,7 +51,7 @@ def whole(fit):
     return CATALOGUE
 
 
-@pytest.fixture(scope="module", params=[31, 32])
+@pytest.fixture(scope="module", params=[31, pytest.param(32, marks=pytest.mark.study(turn="each"))])
 def found(request):
     rng = np.random.default_rng(request.param)
     orders = {

@@ -58,6 +58,25 @@ def test_a_sway_outwards_is_fitted_with_its_coefficients(tmp_path: Path, rate: f
     assert done.findings.before.fit.eps_by_output["v"] < 0.2
 
 
+@pytest.mark.parametrize(("side", "taken"), [(-1.0, True), (1.0, False)])
+def test_a_rate_that_is_positive_to_port_turns_the_sway_with_it(
+    tmp_path: Path, side: float, *, taken: bool
+) -> None:
+    """The heading tells the rate's side; the sway is positive to starboard, or to port."""
+    begun(tmp_path, rate=-1.0, sway=-side)
+    log, r = tmp_path / "log.csv", turned(0)[:, 1]
+    heading = 40.0 + np.concatenate([[0.0], np.cumsum(0.25 * (r[1:] + r[:-1]))])
+    rows = log.read_text(encoding="utf-8").splitlines()
+    more = ("heading [deg]", *(f"{x:.6g}" for x in heading))
+    wider = [f"{row},{end}" for row, end in zip(rows, more, strict=True)]
+    log.write_text("\n".join(wider), encoding="utf-8")
+    made = starter([inspect_log(log)], tmp_path / "q.toml", None, Given(length=100.0), 6.0)
+    text = made.files[tmp_path / "q.toml"]
+    assert 'unit = "deg/s", positive = "port"' in text
+    assert ("outwards in turns (correlation" in text) is taken
+    assert ('outputs = ["r", "v"]' in text) is taken
+
+
 @pytest.mark.parametrize(
     ("how", "why"),
     [

@@ -54,7 +54,9 @@ def test_a_lag_of_a_sensor_has_no_such_bound():
     assert lows(trials, "lag_r", ("T_r",)) == [0.0]
 
 
-@pytest.mark.parametrize("seed", [12, 13, 16])
+@pytest.mark.parametrize(
+    "seed", [13, *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in (12, 16))]
+)
 def test_the_search_for_a_gear_of_limited_rate_arrives_in_a_sea(seed):
     """Without the bound each ends among kinks, at 0.05 to 0.1 s, or has used up its iterations."""
     trials, settings = ordered(seed, **TRUE), replace(s175q.SETTINGS, free=(*s175q.TEN, *FREE))

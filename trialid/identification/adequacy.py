@@ -254,7 +254,8 @@ def _held_out_unexplained(fit: Fit) -> Inadequate | None:
             return Inadequate(
                 f"held-out trial {score.trial.name!r} is foretold worse than by no model at all: "
                 f"{_listed(kept)} of what moves is left",
-                "compare its signs, units and speed with those of the fitted trials",
+                "compare its signs, units and speed with those of the fitted trials; where they "
+                "agree, fit that trial too: she may move there as in no other",
             )
     return None
 

@@ -45,7 +45,7 @@ def found(truth: ShipModel, seed: int) -> Diagnosis:
     return done
 
 
-@pytest.mark.parametrize("seed", [71, 72])
+@pytest.mark.parametrize("seed", [71, pytest.param(72, marks=pytest.mark.study(turn="each"))])
 def test_it_is_named_where_orders_change_the_shaft(seed: int) -> None:
     done = found(MODEL, seed)
     assert done.verdict.family[0] == "shaft_thrust"
@@ -54,6 +54,6 @@ def test_it_is_named_where_orders_change_the_shaft(seed: int) -> None:
     assert done.after.fit.eps_rmsn < 0.5 * done.before.fit.eps_rmsn
 
 
-@pytest.mark.parametrize("seed", [71, 72])
+@pytest.mark.parametrize("seed", [71, pytest.param(72, marks=pytest.mark.study(turn="each"))])
 def test_it_is_not_where_the_thrust_knows_no_orders(seed: int) -> None:
     assert found(UNRECORDED, seed).verdict.kind == "nothing missing"

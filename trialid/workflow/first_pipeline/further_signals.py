@@ -43,10 +43,11 @@ def _with_sway(trial: Chosen, plain: Signal) -> Chosen:
     A hull goes outwards in her turns. Inwards it may be positive to port, or that of her bow, and
     nobody can tell.
     """
-    sway = dataclasses.replace(plain, positive=_to_port(plain) or None)
+    by_format = plain.source.guess.positive if plain.source.guess else None
+    sway = dataclasses.replace(plain, positive="port" if by_format == "port" else None)
     rate = next((one for one in trial.signals if one.quantity == "r"), None)
     found = _correlation(rate.source, sway.source) if rate else 0.0
-    found = -found if rate and bool(sway.positive) != bool(_to_port(rate)) else found
+    found = -found if rate and (rate.positive == "port") != (by_format == "port") else found
     told = f"correlation with the rate of turn {found:+.2f}"
     if sway.unit == OPEN:
         why = "the log states no unit"
@@ -58,12 +59,6 @@ def _with_sway(trial: Chosen, plain: Signal) -> Chosen:
     else:
         why = f"whether it goes outwards in turns does not show ({told})"
     return dataclasses.replace(trial, beside=(*trial.beside, (sway, why)))
-
-
-def _to_port(signal: Signal) -> str:
-    """`port` where it is positive to port, as chosen or by its format; else nothing."""
-    by_format = signal.source.guess.positive if signal.source.guess else None
-    return "port" if "port" in (signal.positive, by_format) else ""
 
 
 def _correlation(rate: ChannelInspection, sway: ChannelInspection) -> float:
