@@ -149,6 +149,11 @@ def test_nor_is_it_named_where_held_out_trials_deny_what_of_the_ship_does_as_muc
     chance.candidate.effect.parameters = {}
     chance.candidate.shown = lambda level: False
     assert likeliest_refit(old, [lag, chance], 0.05) is lag
+    turned = refit("Yv", BEFORE, LESS)[1]
+    turned.candidate.effect.held = -0.02
+    turned.candidate.effect.parameters = {"Yv": SimpleNamespace(low=-np.inf, high=0.0, unit="1")}
+    turned.fit.estimates = {"Yv": 0.003}
+    assert likeliest_refit(old, [lag, turned], 0.05) is lag  # what has no name takes none away
 
 
 @pytest.mark.parametrize(

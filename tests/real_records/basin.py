@@ -45,16 +45,21 @@ def in_ship(c):
     return u, v
 
 
-def in_basin(folder: Path) -> list[tuple[str, ...]]:
-    """Write the pipeline of four and three trials, its ship and the records as CSV; the choices."""
-    for name in (PIPELINE, "kvlcc2_hsva.toml"):
-        shutil.copy(HERE / name, folder)
+def _pairs_of_logs(folder: Path, heads: str) -> list[tuple[str, ...]]:
+    """Write each record as CSV under these heads; every choice of two of them."""
     for record in RECORDS.glob("*.dat"):
         c = columns(record)
         table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
         name = record.stem.removeprefix("HSVA_CPMC_KVLCC2_")
-        np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header="t,u,v,r,delta", comments="")
+        np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=heads, comments="")
     return list(combinations(sorted(p.stem for p in folder.glob("Z_*.csv")), 2))
+
+
+def in_basin(folder: Path) -> list[tuple[str, ...]]:
+    """Write the pipeline of four and three trials, its ship and the records as CSV; the choices."""
+    for name in (PIPELINE, "kvlcc2_hsva.toml"):
+        shutil.copy(HERE / name, folder)
+    return _pairs_of_logs(folder, "t,u,v,r,delta")
 
 
 def held_in_basin(
@@ -76,17 +81,12 @@ def held_in_basin(
 def begun_in_basin(folder: Path) -> list[tuple[str, ...]]:
     """Write the same records with their units, and the pipeline that a newcomer begins with."""
     ship = Path(shutil.copy(HERE / "kvlcc2_hsva.toml", folder))
-    for record in RECORDS.glob("*.dat"):
-        c = columns(record)
-        table = np.column_stack([c["t"], *in_ship(c), c["r"], c["delta"]])
-        name = record.stem.removeprefix("HSVA_CPMC_KVLCC2_")
-        heads = "t [s],u [m/s],v [m/s],yaw rate [deg/s],rudder angle [deg]"
-        np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=heads, comments="")
-    logs = sorted(folder.glob("Z_*.csv"))
+    heads = "t [s],u [m/s],v [m/s],yaw rate [deg/s],rudder angle [deg]"
+    choices, logs = _pairs_of_logs(folder, heads), sorted(folder.glob("Z_*.csv"))
     made = starter([inspect_log(log) for log in logs], folder / BEGUN, ship, Given())
     for path, text in made.files.items():
         path.write_text(text, encoding="utf-8")
-    return list(combinations([log.stem for log in logs], 2))
+    return choices
 
 
 def held_as_begun(folder: Path, held: tuple[str, ...]) -> Path:

@@ -134,9 +134,7 @@ def _looks_like_the_ship(fit: Fit, refit: Refit, refits: Sequence[Refit], level:
     """
     return _slow(refit) and any(
         of_the_ship(r.candidate.effect)
-        and r.candidate.shown(level)
-        and r.fit.converged
-        and falls(fit, r)
+        and objection(fit, r, level) in ("", HELD_OUT)
         and as_good(refit.carried.after, r.carried.after)
         for r in refits
     )
@@ -189,9 +187,9 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
 
 def _turns_round(refit: Refit) -> bool:
     """Whether a coefficient that the model held leaves the range in which it may be named."""
-    held = refit.candidate.effect
-    return held.held is not None and not all(
-        p.low <= refit.fit.estimates[n] <= p.high for n, p in held.parameters.items()
+    effect = refit.candidate.effect
+    return effect.held is not None and not all(
+        p.low <= refit.fit.estimates[n] <= p.high for n, p in effect.parameters.items()
     )
 
 
