@@ -143,8 +143,8 @@ def test_what_only_stood_in_for_another_is_dropped_and_not_tried_again(
 
 def test_what_held_out_trials_would_miss_is_not_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     world = {
-        "": (0.10, 0.2), "x": (0.07, 0.16), "a": (0.08, 0.17), "ax": (0.0399, 0.1),
-        "ab": (0.04, 0.11), "abx": (0.0390, 0.09),
+        "": (0.10, 0.2), "x": (0.07, 0.16), "a": (0.08, 0.17), "ax": (0.0405, 0.1),
+        "ab": (0.0392, 0.11), "abx": (0.0390, 0.09),
     }  # fmt: skip
     assert steps(loop(monkeypatch, world)) == ["+x", "+a", "+b"]
 

@@ -1,19 +1,24 @@
 """A hidden effect is named, noise is not; twins stay a family."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.augment import augment, candidates_for
 from trialid.diagnosis.search.completeness import completeness
 from trialid.diagnosis.search.refit import likeliest_refit, refit
 from trialid.diagnosis.search.score import VISIBLE, rank
-from trialid.diagnosis.verdict import decide, replace
+from trialid.diagnosis.unrecorded import name_records
+from trialid.diagnosis.verdict import Verdict, decide, replace
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.maths import sqrt
 from trialid.ship.effect import Force, effect
+from trialid.ship.model import ShipModel
 
 FREE = ("Nv", "Nr", "Ndelta", "Yv", "Kv", "Kr", "Kdelta", "Kp", "GM")
 WITHOUT = MODEL - "yaw_drag_rar"
@@ -123,3 +128,31 @@ def test_an_effect_of_a_speed_record_wants_one_and_its_stand_in_does_not():
         found, why = candidates_for(without_u, replace(trial, signals=signals), CATALOGUE)
         assert able in found
         assert unable in why
+
+
+def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
+    """What is recorded is no want, and a motion is not what is missing."""
+    trial = replace(zigzag(10), signals={n: zigzag(10).signals[n] for n in ("delta", "r")})
+    model = ShipModel(MODEL.ship, ("v", "r"), (CATALOGUE["linear_hull"],))
+    fit = SimpleNamespace(model=model, problem=SimpleNamespace(trials=(trial,)))
+    none = Verdict("not in catalogue", None, (), "something is missing")
+    wind = [CATALOGUE[n] for n in ("apparent_wind", "shallow_water_sway", "heel_yaw")]
+    said = name_records(fit, none, wind).sentence
+    assert said.startswith("something is missing; no record holds V_aw, gamma_aw, h, and no effect")
+    blown = replace(trial, signals={**trial.signals, "V_aw": trial.t, "gamma_aw": trial.t})
+    fit.problem.trials = (blown,)
+    assert "V_aw" not in name_records(fit, none, wind).sentence
+    assert name_records(fit, none, wind[:1]) is none
+    known = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")
+    assert name_records(fit, known, wind) is known
+
+
+@pytest.mark.parametrize(
+    ("unseen", "kind"), [(0.08, "nothing missing"), (0.12, "cannot tell"), (0.6, "cannot tell")]
+)
+def test_nothing_is_missing_only_where_what_would_not_be_seen_is_less_than_the_error(unseen, kind):
+    """An error of 10 %, of which 6 % may be noise: as far as the record says, or nothing at all."""
+    parts = Split("dependence on the input", "", 0.06, 0.08, (0.0, 0.1), (0.0, unseen))
+    found = decide(SimpleNamespace(), (), (), parts, None, 0.05)
+    assert found.kind == kind
+    assert f"{unseen:.1%} would not be seen" in found.sentence

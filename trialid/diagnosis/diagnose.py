@@ -23,6 +23,7 @@ from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate, ranking_of
 from trialid.diagnosis.search.stand_in import Tried, look_beside
 from trialid.diagnosis.trust import accuracy_of
+from trialid.diagnosis.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
 from trialid.diagnosis.where.misfit import Where, where
 from trialid.effects import CATALOGUE
@@ -126,9 +127,7 @@ def diagnose(
     if faults := _whole(fit, ranking, refits, asked, progress):
         return _gross(fit, before, left_out, faults, asked)
     before = _bounded(before, refits, whole)
-    verdict = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
-    verdict = with_motion(fit, verdict, ranking, refits, asked.level)
-    verdict = with_held_out(fit.examined, verdict, lambda: before.accuracy.covariance, asked.level)
+    verdict = _verdict(fit, ranking, refits, before, whole, asked=asked, grown=grown)
     after = _after(verdict, tried, asked, progress)
     wanted = force or verdict.kind == "not in catalogue"
     sought = _force(after.fit if after else fit, asked.level, progress) if wanted else None
@@ -142,6 +141,23 @@ def diagnose(
         after=after,
         force=sought,
     )
+
+
+def _verdict(
+    fit: Fit,
+    ranking: Sequence[Candidate],
+    refits: Sequence[Refit],
+    before: Diagnosed,
+    whole: Completeness | None,
+    *,
+    asked: DiagnoseSettings,
+    grown: bool,
+) -> Verdict:
+    """What is missing, held against a motion left out, trials held out, and what nobody logged."""
+    found = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
+    found = with_motion(fit, found, ranking, refits, asked.level)
+    found = with_held_out(fit.examined, found, lambda: before.accuracy.covariance, asked.level)
+    return name_records(fit, found, asked.candidates.values())
 
 
 def _after(

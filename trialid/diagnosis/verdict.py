@@ -48,7 +48,8 @@ SHARE: Final = 0.12
 0.04 of what it does not hold, and 0.21 or more of what it holds."""
 
 ANYTHING: Final = 0.5
-"""Model error from which on what would not be seen may be anything: half of what moved."""
+"""Model error from which on what would not be seen may be anything: half of what moved. Where the
+whole error is less, so much: noise of which it is not known that there is any hides all of it."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def decide(
     if grown and (slow := _standing_but(AS_SLOW, fit, refits, level)) is not None:
         return Verdict("cannot tell", None, (), as_slow(fit, slow))
     if grown and (slight := _standing_but(SLIGHT, fit, refits, level)) is not None:
-        return Verdict("cannot tell", None, (), correction(slight, f", but {SLIGHT}"))
+        return Verdict("cannot tell", None, (), correction(slight))
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
     return _unnamed(parts, whole, small)
 
@@ -151,8 +152,9 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
             f"the model leaves an error of {low:.1%} to {high:.1%} that is not noise "
             f"({parts.method}), and no effect of the catalogue explains it",
         )  # fmt: skip
+    total = float(np.hypot(parts.noise or 0.0, parts.undermodelling or 0.0))
     return Verdict(
-        "nothing missing" if high < ANYTHING else "cannot tell", None, (),
+        "nothing missing" if high < min(ANYTHING, total) else "cannot tell", None, (),
         f"no effect stands out against the noise; a model error of up to {high:.1%} would not "
         f"be seen ({parts.method})",
     )  # fmt: skip
@@ -187,10 +189,14 @@ def _ahead(fit: Fit, named: Refit, refits: Sequence[Refit], level: float) -> Ref
 
 
 def _explained(fit: Fit, named: Refit, parts: Split) -> float:
-    """Share of what is not noise that goes with an effect; 1 where noise is not known."""
-    if parts.noise is None:
+    """Share of what is not noise that goes with an effect; 1 where nothing is known of the noise.
+
+    At most so much where no more is known of it than what it cannot exceed.
+    """
+    noise = parts.at_most if parts.noise is None else parts.noise
+    if noise is None:
         return 1.0
-    rest = 1.0 - min(parts.noise / fit.eps_rmsn, 1.0) ** 2
+    rest = 1.0 - min(noise / fit.eps_rmsn, 1.0) ** 2
     return fall(fit, named) / rest if rest > 0.0 else 1.0
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.noise.split import INPUT_DRIVEN
 from trialid.diagnosis.search.carried import FALL
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import AS_SLOW, Refit
@@ -51,20 +52,21 @@ def unfinished_lead(fit: Fit, named: Refit, ahead: Refit) -> str:
     )
 
 
-def correction(named: Refit, against: str = "") -> str:
+def correction(named: Refit) -> str:
     """It mends the shapes of the effects that were added."""
     return (
         f"{named.candidate.effect.name} would take another {1.0 - named.carried.ratio:.1%} off the "
-        f"squared error where it was not fitted{against}: beside the effects that were added this "
+        f"squared error where it was not fitted: beside the effects that were added this "
         "is a correction of their shape, and has no name"
     )
 
 
 def explains_little(named: Refit, share: float, parts: Split) -> str:
     """The best effect explains next to nothing of what is not noise."""
+    most, route = ("", parts.method) if parts.available else ("at most ", INPUT_DRIVEN)
     return (
         f"something is missing that the catalogue does not hold: its best effect, "
-        f"{named.candidate.effect.name}, explains {share:.0%} of what is not noise ({parts.method})"
+        f"{named.candidate.effect.name}, explains {most}{share:.0%} of what is not noise ({route})"
     )
 
 

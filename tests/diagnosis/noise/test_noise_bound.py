@@ -21,12 +21,13 @@ def _left_out(monkeypatch):
     monkeypatch.setattr(noise_bound, "own_errors", lambda fit: Errors((fit.outside**2,), ()))
 
 
-def fit(eps, effects=(), converged=True, outside=0.0):
+def fit(eps, effects=(), converged=True, outside=0.0, estimates=("Nr",)):
     """A fit as far as its errors go."""
     made = SimpleNamespace(
         eps_rmsn=eps, eps_by_output=dict.fromkeys(OUTPUTS, eps), converged=converged,
         model=SimpleNamespace(effects=[SimpleNamespace(name=n) for n in effects]),
         residual=np.full(10**6, eps / 1000.0), outside=outside or eps,
+        estimates=dict.fromkeys(estimates, 0.0),
         problem=SimpleNamespace(unknowns=[SimpleNamespace(trial=t) for t in (None, 0, 1)]),
     )  # fmt: skip
     made.examined = made
@@ -109,6 +110,7 @@ def test_routes_are_held_against_each_other(other, whole, contradicts):
         assert f"{QUIET.noise:.2%}" in held.why
         assert f"{other.noise:.2%}" in held.why
         assert other.method in held.why
+        assert held.at_most == (other.noise if other.method == INPUT_DRIVEN else None)
     turned = held_against(other, (other, QUIET), fit(0.10), (), whole)
     unknown = other.method == INPUT_DRIVEN and whole is A_FORCE  # what is missing is no candidate
     assert turned.available is not (contradicts or unknown)
@@ -125,5 +127,9 @@ def test_slopes_of_a_model_that_lacks_something_do_not_say_what_noise_is():
     held = held_against(by_input, (by_input,), fit(0.10, ("a",)), [fit(0.08, ("a", "b"))])
     assert not held.available
     assert "a model that lacks b" in held.why
+    assert held.at_most == by_input.noise  # what does not depend on the input is the most it can be
+    freed = fit(0.08, ("a",), estimates=("Nr", "Ydelta"))
+    held = held_against(by_input, (by_input,), fit(0.10, ("a",)), [freed])
+    assert "a model that lacks Ydelta freed" in held.why
     small = held_against(by_input, (by_input,), fit(0.10, ("a",)), [fit(0.0995, ("a", "b"))])
     assert small.available

@@ -19,7 +19,8 @@ TIGHT: Final = 0.35
 class Split:
     """What the error is made of, by one route; numbers None where the route does not hold.
 
-    `noise` and `undermodelling` are normed as eps_RMSn, their squares add up to its square.
+    `noise` and `undermodelling` are normed as eps_RMSn, their squares add up to its square. Where
+    they are refused, `at_most` may still say what the noise cannot be more than.
     """
 
     method: str
@@ -29,6 +30,7 @@ class Split:
     noise_interval: Interval | None = None
     undermodelling_interval: Interval | None = None
     by_output: Mapping[str, tuple[float, float]] | None = None
+    at_most: float | None = None
 
     @property
     def available(self) -> bool:

@@ -38,16 +38,17 @@ def held_against(
     """
     if not chosen.available:
         return chosen
+    most = next((r.noise for r in routes if r.method == INPUT_DRIVEN), None)
     why = _contradiction(chosen, [r for r in routes if r.available and r is not chosen], whole)
     if why:
-        return Split("not separable", why)
+        return Split("not separable", why, at_most=most)
     able = [f for f in others if f.converged and f.eps_rmsn < fit.eps_rmsn]
     if not able:
         return chosen
     least = min(able, key=lambda f: f.eps_rmsn)
     if chosen.method == INPUT_DRIVEN and (least.eps_rmsn / fit.eps_rmsn) ** 2 < FALL:
         said = f"{_said(chosen)} at most: slopes of a model that lacks {_added(fit, least)}"
-        return Split("not separable", said)
+        return Split("not separable", said, at_most=most)
     return _bounded(chosen, fit, least)
 
 
@@ -90,9 +91,10 @@ def _room(fit: Fit) -> float:
 
 
 def _added(fit: Fit, larger: Fit) -> str:
-    """What a larger model has more, by name."""
-    known = {e.name for e in fit.model.effects}
-    return " and ".join(e.name for e in larger.model.effects if e.name not in known)
+    """What a larger model has more, by name: effects, or else coefficients that were held."""
+    known = {*(e.name for e in fit.model.effects), *fit.estimates}
+    more = [e.name for e in larger.model.effects if e.name not in known]
+    return " and ".join(more or [f"{n} freed" for n in larger.estimates if n not in known])
 
 
 def _rest(total: float, part: float) -> float:

@@ -111,13 +111,9 @@ def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, 
 
 def why_unusable(model: ShipModel, trial: Trial, effect: Effect) -> str:
     """Why this effect has no place in a model of this record, empty where it has one."""
-    known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
-    known |= set(ACCELERATIONS)
-    asked = dict.fromkeys((*signals_of(effect), *filter(None, effect.states.values())))
-    lacking = [s for s in asked if s not in known and not record_for(trial, s)]
-    if lacking:
-        where = "ship file" if set(lacking) <= set(PARTICULARS) else "record"
-        return f"needs {', '.join(dict.fromkeys(lacking))}, which the {where} does not hold"
+    if unknown := missing_signals(model, trial, effect):
+        where = "ship file" if set(unknown) <= set(PARTICULARS) else "record"
+        return f"needs {', '.join(unknown)}, which the {where} does not hold"
     given = {*model.all_states}
     if effect.scanned:  # it is tried in the place of the other
         given -= {s for e in model.effects if takes_place(effect, e) for s in e.states}
@@ -129,6 +125,14 @@ def why_unusable(model: ShipModel, trial: Trial, effect: Effect) -> str:
     if effect.corrects and effect.corrects not in model.parameters:
         return f"corrects {effect.corrects}, which the model does not have"
     return _steers_wrongly(model, trial, effect)
+
+
+def missing_signals(model: ShipModel, trial: Trial, effect: Effect) -> list[str]:
+    """Signals and particulars that an effect is a function of, and this record does not hold."""
+    known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
+    known |= set(ACCELERATIONS)
+    asked = dict.fromkeys((*signals_of(effect), *filter(None, effect.states.values())))
+    return [s for s in asked if s not in known and not record_for(trial, s)]
 
 
 def _steers_wrongly(model: ShipModel, trial: Trial, effect: Effect) -> str:

@@ -7,11 +7,10 @@ in the model cover each other; for their worth they are left out together.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.search.carried import FALL, Carried, Errors, lead_in_errors
+from trialid.diagnosis.search.carried import SHAPE, Carried, Errors
 from trialid.diagnosis.search.carry_over import left_out, levels, own_errors
 from trialid.diagnosis.search.refit import worse_held_out
 from trialid.diagnosis.verdict import NAMED
@@ -20,13 +19,6 @@ from trialid.identification.fit import Fit, identify
 from trialid.identification.output_error import stretches
 from trialid.ship.effect import Effect
 from trialid.trial import Trial
-
-DOUBTED: Final = 1.05
-"""Ratio of squared errors that leaving an effect out must cost where the blocks do not agree that
-it costs anything, ..."""
-
-AGREED: Final = 1.0
-"""... which they do from so many standard errors on."""
 
 
 @dataclass(frozen=True)
@@ -55,13 +47,8 @@ class Worth:
 
     @property
     def pays(self) -> bool:
-        """Whether it lowers the error by what an effect must, and by more than chance would."""
-        if self.costs < 1.0 / FALL:
-            return False
-        return (
-            self.costs >= DOUBTED
-            or lead_in_errors(self.carried.after, self.carried.before) >= AGREED
-        )
+        """Whether it is worth as much as an effect must be to join."""
+        return self.carried.worth >= SHAPE
 
 
 def worths(
