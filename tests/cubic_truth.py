@@ -79,6 +79,36 @@ def manoeuvres():
     return made
 
 
+def share_of_rudder(term):
+    """Of what a model of second order with a slipstream leaves of the true rudder's moment.
+
+    `term` is a function of drift angle, turn rate, rudder and heel, without dimension; what of the
+    squares goes with it, in the manoeuvres of `manoeuvres`.
+    """
+    found = [_without_dimension(delta, x) for _, delta, x in manoeuvres().values()]
+    v, r, delta, phi, slowed, moment = np.concatenate(found, axis=1)
+    known = [v, r, delta, v * abs(v), v * abs(r), r * abs(r), delta * slowed]
+
+    def left(columns):
+        A = np.column_stack(columns)
+        return float(np.sum((moment - A @ np.linalg.lstsq(A, moment, rcond=None)[0]) ** 2))
+
+    return 1.0 - left([*known, term(v, r, delta, phi)]) / left(known)
+
+
+def _without_dimension(delta, x):
+    """Drift, turn rate, rudder, heel, slipstream by `rudder_slipstream`, and moment of rudder."""
+    L, rho = (ship().ship.particulars[n] for n in ("L", "rho"))
+    rudder = CATALOGUE["propeller_rudder"]
+    values = {n: ship().value(n) for n in rudder.parameters}
+    speed = np.hypot(x["u"], x["v"])
+    shaft = np.full(len(delta), SHAFT)
+    force = rudder.function(x["u"], x["v"], x["r"], shaft, delta, L=L, rho=rho, **values)
+    slowed = x["u"] * (7.33 - x["u"]) / speed**2
+    moment = force.N / (0.5 * rho * L**3 * speed**2)
+    return np.stack([x["v"] / speed, x["r"] * L / speed, delta, x["phi"], slowed, moment])
+
+
 def white(rng, n):
     """Unit-variance noise without memory."""
     return rng.standard_normal(n)

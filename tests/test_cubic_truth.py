@@ -130,3 +130,19 @@ def test_what_is_believed_is_right_to_half_its_value(done):
     assert {"GM", "Kdelta"} <= {r.name for r in believed}
     for row in believed:
         assert abs(row.value / truth[row.name] - 1.0) < 0.5, row.name
+
+
+@pytest.mark.parametrize(
+    ("term", "low", "high"),
+    [
+        (lambda v, r, delta, phi: delta**3, 0.31, 1.0),  # rudder_cubic
+        (lambda v, r, delta, phi: v**2 * delta, 0.2, 1.0),  # rudder_in_drift
+        (lambda v, r, delta, phi: v * delta**2, 0.0, 0.1),  # drift_with_rudder
+        (lambda v, r, delta, phi: delta * phi**2, 0.0, 0.05),  # rudder_heeled
+    ],
+)
+def test_of_the_rudder_of_the_truth_terms_of_third_order_are_left(term, low, high):
+    """What counts as her own where effects are hidden in her, `growth/other_base.py`."""
+    share = cubic_truth.share_of_rudder(term)
+    print(f"{share:.1%}")
+    assert low < share < high

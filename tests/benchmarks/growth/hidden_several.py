@@ -143,7 +143,7 @@ def one(task: tuple[int, str]) -> Ended:
     hidden = tuple(e.name for e in scenario.effects)
     trials = record(scenario, "white", "mixed", seed)
     if base == "other":
-        model, free, own = other_base.BASE, other_base.FREE, other_base.OWN
+        model, free, own = other_base.BASE, other_base.FREE, other_base.RIGHT
     else:
         model, free, own = guessed(scenario, seed), FREE, frozenset()
     with tempfile.TemporaryDirectory() as folder:

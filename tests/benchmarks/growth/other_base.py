@@ -39,6 +39,13 @@ the ship slows down, so that its part of the moment of drift changes with hers. 
 cubic terms and a slipstream leave of the true rudder's moment in these manoeuvres, v (F - F0) takes
 31 % of the square off. Counted as her own after nine records (4100 to 4108) had been looked at."""
 
+BENT: Final = {"rudder_cubic", "rudder_in_drift"}
+"""What stands for the lift of that rudder as the angle of flow grows, and the drift that makes it:
+of what a model of second order with a slipstream leaves of its moment, delta^3 takes 44 % and
+v^2 delta 27 % of the square, where v delta^2 takes 2 % and delta phi^2 1 % (`share_of_rudder` of
+`tests/cubic_truth.py`). Counted as her own after records 5400 to 5432 had been looked at; before,
+they were wrong unless they were hidden."""
+
 OWN: Final = frozenset(
     {e.name for e in TRUTH.effects}
     | RACE
@@ -46,6 +53,9 @@ OWN: Final = frozenset(
     | {n for t in TWINS if t & {e.name for e in TRUTH.effects} for n in t}
 )
 """The truth's own structure, and names that no manoeuvre of a rudder separates from it."""
+
+RIGHT: Final = OWN | BENT
+"""What is right where nobody hid it; what is drawn does not change by what was seen."""
 
 DRAWN: Final = tuple(
     s
