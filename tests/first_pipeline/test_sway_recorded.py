@@ -106,24 +106,36 @@ def test_a_sway_without_a_unit_is_left_to_the_user(tmp_path: Path) -> None:
     assert "# left to you: v; the log states no unit" in made.files[tmp_path / "q.toml"]
 
 
-def test_shaft_and_wind_stand_there_commented_out(tmp_path: Path) -> None:
-    begun(tmp_path)
-    log, more = tmp_path / "log.csv", np.sin(0.1 * T)
-    columns = ("n [rpm]", "apparent wind speed [m/s]", "apparent wind angle [deg]")
+def with_more(folder: Path, columns: tuple[str, ...], values: tuple[float, ...]) -> str:
+    """The pipeline of the log with these columns beside its own, each about its value; its text."""
+    begun(folder)
+    log, wave = folder / "log.csv", np.sin(0.1 * T)
     rows = log.read_text(encoding="utf-8").splitlines()
-    given = [f"{60 + x:.4g},{8 + x:.4g},{40 + 5 * x:.4g}" for x in more]
+    given = (",".join(f"{value + 5 * x:.4g}" for value in values) for x in wave)
     wider = [f"{row},{end}" for row, end in zip(rows, (",".join(columns), *given), strict=True)]
     log.write_text("\n".join(wider), encoding="utf-8")
-    made = starter([inspect_log(log)], tmp_path / "q.toml", None, Given(length=100.0), 6.0)
-    text = made.files[tmp_path / "q.toml"]
-    assert '# n = { channel = "n", unit = "rpm" }' in text
-    assert '# V_aw = { channel = "apparent wind speed", unit = "m/s" }' in text
-    assert "# left to you: gamma_aw; where it comes from" in text
+    made = starter([inspect_log(log)], folder / "q.toml", None, Given(length=100.0), 6.0)
     for path, words in made.files.items():
-        taken = re.sub(r"(?m)^# (n|V_aw|gamma_aw) =", r"\1 =", words)
-        path.write_text(taken, encoding="utf-8")
+        path.write_text(re.sub(r"(?m)^# (n|psi|V_aw) =", r"\1 =", words), encoding="utf-8")
+    return made.files[folder / "q.toml"]
+
+
+def test_the_wind_is_read_and_shaft_and_heading_stand_there_commented_out(tmp_path: Path) -> None:
+    """A heading that a rate of turn does not go by, as here, is the user's to say too."""
+    heads = ("n [rpm]", "heading [deg]", "wind speed relative [m/s]", "wind dir relative [deg]")
+    text = with_more(tmp_path, heads, (60.0, 100.0, 8.0, 40.0))
+    assert '# n = { channel = "n", unit = "rpm" }' in text
+    assert "# left to you: psi; with it the run seeks a steady wind and a current" in text
+    assert re.search(r'(?m)^V_aw +=.*"wind speed relative", unit = "m/s"', text)
+    assert "# gamma_aw: by its name, CAREFUL: where the wind comes from" in text
     signals = pipeline_file.load(tmp_path / "q.toml").trials[0].signals
-    assert {"n", "V_aw", "gamma_aw"} <= {*signals}
+    assert {"n", "psi", "V_aw", "gamma_aw"} <= {*signals}
+
+
+def test_half_a_wind_is_left_to_the_user(tmp_path: Path) -> None:
+    text = with_more(tmp_path, ("apparent wind speed [m/s]",), (8.0,))
+    assert "# left to you: V_aw; the wind's speed and its angle belong together" in text
+    assert '# V_aw = { channel = "apparent wind speed", unit = "m/s" }' in text
 
 
 def test_a_log_without_a_sway_says_nothing_of_it(tmp_path: Path) -> None:

@@ -16,13 +16,15 @@ from trialid.names.quantities import SIGNALS
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES
 
+NAMELESS: Final = ("not in catalogue", "cannot tell")
+
 SHOWN: Final = 5
 """Signals that a sentence names; the report lists every effect that was not tried."""
 
 
 def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdict:
-    """The verdict; where the catalogue does not hold what is missing, with the records it lacks."""
-    if verdict.kind != "not in catalogue":
+    """The verdict; where something is missing and has no name, with the records that lack."""
+    if verdict.kind not in NAMELESS:
         return verdict
     trial = fit.problem.trials[0]
     outer = SIGNALS.keys() - set(STATES) | {"psi"}  # what acts on her, and whence: by the heading

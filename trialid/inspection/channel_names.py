@@ -31,9 +31,10 @@ PHRASES: Final = {
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
     "drehzahl, wellendrehzahl, propellerdrehzahl",
     "V_aw": "aws, apparent wind speed, wind speed apparent, relative wind speed, "
-    "wind speed relative",
+    "wind speed relative, wind velocity relative, wind velo relative, relative wind velocity",
     "gamma_aw": "awa, apparent wind angle, wind angle apparent, relative wind angle, "
-    "relative wind direction, wind angle relative, wind direction relative",
+    "relative wind direction, wind angle relative, wind direction relative, wind dir relative, "
+    "relative wind dir",
     "h": "depth, water depth, depth below keel, depth below transducer",
 }
 """What recorders call a quantity."""

@@ -19,15 +19,16 @@ OUTPUTS = ("r", "phi")
 def _left_out(monkeypatch):
     """What a stand-in leaves on rows that it was not fitted to, it says."""
     monkeypatch.setattr(noise_bound, "own_errors", lambda fit: Errors((fit.outside**2,), ()))
+    monkeypatch.setattr(noise_bound, "share_at_own_frequencies", lambda fit: fit.slow)
 
 
-def fit(eps, effects=(), converged=True, outside=0.0, estimates=("Nr",)):
+def fit(eps, effects=(), converged=True, outside=0.0, estimates=("Nr",), slow=0.0):
     """A fit as far as its errors go."""
     made = SimpleNamespace(
         eps_rmsn=eps, eps_by_output=dict.fromkeys(OUTPUTS, eps), converged=converged,
         model=SimpleNamespace(effects=[SimpleNamespace(name=n) for n in effects]),
         residual=np.full(10**6, eps / 1000.0), outside=outside or eps,
-        estimates=dict.fromkeys(estimates, 0.0),
+        estimates=dict.fromkeys(estimates, 0.0), slow=slow,
         problem=SimpleNamespace(unknowns=[SimpleNamespace(trial=t) for t in (None, 0, 1)]),
     )  # fmt: skip
     made.examined = made
@@ -133,3 +134,24 @@ def test_slopes_of_a_model_that_lacks_something_do_not_say_what_noise_is():
     assert "a model that lacks Ydelta freed" in held.why
     small = held_against(by_input, (by_input,), fit(0.10, ("a",)), [fit(0.0995, ("a", "b"))])
     assert small.available
+
+
+@pytest.mark.parametrize(
+    ("slow", "noise", "separable"),
+    [
+        (0.70, 0.08, False),  # 0.36 of the square is the model's: 0.34 of 0.64 are slow noise
+        (0.66, 0.08, True),
+        (0.45, 0.099, True),
+        (0.55, 0.099, False),
+    ],
+)
+def test_what_is_as_slow_as_the_ship_is_no_noise(slow, noise, separable):
+    """What the split calls the model's may be as slow as it likes; half of the noise may not."""
+    by_input = route(INPUT_DRIVEN, noise, (0.9 * noise, 0.1))
+    held = held_against(by_input, (by_input,), fit(0.10, ("a",), slow=slow))
+    assert held.available is separable
+    if not separable:
+        assert held.at_most == noise
+        assert "as slow as the ship herself" in held.why
+    quiet = route("quiet stretch", noise, (0.9 * noise, 0.1))  # there she stands still
+    assert held_against(quiet, (quiet,), fit(0.10, ("a",), slow=slow)).available

@@ -4,20 +4,28 @@ A route rests on an assumption: that the quiet stretch was as noisy as the manoe
 model errs alike in every period. Where the assumption fails, the split is wrong by any factor, and
 its interval says nothing of it. But noise can never be more than what some fitted model leaves on
 the same rows and its parameters took up, nor more than what of the residual does not depend on the
-input; and two routes that exclude each other leave nothing to state.
+input; it is not as slow as the ship herself; and two routes that exclude each other leave nothing
+to state.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from trialid.diagnosis.noise.error_parts import Split, may_be_noise
+from trialid.diagnosis.noise.own_motion import share_at_own_frequencies
 from trialid.diagnosis.noise.split import INPUT_DRIVEN, STATED
 from trialid.diagnosis.search.carried import FALL
 from trialid.diagnosis.search.carry_over import own_errors
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.identification.fit import Fit
+
+SLOW: Final = 0.5
+"""Share of what would be noise at the ship's own frequencies from which on it is none: simulated
+noise of sensors, waves and turbulence has at most 0.3, zig-zags in wind without the wind 0.8; half
+of it would doubt turbulence, twice doubts nothing."""
 
 
 def held_against(
@@ -40,7 +48,7 @@ def held_against(
         return chosen
     most = next((r.noise for r in routes if r.method == INPUT_DRIVEN), None)
     why = _contradiction(chosen, [r for r in routes if r.available and r is not chosen], whole)
-    if why:
+    if why := why or _as_slow_as_she_is(chosen, fit):
         return Split("not separable", why, at_most=most)
     able = [f for f in others if f.converged and f.eps_rmsn < fit.eps_rmsn]
     if not able:
@@ -50,6 +58,20 @@ def held_against(
         said = f"{_said(chosen)} at most: slopes of a model that lacks {_added(fit, least)}"
         return Split("not separable", said, at_most=most)
     return _bounded(chosen, fit, least)
+
+
+def _as_slow_as_she_is(chosen: Split, fit: Fit) -> str:
+    """Why what does not depend on the input is no noise either; empty where it may be."""
+    if chosen.method != INPUT_DRIVEN or not chosen.noise:
+        return ""
+    slow = share_at_own_frequencies(fit) * fit.eps_rmsn**2 - (chosen.undermodelling or 0.0) ** 2
+    share = slow / chosen.noise**2
+    if share < SLOW:
+        return ""
+    return (
+        f"{_said(chosen)} at most: {min(share, 1.0):.0%} of that is as slow as the ship herself, "
+        "where no sensor's noise is; a force that nobody logged (wind, current), or the model"
+    )
 
 
 def _bounded(chosen: Split, fit: Fit, least: Fit) -> Split:

@@ -1,4 +1,4 @@
-"""What else a log holds: a sway speed that goes outwards in turns; shaft and wind for the user."""
+"""What else a log holds: wind, a sway that goes outwards in turns, and what is left to you."""
 
 import dataclasses
 from collections.abc import Iterator, Mapping
@@ -14,10 +14,15 @@ LEFT: Final[Mapping[str, str]] = {
     "n": "with it the run seeks what the screw does",
     "n_p": "with both the run seeks what two screws do",
     "n_s": "with both the run seeks what two screws do",
-    "V_aw": "with both the run seeks what the wind does",
-    "gamma_aw": "where it comes from: 0 from ahead, positive from starboard",
+    "psi": "with it the run seeks a steady wind and a current",
 }
 """Inputs that no first model asks for, and what for."""
+
+WIND: Final[Mapping[str, str]] = {
+    "V_aw": "the run seeks what the wind does",
+    "gamma_aw": "CAREFUL: where the wind comes from, 0 from ahead, positive from starboard",
+}
+"""Read where both are there: the wind turned round pushes no ship, and has no name."""
 
 OUTWARDS: Final = 0.5
 """Correlation with the rate of turn from which a sway is taken to go outwards, or inwards. Between
@@ -26,14 +31,23 @@ moved at random; with half of it that one is told too, with twice none is."""
 
 
 def with_further(trial: Chosen, live: Live) -> Chosen:
-    """The trial with what else its log holds: a sway speed, inputs that are left to the user."""
-    found = dataclasses.replace(trial, beside=tuple(_left(live)))
+    """The trial with what else its log holds: wind, a sway speed, what is left to the user."""
+    wind = [plain_signal(name, live, why) for name, why in WIND.items() if live.get(name)]
+    whole = len(wind) == len(WIND) and not any(one.open for one in wind)
+    alone = (
+        [] if whole else [(one, "the wind's speed and its angle belong together") for one in wind]
+    )
+    found = dataclasses.replace(
+        trial,
+        signals=(*trial.signals, *(wind if whole else ())),
+        beside=(*_left(trial, live), *alone),
+    )
     return _with_sway(found, plain_signal("v", live, "")) if live.get("v") else found
 
 
-def _left(live: Live) -> Iterator[tuple[Signal, str]]:
+def _left(trial: Chosen, live: Live) -> Iterator[tuple[Signal, str]]:
     for name, why in LEFT.items():
-        if live.get(name):
+        if live.get(name) and name not in trial.quantities:
             yield plain_signal(name, live, ""), why
 
 
