@@ -69,8 +69,9 @@ def _as_slow_as_she_is(chosen: Split, fit: Fit) -> str:
     if share < SLOW:
         return ""
     return (
-        f"{_said(chosen)} at most: {min(share, 1.0):.0%} of that is as slow as the ship herself, "
-        "where no sensor's noise is; a force that nobody logged (wind, current), or the model"
+        f"{min(share, 1.0):.0%} of what would be noise ({chosen.noise:.2%} by {chosen.method}) is "
+        "as slow as the ship herself: no sensor's noise is, but a force that nobody logged or that "
+        "the model lacks"
     )
 
 
