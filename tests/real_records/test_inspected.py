@@ -57,7 +57,7 @@ def test_both_gyros_of_the_yacht_are_offered(begun):
         words
     )
     text = path.read_text(encoding="utf-8")
-    assert '\nr     = { channel = "rate_of_turn/11:rate", unit = "rad/s" }' in text
+    assert re.search(r'\nr += \{ channel = "rate_of_turn/11:rate", unit = "rad/s" \}', text)
     assert '\n# or r = { channel = "rate_of_turn/128:rate", unit = "rad/s" }' in text
 
 

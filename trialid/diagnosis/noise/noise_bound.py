@@ -24,8 +24,8 @@ from trialid.identification.fit import Fit
 
 SLOW: Final = 0.5
 """Share of what would be noise at the ship's own frequencies from which on it is none: simulated
-noise of sensors, waves and turbulence has at most 0.3, zig-zags in wind without the wind 0.8; half
-of it would doubt turbulence, twice doubts nothing."""
+noise of sensors, waves and turbulence has at most 0.2, zig-zags in wind without the wind 0.75. At
+half of it these verdicts are the same, twice doubts nothing."""
 
 
 def held_against(
