@@ -23,9 +23,9 @@ ALIKE: Final = 0.05
 
 SHAPE: Final = 1.05
 """Ratio of squared errors that an effect must be worth to join effects that were added, and to stay
-beside them: by their shapes any error is mended a little. In eight records of a hull of another
-structure (`growth/hidden_several.py`, 5400 to 5420) ten effects of nothing hidden had joined: worth
-1.003 to 1.044. Half of it keeps three of them, twice drops four that were hidden."""
+beside them: by their shapes any error is mended a little. In five records of a hull of another
+structure (`growth/hidden_several.py`, 5400 to 5407) seven effects of nothing hidden had joined:
+worth 1.003 to 1.044. Half of it keeps one or two of them, twice drops four that were hidden."""
 
 FAINT: Final = 0.02
 """Share of its trace beside the parameters at which an effect's fall counts half: a centre of
