@@ -48,8 +48,8 @@ SHARE: Final = 0.12
 0.04 of what it does not hold, and 0.21 or more of what it holds."""
 
 ANYTHING: Final = 0.5
-"""Model error from which on what would not be seen may be anything: half of what moved. Where the
-whole error is less, so much: noise of which it is not known that there is any hides all of it."""
+"""Model error from which on what would not be seen may be anything: half of what moved, or all of
+the error where that is less: then it is not known that any of it is noise."""
 
 
 @dataclass(frozen=True)

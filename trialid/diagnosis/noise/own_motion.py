@@ -31,7 +31,7 @@ def share_at_own_frequencies(fit: Fit) -> float:
         spectra = [_spectra(one, output) for one in found]
         f, moved, left = (np.concatenate(x) for x in zip(*spectra, strict=True))
         order = np.argsort(f, kind="stable")
-        within = np.cumsum(moved[order]) <= WITHIN * moved.sum()
+        within = np.cumsum(moved[order]) < WITHIN * moved.sum()  # none of a ship that lies still
         low += float(left[order][within].sum())
         whole += float(left.sum())
     return low / whole if whole > 0.0 else 0.0
