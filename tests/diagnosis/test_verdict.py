@@ -16,6 +16,7 @@ from trialid.diagnosis.search.rivals import rivals, to_fit
 from trialid.diagnosis.verdict import Verdict, decide
 
 BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
+NO_ROUTE = Split("not separable", "no route")
 
 
 def fit(eps, check=None, converged=True):
@@ -113,22 +114,36 @@ def test_what_held_out_trials_lose_by_is_not_named():
 
 
 @pytest.mark.parametrize(
-    ("ratio", "check", "kind"),
+    ("eps", "check", "kind"),
     [
-        (0.74, 0.2001, "cannot tell"),  # the one with a name takes a tenth of its 26 %
-        (0.80, 0.2001, "missing"),  # and an eighth of 20 %
-        (0.74, np.inf, "cannot tell"),
+        (0.08, 0.2001, "cannot tell"),  # 36 % of the square, where the one with a name takes 3
+        (0.094, 0.2001, "cannot tell"),  # 12 %
+        (0.096, 0.2001, "missing"),  # 8 %: less than a tenth
+        (0.08, np.inf, "cannot tell"),
+        (0.08, 0.1999, "missing"),  # nothing is said against it, and it has the name
     ],
 )
-def test_who_explains_next_to_nothing_of_what_another_does_has_no_name(ratio, check, kind):
+def test_who_explains_far_less_than_another_does_has_no_name(eps, check, kind):
     """Although held-out trials deny the other: what it does is no noise."""
     named = refit("small", 0.975, 0.0985, check=0.19)
-    denied = refit("large", ratio, 0.08, check=check)
-    parts = Split("not separable", "no route")
-    found = decide(fit(0.10, 0.20), (), [named, denied], parts, None, 0.05)
+    denied = refit("large", 0.74, eps, check=check)
+    found = decide(fit(0.10, 0.20), (), [named, denied], NO_ROUTE, None, 0.05)
     assert found.kind == kind
-    assert found.effect == ("small" if kind == "missing" else None)
-    assert ("large lowers the squared error" in found.sentence) is (kind == "cannot tell")
+    assert ("`trialid add PIPELINE large` may tell" in found.sentence) is (kind == "cannot tell")
+
+
+def test_a_tenth_more_is_not_far():
+    """Twice as much is asked for, of what the one with a name takes off."""
+    named = refit("small", 0.9, 0.0950, check=0.19)  # 10 % of the square
+    denied = refit("large", 0.74, 0.0900, check=0.21)  # 19 %
+    assert decide(fit(0.10, 0.20), (), [named, denied], NO_ROUTE, None, 0.05).effect == "small"
+
+
+def test_what_nothing_denies_loses_by_what_it_carries():
+    """It does more where it was fitted, and less where it was not."""
+    named = refit("carries", 0.70, 0.0945, check=0.19)
+    close = refit("close", 0.85, 0.08, check=0.19)
+    assert decide(fit(0.10, 0.20), (), [named, close], NO_ROUTE, None, 0.05).effect == "carries"
 
 
 def unfinished(name, ratio, eps, **given):

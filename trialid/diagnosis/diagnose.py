@@ -21,7 +21,7 @@ from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
 from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate, ranking_of
-from trialid.diagnosis.search.stand_in import Tried, look_beside
+from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, look_beside
 from trialid.diagnosis.trust import accuracy_of
 from trialid.diagnosis.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
@@ -273,6 +273,9 @@ def refits_of(
     worth = [c for c in ranking if c.worth_a_name(asked.level)]
     best = refit_best(fit, worth, asked.refit, asked.level, progress)
     named = likeliest_refit(fit, best, asked.level, grown)
+    if named:
+        best += refit(fit, foretell_far_more(fit, ranking, best), progress)
+        named = likeliest_refit(fit, best, asked.level, grown)
     others = to_fit(named, ranking, best) if named else ()
     return look_beside(
         fit,

@@ -24,10 +24,12 @@ from trialid.diagnosis.search.refit import (
 )
 from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
+from trialid.diagnosis.search.stand_in import far_ahead
 from trialid.diagnosis.verdict_sentences import (
     as_slow,
     contradiction,
     correction,
+    denied_lead,
     explains_little,
     falls_by,
     no_split,
@@ -75,24 +77,34 @@ def decide(
 
     An effect is named only if its score stands out over the whole catalogue, its refitted value
     is physical, held-out trials do not speak against it, and neither a force of another shape, nor
-    an effect whose search did not arrive, nor one that they deny explains far more; and where the
-    blocks left out alone show it, only if none as good differs in trace. In a model that has
-    `grown` by effects already it must be worth a tenth.
+    an effect that chance or they deny, nor one whose search did not arrive explains far more; and
+    where the blocks left out alone show it, only if none as good differs in trace. In a model that
+    has `grown` by effects already it must be worth a tenth.
     """
     named = likeliest_refit(fit, refits, level, grown)
+    lead = far_ahead(fit, named, refits, level, grown=grown) if named else None
+    if named is not None and lead is not None:
+        why = objection(fit, lead, level, grown)
+        return Verdict("cannot tell", None, (), denied_lead(fit, named, lead, why))
     if whole is not None and (whole.outdoes(named.carried) if named else whole.gap):
         return Verdict("not in catalogue", None, (), outdone_by_a_shape(named, whole))
-    against = _standing_but(HELD_OUT, fit, refits, level)
-    if against is not None and (named is None or _outdone(named, against)):
-        return Verdict("cannot tell", None, (), contradiction(fit, against))
     if named is not None:
         return _judged(fit, named, ranking, refits, parts, level=level, grown=grown)
-    if grown and (slow := _standing_but(AS_SLOW, fit, refits, level)) is not None:
-        return Verdict("cannot tell", None, (), as_slow(fit, slow))
-    if grown and (slight := _standing_but(SLIGHT, fit, refits, level)) is not None:
-        return Verdict("cannot tell", None, (), correction(slight))
+    if (denied := _denied(fit, refits, level, grown=grown)) is not None:
+        return Verdict("cannot tell", None, (), denied)
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
     return _unnamed(parts, whole, small)
+
+
+def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> str | None:
+    """What one check alone denies, where nothing stands them all; None where that is nothing."""
+    if (against := _standing_but(HELD_OUT, fit, refits, level)) is not None:
+        return contradiction(fit, against)
+    if grown and (slow := _standing_but(AS_SLOW, fit, refits, level)) is not None:
+        return as_slow(fit, slow)
+    if grown and (slight := _standing_but(SLIGHT, fit, refits, level)) is not None:
+        return correction(slight)
+    return None
 
 
 def _judged(
@@ -164,15 +176,6 @@ def _standing_but(why: str, fit: Fit, refits: Sequence[Refit], level: float) -> 
     """The best effect that stands every check but this one, in a model that has grown."""
     able = [r for r in refits if objection(fit, r, level, True) == why and falls(fit, r)]
     return best_of(able, level)
-
-
-def _outdone(named: Refit, against: Refit) -> bool:
-    """Whether it explains next to nothing of what another does, which held-out trials deny.
-
-    That is not noise either, whoever is right about it: on a pond in wind, with the wind left out,
-    a lag of the gyro was named for 2.5 % of the square where a hull term takes 26 % off.
-    """
-    return 1.0 - named.carried.ratio < SHARE * (1.0 - against.carried.ratio)
 
 
 def _ahead(fit: Fit, named: Refit, refits: Sequence[Refit], level: float) -> Refit | None:

@@ -52,6 +52,16 @@ def unfinished_lead(fit: Fit, named: Refit, ahead: Refit) -> str:
     )
 
 
+def denied_lead(fit: Fit, named: Refit, lead: Refit, against: str) -> str:
+    """An effect does far more than what stands every check, but something speaks against it."""
+    name = lead.candidate.effect.name
+    return (
+        f"with {name} {falls_by(fit, lead.fit)}, with {named.candidate.effect.name} to "
+        f"{named.fit.eps_rmsn:.2%}, which alone stands every check; of {name} it is said that "
+        f"{against}: `trialid add PIPELINE {name}` may tell"
+    )
+
+
 def correction(named: Refit) -> str:
     """It mends the shapes of the effects that were added."""
     return (
