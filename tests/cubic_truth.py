@@ -98,13 +98,13 @@ def share_of_rudder(term):
 
 def _without_dimension(delta, x):
     """Drift, turn rate, rudder, heel, slipstream by `rudder_slipstream`, and moment of rudder."""
-    L, rho = (ship().ship.particulars[n] for n in ("L", "rho"))
-    rudder = CATALOGUE["propeller_rudder"]
-    values = {n: ship().value(n) for n in rudder.parameters}
+    true, rudder = ship(), CATALOGUE["propeller_rudder"]
+    L, rho, U0 = (true.ship.particulars[n] for n in ("L", "rho", "U0"))
+    values = {n: true.value(n) for n in rudder.parameters}
     speed = np.hypot(x["u"], x["v"])
     shaft = np.full(len(delta), SHAFT)
     force = rudder.function(x["u"], x["v"], x["r"], shaft, delta, L=L, rho=rho, **values)
-    slowed = x["u"] * (7.33 - x["u"]) / speed**2
+    slowed = x["u"] * (U0 - x["u"]) / speed**2
     moment = force.N / (0.5 * rho * L**3 * speed**2)
     return np.stack([x["v"] / speed, x["r"] * L / speed, delta, x["phi"], slowed, moment])
 

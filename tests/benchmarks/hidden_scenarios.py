@@ -25,7 +25,7 @@ from hidden_truth import (
     without,
 )
 
-from trialid.diagnosis.search.augment import linear_parameters
+from trialid.diagnosis.search.candidates import linear_parameters
 from trialid.effects import CATALOGUE
 from trialid.maths import sin, tanh
 from trialid.ship.effect import Effect, Force, Mass, Rate, Steered, effect

@@ -8,7 +8,8 @@ from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.search.augment import augment, candidates_for
+from trialid.diagnosis.search.augment import augment
+from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.search.completeness import completeness
 from trialid.diagnosis.search.refit import likeliest_refit, refit
 from trialid.diagnosis.search.score import VISIBLE, rank
@@ -24,6 +25,7 @@ FREE = ("Nv", "Nr", "Ndelta", "Yv", "Kv", "Kr", "Kdelta", "Kp", "GM")
 WITHOUT = MODEL - "yaw_drag_rar"
 FIT = replace(SETTINGS, free=FREE)
 AMPLITUDES = (5, 10, 20)
+WIND = {"apparent_wind": CATALOGUE["apparent_wind"]}
 
 
 def record(model, seed):
@@ -115,6 +117,24 @@ def test_unseen_effects_are_left_out_with_a_reason():
     assert why["cross_flow_drag"] == "needs T, which the ship file does not hold"
 
 
+@pytest.mark.parametrize("lacking", [0, 1, 2])
+def test_an_effect_is_tried_where_every_trial_holds_what_it_needs(lacking):
+    """The last one is held out: an effect that cannot be foreseen there cannot be checked."""
+    wind = {n: np.full(zigzag(10).samples, x) for n, x in (("V_aw", 8.0), ("gamma_aw", 0.5))}
+    blown = [with_signals(t, {} if i == lacking else wind) for i, t in enumerate(record(MODEL, 3))]
+    tried = augment(identify(blown, MODEL, FIT), CATALOGUE)
+    assert tried.left_out["apparent_wind"] == "needs V_aw, gamma_aw, which the record does not hold"
+    whole = [with_signals(t, wind) for t in record(MODEL, 3)]
+    assert "apparent_wind" in {e.name for e in augment(identify(whole, MODEL, FIT), WIND).effects}
+
+
+def with_signals(trial, more):
+    """The trial with further signals, each as long as it is."""
+    return replace(
+        trial, signals={**trial.signals, **{n: x[: trial.samples] for n, x in more.items()}}
+    )
+
+
 def test_an_effect_of_a_speed_record_wants_one_and_its_stand_in_does_not():
     trial = zigzag(10, MODEL)
     still, moving = np.full(trial.samples, 7.0), 7.0 + 0.1 * np.sin(trial.t)
@@ -132,15 +152,17 @@ def test_an_effect_of_a_speed_record_wants_one_and_its_stand_in_does_not():
 
 def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
     """What is recorded is no want, and a motion is not what is missing."""
-    trial = replace(zigzag(10), signals={n: zigzag(10).signals[n] for n in ("delta", "r")})
+    sailed = zigzag(10)
+    trial = replace(sailed, signals={n: sailed.signals[n] for n in ("delta", "r")})
     model = ShipModel(MODEL.ship, ("v", "r"), (CATALOGUE["linear_hull"],))
-    fit = SimpleNamespace(model=model, problem=SimpleNamespace(trials=(trial,)))
+    fit = SimpleNamespace(model=model, trials=(trial,))
     none = Verdict("not in catalogue", None, (), "something is missing")
     wind = [CATALOGUE[n] for n in ("apparent_wind", "shallow_water_sway", "heel_yaw")]
     said = name_records(fit, none, wind).sentence
-    assert said.startswith("something is missing; no record holds V_aw, gamma_aw, h, and no effect")
+    words = "something is missing; there is no record in every trial of V_aw, gamma_aw, h, and no"
+    assert said.startswith(words)
     blown = replace(trial, signals={**trial.signals, "V_aw": trial.t, "gamma_aw": trial.t})
-    fit.problem.trials = (blown,)
+    fit.trials = (blown,)
     assert "V_aw" not in name_records(fit, none, wind).sentence
     assert name_records(fit, none, wind[:1]) is none
     known = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")

@@ -132,9 +132,15 @@ def test_the_wind_is_read_and_shaft_and_heading_stand_there_commented_out(tmp_pa
     assert {"n", "psi", "V_aw", "gamma_aw"} <= {*signals}
 
 
+def test_a_wind_without_a_unit_is_left_to_the_user(tmp_path: Path) -> None:
+    text = with_more(tmp_path, ("wind speed relative [m/s]", "wind dir relative"), (8.0, 40.0))
+    assert "# left to you: V_aw; the wind's speed and its angle are read together" in text
+    assert "# left to you: gamma_aw; the wind's speed" in text
+
+
 def test_half_a_wind_is_left_to_the_user(tmp_path: Path) -> None:
     text = with_more(tmp_path, ("apparent wind speed [m/s]",), (8.0,))
-    assert "# left to you: V_aw; the wind's speed and its angle belong together" in text
+    assert "# left to you: V_aw; the wind's speed and its angle are read together" in text
     assert '# V_aw = { channel = "apparent wind speed", unit = "m/s" }' in text
 
 

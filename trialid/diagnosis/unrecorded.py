@@ -9,24 +9,26 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
 
-from trialid.diagnosis.search.augment import missing_signals
+from trialid.diagnosis.search.candidates import missing_signals
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit
 from trialid.names.quantities import SIGNALS
 from trialid.ship.effect import Effect
 from trialid.ship.model import STATES
+from trialid.simulation.integrate import shared_record
 
-NAMELESS: Final = ("not in catalogue", "cannot tell")
+UNANSWERED: Final = ("not in catalogue", "cannot tell")
+"""Verdicts with which something is or may be missing that has no name."""
 
 SHOWN: Final = 5
 """Signals that a sentence names; the report lists every effect that was not tried."""
 
 
 def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdict:
-    """The verdict; where something is missing and has no name, with the records that lack."""
-    if verdict.kind not in NAMELESS:
+    """The verdict; where what is missing has no name, with the signals that not all trials hold."""
+    if verdict.kind not in UNANSWERED:
         return verdict
-    trial = fit.problem.trials[0]
+    trial = shared_record(fit.trials)
     outer = SIGNALS.keys() - set(STATES) | {"psi"}  # what acts on her, and whence: by the heading
     wanted = Counter(s for e in effects for s in missing_signals(fit.model, trial, e) if s in outer)
     if not wanted:
@@ -34,7 +36,7 @@ def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdi
     shown = [s for s, _ in wanted.most_common(SHOWN)]
     others = " and others" if len(wanted) > SHOWN else ""
     said = (
-        f"{verdict.sentence}; no record holds {', '.join(shown)}{others}, and no effect that needs "
-        "one of them was tried"
+        f"{verdict.sentence}; there is no record in every trial of {', '.join(shown)}{others}, and "
+        "no effect that needs one of them was tried"
     )
     return replace(verdict, sentence=said)

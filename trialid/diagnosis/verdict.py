@@ -82,8 +82,7 @@ def decide(
     has `grown` by effects already it must be worth a tenth.
     """
     named = likeliest_refit(fit, refits, level, grown)
-    lead = far_ahead(fit, named, refits, level, grown=grown) if named else None
-    if named is not None and lead is not None:
+    if named and (lead := far_ahead(fit, named, refits, level, grown=grown)):
         why = objection(fit, lead, level, grown)
         return Verdict("cannot tell", None, (), denied_lead(fit, named, lead, why))
     if whole is not None and (whole.outdoes(named.carried) if named else whole.gap):

@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -193,6 +193,13 @@ def record_for(trial: Trial, name: str) -> str | None:
         if candidate in trial.signals:
             return candidate
     return None
+
+
+def shared_record(trials: Sequence[Trial]) -> Trial:
+    """The first trial with what every one of them has a record of."""
+    first = trials[0]
+    kept = {n: x for n, x in first.signals.items() if all(record_for(t, n) for t in trials)}
+    return replace(first, signals=kept)
 
 
 def inputs(simulator: Simulator, trial: Trial, known: Mapping[str, float]) -> Vector:

@@ -13,7 +13,7 @@ import pytest
 
 from trialid import pipeline_file
 from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
-from trialid.diagnosis.search.augment import candidates_for
+from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects.actuators import actuator_effects
 from trialid.inspection import inspect_log

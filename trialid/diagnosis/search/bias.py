@@ -19,9 +19,9 @@ from trialid.diagnosis.search.augment import (
     Augmented,
     Trace,
     augment,
-    linear_parameters,
     widened_problem,
 )
+from trialid.diagnosis.search.candidates import linear_parameters
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Unknown, linearise
 from trialid.ship.effect import Effect

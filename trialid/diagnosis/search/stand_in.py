@@ -37,8 +37,8 @@ FAR: Final = 2.0
 """By how much more of the squared error an effect takes off than any that stands every check, and a
 tenth of it at least, where it is looked at whatever speaks against it. Found on a ship that a wind
 and her screw push to one side (5414, 5456 of `growth/hidden_several.py`), where a hull that is
-driven on by her drift stands in for both: there the wind foretells 0.47 and 0.51, and what was
-named took 0.05 and 0.08 off. Half of it asks of any that does more, twice changes neither."""
+driven on by her drift stands in for both: there the wind foretells 0.51 and 0.47, and what was
+named took 0.08 and 0.05 off. Half of it asks of any that does more, twice changes neither."""
 
 
 @dataclass(frozen=True)

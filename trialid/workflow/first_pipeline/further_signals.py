@@ -24,6 +24,8 @@ WIND: Final[Mapping[str, str]] = {
 }
 """Read where both are there: the wind turned round pushes no ship, and has no name."""
 
+WHOLE_WIND: Final = "the wind's speed and its angle are read together, each with its unit"
+
 OUTWARDS: Final = 0.5
 """Correlation with the rate of turn from which a sway is taken to go outwards, or inwards. Between
 them a model of 3 m had -0.77 to -0.94 in twelve trials of eleven minutes and -0.44 under a rudder
@@ -34,13 +36,10 @@ def with_further(trial: Chosen, live: Live) -> Chosen:
     """The trial with what else its log holds: wind, a sway speed, what is left to the user."""
     wind = [plain_signal(name, live, why) for name, why in WIND.items() if live.get(name)]
     whole = len(wind) == len(WIND) and not any(one.open for one in wind)
-    alone = (
-        [] if whole else [(one, "the wind's speed and its angle belong together") for one in wind]
-    )
     found = dataclasses.replace(
         trial,
         signals=(*trial.signals, *(wind if whole else ())),
-        beside=(*_left(trial, live), *alone),
+        beside=(*_left(trial, live), *(() if whole else ((one, WHOLE_WIND) for one in wind))),
     )
     return _with_sway(found, plain_signal("v", live, "")) if live.get("v") else found
 

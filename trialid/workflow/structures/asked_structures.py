@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trialid.diagnosis.search.augment import why_unusable
+from trialid.diagnosis.search.candidates import why_unusable
 from trialid.effects.usual_structures import TELLING, Speed, usual_structures
 from trialid.errors import PipelineError, TrialidError, nearest
 from trialid.identification.problem import Settings

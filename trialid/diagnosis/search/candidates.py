@@ -1,0 +1,91 @@
+"""Which effects can be tried on a model and its record, and why the others cannot."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from trialid.names.quantities import ACCELERATIONS, PARTICULARS
+from trialid.ship.effect import Effect, Steered
+from trialid.ship.model import STATES, ShipModel, takes_place
+from trialid.simulation.integrate import record_for, signals_of
+from trialid.trial import Trial
+
+
+def candidates_for(
+    model: ShipModel, trial: Trial, catalogue: Mapping[str, Effect]
+) -> tuple[dict[str, Effect], dict[str, str]]:
+    """Effects that can be tried on this model and record, and why the others cannot."""
+    able: dict[str, Effect] = {}
+    left_out: dict[str, str] = {}
+    present = {e.name for e in model.effects}
+    for name, effect in catalogue.items():
+        if name in present:
+            continue
+        reason = _why_not(model, trial, effect, able)
+        if reason:
+            left_out[name] = reason
+        else:
+            able[name] = effect
+    return able, left_out
+
+
+def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, Effect]) -> str:
+    if effect.held is not None:
+        return ""
+    if not effect.scanned and not linear_parameters(effect):
+        return "nothing in it can be zero"
+    if trouble := why_unusable(model, trial, effect):
+        return trouble
+    others = [e for e in able.values() if not e.scanned]
+    taken = {*model.parameters, *(p for e in others for p in e.parameters)}
+    clash = sorted(taken & set(effect.parameters))
+    return f"parameter {clash[0]!r} is already there" if clash else ""
+
+
+def why_unusable(model: ShipModel, trial: Trial, effect: Effect) -> str:
+    """Why this effect has no place in a model of this record, empty where it has one."""
+    if unknown := missing_signals(model, trial, effect):
+        where = "ship file" if set(unknown) <= set(PARTICULARS) else "record"
+        return f"needs {', '.join(unknown)}, which the {where} does not hold"
+    given = {*model.all_states}
+    if effect.scanned:  # it is tried in the place of the other
+        given -= {s for e in model.effects if takes_place(effect, e) for s in e.states}
+    gives = {*effect.states, *filter(None, [effect.stands_for])}
+    doubled = sorted(gives & {*given, *trial.signals})
+    if doubled:
+        held = "simulated" if doubled[0] in model.all_states else "recorded"
+        return f"gives {doubled[0]}, which is {held} already"
+    if effect.corrects and effect.corrects not in model.parameters:
+        return f"corrects {effect.corrects}, which the model does not have"
+    return _steers_wrongly(model, trial, effect)
+
+
+def missing_signals(model: ShipModel, trial: Trial, effect: Effect) -> list[str]:
+    """Signals and particulars that an effect is a function of, and this record does not hold."""
+    known = {*model.all_states, *effect.states, *model.ship.particulars, "U", "u", "t"}
+    known |= set(ACCELERATIONS)
+    asked = dict.fromkeys((*signals_of(effect), *filter(None, effect.states.values())))
+    return [s for s in asked if s not in known and not record_for(trial, s)]
+
+
+def _steers_wrongly(model: ShipModel, trial: Trial, effect: Effect) -> str:
+    """Why an effect cannot change a motion that is an input: it needs a record, or is instead."""
+    for s in sorted({*effect.acts_on(Steered)} & set(STATES)):
+        if s in model.states:
+            return f"acts on the record of {s}, which is simulated"
+        if _varies(trial, s) is bool(effect.states):
+            return f"stands in for a record of {s}" if effect.states else f"needs a record of {s}"
+    return ""
+
+
+def _varies(trial: Trial, signal: str) -> bool:
+    """Whether a motion is recorded: a stated approach speed is one number all along."""
+    return bool(np.ptp(trial.signals.get(signal, np.zeros(1))) > 0.0)
+
+
+def linear_parameters(effect: Effect) -> tuple[str, ...]:
+    """The parameters by which it is scored: at zero it is absent, or as it is held."""
+    if effect.scanned:
+        return ()
+    absent = effect.held or 0.0
+    return tuple(n for n, p in effect.parameters.items() if p.null == absent)
