@@ -129,7 +129,7 @@ def test_who_explains_far_less_than_another_does_has_no_name(eps, check, kind):
     denied = refit("large", 0.74, eps, check=check)
     found = decide(fit(0.10, 0.20), (), [named, denied], NO_ROUTE, None, 0.05)
     assert found.kind == kind
-    assert ("`trialid add PIPELINE large` may tell" in found.sentence) is (kind == "cannot tell")
+    assert ("`trialid add PIPELINE large` and other" in found.sentence) is (kind == "cannot tell")
 
 
 def test_a_tenth_more_is_not_far():

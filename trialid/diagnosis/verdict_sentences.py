@@ -56,9 +56,9 @@ def denied_lead(fit: Fit, named: Refit, lead: Refit, against: str) -> str:
     """An effect does far more than what stands every check, but something speaks against it."""
     name = lead.candidate.effect.name
     return (
-        f"with {name} {falls_by(fit, lead.fit)}, with {named.candidate.effect.name} to "
-        f"{named.fit.eps_rmsn:.2%}, which alone stands every check; of {name} it is said that "
-        f"{against}: `trialid add PIPELINE {name}` may tell"
+        f"with {name} {falls_by(fit, lead.fit)}, but {against}; {named.candidate.effect.name} "
+        f"stands every check and leaves {named.fit.eps_rmsn:.2%}: `trialid add PIPELINE {name}` "
+        "and other trials may tell"
     )
 
 
