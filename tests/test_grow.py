@@ -81,7 +81,12 @@ def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
     """The stages of the loop in a world, from the model without any effect."""
 
     def recipe(effects: str) -> Any:
-        return SimpleNamespace(effects=effects, diagnose=SimpleNamespace(level=0.05))
+        return SimpleNamespace(
+            effects=effects,
+            diagnose=SimpleNamespace(level=0.05),
+            model=SimpleNamespace(effects=effects),
+            identify=SimpleNamespace(free=()),
+        )
 
     def examine(asked: Any, *_: Any, grown: bool = False) -> Any:
         fit = next((x for x in _ if hasattr(x, "eps_rmsn")), None) or fit_in(world, asked.effects)
@@ -139,6 +144,17 @@ def test_what_only_stood_in_for_another_is_dropped_and_not_tried_again(
     assert grow.survivors(done) == ("a", "b")
     assert done[-1].pipeline.effects == "ab"
     assert worth_naming(done[-1].worths) == ("a", "b")  # the dearest to leave out first
+
+
+@pytest.mark.parametrize(("own", "left"), [(True, ["x", "limited"]), (False, ["x"])])
+def test_a_gear_takes_the_place_of_another(own: bool, left: list[str]) -> None:
+    """Of one that the loop added, and may go as that might; the file's own place is never empty."""
+    path = grow._Path((), lambda words, share: None)
+    servo, limited, other = (SimpleNamespace(name=n) for n in ("servo", "limited", "x"))
+    for effect in (other, servo) if own else (other,):
+        path.join(effect, ())  # type: ignore[arg-type]
+    path.join(limited, ("servo",))  # type: ignore[arg-type]
+    assert [e.name for e in path.own] == left
 
 
 def test_what_held_out_trials_would_miss_is_not_dropped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -155,16 +155,16 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
     sailed = zigzag(10)
     trial = replace(sailed, signals={n: sailed.signals[n] for n in ("delta", "r")})
     model = ShipModel(MODEL.ship, ("v", "r"), (CATALOGUE["linear_hull"],))
-    fit = SimpleNamespace(model=model, trials=(trial,))
+    fit = SimpleNamespace(model=model, trials=(trial,), problem=SimpleNamespace(trials=(trial,)))
     none = Verdict("not in catalogue", None, (), "something is missing")
     wind = [CATALOGUE[n] for n in ("apparent_wind", "shallow_water_sway", "heel_yaw")]
     said = name_records(fit, none, wind).sentence
-    words = "something is missing; there is no record in every trial of V_aw, gamma_aw, h, and no"
+    words = "something is missing; not every trial is given V_aw, gamma_aw, h, and no"
     assert said.startswith(words)
     blown = replace(trial, signals={**trial.signals, "V_aw": trial.t, "gamma_aw": trial.t})
     fit.trials = (blown,)
     assert "V_aw" not in name_records(fit, none, wind).sentence
-    assert name_records(fit, none, wind[:1]) is none
+    assert name_records(fit, none, wind[:1]) == none
     known = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")
     assert name_records(fit, known, wind) is known
 

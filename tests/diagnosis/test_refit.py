@@ -35,7 +35,13 @@ def refit(
 ):
     """A refit as far as its errors go, and the fit before it."""
     candidate = SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters=("a",), forms=FORMS[name == "lag"], held=None),
+        effect=SimpleNamespace(
+            name=name,
+            parameters={"a": SimpleNamespace(unit="1")},
+            forms=FORMS[name == "lag"],
+            held=None,
+            acts_on=lambda *forms: ("r",),
+        ),
         shown=lambda level: level > 0.0,
         carried=SimpleNamespace(seen=seen),
         p_value=p_value,
@@ -121,6 +127,7 @@ def lag_of(late, after):
     ship = SimpleNamespace(particulars={"L": 3.0, "g": 9.81, "U0": 0.6})
     new.fit.model = SimpleNamespace(ship=ship, value=lambda name: {"T_r": late}[name])
     new.fit.problem.trials = (SimpleNamespace(signals={}),)
+    old.model, old.problem, old.trials = new.fit.model, new.fit.problem, ()
     return old, new
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from geared_rudder import geared
 
 from trialid import pipeline_file
 from trialid.errors import LogError, PipelineError
@@ -24,8 +25,7 @@ LOGS = [
     for name in ("zigzag-10.mcap", "zigzag-20.mcap", "binary-15.mcap", "zigzag-15.csv")
 ]
 L, U = 100.0, 6.0
-RADIUS = 15.0
-"""Time constant of the yaw rate of the made trials [s]."""
+RADIUS = 15.0  # s, time constant of the yaw rate of the made trials
 
 
 def begun(folder, logs, ship=None, length=L, speed=None, **particulars):
@@ -41,12 +41,12 @@ def trial(seconds=600.0, gain=-0.05, seed=0):
     """Times [s], rudder [deg], yaw rate [deg/s], heading [deg], speed [m/s] of a made trial."""
     rng = np.random.default_rng(seed)
     t = np.arange(0, seconds, 0.5)
-    delta = 10 * np.sign(np.sin(0.05 * t) + 0.3 * np.sin(0.013 * t))
+    delta = geared(10 * np.sign(np.sin(0.05 * t) + 0.3 * np.sin(0.013 * t)))
     r = np.zeros(len(t))
     for k in range(len(t) - 1):
         r[k + 1] = r[k] + 0.5 * (gain * delta[k] - r[k]) / RADIUS
-    noise = 0.002 * rng.normal(size=len(t))
-    return t, delta, r + noise, np.cumsum(r) * 0.5 + 40, U + 0.1 * rng.normal(size=len(t))
+    noise, other = rng.normal(size=(2, len(t)))
+    return t, delta, r + 0.002 * noise, np.cumsum(r) * 0.5 + 40, U + 0.1 * other
 
 
 def written(path, **columns):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from geared_rudder import geared
 from numpy.typing import NDArray
 
 from trialid import pipeline_file
@@ -22,7 +23,7 @@ def turned(seed: int) -> NDArray[np.float64]:
     The rate follows the rudder in 15 s, the sway the rate in 8 s, outwards.
     """
     rng = np.random.default_rng(seed)
-    delta = 10.0 * np.sign(np.sin(0.05 * T) + 0.3 * np.sin(0.013 * T))
+    delta = geared(10.0 * np.sign(np.sin(0.05 * T) + 0.3 * np.sin(0.013 * T)))
     r, v = np.zeros(len(T)), np.zeros(len(T))
     for k in range(len(T) - 1):
         r[k + 1] = r[k] + 0.5 * (-0.05 * delta[k] - r[k]) / 15.0

@@ -9,7 +9,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
 
+from trialid.diagnosis.rudder_jumps import rudder_jump, said_of
 from trialid.diagnosis.search.candidates import missing_signals
+from trialid.diagnosis.search.refit import own_time
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit
 from trialid.names.quantities import SIGNALS
@@ -25,18 +27,27 @@ SHOWN: Final = 5
 
 
 def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdict:
-    """The verdict; where what is missing has no name, with the signals that not all trials hold."""
+    """The verdict; where what is missing has no name, with the signals that not all trials hold.
+
+    And with the rudder, where what is recorded of it is its order.
+    """
     if verdict.kind not in UNANSWERED:
         return verdict
+    jump = rudder_jump(fit.trials, own_time(fit))
+    clauses = (verdict.sentence, _unrecorded(fit, effects), said_of(jump) if jump else "")
+    return replace(verdict, sentence="; ".join(filter(None, clauses)))
+
+
+def _unrecorded(fit: Fit, effects: Iterable[Effect]) -> str:
+    """The signals that not all trials hold, and what follows; empty where nothing does."""
     trial = shared_record(fit.trials)
     outer = SIGNALS.keys() - set(STATES) | {"psi"}  # what acts on her, and whence: by the heading
     wanted = Counter(s for e in effects for s in missing_signals(fit.model, trial, e) if s in outer)
     if not wanted:
-        return verdict
+        return ""
     shown = [s for s, _ in wanted.most_common(SHOWN)]
     others = " and others" if len(wanted) > SHOWN else ""
-    said = (
-        f"{verdict.sentence}; there is no record in every trial of {', '.join(shown)}{others}, and "
-        "no effect that needs one of them was tried"
+    return (
+        f"not every trial is given {', '.join(shown)}{others}, and no effect that needs one of "
+        "them was tried"
     )
-    return replace(verdict, sentence=said)

@@ -25,7 +25,8 @@ PHRASES: Final = {
     "kraengungswinkel, krängungswinkel, krengning, slagside",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
     "kompasskurs, kreiselkurs",
-    "u": "stw, speed through water, speed water, water speed, surge speed, surge velocity, "
+    "u": "stw, speed through water, speed water, water speed, speed log, log speed, "
+    "doppler log, em log, surge speed, surge velocity, "
     "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w",
     "v": "sway speed, sway velocity",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "

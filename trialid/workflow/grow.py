@@ -72,6 +72,16 @@ class _Path:
         for c in run.findings.ranking:
             self.kin[c.effect.name] = self.kin.get(c.effect.name, frozenset()) | {*c.family}
 
+    def join(self, effect: Effect, displaced: Sequence[str]) -> None:
+        """Remember an effect, in the place of those it displaced.
+
+        The place of a gear that the file had is never empty: what stands there is not the loop's.
+        """
+        kept = [e for e in self.own if e.name not in displaced]
+        if not displaced or len(kept) < len(self.own):
+            kept.append(effect)
+        self.own = kept
+
     def next_up(self, run: Run) -> Refit | None:
         """The effect to add: what is named, and in later steps whatever stands every check."""
         verdict, level = run.findings.verdict, run.pipeline.diagnose.level
@@ -134,8 +144,7 @@ def _forward(path: _Path, stage: Stage) -> Stage:
         return _not_kept(path, stage, name, f"{trouble} with {name}")
     if run.findings.verdict.kind == "no fit":
         return _not_kept(path, stage, name, f"with {name}: {run.findings.verdict.sentence}")
-    if not before.model.displaced_by(edit.effect):  # a gear's place is never empty
-        path.own.append(edit.effect)
+    path.join(edit.effect, before.model.displaced_by(edit.effect))
     return _told(path, edit, run, added=name)
 
 
@@ -205,9 +214,9 @@ def _backward(path: _Path, stage: Stage) -> Stage | None:
 
 def survivors(done: Sequence[Stage]) -> tuple[str, ...]:
     """The effects that were added and are still there, in the order in which they came."""
-    kept = [s for s in done if s.kept]
-    gone = {s.dropped for s in kept}
-    return tuple(s.added for s in kept if s.added is not None and s.added not in gone)
+    last = done[-1].pipeline
+    there = {*last.model.effects, *last.identify.free}
+    return tuple(s.added for s in done if s.kept and s.added in there)
 
 
 def conclude(done: Sequence[Stage]) -> tuple[Run, tuple[StepRow, ...]]:

@@ -1,6 +1,6 @@
 """Trials of a pipeline: logs read and brought onto one clock."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
+from trialid.diagnosis.rudder_jumps import rudder_jump, said_of
 from trialid.ingest import Aids, LogFile
 from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline, TrialSection
@@ -25,7 +26,21 @@ def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
     for i, trial in enumerate(pipeline.trials):
         progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
         done.append(align_trial(pipeline, trial, known))
-    return tuple(done)
+    return _with_jumps(pipeline, done)
+
+
+def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
+    """The trials, with a remark where what is called the rudder is its order."""
+    if pipeline.ship is None:
+        return tuple(trials)
+    L, U0 = (read_ship(pipeline.ship).particulars.get(n, 0.0) for n in ("L", "U0"))
+    jump = rudder_jump(trials, L / U0) if L and U0 else None
+    if jump is None:
+        return tuple(trials)
+    return tuple(
+        replace(t, remarks=(*t.remarks, said_of(jump))) if "delta" in t.signals else t
+        for t in trials
+    )
 
 
 def align_trial(

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
+from trialid.diagnosis.rudder_jumps import rudder_jump
 from trialid.diagnosis.search.carried import EACH, FAINT, FALL, SHAPE, Carried, as_good
 from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.score import Candidate
@@ -14,12 +15,14 @@ from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.nuisance_priors import speed
 from trialid.identification.problem import Settings
-from trialid.ship.effect import Effect, Force, Mass, Rate
+from trialid.names.quantities import RUDDERS
+from trialid.ship.effect import Delayed, Effect, Force, Mass, Rate
 
 HELD_OUT: Final = "the held-out error rises"
 NOT_ARRIVED: Final = "the search does not arrive"
 SLIGHT: Final = "it corrects the shapes of others"
 AS_SLOW: Final = "a sensor as slow as that looks like the ship's own memory"
+AS_A_GEAR: Final = "the recorded rudder jumps as an order does, and a gear is as late"
 """Objections in their words."""
 
 SLOW: Final = 0.1
@@ -182,6 +185,13 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
         return "the error hardly falls"
     if grown and not refit.carried.worth >= SHAPE:
         return SLIGHT
+    return _late(fit, refit, grown)
+
+
+def _late(fit: Fit, refit: Refit, grown: bool) -> str:
+    """What speaks against a sensor or a clock that is late: what else is as late."""
+    if _late_sensor(refit) and rudder_jump(fit.trials, own_time(fit)) is not None:
+        return AS_A_GEAR
     return AS_SLOW if grown and _slow(refit) else ""
 
 
@@ -197,10 +207,19 @@ def _slow(refit: Refit) -> bool:
     """Whether it is a sensor or a clock that is late by a share of the ship's own time."""
     effect, fit = refit.candidate.effect, refit.fit
     late = [abs(fit.model.value(n)) for n, p in effect.parameters.items() if p.unit == "s"]
-    if of_the_ship(effect) or not late:
-        return False
-    own = fit.model.ship.particulars["L"] / speed(fit.model, fit.problem.trials[0])
-    return max(late) > SLOW * own
+    return bool(late) and not of_the_ship(effect) and max(late) > SLOW * own_time(fit)
+
+
+def _late_sensor(refit: Refit) -> bool:
+    """Whether it makes the record of a motion late, and not that of the rudder."""
+    effect = refit.candidate.effect
+    late = any(p.unit == "s" for p in effect.parameters.values())
+    return late and not of_the_ship(effect) and not RUDDERS & {*effect.acts_on(Delayed)}
+
+
+def own_time(fit: Fit) -> float:
+    """Time in which the ship goes her own length [s]."""
+    return fit.model.ship.particulars["L"] / speed(fit.model, fit.problem.trials[0])
 
 
 def falls(fit: Fit, refit: Refit) -> bool:

@@ -20,7 +20,9 @@ from trialid.workflow.first_pipeline.boat_choice import (
     named_by_ship,
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals, size_unit
+from trialid.workflow.first_pipeline.ordered_rudder import with_orders
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
+from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.twin_rudders import (
     RUDDERS,
     has_twins,
@@ -71,7 +73,8 @@ def starter(
         The logs hold too little, or not the same, to begin with, or the ship is not known.
     """
     own = read_ship(ship) if ship is not None else None
-    trials = with_twins(_with_speeds([choose(one, speed) for one in surveys], speed), own)
+    chosen = _with_speeds([choose(one, speed) for one in surveys], speed)
+    trials = with_sides(with_twins(chosen, own))
     _check_shared(trials)
     if ship is None and given.length is None:
         raise LogError(
@@ -91,7 +94,7 @@ def starter(
     elif is_boat(shared_signals(trials)):
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
-    trials = [size_unit(one, L, u0) for one in trials]
+    trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0)
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
 

@@ -22,6 +22,7 @@ RUDDERS: Final = ("delta", "delta_order")
 SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
 ASK_UNIT: Final = "FILL IN the unit, the log states none"
+ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
 RATES: Final = ("rad/s", "deg/s", "deg/min")
 TURNING: Final = (0.05, 2.5)
 """Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
@@ -164,8 +165,7 @@ def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     if convention is not None:
         words = "CAREFUL: side by the format's convention, the motion does not confirm it"
         return _with_side(plain, convention, words)
-    words = "FILL IN starboard or port: the side the ship turns to when it is positive"
-    return _with_side(plain, OPEN, words)
+    return _with_side(plain, OPEN, ASK_SIDE)
 
 
 def _with_side(plain: Signal, positive: str, words: str) -> Signal:

@@ -34,6 +34,9 @@ SWAY: Final = ("Yv", "Ydelta")
 ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
 """All of the roll: a rudder's heeling moment held at another ship's would drag GM along."""
 
+GEAR: Final = 0.05
+"""Lag of a small ship's gear, as a share of the time in which she goes her own length: that of a
+ship of 160 m at 15 knots is 1 s."""
 STEPS_A_LENGTH: Final = 40
 """Samples while the ship moves by her own length: she does little in a fortieth of that."""
 
@@ -51,7 +54,12 @@ def pipeline_text(
     names = _names(trials)
     for place, (name, trial) in enumerate(zip(names, trials, strict=True)):
         lines += ["", *_trial(path, name, trial, checks=place == held_out(trials))]
-    lines += ["", *_align(trials, length, speed), "", *_model(trials, ship)]
+    lines += [
+        "",
+        *_align(trials, length, speed),
+        "",
+        *_model(trials, ship, length / max(speed, 0.1)),
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -182,7 +190,7 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
     return max((p for p in PERIODS if p <= max(slow, quick) * 1.05), default=PERIODS[0])
 
 
-def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
+def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
     if known & {one.drive for one in ship.actuators if one.drive}:
         yield from boat_model(trials, ship)
@@ -204,7 +212,9 @@ def _model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
         effects.insert(0, "rudder_servo")
     yield f"effects = {_list(effects)}  # `trialid effects` lists what there is"
     if order_only:
-        yield "values = { T_delta = 1.0 }  # s, typical; put it into free once the rest fits"
+        lag = min(1.0, GEAR * own_time)
+        words = "s, typical; put it into free once the rest fits"
+        yield f"values = {{ T_delta = {lag:.2g} }}  # {words}"
     free = ["Nv", "Nr", "Ndelta", *(SWAY if "v" in known else []), *(ROLL if rolls else [])]
     yield ""
     yield "[identify]"

@@ -1,0 +1,57 @@
+"""A rudder that is at its place at once: the first pipeline reads it as its order."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from geared_rudder import geared
+
+from trialid.inspection import inspect_log
+from trialid.pipeline_file import load
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import starter
+
+T = np.arange(0.0, 600.0, 0.5)
+ORDERS = 10.0 * np.sign(np.sin(0.05 * T) + 0.3 * np.sin(0.013 * T))
+
+
+def begun(folder: Path, length: float, *rudders: np.ndarray) -> str:
+    """The pipeline of a log for each of these rudders [deg], of a ship at 6 m/s; it loads."""
+    logs = []
+    for i, delta in enumerate(rudders):
+        r = np.zeros(len(T))
+        for k in range(len(T) - 1):
+            r[k + 1] = r[k] + 0.5 * (0.05 * delta[k] - r[k]) / 15.0
+        logs.append(folder / f"log{i}.csv")
+        heads = "t,rudder_deg,rate of turn [deg/s],stw [m/s]"
+        table = np.column_stack([T, delta, r, np.full(len(T), 6.0)])
+        np.savetxt(logs[-1], table, delimiter=",", header=heads, comments="", fmt="%.6g")
+    given = Given(length=length)
+    made = starter([inspect_log(one) for one in logs], folder / "p.toml", None, given, 6.0)
+    for path, text in made.files.items():
+        path.write_text(text, encoding="utf-8")
+    load(folder / "p.toml")
+    return (folder / "p.toml").read_text(encoding="utf-8")
+
+
+def test_a_rudder_that_jumps_is_read_as_its_order(tmp_path: Path) -> None:
+    text = begun(tmp_path, 100.0, ORDERS, ORDERS)
+    assert "it jumps by 20 deg within 0.5 s, which no gear does: read as its order" in text
+    assert len(re.findall(r'^delta_order = \{ channel = "rudder_deg"', text, re.MULTILINE)) == 2
+    assert not re.search("^delta = ", text, re.MULTILINE)
+    assert "values = { T_delta = 0.83 }" in text  # of a ship of 100 m at 6 m/s; 1 from 120 m on
+
+
+@pytest.mark.parametrize(
+    ("length", "rudders"),
+    [
+        (100.0, (geared(ORDERS), geared(ORDERS))),
+        (100.0, (ORDERS, geared(ORDERS), geared(ORDERS))),  # one log of three
+        (30.0, (ORDERS, ORDERS)),  # 40 deg/s: a boat has such a gear
+    ],
+)
+def test_a_rudder_is_a_rudder(tmp_path: Path, length: float, rudders: tuple) -> None:
+    text = begun(tmp_path, length, *rudders)
+    assert "delta = {" in text
+    assert "delta_order" not in text

@@ -1,0 +1,60 @@
+"""A turn does not tell the side of its rudder; zig-zags of the same recorder do."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from geared_rudder import geared
+
+from trialid.inspection import inspect_log
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import Starter, starter
+
+T = np.arange(0.0, 600.0, 0.5)
+ZIGZAG = 10.0 * np.sign(np.sin(0.05 * T) + 0.3 * np.sin(0.013 * T))
+TURN = np.full(len(T), 20.0)
+
+
+def log(path: Path, orders: np.ndarray, gain: float, name: str = "rudder_deg") -> Path:
+    """The log of a ship that turns by so much for each degree of her rudder."""
+    delta, r = geared(orders), np.zeros(len(T))
+    for k in range(len(T) - 1):
+        r[k + 1] = r[k] + 0.5 * (gain * delta[k] - r[k]) / 15.0
+    table = np.column_stack([T, delta, r, np.cumsum(r) * 0.5, np.full(len(T), 6.0)])
+    heads = f"t,{name},rot [deg/s],heading [deg],stw [m/s]"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.6g")
+    return path
+
+
+def begun(folder: Path, *logs: Path) -> Starter:
+    return starter(
+        [inspect_log(one) for one in logs], folder / "p.toml", None, Given(length=100.0), 6.0
+    )
+
+
+@pytest.mark.parametrize(("gain", "side"), [(0.05, "starboard"), (-0.05, "port")])
+def test_a_turn_takes_the_side_of_the_zigzags_beside_it(
+    tmp_path: Path, gain: float, side: str
+) -> None:
+    """Whether she turns towards it or away is then measured, not assumed."""
+    logs = [log(tmp_path / f"z{i}.csv", ZIGZAG, gain) for i in range(2)]
+    made = begun(tmp_path, *logs, log(tmp_path / "turn.csv", TURN, gain))
+    assert made.to_fill == ()
+    text = made.files[tmp_path / "p.toml"]
+    assert text.count(f'positive = "{side}"') == 3
+    assert "side as in z0.csv, of the same name" in text
+
+
+@pytest.mark.parametrize(
+    ("gains", "name"),
+    [
+        ((0.05, -0.05), "rudder_deg"),  # the zig-zags contradict each other
+        ((0.05, 0.05), "helm_rudder_deg"),  # the turn's channel is another
+    ],
+)
+def test_what_no_other_log_shows_is_left_to_the_user(
+    tmp_path: Path, gains: tuple[float, ...], name: str
+) -> None:
+    logs = [log(tmp_path / f"z{i}.csv", ZIGZAG, gain) for i, gain in enumerate(gains)]
+    made = begun(tmp_path, *logs, log(tmp_path / "turn.csv", TURN, 0.05, name))
+    assert [words.partition(",")[0] for words in made.to_fill] == ["turn.csv: delta"]

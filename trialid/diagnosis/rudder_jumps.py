@@ -1,0 +1,85 @@
+"""A recorded rudder that is at its place at once: an order, which the steering gear follows later.
+
+Logs call both `rudder`. A gear takes seconds to move the rudder of a ship and a good part of one
+that of a model; who takes the order for the angle finds the gear's lag in the gyro.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.trial import Trial
+
+FAST: Final = np.deg2rad(300.0)
+"""[rad] What moves by more than this while the ship goes her own length is no rudder. SOLAS asks
+for 23 to 90 deg in that time, a gear of a model in a basin gave 160. Half of it would doubt the
+noise of that; twice lets the orders of a 10/10 zig-zag pass at two samples a second."""
+
+LEAST: Final = np.deg2rad(2.0)
+"""[rad] Jumps less than this are noise."""
+
+MOST: Final = 0.5
+"""Share of all that a rudder moves that it jumps. Measured rudders have 0, orders 0.6 to 1; spikes
+among samples of a rudder that moves are less than half of that."""
+
+Course = tuple[Vector, Vector]
+"""Times [s] and rudder angles [rad], NaN where it was not measured; (n,) each."""
+
+
+@dataclass(frozen=True)
+class Jump:
+    """How far a rudder goes [rad] from one sample to the next, and the time between [s]."""
+
+    angle: float
+    time: float
+
+    def __str__(self) -> str:
+        """In words, for a sentence."""
+        return f"jumps by {np.rad2deg(self.angle):.0f} deg within {self.time:.2g} s"
+
+
+def jump_of(courses: Iterable[Course], own_time: float) -> Jump | None:
+    """How the rudder of these trials jumps; None where it takes its time, or that cannot be told.
+
+    Parameters
+    ----------
+    courses
+        One for each trial.
+    own_time
+        Time in which the ship goes her own length [s].
+    """
+    jumps, times, moved = list[Vector](), list[Vector](), 0.0
+    for t, y in courses:
+        steps, between = np.abs(np.diff(y)), np.diff(t)
+        known = np.isfinite(steps) & (between > 0.0)
+        steps, between = steps[known], between[known]
+        if not len(steps):
+            continue
+        moves = steps > 3.0 * np.median(steps)
+        at_once = moves & (steps > LEAST) & (steps * own_time > FAST * between)
+        moved += float(steps[moves].sum())
+        jumps.append(steps[at_once])
+        times.append(between[at_once])
+    every = np.concatenate(jumps or [np.zeros(0)])
+    if not len(every) or every.sum() < MOST * moved:
+        return None
+    return Jump(float(np.median(every)), float(np.median(np.concatenate(times))))
+
+
+def rudder_jump(trials: Iterable[Trial], own_time: float) -> Jump | None:
+    """How the recorded rudder of these trials jumps; None where it does not, or there is none."""
+    return jump_of((_course(t) for t in trials if "delta" in t.signals), own_time)
+
+
+def said_of(jump: Jump) -> str:
+    """What to do about it, in a clause."""
+    return f"delta {jump}, which no gear does: where it is the order, call it delta_order"
+
+
+def _course(trial: Trial) -> Course:
+    y = np.array(trial.signals["delta"], dtype=np.float64)
+    y[~trial.valid["delta"]] = np.nan
+    return trial.t, y

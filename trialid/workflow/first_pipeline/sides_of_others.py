@@ -1,0 +1,42 @@
+"""The side of a channel that one trial does not show, as another trial of the recorder shows it.
+
+A turn with the rudder put over once does not tell which side it counts as positive; the zig-zags
+beside it, whose channel has the same name, do.
+"""
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+
+from trialid.workflow.first_pipeline.choice import ASK_SIDE, OPEN, Chosen, Signal
+
+Side = tuple[str, str]
+"""Starboard or port, and the log that shows it."""
+
+
+def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
+    """The trials, with sides that only others of them show; where these disagree it stays open."""
+    known = _shown(trials)
+    return [
+        dataclasses.replace(one, signals=tuple(_told(s, known) for s in one.signals))
+        for one in trials
+    ]
+
+
+def _shown(trials: Sequence[Chosen]) -> Mapping[str, Side]:
+    """Sides by the name of a channel."""
+    found: dict[str, dict[str, str]] = {}
+    for one in trials:
+        for s in one.signals:
+            if s.positive not in (None, OPEN):
+                found.setdefault(s.source.name, {}).setdefault(str(s.positive), one.path.name)
+    return {
+        name: side for name, sides in found.items() if len(sides) == 1 for side in sides.items()
+    }
+
+
+def _told(signal: Signal, known: Mapping[str, Side]) -> Signal:
+    if signal.positive != OPEN or signal.source.name not in known:
+        return signal
+    side, log = known[signal.source.name]
+    words = f"side as in {log}, of the same name; the motion here does not show it"
+    return dataclasses.replace(signal, positive=side, why=signal.why.replace(ASK_SIDE, words))
