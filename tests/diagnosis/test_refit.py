@@ -8,6 +8,7 @@ import pytest
 
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import (
+    AS_A_GEAR,
     AS_SLOW,
     HELD_OUT,
     SLIGHT,
@@ -18,6 +19,7 @@ from trialid.diagnosis.search.refit import (
     worse_held_out,
 )
 from trialid.ship.effect import Force, Lagged
+from trialid.trial import Trial
 
 FORMS = ((Force,), (Lagged,))
 """Of an effect of the ship, and of a sensor."""
@@ -142,6 +144,19 @@ def test_a_sensor_as_slow_as_the_ship_gives_way_to_what_of_her_does_as_much(late
     weak = refit("force", BEFORE, tuple(0.8 * x for x in BEFORE))[1]
     weak.candidate.effect.parameters = {}
     assert likeliest_refit(old, [lag, weak], 0.05) is lag  # it does less
+
+
+def test_no_sensor_is_late_where_the_rudder_jumps_but_its_record_may_be():
+    """A gear that follows what is recorded is as late."""
+    old, lag = lag_of(0.3, LESS)
+    steps = np.deg2rad(10.0) * np.sign(np.sin(0.3 * np.arange(200.0)))
+    known = {"delta": np.ones(200, dtype=bool)}
+    old.trials = (Trial("z", "fit", 0.1, {"delta": steps}, known),)
+    assert objection(old, lag, 0.05) == AS_A_GEAR
+    lag.candidate.effect.acts_on = lambda *forms: ("delta",)
+    assert objection(old, lag, 0.05) == ""
+    force = refit("force", BEFORE, LESS)[1]
+    assert objection(old, force, 0.05) == ""
 
 
 def test_nor_is_it_named_where_held_out_trials_deny_what_of_the_ship_does_as_much():

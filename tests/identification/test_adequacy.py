@@ -135,7 +135,7 @@ def test_a_held_out_trial_that_diverges_is_named(sound):
 
     theta = sound.theta.copy()
     theta[FEW.index("Kp")] = 0.01
-    lost = score_trial(sound.problem, theta, sound.scores[1].trial, sound.level)
+    lost = score_trial(replace(sound, theta=theta), sound.scores[1].trial)
     assert lost.response.departure is not None
     found = why_no_fit(replace(sound, scores=(sound.scores[0], lost)))
     assert "held-out trial 'zigzag-5' diverges" in found.reason

@@ -78,9 +78,7 @@ def test_a_growing_log_is_followed_and_ends_in_the_numbers_of_the_batch_run(pipe
     played = play(playback, Wishes(np.inf), time, show, follower=follower)
     assert path.read_text(encoding="utf-8") == text
     whole = align_trial(read, read.trials[-1])
-    batch = respond(
-        fit.problem.simulator, whole, *of_trial(fit.problem, fit.theta, whole), sensitivities=False
-    )
+    batch = respond(fit.problem.simulator, whole, *of_trial(fit, whole), sensitivities=False)
     assert played.at == whole.samples
     assert np.array_equal(played.stream.y, batch.y)
     print(f"\nwhat was shown moved by up to {played.revised:.2g} sigma")

@@ -60,7 +60,7 @@ def test_the_track_follows_from_rates_alone() -> None:
     simulator = prepare(sailed, (), TRACK)
     errors = {}
     for trial in trials:
-        _, start = of_trial(fit.problem, fit.theta, trial, fit.level)
+        _, start = of_trial(fit, trial)
         response = respond(simulator, trial, {}, start, sensitivities=False)
         assert response.departure is None
         there = np.column_stack([trial.signals[c] for c in TRACK])

@@ -86,7 +86,7 @@ def fitted(kept: str) -> tuple[Fit, Trial]:
 def test_a_hard_turn_is_foretold_from_zigzags_without_revolutions(kept: str) -> None:
     fit, turn = fitted(kept)
     assert "n" not in turn.signals
-    values, start = of_trial(fit.problem, fit.theta, turn, fit.level)
+    values, start = of_trial(fit, turn)
     y = respond(prepare(fit.model, (), ("u",)), turn, values, start, sensitivities=False).y
     u, left = turn.signals["u"], float(np.mean(y[-50:, 0]))
     assert float(np.mean(u[-50:])) < 0.7 * u[0]

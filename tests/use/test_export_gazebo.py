@@ -100,7 +100,7 @@ def test_it_states_what_it_costs(model: FinishedModel, text: str) -> None:
     plugin, fit = Plugin(text), model.fit
     squares = np.zeros((2, 2))
     for score in fit.scores:
-        values, start = of_trial(fit.problem, fit.theta, score.trial, fit.level)
+        values, start = of_trial(fit, score.trial)
         trial, h = score.trial, score.trial.period
         delta = trial.signals["delta"] + next(
             (x for n, x in values.items() if n.startswith("delta_0")), 0.0

@@ -68,7 +68,7 @@ def left_by_check(fit: Fit, covariance: Vector) -> tuple[LeftByCheck, ...]:
     They leave the model, or something moves them that no fitted trial tells.
     """
     problem, checks = fit.problem, [s for s in fit.scores if s.trial.use == "check"]
-    rows = [check_rows(problem, fit.theta, s.trial, fit.level) for s in checks]
+    rows = [check_rows(fit, s.trial) for s in checks]
     known = [r for r in rows if r is not None]
     if not known or len(known) < len(rows):
         return ()

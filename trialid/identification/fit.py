@@ -10,14 +10,14 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.errors import NotIdentifiable, SimulationError
 from trialid.identification.arrive import arrive
+from trialid.identification.check.common_values import common_values
 from trialid.identification.gauss_newton import REASONS, Iteration
-from trialid.identification.one_search import End, Progress
+from trialid.identification.one_search import End, Progress, why_no_start
 from trialid.identification.output_error import (
     Problem,
     linearise,
     loss,
     residual_at,
-    respond_all,
     step_halving,
 )
 from trialid.identification.problem import Settings, pose_problem
@@ -86,6 +86,11 @@ class Fit:
         point = linearise(self.problem, self.theta)
         assert not isinstance(point, Departure)
         return point[1]
+
+    @cached_property
+    def common(self) -> Mapping[str, float]:
+        """What a trial has that was not fitted: shared parameters, and the mean of each sensor."""
+        return common_values(self.problem, self.theta, self.level)
 
     @property
     def examined(self) -> "Fit":
@@ -226,7 +231,7 @@ def _searched(
         embedded = point_of_smaller(problem, smaller.estimates, smaller.problem.simulator.model)
     arrival = arrive(problem, settings, progress, embedded)
     if not arrival.best.began:
-        raise SimulationError(_why_no_start(problem))
+        raise SimulationError(why_no_start(problem))
     fit = _finish(model, problem, trials, settings, arrival.best, (arrival.same, arrival.tried))
     rivals = arrival.rivals or (() if smaller is None else smaller.rivals)
     return replace(fit, told=arrival.told, rivals=rivals)
@@ -252,22 +257,6 @@ def revive(
     return _finish(model, problem, trials, settings, None, (1, 1))
 
 
-def _why_no_start(problem: Problem) -> str:
-    departure = linearise(problem, problem.start)
-    simulator = problem.simulator
-    finer = replace(problem, simulator=replace(simulator, substeps=16 * simulator.substeps))
-    if not isinstance(respond_all(finer, problem.start, False), Departure):
-        step = problem.trials[0].period / simulator.substeps
-        return (
-            f"steps of {step:g} s are too long for this model: {departure}, with finer steps not; "
-            "choose a shorter [align] period, or more [identify] substeps"
-        )
-    return (
-        f"the model cannot be simulated at its start values: {departure}; give nearer values in "
-        "[model.values] or in the ship file, or narrower [identify] bounds"
-    )
-
-
 def _finish(
     model: ShipModel,
     problem: Problem,
@@ -284,16 +273,17 @@ def _finish(
     level = level_of(problem, residual)
     ended = zip(problem.unknowns, theta, strict=True)
     shared = {x.column: float(a) for x, a in ended if x.trial is None}
-    return Fit(
+    fit = Fit(
         model=model.with_values(shared),
         settings=settings,
         problem=problem,
         theta=theta,
         residual=residual,
-        scores=tuple(score_trial(problem, theta, t, level) for t in trials),
+        scores=(),
         iterations=() if end is None else end.path,
         reason="orthogonal" if end is None else end.minimum.reason,
         converged=end is None or end.minimum.converged,
         agreeing=agreeing,
         level=level,
     )
+    return replace(fit, scores=tuple(score_trial(fit, t) for t in trials))

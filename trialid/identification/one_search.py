@@ -1,14 +1,20 @@
 """One search from one start: least squares, robust or not, with what is known beforehand."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.identification.gauss_newton import Iteration, Minimum, minimise
-from trialid.identification.output_error import Problem, ranges, residual_at
+from trialid.identification.output_error import (
+    Problem,
+    linearise,
+    ranges,
+    residual_at,
+    respond_all,
+)
 from trialid.identification.problem import Settings
 from trialid.identification.weighing import Weighing, colour_of
 from trialid.simulation.integrate import Departure
@@ -192,3 +198,20 @@ def random_starts(problem: Problem, count: int, spread: float, seed: int) -> lis
         factor = 1.0 + spread * rng.uniform(-1.0, 1.0, len(physical))
         starts.append(np.where(physical, problem.start * factor, problem.start))
     return starts
+
+
+def why_no_start(problem: Problem) -> str:
+    """Why nothing can be simulated where a search would begin, and what to do."""
+    departure = linearise(problem, problem.start)
+    simulator = problem.simulator
+    finer = replace(problem, simulator=replace(simulator, substeps=16 * simulator.substeps))
+    if not isinstance(respond_all(finer, problem.start, False), Departure):
+        step = problem.trials[0].period / simulator.substeps
+        return (
+            f"steps of {step:g} s are too long for this model: {departure}, with finer steps not; "
+            "choose a shorter [align] period, or more [identify] substeps"
+        )
+    return (
+        f"the model cannot be simulated at its start values: {departure}; give nearer values in "
+        "[model.values] or in the ship file, or narrower [identify] bounds"
+    )

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,15 +12,15 @@ from trialid.identification.check.own_start import own_start
 from trialid.identification.check.own_taken_out import OwnTakenOut, own_taken_out
 from trialid.identification.check.start_error import StartError, start_error
 from trialid.identification.output_error import (
-    Problem,
     compared_mask,
     output_error,
     output_matrix,
-    residual_at,
 )
-from trialid.identification.weighing import level_of
-from trialid.simulation.integrate import Departure, Response, initial, respond, starts_of
+from trialid.simulation.integrate import Response, initial, respond, starts_of
 from trialid.trial import Trial
+
+if TYPE_CHECKING:
+    from trialid.identification.fit import Fit
 
 
 @dataclass(frozen=True)
@@ -43,53 +44,46 @@ def pool_errors(scored: Sequence[Score]) -> dict[str, float]:
     return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
 
 
-def of_trial(
-    problem: Problem, theta: Vector, trial: Trial, level: float | None = None
-) -> tuple[dict[str, float], dict[str, float]]:
+def of_trial(fit: "Fit", trial: Trial) -> tuple[dict[str, float], dict[str, float]]:
     """Parameters and initial states with which a fit simulates one trial.
 
     A trial to check has nothing of its own but its start and its current, if the fit leaves them
-    free too: sensors keep the mean of the fitted ones. `level` is the fit's, else found.
+    free too: for its sensors see `common_values`.
     """
+    problem = fit.problem
     if trial.use == "fit":
         place = [t.name for t in problem.trials].index(trial.name)
-        values = problem.values(theta, place)
+        values = problem.values(fit.theta, place)
         return values, starts_of(values)
-    values = _mean_values(problem, theta)
-    compared = compared_mask(trial, problem.simulator)
-    if level is None:
-        residual = residual_at(problem, theta)
-        level = 0.0 if isinstance(residual, Departure) else level_of(problem, residual)
-    own = own_start(problem, trial, compared, values, level)
-    return values | {n: own[n] for n in own if n in values}, starts_of(own)
+    own = own_start(problem, trial, compared_mask(trial, problem.simulator), fit.common, fit.level)
+    return dict(fit.common) | {n: own[n] for n in own if n in fit.common}, starts_of(own)
 
 
-def own_start_error(
-    problem: Problem, theta: Vector, trial: Trial, level: float
-) -> StartError | None:
+def own_start_error(fit: "Fit", trial: Trial) -> StartError | None:
     """How sure the start of a trial to check is; None where the fit itself says so, or none is."""
     if trial.use == "fit":
         return None
-    values = _with_start(problem, theta, trial, level)
-    return start_error(problem, trial, compared_mask(trial, problem.simulator), values, level)
+    compared = compared_mask(trial, fit.problem.simulator)
+    return start_error(fit.problem, trial, compared, _with_start(fit, trial), fit.level)
 
 
-def check_rows(problem: Problem, theta: Vector, trial: Trial, level: float) -> OwnTakenOut | None:
+def check_rows(fit: "Fit", trial: Trial) -> OwnTakenOut | None:
     """The rows of a trial to check less what is its own: see `own_taken_out`."""
-    values = _with_start(problem, theta, trial, level)
-    return own_taken_out(problem, trial, compared_mask(trial, problem.simulator), values, level)
+    compared = compared_mask(trial, fit.problem.simulator)
+    return own_taken_out(fit.problem, trial, compared, _with_start(fit, trial), fit.level)
 
 
-def _with_start(problem: Problem, theta: Vector, trial: Trial, level: float) -> dict[str, float]:
+def _with_start(fit: "Fit", trial: Trial) -> dict[str, float]:
     """All a trial to check is simulated with, its start by the name of the column."""
-    values, start = of_trial(problem, theta, trial, level)
+    values, start = of_trial(fit, trial)
     return values | {initial(n): x for n, x in start.items()}
 
 
-def score_trial(problem: Problem, theta: Vector, trial: Trial, level: float) -> Score:
+def score_trial(fit: "Fit", trial: Trial) -> Score:
     """Simulate one trial with the fitted parameters."""
+    problem = fit.problem
     compared = compared_mask(trial, problem.simulator)
-    values, start = of_trial(problem, theta, trial, level)
+    values, start = of_trial(fit, trial)
     response = respond(problem.simulator, trial, values, start, sensitivities=False)
     if response.departure is None:
         eps = _errors(trial, response, compared, problem.outputs, problem.y_rms)
@@ -110,12 +104,3 @@ def _errors(
         for i, c in enumerate(outputs)
         if compared[:, i].any()
     }
-
-
-def _mean_values(problem: Problem, theta: Vector) -> dict[str, float]:
-    """Shared parameters, and the mean over the trials of what belongs to a sensor."""
-    gathered: dict[str, list[float]] = {}
-    for x, a in zip(problem.unknowns, theta, strict=True):
-        if not x.column.endswith("(0)"):
-            gathered.setdefault(x.column, []).append(float(a))
-    return {n: float(np.mean(a)) for n, a in gathered.items()}

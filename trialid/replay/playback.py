@@ -61,7 +61,7 @@ class Playback:
     ) -> None:
         self.fit, self.trial, self.bands, self.growing = fit, trial, bands, growing
         self.prediction_band = prediction_band
-        self.stream = Stream(fit.problem.simulator, trial, *of_trial(fit.problem, fit.theta, trial))
+        self.stream = Stream(fit.problem.simulator, trial, *of_trial(fit, trial))
         self.monitor = Monitor(bands.of, trial.period, trial.samples)
         self.measured = output_matrix(trial, fit.problem.outputs)
         self.compared = compared_mask(trial, fit.problem.simulator)

@@ -28,7 +28,7 @@ def track_of(fit: Fit, score: Score) -> TrackSeries | None:
         return None
     simulated = {*POSITION} <= {*fit.problem.outputs} and score.response.departure is None
     predicted = _compared(fit, score) if simulated else sail_plainly(fit, trial)
-    values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
+    values, _ = of_trial(fit, trial)
     known = [values.get(n) for n in CURRENT]
     lost = np.full(trial.samples, np.nan)
     return TrackSeries(

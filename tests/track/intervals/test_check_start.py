@@ -34,7 +34,7 @@ def logged(seed: int) -> Fit:
 
 def found(fit: Fit, theta: np.ndarray) -> dict[str, float]:
     """All that the circle has for itself."""
-    values, start = of_trial(fit.problem, theta, fit.scores[1].trial, fit.level)
+    values, start = of_trial(replace(fit, theta=theta), fit.scores[1].trial)
     return values | {f"{n}(0)": x for n, x in start.items()}
 
 
@@ -44,7 +44,7 @@ def fit() -> Fit:
 
 
 def test_it_moves_with_the_parameters_as_is_said(fit: Fit) -> None:
-    known = own_start_error(fit.problem, fit.theta, fit.scores[1].trial, fit.level)
+    known = own_start_error(fit, fit.scores[1].trial)
     assert known is not None
     assert {"u(0)", *CURRENT} <= {*known.names}
     for i, name in enumerate(known.shared):
@@ -59,13 +59,13 @@ def test_it_moves_with_the_parameters_as_is_said(fit: Fit) -> None:
 
 def test_noise_leaves_it_as_open_as_is_said(fit: Fit) -> None:
     """The same ship, another day's noise: 40 circles, whose scatter is known to 11 %."""
-    known = own_start_error(fit.problem, fit.theta, fit.scores[1].trial, fit.level)
+    known = own_start_error(fit, fit.scores[1].trial)
     assert known is not None
     errors = dict(zip(known.names, np.linalg.norm(known.noise, axis=1), strict=True))
     rng, each = np.random.default_rng(7), []
     for _ in range(40):
         trial = noisy(sailed("circle", CURRENTS["circle"], "check"), rng)
-        values, start = of_trial(fit.problem, fit.theta, trial, fit.level)
+        values, start = of_trial(fit, trial)
         each.append([start["u"], *(values[n] for n in CURRENT)])
     scatter = np.std(each, axis=0)
     np.testing.assert_allclose([errors[n] for n in ("u(0)", *CURRENT)], scatter, rtol=0.35)
@@ -75,9 +75,9 @@ def test_it_is_found_however_exact_positions_are() -> None:
     """Of 2 cm: where it ends is where a search from there ends, within a tenth of its error."""
     fit = fitted(6106, RECEIVERS["RTK"], held=True)
     [circle] = [s.trial for s in fit.scores if s.trial.use == "check"]
-    values, start = of_trial(fit.problem, fit.theta, circle, fit.level)
+    values, start = of_trial(fit, circle)
     ended = values | {f"{n}(0)": x for n, x in start.items()}
-    known = own_start_error(fit.problem, fit.theta, circle, fit.level)
+    known = own_start_error(fit, circle)
     assert known is not None
     compared = compared_mask(circle, fit.problem.simulator)
     priors = priors_of(fit.problem, circle, known.names)
@@ -90,7 +90,7 @@ def test_it_is_found_however_exact_positions_are() -> None:
 
 
 def test_a_fitted_trial_has_its_errors_from_the_fit(fit: Fit) -> None:
-    assert own_start_error(fit.problem, fit.theta, fit.scores[0].trial, fit.level) is None
+    assert own_start_error(fit, fit.scores[0].trial) is None
 
 
 def test_noise_of_an_anemometer_is_in_it() -> None:
@@ -99,12 +99,12 @@ def test_noise_of_an_anemometer_is_in_it() -> None:
     zigzag, circle = (sailed_wind.noisy(blown(n), rng, air=3.0) for n in ("zigzag", "circle"))
     logs = [replace(zigzag, use="check"), circle]
     fit = identify(logs, WINDY, sailed_wind.SETTINGS)
-    known = own_start_error(fit.problem, fit.theta, fit.scores[0].trial, fit.level)
+    known = own_start_error(fit, fit.scores[0].trial)
     assert known is not None
     each = []
     for _ in range(40):
         trial = replace(sailed_wind.noisy(blown("zigzag"), rng, air=3.0), use="check")
-        values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
+        values, _ = of_trial(fit, trial)
         each.append([values[n] for n in CURRENT])
     errors = np.linalg.norm(known.noise, axis=1)[[known.names.index(n) for n in CURRENT]]
     white = np.linalg.norm(known.noise[:, : len(known.names)], axis=1)

@@ -50,7 +50,7 @@ def test_a_trial_to_check_finds_its_own_current() -> None:
     rng = np.random.default_rng(5)
     check = noisy(sailed("zigzag", CURRENTS["zigzag"], "check"), rng)
     fit = identify([trials(0)[0], check], SHIP, SETTINGS)
-    values, _ = of_trial(fit.problem, fit.theta, check)
+    values, _ = of_trial(fit, check)
     assert values["V_ce"] == pytest.approx(CURRENTS["zigzag"][1], abs=0.08)
     assert fit.eps_check_by_output["y"] < 0.05
 

@@ -151,7 +151,7 @@ def _sailing(
     model = with_track(fit, trial)
     for effect in (e for e in model.effects if calm and is_wind(e)):
         model = model - effect.name
-    values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
+    values, _ = of_trial(fit, trial)
     begun = {"psi": float(windy.track["psi"][span.start]), **motion.values}
     kept = {n: x for n, x in begun.items() if n in ("u", "psi") or not calm}
     start = dict.fromkeys(model.states, 0.0) | kept

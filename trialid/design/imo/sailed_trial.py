@@ -82,12 +82,8 @@ class Sailing:
 def sail_trial(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | None:
     """The trial as the fitted ship sails it; None where she cannot, or leaves her model."""
     try:
-        values, start = of_trial(fit.problem, fit.theta, trial, fit.level)
-        known = (
-            own_start_error(fit.problem, fit.theta, trial, fit.level)
-            if trial.use == "check"
-            else None
-        )
+        values, start = of_trial(fit, trial)
+        known = own_start_error(fit, trial) if trial.use == "check" else None
         one = Sailing(
             model=with_track(fit, trial),
             trial=trial,
@@ -173,7 +169,7 @@ def sail(fit: Fit, one: Sailing, spread: LikelySpread, more: int = 0) -> SailedT
 def sail_plainly(fit: Fit, trial: Trial) -> Track | None:
     """The track alone as the fitted ship sails it, from the first position and heading recorded."""
     try:
-        _, start = of_trial(fit.problem, fit.theta, trial, fit.level)
+        _, start = of_trial(fit, trial)
         response = respond(_plain(with_track(fit, trial)), trial, {}, start, sensitivities=False)
     except (EffectError, NotIdentifiable):
         return None

@@ -162,7 +162,7 @@ def water_of(
     fit: Fit, trial: Trial, errors: Mapping[str, float], spread: LikelySpread | None
 ) -> Water | None:
     """The current of a trial; None where the fit looks for none."""
-    values, _ = of_trial(fit.problem, fit.theta, trial, fit.level)
+    values, _ = of_trial(fit, trial)
     if not {*CURRENT} <= {*values}:
         return None
     north, east = (values[n] for n in CURRENT)
@@ -173,7 +173,7 @@ def water_of(
 
 def _found_error(fit: Fit, trial: Trial, spread: LikelySpread | None) -> tuple[float, float] | None:
     """Of the current that a trial to check has found for itself."""
-    found = own_start_error(fit.problem, fit.theta, trial, fit.level)
+    found = own_start_error(fit, trial)
     if found is None or spread is None or not {*CURRENT} <= {*found.names}:
         return None
     places = [spread.fitted.index(c) for c in found.shared]

@@ -74,7 +74,7 @@ def _costs(fit: Fit, terms: HullTerms) -> tuple[Cost, ...]:
     outputs = whole.outputs
     squares = np.zeros((3, len(outputs)))
     for score in (s for s in fit.scores if s.trial.use == "fit"):
-        values, start = of_trial(fit.problem, fit.theta, score.trial, fit.level)
+        values, start = of_trial(fit, score.trial)
         known = {n: values[n] for n in free}
         response = respond(simulator, score.trial, known, start, sensitivities=False)
         for c, name in enumerate(outputs):

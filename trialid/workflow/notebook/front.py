@@ -144,7 +144,7 @@ def simulate(
     begun = dict(start or {})
     if isinstance(model, Fit):
         simulator, outputs = model.problem.simulator, model.problem.outputs
-        values, own = of_trial(model.problem, model.theta, trial)
+        values, own = of_trial(model, trial)
         begun = {**own, **begun}
     else:
         simulator = prepare(model, (), outputs)
