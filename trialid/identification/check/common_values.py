@@ -14,7 +14,7 @@ from trialid.identification.output_error import Problem, linearise
 from trialid.simulation.integrate import Departure
 
 LEAST: Final = 1e-30
-"""A variance that is none, of a record without noise."""
+"""A variance that is none, of a record without noise; one over it is of what no record moves."""
 
 UNKNOWN: Final = 1e-12
 """Squared sine of the angle to all other columns at which a record tells nothing of an unknown."""
@@ -44,7 +44,7 @@ def mean_between(values: Vector, variances: Sequence[float] | Vector) -> float:
     Each weighs by its own variance and that between them, which is what their scatter has beyond
     their own: DerSimonian & Laird (1986), Controlled Clinical Trials 7, 177-188.
     """
-    weights = 1.0 / np.maximum(variances, LEAST)
+    weights = 1.0 / np.clip(variances, LEAST, 1.0 / LEAST)
     if len(values) > 1:
         mean = float(weights @ values) / float(weights.sum())
         excess = float(weights @ (values - mean) ** 2) - (len(values) - 1)
