@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import s175q
 
-from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
 from trialid.diagnosis.rudder_jumps import Course, jump_of, rudder_jump
 from trialid.diagnosis.search import refit
 from trialid.diagnosis.search.refit import own_time
@@ -103,3 +103,13 @@ def test_no_sensor_is_late_where_the_rudder_jumps(T: float) -> None:
 def test_where_nobody_looks_at_the_rudder_a_sensor_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(refit, "rudder_jump", lambda *_: None)
     assert named(identify(recorded_orders(6.0), s175q.MODEL, s175q.SETTINGS)) == "lag_phi"
+
+
+@pytest.mark.study
+def test_where_nothing_else_is_tried_nobody_can_tell() -> None:
+    sensors = {n: CATALOGUE[n] for n in ("lag_r", "lag_phi", "delay_r", "delay_phi")}
+    fit = identify(recorded_orders(6.0), s175q.MODEL, s175q.SETTINGS)
+    found = diagnose(fit, DiagnoseSettings(candidates=sensors, coefficients=False)).verdict
+    assert (found.kind, found.effect) == ("cannot tell", None)
+    assert "but the recorded rudder jumps as an order does, and a gear is as late" in found.sentence
+    assert found.sentence.endswith("where it is the order, call it delta_order")

@@ -10,6 +10,7 @@ from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import (
+    AS_A_GEAR,
     AS_SLOW,
     HELD_OUT,
     NOT_ARRIVED,
@@ -26,7 +27,7 @@ from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import far_ahead
 from trialid.diagnosis.verdict_sentences import (
-    as_slow,
+    as_late,
     contradiction,
     correction,
     denied_lead,
@@ -99,8 +100,9 @@ def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> 
     """What one check alone denies, where nothing stands them all; None where that is nothing."""
     if (against := _standing_but(HELD_OUT, fit, refits, level)) is not None:
         return contradiction(fit, against)
-    if grown and (slow := _standing_but(AS_SLOW, fit, refits, level)) is not None:
-        return as_slow(fit, slow)
+    for why in (AS_A_GEAR, AS_SLOW) if grown else (AS_A_GEAR,):
+        if (late := _standing_but(why, fit, refits, level)) is not None:
+            return as_late(fit, late, why)
     if grown and (slight := _standing_but(SLIGHT, fit, refits, level)) is not None:
         return correction(slight)
     return None

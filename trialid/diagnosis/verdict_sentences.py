@@ -23,12 +23,10 @@ def outdone_by_a_shape(named: Refit | None, whole: Completeness) -> str:
     )
 
 
-def as_slow(fit: Fit, found: Refit) -> str:
-    """A sensor is as late as the ship's own memory would be."""
-    return (
-        f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but beside the effects "
-        f"that were added {AS_SLOW}, which does as much"
-    )
+def as_late(fit: Fit, found: Refit, why: str) -> str:
+    """A sensor is as late as something else would be, her own memory or her steering gear."""
+    but = f"beside the effects that were added {why}, which does as much" if why == AS_SLOW else why
+    return f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but {but}"
 
 
 def contradiction(fit: Fit, found: Refit) -> str:

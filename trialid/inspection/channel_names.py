@@ -17,6 +17,7 @@ PHRASES: Final = {
     "ruderwinkel, rorvinkel, roerhoek",
     "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
+    "wendegeschw, drehgeschw, "
     "drehrate, wendegeschwindigkeit, drehgeschwindigkeit, gierrate, "
     "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, gyro z",
     "p": "roll rate, rollrate, rollgeschwindigkeit, roll speed, rollspeed, roll velocity, "
