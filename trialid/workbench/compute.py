@@ -1,5 +1,7 @@
 """One model worked out, and shown as far as it is known after each step of the way."""
 
+import ctypes
+import os
 from dataclasses import dataclass, replace
 from operator import is_
 from typing import Protocol
@@ -219,3 +221,14 @@ def _measured(pipeline: Pipeline, trials: tuple[Trial, ...]) -> tuple[TrialSerie
         )
         for trial in trials
     )
+
+
+def give_back_memory() -> None:
+    """Give the system back what nothing holds any more.
+
+    The C library of Linux keeps it for later: of five trials of 100 000 samples 380 MB of 810, on
+    top of which the next model would be worked out. Other systems give it back by themselves.
+    """
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
+    if trim is not None:
+        trim(0)

@@ -14,7 +14,7 @@ from typing import Final
 from trialid.errors import PipelineError, TrialidError
 from trialid.pipeline_file import Pipeline
 from trialid.result.change_rows import StepRow
-from trialid.workbench.compute import Job, LetGo, Seat, Task, work_out
+from trialid.workbench.compute import Job, LetGo, Seat, Task, give_back_memory, work_out
 from trialid.workbench.document import Document, Step
 from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Shown, Trouble, Working, goes_on, place_of
@@ -184,6 +184,8 @@ class Desk:
                 raise
             else:
                 self._finished(job)
+            finally:
+                give_back_memory()
 
     def _finished(self, job: Job) -> None:
         with self._lock:

@@ -88,6 +88,18 @@ def take_out(Q: Vector, S: Vector) -> None:
         S[rows] -= Q[rows] @ reach
 
 
+def products(Q: Vector, S: Vector, residual: Vector) -> tuple[Vector, Vector]:
+    """Of what Q does not reach of columns: with each other and with the residual; (n, n), (n,)."""
+    reach, gram = Q.T @ S, np.zeros((S.shape[1], S.shape[1]))
+    moment = np.zeros(S.shape[1])
+    for start in range(0, len(S), TOGETHER):
+        rows = slice(start, start + TOGETHER)
+        left = S[rows] - Q[rows] @ reach
+        gram += left.T @ left
+        moment += left.T @ residual[rows]
+    return gram, moment
+
+
 def gather(
     residual: Vector,
     psi: Vector,
