@@ -84,7 +84,10 @@ def test_parameters_that_are_hardly_known_are_not_blamed_on_the_model():
 
 def test_the_zero_of_a_sensor_is_the_trials_own():
     trials = sailed(12, (5, 10), (20,), offset=3.0 * GYRO)
-    assert said(identify(trials, MODEL, BIASED)) == NOTHING
+    found = said(identify(trials, MODEL, BIASED))
+    assert found.kind == "nothing missing"
+    assert "; of r trials held out leave" in found.sentence
+    assert "with zeros and delays of their own: sensors differ so, or take up" in found.sentence
     assert said(identify(trials, MODEL, SETTINGS)).kind == "cannot tell"
 
 

@@ -146,6 +146,17 @@ def test_a_sensor_as_slow_as_the_ship_gives_way_to_what_of_her_does_as_much(late
     assert likeliest_refit(old, [lag, weak], 0.05) is lag  # it does less
 
 
+def test_in_a_grown_model_any_sensor_gives_way_to_what_held_out_trials_alone_deny():
+    """That the hull is another is known then; chance's denial is no reason."""
+    old, lag = lag_of(0.3, ALIKE)
+    denied = refit("force", BEFORE, LESS, check=(0.2, 0.21))[1]
+    denied.candidate.effect.parameters = {}
+    assert likeliest_refit(old, [lag, denied], 0.05) is lag
+    assert likeliest_refit(old, [lag, denied], 0.05, grown=True) is None
+    denied.candidate.shown = lambda level: False
+    assert likeliest_refit(old, [lag, denied], 0.05, grown=True) is lag
+
+
 def test_no_sensor_is_late_where_the_rudder_jumps_but_its_record_may_be():
     """A gear that follows what is recorded is as late."""
     old, lag = lag_of(0.3, LESS)

@@ -8,7 +8,7 @@ import numpy as np
 
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.rudder_jumps import rudder_jump
-from trialid.diagnosis.search.carried import EACH, FAINT, FALL, SHAPE, Carried, as_good
+from trialid.diagnosis.search.carried import EACH, FAINT, FALL, SHAPE, Carried, as_good, is_far
 from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
@@ -123,19 +123,38 @@ def likeliest_refit(
     fit: Fit, refits: Sequence[Refit], level: float, grown: bool = False
 ) -> Refit | None:
     """Of the refits that stand every check the one whose fall carries over best."""
-    sound = [r for r in refits if not objection(fit, r, level, grown)]
-    return best_of(
-        [r for r in sound if not _looks_like_the_ship(fit, r, refits, level)], level, grown
+    able = [
+        r
+        for r in refits
+        if not objection(fit, r, level, grown)
+        and not _looks_like_the_ship(fit, r, refits, level, grown)
+    ]
+    best = best_of(able, level, grown)
+    if best is None:
+        return None
+    ahead = [r for r in able if _foretells_more(fit, r, best)]
+    return best_of(ahead, level, grown) or best
+
+
+def _foretells_more(fit: Fit, refit: Refit, best: Refit) -> bool:
+    """Whether an effect as good on blocks takes far more off in the trials held out."""
+    return as_good(best.carried.after, refit.carried.after) and is_far(
+        _fall_of_check(fit, refit), _fall_of_check(fit, best)
     )
 
 
-def _looks_like_the_ship(fit: Fit, refit: Refit, refits: Sequence[Refit], level: float) -> bool:
-    """Whether a sensor is as late as a hull remembers, and an effect of the ship does as much.
+def _looks_like_the_ship(
+    fit: Fit, refit: Refit, refits: Sequence[Refit], level: float, grown: bool
+) -> bool:
+    """Whether an effect of the ship does as much as a sensor that looks like one.
 
-    By the blocks: whatever held-out trials say of that effect, the record does not tell them apart.
-    A gyro of a model of 3 m was named as 3.5 to 5 s late where nobody had told of the wind.
+    Late ones do, of a hull that remembers, and in a model that has grown, whose hull is another,
+    all may. By the blocks: whatever held-out trials say of that effect, the record does not tell
+    them apart. Of a model of 3 m in wind a gyro was named as 3.5 to 5 s late where nobody had told
+    of the wind, and her sway as measured 1 m aft where it was.
     """
-    return _slow(refit) and any(
+    doubted = grown and not of_the_ship(refit.candidate.effect)
+    return (doubted or _slow(refit)) and any(
         of_the_ship(r.candidate.effect)
         and objection(fit, r, level) in ("", HELD_OUT)
         and as_good(refit.carried.after, r.carried.after)
@@ -239,6 +258,12 @@ def worse_held_out(before: Fit, after: Fit) -> bool:
 def fall(fit: Fit, refit: Refit) -> float:
     """Share of the squared error that goes with an effect."""
     return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
+
+
+def _fall_of_check(fit: Fit, refit: Refit) -> float:
+    """Share of the squared error of held-out trials that goes with an effect; 0 without any."""
+    old, new = fit.eps_check, refit.fit.eps_check
+    return 0.0 if old is None or new is None else float(1.0 - (new / old) ** 2)
 
 
 def own_fall(fit: Fit, refit: Refit) -> float:

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.search.augment import Augmented, augment
-from trialid.diagnosis.search.carried import LARGE
+from trialid.diagnosis.search.carried import is_far
 from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.refit import (
     Progress,
@@ -31,14 +31,6 @@ from trialid.ship.effect import Effect
 
 MOST: Final = 3
 """How often the best effect may give way: each takes the slopes of the whole catalogue anew."""
-
-
-FAR: Final = 2.0
-"""By how much more of the squared error an effect takes off than any that stands every check, and a
-tenth of it at least, where it is looked at whatever speaks against it. Found on a ship that a wind
-and her screw push to one side (5414, 5456 of `growth/hidden_several.py`), where a hull that is
-driven on by her drift stands in for both: there the wind foretells 0.51 and 0.47, and what was
-named took 0.08 and 0.05 off. Half of it asks of any that does more, twice changes neither."""
 
 
 @dataclass(frozen=True)
@@ -103,20 +95,16 @@ def foretell_far_more(
     able = [c for c in ranking if c.allowed and c.effect.name not in fitted]
     most = max(able, key=lambda c: _foretold(fit, c), default=None)
     done = max((fall(fit, r) for r in refits if r.fit.converged), default=0.0)
-    return [most] if most is not None and _is_far(_foretold(fit, most), done) else []
+    return [most] if most is not None and is_far(_foretold(fit, most), done) else []
 
 
 def far_ahead(
     fit: Fit, named: Refit, refits: Sequence[Refit], level: float, *, grown: bool
 ) -> Refit | None:
     """The refit that takes far more off than the one to be named, though something denies it."""
-    far = [r for r in refits if r.fit.converged and _is_far(fall(fit, r), fall(fit, named))]
+    far = [r for r in refits if r.fit.converged and is_far(fall(fit, r), fall(fit, named))]
     denied = [r for r in far if objection(fit, r, level, grown)]
     return max(denied, key=lambda r: fall(fit, r), default=None)
-
-
-def _is_far(more: float, less: float) -> bool:
-    return more > max(FAR * less, 1.0 - LARGE)
 
 
 def _foretold(fit: Fit, candidate: Candidate) -> float:

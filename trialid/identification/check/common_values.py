@@ -61,6 +61,6 @@ def _variances(problem: Problem, theta: Vector, level: float) -> Vector:
     normal = point[1].T @ point[1]
     for i, x in enumerate(problem.unknowns):
         normal[i, i] += (level / x.prior[1]) ** 2 if x.prior else 0.0
-    size = np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    size = np.sqrt(np.maximum(np.diag(normal), LEAST**2))
     unit = normal / np.outer(size, size) + UNKNOWN * np.eye(len(size))
     return np.asarray(level**2 * np.diag(np.linalg.inv(unit)) / size**2)
