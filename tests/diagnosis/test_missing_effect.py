@@ -172,7 +172,12 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
         "delta_order"
     )
     known = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")
-    assert name_records(fit, known, wind) is known
+    assert name_records(fit, known, wind).sentence == (
+        "rudder_cubic is missing; delta jumps by 10 deg within 0.5 s, which no gear does: where it "
+        "is the order, call it delta_order"
+    )
+    fit.trials = (trial,)
+    assert name_records(fit, known, wind) == known
 
 
 @pytest.mark.parametrize(

@@ -29,12 +29,11 @@ SHOWN: Final = 5
 def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdict:
     """The verdict; where what is missing has no name, with the signals that not all trials hold.
 
-    And with the rudder, where what is recorded of it is its order.
+    Whatever it is, with what is recorded as the rudder, where that is its order.
     """
-    if verdict.kind not in UNANSWERED:
-        return verdict
+    unrecorded = _unrecorded(fit, effects) if verdict.kind in UNANSWERED else ""
     jump = rudder_jump(fit.trials, own_time(fit))
-    clauses = (verdict.sentence, _unrecorded(fit, effects), said_of(jump) if jump else "")
+    clauses = (verdict.sentence, unrecorded, said_of(jump) if jump else "")
     return replace(verdict, sentence="; ".join(filter(None, clauses)))
 
 
