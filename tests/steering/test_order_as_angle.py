@@ -90,7 +90,7 @@ def named(fit: Fit) -> str | None:
     return diagnose(fit).verdict.effect
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=0)
 @pytest.mark.parametrize("T", [3.0, 6.0])
 def test_no_sensor_is_late_where_the_rudder_jumps(T: float) -> None:
     """The gear is: its nearest among what can be tried is a record of the rudder that is late."""
@@ -99,13 +99,13 @@ def test_no_sensor_is_late_where_the_rudder_jumps(T: float) -> None:
     assert named(fit) == "rudder_record_delay"
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=0)
 def test_where_nobody_looks_at_the_rudder_a_sensor_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(refit, "rudder_jump", lambda *_: None)
     assert named(identify(recorded_orders(6.0), s175q.MODEL, s175q.SETTINGS)) == "lag_phi"
 
 
-@pytest.mark.study
+@pytest.mark.study(turn=0)
 def test_where_nothing_else_is_tried_nobody_can_tell() -> None:
     sensors = {n: CATALOGUE[n] for n in ("lag_r", "lag_phi", "delay_r", "delay_phi")}
     fit = identify(recorded_orders(6.0), s175q.MODEL, s175q.SETTINGS)
