@@ -157,6 +157,21 @@ def test_in_a_grown_model_any_sensor_gives_way_to_what_held_out_trials_alone_den
     assert likeliest_refit(old, [lag, denied], 0.05, grown=True) is lag
 
 
+def test_of_effects_as_good_the_one_that_held_out_trials_put_far_ahead_is_named():
+    """But no sensor, nor one that takes only a little more off there."""
+    old, drag = refit("drag", BEFORE, LESS, check=(0.2, 0.19))
+    wind = refit("wind", BEFORE, LESS, check=(0.2, 0.12))[1]
+    wind.candidate.p_value = 0.06  # of two as good this one does not stand out
+    assert best_of([drag, wind], 0.05) is drag
+    assert likeliest_refit(old, [drag, wind], 0.05) is wind
+    slightly = refit("wind", BEFORE, LESS, check=(0.2, 0.185))[1]
+    slightly.candidate.p_value = 0.06
+    assert likeliest_refit(old, [drag, slightly], 0.05) is drag
+    lag = refit("lag", BEFORE, LESS, check=(0.2, 0.12))[1]
+    lag.candidate.p_value = 0.06
+    assert likeliest_refit(old, [drag, lag], 0.05) is drag
+
+
 def test_no_sensor_is_late_where_the_rudder_jumps_but_its_record_may_be():
     """A gear that follows what is recorded is as late."""
     old, lag = lag_of(0.3, LESS)

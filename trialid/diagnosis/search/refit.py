@@ -130,16 +130,18 @@ def likeliest_refit(
         and not _looks_like_the_ship(fit, r, refits, level, grown)
     ]
     best = best_of(able, level, grown)
-    if best is None:
-        return None
+    if best is None or grown:  # what is added later is held against these trials step by step
+        return best
     ahead = [r for r in able if _foretells_more(fit, r, best)]
     return best_of(ahead, level, grown) or best
 
 
 def _foretells_more(fit: Fit, refit: Refit, best: Refit) -> bool:
-    """Whether an effect as good on blocks takes far more off in the trials held out."""
-    return as_good(best.carried.after, refit.carried.after) and is_far(
-        _fall_of_check(fit, refit), _fall_of_check(fit, best)
+    """Whether an effect of the ship as good on blocks takes far more off in trials held out."""
+    return (
+        of_the_ship(refit.candidate.effect)
+        and as_good(best.carried.after, refit.carried.after)
+        and is_far(_fall_of_check(fit, refit), _fall_of_check(fit, best))
     )
 
 
