@@ -9,9 +9,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
 
-from trialid.diagnosis.rudder_jumps import rudder_jump, said_of
+from trialid.diagnosis.rudder_jumps import said_of
 from trialid.diagnosis.search.candidates import missing_signals
-from trialid.diagnosis.search.refit import own_time
+from trialid.diagnosis.search.refit import jump_in
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit
 from trialid.names.quantities import SIGNALS
@@ -32,7 +32,7 @@ def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdi
     Whatever it is, with what is recorded as the rudder, where that is its order.
     """
     unrecorded = _unrecorded(fit, effects) if verdict.kind in UNANSWERED else ""
-    jump = rudder_jump(fit.trials, own_time(fit))
+    jump = jump_in(fit)
     clauses = (verdict.sentence, unrecorded, said_of(jump) if jump else "")
     return replace(verdict, sentence="; ".join(filter(None, clauses)))
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
-from trialid.diagnosis.rudder_jumps import rudder_jump
+from trialid.diagnosis.rudder_jumps import Jump, rudder_jump
 from trialid.diagnosis.search.carried import EACH, FAINT, FALL, SHAPE, Carried, as_good, is_far
 from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.score import Candidate
@@ -211,7 +211,7 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
 
 def _late(fit: Fit, refit: Refit, grown: bool) -> str:
     """What speaks against a sensor or a clock that is late: what else is as late."""
-    if _late_sensor(refit) and rudder_jump(fit.trials, own_time(fit)) is not None:
+    if _late_sensor(refit) and jump_in(fit) is not None:
         return AS_A_GEAR
     return AS_SLOW if grown and _slow(refit) else ""
 
@@ -236,6 +236,12 @@ def _late_sensor(refit: Refit) -> bool:
     effect = refit.candidate.effect
     late = any(p.unit == "s" for p in effect.parameters.values())
     return late and not of_the_ship(effect) and not RUDDERS & {*effect.acts_on(Delayed)}
+
+
+def jump_in(fit: Fit) -> Jump | None:
+    """How the rudder of a fit's trials jumps; None where it does not, or there is none."""
+    steered = [t for t in fit.trials if "delta" in t.signals]
+    return rudder_jump(steered, own_time(fit)) if steered else None
 
 
 def own_time(fit: Fit) -> float:

@@ -23,6 +23,7 @@ SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
 ASK_UNIT: Final = "FILL IN the unit, the log states none"
 ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
+MEASURED: Final = "side measured"
 RATES: Final = ("rad/s", "deg/s", "deg/min")
 TURNING: Final = (0.05, 2.5)
 """Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
@@ -156,9 +157,7 @@ def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     found = side(plain.source, witness, towards)
     convention = plain.source.guess.positive if plain.source.guess else None
     if found is not None:
-        words = (
-            f"side measured: correlation with {found.by}, of {witness.key}, {found.strength:+.2f}"
-        )
+        words = f"{MEASURED}: correlation with {found.by}, of {witness.key}, {found.strength:+.2f}"
         if convention is not None and convention != found.side:
             words += f", though the format says {convention}"
         return _with_side(plain, found.side, words)

@@ -7,7 +7,7 @@ beside it, whose channel has the same name, do.
 import dataclasses
 from collections.abc import Mapping, Sequence
 
-from trialid.workflow.first_pipeline.choice import ASK_SIDE, OPEN, Chosen, Signal
+from trialid.workflow.first_pipeline.choice import ASK_SIDE, MEASURED, OPEN, Chosen, Signal
 
 Side = tuple[str, str]
 """Starboard or port, and the log that shows it."""
@@ -27,7 +27,7 @@ def _shown(trials: Sequence[Chosen]) -> Mapping[str, Side]:
     found: dict[str, dict[str, str]] = {}
     for one in trials:
         for s in one.signals:
-            if s.positive not in (None, OPEN):
+            if s.positive not in (None, OPEN) and MEASURED in s.why:  # no mere convention
                 found.setdefault(s.source.name, {}).setdefault(str(s.positive), one.path.name)
     return {
         name: side for name, sides in found.items() if len(sides) == 1 for side in sides.items()
