@@ -134,6 +134,28 @@ def test_a_roll_damped_as_no_ships_is_tells_no_gm(seed, ratio):
     assert any("as no ship's is" in line for line in remarks(fit))
 
 
+def test_a_gm_that_leans_on_a_clock_no_sensor_has_is_not_told():
+    """She was found with a fifth of her GM and an inclinometer two seconds early, and no rival."""
+    drawn = draw(9982)
+    fit = identify(drawn.trials, begun(drawn), SETTINGS)
+    assert fit.value("GM") < 0.25 * drawn.GM
+    assert fit.rivals[-1]["GM"] == pytest.approx(drawn.GM, rel=0.1)
+    assert any("is no sensor's" in line for line in remarks(fit))
+
+
+def test_a_clock_that_is_off_hides_no_gm_of_a_ship_that_rolls():
+    """Recorded 2 s late, as no sensor is; her resonance is told without it."""
+    late = []
+    for trial in (noisy(10, 1), noisy(20, 2)):
+        phi = np.r_[np.repeat(trial.signals["phi"][0], 4), trial.signals["phi"][:-4]]
+        late.append(replace(trial, signals={**trial.signals, "phi": phi}))
+    fit = identify(late, MODEL, SETTINGS)
+    assert fit.value("tau_phi [zigzag-10]") == pytest.approx(2.0, abs=0.1)
+    assert "tau_phi [zigzag-10]" in fit.contradicted
+    assert fit.value("GM") == pytest.approx(MODEL.value("GM"), rel=0.05)
+    assert fit.rivals == ()
+
+
 def test_a_gm_that_the_record_tells_has_no_rivals():
     """Damped by 0.02 to 0.15 of what is critical, and rolled by her rudder."""
     for seed in (7209, 7248):

@@ -88,11 +88,11 @@ class Diagnosis:
     """
 
     before: Diagnosed
-    ranking: tuple[Candidate, ...]
     left_out: Mapping[str, str]
-    refits: tuple[Refit, ...]
     verdict: Verdict
     where: Where
+    ranking: tuple[Candidate, ...] = ()
+    refits: tuple[Refit, ...] = ()
     after: Diagnosed | None = None
     force: MissingForce | None = None
 
@@ -118,24 +118,26 @@ def diagnose(
     by_noise = partial(_leaves_noise, asked=asked)
     if faults := gross_faults(fit, asked.candidates, progress, by_noise):
         return _gross(fit, before, augmented.left_out, faults, asked)
-    if (failed := why_no_fit(fit)) is not None:
+    failed = why_no_fit(fit)
+    if failed is not None and not failed.may_lack:
         return _no_fit(fit, before, augmented.left_out, failed)
     whole, left_out = _any_shape(augmented), augmented.left_out
     del augmented  # columns of the whole catalogue, before there are those of the next model
     tried = refits_of(fit, ranking, asked, lambda words: progress(words, 0.7), grown)
-    refits = tried.refits
-    if faults := _whole(fit, ranking, refits, asked, progress):
+    if faults := _whole(fit, ranking, tried.refits, asked, progress):
         return _gross(fit, before, left_out, faults, asked)
-    before = _bounded(before, refits, whole)
-    verdict = _verdict(fit, ranking, refits, before, whole, asked=asked, grown=grown)
+    before = _bounded(before, tried.refits, whole)
+    verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
     after = _after(verdict, tried, asked, progress)
+    if failed is not None and (after is None or why_no_fit(after.fit)):
+        return _no_fit(fit, before, left_out, failed)
     wanted = force or verdict.kind == "not in catalogue"
     sought = _force(after.fit if after else fit, asked.level, progress) if wanted else None
     return Diagnosis(
         before=before,
         ranking=ranking,
         left_out=left_out,
-        refits=refits,
+        refits=tried.refits,
         verdict=verdict,
         where=where(fit),
         after=after,
@@ -156,15 +158,23 @@ def _verdict(
     """What is missing, held against a motion left out, trials held out, and what nobody logged."""
     found = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     found = with_motion(fit, found, ranking, refits, asked.level)
-    found = with_held_out(fit.examined, found, lambda: before.accuracy.covariance, asked.level)
+    named = None if grown else _named(found, refits)
+    found = with_held_out(
+        fit.examined, found, lambda: before.accuracy.covariance, asked.level, named
+    )
     return name_records(fit, found, asked.candidates.values())
+
+
+def _named(verdict: Verdict, refits: Sequence[Refit]) -> Refit | None:
+    """The model with what is named; None where nothing is."""
+    return next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
 
 
 def _after(
     verdict: Verdict, tried: Tried, asked: DiagnoseSettings, progress: Progress
 ) -> Diagnosed | None:
-    """The model with what is named; None where nothing is."""
-    named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
+    """The model with what is named, examined; None where nothing is."""
+    named = _named(verdict, tried.refits)
     if named is None:
         return None
     known = tried.augmented if named is tried.best else None
@@ -179,13 +189,9 @@ def _whole(
     progress: Progress,
 ) -> tuple[Refit, ...]:
     """Faults of actuators that explain what no refit does; mostly none."""
+    by_noise = partial(_leaves_noise, asked=asked)
     return whole_faults(
-        fit,
-        asked.candidates,
-        ranking,
-        others=refits,
-        progress=progress,
-        leaves_noise=partial(_leaves_noise, asked=asked),
+        fit, asked.candidates, ranking, others=refits, progress=progress, leaves_noise=by_noise
     )
 
 
@@ -208,9 +214,7 @@ def _no_fit(
     """Nothing is concluded from a fit that carries no verdict: no ranking, no names."""
     return Diagnosis(
         before=before,
-        ranking=(),
         left_out=left_out,
-        refits=(),
         verdict=Verdict("no fit", None, (), f"no fit: {failed}"),
         where=where(fit),
     )

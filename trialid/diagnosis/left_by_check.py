@@ -15,7 +15,8 @@ from scipy.special import fdtrc  # scipy.stats would take another 0.4 s to impor
 
 from trialid.arrays import Mask, Vector
 from trialid.diagnosis.noise.residual import OutputNoise, heavy_tail, pool_variance, residuals
-from trialid.diagnosis.verdict import Verdict
+from trialid.diagnosis.search.refit import Refit, fall, fall_of_all, fall_of_check
+from trialid.diagnosis.verdict import SHARE, Verdict
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale, stretches_of
 from trialid.identification.trial_score import check_rows
@@ -43,9 +44,15 @@ class LeftByCheck:
 
 
 def with_held_out(
-    fit: Fit, verdict: Verdict, covariance: Callable[[], Vector], level: float
+    fit: Fit,
+    verdict: Verdict,
+    covariance: Callable[[], Vector],
+    level: float,
+    named: Refit | None = None,
 ) -> Verdict:
-    """The verdict; `cannot tell` for `nothing missing` where trials held out leave more than noise.
+    """The verdict; `cannot tell` where trials held out leave more than noise, and nothing says why.
+
+    So for `nothing missing`, and for a name that explains little of either.
 
     Parameters
     ----------
@@ -53,19 +60,43 @@ def with_held_out(
         Of all unknowns of the fit, by noise; asked for where it is needed.
     level
         Chance of as much by noise, over all outputs, below which it is not believed.
+    named
+        What is to be named, if anything is, in a model that has not grown.
     """
-    if verdict.kind != "nothing missing" or fit.eps_check is None:
+    if fit.eps_check is None or (named is None and verdict.kind != "nothing missing"):
         return verdict
     found = left_by_check(fit, covariance())
     worst = min(found, key=lambda one: one.p_value, default=None)
     if worst is None or worst.p_value >= level / len(found):
-        return replace(verdict, sentence=f"{verdict.sentence}{_by_own_sensors(fit, found)}")
-    said = (
-        f"no effect stands out in the fitted trials, but those held out leave {worst.left:.1%} of "
-        f"{worst.output} where noise would leave {worst.by_noise:.1%} (p = {worst.p_value:.2g}): "
-        "something is missing that acts there, or it was rougher; fit them too and hold others out"
+        said = "" if named else _by_own_sensors(fit, found)
+        return replace(verdict, sentence=f"{verdict.sentence}{said}")
+    if named is not None and _explained(fit, named, worst) >= SHARE:
+        return verdict
+    return Verdict("cannot tell", None, (), _left_open(fit, named, worst))
+
+
+def _explained(fit: Fit, named: Refit, worst: LeftByCheck) -> float:
+    """What goes of the squared error with a name, fitted or not, by what noise does not leave."""
+    fitted, held = fit.eps_rmsn**2, (fit.eps_check or 0.0) ** 2
+    beyond = held * (1.0 - (worst.by_noise / worst.left) ** 2)
+    return fall_of_all(fit, named) * (fitted + held) / beyond
+
+
+def _left_open(fit: Fit, named: Refit | None, worst: LeftByCheck) -> str:
+    """That something is missing in trials held out which no effect explains."""
+    begins, lacks = "no effect stands out in the fitted trials, but those", "something"
+    if named is not None:
+        gone, held = fall(fit, named), fall_of_check(fit, named)
+        begins = (
+            f"{named.candidate.effect.name} takes {gone:.0%} of the squared error off the fitted "
+            f"trials and {held:.0%} off the others, but those"
+        )
+        lacks = "something greater"
+    return (
+        f"{begins} held out leave {worst.left:.1%} of {worst.output} where noise would leave "
+        f"{worst.by_noise:.1%} (p = {worst.p_value:.2g}): {lacks} is missing that acts there, or "
+        "it was rougher; fit them too and hold others out"
     )
-    return Verdict("cannot tell", None, (), said)
 
 
 def _by_own_sensors(fit: Fit, found: Sequence[LeftByCheck]) -> str:

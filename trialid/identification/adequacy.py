@@ -55,10 +55,17 @@ TURNING: Final = frozenset({"r", "psi", "v"})
 
 @dataclass(frozen=True)
 class Inadequate:
-    """Why a fit carries no verdict, with its numbers, and what to do next; in words."""
+    """Why a fit carries no verdict, with its numbers, and what to do next; in words.
+
+    Attributes
+    ----------
+    may_lack
+        Whether the fit itself is sound, and what the model lacks may be all that is wrong.
+    """
 
     reason: str
     advice: str
+    may_lack: bool = False
 
     def __str__(self) -> str:
         """Both on one line."""
@@ -256,6 +263,7 @@ def _held_out_unexplained(fit: Fit) -> Inadequate | None:
                 f"{_listed(kept)} of what moves is left",
                 "compare its signs, units and speed with those of the fitted trials; where they "
                 "agree, fit that trial too: she may move there as in no other",
+                may_lack=True,
             )
     return None
 

@@ -23,14 +23,11 @@ from trialid.identification.output_error import (
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.smaller import point_of_smaller
 from trialid.identification.trial_score import Score, pool_errors, score_trial
-from trialid.identification.weighing import level_of
+from trialid.identification.weighing import contradictions, level_of
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure
 from trialid.threads import one_thread
 from trialid.trial import Trial
-
-CONTRADICTS: Final = 3.0
-"""Standard deviations of a prior at which the record speaks against it."""
 
 STEP_ERROR: Final = 0.05
 """Share of the error that integration may make up before steps are made finer."""
@@ -158,17 +155,8 @@ class Fit:
 
     @property
     def contradicted(self) -> dict[str, float]:
-        """Priors that the record speaks against: by how many standard deviations, with its sign.
-
-        Beyond three either the sensor is unlike others of its kind, or the model puts an error of
-        its own there.
-        """
-        unknowns, roll = self.problem.unknowns, self.problem.roll
-        ended = zip(unknowns, self.theta, strict=True)
-        off = {x.name: (float(a) - x.prior[0]) / x.prior[1] for x, a in ended if x.prior}
-        if roll is not None:
-            off |= {unknowns[i].name: z for i, z in roll.off(self.theta).items()}
-        return {name: z for name, z in off.items() if abs(z) > CONTRADICTS}
+        """Priors that the record speaks against: by how many standard deviations, with its sign."""
+        return contradictions(self.problem, self.theta)
 
 
 @one_thread

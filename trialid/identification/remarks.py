@@ -1,6 +1,7 @@
 """What to read beside the parameters of a fit, sound or not."""
 
 from trialid.identification.fit import Fit
+from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import shown_unit
 
 
@@ -40,6 +41,13 @@ def _untold_GM(fit: Fit) -> list[str]:
         return [
             f"the record does not tell GM: her roll is damped by {ratio:.2g} of what is critical, "
             f"as no ship's is, so that {fit.value('GM'):.3g} m is of a swell or of nothing"
+        ]
+    if late := late_roll(fit.problem, fit.theta):
+        place, seconds = max(late.items(), key=lambda one: abs(one[1]))
+        ends = sorted({f"{values['GM']:.3g}" for values in fit.rivals}, key=float)
+        return [
+            f"the record does not tell GM: {' or '.join(ends)} m, as its clocks are; "
+            f"{fit.problem.unknowns[place].name} = {seconds:.3g} s is no sensor's"
         ]
     listed = [f"{values['GM']:.3g}" for values in fit.rivals]
     rivals = (

@@ -34,6 +34,27 @@ LOOKS: Final = 15
 crosses `UNLIKE`, and a search would swing between two points for ever."""
 
 
+CONTRADICTS: Final = 3.0
+"""Standard deviations of a prior from which on the record speaks against it. Half would be chance
+in every eighth; twice lets an inclinometer pass that is two seconds early."""
+
+
+def contradictions(problem: Problem, theta: Vector) -> dict[str, float]:
+    """Priors that the record speaks against: by how many standard deviations, with its sign.
+
+    Either the sensor is unlike others of its kind, or the model puts an error of its own there.
+    """
+    unknowns = problem.unknowns
+    off = {
+        x.name: (float(a) - x.prior[0]) / x.prior[1]
+        for x, a in zip(unknowns, theta, strict=True)
+        if x.prior
+    }
+    if problem.roll is not None:
+        off |= {unknowns[i].name: z for i, z in problem.roll.off(theta).items()}
+    return {name: z for name, z in off.items() if abs(z) > CONTRADICTS}
+
+
 class Weighing:
     """Residual and gradient with robust weights and with rows of priors; state: their level.
 

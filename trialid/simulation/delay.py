@@ -137,6 +137,7 @@ def lag_samples(y: Vector, tau: float, period: float) -> tuple[Vector, Vector]:
     return z, _recursive(drive, a)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of a motion that has no end nothing is known
 def _recursive(x: Vector, a: float) -> Vector:
     """z(k) = a z(k-1) + x(k) from rest, block by block; like x, (N, ...).
 

@@ -137,11 +137,11 @@ def likeliest_refit(
 
 
 def _foretells_more(fit: Fit, refit: Refit, best: Refit) -> bool:
-    """Whether an effect of the ship as good on blocks takes far more off in trials held out."""
+    """Whether an effect of the ship as good on blocks takes far more off, trials held out with."""
     return (
         of_the_ship(refit.candidate.effect)
         and as_good(best.carried.after, refit.carried.after)
-        and is_far(_fall_of_check(fit, refit), _fall_of_check(fit, best))
+        and is_far(fall_of_all(fit, refit), fall_of_all(fit, best))
     )
 
 
@@ -268,10 +268,16 @@ def fall(fit: Fit, refit: Refit) -> float:
     return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
 
 
-def _fall_of_check(fit: Fit, refit: Refit) -> float:
+def fall_of_check(fit: Fit, refit: Refit) -> float:
     """Share of the squared error of held-out trials that goes with an effect; 0 without any."""
     old, new = fit.eps_check, refit.fit.eps_check
     return 0.0 if old is None or new is None else float(1.0 - (new / old) ** 2)
+
+
+def fall_of_all(fit: Fit, refit: Refit) -> float:
+    """Share of the squared errors, of fitted trials and of those held out, that goes with it."""
+    fitted, held = fit.eps_rmsn**2, (fit.eps_check or 0.0) ** 2
+    return (fitted * fall(fit, refit) + held * fall_of_check(fit, refit)) / (fitted + held)
 
 
 def own_fall(fit: Fit, refit: Refit) -> float:

@@ -12,7 +12,7 @@ from trialid.identification.one_search import End
 from trialid.identification.output_error import Problem, ranges, stretches
 from trialid.identification.record_starts import Part, of_roll, rows_of
 from trialid.identification.roll.roll_range import FACTOR, GM_OVER_L
-from trialid.identification.weighing import Weighing
+from trialid.identification.weighing import Weighing, contradictions
 from trialid.linear_algebra import triangle
 
 Vector = NDArray[np.float64]
@@ -45,6 +45,16 @@ NEIGHBOUR_NEAR: Final = 1e-3
 
 ALIKE: Final = 1.1
 """Factor within which two rivals are one in words."""
+
+
+def late_roll(problem: Problem, theta: Vector) -> dict[int, float]:
+    """Delays [s] of the roll's sensors that are no sensor's, by their place in theta."""
+    unlikely = contradictions(problem, theta)
+    return {
+        i: float(theta[i])
+        for i, x in enumerate(problem.unknowns)
+        if x.column in ("tau_phi", "tau_p") and x.name in unlikely
+    }
 
 
 def along_GM(problem: Problem, best: End) -> list[End]:
@@ -98,6 +108,7 @@ def rivals(
         return ()
     place, limit = roll.GM, best.cost(best.colour) + RIVAL
     near = [e.minimum.theta for e in ends if e.cost(best.colour) < limit]
+    near += _on_time(problem, best)
     if not roll.is_a_ships(best.minimum.theta):
         near += _as_ships_have(problem, best)
     near += [end.minimum.theta for end in walked]
@@ -115,6 +126,27 @@ def roll_error(problem: Problem, end: End) -> float:
     """Normed error of the roll outputs."""
     squares = float(np.sum(end.residual[rows_of(problem, ("phi", "p"))] ** 2))
     return float(np.sqrt(squares * len(problem.outputs)))
+
+
+def _on_time(problem: Problem, best: End) -> list[Vector]:
+    """Where searches end with the roll's clocks as clocks are, the best; nothing where they are.
+
+    From the GM that was found and from one in the middle of ships': a clock and a resonance share
+    the lag of the roll. A ship whose hull is another had a GM of a fifth of the truth, and no
+    rival, with an inclinometer two seconds early.
+    """
+    theta, roll = best.minimum.theta.copy(), problem.roll
+    late = late_roll(problem, theta)
+    if not late or roll is None:
+        return []
+    for place in late:
+        prior = problem.unknowns[place].prior
+        assert prior is not None
+        theta[place] = prior[0]
+    middle = _scaled(problem, theta, GM_OVER_L * roll.length / theta[roll.GM])
+    ends = [_with_held(problem, start, [*late], best.colour) for start in (theta, middle)]
+    able = [end for end in ends if end is not None]
+    return [min(able, key=lambda end: end.cost(best.colour)).minimum.theta] if able else []
 
 
 def _factor(near: Sequence[Vector], place: int) -> float:
@@ -156,7 +188,7 @@ def _hardly_worse(problem: Problem, best: End, step: float) -> list[End]:
         start = _scaled(problem, (found[-1] if found else best).minimum.theta, step)
         if not unknown.low < start[place] < unknown.high:
             break
-        there = _with_GM_held(problem, start, best.colour)
+        there = _with_held(problem, start, [place], best.colour)
         if there is None:
             break
         lost = there.cost(best.colour) - best.cost(best.colour)
@@ -167,11 +199,10 @@ def _hardly_worse(problem: Problem, best: End, step: float) -> list[End]:
     return found
 
 
-def _with_GM_held(problem: Problem, theta: Vector, colour: float) -> End | None:
-    """The end of a short search of everything but GM, None where it cannot begin."""
-    assert problem.roll is not None
+def _with_held(problem: Problem, theta: Vector, places: Sequence[int], colour: float) -> End | None:
+    """The end of a short search of everything but these, None where it cannot begin."""
     moving = np.ones(len(theta), dtype=bool)
-    moving[problem.roll.GM] = False
+    moving[places] = False
     chosen = [x for x, moves in zip(problem.unknowns, moving, strict=True) if moves]
     rows = np.arange(stretches(problem)[-1].rows.stop)
     part = Part(problem, theta, rows, moving)
