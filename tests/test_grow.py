@@ -263,3 +263,36 @@ def test_what_the_file_without_it_foretells_worse_is_not_dropped(
         findings.before.fit.eps_check = 0.5
 
     assert steps(changed(monkeypatch, "ab", worse)) == ["+x", "+a", "+b"]
+
+
+@pytest.mark.parametrize(
+    ("errors", "troubles", "begun"),
+    [
+        ({"typical": 0.0503, "near": 0.05}, {}, "typical"),  # as good: no line more in the file
+        ({"typical": 0.08, "near": 0.05}, {}, "near"),
+        ({"typical": 0.08, "near": 0.08}, {}, "typical"),
+        ({"typical": 0.08, "near": 0.05}, {"near": "it rises"}, "typical"),
+        ({"typical": 0.04, "near": 0.05}, {"typical": "it rises"}, "near"),
+    ],
+)
+def test_what_was_promised_is_begun_near_its_end(monkeypatch, errors, troubles, begun):
+    """By the refit the error falls to 5 %; from typical values the search ended above."""
+    fits = {at: SimpleNamespace(eps_rmsn=error, at=at) for at, error in errors.items()}
+    stubs = {
+        "add_to_pipeline": lambda pipeline, name: SimpleNamespace(after="typical"),
+        "started_at": lambda edit, values: SimpleNamespace(after="near"),
+        "available": lambda pipeline: {},
+        "fit_of": lambda pipeline, *rest: fits[pipeline],
+        "_trouble": lambda before, up, fit, level: troubles.get(fit.at, ""),
+    }
+    for name, stub in stubs.items():
+        monkeypatch.setattr(grow, name, stub)
+    found = SimpleNamespace(eps_rmsn=0.05, model=SimpleNamespace(values={}))
+    up = SimpleNamespace(candidate=candidate("a"), fit=found)
+    findings = SimpleNamespace(before=SimpleNamespace(fit=None))
+    pipeline = SimpleNamespace(diagnose=SimpleNamespace(level=0.05))
+    stage = SimpleNamespace(run=SimpleNamespace(findings=findings), pipeline=pipeline)
+    path = SimpleNamespace(trials=(), progress=None)
+    edit, fit, trouble = grow._fitted(path, stage, up)
+    assert edit.after == fit.at == begun
+    assert not trouble

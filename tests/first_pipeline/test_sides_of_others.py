@@ -45,6 +45,39 @@ def test_a_turn_takes_the_side_of_the_zigzags_beside_it(
     assert "side as in z0.csv, of the same name" in text
 
 
+def bridge_log(path: Path, orders: np.ndarray, side: float) -> Path:
+    """NMEA 0183 sentences of a ship whose rudder sensor counts so to starboard."""
+    table = np.loadtxt(log(path.with_suffix(".csv"), orders, 0.05), delimiter=",", skiprows=1)
+    lines = []
+    for t, delta, r, psi, _ in table:
+        stamp = f"2026-03-02T10:{int(t) // 60:02d}:{t % 60.0:06.3f}Z"
+        for words in (
+            f"TIROT,{r * 60.0:.1f},A",
+            f"HEHDT,{psi % 360.0:.1f},T",
+            f"IIRSA,{side * delta:.1f},A,,",
+            "VDVHW,,T,,M,11.7,N,21.6,K",
+        ):
+            sum_of = 0
+            for letter in words:
+                sum_of ^= ord(letter)
+            lines.append(f"{stamp} ${words}*{sum_of:02X}")
+    path.write_text("\r\n".join(lines) + "\r\n", encoding="ascii")
+    return path
+
+
+@pytest.mark.parametrize(("side", "told"), [(1.0, "starboard"), (-1.0, "port")])
+def test_what_zigzags_show_comes_before_what_a_format_says(
+    tmp_path: Path, side: float, told: str
+) -> None:
+    """A rudder sensor that was built in the wrong way round is so in the turn, too."""
+    zigzag = bridge_log(tmp_path / "zigzag.log", ZIGZAG, side)
+    made = begun(tmp_path, zigzag, bridge_log(tmp_path / "turn.log", TURN, side))
+    text = made.files[tmp_path / "p.toml"]
+    assert text.count(f'positive = "{told}"') == 2
+    assert "side as in zigzag.log, of the same name" in text
+    assert "CAREFUL: side" not in text
+
+
 @pytest.mark.parametrize(
     ("gains", "name"),
     [

@@ -47,6 +47,7 @@ class Settings:
     """How to identify; see the pipeline's `[identify]`.
 
     `priors` are (mean, standard deviation) in the parameter's own unit; `bounds` (low, high).
+    `priors_of_ship`: what joins the free parameters has the prior that the ship's file gives it.
     Steps a sample begin with `substeps` and go up to `most_substeps` where they matter.
     `hold_nuisance`: weakly, what each trial has for itself, and GM and damping without a prior.
     """
@@ -67,6 +68,7 @@ class Settings:
     most_substeps: int = 16
     engine: Engine = "compiled"
     hold_nuisance: bool = True
+    priors_of_ship: bool = False
 
 
 def pose_problem(

@@ -30,6 +30,24 @@ def ship_priors(model: ShipModel, free: Sequence[str]) -> dict[str, Known]:
     ShipError
         The file states no scatter for any of them, or calls one exact.
     """
+    known = known_of_ship(model, free)
+    if not known:
+        raise ShipError(
+            f"ship {model.ship.name!r}: [uncertainty] says nothing of {', '.join(free)}, so priors "
+            '= "ship" has nothing to hold them by; write it there (`trialid ship` does), or '
+            "leave priors out"
+        )
+    return known
+
+
+def known_of_ship(model: ShipModel, free: Sequence[str]) -> dict[str, Known]:
+    """As `ship_priors`, of what the file says; that may be nothing.
+
+    Raises
+    ------
+    ShipError
+        The file calls one of them exact.
+    """
     plain, known = replace(model, values={}), dict[str, Known]()
     ship = model.ship
     for name in free:
@@ -45,10 +63,4 @@ def ship_priors(model: ShipModel, free: Sequence[str]) -> dict[str, Known]:
             )
         if value != 0.0:
             known[name] = value, share * abs(value)
-    if not known:
-        raise ShipError(
-            f"ship {ship.name!r}: [uncertainty] says nothing of {', '.join(free)}, so priors = "
-            '"ship" has nothing to hold them by; write it there (`trialid ship` does), or '
-            "leave priors out"
-        )
     return known

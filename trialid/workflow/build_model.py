@@ -144,6 +144,7 @@ def settings_of(pipeline: Described, model: ShipModel) -> Settings:
         priors=priors_of(pipeline, model), bounds=r.bounds,
         starts=r.starts, spread=r.spread, seed=r.seed, max_iterations=r.max_iterations,
         norm=r.norm, substeps=r.substeps, engine=r.engine,
+        priors_of_ship=isinstance(r.priors, OfTheShip),
     )  # fmt: skip
 
 

@@ -24,7 +24,7 @@ from trialid.ship.effect import Effect
 from trialid.trial import Trial
 from trialid.workflow import history
 from trialid.workflow.build_model import available
-from trialid.workflow.edit_model import proposed_steps, started_at
+from trialid.workflow.edit_model import AS_FORESEEN, BETTER, proposed_steps, started_at
 from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.outcome import Run
@@ -130,22 +130,32 @@ def _forward(path: _Path, stage: Stage) -> Stage:
     name, before = up.candidate.effect.name, stage.run.findings.before.fit
     path.gone.add(name)
     path.added += 1
-    trouble = ""
     try:
-        for edit in _ways(add_to_pipeline(stage.pipeline, name), up.fit):
-            fit = fit_of(edit.after, path.trials, available(edit.after), path.progress)
-            trouble = _trouble(before, up, fit, stage.pipeline.diagnose.level)
-            if not trouble:
-                run = examine(edit.after, path.trials, path.progress, fit, grown=True)
-                break
+        edit, fit, trouble = _fitted(path, stage, up)
+        if trouble:
+            return _not_kept(path, stage, name, f"{trouble} with {name}")
+        run = examine(edit.after, path.trials, path.progress, fit, grown=True)
     except TrialidError as error:
         return _not_kept(path, stage, name, f"with {name}: {error}")
-    if trouble:
-        return _not_kept(path, stage, name, f"{trouble} with {name}")
     if run.findings.verdict.kind == "no fit":
         return _not_kept(path, stage, name, f"with {name}: {run.findings.verdict.sentence}")
     path.join(edit.effect, before.model.displaced_by(edit.effect))
     return _told(path, edit, run, added=name)
+
+
+def _fitted(path: _Path, stage: Stage, up: Refit) -> tuple[Edit, Fit, str]:
+    """The file with the effect, its fit, and what speaks against that; as good as the refit was."""
+    before, level = stage.run.findings.before.fit, stage.pipeline.diagnose.level
+    best: tuple[Edit, Fit, str] | None = None
+    for edit in _ways(add_to_pipeline(stage.pipeline, up.candidate.effect.name), up.fit):
+        fit = fit_of(edit.after, path.trials, available(edit.after), path.progress)
+        trouble = _trouble(before, up, fit, level)
+        if best is None or (not trouble and (best[2] or fit.eps_rmsn < BETTER * best[1].eps_rmsn)):
+            best = edit, fit, trouble
+        if not best[2] and best[1].eps_rmsn <= AS_FORESEEN * up.fit.eps_rmsn:
+            break
+    assert best is not None
+    return best
 
 
 def _ways(edit: Edit, found: Fit) -> Iterator[Edit]:

@@ -15,6 +15,7 @@ from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.nuisance_priors import speed
 from trialid.identification.problem import Settings
+from trialid.identification.ship_priors import known_of_ship
 from trialid.names.quantities import RUDDERS
 from trialid.ship.effect import Delayed, Effect, Force, Mass, Rate
 
@@ -113,10 +114,12 @@ def _inside(effect: Effect, name: str, value: float) -> float:
 
 
 def _settings_with(fit: Fit, effect: Effect) -> Settings:
-    lost = fit.model.lost_to(effect)
-    kept = tuple(n for n in fit.settings.free if n not in lost)
+    """Its parameters free, too, with the priors that the pipeline would give them."""
+    lost, settings = fit.model.lost_to(effect), fit.settings
+    kept = tuple(n for n in settings.free if n not in lost)
     new = tuple(p for p in effect.parameters if p not in kept)
-    return replace(fit.settings, free=(*kept, *new))
+    known = known_of_ship(fit.model + effect, new) if settings.priors_of_ship else {}
+    return replace(settings, free=(*kept, *new), priors={**settings.priors, **known})
 
 
 def likeliest_refit(

@@ -24,6 +24,7 @@ SURE: Final = 0.9
 ASK_UNIT: Final = "FILL IN the unit, the log states none"
 ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
 MEASURED: Final = "side measured"
+CONVENTION: Final = "CAREFUL: side by the format's convention, the motion does not confirm it"
 RATES: Final = ("rad/s", "deg/s", "deg/min")
 TURNING: Final = (0.05, 2.5)
 """Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
@@ -162,8 +163,7 @@ def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
             words += f", though the format says {convention}"
         return _with_side(plain, found.side, words)
     if convention is not None:
-        words = "CAREFUL: side by the format's convention, the motion does not confirm it"
-        return _with_side(plain, convention, words)
+        return _with_side(plain, convention, CONVENTION)
     return _with_side(plain, OPEN, ASK_SIDE)
 
 

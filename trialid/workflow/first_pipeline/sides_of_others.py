@@ -1,13 +1,20 @@
 """The side of a channel that one trial does not show, as another trial of the recorder shows it.
 
 A turn with the rudder put over once does not tell which side it counts as positive; the zig-zags
-beside it, whose channel has the same name, do.
+beside it, whose channel has the same name, do; whatever a format says of the side it should be.
 """
 
 import dataclasses
 from collections.abc import Mapping, Sequence
 
-from trialid.workflow.first_pipeline.choice import ASK_SIDE, MEASURED, OPEN, Chosen, Signal
+from trialid.workflow.first_pipeline.choice import (
+    ASK_SIDE,
+    CONVENTION,
+    MEASURED,
+    OPEN,
+    Chosen,
+    Signal,
+)
 
 Side = tuple[str, str]
 """Starboard or port, and the log that shows it."""
@@ -35,8 +42,9 @@ def _shown(trials: Sequence[Chosen]) -> Mapping[str, Side]:
 
 
 def _told(signal: Signal, known: Mapping[str, Side]) -> Signal:
-    if signal.positive != OPEN or signal.source.name not in known:
+    unshown = next((words for words in (ASK_SIDE, CONVENTION) if words in signal.why), None)
+    if unshown is None or signal.source.name not in known:
         return signal
     side, log = known[signal.source.name]
     words = f"side as in {log}, of the same name; the motion here does not show it"
-    return dataclasses.replace(signal, positive=side, why=signal.why.replace(ASK_SIDE, words))
+    return dataclasses.replace(signal, positive=side, why=signal.why.replace(unshown, words))

@@ -1,0 +1,57 @@
+"""An effect is tried under the priors that the pipeline gives it, and so holds its word."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
+
+from trialid.diagnosis.search.refit import refit
+from trialid.diagnosis.search.score import rank
+from trialid.effects import CATALOGUE
+from trialid.identification.fit import identify
+from trialid.identification.ship_priors import ship_priors
+
+FREE = ("Nv", "Nr", "Ndelta")
+EFFECT = CATALOGUE["yaw_drag_rar"]
+
+
+@pytest.fixture(scope="module")
+def trials():
+    """Of a ship with three times the quadratic yaw damping of her file, which knows a tenth."""
+    truth = MODEL.with_values({"Nrar": 3.0 * MODEL.value("Nrar")})
+    made = []
+    for angle in (10, 20):
+        trial = zigzag(angle, truth)
+        made.append(with_noise(trial, *white(np.random.default_rng(angle), trial.samples)))
+    return made
+
+
+def tried(trials, *, by_ship):
+    """What the refit finds, and what the fit of the larger model from the file finds."""
+    base = replace(MODEL - "yaw_drag_rar", ship=replace(SHIP, uncertainty={"default": 0.1}))
+    larger = base + EFFECT
+    held = ship_priors(base, FREE) if by_ship else {}
+    asked = replace(SETTINGS, free=FREE, priors=held, priors_of_ship=by_ship)
+    fit = identify(trials, base, asked)
+    ranking, _ = rank(fit, {EFFECT.name: EFFECT})
+    [found] = refit(fit, ranking, lambda words: None)
+    free = (*FREE, "Nrar")
+    every = ship_priors(larger, free) if by_ship else {}
+    return found.fit, identify(trials, larger, replace(asked, free=free, priors=every))
+
+
+@pytest.mark.parametrize("by_ship", [True, False])
+def test_the_file_gives_what_was_promised(trials, by_ship):
+    promised, given = tried(trials, by_ship=by_ship)
+    assert given.eps_rmsn == pytest.approx(promised.eps_rmsn, rel=1e-3)
+    assert given.value("Nrar") == pytest.approx(promised.value("Nrar"), rel=0.02)
+
+
+def test_what_the_ships_file_says_of_it_counts(trials):
+    """A tenth about the file's number holds it below three times that."""
+    held, _ = tried(trials, by_ship=True)
+    loose, _ = tried(trials, by_ship=False)
+    assert loose.value("Nrar") == pytest.approx(3.0 * MODEL.value("Nrar"), rel=0.1)
+    assert abs(held.value("Nrar")) < 0.99 * abs(loose.value("Nrar"))
+    assert "Nrar" in held.contradicted
