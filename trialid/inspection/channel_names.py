@@ -165,7 +165,7 @@ def over_ground(name: str, unit: str | None) -> bool:
 
 
 def unit_in_name(name: str) -> str | None:
-    """The unit a channel's name ends with: `roll_deg`, `speed_mps`.
+    """The unit a channel's name ends with, or is: `roll_deg`, `speed_mps`, `RPM`.
 
     >>> unit_in_name("yaw_rate_radps"), unit_in_name("rudder")
     ('rad/s', None)
@@ -173,6 +173,8 @@ def unit_in_name(name: str) -> str | None:
     field = words(name.rpartition(":")[2])
     if field[:2] == ("angular", "velocity"):
         return "rad/s"  # as ROS messages have it, which state no unit
+    if field in (("rpm",), ("rps",)):  # of a shaft, and of nothing else
+        return field[0]
     for count in (2, 1):
         if len(field) > count and (unit := UNITS_IN_NAMES.get(" ".join(field[-count:]))):
             return unit

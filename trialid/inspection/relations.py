@@ -30,6 +30,13 @@ MOST_UNNAMED: Final = 60
 """More unnamed channels than this are a log of something else; they are not tried one by one."""
 
 RATES: Final = ("rad/s", "deg/s", "deg/min")
+SPEEDS: Final = ("m/s", "kn", "km/h")
+
+FASTEST: Final = 0.95
+"""Share of a record that is no faster than her approach: in a turn she loses three quarters."""
+
+NEAR: Final = 0.25
+"""A speed in the right unit is as near as this to the stated one, as a share of it."""
 
 
 def recognise(channels: Mapping[str, ChannelInspection]) -> dict[str, ChannelInspection]:
@@ -119,6 +126,14 @@ def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | Non
     fitting = [unit for unit in RATES if 0.8 < factor / USUAL[unit][1] < 1.25]
     stated = rate.unit or rate.unit_in_name
     return next((unit for unit in fitting if stated in (None, unit)), None)
+
+
+def unit_of_speed(speed: ChannelInspection, stated: float) -> str | None:
+    """The one unit in which she approaches as fast as stated [m/s]; None where it is not one."""
+    fastest = float(np.quantile(speed.sketch.y, FASTEST))
+    sizes = {unit: fastest * (to_si(unit, "m/s") or 0.0) for unit in SPEEDS}
+    fitting = [unit for unit, size in sizes.items() if abs(size - stated) <= NEAR * stated]
+    return fitting[0] if len(fitting) == 1 else None
 
 
 def _factor(rate: Vector, angle: Vector, period: float, whole: Mask) -> float:

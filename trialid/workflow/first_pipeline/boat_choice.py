@@ -73,7 +73,7 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     rate = rate_signal(live)
     drives = _drive_signals(survey, rate)
     speed = through_water(live, stated) if live.get("u") else velocity_speed(survey)
-    speed = speed or other_speed(survey)
+    speed = speed or other_speed(survey, stated)
     if speed is None:
         raise LogError(
             f"{survey.path}: she steers by two thrusters, and no speed is recognised, which is "

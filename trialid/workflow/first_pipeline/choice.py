@@ -11,7 +11,7 @@ import numpy as np
 from trialid.errors import LogError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Inspection
-from trialid.inspection.relations import side, slope_agreement, unit_of_rate
+from trialid.inspection.relations import RATES, side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 
@@ -25,12 +25,9 @@ ASK_UNIT: Final = "FILL IN the unit, the log states none"
 ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
 MEASURED: Final = "side measured"
 CONVENTION: Final = "CAREFUL: side by the format's convention, the motion does not confirm it"
-RATES: Final = ("rad/s", "deg/s", "deg/min")
 TURNING: Final = (0.05, 2.5)
 """Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
 further apart than this range is wide."""
-NEAR: Final = 0.25
-"""A speed in the right unit is as near as this to the stated one, as a share of it."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +96,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     known, words = approach_speed(survey, live, speed)
     if live["u"]:
         signals.append(through_water(live, speed))
-    elif speed is None and (other := other_speed(survey)) is not None:
+    elif (other := other_speed(survey, speed)) and (speed is None or not _stated(other.source)):
         signals.append(other)
     return Chosen(
         survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words
@@ -176,28 +173,33 @@ def through_water(live: Live, speed: float | None) -> Signal:
     plain = plain_signal("u", live, "")
     if plain.unit != OPEN or speed is None:
         return plain
-    middle = float(np.median(plain.source.sketch.y))
-    fitting = [u for u in ("m/s", "kn", "km/h") if _near(middle * units.factor(u, "m/s"), speed)]
-    if len(fitting) != 1:
+    unit = unit_of_speed(plain.source, speed)
+    if unit is None:
         return plain
     words = f"by its name; unit by the stated speed of {speed:.3g} m/s"
-    return Signal("u", plain.source, fitting[0], None, words, plain.others)
+    return Signal("u", plain.source, unit, None, words, plain.others)
 
 
-def other_speed(survey: Inspection) -> Signal | None:
-    """Another speed in the place of that through the water: it falls in turns as that does."""
+def other_speed(survey: Inspection, stated: float | None) -> Signal | None:
+    """Another speed in the place of that through the water: it falls in turns as that does.
+
+    Of one without a unit the user's word for the approach speed [m/s] settles it.
+    """
     for sources, words in ((_over_ground(survey), "over ground"), (_some_speed(survey), "unsaid")):
         for source in sources:
-            unit = source.unit or source.unit_in_name
+            unit = _stated(source) or (unit_of_speed(source, stated) if stated else None)
             why = (
                 f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
             )
-            return Signal("u", source, unit, None, why, ())
+            if not _stated(source):
+                why += f"; unit by the stated speed of {stated or 0.0:.3g} m/s"
+            if unit is not None:
+                return Signal("u", source, unit, None, why, ())
     return None
 
 
-def _near(speed: float, stated: float) -> bool:
-    return abs(speed - stated) <= NEAR * stated
+def _stated(source: ChannelInspection) -> str | None:
+    return source.unit or source.unit_in_name
 
 
 def approach_speed(
@@ -210,8 +212,7 @@ def approach_speed(
     ground = [(c, "speed over ground") for c in _over_ground(survey)]
     unsaid = [(c, "a speed, through water or over ground unsaid") for c in _some_speed(survey)]
     for source, words in (*through, *ground, *unsaid):
-        unit = source.unit or source.unit_in_name
-        if unit is not None:
+        if (unit := _stated(source)) is not None:
             middle = abs(float(np.median(source.sketch.y))) * units.factor(unit, "m/s")
             return middle, f"median of {source.key}, {words}"
     return None, ""
@@ -219,15 +220,15 @@ def approach_speed(
 
 def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
-        unit = one.unit or one.unit_in_name
+        unit = _stated(one) or "m/s"  # the name tells, where there is no unit
         told = (one.name, one.description)  # a format knows what its `Spd` is
-        if unit and not one.constant and any(channel_names.over_ground(w, unit) for w in told):
+        if not one.constant and any(channel_names.over_ground(w, unit) for w in told):
             yield one
 
 
 def _some_speed(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
-        unit = one.unit or one.unit_in_name
+        unit = _stated(one)
         if not one.constant and channel_names.of_some_speed(one.name, unit):
             yield one
 

@@ -1,0 +1,63 @@
+"""A bridge table without units: the stated speed settles what the log leaves open."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from geared_rudder import geared
+
+from trialid.inspection import inspect_log
+from trialid.inspection.channel_names import unit_in_name
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import Starter, starter
+
+T = np.arange(0.0, 900.0, 1.0)
+ZIGZAG = 10.0 * np.sign(np.sin(0.03 * T) + 0.3 * np.sin(0.008 * T))
+TURN = np.where(T > 60.0, 20.0, 0.0)
+APPROACH = 8.0
+"""[m/s]"""
+
+
+def log(path: Path, orders: np.ndarray, left: float, to_unit: float) -> Path:
+    """Heading, rudder, shaft and speed over ground of a ship that keeps so much of it in turns."""
+    delta, r = geared(orders, 1.0), np.zeros(len(T))
+    for k in range(len(T) - 1):
+        r[k + 1] = r[k] + (0.03 * delta[k] - r[k]) / 20.0
+    turned = np.minimum(1.0, np.cumsum(np.abs(r)) / 200.0)
+    speed = APPROACH * (1.0 - (1.0 - left) * turned) * to_unit
+    table = np.column_stack([T, np.cumsum(r) % 360.0, delta, speed, np.full(len(T), 80.0) + r])
+    heads = "Time,HDG,Rudder,SOG,RPM"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.5g")
+    return path
+
+
+def begun(folder: Path, to_unit: float, speed: float | None, left: float = 0.3) -> Starter:
+    logs = [log(folder / "z.csv", ZIGZAG, 0.9, to_unit), log(folder / "t.csv", TURN, left, to_unit)]
+    surveys = [inspect_log(one) for one in logs]
+    return starter(surveys, folder / "p.toml", None, Given(length=150.0), speed)
+
+
+@pytest.mark.parametrize(("unit", "to_unit"), [("m/s", 1.0), ("kn", 3600.0 / 1852.0)])
+def test_a_stated_speed_tells_the_unit_of_the_one_over_ground(
+    tmp_path: Path, unit: str, to_unit: float
+) -> None:
+    """By how fast she comes, although in the turn she keeps a third of it."""
+    made = begun(tmp_path, to_unit, APPROACH)
+    text = made.files[tmp_path / "p.toml"]
+    assert text.count(f'channel = "SOG", unit = "{unit}"') == 2
+    assert "CAREFUL: a speed over ground" in text
+    assert "unit by the stated speed of 8 m/s" in text
+    assert "speed = 8" not in text
+
+
+def test_a_stated_speed_that_fits_no_unit_stays_the_speed(tmp_path: Path) -> None:
+    text = begun(tmp_path, 1.0, 3.0).files[tmp_path / "p.toml"]
+    assert "SOG" not in text
+    assert text.count("speed = 3") == 2
+
+
+def test_rpm_is_a_unit_where_a_channel_is_called_so(tmp_path: Path) -> None:
+    assert unit_in_name("RPM") == "rpm"
+    assert unit_in_name("deg") is None  # of which angle?
+    text = begun(tmp_path, 1.0, APPROACH).files[tmp_path / "p.toml"]
+    assert '# n = { channel = "RPM", unit = "rpm" }' in text
