@@ -262,7 +262,8 @@ def _held_out_unexplained(fit: Fit) -> Inadequate | None:
                 f"held-out trial {score.trial.name!r} is foretold worse than by no model at all: "
                 f"{_listed(kept)} of what moves is left",
                 "compare its signs, units and speed with those of the fitted trials; where they "
-                "agree, fit that trial too: she may move there as in no other",
+                "agree, fit that trial too, as she may move there as in no other, or compare whole "
+                "models by `trialid structures`",
                 may_lack=True,
             )
     return None
