@@ -97,6 +97,13 @@ def one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
     )
 
 
+def by_chance(candidate: Candidate, level: float) -> str:
+    """How often noise alone would do it, or that no test says so."""
+    if candidate.p_value < level:
+        return f"p = {candidate.p_value:.2g} over the catalogue"
+    return "blocks of time left out agree, though no test against the noise shows it"
+
+
 def subject(fit: Fit, named: Refit) -> str:
     """What is named: what the model lacks or has in its place, or a coefficient held wrong."""
     name, held = named.candidate.effect.name, named.candidate.effect.held

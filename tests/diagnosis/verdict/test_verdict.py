@@ -1,10 +1,10 @@
 """Which of several refits is named, on made-up fits: the gates, each from both sides."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_up_fits import BEFORE, NO_ROUTE, fit, refit, split
 
 from trialid.diagnosis import left_out_motion
 from trialid.diagnosis.left_out_motion import with_motion
@@ -14,51 +14,6 @@ from trialid.diagnosis.search.completeness import Completeness, _Search
 from trialid.diagnosis.search.refit import NOT_ARRIVED, Refit, best_of
 from trialid.diagnosis.search.rivals import rivals, to_fit
 from trialid.diagnosis.verdict import Verdict, decide
-
-BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
-NO_ROUTE = Split("not separable", "no route")
-
-
-def fit(eps, check=None, converged=True):
-    return SimpleNamespace(
-        eps_rmsn=eps,
-        eps_check=check,
-        converged=converged,
-        eps_by_output={"r": eps},
-        eps_check_by_output={} if check is None else {"r": check},
-        problem=SimpleNamespace(weights=np.ones(1)),
-        model=SimpleNamespace(displaced_by=lambda effect: ()),
-    )
-
-
-def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=(), stands_for=""):
-    """A refit that carries over so far; `wobble` makes its blocks disagree."""
-    after = tuple(ratio * x * (1.0 + wobble * (-1) ** i) for i, x in enumerate(BEFORE))
-    carried = Carried(BEFORE, after)
-    candidate = SimpleNamespace(
-        effect=SimpleNamespace(
-            name=name,
-            parameters={n: SimpleNamespace(unit="1") for n in "abcdef"[:parameters]},
-            forms=(),
-            bound_by_meaning=False,
-            held=None,
-            stands_for=stands_for,
-        ),
-        shown=lambda level: True,
-        carried=carried,
-        family=(name, *family),
-        allowed=True,
-        p_value=0.001,
-        price=carried.price(parameters),
-    )
-    return Refit(candidate, fit(eps, check), carried)
-
-
-def split(noise, total=0.10):
-    model = float(np.sqrt(total**2 - noise**2))
-    return Split(
-        "quiet stretch", "", noise, model, (0.9 * noise, 1.1 * noise), (0.9 * model, model)
-    )
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,44 @@
+"""What no test against the noise shows: who explains most of the error is named, others are not."""
+
+import numpy as np
+import pytest
+from made_up_fits import NO_ROUTE, fit, refit
+
+from trialid.diagnosis.verdict import decide
+
+
+def decided(fall, *, p_value, alike=()):
+    """The verdict on two effects unlike each other in trace that do as well."""
+    eps = 0.10 * np.sqrt(1.0 - fall)
+    first = refit("a", 1.0 - fall, eps, family=alike)
+    second = refit("b", 1.02 * (1.0 - fall), 1.001 * eps, wobble=0.1)
+    for one in (first, second):
+        one.candidate.p_value = p_value
+    ranking = (first.candidate, second.candidate)
+    return decide(fit(0.10), ranking, [first, second], NO_ROUTE, None, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("fall", "p_value", "kind"),
+    [(0.98, 1.0, "missing"), (0.45, 1.0, "cannot tell"), (0.45, 0.01, "missing")],
+)
+def test_of_effects_unlike_each_other_one_that_explains_most_is_named(fall, p_value, kind):
+    found = decided(fall, p_value=p_value)
+    assert found.kind == kind
+    if kind == "cannot tell":
+        assert "as well it may be b" in found.sentence
+        assert "(p = 1 over the catalogue)" in found.sentence
+    else:
+        assert found.family == ("a", "b")
+
+
+def test_the_sentence_says_no_chance_that_was_not_shown():
+    """`is missing (p = 1)` reads as a contradiction."""
+    assert "p = 0.01 over the catalogue" in decided(0.98, p_value=0.01).sentence
+    said = decided(0.98, p_value=1.0).sentence
+    assert "p = " not in said
+    assert "no test against the noise shows it" in said
+
+
+def test_those_alike_in_trace_are_one_family_whatever_they_explain():
+    assert decided(0.45, p_value=1.0, alike=("b",)).kind == "missing"
