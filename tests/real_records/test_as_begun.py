@@ -26,10 +26,16 @@ def test_the_sway_that_was_logged_is_fitted(tmp_path: Path) -> None:
 
 @pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
-    "held", [("Z_20_10_S", "Z_30_05"), ("Z_10_05", "Z_30_05"), ("Z_15_05", "Z_20_10_S")]
+    "held",
+    [
+        ("Z_20_10_S", "Z_30_05"),
+        ("Z_10_05", "Z_30_05"),
+        ("Z_15_05", "Z_20_10_S"),
+        ("Z_05_01", "Z_20_10_S"),  # as begun the smallest is foretold worse than by no model
+    ],
 )
 def test_the_loop_brings_the_held_out_error_down(tmp_path: Path, held: tuple[str, str]) -> None:
-    """From 35, 30 and 22 % to less than the 12.2 % that a prototype had on a kinder choice."""
+    """From 49, 34, 25 and 32 % to less than the 12.2 % that a prototype had on a kinder choice."""
     begun_in_basin(tmp_path)
     done = stages(held_as_begun(tmp_path, held), {})
     assert moves_the_ship(str(done[0].run.result.verdict.effect))
