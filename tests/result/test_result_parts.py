@@ -117,7 +117,7 @@ def test_a_search_ends_at_the_error_of_the_fit():
     few = replace(SETTINGS, free=("Nr", "Kp"), nuisance=())
     fit = identify([zigzag(10), zigzag(20)], MODEL.with_values({"Nv": -0.0045}), few)
     done, _ = examine_fit(fit, DiagnoseSettings(), silent)
-    made = build._fit(done)
+    made = build._fit(done, missing=True)
     assert made.band == done.band
     assert min(made.band.values()) > 0.0
     assert made.iterations[-1].eps_rmsn == pytest.approx(fit.eps_rmsn, rel=1e-6)

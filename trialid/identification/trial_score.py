@@ -44,19 +44,22 @@ def pool_errors(scored: Sequence[Score]) -> dict[str, float]:
     return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
 
 
-def of_trial(fit: "Fit", trial: Trial) -> tuple[dict[str, float], dict[str, float]]:
+def of_trial(
+    fit: "Fit", trial: Trial, shared: Mapping[str, float] | None = None
+) -> tuple[dict[str, float], dict[str, float]]:
     """Parameters and initial states with which a fit simulates one trial.
 
     A trial to check has nothing of its own but its start and its current, if the fit leaves them
-    free too: for its sensors see `common_values`.
+    free too: for its sensors see `common_values`, in whose place `shared` may stand.
     """
     problem = fit.problem
     if trial.use == "fit":
         place = [t.name for t in problem.trials].index(trial.name)
         values = problem.values(fit.theta, place)
         return values, starts_of(values)
-    own = own_start(problem, trial, compared_mask(trial, problem.simulator), fit.common, fit.level)
-    return dict(fit.common) | {n: own[n] for n in own if n in fit.common}, starts_of(own)
+    values = dict(fit.common if shared is None else shared)
+    own = own_start(problem, trial, compared_mask(trial, problem.simulator), values, fit.level)
+    return values | {n: own[n] for n in own if n in values}, starts_of(own)
 
 
 def own_start_error(fit: "Fit", trial: Trial) -> StartError | None:
@@ -67,23 +70,27 @@ def own_start_error(fit: "Fit", trial: Trial) -> StartError | None:
     return start_error(fit.problem, trial, compared, _with_start(fit, trial), fit.level)
 
 
-def check_rows(fit: "Fit", trial: Trial) -> OwnTakenOut | None:
+def check_rows(
+    fit: "Fit", trial: Trial, shared: Mapping[str, float] | None = None
+) -> OwnTakenOut | None:
     """The rows of a trial to check less what is its own: see `own_taken_out`."""
     compared = compared_mask(trial, fit.problem.simulator)
-    return own_taken_out(fit.problem, trial, compared, _with_start(fit, trial), fit.level)
+    return own_taken_out(fit.problem, trial, compared, _with_start(fit, trial, shared), fit.level)
 
 
-def _with_start(fit: "Fit", trial: Trial) -> dict[str, float]:
+def _with_start(
+    fit: "Fit", trial: Trial, shared: Mapping[str, float] | None = None
+) -> dict[str, float]:
     """All a trial to check is simulated with, its start by the name of the column."""
-    values, start = of_trial(fit, trial)
+    values, start = of_trial(fit, trial, shared)
     return values | {initial(n): x for n, x in start.items()}
 
 
-def score_trial(fit: "Fit", trial: Trial) -> Score:
-    """Simulate one trial with the fitted parameters."""
+def score_trial(fit: "Fit", trial: Trial, shared: Mapping[str, float] | None = None) -> Score:
+    """Simulate one trial with the fitted parameters, or a trial to check with `shared`."""
     problem = fit.problem
     compared = compared_mask(trial, problem.simulator)
-    values, start = of_trial(fit, trial)
+    values, start = of_trial(fit, trial, shared)
     response = respond(problem.simulator, trial, values, start, sensitivities=False)
     if response.departure is None:
         eps = _errors(trial, response, compared, problem.outputs, problem.y_rms)

@@ -14,6 +14,7 @@ from trialid.design.separation import Separation
 from trialid.design.standard import Measure
 from trialid.design.steering.nomoto import Nomoto
 from trialid.design.wind_and_current import cannot_tell
+from trialid.diagnosis.another_value import follow_with_another_value
 from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.where.finding import Finding
@@ -77,7 +78,7 @@ def result_from(found: Findings, **beside: Any) -> Result:
             file=found.pipeline,
             trials=tuple(trial_row(s, found.before.band) for s in fit.scores),
             model=_model(fit),
-            fit=_fit(found.before),
+            fit=_fit(found.before, missing=found.verdict.kind == "missing"),
             split=_split(found.before.split, found.before.routes),
             accuracy=replace(
                 accuracy_part(fit, found.before.accuracy),
@@ -135,8 +136,10 @@ def _model(fit: Fit) -> ModelPart:
     )
 
 
-def _fit(done: Diagnosed) -> FitPart:
+def _fit(done: Diagnosed, *, missing: bool) -> FitPart:
+    """What is missing makes other values of a held-out trial: until it is there nobody asks."""
     fit = done.fit
+    other = () if missing else follow_with_another_value(fit.examined)
     return FitPart(
         eps_rmsn=fit.eps_rmsn,
         eps_rmsn_by_output=fit.eps_by_output,
@@ -156,7 +159,7 @@ def _fit(done: Diagnosed) -> FitPart:
         y_rms=dict(zip(fit.problem.outputs, map(float, fit.problem.y_rms), strict=True)),
         band=dict(done.band),
         search=fit.told,
-        remarks=(*remarks(fit), *cannot_tell(fit, done.accuracy)),
+        remarks=(*other, *remarks(fit), *cannot_tell(fit, done.accuracy)),
     )
 
 
