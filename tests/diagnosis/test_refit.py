@@ -172,6 +172,14 @@ def test_of_effects_as_good_the_one_that_held_out_trials_put_far_ahead_is_named(
     assert likeliest_refit(old, [drag, lag], 0.05) is drag
 
 
+def test_without_held_out_trials_none_is_put_ahead_by_what_it_takes_off_the_fitted():
+    """There it would be by how many coefficients it has."""
+    old, drag = refit("drag", BEFORE, LESS, eps=(0.2, 0.19), check=(None, None))
+    shape = refit("shape", BEFORE, LESS, eps=(0.2, 0.12), check=(None, None))[1]
+    shape.candidate.p_value = 0.06
+    assert likeliest_refit(old, [drag, shape], 0.05) is drag
+
+
 def test_what_takes_most_off_fitted_trials_does_not_give_way_to_the_held_out_ones():
     """Of a real tanker the race takes three quarters off the fitted zig-zags, a shape a third."""
     old, race = refit("race", BEFORE, LESS, eps=(0.2, 0.1), check=(0.2, 0.19))

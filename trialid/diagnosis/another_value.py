@@ -17,8 +17,9 @@ WORSE: Final = 2.0
 """Times the fitted trials' error of an output that a held-out trial must leave to be looked at."""
 
 MENDS: Final = 0.75
-"""Share of its squared error that goes with the other value where it is told: half its error. A
-model that lacks damping by the square has other linear damping in a smaller zig-zag."""
+"""Share of its squared error that goes with the other value where it is told: half its error. Of a
+simulated naval vessel 0.90 goes with another GM where she has 0.64 of it, and 0.52 with the best of
+all where she only sails faster and the model lacks something: at half of it that would be told."""
 
 FROM: Final = (0.5, 2.0)
 """Multiples of GM to look from: a quarter off, roll is out of phase with what slopes say."""

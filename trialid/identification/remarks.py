@@ -42,15 +42,15 @@ def _untold_GM(fit: Fit) -> list[str]:
             f"the record does not tell GM: her roll is damped by {ratio:.2g} of what is critical, "
             f"as no ship's is, so that {fit.value('GM'):.3g} m is of a swell or of nothing"
         ]
-    if late := late_roll(fit.problem, fit.theta):
-        place, seconds = max(late.items(), key=lambda one: abs(one[1]))
-        ends = sorted({f"{values['GM']:.3g}" for values in fit.rivals}, key=float)
-        return [
-            f"the record does not tell GM: {' or '.join(ends)} m, as its clocks are; "
-            f"{fit.problem.unknowns[place].name} = {seconds:.3g} s is no sensor's"
-        ]
     listed = [f"{values['GM']:.3g}" for values in fit.rivals]
     rivals = (
         " or ".join(listed) if len(listed) < 4 else f"anything from {listed[0]} to {listed[-1]}"
     )
-    return [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]
+    late = late_roll(fit.problem, fit.theta)
+    place = max(late, key=lambda place: abs(late[place]), default=None)
+    if place is None:
+        return [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]
+    return [
+        f"the record does not tell GM: {rivals} m, as its clocks are; "
+        f"{fit.problem.unknowns[place].name} = {late[place]:.3g} s is no sensor's"
+    ]

@@ -140,9 +140,10 @@ def likeliest_refit(
 
 
 def _foretells_more(fit: Fit, refit: Refit, best: Refit) -> bool:
-    """Whether an effect of the ship as good on blocks takes far more off, trials held out with."""
+    """Whether an effect of the ship as good on blocks takes far more off, held-out trials too."""
     return (
-        of_the_ship(refit.candidate.effect)
+        fit.eps_check is not None
+        and of_the_ship(refit.candidate.effect)
         and as_good(best.carried.after, refit.carried.after)
         and is_far(fall_of_all(fit, refit), fall_of_all(fit, best))
     )
