@@ -24,6 +24,8 @@ from trialid.trial import Trial
 FORMS = ((Force,), (Lagged,))
 """Of an effect of the ship, and of a sensor."""
 
+CHANCE = "chance would do it, or no ship has such a value"
+
 
 def refit(
     name,
@@ -45,6 +47,7 @@ def refit(
             acts_on=lambda *forms: ("r",),
         ),
         shown=lambda level: level > 0.0,
+        allowed=True,
         carried=SimpleNamespace(seen=seen),
         p_value=p_value,
     )
@@ -170,6 +173,25 @@ def test_of_effects_as_good_the_one_that_held_out_trials_put_far_ahead_is_named(
     lag = refit("lag", BEFORE, LESS, check=(0.2, 0.12))[1]
     lag.candidate.p_value = 0.06
     assert likeliest_refit(old, [drag, lag], 0.05) is drag
+
+
+@pytest.mark.parametrize(
+    ("after", "eps", "allowed", "said"),
+    [
+        (tuple(0.05 * x for x in BEFORE), (0.1, 0.02), True, ""),
+        (tuple(0.05 * x for x in BEFORE), (0.1, 0.08), True, CHANCE),  # little goes
+        ((*LESS[:3], *BEFORE[3:]), (0.1, 0.02), True, CHANCE),  # half know nothing
+        (tuple(0.05 * x for x in BEFORE), (0.1, 0.02), False, CHANCE),
+    ],
+)
+def test_what_takes_most_off_once_it_is_fitted_is_there_whatever_its_slope_shows(
+    after, eps, allowed, said
+):
+    """Of a boat with a weak thruster it took 0.95 of the squared error, and its slope none."""
+    old, new = refit("weak", BEFORE, after, eps=eps)
+    new.candidate.shown = lambda level: False
+    new.candidate.allowed = allowed
+    assert objection(old, new, 0.05) == said
 
 
 def test_without_held_out_trials_none_is_put_ahead_by_what_it_takes_off_the_fitted():

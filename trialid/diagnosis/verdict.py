@@ -13,6 +13,7 @@ from trialid.diagnosis.search.refit import (
     AS_A_GEAR,
     AS_SLOW,
     HELD_OUT,
+    MOST,
     NOT_ARRIVED,
     SLIGHT,
     Refit,
@@ -50,12 +51,6 @@ it, of what was added to ships of another hull, half were corrections of a shape
 SHARE: Final = 0.12
 """Share of what is not noise that the best effect must explain: the best of the catalogue explains
 0.04 of what it does not hold, and 0.21 or more of what it holds."""
-
-MOST: Final = 0.5
-"""Share of the squared error that goes with an effect from which on it has a name although no test
-against the noise shows it: where most that a model leaves is of the effect, the noise looks as
-smooth as that, but it is no more than what is left with it. Of two sets of a cargo ship's trials by
-her heading alone 0.98 and 0.99 went (p = 1): at half of it they are named too, at twice none is."""
 
 ANYTHING: Final = 0.5
 """Model error from which on what would not be seen may be anything: half of what moved, or all of
