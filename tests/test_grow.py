@@ -273,17 +273,18 @@ def test_what_the_file_without_it_foretells_worse_is_not_dropped(
         ({"typical": 0.08, "near": 0.08}, {}, "typical"),
         ({"typical": 0.08, "near": 0.05}, {"near": "it rises"}, "typical"),
         ({"typical": 0.04, "near": 0.05}, {"typical": "it rises"}, "near"),
+        ({"typical": 0.08}, {}, "typical"),  # from near its end nothing can be fitted
     ],
 )
 def test_what_was_promised_is_begun_near_its_end(monkeypatch, errors, troubles, begun):
     """By the refit the error falls to 5 %; from typical values the search ended above."""
-    fits = {at: SimpleNamespace(eps_rmsn=error, at=at) for at, error in errors.items()}
+    world = {at: (error, None) for at, error in errors.items()}
     stubs = {
         "add_to_pipeline": lambda pipeline, name: SimpleNamespace(after="typical"),
         "started_at": lambda edit, values: SimpleNamespace(after="near"),
         "available": lambda pipeline: {},
-        "fit_of": lambda pipeline, *rest: fits[pipeline],
-        "_trouble": lambda before, up, fit, level: troubles.get(fit.at, ""),
+        "fit_of": lambda at, *_: fit_in(world, at),
+        "_trouble": lambda before, up, fit, level: troubles.get(fit.effects, ""),
     }
     for name, stub in stubs.items():
         monkeypatch.setattr(grow, name, stub)
@@ -294,5 +295,5 @@ def test_what_was_promised_is_begun_near_its_end(monkeypatch, errors, troubles, 
     stage = SimpleNamespace(run=SimpleNamespace(findings=findings), pipeline=pipeline)
     path = SimpleNamespace(trials=(), progress=None)
     edit, fit, trouble = grow._fitted(path, stage, up)
-    assert edit.after == fit.at == begun
+    assert edit.after == fit.effects == begun
     assert not trouble

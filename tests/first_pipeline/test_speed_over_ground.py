@@ -1,5 +1,6 @@
 """A bridge table without units: the stated speed settles what the log leaves open."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,8 @@ from geared_rudder import geared
 
 from trialid.inspection import inspect_log
 from trialid.inspection.channel_names import unit_in_name
+from trialid.inspection.relations import unit_of_speed
+from trialid.inspection.sketch import EMPTY
 from trialid.ship.estimate import Given
 from trialid.workflow.first_pipeline import Starter, starter
 
@@ -61,3 +64,10 @@ def test_rpm_is_a_unit_where_a_channel_is_called_so(tmp_path: Path) -> None:
     assert unit_in_name("deg") is None  # of which angle?
     text = begun(tmp_path, 1.0, APPROACH).files[tmp_path / "p.toml"]
     assert '# n = { channel = "RPM", unit = "rpm" }' in text
+
+
+def test_a_channel_of_which_nothing_was_kept_has_no_unit_by_a_speed(tmp_path: Path) -> None:
+    survey = inspect_log(log(tmp_path / "z.csv", ZIGZAG, 0.9, 1.0))
+    speed = next(one for one in survey.channels.values() if one.name.endswith("SOG"))
+    assert unit_of_speed(speed, APPROACH) == "m/s"
+    assert unit_of_speed(dataclasses.replace(speed, sketch=EMPTY), APPROACH) is None

@@ -14,7 +14,8 @@ from trialid.identification.trial_score import Score, check_rows, pool_errors, s
 from trialid.names.wording import shown_unit
 
 WORSE: Final = 2.0
-"""Times the fitted trials' error of an output that a held-out trial must leave to be looked at."""
+"""Times the fitted trials' error of an output that a held-out trial must leave to be looked at.
+Of seven simulated sets, one of a ship loaded anew, that one is told, and at half and twice too."""
 
 MENDS: Final = 0.75
 """Share of its squared error that goes with the other value where it is told: half its error. Of a

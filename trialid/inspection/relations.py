@@ -130,6 +130,8 @@ def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | Non
 
 def unit_of_speed(speed: ChannelInspection, stated: float) -> str | None:
     """The one unit in which she approaches as fast as stated [m/s]; None where it is not one."""
+    if not len(speed.sketch.y):
+        return None
     fastest = float(np.quantile(speed.sketch.y, FASTEST))
     sizes = {unit: fastest * (to_si(unit, "m/s") or 0.0) for unit in SPEEDS}
     fitting = [unit for unit, size in sizes.items() if abs(size - stated) <= NEAR * stated]

@@ -148,7 +148,12 @@ def _fitted(path: _Path, stage: Stage, up: Refit) -> tuple[Edit, Fit, str]:
     before, level = stage.run.findings.before.fit, stage.pipeline.diagnose.level
     best: tuple[Edit, Fit, str] | None = None
     for edit in _ways(add_to_pipeline(stage.pipeline, up.candidate.effect.name), up.fit):
-        fit = fit_of(edit.after, path.trials, available(edit.after), path.progress)
+        try:
+            fit = fit_of(edit.after, path.trials, available(edit.after), path.progress)
+        except TrialidError:
+            if best is None:
+                raise
+            break  # what was fitted stands, though it is not as good as the refit was
         trouble = _trouble(before, up, fit, level)
         if best is None or (not trouble and (best[2] or fit.eps_rmsn < BETTER * best[1].eps_rmsn)):
             best = edit, fit, trouble

@@ -187,12 +187,13 @@ def other_speed(survey: Inspection, stated: float | None) -> Signal | None:
     """
     for sources, words in ((_over_ground(survey), "over ground"), (_some_speed(survey), "unsaid")):
         for source in sources:
-            unit = _stated(source) or (unit_of_speed(source, stated) if stated else None)
             why = (
                 f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
             )
-            if not _stated(source):
-                why += f"; unit by the stated speed of {stated or 0.0:.3g} m/s"
+            unit = _stated(source)
+            if unit is None and stated is not None:
+                unit = unit_of_speed(source, stated)
+                why += f"; unit by the stated speed of {stated:.3g} m/s"
             if unit is not None:
                 return Signal("u", source, unit, None, why, ())
     return None

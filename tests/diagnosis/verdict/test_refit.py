@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_up_fits import BEFORE, fit
 
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import (
@@ -51,22 +52,11 @@ def refit(
         carried=SimpleNamespace(seen=seen),
         p_value=p_value,
     )
-    old, new = (
-        SimpleNamespace(
-            eps_rmsn=e,
-            eps_check=c,
-            converged=True,
-            eps_by_output={"r": e},
-            eps_check_by_output={} if c is None else {"r": c},
-            problem=SimpleNamespace(weights=np.ones(1)),
-        )
-        for e, c in zip(eps, check, strict=True)
-    )
+    old, new = (fit(e, c) for e, c in zip(eps, check, strict=True))
     new.converged = converged
     return old, Refit(candidate, new, Carried(before, after, seen))
 
 
-BEFORE = (1.0, 1.1, 0.9, 1.0, 1.05, 0.95)
 LESS = tuple(0.7 * x for x in BEFORE)
 ALIKE = tuple(0.69 * x + 0.02 * (-1) ** i for i, x in enumerate(BEFORE))
 """A little less in all, and more in half of the blocks."""
