@@ -159,9 +159,7 @@ def _verdict(
     found = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     found = with_motion(fit, found, ranking, refits, asked.level)
     named = None if grown else _named(found, refits)
-    found = with_held_out(
-        fit.examined, found, lambda: before.accuracy.covariance, asked.level, named
-    )
+    found = with_held_out(fit, found, lambda: before.accuracy.covariance, asked.level, named)
     return name_records(fit, found, asked.candidates.values())
 
 

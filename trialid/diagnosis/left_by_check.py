@@ -65,6 +65,9 @@ def with_held_out(
     """
     if fit.eps_check is None or (named is None and verdict.kind != "nothing missing"):
         return verdict
+    if named is not None:
+        named = replace(named, fit=named.fit.examined)
+    fit = fit.examined
     found = left_by_check(fit, covariance())
     worst = min(found, key=lambda one: one.p_value, default=None)
     if worst is None or worst.p_value >= level / len(found):

@@ -12,6 +12,7 @@ from s175q import MODEL, white, with_noise, zigzag
 
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.left_by_check import with_held_out
+from trialid.diagnosis.noise import thinning
 from trialid.diagnosis.search.refit import fall, fall_of_check
 from trialid.identification.adequacy import Inadequate, why_no_fit
 from trialid.identification.fit import identify
@@ -21,17 +22,19 @@ LINEAR = MODEL - "yaw_drag_rar"
 SETTINGS = Settings(("Nv", "Nr", "Ndelta"), ("r",), nuisance=("initial_state",))
 
 
-def sailed(angles, held=2, *, of_file, linear, rudder=1.0, ahead=1.0):
+def sailed(angles, held=2, *, of_file, linear, rudder=1.0, ahead=1.0, noise=1.0):
     """Zig-zags fitted by the linear model, and one held out whose rudder is logged so many times.
 
-    The yaw damping's two parts and the rudder are so many times those of the file.
+    The yaw damping's two parts and the rudder are so many times those of the file, the noise so
+    many times a gyro's.
     """
     times = {"Nrar": of_file, "Nr": linear, "Ndelta": rudder}
     truth = MODEL.with_values({n: k * MODEL.value(n) for n, k in times.items()})
     made = []
     for angle in (*angles, held):
         trial = zigzag(angle, truth, use="check" if angle == held else "fit")
-        trial = with_noise(trial, *white(np.random.default_rng(angle), trial.samples))
+        sensors = white(np.random.default_rng(angle), trial.samples)
+        trial = with_noise(trial, *(noise * e for e in sensors))
         if angle == held:
             signals = {**trial.signals, "delta": ahead * trial.signals["delta"]}
             trial = replace(trial, signals=signals)
@@ -104,6 +107,7 @@ def test_a_name_stays_by_what_it_takes_off_either(mended, found):
         changed = SimpleNamespace(
             eps_rmsn=fitted * mended.eps_rmsn, eps_check=held * mended.eps_check
         )
+        changed.examined = changed
         other = replace(named, fit=changed)
         covariance = found.before.accuracy.covariance
         return with_held_out(mended, found.verdict, lambda: covariance, 0.05, other).kind
@@ -113,3 +117,12 @@ def test_a_name_stays_by_what_it_takes_off_either(mended, found):
     assert judged(0.05, 0.02) == "cannot tell"
     assert judged(0.05, 0.2) == "missing"
     assert judged(0.99, 0.05) == "missing"
+
+
+def test_of_a_long_record_means_are_held_against_means(monkeypatch):
+    """Most of what every sample leaves is noise here, and means hold little of that."""
+    monkeypatch.setattr(thinning, "LONGEST", 600)
+    fit = sailed((5, 10), 20, of_file=4, linear=0.5, noise=3.0)
+    found = diagnose(fit)
+    assert found.before.fit.examined.eps_rmsn < 0.6 * found.before.fit.eps_rmsn
+    assert (found.verdict.kind, found.verdict.effect) == ("missing", "yaw_drag_rar")
