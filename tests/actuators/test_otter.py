@@ -12,7 +12,8 @@ import pytest
 from otter_model import CANDIDATES, SHIP, TRUTH, fitted, record, stuck_at
 from typical import distances
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects.actuators.instances import typical_drive
 

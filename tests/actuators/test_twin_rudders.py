@@ -11,7 +11,8 @@ from click.testing import CliRunner
 
 import trialid
 from trialid.cli.main import commands
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings

@@ -43,7 +43,8 @@ from hidden_truth import (
 from spread import add_options, spread
 
 from trialid.arrays import Vector
-from trialid.diagnosis.diagnose import DiagnoseSettings, refits_of
+from trialid.diagnosis.diagnose import refits_of
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.noise.noise_bound import held_against

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from trialid import pipeline_file
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.noise import thinning as module
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import mean_trial, samples_together, with_means

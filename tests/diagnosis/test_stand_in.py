@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from s175q import MODEL, OUTPUTS, SHAFT, white, with_noise
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.search import carried
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.search.refit import likeliest_refit

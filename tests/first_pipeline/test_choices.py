@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from trialid.workflow.first_pipeline.choice import approach_speed
@@ -11,9 +12,14 @@ from trialid.workflow.first_pipeline.pipeline_text import period
 from trialid.workflow.first_pipeline.twin_rudders import sides_of
 
 
-def logged(travel: float = 40.0, unit: str = "deg", rate: float = 10.0) -> Any:
-    """A trial whose rudder goes so far from one side to the other, all sampled so fast [Hz]."""
-    source = SimpleNamespace(high=travel / 2.0, low=-travel / 2.0, rate=rate, unit=unit)
+def logged(travel: float = 40.0, unit: str = "deg", rate: float = 10.0, mean: float = 0.0) -> Any:
+    """A trial whose rudder goes so far from one side to the other, all sampled so fast [Hz].
+
+    To one side alone where it has a mean.
+    """
+    low = 0.0 if mean else -travel / 2.0
+    sketch = SimpleNamespace(y=np.array([mean]))
+    source = SimpleNamespace(high=low + travel, low=low, rate=rate, unit=unit, sketch=sketch)
     signals = [SimpleNamespace(quantity=n, unit=unit, source=source) for n in ("delta", "r")]
     return SimpleNamespace(signals=signals)
 
@@ -23,6 +29,14 @@ def test_the_trial_in_the_middle_is_held_out() -> None:
     assert held_out([logged(40.0), logged(20.0), logged(70.0)]) == 0
     assert held_out([logged(70.0), logged(30.0), logged(40.0), logged(20.0)]) == 1
     assert held_out([logged()]) is None
+
+
+def test_a_turn_counts_for_more_than_a_zigzag_at_the_same_rudder() -> None:
+    """And at 35 deg for more than any zig-zag of the usual ones, though its rudder goes 35 deg."""
+    zigzags = [logged(10.0), logged(20.0), logged(40.0)]
+    assert held_out([zigzags[2], logged(35.0, mean=30.0), zigzags[0]]) == 0
+    assert held_out([logged(20.0, mean=18.0), zigzags[2], zigzags[0]]) == 1
+    assert held_out([*zigzags, logged(35.0, mean=30.0), logged(35.0, mean=-30.0)]) == 2
 
 
 def test_rudders_count_in_one_unit() -> None:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import s175q
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify

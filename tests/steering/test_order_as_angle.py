@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import s175q
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.rudder_jumps import Course, jump_of, rudder_jump
 from trialid.diagnosis.search import refit
 from trialid.diagnosis.search.refit import own_time

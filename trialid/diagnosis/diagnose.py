@@ -1,19 +1,17 @@
 """All that is found out about a fitted model: its error, its accuracy, and what is missing."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from dataclasses import replace
+from functools import partial
 
-from trialid.accuracy.parameter_table import Accuracy
+from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, Diagnosis
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
-from trialid.diagnosis.may_be_off import Doubts, doubts
-from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import with_means
-from trialid.diagnosis.prediction_band import prediction_band
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.completeness import Completeness, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
@@ -22,79 +20,15 @@ from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_
 from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate, ranking_of
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, look_beside
-from trialid.diagnosis.trust import accuracy_of
+from trialid.diagnosis.search.together import Together, two_at_once
 from trialid.diagnosis.unrecorded import name_records
-from trialid.diagnosis.verdict import Verdict, decide, gross_verdict
-from trialid.diagnosis.where.misfit import Where, where
-from trialid.effects import CATALOGUE
+from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_two
+from trialid.diagnosis.where.misfit import where
 from trialid.identification.adequacy import Inadequate, why_no_fit
 from trialid.identification.fit import Fit
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect
 from trialid.threads import one_thread
-
-
-@dataclass(frozen=True, kw_only=True)
-class DiagnoseSettings:
-    """How to diagnose; see the pipeline's `[diagnose]`.
-
-    Attributes
-    ----------
-    candidates
-        Effects to try, by name.
-    coefficients
-        Whether coefficients that the model holds fixed are tried too.
-    noise
-        Stated sensor figures by output [SI].
-    quiet
-        Stretches declared to be without excitation [s], by trial.
-    """
-
-    candidates: Mapping[str, Effect] = field(default_factory=lambda: CATALOGUE)
-    coefficients: bool = True
-    family_cos: float = 0.95
-    level: float = 0.05
-    refit: int = 4
-    noise: Mapping[str, float] = field(default_factory=dict)
-    quiet: Mapping[str, list[tuple[float, float]]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Diagnosed:
-    """One fit with what its error is made of and how far its parameters can be trusted."""
-
-    fit: Fit
-    split: Split
-    routes: tuple[Split, ...]
-    doubts: Doubts
-
-    @cached_property
-    def accuracy(self) -> Accuracy:
-        """Eq. 8 to 14 and likely ranges of every unknown."""
-        return accuracy_of(self.fit, self.split, self.doubts.averaged)
-
-    @cached_property
-    def band(self) -> dict[str, float]:
-        """Half-width of the 95 % band of a trial that was not fitted, by output [SI]."""
-        return prediction_band(self.fit)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Diagnosis:
-    """All that was found out about a fit.
-
-    `after` is the confirmed refit, diagnosed in its turn; None where no effect was named. `force`
-    is None where nobody asked and the verdict is another.
-    """
-
-    before: Diagnosed
-    left_out: Mapping[str, str]
-    verdict: Verdict
-    where: Where
-    ranking: tuple[Candidate, ...] = ()
-    refits: tuple[Refit, ...] = ()
-    after: Diagnosed | None = None
-    force: MissingForce | None = None
 
 
 @one_thread
@@ -115,8 +49,7 @@ def diagnose(
     fit = with_means(fit)
     before, augmented = examine_fit(fit, asked, progress)
     ranking = ranking_of(fit, augmented, asked.family_cos, asked.level)
-    by_noise = partial(_leaves_noise, asked=asked)
-    if faults := gross_faults(fit, asked.candidates, progress, by_noise):
+    if faults := gross_faults(fit, asked.candidates, progress, partial(_leaves_noise, asked=asked)):
         return _gross(fit, before, augmented.left_out, faults, asked)
     failed = why_no_fit(fit)
     if failed is not None and not failed.may_lack:
@@ -128,11 +61,11 @@ def diagnose(
         return _gross(fit, before, left_out, faults, asked)
     before = _bounded(before, tried.refits, whole)
     verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
+    verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
     after = _after(verdict, tried, asked, progress)
     if failed is not None and (after is None or why_no_fit(after.fit)):
         return _no_fit(fit, before, left_out, failed)
     wanted = force or verdict.kind == "not in catalogue"
-    sought = _force(after.fit if after else fit, asked.level, progress) if wanted else None
     return Diagnosis(
         before=before,
         ranking=ranking,
@@ -141,7 +74,8 @@ def diagnose(
         verdict=verdict,
         where=where(fit),
         after=after,
-        force=sought,
+        force=_force(after.fit if after else fit, asked.level, progress) if wanted else None,
+        together=together,
     )
 
 
@@ -161,6 +95,20 @@ def _verdict(
     named = None if grown else _named(found, refits)
     found = with_held_out(fit, found, lambda: before.accuracy.covariance, asked.level, named)
     return name_records(fit, found, asked.candidates.values())
+
+
+def _or_of_two(
+    fit: Fit,
+    verdict: Verdict,
+    whole: Completeness | None,
+    asked: DiagnoseSettings,
+    progress: Progress,
+) -> tuple[Verdict, Together | None]:
+    """The verdict, and two effects at once, where none has a name and the catalogue may hold it."""
+    if verdict.kind not in ("cannot tell", "not in catalogue") or (whole and whole.gap):
+        return verdict, None
+    found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
+    return (verdict if found is None else verdict_on_two(fit, found)), found
 
 
 def _named(verdict: Verdict, refits: Sequence[Refit]) -> Refit | None:

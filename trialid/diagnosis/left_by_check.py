@@ -15,7 +15,8 @@ from scipy.special import fdtrc  # scipy.stats would take another 0.4 s to impor
 
 from trialid.arrays import Mask, Vector
 from trialid.diagnosis.noise.residual import OutputNoise, heavy_tail, pool_variance, residuals
-from trialid.diagnosis.search.refit import Refit, fall, fall_of_all, fall_of_check
+from trialid.diagnosis.search.falls import fall, fall_of_all, fall_of_check
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.verdict import SHARE, Verdict
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale, stretches_of

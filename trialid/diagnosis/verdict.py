@@ -9,6 +9,7 @@ import numpy as np
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.completeness import Completeness
+from trialid.diagnosis.search.falls import fall, worse_held_out
 from trialid.diagnosis.search.refit import (
     AS_A_GEAR,
     AS_SLOW,
@@ -18,15 +19,14 @@ from trialid.diagnosis.search.refit import (
     SLIGHT,
     Refit,
     best_of,
-    fall,
     falls,
     likeliest_refit,
     objection,
-    worse_held_out,
 )
 from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import far_ahead
+from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.verdict_sentences import (
     as_late,
     by_chance,
@@ -40,6 +40,7 @@ from trialid.diagnosis.verdict_sentences import (
     outdone_by_a_shape,
     significant_and_small,
     subject,
+    two_together,
     unfinished_lead,
 )
 from trialid.identification.fit import Fit
@@ -143,6 +144,11 @@ def gross_verdict(fit: Fit, faults: Sequence[Refit]) -> Verdict:
         f"{faults[0].fit.eps_rmsn:.2%}, further than with any other fault of an actuator{alike}"
     )
     return Verdict("missing", names[0], names, said)
+
+
+def verdict_on_two(fit: Fit, found: Together) -> Verdict:
+    """Two effects without which the model fails, neither of which has a name alone."""
+    return Verdict("cannot tell", None, (), two_together(fit, found))
 
 
 def _unnamed(parts: Split, whole: Completeness | None, shown: Sequence[Candidate]) -> Verdict:

@@ -10,6 +10,7 @@ from trialid.diagnosis.search.carried import FALL
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import AS_SLOW, Refit
 from trialid.diagnosis.search.score import Candidate
+from trialid.diagnosis.search.together import Together
 from trialid.identification.fit import Fit
 
 
@@ -94,6 +95,16 @@ def one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
         f"{named.candidate.effect.name}{freed} {falls_by(fit, named.fit)}, and as well it may be "
         f"{', '.join(others)}; against the noise none stands out "
         f"(p = {named.candidate.p_value:.2g} over the catalogue)"
+    )
+
+
+def two_together(fit: Fit, found: Together) -> str:
+    """Two effects do what neither does alone."""
+    alike = "".join(f"; {' and '.join(names)} do as much" for names in found.alike[:1])
+    return (
+        f"more than one thing is missing: no effect alone stands every check, but with "
+        f"{' and '.join(found.names)} together {falls_by(fit, found.fit)}{alike}; "
+        "`trialid run PIPELINE --auto` adds both and goes on"
     )
 
 

@@ -15,7 +15,7 @@ from trialid.design.standard import Measure
 from trialid.design.steering.nomoto import Nomoto
 from trialid.design.wind_and_current import cannot_tell
 from trialid.diagnosis.another_value import follow_with_another_value
-from trialid.diagnosis.diagnose import Diagnosed, Diagnosis
+from trialid.diagnosis.diagnosed import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where

@@ -40,6 +40,11 @@ class StepRow:
     logs: tuple[str, ...] = ()
     version: str | None = None
 
+    @property
+    def joined(self) -> tuple[str, ...]:
+        """Names of what was added; two that joined at once stand with a comma."""
+        return tuple(self.added.split(", ")) if self.added else ()
+
 
 @dataclass(frozen=True, kw_only=True)
 class MovedRow:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from trialid.design.separation import Separation
-from trialid.diagnosis.diagnose import Diagnosis
+from trialid.diagnosis.diagnosed import Diagnosis
 from trialid.diagnosis.search.score import VISIBLE, Candidate
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit

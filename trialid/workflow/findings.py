@@ -14,7 +14,8 @@ from trialid.design.imo.trial_measures import measure_trials
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.separation import Separation
 from trialid.design.steering.nomoto import Nomoto, nomoto
-from trialid.diagnosis.diagnose import Diagnosed, DiagnoseSettings, Diagnosis, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, Diagnosis
 from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError

@@ -1,10 +1,11 @@
 """The loop that adds what is missing until nothing is: fit, diagnose, decide, add, and again.
 
 Forward by the refit whose fall carries over best to blocks left out, and shows on held-out trials
-once effects were added; then backward, each effect that was added left out in turn, and what no
-longer pays is dropped for good. It stops where the evidence ends, and never keeps what raised the
-error of held-out trials. Names are given at the end,
-to what survives: what leaving it out costs says how much it is worth. Nothing is written here.
+once effects were added, or by two effects at once where none alone stands every check; then
+backward, each effect that was added left out in turn, and what no longer pays is dropped for good.
+It stops where the evidence ends, and never keeps what raised the error of held-out trials. Names
+are given at the end, to what survives: what leaving it out costs says how much it is worth. Nothing
+is written here.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,7 +15,9 @@ from typing import Final
 from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.carry_over import levels, own_errors
-from trialid.diagnosis.search.refit import Refit, likeliest_refit, objection, worse_held_out
+from trialid.diagnosis.search.falls import worse_held_out
+from trialid.diagnosis.search.refit import Refit, likeliest_refit, objection
+from trialid.diagnosis.search.together import Together, stands
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
@@ -25,7 +28,7 @@ from trialid.trial import Trial
 from trialid.workflow import history
 from trialid.workflow.build_model import available
 from trialid.workflow.edit_model import AS_FORESEEN, BETTER, proposed_steps, started_at
-from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
+from trialid.workflow.edit_pipeline import add_to_pipeline, drop_from_pipeline
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.outcome import Run
 from trialid.workflow.read_trials import align_trials
@@ -42,9 +45,10 @@ MOST: Final = 12
 class Stage:
     """One step of the loop.
 
-    `run` is the model with `added` in it, or without `dropped` (both None: the model as written),
-    unless it was not `kept`; then it is the model before. `end` says why the loop ends here, empty
-    where it goes on. `worths` are those of the effects that were added, the dearest first.
+    `run` is the model with `added` in it (two with a comma), or without `dropped` (both None: the
+    model as written), unless it was not `kept`; then it is the model before. `end` says why the
+    loop ends here, empty where it goes on. `worths` are those of the effects that were added, the
+    dearest first.
     """
 
     pipeline: Pipeline
@@ -82,8 +86,14 @@ class _Path:
             kept.append(effect)
         self.own = kept
 
-    def next_up(self, run: Run) -> Refit | None:
-        """The effect to add: what is named, and in later steps whatever stands every check."""
+    def next_up(self, run: Run) -> Refit | Together | None:
+        """What to add: what is named, and in later steps whatever stands every check.
+
+        Where that is nothing, two effects at once, if two explain what none alone does.
+        """
+        return self._alone(run) or self._together(run)
+
+    def _alone(self, run: Run) -> Refit | None:
         verdict, level = run.findings.verdict, run.pipeline.diagnose.level
         if verdict.kind not in NAMELESS if self.own else verdict.effect is None:
             return None
@@ -91,6 +101,10 @@ class _Path:
         able = [r for r in run.findings.refits if r.candidate.effect.name not in self.gone]
         grown = bool(self.own)
         return likeliest_refit(fit, able, level, grown)
+
+    def _together(self, run: Run) -> Together | None:
+        found = run.findings.together
+        return None if found is None or self.gone & {*found.names} else found
 
     def end(self, run: Run) -> str:
         """Why nothing more is to be added, empty where something is."""
@@ -127,58 +141,68 @@ def _forward(path: _Path, stage: Stage) -> Stage:
     """The stage with the next effect in the model, or why that is not kept."""
     up = path.next_up(stage.run)
     assert up is not None
-    name, before = up.candidate.effect.name, stage.run.findings.before.fit
-    path.gone.add(name)
-    path.added += 1
+    effects, before = up.effects, stage.run.findings.before.fit
+    name = ", ".join(e.name for e in effects)
+    path.gone |= {e.name for e in effects}
+    path.added += len(effects)
     try:
-        edit, fit, trouble = _fitted(path, stage, up)
+        after, fit, trouble = _fitted(path, stage, up)
         if trouble:
             return _not_kept(path, stage, name, f"{trouble} with {name}")
-        run = examine(edit.after, path.trials, path.progress, fit, grown=True)
+        run = examine(after, path.trials, path.progress, fit, grown=True)
     except TrialidError as error:
         return _not_kept(path, stage, name, f"with {name}: {error}")
     if run.findings.verdict.kind == "no fit":
         return _not_kept(path, stage, name, f"with {name}: {run.findings.verdict.sentence}")
-    path.join(edit.effect, before.model.displaced_by(edit.effect))
-    return _told(path, edit, run, added=name)
+    for effect in effects:
+        path.join(effect, before.model.displaced_by(effect))
+    return _told(path, after, run, added=name)
 
 
-def _fitted(path: _Path, stage: Stage, up: Refit) -> tuple[Edit, Fit, str]:
-    """The file with the effect, its fit, and what speaks against that; as good as the refit was."""
+def _fitted(path: _Path, stage: Stage, up: Refit | Together) -> tuple[Pipeline, Fit, str]:
+    """The file with what is added, its fit, and what speaks against that; as good as the refit."""
     before, level = stage.run.findings.before.fit, stage.pipeline.diagnose.level
-    best: tuple[Edit, Fit, str] | None = None
-    for edit in _ways(add_to_pipeline(stage.pipeline, up.candidate.effect.name), up.fit):
+    best: tuple[Pipeline, Fit, str] | None = None
+    for after in _ways(stage.pipeline, up):
         try:
-            fit = fit_of(edit.after, path.trials, available(edit.after), path.progress)
+            fit = fit_of(after, path.trials, available(after), path.progress)
         except TrialidError:
             if best is None:
                 raise
             break  # what was fitted stands, though it is not as good as the refit was
         trouble = _trouble(before, up, fit, level)
         if best is None or (not trouble and (best[2] or fit.eps_rmsn < BETTER * best[1].eps_rmsn)):
-            best = edit, fit, trouble
+            best = after, fit, trouble
         if not best[2] and best[1].eps_rmsn <= AS_FORESEEN * up.fit.eps_rmsn:
             break
     assert best is not None
     return best
 
 
-def _ways(edit: Edit, found: Fit) -> Iterator[Edit]:
-    """The file with the effect at its typical values, and begun where the refit ended.
+def _ways(pipeline: Pipeline, up: Refit | Together) -> Iterator[Pipeline]:
+    """The file with what is added at its typical values, and begun where the refit ended.
 
     The file has to give the fit again, so it is the file that is fitted.
     """
-    yield edit
-    near = started_at(edit, found.model.values)
-    if near is not None:
+    plain = near = pipeline
+    placed = True
+    for effect in up.effects:
+        plain = add_to_pipeline(plain, effect.name).after
+        begun = started_at(add_to_pipeline(near, effect.name), up.fit.model.values)
+        near, placed = (begun.after, placed) if begun is not None else (near, False)
+    yield plain
+    if placed:
         yield near
 
 
-def _trouble(before: Fit, up: Refit, fit: Fit, level: float) -> str:
-    """What speaks against the effect as it is fitted from the file, empty where nothing does."""
+def _trouble(before: Fit, up: Refit | Together, fit: Fit, level: float) -> str:
+    """What speaks against what is added as it is fitted from the file, empty where nothing does."""
     after = own_errors(fit, levels(before))
-    found = Carried.between(own_errors(before), after, up.candidate.carried.seen)
-    return objection(before, Refit(up.candidate, fit, found), level)
+    if isinstance(up, Together):
+        found = replace(up, fit=fit, carried=Carried.between(own_errors(before), after))
+        return "" if stands(before, found) else "the file does not give the fit again"
+    carried = Carried.between(own_errors(before), after, up.candidate.carried.seen)
+    return objection(before, Refit(up.candidate, fit, carried), level)
 
 
 def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:
@@ -188,7 +212,7 @@ def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:
 
 
 def _told(
-    path: _Path, edit: Edit, run: Run, added: str | None, dropped: str | None = None
+    path: _Path, after: Pipeline, run: Run, added: str | None, dropped: str | None = None
 ) -> Stage:
     """The stage of a changed model, with what each effect in it is worth."""
     path.seen(run)
@@ -196,7 +220,7 @@ def _told(
     path.progress("leaving out what was added", None)
     each = worths(fit, path.trials, path.own, path.kin)
     return Stage(
-        pipeline=edit.after,
+        pipeline=after,
         run=run,
         added=added,
         kept=True,
@@ -224,14 +248,15 @@ def _backward(path: _Path, stage: Stage) -> Stage | None:
     if failed or worse_held_out(fit, less):
         return None
     path.own = [e for e in path.own if e.name != idle.effect]
-    return _told(path, edit, run, None, idle.effect)
+    return _told(path, edit.after, run, None, idle.effect)
 
 
 def survivors(done: Sequence[Stage]) -> tuple[str, ...]:
     """The effects that were added and are still there, in the order in which they came."""
     last = done[-1].pipeline
     there = {*last.model.effects, *last.identify.free}
-    return tuple(s.added for s in done if s.kept and s.added in there)
+    joined = ((s.added or "").split(", ") for s in done if s.kept)
+    return tuple(name for names in joined for name in names if name in there)
 
 
 def conclude(done: Sequence[Stage]) -> tuple[Run, tuple[StepRow, ...]]:

@@ -56,7 +56,7 @@ def examine(
     steps, remark = history.read(pipeline.path)
     catalogue = available(pipeline)
     fit = fit or fit_of(pipeline, trials, catalogue, progress)
-    grown = grown or any(step.added in pipeline.model.effects for step in steps)
+    grown = grown or bool({n for step in steps for n in step.joined} & {*pipeline.model.effects})
     findings = find_out(pipeline, fit, catalogue, progress, force=force, grown=grown)
     progress("done", 1.0)
     present, *proposed = steps_from(findings)

@@ -8,7 +8,8 @@ import three_ships as truth
 from jets import JETS, SIDES
 from three_models import CARGO, FERRY, SUPPLY, Case
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.effects.actuators import actuator_effects

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from trialid import pipeline_file
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects.actuators import actuator_effects

@@ -12,7 +12,8 @@ import pytest
 from three_models import CARGO, CASES, FERRY, RACES, SUCKED, SUPPLY, Case
 from typical import distances
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.effects import CATALOGUE
 from trialid.effects.actuators import actuator_effects
 from trialid.identification.adequacy import why_no_fit

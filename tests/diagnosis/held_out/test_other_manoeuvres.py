@@ -13,7 +13,7 @@ from s175q import MODEL, white, with_noise, zigzag
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.noise import thinning
-from trialid.diagnosis.search.refit import fall, fall_of_check
+from trialid.diagnosis.search.falls import fall, fall_of_check
 from trialid.identification.adequacy import Inadequate, why_no_fit
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from s175q import MODEL, OUTPUTS, SHAFT, white, with_noise
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from s175q import MODEL, SHAFT
 
-from trialid.diagnosis.diagnose import DiagnoseSettings, Diagnosis, diagnose
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings, Diagnosis
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings

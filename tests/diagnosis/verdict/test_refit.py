@@ -8,6 +8,7 @@ import pytest
 from made_up_fits import BEFORE, fit
 
 from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.falls import worse_held_out
 from trialid.diagnosis.search.refit import (
     AS_A_GEAR,
     AS_SLOW,
@@ -17,7 +18,6 @@ from trialid.diagnosis.search.refit import (
     best_of,
     likeliest_refit,
     objection,
-    worse_held_out,
 )
 from trialid.ship.effect import Force, Lagged
 from trialid.trial import Trial

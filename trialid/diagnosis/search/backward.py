@@ -12,7 +12,7 @@ import numpy as np
 
 from trialid.diagnosis.search.carried import SHAPE, Carried, Errors
 from trialid.diagnosis.search.carry_over import left_out, levels, own_errors
-from trialid.diagnosis.search.refit import worse_held_out
+from trialid.diagnosis.search.falls import worse_held_out
 from trialid.diagnosis.verdict import NAMED
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify

@@ -58,19 +58,19 @@ class LeftOut:
 
     def errors(self, columns: Sequence[int] = ()) -> Errors:
         """Squared error of each block with these columns fitted to the others, and the own one."""
-        beta = self._coefficients(columns)
+        beta = self.coefficients(columns)
         whole, own = (_left_with(left, columns, beta) for left in (self.left, self.own))
         return Errors(whole, own)
 
     def carried(self, columns: Sequence[int]) -> Carried:
         """What these columns do to the error of blocks that did not choose their coefficients."""
-        signs = np.sign(self._coefficients(columns))
+        signs = np.sign(self.coefficients(columns))
         return Carried.between(
             self.errors(), self.errors(columns),
             float(np.mean(self.seen[list(columns)])), steady=bool(np.all(signs == signs[:1])),
         )  # fmt: skip
 
-    def _coefficients(self, columns: Sequence[int]) -> Vector:
+    def coefficients(self, columns: Sequence[int]) -> Vector:
         """Coefficients fitted to the other blocks; (blocks, q)."""
         at = [1 + c for c in columns]
         gram, moment = self.others[:, at][:, :, at], self.others[:, at, 0]

@@ -10,6 +10,7 @@ from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.rudder_jumps import Jump, rudder_jump
 from trialid.diagnosis.search.carried import EACH, FAINT, FALL, SHAPE, Carried, as_good, is_far
 from trialid.diagnosis.search.carry_over import levels, own_errors
+from trialid.diagnosis.search.falls import fall, fall_of_all, own_fall, worse_held_out
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
@@ -50,6 +51,11 @@ class Refit:
     carried: Carried
 
     @property
+    def effects(self) -> tuple[Effect, ...]:
+        """What was added, one effect."""
+        return (self.candidate.effect,)
+
+    @property
     def cost(self) -> float:
         """What refits are ordered by, the least first: what is left, and 1 % a parameter."""
         return self.carried.log_ratio + EACH * (len(self.candidate.effect.parameters) - 1)
@@ -86,7 +92,7 @@ def _fitted(fit: Fit, candidate: Candidate) -> Fit:
     effect = candidate.effect
     ends = {n: (p.low, p.high) for n, p in effect.parameters.items()}
     start = {n: float(np.clip(x, *ends[n])) for n, x in candidate.expected.items()}
-    model, settings = (fit.model + effect).with_values(start), _settings_with(fit, effect)
+    model, settings = (fit.model + effect).with_values(start), settings_with(fit, (effect,))
     found = identify(fit.trials, model, settings, near=fit.estimates | start, smaller=fit)
     if found.converged or not effect.scanned:
         return found
@@ -116,13 +122,17 @@ def refit_best(
     return done
 
 
-def _settings_with(fit: Fit, effect: Effect) -> Settings:
-    """Its parameters free, too, with the priors that the pipeline would give them."""
-    lost, settings = fit.model.lost_to(effect), fit.settings
-    kept = tuple(n for n in settings.free if n not in lost)
-    new = tuple(p for p in effect.parameters if p not in kept)
-    known = known_of_ship(fit.model + effect, new) if settings.priors_of_ship else {}
-    return replace(settings, free=(*kept, *new), priors={**settings.priors, **known})
+def settings_with(fit: Fit, effects: Sequence[Effect]) -> Settings:
+    """Their parameters free, too, with the priors that the pipeline would give them."""
+    model, settings = fit.model, fit.settings
+    free, new = settings.free, list[str]()
+    for effect in effects:
+        lost, model = model.lost_to(effect), model + effect
+        free = tuple(n for n in free if n not in lost)
+        new += [p for p in effect.parameters if p not in free]
+        free = tuple(dict.fromkeys((*free, *new)))
+    known = known_of_ship(model, tuple(new)) if settings.priors_of_ship else {}
+    return replace(settings, free=free, priors={**settings.priors, **known})
 
 
 def likeliest_refit(
@@ -266,35 +276,3 @@ def falls(fit: Fit, refit: Refit) -> bool:
     """Whether the error falls by what is worth a name, where it was fitted and where not."""
     most = max(fall(fit, refit), own_fall(fit, refit))
     return refit.carried.falls and 1.0 - most < FALL
-
-
-def worse_held_out(before: Fit, after: Fit) -> bool:
-    """Whether held-out trials, where there are any, become worse or are lost."""
-    old, new = before.eps_check, after.eps_check
-    if old is None or new is None:
-        return False
-    return not np.isfinite(new) or new > old
-
-
-def fall(fit: Fit, refit: Refit) -> float:
-    """Share of the squared error that goes with an effect."""
-    return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)
-
-
-def fall_of_check(fit: Fit, refit: Refit) -> float:
-    """Share of the squared error of held-out trials that goes with an effect; 0 without any."""
-    old, new = fit.eps_check, refit.fit.eps_check
-    return 0.0 if old is None or new is None else float(1.0 - (new / old) ** 2)
-
-
-def fall_of_all(fit: Fit, refit: Refit) -> float:
-    """Share of the squared errors, of fitted trials and of those held out, that goes with it."""
-    fitted, held = fit.eps_rmsn**2, (fit.eps_check or 0.0) ** 2
-    return (fitted * fall(fit, refit) + held * fall_of_check(fit, refit)) / (fitted + held)
-
-
-def own_fall(fit: Fit, refit: Refit) -> float:
-    """The same with each output held against its own error."""
-    weights = levels(fit) * fit.problem.weights**2
-    before, after = (np.square(list(f.eps_by_output.values())) for f in (fit, refit.fit))
-    return float(1.0 - weights @ after / (weights @ before))

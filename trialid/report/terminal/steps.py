@@ -25,7 +25,13 @@ def line(step: StepRow) -> str:
     '+ static_list               5.00 %    6.00 %  4.00 %  3.00 %  nothing missing'
     """
     errors = (step.eps_rmsn, step.eps_rmsn_check, step.noise, step.undermodelling)
-    return _line(short_words(step), [percent(e) for e in errors], step.verdict or "")
+    *above, words = _broken(short_words(step))
+    return "\n".join([*above, _line(words, [percent(e) for e in errors], step.verdict or "")])
+
+
+def _broken(words: str) -> list[str]:
+    """The words of a step, effects that joined at once below each other."""
+    return words.replace(", ", ",\n  ").split("\n")
 
 
 def rows(history: Sequence[StepRow], most: int = SHOWN) -> Iterable[str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from trialid.diagnosis.diagnose import DiagnoseSettings
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification import fit as search

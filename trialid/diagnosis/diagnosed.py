@@ -1,0 +1,85 @@
+"""What is asked of a diagnosis, and what it finds out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from trialid.accuracy.parameter_table import Accuracy
+from trialid.diagnosis.force.missing_force import MissingForce
+from trialid.diagnosis.may_be_off import Doubts
+from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.prediction_band import prediction_band
+from trialid.diagnosis.search.refit import Refit
+from trialid.diagnosis.search.score import Candidate
+from trialid.diagnosis.search.together import Together
+from trialid.diagnosis.trust import accuracy_of
+from trialid.diagnosis.verdict import Verdict
+from trialid.diagnosis.where.misfit import Where
+from trialid.effects import CATALOGUE
+from trialid.identification.fit import Fit
+from trialid.ship.effect import Effect
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiagnoseSettings:
+    """How to diagnose; see the pipeline's `[diagnose]`.
+
+    Attributes
+    ----------
+    candidates
+        Effects to try, by name.
+    coefficients
+        Whether coefficients that the model holds fixed are tried too.
+    noise
+        Stated sensor figures by output [SI].
+    quiet
+        Stretches declared to be without excitation [s], by trial.
+    """
+
+    candidates: Mapping[str, Effect] = field(default_factory=lambda: CATALOGUE)
+    coefficients: bool = True
+    family_cos: float = 0.95
+    level: float = 0.05
+    refit: int = 4
+    noise: Mapping[str, float] = field(default_factory=dict)
+    quiet: Mapping[str, list[tuple[float, float]]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """One fit with what its error is made of and how far its parameters can be trusted."""
+
+    fit: Fit
+    split: Split
+    routes: tuple[Split, ...]
+    doubts: Doubts
+
+    @cached_property
+    def accuracy(self) -> Accuracy:
+        """Eq. 8 to 14 and likely ranges of every unknown."""
+        return accuracy_of(self.fit, self.split, self.doubts.averaged)
+
+    @cached_property
+    def band(self) -> dict[str, float]:
+        """Half-width of the 95 % band of a trial that was not fitted, by output [SI]."""
+        return prediction_band(self.fit)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Diagnosis:
+    """All that was found out about a fit.
+
+    `after` is the confirmed refit, diagnosed in its turn; None where no effect was named. `force`
+    is None where nobody asked and the verdict is another, `together` where an effect has a name,
+    or no two explain more than any alone.
+    """
+
+    before: Diagnosed
+    left_out: Mapping[str, str]
+    verdict: Verdict
+    where: Where
+    ranking: tuple[Candidate, ...] = ()
+    refits: tuple[Refit, ...] = ()
+    after: Diagnosed | None = None
+    force: MissingForce | None = None
+    together: Together | None = None

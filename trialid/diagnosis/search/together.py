@@ -1,0 +1,152 @@
+"""Two effects that are missing at once, where neither alone has a name.
+
+Each alone may take next to nothing off, or make trials held out worse. Of a simulated ship whose
+screw turns on while she loses speed in turns (`tests/diagnosis/test_together.py`) no effect of the
+catalogue took a twelfth of the squared error off blocks left out, and the race with a damping of
+sway takes half of it off. So all pairs are held against blocks left out by their slopes, and those
+that foretell most are fitted.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from trialid.diagnosis.noise.thinning import on_every_sample, with_means
+from trialid.diagnosis.search.augment import Augmented, Trace, augment
+from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
+from trialid.diagnosis.search.carry_over import LeftOut, left_out, levels, own_errors
+from trialid.diagnosis.search.falls import fall, fall_of_check, worse_held_out
+from trialid.diagnosis.search.refit import of_the_ship, settings_with
+from trialid.errors import TrialidError
+from trialid.identification.fit import Fit, identify
+from trialid.ship.effect import Effect
+
+Pair = tuple[Trace, Trace]
+
+
+@dataclass(frozen=True)
+class Together:
+    """Effects fitted at once, and what carries over about the fits' own optima.
+
+    `alike` are the names of other pairs that stand every check and do as much.
+    """
+
+    effects: tuple[Effect, ...]
+    fit: Fit
+    carried: Carried
+    alike: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the effects, in the order of the catalogue."""
+        return tuple(e.name for e in self.effects)
+
+    @property
+    def cost(self) -> float:
+        """What pairs are ordered by, the least first: what is left, and 1 % a parameter."""
+        return self.carried.log_ratio + EACH * sum(len(e.parameters) for e in self.effects)
+
+
+def two_at_once(
+    fit: Fit, catalogue: Mapping[str, Effect], most: int, progress: Callable[[str], None]
+) -> Together | None:
+    """The two effects of the ship that explain most of it together; None where no two do.
+
+    Parameters
+    ----------
+    most
+        How many pairs are fitted.
+    """
+    fit = with_means(fit)
+    pairs = _worth_a_fit(augment(fit, catalogue))
+    done = list[Together]()
+    for pair in _unlike(pairs, most):
+        effects = tuple(trace.effect for trace in pair)
+        progress(f"trying {' and '.join(e.name for e in effects)}")
+        try:
+            found = _fitted(fit.examined, effects)
+        except TrialidError:  # these two cannot be fitted on this record
+            continue
+        carried = Carried.between(own_errors(fit.examined), own_errors(found, levels(fit.examined)))
+        lean = replace(found)  # its gradient is let go: it is larger than all else
+        done.append(Together(effects, on_every_sample(fit, lean), carried))
+    able = [one for one in done if stands(fit, one)]
+    best = min(able, key=lambda one: one.cost, default=None)
+    if best is None:
+        return None
+    others = (one for one in able if one is not best)
+    alike = (one.names for one in others if as_good(best.carried.after, one.carried.after))
+    return replace(best, alike=tuple(alike))
+
+
+def stands(fit: Fit, one: Together) -> bool:
+    """Whether nothing speaks against two effects once they are fitted.
+
+    A tenth of the squared error must go: off what they were fitted to, off blocks left out, one
+    like the other, and off trials held out.
+    """
+    new = {n for e in one.effects for n in e.parameters}
+    held = fit.eps_check is None or fall_of_check(fit, one) > 1.0 - LARGE
+    return (
+        one.fit.converged
+        and not new & {*one.fit.at_bounds}
+        and not worse_held_out(fit, one.fit)
+        and held
+        and fall(fit, one) > 1.0 - LARGE
+        and one.carried.large
+    )
+
+
+def _worth_a_fit(augmented: Augmented) -> list[Pair]:
+    """Pairs that foretell far more than either alone, in all blocks, most first."""
+    blocks = left_out(
+        augmented.fit, augmented.residual, augmented.psi, augmented.S, augmented.stretches
+    )
+    traces = [t for t in augmented.traces if t.parameters and of_the_ship(t.effect)]
+    alone = {t.columns: blocks.carried(t.columns).ratio for t in traces}
+    found = list[tuple[float, Pair]]()
+    for pair in combinations(traces, 2):
+        one, other = pair
+        carried = blocks.carried((*one.columns, *other.columns))
+        least = min(alone[one.columns], alone[other.columns])
+        if carried.large and carried.ratio < LARGE * least and _possible(blocks, pair):
+            parameters = len(one.parameters) + len(other.parameters)
+            found.append((carried.price(parameters), pair))
+    return [pair for _, pair in sorted(found, key=lambda each: each[0])]
+
+
+def _possible(blocks: LeftOut, pair: Pair) -> bool:
+    """Whether the values that slopes tell lie where a ship has them, in most of the blocks."""
+    found = np.median(blocks.coefficients([c for t in pair for c in t.columns]), axis=0)
+    each = [p for t in pair for n, p in t.effect.parameters.items() if n in t.parameters]
+    nulls = np.array([p.null or 0.0 for p in each])
+    low, high = (np.array([getattr(p, end) for p in each]) for end in ("low", "high"))
+    return bool(np.all((low <= nulls + found) & (nulls + found <= high)))
+
+
+def _unlike(pairs: Sequence[Pair], most: int) -> Iterator[Pair]:
+    """The first of the pairs, but none whose effects have both been tried with others."""
+    tried = set[str]()
+    for pair in pairs:
+        names = {trace.effect.name for trace in pair}
+        if names <= tried:
+            continue
+        tried |= names
+        yield pair
+        most -= 1
+        if not most:
+            return
+
+
+def _fitted(fit: Fit, effects: Sequence[Effect]) -> Fit:
+    """The model with these effects, begun where they are absent."""
+    model, start = fit.model, dict[str, float]()
+    for effect in effects:
+        model = model + effect
+        ends = {n: (p.low, p.high) for n, p in effect.parameters.items()}
+        start |= {n: float(np.clip(x, *ends[n])) for n, x in effect.nulls.items()}
+    settings = settings_with(fit, effects)
+    near = fit.estimates | start
+    return identify(fit.trials, model.with_values(start), settings, near=near, smaller=fit)
