@@ -33,6 +33,9 @@ RECORDERS = {
     "rpm_left": "n_p",
     "phi_measured": "phi",
     "delta_meas": "delta",
+    "motor_angle_deg": "delta",
+    "Steering_deg": "delta",
+    "surge_mps": "u",
 }
 
 WITH_UNITS = {
@@ -45,6 +48,9 @@ WITH_UNITS = {
     ("sway", "kn"): "v",
     ("surge", "m"): None,
     ("surge", None): None,
+    ("steering", "deg"): "delta",
+    ("steering", None): None,
+    ("steering wheel", "deg"): None,
     ("v_meas", "V"): None,
     ("v_meas", None): None,
     ("n_prop", "N"): None,

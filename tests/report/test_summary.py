@@ -173,3 +173,11 @@ def test_the_band_is_said_with_what_it_held(result):
     )
     assert "96 %" in "\n".join(lines(run))
     assert "10 %" not in said  # how fitted trials keep to it says nothing
+
+
+def test_a_heading_that_may_be_any_has_no_band_of_three_turns(result):
+    run = copy.deepcopy(result)
+    for half, said in ((18.0, "ψ anywhere"), (0.02, "ψ +-1.15 deg")):
+        run["fit"]["band"] = {"psi": half}
+        text = "\n".join(lines(run))
+        assert f"95 % band of a trial not fitted: {said}" in text

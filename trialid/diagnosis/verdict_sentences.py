@@ -104,7 +104,7 @@ def two_together(fit: Fit, found: Together) -> str:
     return (
         f"more than one thing is missing: no effect alone stands every check, but with "
         f"{' and '.join(found.names)} together {falls_by(fit, found.fit)}{alike}; "
-        "`trialid run PIPELINE --auto` adds both and goes on"
+        "`trialid run --auto` adds both"
     )
 
 

@@ -14,7 +14,9 @@ from trialid.names.quantities import SIGNALS
 
 PHRASES: Final = {
     "delta": "rudder, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
-    "ruderwinkel, rorvinkel, roerhoek",
+    "ruderwinkel, rorvinkel, roerhoek, roderutslag, angle de barre, angle barre, angolo timone, "
+    "angulo timon, ángulo timón, steering angle, outboard angle, motor angle, drive angle, "
+    "nozzle angle, tiller angle",
     "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
     "wendegeschw, drehgeschw, "
@@ -56,8 +58,8 @@ QUALIFIERS: Final = frozenset(
 )  # fmt: skip
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
 
-LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v"}
-"""What such words may follow; a letter alone, `surge` and `sway` only with a unit that fits."""
+LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", "steering": "delta"}
+"""What such words may follow; a letter alone and the words only with a unit that fits."""
 
 NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
 """Letters that mean the same without a unit too."""
@@ -140,15 +142,15 @@ def quantity(name: str, unit: str | None) -> str | None:
 def _qualified(name: str, unit: str | None) -> str | None:
     """The quantity of a letter with words behind it that leave its meaning."""
     letter, *more = words(name.rpartition(":")[2]) or ("",)
-    stated = unit is not None
+    stated = unit or unit_in_name(name)
     for count in (2, 1):
         if " ".join(more[-count:]) in UNITS_IN_NAMES:
             more = more[:-count]
     found = LETTERS.get(letter)
     if found is None or not QUALIFIERS.issuperset(more):
         return None
-    known = letter in NAMED or (stated and _fits(found, unit))
-    return found if known and (more or letter in ("surge", "sway")) else None
+    known = letter in NAMED or (stated is not None and _fits(found, stated))
+    return found if known and (more or letter not in ALONE) else None
 
 
 def of_some_speed(name: str, unit: str | None) -> bool:

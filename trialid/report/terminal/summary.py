@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from trialid.names import labels, wording
-from trialid.names.quantities import POSITION
+from trialid.names.quantities import POSITION, SIGNALS
 from trialid.report.terminal.terminal import (
     SCREEN,
     FirstThatFits,
@@ -146,13 +148,20 @@ def _band(run: Result) -> "Iterable[RenderableType]":
     """How far a measurement may lie from a prediction, and how the held-out trials kept to it."""
     if not run.fit.band:
         return
-    halves = (f"{labels.symbol(n)} +-{labels.shown_text(n, x)}" for n, x in run.fit.band.items())
-    said = f"95 % band of a trial not fitted: {', '.join(halves)}"
+    halves = ", ".join(_half(name, x) for name, x in run.fit.band.items())
+    said = f"95 % band of a trial not fitted: {halves}"
     checks = [t for t in run.trials if t.use == "check"]
     shares = [x for t in checks for x in t.inside.values() if x is not None]
     if shares:
         said += f"; of the held-out samples {_shares(shares)} lie inside"
     yield Words(plain(said), 2)
+
+
+def _half(name: str, half: float) -> str:
+    """Half the band of an output, or that an angle may be any."""
+    if name in SIGNALS and SIGNALS[name].angle and half >= np.pi:
+        return f"{labels.symbol(name)} anywhere"
+    return f"{labels.symbol(name)} +-{labels.shown_text(name, half)}"
 
 
 def _shares(shares: list[float]) -> str:
