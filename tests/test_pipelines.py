@@ -25,7 +25,7 @@ from trialid.workflow.write_run import write
 ROOT = Path(__file__).parent.parent
 OTHERS = ("design_", "structures")  # files of other commands
 PIPELINES = sorted(p for p in (ROOT / "pipelines").glob("*.toml") if not p.name.startswith(OTHERS))
-HIDDEN_EFFECT = ROOT / "pipelines" / "hidden_effect.toml"
+HIDDEN_EFFECT = ROOT / "pipelines/hidden_effect.toml"
 STEADY = 0.15
 """Share by which the noise part may move when an effect is added: noise is not the model's."""
 
@@ -40,32 +40,31 @@ class Finished:
     series: pd.DataFrame
 
 
+Finish = Callable[[Path], Finished]
+
+
 @pytest.fixture(scope="module")
-def finish(
-    sample_run: Path, tmp_path_factory: pytest.TempPathFactory
-) -> Callable[[Path], Finished]:
+def finish(sample_run: Path, tmp_path_factory: pytest.TempPathFactory) -> Finish:
     """Give the folder of a pipeline's run, made once for all tests."""
 
     @cache
     def once(pipeline: Path) -> Finished:
         folder = sample_run
         if pipeline != HIDDEN_EFFECT:
-            folder = tmp_path_factory.mktemp("runs") / pipeline.stem
-            write(run(load(pipeline)), folder)
-        text = (folder / "result.json").read_text(encoding="utf-8")
-        result = json.loads(text, parse_constant=_refuse)
-        return Finished(pipeline, folder, result, pd.read_csv(folder / "series.csv"))
+            write(run(load(pipeline)), folder := tmp_path_factory.mktemp("runs") / pipeline.stem)
+        found = json.loads((folder / "result.json").read_bytes(), parse_constant=_refuse)
+        return Finished(pipeline, folder, found, pd.read_csv(folder / "series.csv"))
 
     return once
 
 
 @pytest.fixture(scope="module", params=PIPELINES, ids=lambda path: path.stem)
-def finished(request: pytest.FixtureRequest, finish: Callable[[Path], Finished]) -> Finished:
+def finished(request: pytest.FixtureRequest, finish: Finish) -> Finished:
     return finish(request.param)
 
 
 @pytest.fixture(scope="module")
-def hidden(finish: Callable[[Path], Finished]) -> Finished:
+def hidden(finish: Finish) -> Finished:
     return finish(HIDDEN_EFFECT)
 
 
@@ -209,6 +208,7 @@ VERDICT = {
     "kind": {"missing", "nothing missing", "not in catalogue", "cannot tell"},
     "effect": (str, None),
     "family": [str],
+    "together": [str],
     "sentence": str,
     "next_trial": (dict, None),
 }

@@ -181,3 +181,11 @@ def test_a_heading_that_may_be_any_has_no_band_of_three_turns(result):
         run["fit"]["band"] = {"psi": half}
         text = "\n".join(lines(run))
         assert f"95 % band of a trial not fitted: {said}" in text
+
+
+def test_two_at_once_are_said_with_the_command_that_adds_them(result):
+    run = copy.deepcopy(result)
+    run["verdict"] |= {"kind": "cannot tell", "effect": None, "together": ["a", "b"]}
+    assert "Next: trialid run container_ship.toml --auto adds both and goes on" in lines(
+        run, file="container_ship.toml"
+    )

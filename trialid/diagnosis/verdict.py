@@ -60,12 +60,16 @@ the error where that is less: then it is not known that any of it is noise."""
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the record says is missing, in one of four kinds, with the sentence a person reads."""
+    """What the record says is missing, in one of four kinds, with the sentence a person reads.
+
+    `together` are two effects that do at once what none does alone.
+    """
 
     kind: str
     effect: str | None
     family: tuple[str, ...]
     sentence: str
+    together: tuple[str, ...] = ()
 
 
 def decide(
@@ -148,7 +152,7 @@ def gross_verdict(fit: Fit, faults: Sequence[Refit]) -> Verdict:
 
 def verdict_on_two(fit: Fit, found: Together) -> Verdict:
     """Two effects without which the model fails, neither of which has a name alone."""
-    return Verdict("cannot tell", None, (), two_together(fit, found))
+    return Verdict("cannot tell", None, (), two_together(fit, found), found.names)
 
 
 def _unnamed(parts: Split, whole: Completeness | None, shown: Sequence[Candidate]) -> Verdict:

@@ -103,8 +103,7 @@ def two_together(fit: Fit, found: Together) -> str:
     alike = "".join(f"; {' and '.join(names)} do as much" for names in found.alike[:1])
     return (
         f"more than one thing is missing: no effect alone stands every check, but with "
-        f"{' and '.join(found.names)} together {falls_by(fit, found.fit)}{alike}; "
-        "`trialid run --auto` adds both"
+        f"{' and '.join(found.names)} together {falls_by(fit, found.fit)}{alike}"
     )
 
 

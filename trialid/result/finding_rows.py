@@ -151,10 +151,14 @@ class NextTrialPart:
 
 @dataclass(frozen=True, kw_only=True)
 class VerdictPart:
-    """What is missing, in one word and in one sentence; `no fit` says why nothing can be said."""
+    """What is missing, in one word and in one sentence; `no fit` says why nothing can be said.
+
+    `together` are two effects that do at once what none does alone.
+    """
 
     kind: str | None = None
     effect: str | None = None
     family: tuple[str, ...] = ()
+    together: tuple[str, ...] = ()
     sentence: str | None = None
     next_trial: NextTrialPart | None = None

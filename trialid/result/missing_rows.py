@@ -108,6 +108,7 @@ def verdict_part(v: Verdict, proposal: Separation | None) -> VerdictPart:
         kind=v.kind,
         effect=v.effect,
         family=tuple(v.family),
+        together=v.together,
         sentence=v.sentence,
         next_trial=None if proposal is None else _next_trial(proposal),
     )

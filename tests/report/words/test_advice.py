@@ -32,10 +32,18 @@ def test_what_is_missing_is_added_by_commands_that_exist(result):
         "trialid effects yaw_drag",
         "trialid add container_ship.toml heel_yaw",
         "trialid add container_ship.toml sway_drag",
-        "trialid run --auto container_ship.toml",
+        "trialid run container_ship.toml --auto",
     ]
     for command in commands:
         assert_known(command)
+
+
+def test_two_that_are_missing_at_once_are_added_by_the_loop(result):
+    both = verdict("cannot tell") | {"together": ["sway_drag", "slipstream"]}
+    [both_at_once] = [one for one in advised(result, verdict=both) if one.command]
+    assert both_at_once.words.startswith("Let it add sway_drag and slipstream at once")
+    assert both_at_once.command == "trialid run container_ship.toml --auto"
+    assert_known(both_at_once.command)
 
 
 def assert_known(command):

@@ -117,7 +117,7 @@ def _missing(run: Result) -> Iterable[Advice]:
         )
     yield Advice(
         "Or let it add effect after effect until none is named; the file stays as it is:",
-        shlex.join(["trialid", "run", "--auto", run.file or "PIPELINE"]),
+        command(run, "run", "--auto"),
     )
 
 
@@ -148,6 +148,13 @@ def _outside(run: Result) -> Iterable[Advice]:
 
 
 def _unclear(run: Result) -> Iterable[Advice]:
+    if run.verdict.together:
+        both = " and ".join(run.verdict.together)
+        yield Advice(
+            f"Let it add {both} at once, and what follows; the file stays as it is:",
+            command(run, "run", "--auto"),
+        )
+        return
     if run.split.noise is not None:
         yield Advice(
             "The record itself leaves it open. What settles it is a trial in which the effect does "
