@@ -92,15 +92,18 @@ def test_the_circles_that_were_sailed_lie_in_the_ranges(measures):
     assert high < 2.0 * low
 
 
-def test_without_their_wind_no_effect_has_a_name(tmp_path, monkeypatch):
-    """Four trials a person would begin with, yaw and sway; that something is missing is told."""
+def test_of_four_turns_the_wind_that_was_logged_is_named(tmp_path, monkeypatch):
+    """A person's first run, yaw and sway; one turn is held out, and is followed far better with it.
+
+    Which one is held out matters: by a zig-zag's measure of a rudder nothing had a name.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "ship.toml").write_text(SHIP, encoding="utf-8")
     logs = [str(record) for record in sorted(ESSO.glob("turn*.csv"))]
     done = CliRunner().invoke(commands, ["start", *logs, "--ship", "ship.toml"])
     assert done.exit_code == 0, done.output
     result = read(tmp_path / "runs" / "first_trial" / "result.json")
-    print(result.verdict.sentence)
-    assert (result.verdict.kind, result.verdict.effect) == ("cannot tell", None)
-    told = ("something is missing", "a force that nobody logged or that the model lacks")
-    assert any(words in result.verdict.sentence for words in told)
+    assert result.verdict.kind == "missing"
+    assert result.verdict.effect in ("apparent_wind", "apparent_wind_yaw")
+    assert result.fit.eps_rmsn_check > 1.5  # of what moves in the fitted turns; the wind moved her
+    assert result.history[-1].eps_rmsn_check < 0.5 * result.fit.eps_rmsn_check
