@@ -118,17 +118,30 @@ def sail(ship, angle, check=None, lengths=30.0):
     return np.array(rows).T
 
 
-def write_log(path, ship, rng, *manoeuvre, noise=0.05):
-    """What a simple recorder writes of it; `noise` [deg/s] is a gyro's on a ship of 60 m."""
+def noise_of(ship):
+    """Standard deviations of a simple recorder's sensors [SI]; the gyro's is 0.05 deg/s at 60 m."""
+    return {
+        "r": np.deg2rad(0.5) * ship.U0 / ship.L,
+        "v": 0.01 * ship.U0,
+        "u": 0.005 * ship.U0,
+        "delta": np.deg2rad(0.1),
+    }
+
+
+def write_log(path, ship, rng, *manoeuvre):
+    """What such a recorder writes of a manoeuvre."""
     t, u, v, r, delta = sail(ship, *manoeuvre)
-    e = rng.standard_normal((4, len(t)))
-    pace = ship.U0 / ship.L
+    noise = noise_of(ship)
+    delta, r, v, u = (
+        x + noise[n] * rng.standard_normal(len(t))
+        for n, x in {"delta": delta, "r": r, "v": v, "u": u}.items()
+    )
     columns = {
         "time [s]": t,
-        "rudder angle [deg]": np.rad2deg(delta) + 0.1 * e[0],
-        "yaw rate [deg/s]": np.rad2deg(r) + noise * 10.0 * pace * e[1],
-        "v [m/s]": v + 0.01 * ship.U0 * e[2],
-        "u [m/s]": u + 0.005 * ship.U0 * e[3],
+        "rudder angle [deg]": np.rad2deg(delta),
+        "yaw rate [deg/s]": np.rad2deg(r),
+        "v [m/s]": v,
+        "u [m/s]": u,
     }
     table = np.column_stack(list(columns.values()))
     np.savetxt(path, table, "%.5f", ",", header=",".join(columns), comments="")

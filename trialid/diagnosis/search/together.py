@@ -1,10 +1,10 @@
 """Two effects that are missing at once, where neither alone has a name.
 
 Each alone may take next to nothing off, or make trials held out worse. Of a simulated ship whose
-screw turns on while she loses speed in turns (`tests/diagnosis/test_together.py`) no effect of the
-catalogue took a twelfth of the squared error off blocks left out, and the race with a damping of
-sway takes half of it off. So all pairs are held against blocks left out by their slopes, and those
-that foretell most are fitted.
+screw turns on while she loses speed in turns (`tests/grow/test_mmg_ships.py`) the race alone makes
+them worse, sway by the cube of drift and turning adds to the error of blocks left out, and both
+together leave 0.27 of its square. So all pairs are held against blocks left out by their slopes,
+and those that foretell most are fitted.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
