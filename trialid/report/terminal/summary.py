@@ -213,6 +213,8 @@ def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
 
 
 def _doubt(row: ParameterRow) -> float:
+    if doubt.is_idle(row):
+        return -1.0
     return float("inf") if row.may_be_off is None else row.may_be_off
 
 

@@ -24,8 +24,21 @@ def doubtful(parameters: Sequence[ParameterRow]) -> str:
     'Not to be believed: Nr; it may be off by more than half of its value.'
     >>> doubtful(rows[:1])
     ''
+    >>> doubtful([ParameterRow(name="z_slip", S_i=0.0)])
+    'z_slip moves nothing that is fitted here.'
     """
     rows = [row for row in parameters if row.kind != "nuisance"]
+    idle = ", ".join(row.name for row in rows if is_idle(row))
+    said = f"{idle} moves nothing that is fitted here." if idle else ""
+    return f"{_disbelieved([row for row in rows if not is_idle(row)])} {said}".strip()
+
+
+def is_idle(row: ParameterRow) -> bool:
+    """Whether no output follows a parameter, as an arm to the roll axis where no roll is fitted."""
+    return row.S_i == 0.0
+
+
+def _disbelieved(rows: Sequence[ParameterRow]) -> str:
     names = [row.name for row in rows if not _share(row) <= HALF]
     if not names:
         return ""
