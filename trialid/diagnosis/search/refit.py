@@ -1,6 +1,6 @@
 """Candidates added to the model and fitted: what carries over, and what speaks against each."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -19,6 +19,7 @@ from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import known_of_ship
 from trialid.names.quantities import RUDDERS
 from trialid.ship.effect import Delayed, Effect, Force, Mass, Rate
+from trialid.ship.model import ShipModel
 
 HELD_OUT: Final = "the held-out error rises"
 NOT_ARRIVED: Final = "the search does not arrive"
@@ -90,9 +91,8 @@ def _fitted(fit: Fit, candidate: Candidate) -> Fit:
     not arrive, it begins again where the model itself began, and what only shapes the effect waits.
     """
     effect = candidate.effect
-    ends = {n: (p.low, p.high) for n, p in effect.parameters.items()}
-    start = {n: float(np.clip(x, *ends[n])) for n, x in candidate.expected.items()}
-    model, settings = (fit.model + effect).with_values(start), settings_with(fit, (effect,))
+    model, start = begun_at(fit.model, (effect,), candidate.expected)
+    settings = settings_with(fit, (effect,))
     found = identify(fit.trials, model, settings, near=fit.estimates | start, smaller=fit)
     if found.converged or not effect.scanned:
         return found
@@ -101,6 +101,18 @@ def _fitted(fit: Fit, candidate: Candidate) -> Fit:
     rest = identify(fit.trials, model, replace(settings, free=kept), near=start)
     again = identify(fit.trials, model, settings, near=start | rest.estimates, smaller=fit)
     return again if again.converged else found
+
+
+def begun_at(
+    model: ShipModel, effects: Sequence[Effect], values: Mapping[str, float]
+) -> tuple[ShipModel, dict[str, float]]:
+    """The model with effects at these values, as far as their ends allow, and the values."""
+    start = dict[str, float]()
+    for effect in effects:
+        model = model + effect
+        ends = {n: (p.low, p.high) for n, p in effect.parameters.items() if n in values}
+        start |= {n: float(np.clip(values[n], *ends[n])) for n in ends}
+    return model.with_values(start), start
 
 
 def refit_best(

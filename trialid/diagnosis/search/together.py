@@ -17,8 +17,8 @@ from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
 from trialid.diagnosis.search.carry_over import LeftOut, left_out, levels, own_errors
-from trialid.diagnosis.search.falls import fall, fall_of_check, worse_held_out
-from trialid.diagnosis.search.refit import of_the_ship, settings_with
+from trialid.diagnosis.search.falls import fall, fall_of_check
+from trialid.diagnosis.search.refit import begun_at, of_the_ship, settings_with
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.ship.effect import Effect
@@ -92,7 +92,6 @@ def stands(fit: Fit, one: Together) -> bool:
     return (
         one.fit.converged
         and not new & {*one.fit.at_bounds}
-        and not worse_held_out(fit, one.fit)
         and held
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large
@@ -142,11 +141,7 @@ def _unlike(pairs: Sequence[Pair], most: int) -> Iterator[Pair]:
 
 def _fitted(fit: Fit, effects: Sequence[Effect]) -> Fit:
     """The model with these effects, begun where they are absent."""
-    model, start = fit.model, dict[str, float]()
-    for effect in effects:
-        model = model + effect
-        ends = {n: (p.low, p.high) for n, p in effect.parameters.items()}
-        start |= {n: float(np.clip(x, *ends[n])) for n, x in effect.nulls.items()}
-    settings = settings_with(fit, effects)
+    absent = {n: x for effect in effects for n, x in effect.nulls.items()}
+    model, start = begun_at(fit.model, effects, absent)
     near = fit.estimates | start
-    return identify(fit.trials, model.with_values(start), settings, near=near, smaller=fit)
+    return identify(fit.trials, model, settings_with(fit, effects), near=near, smaller=fit)
