@@ -1,5 +1,6 @@
 """Candidates added to the model and fitted: what carries over, and what speaks against each."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -18,7 +19,7 @@ from trialid.identification.nuisance_priors import speed
 from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import known_of_ship
 from trialid.names.quantities import RUDDERS
-from trialid.ship.effect import Delayed, Effect, Force, Mass, Rate
+from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate
 from trialid.ship.model import ShipModel
 
 HELD_OUT: Final = "the held-out error rises"
@@ -263,7 +264,10 @@ def _slow(refit: Refit) -> bool:
     """Whether it is a sensor or a clock that is late by a share of the ship's own time."""
     effect, fit = refit.candidate.effect, refit.fit
     late = [abs(fit.model.value(n)) for n, p in effect.parameters.items() if p.unit == "s"]
-    return bool(late) and not of_the_ship(effect) and max(late) > SLOW * own_time(fit)
+    if not late or of_the_ship(effect):
+        return False
+    in_turn = max(Counter(effect.acts_on(Delayed, Lagged)).values())  # two low-passes add up
+    return in_turn * max(late) > SLOW * own_time(fit)
 
 
 def _late_sensor(refit: Refit) -> bool:
