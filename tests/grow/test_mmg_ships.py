@@ -6,19 +6,16 @@ from types import SimpleNamespace
 import mmg
 import numpy as np
 import pytest
+from begun import begun
 
-from trialid import pipeline_file
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.search.backward import worth_naming
 from trialid.diagnosis.search.refit import objection, of_the_ship
 from trialid.diagnosis.search.together import stands, two_at_once
 from trialid.effects import CATALOGUE
-from trialid.inspection import inspect_log
 from trialid.progress import silent
-from trialid.ship.estimate import Given
 from trialid.workflow.build_model import available
 from trialid.workflow.findings import diagnose_settings
-from trialid.workflow.first_pipeline import starter
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.grow import stages
 from trialid.workflow.read_trials import align_trials
@@ -32,21 +29,14 @@ SAILED = {
 }
 
 
-def begun(folder, seed):
-    """The pipeline that `trialid start` writes of five logs; one is held out."""
-    rng, ship = np.random.default_rng(seed), mmg.drawn(seed)
-    for name, manoeuvre in SAILED.items():
-        mmg.write_log(folder / f"{name}.csv", ship, rng, *manoeuvre)
-    logs = [inspect_log(folder / f"{name}.csv") for name in SAILED]
-    given = Given(length=ship.L, beam=ship.B, draught=ship.d, block=ship.block)
-    for path, text in starter(logs, folder / "begun.toml", None, given).files.items():
-        path.write_text(text, encoding="utf-8")
-    return pipeline_file.load(folder / "begun.toml")
+def of_seed(folder, seed):
+    """The pipeline that a newcomer begins with."""
+    return begun(folder, mmg.drawn(seed), np.random.default_rng(seed), SAILED)
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
-    asked = begun(tmp_path_factory.mktemp("mmg"), 102)
+    asked = of_seed(tmp_path_factory.mktemp("mmg"), 102)
     catalogue = available(asked)
     fit = fit_of(asked, align_trials(asked, silent), catalogue, silent)
     return diagnose(fit, diagnose_settings(asked, catalogue))
@@ -89,7 +79,7 @@ def test_of_effects_that_hold_only_one_of_them_no_two_stand(found):
 @pytest.mark.parametrize("seed", range(200, 206))
 def test_the_loop_gets_nearer_to_a_ship_of_another_structure(tmp_path, seed):
     """Trials held out are never followed worse; no sensor or clock is blamed, none is at fault."""
-    done = [s for s in stages(begun(tmp_path, seed), silent) if s.kept]
+    done = [s for s in stages(of_seed(tmp_path, seed), silent) if s.kept]
     held_out = [s.run.result.fit.eps_rmsn_check for s in done]
     assert held_out == sorted(held_out, reverse=True)
     named = {

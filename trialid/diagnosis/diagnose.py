@@ -61,10 +61,10 @@ def diagnose(
         return _gross(fit, before, left_out, faults, asked)
     before = _bounded(before, tried.refits, whole)
     verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
-    verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
     after = _after(verdict, tried, asked, progress)
     if failed is not None and (after is None or why_no_fit(after.fit)):
         return _no_fit(fit, before, left_out, failed)
+    verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
     wanted = force or verdict.kind == "not in catalogue"
     return Diagnosis(
         before=before,

@@ -72,8 +72,8 @@ def with_held_out(
     found = left_by_check(fit, covariance())
     worst = min(found, key=lambda one: one.p_value, default=None)
     if worst is None or worst.p_value >= level / len(found):
-        said = _by_own_sensors(fit, found)
-        return verdict if named else replace(verdict, sentence=f"{verdict.sentence}{said}")
+        said = "" if named else _by_own_sensors(fit, found)
+        return replace(verdict, sentence=f"{verdict.sentence}{said}") if said else verdict
     if named is not None and _explained(fit, named, worst) >= SHARE:
         return verdict
     return Verdict("cannot tell", None, (), _left_open(fit, named, worst))

@@ -42,8 +42,17 @@ class StepRow:
 
     @property
     def joined(self) -> tuple[str, ...]:
-        """Names of what was added; two that joined at once stand with a comma."""
-        return tuple(self.added.split(", ")) if self.added else ()
+        """Names of what was added."""
+        return names_in(self.added)
+
+
+def names_in(added: str | None) -> tuple[str, ...]:
+    """Names of what was added at once; two stand with a comma.
+
+    >>> names_in("sway_drag_var, rudder_slipstream"), names_in(None)
+    (('sway_drag_var', 'rudder_slipstream'), ())
+    """
+    return tuple(added.split(", ")) if added else ()
 
 
 @dataclass(frozen=True, kw_only=True)

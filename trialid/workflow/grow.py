@@ -22,7 +22,7 @@ from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
-from trialid.result.change_rows import GrownRow, StepRow
+from trialid.result.change_rows import GrownRow, StepRow, names_in
 from trialid.ship.effect import Effect
 from trialid.trial import Trial
 from trialid.workflow import history
@@ -255,8 +255,8 @@ def survivors(done: Sequence[Stage]) -> tuple[str, ...]:
     """The effects that were added and are still there, in the order in which they came."""
     last = done[-1].pipeline
     there = {*last.model.effects, *last.identify.free}
-    joined = ((s.added or "").split(", ") for s in done if s.kept)
-    return tuple(name for names in joined for name in names if name in there)
+    joined = (name for s in done if s.kept for name in names_in(s.added))
+    return tuple(name for name in joined if name in there)
 
 
 def conclude(done: Sequence[Stage]) -> tuple[Run, tuple[StepRow, ...]]:

@@ -28,20 +28,17 @@ sys.path[:0] = [
 ]
 import mmg  # noqa: E402
 from at_commit import commit_of  # noqa: E402
+from begun import begun  # noqa: E402
 from spread import add_options, spread  # noqa: E402
 
-from trialid import pipeline_file  # noqa: E402
 from trialid.diagnosis.search.backward import worth_naming  # noqa: E402
 from trialid.diagnosis.search.refit import of_the_ship  # noqa: E402
 from trialid.effects import CATALOGUE  # noqa: E402
 from trialid.errors import TrialidError  # noqa: E402
-from trialid.inspection import inspect_log  # noqa: E402
 from trialid.progress import silent  # noqa: E402
 from trialid.result.schema import Result  # noqa: E402
-from trialid.ship.estimate import Given  # noqa: E402
 from trialid.threads import one_thread  # noqa: E402
 from trialid.workflow import grow  # noqa: E402
-from trialid.workflow.first_pipeline import starter  # noqa: E402
 
 RESULTS: Final = ROOT / "tests/benchmarks/results/mmg_ships.md"
 MANOEUVRES: Final[dict[str, tuple[float, ...]]] = {
@@ -92,26 +89,14 @@ def grown(seed: int) -> Grown:
     count = int(rng.integers(3, 6))
     trials = tuple(np.array([*MANOEUVRES])[rng.permutation(len(MANOEUVRES))[:count]])
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        for name in trials:
-            mmg.write_log(folder / f"{name}.csv", ship, rng, *MANOEUVRES[name])
         try:
-            done = _loop(folder, trials, ship)
+            pipeline = begun(Path(place), ship, rng, {n: MANOEUVRES[n] for n in trials})
+            done = [stage for stage in grow.stages(pipeline, silent) if stage.kept]
         except TrialidError as error:
             return Grown(seed=seed, trials=trials, first=str(error).rpartition("/")[2])
     found = _told(seed, trials, ship, done)
     print(found.row(), flush=True)
     return found
-
-
-def _loop(folder: Path, trials: Sequence[str], ship: mmg.Ship) -> list[grow.Stage]:
-    """The stages that were kept, from the pipeline that `trialid start` writes."""
-    given = Given(length=ship.L, beam=ship.B, draught=ship.d, block=ship.block)
-    logs = [inspect_log(folder / f"{name}.csv") for name in trials]
-    for path, text in starter(logs, folder / "begun.toml", None, given).files.items():
-        path.write_text(text, encoding="utf-8")
-    pipeline = pipeline_file.load(folder / "begun.toml")
-    return [stage for stage in grow.stages(pipeline, silent) if stage.kept]
 
 
 def _told(seed: int, trials: tuple[str, ...], ship: mmg.Ship, done: Sequence[grow.Stage]) -> Grown:

@@ -245,7 +245,7 @@ def test_in_a_grown_model_a_sensor_as_slow_as_the_ship_is_not_told_from_her_memo
 
 
 def test_two_low_passes_behind_each_other_are_late_by_both():
-    """0.3 s each; of a real model in a basin two of 0.49 s were named, on rates that have none."""
+    """0.3 s each; two of 0.49 s were named of a model in a basin, whose tenth of L/U is 0.61 s."""
     old, new = lag_of(0.3, LESS)
     new.candidate.effect.acts_on = lambda *forms: ("r", "r")
     assert objection(old, new, 0.05, grown=True) == AS_SLOW

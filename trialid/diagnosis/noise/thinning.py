@@ -38,6 +38,7 @@ def with_means(fit: Fit) -> Fit:
 
 def on_every_sample(fit: Fit, found: Fit) -> Fit:
     """What was fitted to the trials that a fit was examined by, on that fit's own trials."""
+    found = replace(found)  # its gradient is let go: it is larger than all else
     if fit.by_means is None:
         return found
     settings = replace(found.settings, substeps=fit.settings.substeps)

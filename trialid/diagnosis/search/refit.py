@@ -80,8 +80,7 @@ def refit(fit: Fit, candidates: Sequence[Candidate], progress: Progress) -> list
         except TrialidError:  # it cannot be fitted on this record: it is not the missing one
             continue
         after = Carried.between(before, own_errors(found, weights), candidate.carried.seen)
-        lean = replace(found)  # its gradient is let go: it is larger than all else
-        done.append(Refit(candidate, on_every_sample(fit, lean), after))
+        done.append(Refit(candidate, on_every_sample(fit, found), after))
     return done
 
 

@@ -61,6 +61,7 @@ def two_at_once(
     """
     fit = with_means(fit)
     pairs = _worth_a_fit(augment(fit, catalogue))
+    before, weights = own_errors(fit.examined), levels(fit.examined)
     done = list[Together]()
     for pair in _unlike(pairs, most):
         effects = tuple(trace.effect for trace in pair)
@@ -69,9 +70,8 @@ def two_at_once(
             found = _fitted(fit.examined, effects)
         except TrialidError:  # these two cannot be fitted on this record
             continue
-        carried = Carried.between(own_errors(fit.examined), own_errors(found, levels(fit.examined)))
-        lean = replace(found)  # its gradient is let go: it is larger than all else
-        done.append(Together(effects, on_every_sample(fit, lean), carried))
+        carried = Carried.between(before, own_errors(found, weights))
+        done.append(Together(effects, on_every_sample(fit, found), carried))
     able = [one for one in done if stands(fit, one)]
     best = min(able, key=lambda one: one.cost, default=None)
     if best is None:
@@ -119,7 +119,7 @@ def _worth_a_fit(augmented: Augmented) -> list[Pair]:
 def _possible(blocks: LeftOut, pair: Pair) -> bool:
     """Whether the values that slopes tell lie where a ship has them, in most of the blocks."""
     found = np.median(blocks.coefficients([c for t in pair for c in t.columns]), axis=0)
-    each = [p for t in pair for n, p in t.effect.parameters.items() if n in t.parameters]
+    each = [t.effect.parameters[n] for t in pair for n in t.parameters]
     nulls = np.array([p.null or 0.0 for p in each])
     low, high = (np.array([getattr(p, end) for p in each]) for end in ("low", "high"))
     return bool(np.all((low <= nulls + found) & (nulls + found <= high)))

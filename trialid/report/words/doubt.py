@@ -28,8 +28,9 @@ def doubtful(parameters: Sequence[ParameterRow]) -> str:
     'z_slip moves nothing that is fitted here.'
     """
     rows = [row for row in parameters if row.kind != "nuisance"]
-    idle = ", ".join(row.name for row in rows if is_idle(row))
-    said = f"{idle} moves nothing that is fitted here." if idle else ""
+    idle = [row.name for row in rows if is_idle(row)]
+    verb = "move" if len(idle) > 1 else "moves"
+    said = f"{', '.join(idle)} {verb} nothing that is fitted here." if idle else ""
     return f"{_disbelieved([row for row in rows if not is_idle(row)])} {said}".strip()
 
 

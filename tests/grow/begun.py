@@ -1,0 +1,19 @@
+"""A drawn ship as a newcomer begins with her: logs, and the pipeline that `start` writes."""
+
+import mmg
+
+from trialid import pipeline_file
+from trialid.inspection import inspect_log
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import starter
+
+
+def begun(folder, ship, rng, manoeuvres):
+    """The pipeline of a log of each of the manoeuvres, by name; one is held out."""
+    for name, manoeuvre in manoeuvres.items():
+        mmg.write_log(folder / f"{name}.csv", ship, rng, *manoeuvre)
+    logs = [inspect_log(folder / f"{name}.csv") for name in manoeuvres]
+    given = Given(length=ship.L, beam=ship.B, draught=ship.d, block=ship.block)
+    for path, text in starter(logs, folder / "begun.toml", None, given).files.items():
+        path.write_text(text, encoding="utf-8")
+    return pipeline_file.load(folder / "begun.toml")
