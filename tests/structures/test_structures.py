@@ -208,6 +208,20 @@ def test_two_trials_are_compared_and_said_to_be_few(copy) -> None:
     assert any("2 trials are few" in s and "71%" in s for s in found.sentences)
 
 
+def test_a_trial_that_the_others_foretell_worse_than_none_is_told(copy, done) -> None:
+    """A rudder recorded four times as large: the choice of the rest says nothing about it."""
+    other = copy.parent / "steps-10.csv"
+    table = np.loadtxt(other, delimiter=",", skiprows=1)
+    np.savetxt(other, table * [1, 4, 1, 1, 1], "%.9g", ",", header="t,delta,r,v,u", comments="")
+    found = compare_structures(load(copy), stability=False)
+    assert found.chosen is not None
+    assert found.row(found.chosen).unforetold == ("steps-10",)
+    assert "foretells steps-10 worse than no model at all" in found.sentences[1]
+    sound = result_in(done[0])
+    assert not any(row.unforetold for row in sound.rows)
+    assert not any("foretells" in sentence for sentence in sound.sentences)
+
+
 def test_gaps_of_a_signal_that_one_structure_reads_are_left_out_of_all(copy) -> None:
     """So that every structure is judged by the same samples."""
     text = copy.read_text(encoding="utf-8") + 'screw = ["propeller_side_force"]\n'

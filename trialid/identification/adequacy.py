@@ -255,18 +255,23 @@ def _held_out_lost(fit: Fit) -> Inadequate | None:
 def _held_out_unexplained(fit: Fit) -> Inadequate | None:
     """A held-out trial that moves is foretold worse than its own mean would."""
     for score in of_use(fit, "check"):
-        left, seen = unexplained_share(fit, [score]), over_noise(fit, [score])
-        kept = {c: x for c, x in left.items() if seen[c] > ABOVE_NOISE}
-        if min(kept.values(), default=0.0) > 1.0:
+        if left := worse_than_none(fit, score):
             return Inadequate(
                 f"held-out trial {score.trial.name!r} is foretold worse than by no model at all: "
-                f"{_listed(kept)} of what moves is left",
+                f"{_listed(left)} of what moves is left",
                 "compare its signs, units and speed with those of the fitted trials; where they "
                 "agree, fit that trial too, as she may move there as in no other, or compare whole "
                 "models by `trialid structures`",
                 may_lack=True,
             )
     return None
+
+
+def worse_than_none(fit: Fit, score: Score) -> dict[str, float]:
+    """Shares of variance left of outputs that move, where all are foretold worse than by means."""
+    left, seen = unexplained_share(fit, [score]), over_noise(fit, [score])
+    kept = {c: x for c, x in left.items() if seen[c] > ABOVE_NOISE}
+    return kept if min(kept.values(), default=0.0) > 1.0 else {}
 
 
 def _listed(shares: dict[str, float]) -> str:

@@ -17,7 +17,7 @@ class StructureRow:
 
     `eps_rmsn` is of the fit of all trials, `eps_rmsn_check` on the pipeline's held-out trials,
     `left_out` of each fitted trial when it was left out, all as shares of the measured RMS of the
-    fitted trials. `behind` is the mean of the left-out errors less the best structure's, `as_good`
+    fitted trials. `unforetold` are those that were foretold worse than by their own means. `behind` is the mean of the left-out errors less the best structure's, `as_good`
     whether that is within its standard error. `why_not` says why a structure is not in the choice.
     """
 
@@ -28,6 +28,7 @@ class StructureRow:
     eps_rmsn: float | None = None
     eps_rmsn_check: float | None = None
     left_out: Mapping[str, float] = field(default_factory=dict)
+    unforetold: tuple[str, ...] = ()
     eps_rmsn_left_out: float | None = None
     behind: float | None = None
     behind_standard_error: float | None = None

@@ -10,7 +10,7 @@ from trialid.result.structure_rows import StructureRow, Structures
 
 def sentences(found: Structures) -> tuple[str, ...]:
     """The choice first; then what limits it."""
-    return (_choice(found), *_stability(found), *_few(found))
+    return (_choice(found), *_unforetold(found), *_stability(found), *_few(found))
 
 
 def _choice(found: Structures) -> str:
@@ -25,6 +25,16 @@ def _choice(found: Structures) -> str:
         f"{_told(chosen)} is the simplest that is as good as the best, {_told(best)}: "
         f"{_points(chosen)} percentage points behind."
     )
+
+
+def _unforetold(found: Structures) -> Iterator[str]:
+    lost = found.row(found.chosen).unforetold if found.chosen else ()
+    if lost:
+        yield (
+            f"But from the other trials it foretells {' and '.join(lost)} worse than no model at all "
+            "would: look at signs, units and speed; where they agree, she moves there as in no "
+            "other trial, and no choice holds there before there are more like it."
+        )
 
 
 def _told(row: StructureRow) -> str:

@@ -111,6 +111,7 @@ def _row(structure: Structure, rounds: Rounds, choice: Choice | None) -> Structu
         eps_rmsn=whole.eps_rmsn,
         eps_rmsn_check=whole.eps_rmsn_check,
         left_out=errors,
+        unforetold=tuple(n for fit in fits if fit for n in fit.unforetold),
         eps_rmsn_left_out=float(np.mean(list(errors.values()))) if behind is not None else None,
         behind=behind,
         behind_standard_error=error,

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 import numpy as np
 
 from trialid.errors import NotIdentifiable, TrialidError
-from trialid.identification.adequacy import why_no_fit
+from trialid.identification.adequacy import why_no_fit, worse_than_none
 from trialid.identification.file_of_ship import most_are_unlike
 from trialid.identification.fit import Fit, identify
 from trialid.identification.gauss_newton import REASONS
@@ -28,6 +28,8 @@ class KeptFit:
         Why it is worth nothing, and then nothing else is known; empty where it is sound.
     errors
         Error of each trial left out, normed as the fit of all trials norms them.
+    unforetold
+        Those of them that were foretold worse than by their own means.
     parameters
         How many free parameters that trials share move an output.
     estimates, y_rms, substeps
@@ -36,6 +38,7 @@ class KeptFit:
 
     why_not: str = ""
     errors: Mapping[str, float] = field(default_factory=dict)
+    unforetold: tuple[str, ...] = ()
     eps_rmsn: float | None = None
     eps_rmsn_check: float | None = None
     parameters: int = 0
@@ -85,7 +88,10 @@ def fit_without(
         if not fit.converged:
             raise NotIdentifiable(f"the search does not arrive: {REASONS[fit.reason]}")
         scores = [s for s in fit.scores if s.trial.use == "check"]
-        return KeptFit(errors={s.trial.name: _error(fit, s, whole.y_rms) for s in scores})
+        return KeptFit(
+            errors={s.trial.name: _error(fit, s, whole.y_rms) for s in scores},
+            unforetold=tuple(s.trial.name for s in scores if worse_than_none(fit, s)),
+        )
     except TrialidError as error:
         return KeptFit(why_not=f"without {' and '.join(names)}: {error}")
 
