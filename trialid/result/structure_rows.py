@@ -17,8 +17,9 @@ class StructureRow:
 
     `eps_rmsn` is of the fit of all trials, `eps_rmsn_check` on the pipeline's held-out trials,
     `left_out` of each fitted trial when it was left out, all as shares of the measured RMS of the
-    fitted trials. `unforetold` are those that were foretold worse than by their own means. `behind` is the mean of the left-out errors less the best structure's, `as_good`
-    whether that is within its standard error. `why_not` says why a structure is not in the choice.
+    fitted trials. `unforetold` are those that were foretold worse than by their own means.
+    `behind` is the mean of the left-out errors less the best structure's, `as_good` whether that is
+    within its standard error. `why_not` says why a structure is not in the choice.
     """
 
     name: str

@@ -31,8 +31,8 @@ def _unforetold(found: Structures) -> Iterator[str]:
     lost = found.row(found.chosen).unforetold if found.chosen else ()
     if lost:
         yield (
-            f"But from the other trials it foretells {' and '.join(lost)} worse than no model at all "
-            "would: look at signs, units and speed; where they agree, she moves there as in no "
+            f"But from the other trials it foretells {' and '.join(lost)} worse than no model at "
+            "all would: look at signs, units and speed; where they agree, she moves there as in no "
             "other trial, and no choice holds there before there are more like it."
         )
 
