@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from trialid.workflow.first_pipeline.choice import approach_speed
-from trialid.workflow.first_pipeline.held_out import held_out
+from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
 from trialid.workflow.first_pipeline.pipeline_text import period
 from trialid.workflow.first_pipeline.twin_rudders import sides_of
 
@@ -37,6 +37,23 @@ def test_a_turn_counts_for_more_than_a_zigzag_at_the_same_rudder() -> None:
     assert held_out([zigzags[2], logged(35.0, mean=30.0), zigzags[0]]) == 0
     assert held_out([logged(20.0, mean=18.0), zigzags[2], zigzags[0]]) == 1
     assert held_out([*zigzags, logged(35.0, mean=30.0), logged(35.0, mean=-30.0)]) == 2
+
+
+def test_of_two_trials_the_one_that_excites_her_more_is_fitted() -> None:
+    """A zig-zag and not a steady turn at a larger rudder; of two zig-zags the larger."""
+    zigzag, smaller, turn = varied(20.0, -20.0), varied(10.0, -10.0), varied(33.0, 35.0)
+    assert [held_out(two) for two in ([zigzag, turn], [turn, zigzag])] == [1, 0]
+    assert [held_out(two) for two in ([zigzag, smaller], [smaller, zigzag])] == [1, 0]
+    assert why_held_out([zigzag, turn]) == "the one whose rudder varies less"
+    assert why_held_out([zigzag, turn, smaller]) == "the middle one by its rudder"
+    assert held_out([varied(0.35, -0.35, "rad"), smaller]) == 1
+
+
+def varied(low: float, high: float, unit: str = "deg") -> Any:
+    """A trial whose rudder lies at one angle and at another, as often."""
+    made = logged(unit=unit)
+    made.signals[0].source.sketch.y = np.array([low, high])
+    return made
 
 
 def test_rudders_count_in_one_unit() -> None:

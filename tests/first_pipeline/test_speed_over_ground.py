@@ -49,7 +49,7 @@ def test_a_stated_speed_tells_the_unit_of_the_one_over_ground(
     text = made.files[tmp_path / "p.toml"]
     assert text.count(f'channel = "SOG", unit = "{unit}"') == 2
     assert "CAREFUL: a speed over ground" in text
-    assert "unit by the stated speed of 8 m/s" in text
+    assert "unit by a speed of 8 m/s, as stated" in text
     assert "speed = 8" not in text
 
 

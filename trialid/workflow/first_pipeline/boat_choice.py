@@ -72,14 +72,14 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
 def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen:
     rate = rate_signal(live)
     drives = _drive_signals(survey, rate)
-    speed = through_water(live, stated) if live.get("u") else velocity_speed(survey)
-    speed = speed or other_speed(survey, stated)
+    known, told = approach_speed(survey, live, stated)
+    speed = through_water(live, known, told) if live.get("u") else velocity_speed(survey)
+    speed = speed or other_speed(survey, known, told)
     if speed is None:
         raise LogError(
             f"{survey.path}: she steers by two thrusters, and no speed is recognised, which is "
             "half of what they do; map one by hand, see `trialid inspect --all`"
         )
-    known, told = approach_speed(survey, live, stated)
     if known is None and speed.source.angle == "speed":
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"

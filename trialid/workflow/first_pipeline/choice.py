@@ -11,6 +11,7 @@ import numpy as np
 from trialid.errors import LogError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.positions import usual_speed
 from trialid.inspection.relations import RATES, side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
@@ -95,8 +96,10 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     signals += [plain_signal("phi", live, "")] if live["phi"] else []
     known, words = approach_speed(survey, live, speed)
     if live["u"]:
-        signals.append(through_water(live, speed))
-    elif (other := other_speed(survey, speed)) and (speed is None or not _stated(other.source)):
+        signals.append(through_water(live, known, words))
+    elif (other := other_speed(survey, known, words)) and (
+        speed is None or not _stated(other.source)
+    ):
         signals.append(other)
     return Chosen(
         survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words
@@ -168,32 +171,37 @@ def _with_side(plain: Signal, positive: str, words: str) -> Signal:
     return dataclasses.replace(plain, positive=positive, why=f"{plain.why}; {words}")
 
 
-def through_water(live: Live, speed: float | None) -> Signal:
-    """The speed through the water; where the log states no unit, the user's speed settles it."""
+def through_water(live: Live, known: float | None, told: str) -> Signal:
+    """The speed through the water; where the log states no unit, a known speed settles it."""
     plain = plain_signal("u", live, "")
-    if plain.unit != OPEN or speed is None:
+    if plain.unit != OPEN or known is None:
         return plain
-    unit = unit_of_speed(plain.source, speed)
+    unit = unit_of_speed(plain.source, known)
     if unit is None:
         return plain
-    words = f"by its name; unit by the stated speed of {speed:.3g} m/s"
+    words = f"by its name; {_by_speed(known, told)}"
     return Signal("u", plain.source, unit, None, words, plain.others)
 
 
-def other_speed(survey: Inspection, stated: float | None) -> Signal | None:
+def _by_speed(known: float, told: str) -> str:
+    return f"unit by a speed of {known:.3g} m/s, {told}"
+
+
+def other_speed(survey: Inspection, known: float | None, told: str) -> Signal | None:
     """Another speed in the place of that through the water: it falls in turns as that does.
 
-    Of one without a unit the user's word for the approach speed [m/s] settles it.
+    Of one without a unit a known approach speed [m/s] settles it; `told` is where that is from.
     """
-    for sources, words in ((_over_ground(survey), "over ground"), (_some_speed(survey), "unsaid")):
+    unsaid = "of which its name does not say relative to what"
+    for sources, words in ((_over_ground(survey), "over ground"), (_some_speed(survey), unsaid)):
         for source in sources:
             why = (
                 f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
             )
             unit = _stated(source)
-            if unit is None and stated is not None:
-                unit = unit_of_speed(source, stated)
-                why += f"; unit by the stated speed of {stated:.3g} m/s"
+            if unit is None and known is not None:
+                unit = unit_of_speed(source, known)
+                why += f"; {_by_speed(known, told)}"
             if unit is not None:
                 return Signal("u", source, unit, None, why, ())
     return None
@@ -216,6 +224,8 @@ def approach_speed(
         if (unit := _stated(source)) is not None:
             middle = abs(float(np.median(source.sketch.y))) * units.factor(unit, "m/s")
             return middle, f"median of {source.key}, {words}"
+    if (sailed := usual_speed(survey.channels.values())) is not None:
+        return sailed, "over ground, by her positions"
     return None, ""
 
 
@@ -229,7 +239,7 @@ def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
 
 def _some_speed(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
-        unit = _stated(one)
+        unit = _stated(one) or "m/s"  # as above
         if not one.constant and channel_names.of_some_speed(one.name, unit):
             yield one
 

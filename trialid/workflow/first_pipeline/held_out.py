@@ -7,7 +7,7 @@ import numpy as np
 from trialid.errors import UnitError
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
-from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen
+from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
 
 
 def held_out(trials: Sequence[Chosen]) -> int | None:
@@ -15,17 +15,28 @@ def held_out(trials: Sequence[Chosen]) -> int | None:
 
     The largest is fitted: it shows most of what a ship does, and a model of the smaller ones alone
     would be asked for more than it has seen. Of an even number it is the smaller of the middle two.
+    Of two it is the one that excites her less: a steady turn alone tells how fast she turns, and
+    not how she comes to it.
     """
     if len(trials) < 2:
         return None
-    order = sorted(range(len(trials)), key=lambda place: _travel(trials[place]))
+    measure = _variation if len(trials) == 2 else _travel
+    order = sorted(range(len(trials)), key=lambda place: measure(trials[place]))
     return order[(len(trials) - 1) // 2]
 
 
-def middle_by(trials: Sequence[Chosen]) -> str:
-    """What trials are put in order by, in words."""
+def why_held_out(trials: Sequence[Chosen]) -> str:
+    """What makes it that one, in words that follow its name."""
     steered = trials[0].signals[0].quantity
-    return "its rudder" if steered in RUDDERS else f"its {steered}"
+    name = "rudder" if steered in RUDDERS else steered
+    if len(trials) == 2:
+        return f"the one whose {name} varies less"
+    return f"the middle one by its {name}"
+
+
+def _variation(trial: Chosen) -> float:
+    """Standard deviation of what steers her; in SI where its unit is known."""
+    return _si(trial.signals[0]) * float(np.std(trial.signals[0].source.sketch.y))
 
 
 def _travel(trial: Chosen) -> float:
@@ -35,12 +46,16 @@ def _travel(trial: Chosen) -> float:
     zig-zag of 20, and one at 35 further than any.
     """
     steering = trial.signals[0]
-    source = steering.source
-    unit = steering.unit or source.unit or source.unit_in_name
-    try:
-        factor = units.factor(unit or "", SIGNALS[steering.quantity].unit)
-    except (UnitError, KeyError):  # asked for with the pipeline, or one of an actuator's own
-        factor = 1.0
+    source, factor = steering.source, _si(steering)
     if steering.quantity not in RUDDERS:
         return factor * (source.high - source.low)
     return factor * (max(abs(source.high), abs(source.low)) + abs(float(np.mean(source.sketch.y))))
+
+
+def _si(steering: Signal) -> float:
+    """What to multiply it by; 1 where the unit is asked for with the pipeline, or is its own."""
+    unit = steering.unit or steering.source.unit or steering.source.unit_in_name
+    try:
+        return units.factor(unit or "", SIGNALS[steering.quantity].unit)
+    except (UnitError, KeyError):
+        return 1.0

@@ -14,7 +14,7 @@ from trialid.ship.particulars import Ship
 from trialid.toml_text import quote
 from trialid.workflow.first_pipeline.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
-from trialid.workflow.first_pipeline.held_out import held_out, middle_by
+from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
 
 HEAD: Final = """\
 # Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
@@ -51,9 +51,9 @@ def pipeline_text(
         head + f"name = {quote(path.stem)}",
         f"ship = {quote(_relative(ship_path, path))}",
     ]
-    names = _names(trials)
+    names, held = _names(trials), held_out(trials)
     for place, (name, trial) in enumerate(zip(names, trials, strict=True)):
-        lines += ["", *_trial(path, name, trial, checks=place == held_out(trials))]
+        lines += ["", *_trial(path, name, trial, why_held_out(trials) if place == held else "")]
     lines += [
         "",
         *_align(trials, length, speed),
@@ -63,13 +63,13 @@ def pipeline_text(
     return "\n".join(lines) + "\n"
 
 
-def _trial(path: Path, name: str, trial: Chosen, *, checks: bool) -> Iterator[str]:
-    by = middle_by([trial])
+def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
+    """The table of a trial; `held` says why it is held out, where it is."""
     yield "[[trial]]"
     yield f"name = {quote(name)}"
     yield f"logs = [{_log(trial, path)}]"
-    if checks:
-        yield f'use = "check"  # held out, the middle one by {by}: scored, never fitted'
+    if held:
+        yield f'use = "check"  # held out, {held}: scored, never fitted'
     if trial.states_speed and trial.speed is not None:
         yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
     yield f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"

@@ -1,0 +1,98 @@
+"""A log whose positions alone tell the speed, and a channel's unit by it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from geared_rudder import geared
+
+from trialid.alignment.track.position import RADIUS
+from trialid.inspection import Inspection, inspect_log
+from trialid.inspection.positions import usual_speed
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import starter
+
+SPEED = 1.2
+"""[m/s] Of a boat of 4 m."""
+KNOT = 1852.0 / 3600.0
+
+
+def log(
+    path: Path,
+    rng: np.random.Generator,
+    *,
+    scatter: float = 0.1,
+    held: int = 1,
+    speed: float = SPEED,
+) -> Path:
+    """Zig-zags of a boat at 5 Hz: her heading, rudder, speed in knots, and fixes that are held."""
+    t = np.arange(0.0, 300.0, 0.2)
+    delta, r = geared(20.0 * np.sign(np.sin(0.25 * t)), 0.2), np.zeros(len(t))
+    for k in range(len(t) - 1):
+        r[k + 1] = r[k] + 0.2 * (0.3 * delta[k] - r[k]) / 2.0
+    psi = np.cumsum(0.2 * r)
+    way = speed * 0.2 * np.exp(1j * np.deg2rad(psi))
+    told = np.arange(len(t)) // held * held
+    noise = scatter * (rng.standard_normal(len(t)) + 1j * rng.standard_normal(len(t)))
+    fixes = (np.cumsum(way) + noise)[told] / RADIUS
+    lat, lon = (
+        59.9 + np.rad2deg(fixes.real),
+        10.7 + np.rad2deg(fixes.imag / np.cos(np.deg2rad(59.9))),
+    )
+    knots = np.full(len(t), speed / KNOT) + 0.02 * rng.standard_normal(len(t))
+    table = np.column_stack([t, lat, lon, knots, psi % 360.0, delta])
+    heads = "time,lat,lon,speed,heading,rudder"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.9f")
+    return path
+
+
+def without(survey: Inspection, *names: str) -> Inspection:
+    kept = {k: one for k, one in survey.channels.items() if one.name not in names}
+    return survey.__class__(**{**vars(survey), "channels": kept})
+
+
+def begun(folder: Path, survey: Inspection) -> str:
+    made = starter([survey], folder / "p.toml", None, Given(length=4.0))
+    return made.files[folder / "p.toml"]
+
+
+@pytest.fixture(scope="module")
+def survey(tmp_path_factory: pytest.TempPathFactory) -> Inspection:
+    rng = np.random.default_rng(41)
+    return inspect_log(log(tmp_path_factory.mktemp("boat") / "zz.csv", rng))
+
+
+def test_positions_tell_the_unit_of_a_speed(tmp_path: Path, survey: Inspection) -> None:
+    text = begun(tmp_path, survey)
+    assert 'u     = { channel = "speed", unit = "kn" }' in text
+    assert "over ground, by her positions" in text
+    assert "a current adds to it" in text
+
+
+def test_positions_tell_the_speed_where_no_channel_does(tmp_path: Path, survey: Inspection) -> None:
+    text = begun(tmp_path, without(survey, "speed"))
+    [stated] = [line for line in text.splitlines() if line.startswith("speed = ")]
+    assert float(stated.split()[2]) == pytest.approx(SPEED, rel=0.03)
+    assert "over ground, by her positions" in stated
+
+
+@pytest.mark.parametrize("held", [1, 5])
+@pytest.mark.parametrize("scatter", [0.01, 0.5])
+def test_neither_noise_nor_a_slow_receiver_changes_the_speed(
+    tmp_path: Path, scatter: float, held: int
+) -> None:
+    """Fixes that scatter by half a metre are 0.5 m apart in each of the steps of 0.24 m."""
+    rng = np.random.default_rng(42)
+    found = inspect_log(log(tmp_path / "zz.csv", rng, scatter=scatter, held=held))
+    assert usual_speed(found.channels.values()) == pytest.approx(SPEED, rel=0.03)
+
+
+def test_a_boat_that_lies_still_has_no_speed(tmp_path: Path) -> None:
+    rng = np.random.default_rng(43)
+    still = inspect_log(log(tmp_path / "zz.csv", rng, speed=1e-4, scatter=0.5))
+    assert usual_speed(still.channels.values()) is None
+
+
+def test_one_of_two_is_no_position(survey: Inspection) -> None:
+    assert usual_speed(survey.channels.values()) is not None
+    assert usual_speed(without(survey, "lon").channels.values()) is None
