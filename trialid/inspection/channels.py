@@ -24,6 +24,8 @@ ANGLES_OF_A_QUATERNION: Final[tuple[tuple[Literal["roll", "yaw"], str], ...]] = 
 )
 NO_ROS: Final = "px4 ulog"
 """The format whose quaternions are of axes that point down: a turn to starboard is positive."""
+TABLES: Final = frozenset(("csv", "excel", "mat", "parquet"))
+"""Formats that define no quantity: a column is what somebody called it."""
 AXES = ("x", "y", "z", "w")
 REP_103: Final[Mapping[str, Literal["port"]]] = {"r": "port", "psi": "port"}
 """ROS counts about an axis that points up: a turn to port is positive."""
@@ -37,7 +39,7 @@ def of_recording(recording: Recording) -> Iterator[ChannelInspection]:
             continue
         if seen is None or not _same_stamps(seen[0], channel):
             seen = channel, health(channel.t, channel.clock, channel.received)
-        yield _channel(channel, seen[1])
+        yield _channel(channel, seen[1], defines=recording.adapter not in TABLES)
     yield from _orientations(recording)
 
 
@@ -50,7 +52,7 @@ def _same_stamps(one: Channel, other: Channel) -> bool:
     return one.t is other.t or np.array_equal(one.t, other.t)
 
 
-def _channel(channel: Channel, stamps: Health) -> ChannelInspection:
+def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspection:
     t, y, own = channel.t, channel.y, stamps
     low, high = y.min(), y.max()
     if not (low > -frames.MARKER and high < frames.MARKER):  # nor where one is NaN
@@ -62,7 +64,7 @@ def _channel(channel: Channel, stamps: Health) -> ChannelInspection:
     if own.order is not None and len(t):
         t, y = t[own.order], y[own.order]
     unit = channel.unit or channel_names.unit_in_name(channel.name)
-    guess = _guess(channel, unit)
+    guess = _guess(channel, unit, defines)
     angle = guess is not None and SIGNALS[guess.quantity].angle
     return ChannelInspection(
         name=channel.name,
@@ -83,7 +85,9 @@ def _channel(channel: Channel, stamps: Health) -> ChannelInspection:
     )
 
 
-def _guess(channel: Channel, unit: str | None) -> Guess | None:
+def _guess(channel: Channel, unit: str | None, defines: bool) -> Guess | None:
+    if channel.quantity is not None and not defines:
+        return Guess(channel.quantity, "exact name", "by its name", channel.positive)
     if channel.quantity is not None:
         return Guess(channel.quantity, "format", "defined by the format", channel.positive)
     found = channel_names.quantity(channel.name, unit)
@@ -106,7 +110,7 @@ def _orientations(recording: Recording) -> Iterator[ChannelInspection]:
             except TrialidError:
                 return  # its four fields do not share their stamps: not one quaternion
             one = Channel(name, found.t, np.asarray(found.y), "rad", found.clock)
-            seen = _channel(one, health(one.t, one.clock, None))
+            seen = _channel(one, health(one.t, one.clock, None), defines=True)
             words = "defined by the format"
             side = None if recording.adapter == NO_ROS else REP_103.get(quantity)
             guess = Guess(quantity, "format", words, side)

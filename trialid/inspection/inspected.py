@@ -10,7 +10,7 @@ from trialid.alignment.clocks import CALENDAR_NS
 from trialid.ingest.adapter import NO_AIDS, Aids
 from trialid.inspection.sketch import EMPTY, Sketch
 
-How = Literal["format", "name", "relation"]
+How = Literal["format", "exact name", "name", "relation"]
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,9 @@ class Guess:
     quantity
         Name in the dictionary of quantities.
     how
-        `format`: the log's format defines it; `name`: the channel is called so; `relation`: it
-        moves as the quantity must, given another channel.
+        `format`: the log's format defines it; `exact name`: a column is called as the quantity is;
+        `name`: the channel is called so, in other words; `relation`: it moves as the quantity must,
+        given another channel.
     words
         The same for a person: `by its name`, `by its relation to psi (correlation 0.98)`.
     positive
@@ -210,7 +211,7 @@ class Inspection:
         return tuple(sorted(found, key=lambda one: (*_worth(one), -beside[one.message])))
 
 
-_TRUST = {"format": 0, "name": 1, "relation": 2}
+_TRUST = {"format": 0, "exact name": 0, "name": 1, "relation": 2}
 
 
 def _worth(one: ChannelInspection) -> tuple[bool, int, float, float]:
