@@ -4,7 +4,7 @@ A search that failed, a ship that never manoeuvred or a model that explains next
 leave a residual, and tests on it still name effects. None of those names means anything.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -60,7 +60,7 @@ class Inadequate:
     Attributes
     ----------
     may_lack
-        Whether the fit itself is sound, and what the model lacks may be all that is wrong.
+        Whether what the model lacks may be all that is wrong: then a model with it has none of it.
     """
 
     reason: str
@@ -80,12 +80,11 @@ def why_no_fit(fit: Fit) -> Inadequate | None:
     """
     if not fit.model.states:  # sensors against each other: nothing manoeuvres
         return _no_number(fit) or _search_failed(fit)
-    checks = (
-        _no_manoeuvre, _at_noise_level, _too_short, _no_number, _search_failed,
-        _sensor_at_bound, _little_explained, _another_ship, _false_valley, _held_out_lost,
-        _held_out_unexplained,
-    )  # fmt: skip
-    return next((found for check in checks if (found := check(fit))), None)
+    failed = (found for check in CHECKS if (found := check(fit)))
+    first = next(failed, None)
+    if first is None or not first.may_lack:
+        return first
+    return replace(first, may_lack=all(one.may_lack for one in failed))
 
 
 def _no_manoeuvre(fit: Fit) -> Inadequate | None:
@@ -198,7 +197,9 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
     bounds = ", ".join(f"{n} = {fit.at_bounds[n]:.3g}" for n in held)
     return Inadequate(
         f"what no sensor does had to be assumed: {bounds}, the end of what is possible",
-        "look at that signal's clock, sign and unit, and whether the model is one of this ship",
+        "look at that signal's clock, sign and unit, and whether the model is one of this ship; "
+        "compare whole models by `trialid structures`",
+        may_lack=True,
     )
 
 
@@ -236,8 +237,9 @@ def _false_valley(fit: Fit) -> Inadequate | None:
         f"the search ended in a false valley: in {pieces} pieces, each with its own start, the "
         f"same effects follow the record {closer:.2g} times as closely with other values, and none "
         f"were found that follow it whole (error {fit.eps_rmsn:.1%})",
-        "start nearer the ship in [model.values] or in her file, raise [identify] starts, or fit "
-        "shorter trials",
+        "start nearer the ship in [model.values] or in her file, raise [identify] starts, fit "
+        "shorter trials, or compare whole models by `trialid structures`",
+        may_lack=True,
     )
 
 
@@ -272,6 +274,13 @@ def worse_than_none(fit: Fit, score: Score) -> dict[str, float]:
     left, seen = unexplained_share(fit, [score]), over_noise(fit, [score])
     kept = {c: x for c, x in left.items() if seen[c] > ABOVE_NOISE}
     return kept if min(kept.values(), default=0.0) > 1.0 else {}
+
+
+CHECKS: Final = (
+    _no_manoeuvre, _at_noise_level, _too_short, _no_number, _search_failed,
+    _sensor_at_bound, _little_explained, _another_ship, _false_valley, _held_out_lost,
+    _held_out_unexplained,
+)  # fmt: skip
 
 
 def _listed(shares: dict[str, float]) -> str:
