@@ -23,6 +23,7 @@ from trialid.workflow.first_pipeline.choice import Chosen, shared_signals, size_
 from trialid.workflow.first_pipeline.ordered_rudder import with_orders
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
+from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.twin_rudders import (
     RUDDERS,
     has_twins,
@@ -74,7 +75,7 @@ def starter(
     """
     own = read_ship(ship) if ship is not None else None
     chosen = _with_speeds([choose(one, speed) for one in surveys], speed)
-    trials = with_sides(with_twins(chosen, own))
+    trials = without_small_roll(with_sides(with_twins(chosen, own)))
     _check_shared(trials)
     if ship is None and given.length is None:
         raise LogError(
