@@ -8,9 +8,8 @@ import s175q
 
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
-from trialid.diagnosis.rudder_jumps import Course, jump_of, rudder_jump
+from trialid.diagnosis.rudder_jumps import Course, jump_of, own_time, rudder_jump
 from trialid.diagnosis.search import refit
-from trialid.diagnosis.search.refit import own_time
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit, identify
 from trialid.simulation.integrate import prepare, respond

@@ -231,7 +231,7 @@ def refits_of(
     if named:
         best += refit(fit, foretell_far_more(fit, ranking, best), progress)
         named = likeliest_refit(fit, best, asked.level, grown)
-    others = to_fit(named, ranking, best) if named else ()
+    others = to_fit(named, ranking, best, grown) if named else ()
     return look_beside(
         fit,
         ranking,

@@ -11,6 +11,8 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
+from trialid.identification.fit import Fit
+from trialid.identification.nuisance_priors import speed
 from trialid.trial import Trial
 
 FAST: Final = np.deg2rad(300.0)
@@ -74,6 +76,17 @@ def jump_of(courses: Iterable[Course], own_time: float) -> Jump | None:
 def rudder_jump(trials: Iterable[Trial], own_time: float) -> Jump | None:
     """How the recorded rudder of these trials jumps; None where it does not, or there is none."""
     return jump_of((_course(t) for t in trials if "delta" in t.signals), own_time)
+
+
+def jump_in(fit: Fit) -> Jump | None:
+    """The same of a fit's trials."""
+    steered = any("delta" in t.signals for t in fit.trials)
+    return rudder_jump(fit.trials, own_time(fit)) if steered else None
+
+
+def own_time(fit: Fit) -> float:
+    """Time in which the ship goes her own length [s]."""
+    return fit.model.ship.particulars["L"] / speed(fit.model, fit.problem.trials[0])
 
 
 def said_of(jump: Jump) -> str:

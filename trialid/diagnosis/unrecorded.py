@@ -9,9 +9,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
 
-from trialid.diagnosis.rudder_jumps import said_of
+from trialid.diagnosis.rudder_jumps import jump_in, said_of
 from trialid.diagnosis.search.candidates import missing_signals
-from trialid.diagnosis.search.refit import jump_in
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit
 from trialid.names.quantities import SIGNALS

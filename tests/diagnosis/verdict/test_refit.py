@@ -140,13 +140,16 @@ def test_a_sensor_as_slow_as_the_ship_gives_way_to_what_of_her_does_as_much(late
 
 
 def test_in_a_grown_model_any_sensor_gives_way_to_what_held_out_trials_alone_deny():
-    """That the hull is another is known then; chance's denial is no reason."""
+    """That the hull is another is known then; what chance denies and does as much will do, too."""
     old, lag = lag_of(0.3, ALIKE)
     denied = refit("force", BEFORE, LESS, check=(0.2, 0.21))[1]
     denied.candidate.effect.parameters = {}
     assert likeliest_refit(old, [lag, denied], 0.05) is lag
     assert likeliest_refit(old, [lag, denied], 0.05, grown=True) is None
     denied.candidate.shown = lambda level: False
+    assert likeliest_refit(old, [lag, denied], 0.05) is lag
+    assert likeliest_refit(old, [lag, denied], 0.05, grown=True) is None
+    denied.candidate.allowed = False
     assert likeliest_refit(old, [lag, denied], 0.05, grown=True) is lag
 
 

@@ -14,6 +14,7 @@ from trialid.diagnosis.search.completeness import Completeness, _Search
 from trialid.diagnosis.search.refit import NOT_ARRIVED, Refit, best_of
 from trialid.diagnosis.search.rivals import rivals, to_fit
 from trialid.diagnosis.verdict import Verdict, decide
+from trialid.ship.effect import Force
 
 
 @pytest.mark.parametrize(
@@ -156,13 +157,29 @@ def test_slopes_are_believed_where_that_of_the_named_effect_foretold_its_fall():
     by_slope = refit("by_slope", 0.55, 0.07, wobble=0.3)
     believed = refit("named", 0.50, 0.07, family=("twin",))
     ranking = [r.candidate for r in (believed, by_slope, refit("twin", 0.5, 0.07))]
-    assert to_fit(believed, ranking, [believed]) == ()
+    assert to_fit(believed, ranking, [believed], False) == ()
     assert rivals(believed, ranking, [believed]) == ("by_slope", "twin")
     fell = Carried(BEFORE, tuple(0.01 * x for x in BEFORE))  # and its slope says a half
     named = Refit(believed.candidate, believed.fit, fell)
-    assert to_fit(named, ranking, [named]) == (by_slope.candidate,)
-    assert to_fit(named, ranking, [named, by_slope]) == ()
+    assert to_fit(named, ranking, [named], False) == (by_slope.candidate,)
+    assert to_fit(named, ranking, [named, by_slope], False) == ()
     assert rivals(named, ranking, [named]) == ("twin",)
+
+
+def test_in_a_grown_model_what_a_sensor_may_give_way_to_is_fitted():
+    """Of the ship, and as good by its slope or alike in trace; another sensor is not."""
+    sensor = refit("named", 0.50, 0.07, family=("twin",))
+    others = [refit("by_slope", 0.55, 0.07, wobble=0.3), refit("twin", 0.5, 0.07)]
+    ranking = [r.candidate for r in (sensor, *others)]
+    for one in others:
+        one.candidate.effect.forms = (Force,)
+    assert to_fit(sensor, ranking, [sensor], True) == tuple(ranking[1:])
+    assert to_fit(sensor, ranking, [sensor], False) == ()
+    assert to_fit(sensor, ranking, [sensor, others[0]], True) == (others[1].candidate,)
+    others[0].candidate.effect.forms = ()
+    assert to_fit(sensor, ranking, [sensor], True) == (others[1].candidate,)
+    sensor.candidate.effect.forms = (Force,)
+    assert to_fit(sensor, ranking, [sensor], True) == ()
 
 
 @pytest.mark.parametrize(("gap", "good"), [(1.5, True), (2.2, True), (2.7, False)])

@@ -1,29 +1,28 @@
 """What may be meant as well as the effect that is named."""
 
 from collections.abc import Sequence
-from typing import Final
 
-from trialid.diagnosis.search.carried import Carried, as_good
-from trialid.diagnosis.search.refit import Refit
+from trialid.diagnosis.search.carried import RIVAL, does_as_well
+from trialid.diagnosis.search.refit import Refit, of_the_ship
 from trialid.diagnosis.search.score import Candidate
-
-RIVAL: Final = 0.5
-"""Share of the named effect's fall, as a logarithm, below which another explains too little to be
-taken for it, and its own slope foretold too little to be believed. Stuck rudders had 0.05 and 0.10
-by their slopes, a cubic yaw term of a real model 0.37, a weak thruster 0.66, most others 0.9 and
-more. Half: of these only what is stuck is looked into. Twice: everything is fitted; tried on ships
-with every coefficient off, a tiny fall then brought thirteen further fits and no better name."""
 
 
 def to_fit(
-    named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]
+    named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit], grown: bool
 ) -> tuple[Candidate, ...]:
     """Candidates to fit before they are said to do as well, where slopes are not believed.
 
     A rudder that is stuck takes 40 % off by its slope, and 99 % when it is fitted; what the slopes
-    of others say is then worth as little.
+    of others say is then worth as little. In a model that has `grown` a sensor gives way to what is
+    of the ship and does as well: what would, or is alike in trace, is fitted first.
     """
-    return () if _foretold(named) else _by_slope(named, ranking, refits)
+    found = _by_slope(named, ranking, refits)
+    if not grown or of_the_ship(named.candidate.effect):
+        return () if _foretold(named) else found
+    fitted = {r.candidate.effect.name for r in refits}
+    alike = {*named.candidate.family} - fitted
+    more = [c for c in ranking if c.allowed and (c in found or c.effect.name in alike)]
+    return tuple(c for c in more if of_the_ship(c.effect) or not _foretold(named))
 
 
 def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) -> tuple[str, ...]:
@@ -33,7 +32,7 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
     half of what the named one does, when it is fitted; by its slope where slopes are believed.
     """
     others = [r for r in refits if r is not named]
-    good = {r.candidate.effect.name for r in others if _as_good(named.carried, r.carried)}
+    good = {r.candidate.effect.name for r in others if does_as_well(named.carried, r.carried)}
     apart = {r.candidate.effect.name for r in others} - good
     apart |= {c.effect.name for c in ranking if c.effect.bound_by_meaning and not c.allowed}
     if _foretold(named):
@@ -58,10 +57,5 @@ def _by_slope(
         for c in ranking
         if c.allowed
         and c.effect.name not in {*fitted, *named.candidate.family}
-        and _as_good(named.candidate.carried, c.carried)
+        and does_as_well(named.candidate.carried, c.carried)
     )
-
-
-def _as_good(mine: Carried, its: Carried) -> bool:
-    """Whether another effect carries over as well as far as these blocks can tell."""
-    return 0.0 < its.ratio < mine.ratio**RIVAL and as_good(mine.after, its.after)
