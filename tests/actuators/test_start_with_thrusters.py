@@ -64,6 +64,33 @@ def test_sides_that_the_turn_contradicts_are_asked(tmp_path, monkeypatch) -> Non
     assert not (tmp_path / "runs").exists()
 
 
+@pytest.mark.parametrize("swapped", [False, True])
+def test_of_two_by_number_the_turn_tells_the_sides(tmp_path, monkeypatch, swapped) -> None:
+    """`n1` and `n2` have none; without a turn that tells nothing is taken for granted."""
+    made = log(tmp_path / "a.csv", swapped=swapped)
+    text = made.read_text(encoding="utf-8").replace("rpm_port", "n1_rpm")
+    made.write_text(text.replace("rpm_starboard", "n2_rpm"), encoding="utf-8")
+    done = started(tmp_path, monkeypatch, [made], "--length 2")
+    assert done.exit_code == 0, done.output
+    assert "side confirmed by the turn" in " ".join(done.stdout.split())
+    signals = pipeline_file.load(Path("first_trial.toml")).trials[0].signals
+    assert signals["thruster_port"].channel == ("n2_rpm" if swapped else "n1_rpm")
+    assert signals["thruster_starboard"].channel == ("n1_rpm" if swapped else "n2_rpm")
+    assert read(Path("runs/first_trial/result.json")).fit.eps_rmsn < 0.2
+
+
+def test_two_by_number_whose_turn_tells_nothing_are_asked(tmp_path, monkeypatch) -> None:
+    made = log(tmp_path / "a.csv")
+    table = np.loadtxt(made, delimiter=",", skiprows=1)
+    table[:, 3] = 0.1 * np.random.default_rng(1).standard_normal(len(table))
+    heads = "time_s,motor 1 [rpm],motor 2 [rpm],yaw_rate_degps,stw_mps"
+    np.savetxt(made, table, delimiter=",", header=heads, comments="", fmt="%.6f")
+    done = started(tmp_path, monkeypatch, [made], "--length 2")
+    assert done.exit_code == 0, done.output
+    assert "settling which is to port" in " ".join(done.stdout.split())
+    assert not (tmp_path / "runs").exists()
+
+
 @pytest.mark.study(turn=10)
 def test_a_unit_that_nothing_tells_is_asked(tmp_path, monkeypatch) -> None:
     """Counts of an engine may be anything; what is called a thrust is read as one, with care."""

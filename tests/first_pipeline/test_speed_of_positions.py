@@ -69,6 +69,21 @@ def test_positions_tell_the_unit_of_a_speed(tmp_path: Path, survey: Inspection) 
     assert "a current adds to it" in text
 
 
+@pytest.mark.parametrize(("times", "told"), [(1.0, False), (0.8, False), (0.5, True), (2.0, True)])
+def test_a_speed_that_her_positions_contradict_is_told(
+    tmp_path: Path, times: float, told: bool
+) -> None:
+    """A log that states its unit, and counts every second fix twice or so."""
+    path = log(tmp_path / "zz.csv", np.random.default_rng(44))
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    table[:, 3] *= times
+    heads = "time,lat,lon,speed [kn],heading,rudder"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.9f")
+    text = begun(tmp_path, inspect_log(path))
+    assert ("her positions are sailed at" in text) is told
+    assert (f"{1.0 / times:.1f}" in text.split("sailed at")[-1][:6]) is told
+
+
 def test_positions_tell_the_speed_where_no_channel_does(tmp_path: Path, survey: Inspection) -> None:
     text = begun(tmp_path, without(survey, "speed"))
     [stated] = [line for line in text.splitlines() if line.startswith("speed = ")]

@@ -21,22 +21,58 @@ NO_DRIVE: Final = frozenset(
 )
 """... and of one that only is about what drives her."""
 
+TURNS: Final = frozenset(("rpm", "rps", "rad/s", "1/s", "Hz"))
+"""Units in which the letter `n` is a shaft's."""
 
 SHAFTS: Final = frozenset(("n_p", "n_s"))
 ENGINES: Final = {"single engine or port": "n_p", "starboard engine": "n_s"}
 """Words by which NMEA 2000 says which of two engines it is."""
 
 
+NUMBERS: Final = ("1", "2")
+"""Of two drives by number the first is to port, as most makers have it; the turn has to say so."""
+
+
 def drives_of(survey: Inspection) -> tuple[ChannelInspection, ...]:
-    """The port and the starboard drive of a log; fewer where there is not one of each."""
+    """The port and the starboard drive of a log; fewer where there is not one of each.
+
+    Where none has a side, the first and the second of two that are numbered.
+    """
     found: dict[str, list[ChannelInspection]] = {"n_p": [], "n_s": []}
-    for one in survey.channels.values():
-        told = words(one.name)
-        sides = {SIDES[word] for word in told if word in SIDES} or _by_format(one)
-        drives = bool(DRIVES & {*told}) and not NO_DRIVE & {*told}
-        if len(sides) == 1 and drives and not one.constant and one.missing < 0.5:
+    for one in filter(_drives, survey.channels.values()):
+        sides = {SIDES[word] for word in words(one.name) if word in SIDES} or _by_format(one)
+        if len(sides) == 1:
             found[sides.pop()].append(one)
+    if not any(found.values()):
+        return _numbered(survey)
     return tuple(ones[0] for ones in found.values() if len(ones) == 1)
+
+
+def has_side(drive: ChannelInspection) -> bool:
+    """Whether a drive's name or format tells its side; else it has a number alone."""
+    return bool({*words(drive.name)} & {*SIDES} or _by_format(drive))
+
+
+def _numbered(survey: Inspection) -> tuple[ChannelInspection, ...]:
+    """Two drives whose names are alike but for their numbers; nothing where there are others."""
+    pairs: dict[tuple[str, ...], dict[str, ChannelInspection]] = {}
+    for one in filter(_drives, survey.channels.values()):
+        told = words(one.name)
+        numbers = [word for word in told if word in NUMBERS]
+        if len(numbers) == 1:
+            kind = tuple(word for word in told if word not in NUMBERS)
+            pairs.setdefault(kind, {})[numbers[0]] = one
+    whole = [pair for pair in pairs.values() if len(pair) == len(NUMBERS)]
+    return tuple(whole[0][n] for n in NUMBERS) if len(whole) == 1 else ()
+
+
+def _drives(one: ChannelInspection) -> bool:
+    """Whether a channel that moves drives a boat: by its words, or a shaft's letter and unit."""
+    told = {*words(one.name)}
+    shaft = "n" in told and (one.unit or one.unit_in_name) in TURNS
+    return (
+        bool(DRIVES & told or shaft) and not (NO_DRIVE & told or one.constant) and one.missing < 0.5
+    )
 
 
 def _by_format(one: ChannelInspection) -> set[str]:

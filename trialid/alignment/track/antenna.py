@@ -120,7 +120,7 @@ def _against_speed(trial: Trial, north: Vector, east: Vector) -> tuple[str, ...]
     if u is None or not float(np.median(np.abs(u))) > 0.5:
         return ()
     ratio = float(np.median(np.hypot(north, east)) / np.median(np.abs(u)))
-    return _told(ratio, f"the track is sailed at {ratio:.2f} times the recorded speed u")
+    return speeds_apart(ratio, f"the track is sailed at {ratio:.2f} times the recorded speed u")
 
 
 def check_stated_speed(trial: Trial, speed: float) -> tuple[str, ...]:
@@ -138,10 +138,11 @@ def check_stated_speed(trial: Trial, speed: float) -> tuple[str, ...]:
     x, y = (trial.signals[n][steps:] - trial.signals[n][:-steps] for n in ("x", "y"))
     sog = np.hypot(x, y)[known] / (steps * trial.period)
     ratio = float(np.quantile(sog, 0.9)) / speed
-    return _told(ratio, f"the track is sailed at up to {ratio:.2f} times the stated speed")
+    return speeds_apart(ratio, f"the track is sailed at up to {ratio:.2f} times the stated speed")
 
 
-def _told(ratio: float, words: str) -> tuple[str, ...]:
+def speeds_apart(ratio: float, words: str) -> tuple[str, ...]:
+    """A remark where a track and a speed are further apart than a current explains; or none."""
     if 0.7 < ratio < 1.5:
         return ()
     if abs(ratio - MINUTES) < 0.05:

@@ -24,6 +24,7 @@ from trialid.workflow.first_pipeline.ordered_rudder import with_orders
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
+from trialid.workflow.first_pipeline.speed_by_track import held_against_track
 from trialid.workflow.first_pipeline.twin_rudders import (
     RUDDERS,
     has_twins,
@@ -76,6 +77,7 @@ def starter(
     own = read_ship(ship) if ship is not None else None
     chosen = _with_speeds([choose(one, speed) for one in surveys], speed)
     trials = without_small_roll(with_sides(with_twins(chosen, own)))
+    trials = [held_against_track(one) for one in trials]
     _check_shared(trials)
     if ship is None and given.length is None:
         raise LogError(

@@ -8,7 +8,7 @@ import numpy as np
 
 from trialid.errors import LogError
 from trialid.inspection.channel_names import words
-from trialid.inspection.drives import drives_of
+from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import Sketch
@@ -91,6 +91,9 @@ def _drive_signals(survey: Inspection, rate: Signal) -> list[Signal]:
     """Both drives as signals of a pipeline, their sides held against the turn."""
     port, starboard = drives_of(survey)
     says = _agreement(port, starboard, rate)
+    if not (has_side(port) or says[0]):
+        port, starboard = starboard, port
+        says = _agreement(port, starboard, rate)
     return [_drive(PORT, port, says), _drive(STARBOARD, starboard, says)]
 
 
@@ -139,7 +142,9 @@ def _agreement(
     both = dataclasses.replace(port, sketch=Sketch(left.t, left.y - other))
     found = side(both, rate.source, rate.positive or "starboard")
     if found is None:
-        return True, "side by its name, the motion does not confirm it"
+        if has_side(port):
+            return True, "side by its name, the motion does not confirm it"
+        return False, "FILL IN the unit after settling which is to port: the motion does not tell"
     told = f"correlation of port less starboard with {found.by} {found.strength:+.2f}"
     if found.side == "starboard":
         return True, f"side confirmed by the turn: {told}"
