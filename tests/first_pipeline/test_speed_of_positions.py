@@ -87,7 +87,7 @@ def test_a_speed_that_her_positions_contradict_is_told(
 def test_positions_tell_the_speed_where_no_channel_does(tmp_path: Path, survey: Inspection) -> None:
     text = begun(tmp_path, without(survey, "speed"))
     [stated] = [line for line in text.splitlines() if line.startswith("speed = ")]
-    assert float(stated.split()[2]) == pytest.approx(SPEED, rel=0.03)
+    assert float(stated.split()[2]) == pytest.approx(SPEED, rel=0.1)
     assert "over ground, by her positions" in stated
 
 

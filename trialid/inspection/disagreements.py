@@ -22,7 +22,8 @@ def findings(survey: Inspection) -> tuple[Finding, ...]:
     """What contradicts what: the likeliest channels among one another, then twins."""
     live = {name: _live(survey, name) for name in COMPARED}
     best = {name: next(iter(found.values())) for name, found in live.items() if found}
-    stated = {name: survey.channels[next(iter(found))] for name, found in live.items() if found}
+    by_key = {one.key: one for one in survey.channels.values()}
+    stated = {name: by_key[next(iter(found))] for name, found in live.items() if found}
     said = {name: one.unit for name, one in stated.items() if one.unit is not None}
     among = checks.of_series(best, said)
     return (

@@ -16,7 +16,7 @@ class Finding:
     Parameters
     ----------
     kind
-        `unit`, `scale`, `unrelated`, `sign`, `side`, `lag`, `differ`, `heel` or `still`.
+        `unit`, `scale`, `unrelated`, `sign`, `axes`, `side`, `lag`, `differ`, `heel` or `still`.
     severity
         `error` where no fit could be right, else `remark`.
     about

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from trialid.alignment.agreement import relation, signs
+from trialid.alignment.agreement.axes import check_axes
 from trialid.alignment.agreement.channel_finding import Finding
 from trialid.alignment.agreement.slopes import LOOSE, MOVING, SLOPES, TURNS, check_slopes
 from trialid.alignment.clocks import EMPTIEST, FEWEST, Grid, Series, in_time_order
@@ -24,7 +25,8 @@ STILL = 0.1
 
 def of_trial(trial: Trial, stated: Mapping[str, str] | None = None) -> tuple[Finding, ...]:
     """Findings on the signals of a trial; `stated` holds the units that the pipeline states."""
-    return (*check_slopes(trial, stated or {}, trial), *_heel(trial), *_still(trial))
+    slopes = check_slopes(trial, stated or {}, trial)
+    return (*slopes, *check_axes(trial), *_heel(trial), *_still(trial))
 
 
 def of_series(
@@ -40,7 +42,7 @@ def of_series(
         both = trial_of_series({name: series[name] for name in pair if name in series})
         found += check_slopes(both, stated or {}, whole or both) if both is not None else ()
     if whole is not None:
-        found += (*_heel(whole), *_still(whole), *_sides(whole))
+        found += (*check_axes(whole), *_heel(whole), *_still(whole), *_sides(whole))
     return tuple(found)
 
 

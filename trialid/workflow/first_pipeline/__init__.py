@@ -11,6 +11,10 @@ from trialid.ship.actuators import Actuator
 from trialid.ship.estimate import Given, estimate
 from trialid.ship.estimate.ship_text import ship_text
 from trialid.ship.particulars import Ship, read_ship
+from trialid.workflow.first_pipeline.axes_of_earth import (
+    with_velocities_beside,
+    without_axes_of_earth,
+)
 from trialid.workflow.first_pipeline.boat_choice import (
     PORT,
     actuator_lines,
@@ -75,9 +79,13 @@ def starter(
         The logs hold too little, or not the same, to begin with, or the ship is not known.
     """
     own = read_ship(ship) if ship is not None else None
-    chosen = _with_speeds([choose(one, speed) for one in surveys], speed)
+    known = without_axes_of_earth(surveys)
+    chosen = _with_speeds([choose(one, speed) for one in known], speed)
     trials = without_small_roll(with_sides(with_twins(chosen, own)))
-    trials = [held_against_track(one) for one in trials]
+    trials = [
+        with_velocities_beside(held_against_track(one), survey)
+        for one, survey in zip(trials, surveys, strict=True)
+    ]
     _check_shared(trials)
     if ship is None and given.length is None:
         raise LogError(

@@ -11,7 +11,7 @@ import numpy as np
 from trialid.errors import LogError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Inspection
-from trialid.inspection.positions import usual_speed
+from trialid.inspection.positions import approach_by_positions
 from trialid.inspection.relations import RATES, side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
@@ -224,7 +224,7 @@ def approach_speed(
         if (unit := _stated(source)) is not None:
             middle = abs(float(np.median(source.sketch.y))) * units.factor(unit, "m/s")
             return middle, f"median of {source.key}, {words}"
-    if (sailed := usual_speed(survey.channels.values())) is not None:
+    if (sailed := approach_by_positions(survey.channels.values())) is not None:
         return sailed, "over ground, by her positions"
     return None, ""
 
