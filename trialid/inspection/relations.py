@@ -12,6 +12,7 @@ from typing import Final, Literal
 import numpy as np
 
 from trialid.alignment.agreement import signs
+from trialid.alignment.agreement.first_turn import first_turn
 from trialid.arrays import Mask
 from trialid.inspection.inspected import ChannelInspection, Guess
 from trialid.inspection.sketch import Vector, on_one_clock
@@ -112,7 +113,8 @@ def _turning(rudder: ChannelInspection, turning: ChannelInspection) -> signs.Tur
     period, (delta, r), whole = common
     if turning.guess is not None and turning.guess.quantity == "psi":
         r = np.gradient(r)
-    return signs.answer_of(delta, r, whole, period)
+    found = signs.answer_of(delta, r, whole, period)
+    return found if found.sign else first_turn(delta, r, whole)
 
 
 def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | None:
