@@ -50,6 +50,27 @@ def test_logs_become_a_pipeline_a_ship_and_a_fit(tmp_path, monkeypatch):
     assert lines[-1] == "Report: runs/first_trial/report.html"
 
 
+def test_a_table_without_a_header_is_begun_by_its_template(tmp_path, monkeypatch):
+    """As a basin writes it: two lines of title, and columns that nobody named."""
+    plain = log(tmp_path / "plain.csv").read_text(encoding="utf-8").splitlines()[1:]
+    rows = "\n".join(row.replace(",", "\t") for row in plain)
+    (tmp_path / "a.dat").write_text(f"A basin\nZig-zag 10/10\n\n{rows}\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    CliRunner().invoke(commands, ["inspect", "a.dat", "--template", "t.toml"])
+    text = Path("t.toml").read_text(encoding="utf-8").replace("reviewed = false", "reviewed = true")
+    named = {2: ("delta", "deg"), 3: ("r", "deg/s"), 4: ("psi", "deg"), 5: ("u", "m/s")}
+    for column, (name, unit) in named.items():
+        meant = f'{{ rename = "{name}", unit = "{unit}" }}'
+        text = text.replace(f'"column {column}" = {{}}', f'"column {column}" = {meant}')
+    text = text.replace('"column 1" = {}', '"column 1" = { unit = "s" }')
+    Path("t.toml").write_text(text, encoding="utf-8")
+    done = started(tmp_path, monkeypatch, "a.dat", "--with-template", "t.toml", *SHIP)
+    assert done.exit_code == 0, done.output
+    begun = Path("first_trial.toml").read_text(encoding="utf-8")
+    assert 'logs = [{ path = "a.dat", template = "t.toml" }]' in begun
+    assert read(Path("runs/first_trial/result.json")).fit.eps_rmsn < 0.3
+
+
 def test_a_recorded_speed_is_no_constant_whatever_it_is_called(tmp_path, monkeypatch):
     """Frozen at its median the ferry's speed once named an effect that was not there."""
     started(tmp_path, monkeypatch, log(tmp_path / "a.csv"), *SHIP)

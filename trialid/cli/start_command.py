@@ -36,6 +36,13 @@ FIRST: Final = Path("first_trial.toml")
     metavar="KNOTS",
     help="The approach speed, where no log tells it.",
 )
+@click.option(
+    "--with-template",
+    "layout",
+    type=FILE,
+    metavar="FILE",
+    help="Read tables as this template says.",
+)
 @click.option("--zone", help="Time zone of stamps that state none, like Europe/Oslo.")
 @click.option("--dbc", type=FILE, help="What the frames of a CAN bus mean.")
 @click.option("--quiet", is_flag=True, help="No progress and no summary.")
@@ -44,6 +51,7 @@ def start(
     pipeline: Path,
     ship: Path | None,
     speed: float | None,
+    layout: Path | None,
     zone: str | None,
     dbc: Path | None,
     quiet: bool,
@@ -60,7 +68,7 @@ def start(
     given = given_from(particulars)
     check_new_pipeline(pipeline, ship, speed, given, "--pipeline")
     stated = None if speed is None else speed * KNOT
-    begun = starter(look_into(logs, None, dbc, zone), pipeline, ship, given, stated)
+    begun = starter(look_into(logs, layout, dbc, zone), pipeline, ship, given, stated)
     write_new(begun.files)
     told = "" if quiet else "\n".join(map(render, _told(begun)))
     if told:
