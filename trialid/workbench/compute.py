@@ -167,13 +167,31 @@ def _concluded(task: Task, outcome: Outcome, foreseen: Foreseen | str, seat: Sea
         outcome = replace(outcome, result=result)
     else:
         so_far, _ = history.read(task.pipeline.path)
-        every = history.continue_steps(so_far, outcome.result.present)
+        every = history.continue_steps(*_overtaken(task, so_far, outcome.result.present))
         steps = every[len(so_far) :]
         result = replace(outcome.result, history=(*every, *proposed_steps(outcome.result)))
         outcome = replace(outcome, result=result)
     if task.recorded:
         seat.record(steps)
     return outcome
+
+
+def _overtaken(
+    task: Task, steps: tuple[StepRow, ...], present: StepRow
+) -> tuple[tuple[StepRow, ...], StepRow]:
+    """The history with the last model that was worked out, and the present one as it came of that.
+
+    Where effects came one upon the other, none in between was worked out.
+    """
+    last = None if task.before is None else task.before.run or task.before.before
+    if last is None or not task.recorded:
+        return steps, present
+    had, has = last.pipeline.model.effects, task.pipeline.model.effects
+    came = [n for n in has if n not in had]
+    if not came or {*had} - {*has}:
+        return steps, present
+    steps = history.continue_steps(steps, last.result.present)
+    return steps, replace(present, step="added", added=", ".join(came))
 
 
 def _result(before: Shown | None) -> Result | None:

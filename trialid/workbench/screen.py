@@ -127,6 +127,9 @@ def _context(shown: Shown) -> Plain:
         "steps": step_rows.steps(shown, run),
         "heading": report.heading(run),
         "advised": _advised(run),
+        "both": ()
+        if {*run.verdict.together} & {*shown.pipeline.model.effects}
+        else run.verdict.together,
         "ranked": ranking.ranking(run),
         "effects": model_rows.effects(shown),
         "masses": model_rows.masses(shown),

@@ -12,12 +12,15 @@ const EDITS = {
   use: (d) => ({ do: "use", trial: d.trial, use: d.use }),
 };
 
-export const isEdit = (button) => Boolean(EDITS[button.dataset.do]);
+/* What a button asks for, one edit after the other; mostly it is one. */
+const asked = (d) => (d.do === "each" ? d.effects.split(" ").map((effect) => ({ do: "add", effect })) : [EDITS[d.do](d)]);
+
+export const isEdit = (button) => button.dataset.do === "each" || Boolean(EDITS[button.dataset.do]);
 
 export async function send(button) {
   if (button.getAttribute("aria-disabled")) return;
   button.setAttribute("aria-disabled", "true");        // a second press of the same button is the same edit
-  await edit("/api/edit", EDITS[button.dataset.do](button.dataset), button.dataset.key);
+  for (const body of asked(button.dataset)) if (!await edit("/api/edit", body, button.dataset.key)) break;
   button.removeAttribute("aria-disabled");
 }
 
