@@ -108,6 +108,17 @@ def test_a_boat_that_lies_still_has_no_speed(tmp_path: Path) -> None:
     assert usual_speed(still.channels.values()) is None
 
 
+def test_fixes_that_never_came_have_no_speed(tmp_path: Path) -> None:
+    """Of a receiver without a fix: zeros, but for the last digit of one of them."""
+    path = log(tmp_path / "zz.csv", np.random.default_rng(45))
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    table[:, 1:3] = 0.0
+    table[-1, 1:3] = 1e-9
+    heads = "time,lat,lon,speed,heading,rudder"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.9f")
+    assert usual_speed(inspect_log(path).channels.values()) is None
+
+
 def test_one_of_two_is_no_position(survey: Inspection) -> None:
     assert usual_speed(survey.channels.values()) is not None
     assert usual_speed(without(survey, "lon").channels.values()) is None

@@ -134,6 +134,8 @@ def _fresh(period: float, north: Vector, east: Vector) -> Track:
     """A way as often as the receiver tells it anew; what a log repeats is no standing still."""
     moved = (np.diff(north, prepend=np.nan) != 0.0) | (np.diff(east, prepend=np.nan) != 0.0)
     at = np.flatnonzero(moved & np.isfinite(north) & np.isfinite(east))
-    every = max(round(float(np.median(np.diff(at)))), 1) if len(at) > 1 else 1
-    on = np.arange(at[0], at[-1] + 1, every) if len(at) else at
+    if len(at) < 2:
+        return period, np.zeros(0), np.zeros(0)
+    every = round(float(np.median(np.diff(at))))
+    on = np.arange(at[0], at[-1] + 1, every)
     return period * every, np.interp(on, at, north[at]), np.interp(on, at, east[at])

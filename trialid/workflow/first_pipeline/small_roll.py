@@ -13,10 +13,10 @@ ROLLS: Final = np.deg2rad(1.0)
 """[rad] From the 5th to the 95th percentile, in the trial where she rolls most. Less is as much as
 an inclinometer drifts and the sea moves her, counts as much as the yaw, and hides what is missing
 there: of a tanker in a basin that rolls by 0.9 deg, held-out yaw rates ended at 57 % with roll and
-16 % without. Of 8 simulated ships that roll by 0.7 to 1.0 deg (of those that
-`tests/benchmarks/growth/mmg_ships.py` draws) they ended lower without it in six, in two higher by
-0.5 and 2 points. Half keeps the roll of all nine. With twice, five ships more lose theirs, one of
-which ended higher by 12 points, and a coaster whose GM her roll of 1.5 deg tells to a third."""
+16 % without. Of 8 ships simulated by the MMG method that roll by 0.7 to 1.0 deg they ended lower
+without it in six, in two higher by 0.5 and 2 points. Half keeps the roll of all nine. With twice,
+five more lose theirs, one of which ended higher by 12 points, and a coaster whose GM her roll of
+1.5 deg tells to a third."""
 
 MOST: Final = (0.05, 0.95)
 
