@@ -71,6 +71,15 @@ def test_a_current_along_a_speed_over_ground_is_none() -> None:
     assert not list(check_axes(replace(made, signals={**made.signals, "u": over_ground})))
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_a_boat_that_hardly_moves_and_turns_tells_nothing(seed: int) -> None:
+    """Her course winds about by chance, and so does her heading."""
+    made, rng = trial(TURN, "u", "v"), np.random.default_rng(seed)
+    drifting = np.cumsum(0.02 * rng.standard_normal((3, len(T))), axis=1)
+    signals = {"u": 0.1 * drifting[0], "v": 0.1 * drifting[1], "psi": drifting[2] * 5.0}
+    assert not list(check_axes(replace(made, signals=signals)))
+
+
 def log(path: Path, orders: np.ndarray, u: str, v: str) -> Path:
     found = sailed(orders)
     table = [T, found["x"], found["y"], np.rad2deg(found["psi"]), found[u], found[v], found["r"]]

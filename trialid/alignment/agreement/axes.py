@@ -22,11 +22,15 @@ SWINGS: Final = np.deg2rad(30.0)
 
 GOES_ROUND: Final = 2.0
 """Times the steady part of u that what goes round with the heading must be: none of a ship's own,
-all of a velocity to the north. A current in a speed over ground is less than her speed."""
+all of a velocity to the north. A current in a speed over ground is less than her speed. A turn in
+files of a basin has 9.8: half and twice tell the same of it."""
 
 ALIKE: Final = 0.9
-"""Correlation from which a course goes with the heading; a drift angle goes with the rate of turn,
-and is a tenth of it."""
+"""Correlation of u with what goes round with the heading, and mean cosine of a course beside it."""
+
+NEARER: Final = 0.25
+"""Share of what the course strays by itself that it may stray beside the heading: of the ship's own
+velocities it strays by the drift angle, and beside the heading by all her turns."""
 
 
 def check_axes(trial: Trial) -> Iterator[Finding]:
@@ -75,14 +79,11 @@ def _of_one(trial: Trial, psi: Vector, known: Mask) -> tuple[str, float] | None:
 
 
 def _of_both(trial: Trial, psi: Vector, known: Mask) -> tuple[str, float] | None:
-    """Slope of the course of u and v against the heading; None where it has none to speak of."""
+    """How constant the course of u and v is beside the heading, where it is far less by itself."""
     both = known & trial.valid["u"] & trial.valid["v"]
-    if both.sum() < 3 or np.ptp(psi[both]) < SWINGS:
+    if not both.any() or np.ptp(psi[both]) < SWINGS:
         return None
-    course = np.unwrap(np.arctan2(trial.signals["v"][both], trial.signals["u"][both]))
-    around, turned = course - course.mean(), psi[both] - psi[both].mean()
-    correlation = float(around @ turned) / max(
-        float(np.linalg.norm(around) * np.linalg.norm(turned)), 1e-9
-    )
-    slope = float(around @ turned) / float(turned @ turned)
-    return ("slope", slope) if correlation > ALIKE and slope > 0.5 else None
+    course = np.arctan2(trial.signals["v"][both], trial.signals["u"][both])
+    own, beside = (float(np.abs(np.mean(np.exp(1j * x)))) for x in (course, course - psi[both]))
+    found = beside > ALIKE and 1.0 - beside < NEARER * (1.0 - own)
+    return ("mean cosine beside it", beside) if found else None
