@@ -67,3 +67,27 @@ def test_what_does_not_show_it_tells_nothing(logs):
     holes = np.ones(len(t), dtype=bool)
     holes[laid] = False
     assert first_turn(delta, r, holes).sign == 0.0
+
+
+@pytest.mark.study(turn=11)
+def test_of_1200_records_none_is_told_wrongly(tmp_path):
+    """Of 60 ships, calm, in gusts, in a swell, by a drifting gyro."""
+    found, rng = list[float](), np.random.default_rng(11)
+    for seed in range(600, 660):
+        for manoeuvre in (*MANOEUVRES.values(), (10.0, 10.0)):
+            path = tmp_path / "log.csv"
+            mmg.write_log(path, mmg.drawn(seed), np.random.default_rng(seed), *manoeuvre)
+            t, delta, r = np.loadtxt(path, delimiter=",", skiprows=1)[:, :3].T
+            size = float(np.std(r))
+            swell = np.sin(2.0 * np.pi * t / 7.0 + rng.uniform(0.0, 2.0 * np.pi))
+            others = (
+                0.0 * t,
+                gusts(t, 0.3 * size, rng),
+                0.5 * size * swell,
+                0.3 * size * t / t[-1],
+            )
+            found += [told(delta, r + other) for other in others]
+    print(f"{found.count(1.0)} of {len(found)} told, {found.count(-1.0)} wrongly")
+    assert len(found) == 1200
+    assert found.count(-1.0) == 0
+    assert found.count(1.0) > 900

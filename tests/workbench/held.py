@@ -8,6 +8,7 @@ from typing import Any
 import quick
 
 from trialid.workbench import compute
+from trialid.workbench.desk import Desk
 
 EXAMINE = compute.examine
 
@@ -48,3 +49,12 @@ class Looks:
 
     def go(self) -> None:
         self.still = False
+
+
+def add_upon(desk: Desk, gate: Gate) -> None:
+    """Add an effect, and another one while the model with the first is worked out."""
+    gate.close()
+    quick.edit(desk, "add", effect=quick.ADDED)
+    assert gate.reached.wait(quick.LONGEST)
+    quick.edit(desk, "add", effect=quick.OTHER)
+    gate.open.set()

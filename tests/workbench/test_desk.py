@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import quick
 from click.testing import CliRunner
-from held import Gate
+from held import Gate, add_upon
 from quick import (
     ADDED,
     OTHER,
@@ -227,11 +227,7 @@ def test_what_is_stopped_without_an_edit_is_said(path: Path, gate: Gate) -> None
 def test_a_second_edit_during_a_refit_keeps_both(path: Path, gate: Gate) -> None:
     with opened(path) as desk:
         diagnosed(desk)
-        gate.close()
-        edit(desk, "add", effect=ADDED)
-        assert gate.reached.wait(quick.LONGEST)
-        edit(desk, "add", effect=OTHER)
-        gate.open.set()
+        add_upon(desk, gate)
         status = diagnosed(desk)
         assert load(path).model.effects[-2:] == (ADDED, OTHER)
         assert desk.shown.pipeline == load(path)

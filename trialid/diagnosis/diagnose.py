@@ -62,9 +62,9 @@ def diagnose(
     before = _bounded(before, tried.refits, whole)
     verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
     after = _after(verdict, tried, asked, progress)
-    verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
-    if failed is not None and not _sound(after or together):
+    if failed is not None and (after is None or why_no_fit(after.fit)):
         return _no_fit(fit, before, left_out, failed)
+    verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
     wanted = force or verdict.kind == "not in catalogue"
     return Diagnosis(
         before=before,
@@ -109,11 +109,6 @@ def _or_of_two(
         return verdict, None
     found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
     return (verdict if found is None else verdict_on_two(fit, found)), found
-
-
-def _sound(mended: Diagnosed | Together | None) -> bool:
-    """Whether there is a model with what was missing, and its fit carries a verdict."""
-    return mended is not None and why_no_fit(mended.fit) is None
 
 
 def _named(verdict: Verdict, refits: Sequence[Refit]) -> Refit | None:

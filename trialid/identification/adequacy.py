@@ -60,7 +60,7 @@ class Inadequate:
     Attributes
     ----------
     may_lack
-        Whether what the model lacks may be all that is wrong: then a model with it has none of it.
+        Whether what the model lacks may be all that is wrong: a model with it then has no reason.
     """
 
     reason: str
@@ -80,11 +80,11 @@ def why_no_fit(fit: Fit) -> Inadequate | None:
     """
     if not fit.model.states:  # sensors against each other: nothing manoeuvres
         return _no_number(fit) or _search_failed(fit)
-    failed = (found for check in CHECKS if (found := check(fit)))
-    first = next(failed, None)
-    if first is None or not first.may_lack:
-        return first
-    return replace(first, may_lack=all(one.may_lack for one in failed))
+    for place, check in enumerate(CHECKS, 1):
+        if (found := check(fit)) is not None:
+            others = (one(fit) for one in CHECKS[place:] if one not in LACKING)
+            return replace(found, may_lack=check in LACKING and not any(others))
+    return None
 
 
 def _no_manoeuvre(fit: Fit) -> Inadequate | None:
@@ -199,7 +199,6 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
         f"what no sensor does had to be assumed: {bounds}, the end of what is possible",
         "look at that signal's clock, sign and unit, and whether the model is one of this ship; "
         "compare whole models by `trialid structures`",
-        may_lack=True,
     )
 
 
@@ -239,7 +238,6 @@ def _false_valley(fit: Fit) -> Inadequate | None:
         f"were found that follow it whole (error {fit.eps_rmsn:.1%})",
         "start nearer the ship in [model.values] or in her file, raise [identify] starts, fit "
         "shorter trials, or compare whole models by `trialid structures`",
-        may_lack=True,
     )
 
 
@@ -264,7 +262,6 @@ def _held_out_unexplained(fit: Fit) -> Inadequate | None:
                 "compare its signs, units and speed with those of the fitted trials; where they "
                 "agree, fit that trial too, as she may move there as in no other, or compare whole "
                 "models by `trialid structures`",
-                may_lack=True,
             )
     return None
 
@@ -281,6 +278,9 @@ CHECKS: Final = (
     _sensor_at_bound, _little_explained, _another_ship, _false_valley, _held_out_lost,
     _held_out_unexplained,
 )  # fmt: skip
+
+LACKING: Final = frozenset((_sensor_at_bound, _false_valley, _held_out_unexplained))
+"""Those that a model without an effect of the ship fails, however well it was fitted."""
 
 
 def _listed(shares: dict[str, float]) -> str:

@@ -86,10 +86,10 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
 
 
 def _guess(channel: Channel, unit: str | None, defines: bool) -> Guess | None:
-    if channel.quantity is not None and not defines:
-        return Guess(channel.quantity, "exact name", "by its name", channel.positive)
-    if channel.quantity is not None:
+    if channel.quantity is not None and defines:
         return Guess(channel.quantity, "format", "defined by the format", channel.positive)
+    if channel.quantity is not None:
+        return Guess(channel.quantity, "exact name", "by its name", channel.positive)
     found = channel_names.quantity(channel.name, unit)
     if found is None:
         return None

@@ -4,6 +4,8 @@ from typing import Final
 
 from trialid.inspection.channel_names import SIDES, words
 from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.usual_units import to_si
+from trialid.names.quantities import SIGNALS
 
 DRIVES: Final = frozenset(
     words(
@@ -21,16 +23,13 @@ NO_DRIVE: Final = frozenset(
 )
 """... and of one that only is about what drives her."""
 
-TURNS: Final = frozenset(("rpm", "rps", "rad/s", "1/s", "Hz"))
-"""Units in which the letter `n` is a shaft's."""
-
 SHAFTS: Final = frozenset(("n_p", "n_s"))
 ENGINES: Final = {"single engine or port": "n_p", "starboard engine": "n_s"}
 """Words by which NMEA 2000 says which of two engines it is."""
 
 
 NUMBERS: Final = ("1", "2")
-"""Of two drives by number the first is to port, as most makers have it; the turn has to say so."""
+"""Of two drives by number the first is tried as that to port; the turn has to say so."""
 
 
 def drives_of(survey: Inspection) -> tuple[ChannelInspection, ...]:
@@ -69,7 +68,8 @@ def _numbered(survey: Inspection) -> tuple[ChannelInspection, ...]:
 def _drives(one: ChannelInspection) -> bool:
     """Whether a channel that moves drives a boat: by its words, or a shaft's letter and unit."""
     told = {*words(one.name)}
-    shaft = "n" in told and (one.unit or one.unit_in_name) in TURNS
+    turns = to_si(one.unit or one.unit_in_name or "", SIGNALS["n"].unit) is not None
+    shaft = "n" in told and turns
     return (
         bool(DRIVES & told or shaft) and not (NO_DRIVE & told or one.constant) and one.missing < 0.5
     )

@@ -30,7 +30,9 @@ ALIKE: Final = 0.9
 
 NEARER: Final = 0.25
 """Share of what the course strays by itself that it may stray beside the heading: of the ship's own
-velocities it strays by the drift angle, and beside the heading by all her turns."""
+velocities it strays by the drift angle, and beside the heading by all her turns. Five manoeuvres of
+a basin's files have 0.003-0.144 with a cosine of 0.990-0.997, her own velocities 12-313 with
+0.13-0.95: twice this tells the same of them, half of it leaves out a zig-zag of 20 deg."""
 
 
 def check_axes(trial: Trial) -> Iterator[Finding]:

@@ -19,8 +19,8 @@ STILL, LAID, LEFT = 0.1, 0.5, 0.25
 
 CLEAR: Final = 3.0
 """Times the most by which the rate of turn strayed before that it must then leave its mean: of 1200
-records (zig-zags and turns of 60 simulated ships, calm, in gusts, in a swell, by a drifting gyro)
-995 tell the side with it, all rightly. With half 1192 do, one of them wrongly, with twice 734."""
+records (`tests/grow/test_first_turn.py`: 60 ships, calm, in gusts, in a swell, by a drifting gyro)
+1009 tell the side with it, all rightly. With half 1194 do, one of them wrongly, with twice 709."""
 
 
 def first_turn(rudder: Vector, rate: Vector, both: Mask) -> Turning:

@@ -6,21 +6,19 @@ import { edit } from "./status.js";
 
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
+/* What a button asks for, one edit after the other. */
 const EDITS = {
-  add: (d) => ({ do: "add", effect: d.effect }),
-  drop: (d) => ({ do: "drop", effect: d.effect }),
-  use: (d) => ({ do: "use", trial: d.trial, use: d.use }),
+  add: (d) => d.effect.split(" ").map((effect) => ({ do: "add", effect })),
+  drop: (d) => [{ do: "drop", effect: d.effect }],
+  use: (d) => [{ do: "use", trial: d.trial, use: d.use }],
 };
 
-/* What a button asks for, one edit after the other; mostly it is one. */
-const asked = (d) => (d.do === "each" ? d.effects.split(" ").map((effect) => ({ do: "add", effect })) : [EDITS[d.do](d)]);
-
-export const isEdit = (button) => button.dataset.do === "each" || Boolean(EDITS[button.dataset.do]);
+export const isEdit = (button) => Boolean(EDITS[button.dataset.do]);
 
 export async function send(button) {
   if (button.getAttribute("aria-disabled")) return;
   button.setAttribute("aria-disabled", "true");        // a second press of the same button is the same edit
-  for (const body of asked(button.dataset)) if (!await edit("/api/edit", body, button.dataset.key)) break;
+  for (const body of EDITS[button.dataset.do](button.dataset)) if (!await edit("/api/edit", body, button.dataset.key)) break;
   button.removeAttribute("aria-disabled");
 }
 
