@@ -183,7 +183,7 @@ def test_another_ships_file_is_noticed():
     trials = [noisy(zigzag(10), 11), noisy(zigzag(20), 12)]
     wrong = replace(identify(trials, short, settings), converged=True)
     found = why_no_fit(wrong)
-    assert "ship's file is not of this ship" in found.reason
+    assert "the ship as fitted is not the one of her file" in found.reason
     assert why_no_fit(identify(trials, MODEL, settings)) is None
     says_so = replace(short.ship, source="PLACEHOLDER: of another length")
     begun = identify(trials, replace(short, ship=says_so), settings)

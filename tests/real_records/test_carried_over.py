@@ -62,6 +62,15 @@ def test_a_force_is_named_whatever_is_held_out(basin, part):
     assert all(name and moves_the_ship(name) for name in first), first
 
 
+@pytest.mark.parametrize("held", [("Z_20_05", "Z_20_10_S"), ("Z_15_05", "Z_20_10_S")])
+def test_two_at_once_join_though_one_of_them_failed_or_the_file_starts_far_off(basin, held):
+    """Of one choice the race alone fails; of the other the file must begin where both ended."""
+    kept = [s for s in stages(held_in_basin(basin, held), {}) if s.kept]
+    errors = [s.run.result.fit.eps_rmsn_check for s in kept]
+    pair = next(i for i, s in enumerate(kept) if "," in (s.added or ""))
+    assert errors[pair] < 0.9 * errors[pair - 1], errors
+
+
 @pytest.mark.study(turn=8)
 @pytest.mark.parametrize("base", BASES)
 def test_from_another_base_the_first_name_is_a_force(basin, base):

@@ -221,9 +221,10 @@ def _another_ship(fit: Fit) -> Inadequate | None:
     if (left := left_by_file(fit)) is None:
         return None
     return Inadequate(
-        f"the ship's file is not of this ship: {most_are_unlike(fit)}, and none between leave less "
-        f"than {left:.2g} times the error",
-        "name her own file, check speed and units, or begin with `trialid inspect --init --length`",
+        f"the ship as fitted is not the one of her file: {most_are_unlike(fit)}, and none between "
+        f"leave less than {left:.2g} times the error",
+        "name her own file, check speed and units, begin with `trialid inspect --init --length`, "
+        "or, where the file is hers, compare whole models by `trialid structures`",
     )
 
 

@@ -158,6 +158,17 @@ def started_at(edit: Edit, values: Mapping[str, float]) -> Edit | None:
     return replace(edit, after=read(text.encode("utf-8"), edit.after.path))
 
 
+def all_started_at(pipeline: Pipeline, values: Mapping[str, float]) -> Pipeline:
+    """The pipeline with these values as starts of all that is free and has none stated."""
+    text = pipeline.text
+    for name in pipeline.identify.free:
+        if name in pipeline.model.values or name not in values:
+            continue
+        with suppress(PipelineError):  # no room for it: the start that it has must do
+            text = start_at(text, name, float(f"{values[name]:.4g}"))
+    return read(text.encode("utf-8"), pipeline.path)
+
+
 def _before(
     edit: Edit,
     trials: tuple[Trial, ...],

@@ -27,7 +27,13 @@ from trialid.ship.effect import Effect
 from trialid.trial import Trial
 from trialid.workflow import history
 from trialid.workflow.build_model import available
-from trialid.workflow.edit_model import AS_FORESEEN, BETTER, proposed_steps, started_at
+from trialid.workflow.edit_model import (
+    AS_FORESEEN,
+    BETTER,
+    all_started_at,
+    proposed_steps,
+    started_at,
+)
 from trialid.workflow.edit_pipeline import add_to_pipeline, drop_from_pipeline
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.outcome import Run
@@ -67,7 +73,8 @@ class _Path:
     trials: tuple[Trial, ...]
     progress: Progress
     own: list[Effect] = field(default_factory=list)
-    gone: set[str] = field(default_factory=set)
+    joined: set[str] = field(default_factory=set)
+    tried: set[frozenset[str]] = field(default_factory=set)
     kin: dict[str, frozenset[str]] = field(default_factory=dict)
     added: int = 0
 
@@ -98,19 +105,23 @@ class _Path:
         if verdict.kind not in NAMELESS if self.own else verdict.effect is None:
             return None
         fit = run.findings.before.fit
-        able = [r for r in run.findings.refits if r.candidate.effect.name not in self.gone]
+        able = [r for r in run.findings.refits if self._new((r.candidate.effect.name,))]
         grown = bool(self.own)
         return likeliest_refit(fit, able, level, grown)
 
     def _together(self, run: Run) -> Together | None:
         found = run.findings.together
-        return None if found is None or self.gone & {*found.names} else found
+        return found if found is not None and self._new(found.names) else None
+
+    def _new(self, names: Sequence[str]) -> bool:
+        """Whether effects were neither tried together before, nor any of them dropped."""
+        return not self.joined & {*names} and frozenset(names) not in self.tried
 
     def end(self, run: Run) -> str:
         """Why nothing more is to be added, empty where something is."""
         verdict = run.findings.verdict
         if self.next_up(run) is None:
-            tried = verdict.effect in self.gone
+            tried = verdict.effect is not None and not self._new((verdict.effect,))
             return f"{verdict.effect} was tried" if tried else f"the verdict is `{verdict.kind}`"
         return f"{MOST} effects were added, the most it adds on its own" * (self.added >= MOST)
 
@@ -143,7 +154,7 @@ def _forward(path: _Path, stage: Stage) -> Stage:
     assert up is not None
     effects, before = up.effects, stage.run.findings.before.fit
     name = ", ".join(e.name for e in effects)
-    path.gone |= {e.name for e in effects}
+    path.tried.add(frozenset(e.name for e in effects))
     path.added += len(effects)
     try:
         after, fit, trouble = _fitted(path, stage, up)
@@ -154,6 +165,7 @@ def _forward(path: _Path, stage: Stage) -> Stage:
         return _not_kept(path, stage, name, f"with {name}: {error}")
     if run.findings.verdict.kind == "no fit":
         return _not_kept(path, stage, name, f"with {name}: {run.findings.verdict.sentence}")
+    path.joined |= {e.name for e in effects}
     for effect in effects:
         path.join(effect, before.model.displaced_by(effect))
     return _told(path, after, run, added=name)
@@ -163,7 +175,7 @@ def _fitted(path: _Path, stage: Stage, up: Refit | Together) -> tuple[Pipeline, 
     """The file with what is added, its fit, and what speaks against that; as good as the refit."""
     before, level = stage.run.findings.before.fit, stage.pipeline.diagnose.level
     best: tuple[Pipeline, Fit, str] | None = None
-    for after in _ways(stage.pipeline, up):
+    for count, after in enumerate(_ways(stage.pipeline, up)):
         try:
             fit = fit_of(after, path.trials, available(after), path.progress)
         except TrialidError:
@@ -173,14 +185,14 @@ def _fitted(path: _Path, stage: Stage, up: Refit | Together) -> tuple[Pipeline, 
         trouble = _trouble(before, up, fit, level)
         if best is None or (not trouble and (best[2] or fit.eps_rmsn < BETTER * best[1].eps_rmsn)):
             best = after, fit, trouble
-        if not best[2] and best[1].eps_rmsn <= AS_FORESEEN * up.fit.eps_rmsn:
+        if not best[2] and (count or best[1].eps_rmsn <= AS_FORESEEN * up.fit.eps_rmsn):
             break
     assert best is not None
     return best
 
 
 def _ways(pipeline: Pipeline, up: Refit | Together) -> Iterator[Pipeline]:
-    """The file with what is added at its typical values, and begun where the refit ended.
+    """The file with what is added at its typical values, or where the refit ended; then all there.
 
     The file has to give the fit again, so it is the file that is fitted.
     """
@@ -193,6 +205,7 @@ def _ways(pipeline: Pipeline, up: Refit | Together) -> Iterator[Pipeline]:
     yield plain
     if placed:
         yield near
+        yield all_started_at(near, up.fit.estimates)
 
 
 def _trouble(before: Fit, up: Refit | Together, fit: Fit, level: float) -> str:
