@@ -1,16 +1,16 @@
 """The loop that adds what is missing: where it goes and stops, in made-up worlds."""
 
 import math
-from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from world import STANDS_IN, candidate, fit_in, loop, steps
+from world import STANDS_IN, candidate, changed, fit_in, loop, no_fit, steps, stub_all
 
 from trialid.diagnosis.search.backward import worth_naming
 from trialid.errors import SimulationError
-from trialid.workflow import grow
+from trialid.progress import silent
+from trialid.workflow import addition_fit, grow
 
 
 def test_it_goes_on_while_something_carries_over(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,34 +75,13 @@ def test_what_cannot_be_fitted_from_the_file_is_told_and_the_next_tried(
         return fit_in(broken, recipe.effects)
 
     loop(monkeypatch, world)  # sets the stubs
-    monkeypatch.setattr(grow, "fit_of", fit_of)
+    monkeypatch.setattr(addition_fit, "fit_of", fit_of)
     recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
     done = list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
     assert steps(done) == ["!a", "+b"]
     del world["b"]
     done = list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
     assert (done[-1].kept, done[-1].end) == (False, "with a: lost at t = 3 s")
-
-
-def changed(
-    monkeypatch: pytest.MonkeyPatch, of: str, change: Callable[[Any], None]
-) -> list[grow.Stage]:
-    """The loop once more, where what is found of a model with these effects is changed."""
-    usual = grow.examine
-
-    def examine(asked: Any, *more: Any, **words: Any) -> Any:
-        run = usual(asked, *more, **words)
-        if asked.effects == of:
-            change(run.findings)
-        return run
-
-    monkeypatch.setattr(grow, "examine", examine)
-    recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
-    return list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
-
-
-def no_fit(findings: Any) -> None:
-    findings.verdict = SimpleNamespace(kind="no fit", effect=None, sentence="no fit: x")
 
 
 def test_a_model_whose_fit_carries_no_verdict_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -159,6 +138,8 @@ def test_what_the_file_without_it_foretells_worse_is_not_dropped(
         ({"typical": 0.08, "near": 0.05}, {"near": "it rises"}, "typical"),
         ({"typical": 0.04, "near": 0.05}, {"typical": "it rises"}, "near"),
         ({"typical": 0.08}, {}, "typical"),  # from near its end nothing can be fitted
+        ({"typical": 0.08, "near": 0.08, "all": 0.05}, {"typical": "no", "near": "no"}, "all"),
+        ({"typical": 0.08, "near": 0.07, "all": 0.05}, {}, "near"),  # nothing speaks against it
     ],
 )
 def test_what_was_promised_is_begun_near_its_end(monkeypatch, errors, troubles, begun):
@@ -167,18 +148,15 @@ def test_what_was_promised_is_begun_near_its_end(monkeypatch, errors, troubles, 
     stubs = {
         "add_to_pipeline": lambda pipeline, name: SimpleNamespace(after="typical"),
         "started_at": lambda edit, values: SimpleNamespace(after="near"),
+        "all_started_at": lambda near, values: "all",
         "available": lambda pipeline: {},
         "fit_of": lambda at, *_: fit_in(world, at),
         "_trouble": lambda before, up, fit, level: troubles.get(fit.effects, ""),
     }
-    for name, stub in stubs.items():
-        monkeypatch.setattr(grow, name, stub)
-    found = SimpleNamespace(eps_rmsn=0.05, model=SimpleNamespace(values={}))
+    stub_all(monkeypatch, stubs)
+    found = SimpleNamespace(eps_rmsn=0.05, estimates={}, model=SimpleNamespace(values={}))
     up = SimpleNamespace(effects=(candidate("a").effect,), fit=found)
-    findings = SimpleNamespace(before=SimpleNamespace(fit=None))
-    pipeline = SimpleNamespace(diagnose=SimpleNamespace(level=0.05))
-    stage = SimpleNamespace(run=SimpleNamespace(findings=findings), pipeline=pipeline)
-    path = SimpleNamespace(trials=(), progress=None)
-    after, fit, trouble = grow._fitted(path, stage, up)
+    pipeline: Any = SimpleNamespace(diagnose=SimpleNamespace(level=0.05))
+    after, fit, trouble = addition_fit.fit_addition(pipeline, (), None, up, silent)
     assert after == fit.effects == begun
     assert not trouble

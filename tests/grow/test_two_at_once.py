@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, white, with_noise, zigzag
-from world import loop, steps
+from world import changed, loop, no_fit, steps
 
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.search.carry_over import left_out
@@ -43,6 +43,17 @@ def test_not_where_trials_held_out_gain_nothing(
 def test_one_alone_comes_before_two(monkeypatch: pytest.MonkeyPatch) -> None:
     done = loop(monkeypatch, ALONE | {"c": (0.08, 0.19), "ab": (0.05, 0.1)})
     assert steps(done)[0] == "+c"
+
+
+def test_what_failed_alone_may_join_with_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = ALONE | {"c": (0.08, 0.19), "bc": (0.05, 0.1)}
+    loop(monkeypatch, world)
+    assert steps(changed(monkeypatch, "c", no_fit)) == ["!c", "+b, c"]
+
+
+def test_but_not_twice_as_a_pair(monkeypatch: pytest.MonkeyPatch) -> None:
+    loop(monkeypatch, ALONE | {"ab": (0.05, 0.1)})
+    assert steps(changed(monkeypatch, "ab", no_fit)) == ["!a, b"]
 
 
 def test_of_two_one_that_is_worth_nothing_is_dropped_again(

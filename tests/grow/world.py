@@ -1,6 +1,6 @@
 """Made-up worlds for the loop: what each set of effects would leave, and the loop in them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from itertools import combinations
 from types import SimpleNamespace
@@ -15,7 +15,7 @@ from trialid.diagnosis.search.carried import Carried, Errors
 from trialid.diagnosis.search.together import Together, stands
 from trialid.errors import SimulationError
 from trialid.ship.effect import Force
-from trialid.workflow import grow
+from trialid.workflow import addition_fit, grow
 from trialid.workflow.edit_pipeline import Edit
 
 World = Mapping[str, tuple[float, float | None]]
@@ -90,6 +90,14 @@ def found_in(world: World, fit: Any, grown: bool) -> Any:
     )  # fmt: skip
 
 
+def stub_all(monkeypatch: pytest.MonkeyPatch, stubs: Mapping[str, Any]) -> None:
+    """Set each stub in the loop and in the fit of what joins, wherever its name is used."""
+    for name, stub in stubs.items():
+        for where in (grow, addition_fit):
+            if hasattr(where, name):
+                monkeypatch.setattr(where, name, stub)
+
+
 def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
     """The stages of the loop in a world, from the model without any effect."""
 
@@ -128,9 +136,29 @@ def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
         "started_at": lambda *_: None, "fit_of": lambda r, *_: fit_in(world, r.effects),
         "own_errors": own_errors, "worths": worths,
     }  # fmt: skip
-    for name, stub in stubs.items():
-        monkeypatch.setattr(grow, name, stub)
+    stub_all(monkeypatch, stubs)
     return list(grow.stages(recipe(""), lambda words, share: None))
+
+
+def changed(
+    monkeypatch: pytest.MonkeyPatch, of: str, change: Callable[[Any], None]
+) -> list[grow.Stage]:
+    """The loop once more, where what is found of a model with these effects is changed."""
+    usual = grow.examine
+
+    def examine(asked: Any, *more: Any, **words: Any) -> Any:
+        run = usual(asked, *more, **words)
+        if asked.effects == of:
+            change(run.findings)
+        return run
+
+    monkeypatch.setattr(grow, "examine", examine)
+    recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
+    return list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
+
+
+def no_fit(findings: Any) -> None:
+    findings.verdict = SimpleNamespace(kind="no fit", effect=None, sentence="no fit: x")
 
 
 def steps(done: list[grow.Stage]) -> list[str]:

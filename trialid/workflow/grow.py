@@ -13,29 +13,19 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
-from trialid.diagnosis.search.carried import Carried
-from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.falls import worse_held_out
-from trialid.diagnosis.search.refit import Refit, likeliest_refit, objection
-from trialid.diagnosis.search.together import Together, stands
+from trialid.diagnosis.search.refit import Refit, likeliest_refit
+from trialid.diagnosis.search.together import Together
 from trialid.errors import TrialidError
-from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
 from trialid.result.change_rows import GrownRow, StepRow, names_in
 from trialid.ship.effect import Effect
 from trialid.trial import Trial
 from trialid.workflow import history
-from trialid.workflow.build_model import available
-from trialid.workflow.edit_model import (
-    AS_FORESEEN,
-    BETTER,
-    all_started_at,
-    proposed_steps,
-    started_at,
-)
-from trialid.workflow.edit_pipeline import add_to_pipeline, drop_from_pipeline
-from trialid.workflow.fit_model import fit_of
+from trialid.workflow.addition_fit import fit_addition
+from trialid.workflow.edit_model import proposed_steps
+from trialid.workflow.edit_pipeline import drop_from_pipeline
 from trialid.workflow.outcome import Run
 from trialid.workflow.read_trials import align_trials
 from trialid.workflow.run import examine
@@ -157,7 +147,7 @@ def _forward(path: _Path, stage: Stage) -> Stage:
     path.tried.add(frozenset(e.name for e in effects))
     path.added += len(effects)
     try:
-        after, fit, trouble = _fitted(path, stage, up)
+        after, fit, trouble = fit_addition(stage.pipeline, path.trials, before, up, path.progress)
         if trouble:
             return _not_kept(path, stage, name, f"{trouble} with {name}")
         run = examine(after, path.trials, path.progress, fit, grown=True)
@@ -169,53 +159,6 @@ def _forward(path: _Path, stage: Stage) -> Stage:
     for effect in effects:
         path.join(effect, before.model.displaced_by(effect))
     return _told(path, after, run, added=name)
-
-
-def _fitted(path: _Path, stage: Stage, up: Refit | Together) -> tuple[Pipeline, Fit, str]:
-    """The file with what is added, its fit, and what speaks against that; as good as the refit."""
-    before, level = stage.run.findings.before.fit, stage.pipeline.diagnose.level
-    best: tuple[Pipeline, Fit, str] | None = None
-    for count, after in enumerate(_ways(stage.pipeline, up)):
-        try:
-            fit = fit_of(after, path.trials, available(after), path.progress)
-        except TrialidError:
-            if best is None:
-                raise
-            break  # what was fitted stands, though it is not as good as the refit was
-        trouble = _trouble(before, up, fit, level)
-        if best is None or (not trouble and (best[2] or fit.eps_rmsn < BETTER * best[1].eps_rmsn)):
-            best = after, fit, trouble
-        if not best[2] and (count or best[1].eps_rmsn <= AS_FORESEEN * up.fit.eps_rmsn):
-            break
-    assert best is not None
-    return best
-
-
-def _ways(pipeline: Pipeline, up: Refit | Together) -> Iterator[Pipeline]:
-    """The file with what is added at its typical values, or where the refit ended; then all there.
-
-    The file has to give the fit again, so it is the file that is fitted.
-    """
-    plain = near = pipeline
-    placed = True
-    for effect in up.effects:
-        plain = add_to_pipeline(plain, effect.name).after
-        begun = started_at(add_to_pipeline(near, effect.name), up.fit.model.values)
-        near, placed = (begun.after, placed) if begun is not None else (near, False)
-    yield plain
-    if placed:
-        yield near
-        yield all_started_at(near, up.fit.estimates)
-
-
-def _trouble(before: Fit, up: Refit | Together, fit: Fit, level: float) -> str:
-    """What speaks against what is added as it is fitted from the file, empty where nothing does."""
-    after = own_errors(fit, levels(before))
-    if isinstance(up, Together):
-        found = replace(up, fit=fit, carried=Carried.between(own_errors(before), after))
-        return "" if stands(before, found) else "the file does not give the fit again"
-    carried = Carried.between(own_errors(before), after, up.candidate.carried.seen)
-    return objection(before, Refit(up.candidate, fit, carried), level)
 
 
 def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:
