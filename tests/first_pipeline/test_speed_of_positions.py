@@ -122,3 +122,22 @@ def test_fixes_that_never_came_have_no_speed(tmp_path: Path) -> None:
 def test_one_of_two_is_no_position(survey: Inspection) -> None:
     assert usual_speed(survey.channels.values()) is not None
     assert usual_speed(without(survey, "lon").channels.values()) is None
+
+
+@pytest.mark.parametrize(
+    ("north", "east"), [("x0 [m]", "y0 [m]"), ("x_ned", "y_ned"), ("pos_n", "pos_e")]
+)
+def test_positions_in_a_plane_tell_it_too(
+    tmp_path: Path, survey: Inspection, north: str, east: str
+) -> None:
+    table = np.loadtxt(survey.path, delimiter=",", skiprows=1)
+    table[:, 1] = np.deg2rad(table[:, 1]) * RADIUS
+    table[:, 2] = np.deg2rad(table[:, 2]) * RADIUS * np.cos(np.deg2rad(59.9))
+    path = tmp_path / "plane.csv"
+    heads = f"time,{north},{east},speed,heading,rudder"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="")
+    told = usual_speed(inspect_log(path).channels.values())
+    assert told == pytest.approx(SPEED, rel=0.03)
+    heads = "time,acc_x,acc_y,speed,heading,rudder"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="")
+    assert usual_speed(inspect_log(path).channels.values()) is None

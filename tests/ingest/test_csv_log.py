@@ -131,8 +131,8 @@ def test_a_last_line_cut_short_is_left_out_and_said(tmp_path):
         ("t,u\n12:30,1\n", "line 2, column 't': '12:30' is no time; write seconds or ISO"),
         ("t,u\n0,1\n,2\n", "line 3, column 't': '' is no time in seconds"),
         (
-            "timestamp,u\n1700000000000,1\n",
-            "line 2, column 'timestamp': '1700000000000' is no time",
+            "timestamp,u\n170000000000,1\n",
+            "line 2, column 'timestamp': '170000000000' is no time",
         ),
         (
             "t,u\n2023-11-14T22:13:20Z,1\n2023-13-14,2\n",

@@ -25,6 +25,9 @@ PAIRS: Final[tuple[Mapping[str, frozenset[str]], ...]] = (
     {"x": frozenset(("northing", "hochwert")), "y": frozenset(("easting", "rechtswert"))},
 )
 """Words of channels that are a position; one without the other is none: `Breite` is a beam too."""
+AHEAD: Final = (("x", "y"), ("north", "east"), ("n", "e"))
+PLANE: Final = frozenset(("0", "ned", "pos", "position", "pose", "m"))
+"""Words with which one of these letters is a position in a plane: `x0`, `x_ned`, `pos_n`."""
 Track = tuple[float, Vector, Vector]
 """Period [s], metres to the north and to the east; (N,)."""
 
@@ -52,7 +55,25 @@ def positions(channels: Iterable[ChannelInspection]) -> dict[str, ChannelInspect
             found |= {name: told[0]} if told else {}
         if len(found) == len(pair):
             return found
-    return {name: metres[name] for name in ("x", "y")} if {"x", "y"} <= metres.keys() else {}
+    if {"x", "y"} <= metres.keys():
+        return {name: metres[name] for name in ("x", "y")}
+    return _in_a_plane(moving)
+
+
+def _in_a_plane(channels: Iterable[ChannelInspection]) -> dict[str, ChannelInspection]:
+    """Two channels in metres called alike but for their axes, `x0` and `y0`; or nothing."""
+    fields = {
+        words(one.name.rpartition(":")[2]): one for one in channels if one.unit in (None, "m")
+    }
+    for told, one in fields.items():
+        for north, east in AHEAD:
+            beside = {*told} - {north}
+            if told.count(north) != 1 or not beside <= PLANE or not (beside or north == "north"):
+                continue
+            other = fields.get(tuple(east if word == north else word for word in told))
+            if other is not None:
+                return {"x": one, "y": other}
+    return {}
 
 
 def _told(one: ChannelInspection) -> set[str]:

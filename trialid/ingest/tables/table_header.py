@@ -18,7 +18,8 @@ from trialid.names import units
 
 DEEPEST = 60
 """Lines above a header; titles of a trial take a few."""
-NAME = re.compile(r"[^\W\d]")
+NAME = re.compile(r"[%/]?[^\W\d]")
+"""Topics begin with a slash, and what `rostopic` prints with `%time`."""
 
 
 def names(fields: Sequence[Any]) -> int:

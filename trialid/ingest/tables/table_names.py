@@ -1,13 +1,14 @@
 """What recorders and people call the time and the date of a row, in the languages of ships."""
 
 import re
+from collections.abc import Sequence
 
 TIMES = frozenset(
     (
         "t", "time", "timestamp", "time_stamp", "stamp", "datetime", "date_time", "utc", "epoch",
         "unix_time", "elapsed", "elapsed_time", "time_elapsed", "seconds", "zeit", "uhrzeit",
         "zeitstempel", "datum_zeit", "datum_uhrzeit", "tid", "tidspunkt", "tijd", "tiempo", "hora",
-        "heure", "horodatage",
+        "heure", "horodatage", "rosbagtimestamp",
     )
 )  # fmt: skip
 DATES = frozenset(("date", "datum", "dato", "fecha"))
@@ -16,6 +17,9 @@ UNITS = {
     "usec": "us", "ns": "ns", "nsec": "ns", "min": "min",
 }  # fmt: skip
 """Last word of a name, to the unit of time it states."""
+WHOLE = frozenset(("sec", "secs", "seconds"))
+PARTS = frozenset(("nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"))
+"""Last words of the two columns that a stamp of ROS becomes."""
 UNIVERSAL = frozenset(("utc", "gmt"))
 
 
@@ -45,6 +49,21 @@ def is_date(name: str) -> bool:
     (True, True, False)
     """
     return "_".join(word for word in _words(name) if word not in UNIVERSAL) in DATES
+
+
+def two_parts(names: Sequence[str]) -> tuple[int, int] | None:
+    """The columns of whole seconds and of the nanoseconds beside them, if there is one such pair.
+
+    >>> two_parts(["header.stamp.secs", "header.stamp.nsecs", "delta"]), two_parts(["sec", "delta"])
+    ((0, 1), None)
+    """
+    told = [_words(name) or [""] for name in names]
+    wholes, parts = (
+        [(i, words[:-1]) for i, words in enumerate(told) if words[-1] in last]
+        for last in (WHOLE, PARTS)
+    )
+    found = [(i, j) for i, beside in wholes for j, alike in parts if beside == alike]
+    return found[0] if len(found) == 1 else None
 
 
 def unit_of_time(name: str) -> str | None:

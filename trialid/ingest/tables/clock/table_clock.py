@@ -18,11 +18,12 @@ from trialid.ingest.tables.clock.table_time import (
     bare,
     in_samples,
     in_seconds,
+    in_two_parts,
     no_zone,
     of_day,
 )
 from trialid.ingest.tables.table import Head, Table
-from trialid.ingest.tables.table_names import is_date, is_time
+from trialid.ingest.tables.table_names import is_date, is_time, two_parts
 from trialid.ingest.tables.templates.template import Time
 
 UNNAMED = ("", "Unnamed: 0", "column 1", "column A", "__index_level_0__")
@@ -68,12 +69,18 @@ def _index(table: Table, name: str) -> int:
 def columns_of_time(heads: Sequence[Head]) -> tuple[int, ...]:
     """The columns that are a time or a date by their names, else those that label the rows."""
     named = [i for i, head in enumerate(heads) if is_time(bare(head)) or is_date(bare(head))]
-    return tuple(named or [i for i, head in enumerate(heads) if head.name in UNNAMED])
+    parts = two_parts([head.name for head in heads]) or ()
+    unnamed = [i for i, head in enumerate(heads) if head.name in UNNAMED]
+    return tuple(dict.fromkeys((*named, *parts))) or tuple(unnamed)
 
 
 def _alone(table: Table, zone: str | None) -> Clock:
     times = [i for i, head in enumerate(table.heads) if is_time(bare(head))]
     dates = [i for i, head in enumerate(table.heads) if is_date(bare(head))]
+    parts = two_parts([head.name for head in table.heads])
+    if parts and not dates and {*times} <= {*parts}:
+        no_zone(table, zone)
+        return in_two_parts(table, *parts)
     if not times and len(dates) == 1 and _is_dated(table, dates):
         return _plain(table, dates[0], zone)
     if len(times) == 1 and dates:

@@ -18,6 +18,8 @@ from trialid.names import units
 TIME_NAMES = ("t", "time", "timestamp", "zeit")
 LATEST_S = 9e9
 """More seconds than this do not fit 64 bits of nanoseconds, and are no seconds."""
+SINCE = (946_684_800.0, 4_102_444_800.0)
+"""[s] From 1970 to the years 2000 and 2100: what is logged now and fits no other unit."""
 DAY_NS = 86_400 * 10**9
 DAYS = ((30_000.0, 60_000.0), (693_962.0, 767_010.0))
 """What Excel and MATLAB count between 1982 and 2064, and in the years 1900 to 2100."""
@@ -59,6 +61,7 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
     stated = unit or head.unit or unit_of_time(bare(head))
     if stated is None:
         _not_days(table, column, y)
+        stated = _since_1970(y)
     scale = _seconds_per(table, stated or "s")
     for part in _parts(y):
         wrong = ~(np.abs(y[part] * scale) < LATEST_S)
@@ -69,10 +72,40 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
                 "seconds; state the unit in the header, as in 't[ms]', or delete the line"
             )
     remarks = _resolution(table, column, y, scale)
+    if head.unit is None and unit is None and unit_of_time(bare(head)) is None and stated:
+        remarks = (*remarks, f"its times are {stated} since 1970 by their size: no unit is stated")
     t = y.view(np.int64) if table.own else np.empty(len(y), np.int64)
     for part in _parts(y):
         t[part] = np.rint(y[part] * scale * 1e9)
     return Clock(t, (column,), f"column {head.name}", remarks)
+
+
+def _since_1970(y: NDArray[np.float64]) -> str | None:
+    """The unit in which numbers too large for seconds are dates since 1970; None for others."""
+    within = [
+        unit
+        for unit, of_one in (("ms", 1e3), ("us", 1e6), ("ns", 1e9))
+        if len(y) and (of_one * SINCE[0] < y).all() and (y < of_one * SINCE[1]).all()
+    ]
+    return within[0] if within else None
+
+
+def in_two_parts(table: Table, whole: int, part: int) -> Clock:
+    """Whole seconds in one column and nanoseconds in another, as stamps of ROS are written."""
+    seconds, beside = (time_numbers(table, column) for column in (whole, part))
+    for column, wrong, what in (
+        (whole, ~(np.abs(seconds) < LATEST_S) | (seconds % 1.0 != 0.0), "whole seconds"),
+        (part, ~((beside >= 0.0) & (beside < 1e9)), "nanoseconds of one second"),
+    ):
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            shown = show_value(table, row, column)
+            raise LogError(
+                f"{table.where(row, column)}: {shown!r} are no {what}; mend or delete the line"
+            )
+    t = seconds.astype(np.int64) * 10**9 + np.rint(beside).astype(np.int64)
+    named = " and ".join(table.heads[column].name for column in (whole, part))
+    return Clock(t, (whole, part), f"columns {named}, seconds and nanoseconds")
 
 
 def _parts(y: NDArray[np.float64]) -> Iterator[slice]:
