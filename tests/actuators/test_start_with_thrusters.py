@@ -174,3 +174,46 @@ def test_a_stranger_without_a_rudder_is_followed_to_the_noise(tmp_path, monkeypa
 
 def _noise(y: np.ndarray) -> float:
     return float(np.std(np.diff(y, 2)) / np.sqrt(6.0))
+
+
+def test_a_heading_stands_for_the_rate_of_turn(tmp_path, monkeypatch) -> None:
+    """A compass of 1 Hz in a table of 5 Hz: empty between its rows."""
+    made = log(tmp_path / "a.csv", drive="cmd")
+    names, *rows = made.read_text(encoding="utf-8").splitlines()
+    table = np.array([[float(x) for x in row.split(",")] for row in rows])
+    psi = np.rad2deg(np.cumsum(np.deg2rad(table[:, 3]) * 0.2)) % 360.0
+    lines = [names.replace("yaw_rate_degps", "heading_deg").replace("cmd_", "thr_")]
+    for k, row in enumerate(table):
+        heading = "" if k % 5 else f"{psi[k]:.4f}"
+        lines.append(",".join([*(f"{x:.6f}" for x in row[:3]), heading, f"{row[4]:.6f}"]))
+    made.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    done = started(tmp_path, monkeypatch, [made], "--length 2")
+    assert done.exit_code == 0, done.output
+    text = Path("first_trial.toml").read_text(encoding="utf-8")
+    assert 'outputs = ["u", "psi"]' in text
+    assert "nothing tells what up to" in text  # a command without a unit is asked for
+    Path("first_trial.toml").write_text(
+        text.replace('unit = "?"', 'unit = "rpm"'), encoding="utf-8"
+    )
+    ship = Path("first_trial_ship.toml")
+    ship.write_text(
+        ship.read_text(encoding="utf-8").replace('"thrust"', '"revolutions"'), encoding="utf-8"
+    )
+    found = run(pipeline_file.load(Path("first_trial.toml"))).result
+    assert found.verdict.kind != "no fit", found.verdict.sentence
+    assert found.fit.eps_rmsn_by_output["psi"] < 0.15
+
+
+def test_pulse_widths_are_known_by_their_size(tmp_path, monkeypatch) -> None:
+    made = log(tmp_path / "a.csv", drive="pwm")
+    names, *rows = made.read_text(encoding="utf-8").splitlines()
+    table = np.array([[float(x) for x in row.split(",")] for row in rows])
+    most = np.abs(table[:, 1:3]).max()
+    table[:, 1:3] = 1500.0 + 400.0 * table[:, 1:3] / most
+    np.savetxt(made, table, delimiter=",", header=names, comments="", fmt="%.6f")
+    done = started(tmp_path, monkeypatch, [made], "--length 2")
+    assert done.exit_code == 0, done.output
+    said = " ".join(done.stdout.split())
+    assert "look like pulse widths [us], about 1500 at rest" in said
+    assert "side confirmed by the turn" in said
+    assert not (tmp_path / "runs").exists()

@@ -96,7 +96,7 @@ def test_two_rudders_by_their_names_or_counted_from_port(
 ) -> None:
     """As NMEA 2000 counts them, and engines."""
     port, starboard = (
-        SimpleNamespace(name=name, description=words, constant=False, missing=0.0)
+        SimpleNamespace(name=name, description=words, constant=False, mostly_there=True)
         for name, words in zip(names, descriptions, strict=True)
     )
     found: Any = (starboard, port)

@@ -9,16 +9,16 @@ from trialid.names.quantities import SIGNALS
 
 DRIVES: Final = frozenset(
     words(
-        "thrust thruster thrusters throttle motor motors engine engines prop props propeller "
-        "propellers rpm esc outboard"
+        "thr thrust thruster thrusters throttle pwm cmd motor motors engine engines prop props "
+        "propeller propellers rpm esc outboard"
     )
 )
 """Words of a channel that drives a boat, ..."""
 
 NO_DRIVE: Final = frozenset(
     words(
-        "angle pos position joint temperature temp voltage current fuel oil pressure torque load "
-        "hours trim tilt state status enable"
+        "rudder angle pos position joint temperature temp voltage current fuel oil pressure torque "
+        "load hours trim tilt state status enable"
     )
 )
 """... and of one that only is about what drives her."""
@@ -47,6 +47,11 @@ def drives_of(survey: Inspection) -> tuple[ChannelInspection, ...]:
     return tuple(ones[0] for ones in found.values() if len(ones) == 1)
 
 
+def drives_among(survey: Inspection) -> list[str]:
+    """Names of all channels that seem to drive her."""
+    return [one.name for one in survey.channels.values() if _drives(one)]
+
+
 def has_side(drive: ChannelInspection) -> bool:
     """Whether a drive's name or format tells its side; else it has a number alone."""
     return bool({*words(drive.name)} & {*SIDES} or _by_format(drive))
@@ -70,9 +75,8 @@ def _drives(one: ChannelInspection) -> bool:
     told = {*words(one.name)}
     turns = to_si(one.unit or one.unit_in_name or "", SIGNALS["n"].unit) is not None
     shaft = "n" in told and turns
-    return (
-        bool(DRIVES & told or shaft) and not (NO_DRIVE & told or one.constant) and one.missing < 0.5
-    )
+    told_of = bool(DRIVES & told or shaft) and not NO_DRIVE & told
+    return told_of and not one.constant and one.mostly_there
 
 
 def _by_format(one: ChannelInspection) -> set[str]:

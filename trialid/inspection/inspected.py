@@ -122,6 +122,11 @@ class ChannelInspection:
     sketch: Sketch = field(default=EMPTY, repr=False, compare=False)
 
     @property
+    def mostly_there(self) -> bool:
+        """Whether half of its samples are, or come evenly: some rows are of other clocks."""
+        return self.missing < 0.5 or (self.rate > 0.0 and not self.gaps.count)
+
+    @property
     def key(self) -> str:
         """Its name, with the angle that is taken out of it."""
         return f"{self.name} ({self.angle})" if self.angle else self.name

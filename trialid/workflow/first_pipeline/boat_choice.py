@@ -25,6 +25,7 @@ from trialid.workflow.first_pipeline.choice import (
     choose_signals,
     live_sources,
     other_speed,
+    plain_signal,
     rate_signal,
     through_water,
 )
@@ -33,6 +34,8 @@ from trialid.workflow.first_pipeline.further_signals import with_further
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
 """No share of full is larger; a stated thrust of a boat that moves is."""
+PULSES: Final = (800.0, 2200.0)
+"""[us] Between which pulses of servos and speed controllers lie."""
 ARM: Final = 0.2
 """Thrusters stand so far from the middle, over the length of a boat: 0.2 of the Otter and the
 WAM-V, 0.24 of the BlueBoat."""
@@ -64,14 +67,16 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     """
     live = {name: live_sources(survey, name) for name in SIGNALS}
     steered = any(live[name] for name in RUDDERS)
-    if steered or not live.get("r") or len(drives_of(survey)) != 2:
+    turns = live.get("r") or live.get("psi")
+    if steered or not turns or len(drives_of(survey)) != 2:
         return with_further(choose_signals(survey, speed), live)
     return _choose_boat(survey, live, speed)
 
 
 def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen:
-    rate = rate_signal(live)
-    drives = _drive_signals(survey, rate)
+    no_rate = "no yaw rate is logged"
+    turn = rate_signal(live) if live.get("r") else plain_signal("psi", live, no_rate)
+    drives = _drive_signals(survey, turn)
     known, told = approach_speed(survey, live, stated)
     speed = through_water(live, known, told) if live.get("u") else velocity_speed(survey)
     speed = speed or other_speed(survey, known, told)
@@ -83,17 +88,17 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     if known is None and speed.source.angle == "speed":
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"
-    signals = (*drives, rate, speed)
+    signals = (*drives, turn, speed)
     return Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
 
 
-def _drive_signals(survey: Inspection, rate: Signal) -> list[Signal]:
+def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
     """Both drives as signals of a pipeline, their sides held against the turn."""
     port, starboard = drives_of(survey)
-    says = _agreement(port, starboard, rate)
+    says = _agreement(port, starboard, turn)
     if not (has_side(port) or says[0]):
         port, starboard = starboard, port
-        says = _agreement(port, starboard, rate)
+        says = _agreement(port, starboard, turn)
     return [_drive(PORT, port, says), _drive(STARBOARD, starboard, says)]
 
 
@@ -117,8 +122,10 @@ def _unit(source: ChannelInspection) -> tuple[str, str]:
     if source.unit_in_name is not None:
         return source.unit_in_name, "; unit by its name"
     turns = [word for word in words(source.name) if word in ("rpm", "rps")]
-    if turns:
-        return turns[0], "; unit by its name"
+    return (turns[0], "; unit by its name") if turns else _unit_by_size(source)
+
+
+def _unit_by_size(source: ChannelInspection) -> tuple[str, str]:
     largest = max(abs(source.low), abs(source.high))
     if largest <= SHARE:
         return "1", f"; no unit is stated, up to {largest:.3g} can only be a share of full"
@@ -127,6 +134,12 @@ def _unit(source: ChannelInspection) -> tuple[str, str]:
             f"; CAREFUL: a thrust by its name, and no unit is stated: up to {largest:.3g} is read "
             "as newton, and the gain is of whatever it is"
         )
+    if PULSES[0] < source.low and source.high < PULSES[1]:
+        return OPEN, (
+            f"; FILL IN its unit: {source.low:.4g} to {source.high:.4g} look like pulse widths "
+            "[us], about 1500 at rest; `trialid guide actuators` has the line that makes a share "
+            "of full of them"
+        )
     return OPEN, (
         f"; FILL IN its unit: nothing tells what up to {largest:.3g} is; where it is no thrust, "
         "its command in the ship file too"
@@ -134,13 +147,14 @@ def _unit(source: ChannelInspection) -> tuple[str, str]:
 
 
 def _agreement(
-    port: ChannelInspection, starboard: ChannelInspection, rate: Signal
+    port: ChannelInspection, starboard: ChannelInspection, turn: Signal
 ) -> tuple[bool, str]:
     """Whether the boat turns away from the stronger one, and words for it."""
     left, right = port.sketch, starboard.sketch
     other = np.interp(left.t, right.t, right.y) if len(right.t) else np.zeros(len(left.t))
     both = dataclasses.replace(port, sketch=Sketch(left.t, left.y - other))
-    found = side(both, rate.source, rate.positive or "starboard")
+    towards = turn.positive or "starboard" if turn.quantity == "r" else None
+    found = side(both, turn.source, towards)
     if found is None:
         if has_side(port):
             return True, "side by its name, the motion does not confirm it"
@@ -150,7 +164,7 @@ def _agreement(
         return True, f"side confirmed by the turn: {told}"
     return False, (
         f"FILL IN the unit after settling this: she turns towards the stronger one ({told}): port "
-        "and starboard are exchanged, or the side of r is wrong"
+        "and starboard are exchanged, or the side of {turn.quantity} is wrong"
     )
 
 

@@ -20,7 +20,8 @@ def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     free = [name for name in gains if astern or name.startswith("k_ahead")]
     held = ", ".join(f"{n} = {p.start:.4g}" for n, p in gains.items() if n not in free)
     yield "[model]"
-    yield 'states = ["u", "r"]  # no log of a boat like this records sway; the run says if it shows'
+    turn, states = ("r", '"u", "r"') if _rate(trials) else ("psi", '"u", "r", "psi"')
+    yield f"states = [{states}]  # no log of a boat like this records sway; the run says if it shows"
     yield "# thrust k n |n| (k T where thrust is logged) at the places the ship file states"
     yield (
         'effects = ["thrusters", "surge_resistance", "still_water_yaw", '
@@ -35,8 +36,13 @@ def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     names = ", ".join(f'"{name}"' for name in (*free, "Xuu", "I_zz", "Nr0", "Nrar0"))
     yield f"free = [{names}]"
     yield "bounds = { I_zz = [0.0, inf] }"
-    yield 'outputs = ["u", "r"]'
+    yield f'outputs = ["u", "{turn}"]'
     yield 'nuisance = ["initial_state"]  # of each trial, estimated too'
+
+
+def _rate(trials: Sequence[Chosen]) -> bool:
+    """Whether every log has the yaw rate; else the heading is fitted."""
+    return all("r" in trial.quantities for trial in trials)
 
 
 def _goes_astern(trials: Sequence[Chosen]) -> bool:

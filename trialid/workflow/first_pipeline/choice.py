@@ -10,6 +10,7 @@ import numpy as np
 
 from trialid.errors import LogError
 from trialid.inspection import channel_names
+from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import approach_by_positions
 from trialid.inspection.relations import RATES, side, slope_agreement, unit_of_rate, unit_of_speed
@@ -108,11 +109,12 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
 
 def _what_then(survey: Inspection) -> str:
     """What to do where no rudder or no motion is recognised."""
-    thrust = [one.name for one in survey.channels.values() if "thrust" in one.name.lower()]
-    if thrust:
+    drives = drives_among(survey)
+    if drives:
         return (
-            f"she seems to steer by thrusters ({', '.join(thrust[:4])}), and a boat without a "
-            "rudder has no model here yet"
+            f"she seems to steer by thrusters ({', '.join(drives[:4])}): two are begun with, "
+            "called left and right or 1 and 2, beside heading or yaw rate; map others by hand, "
+            "see `trialid guide actuators`"
         )
     return "see `trialid inspect --all`, and map the channels by hand"
 
@@ -121,8 +123,8 @@ Live = dict[str, tuple[ChannelInspection, ...]]
 
 
 def live_sources(survey: Inspection, quantity: str) -> tuple[ChannelInspection, ...]:
-    """Sources that move, and of which at least half is there."""
-    return tuple(c for c in survey.sources(quantity) if not c.constant and c.missing < 0.5)
+    """Sources that move, and of which most is there."""
+    return tuple(c for c in survey.sources(quantity) if not c.constant and c.mostly_there)
 
 
 def plain_signal(quantity: str, live: Live, why: str) -> Signal:
