@@ -21,7 +21,7 @@ def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     held = ", ".join(f"{n} = {p.start:.4g}" for n, p in gains.items() if n not in free)
     yield "[model]"
     turn, states = ("r", '"u", "r"') if _rate(trials) else ("psi", '"u", "r", "psi"')
-    yield f"states = [{states}]  # no log of a boat like this records sway; the run says if it shows"
+    yield f"states = [{states}]  # no log of such a boat has sway; the run says if it shows"
     yield "# thrust k n |n| (k T where thrust is logged) at the places the ship file states"
     yield (
         'effects = ["thrusters", "surge_resistance", "still_water_yaw", '
