@@ -12,6 +12,7 @@ from trialid.identification.adequacy import (
     UNEXPLAINED,
     why_no_fit,
 )
+from trialid.identification.file_of_ship import steers_backwards
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
 from trialid.identification.remarks import remarks
@@ -173,6 +174,20 @@ def test_a_delay_unlike_others_comes_back_and_is_remarked():
     assert any("tau_phi [zigzag-10] = " in line and "above" in line for line in remarks(fit))
 
 
+def test_a_rudder_that_turns_her_the_wrong_way_is_no_fit(sound):
+    """Whatever her file is; a coefficient that may be of either sign says nothing."""
+    trial = noisy(zigzag(10), 13)
+    turned = with_signals(trial, delta=-trial.signals["delta"])
+    backwards = identify([turned], MODEL, SETTINGS)
+    assert backwards.value("Ndelta") < 0.0 < sound.value("Ndelta")
+    found = why_no_fit(replace(backwards, converged=True))
+    assert found.reason.startswith("the rudder as fitted turns her the wrong way")
+    begun = replace(MODEL, ship=replace(MODEL.ship, source="PLACEHOLDER: of another length"))
+    assert "turns her the wrong way" in str(why_no_fit(identify([turned], begun, SETTINGS)))
+    blind = with_signals(zigzag(10), delta=0.05 * zigzag(10).signals["delta"])
+    assert not steers_backwards(identify([noisy(blind, 14)], MODEL, SETTINGS))
+
+
 @pytest.mark.study
 def test_another_ships_file_is_noticed():
     """The container ship's zig-zags as if a ship of a third of her length had sailed them."""
@@ -187,7 +202,7 @@ def test_another_ships_file_is_noticed():
     assert why_no_fit(identify(trials, MODEL, settings)) is None
     says_so = replace(short.ship, source="PLACEHOLDER: of another length")
     begun = identify(trials, replace(short, ship=says_so), settings)
-    assert "ship's file" not in str(why_no_fit(replace(begun, converged=True)))
+    assert "as fitted" not in str(why_no_fit(replace(begun, converged=True)))
 
 
 def test_a_voyage_of_few_manoeuvres_says_where_they_are(sound):

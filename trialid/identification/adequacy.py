@@ -11,7 +11,7 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
-from trialid.identification.file_of_ship import left_by_file, most_are_unlike
+from trialid.identification.file_of_ship import left_by_file, most_are_unlike, steers_backwards
 from trialid.identification.fit import Fit
 from trialid.identification.gauss_newton import REASONS
 from trialid.identification.time_scales import slowest_motion
@@ -228,6 +228,17 @@ def _another_ship(fit: Fit) -> Inadequate | None:
     )
 
 
+def _steered_backwards(fit: Fit) -> Inadequate | None:
+    """The rudder as fitted turns her away from the side to which rudders turn ships."""
+    if not steers_backwards(fit):
+        return None
+    return Inadequate(
+        f"the rudder as fitted turns her the wrong way: Ndelta is {fit.value('Ndelta'):.3g}, of "
+        "the other sign than in her file",
+        "check the sides of rudder and turn, or fit a zig-zag, which shows how she begins to turn",
+    )
+
+
 def _false_valley(fit: Fit) -> Inadequate | None:
     """Where more than noise is left, other values follow the record far better piece by piece."""
     if fit.eps_rmsn <= NO_NOISE or (found := closer_in_pieces(fit)) is None:
@@ -276,11 +287,13 @@ def worse_than_none(fit: Fit, score: Score) -> dict[str, float]:
 
 CHECKS: Final = (
     _no_manoeuvre, _at_noise_level, _too_short, _no_number, _search_failed,
-    _sensor_at_bound, _little_explained, _another_ship, _false_valley, _held_out_lost,
-    _held_out_unexplained,
+    _sensor_at_bound, _little_explained, _steered_backwards, _another_ship, _false_valley,
+    _held_out_lost, _held_out_unexplained,
 )  # fmt: skip
 
-LACKING: Final = frozenset((_sensor_at_bound, _false_valley, _held_out_unexplained))
+LACKING: Final = frozenset(
+    (_sensor_at_bound, _steered_backwards, _false_valley, _held_out_unexplained)
+)
 """Those that a model without an effect of the ship fails, however well it was fitted."""
 
 

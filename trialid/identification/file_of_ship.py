@@ -25,6 +25,7 @@ LEAVES: Final = 2.0
 two real ships by their own files 6 have most coefficients unlike them, and the most is 1.4; three
 other ships' files left 2.7, 3.6 and 6.7. Half of it refuses the six, twice misses two of the three.
 """
+STEERS: Final = "Ndelta"
 PLACEHOLDER: Final = "PLACEHOLDER"
 """How the source of a ship file begins that says itself that it is not hers."""
 
@@ -91,6 +92,21 @@ def left_by_file(fit: Fit) -> float | None:
     ]
     left = float(np.sqrt(min(end.V for end in ends) / fit.V))
     return left if left >= LEAVES else None
+
+
+def steers_backwards(fit: Fit) -> bool:
+    """Whether the rudder as fitted clearly turns her to the other side than in her file.
+
+    Which side is the file's `rudder_positive`, of a placeholder too; a model that lacks something
+    may follow a turn by a ship that is unstable and held by her rudder.
+    """
+    names = [x.name for x in fit.problem.unknowns]
+    if STEERS not in names:
+        return False
+    model = fit.problem.simulator.model
+    value, stated = fit.value(STEERS), replace(model, values={}).stated(STEERS)
+    error = float(_standard_errors(fit)[names.index(STEERS)])
+    return value * stated < 0.0 and abs(value) > CLEARLY * error
 
 
 def _kept_near(fit: Fit) -> tuple[Unknown, ...]:
