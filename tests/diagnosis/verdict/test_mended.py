@@ -69,3 +69,10 @@ def test_a_false_valley_may_be_what_the_model_lacks(unstable, monkeypatch):
     failed = why_no_fit(unstable)
     assert "false valley" in failed.reason
     assert failed.may_lack
+
+
+def test_a_rudder_that_works_backwards_may_be_what_the_model_lacks(unstable, monkeypatch):
+    monkeypatch.setattr(adequacy, "CHECKS", (adequacy._steered_backwards,))
+    monkeypatch.setattr(adequacy, "steers_backwards", lambda one: True)
+    assert "the wrong way" in why_no_fit(unstable).reason
+    assert why_no_fit(unstable).may_lack

@@ -25,7 +25,7 @@ from trialid.trial import Trial
 FORMS = ((Force,), (Lagged,))
 """Of an effect of the ship, and of a sensor."""
 
-CHANCE = "chance would do it, or no ship has such a value"
+CHANCE = "chance would do it, or no ship and no sensor has such a value"
 
 
 def refit(
@@ -92,6 +92,15 @@ def test_a_coefficient_that_turns_round_when_it_is_freed_has_no_name(found, name
     new.fit.estimates = {"Yv": found}
     assert (objection(old, new, 0.05) == "") is named
     assert (likeliest_refit(old, [new], 0.05) is new) is named
+
+
+@pytest.mark.parametrize(("name", "named"), [("force", True), ("lag", False)])
+def test_a_sensor_at_the_end_of_what_is_possible_has_no_name(name, named):
+    """A coefficient of the ship may be there."""
+    old, new = refit(name, BEFORE, LESS)
+    assert objection(old, new, 0.05) == ""
+    new.fit.at_bounds = {"a": -0.005}
+    assert (objection(old, new, 0.05) == "") is named
 
 
 def test_the_best_leaves_least_and_what_is_hardly_seen_gives_way_to_its_equal():

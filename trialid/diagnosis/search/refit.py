@@ -239,8 +239,8 @@ def _gives_way(refit: Refit, grown: bool) -> bool:
 def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
     shown = refit.candidate.shown(level) or _takes_most(fit, refit)
-    if not shown or _turns_round(refit):
-        return "chance would do it, or no ship has such a value"
+    if not shown or _turns_round(refit) or _at_a_sensors_end(refit):
+        return "chance would do it, or no ship and no sensor has such a value"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
         return NOT_ARRIVED
     if worse_held_out(fit, refit.fit):
@@ -270,6 +270,16 @@ def _turns_round(refit: Refit) -> bool:
     return effect.held is not None and not all(
         p.low <= refit.fit.estimates[n] <= p.high for n, p in effect.parameters.items()
     )
+
+
+def _at_a_sensors_end(refit: Refit) -> bool:
+    """Whether a sensor's or a clock's number ran to the end of what is possible.
+
+    It then stands for something else. Of real zig-zags of a twin-screw model that were logged by
+    one clock a clock of the heading that drifts by 0.5 % had a name.
+    """
+    effect = refit.candidate.effect
+    return not of_the_ship(effect) and bool({*effect.parameters} & {*refit.fit.at_bounds})
 
 
 def _slow(refit: Refit) -> bool:
