@@ -9,8 +9,9 @@ import pytest
 from begun import begun
 
 from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.found_values import of_the_ship
 from trialid.diagnosis.search.backward import worth_naming
-from trialid.diagnosis.search.refit import objection, of_the_ship
+from trialid.diagnosis.search.refit import objection
 from trialid.diagnosis.search.together import stands, two_at_once
 from trialid.effects import CATALOGUE
 from trialid.progress import silent

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from trialid.diagnosis.search.refit import of_the_ship
+from trialid.diagnosis.found_values import of_the_ship
 from trialid.effects import CATALOGUE
 from trialid.pipeline_file import Pipeline, load
 from trialid.workflow import grow

@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
+from trialid.identification import file_of_ship
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
-from trialid.identification.file_of_ship import left_by_file, most_are_unlike, steers_backwards
 from trialid.identification.fit import Fit
 from trialid.identification.gauss_newton import REASONS
 from trialid.identification.time_scales import slowest_motion
@@ -218,23 +218,22 @@ def _little_explained(fit: Fit) -> Inadequate | None:
 
 def _another_ship(fit: Fit) -> Inadequate | None:
     """Most coefficients are clearly others than the ship's file gives, and the file's do not do."""
-    if (left := left_by_file(fit)) is None:
+    if (left := file_of_ship.left_by_file(fit)) is None:
         return None
     return Inadequate(
-        f"the ship as fitted is not the one of her file: {most_are_unlike(fit)}, and none between "
-        f"leave less than {left:.2g} times the error",
+        f"the ship as fitted is not the one of her file: {file_of_ship.most_are_unlike(fit)}, "
+        f"and none between leave less than {left:.2g} times the error",
         "name her own file, check speed and units, begin with `trialid inspect --init --length`, "
         "or, where the file is hers, compare whole models by `trialid structures`",
     )
 
 
 def _steered_backwards(fit: Fit) -> Inadequate | None:
-    """The rudder as fitted turns her away from the side to which rudders turn ships."""
-    if not steers_backwards(fit):
+    """The rudder as fitted turns her to the other side than in her file."""
+    if not file_of_ship.steers_backwards(fit):
         return None
     return Inadequate(
-        f"the rudder as fitted turns her the wrong way: Ndelta is {fit.value('Ndelta'):.3g}, of "
-        "the other sign than in her file",
+        f"the rudder as fitted turns her the wrong way, by Ndelta = {fit.value('Ndelta'):.3g}",
         "check the sides of rudder and turn, or fit a zig-zag, which shows how she begins to turn",
     )
 

@@ -106,7 +106,7 @@ def steers_backwards(fit: Fit) -> bool:
     model = fit.problem.simulator.model
     value, stated = fit.value(STEERS), replace(model, values={}).stated(STEERS)
     error = float(_standard_errors(fit)[names.index(STEERS)])
-    return value * stated < 0.0 and abs(value) > CLEARLY * error
+    return value * (stated or 0.0) < 0.0 and abs(value) > CLEARLY * error
 
 
 def _kept_near(fit: Fit) -> tuple[Unknown, ...]:

@@ -31,8 +31,8 @@ from at_commit import commit_of  # noqa: E402
 from begun import begun  # noqa: E402
 from spread import add_options, spread  # noqa: E402
 
+from trialid.diagnosis.found_values import of_the_ship  # noqa: E402
 from trialid.diagnosis.search.backward import worth_naming  # noqa: E402
-from trialid.diagnosis.search.refit import of_the_ship  # noqa: E402
 from trialid.effects import CATALOGUE  # noqa: E402
 from trialid.errors import TrialidError  # noqa: E402
 from trialid.progress import silent  # noqa: E402

@@ -73,6 +73,6 @@ def test_a_false_valley_may_be_what_the_model_lacks(unstable, monkeypatch):
 
 def test_a_rudder_that_works_backwards_may_be_what_the_model_lacks(unstable, monkeypatch):
     monkeypatch.setattr(adequacy, "CHECKS", (adequacy._steered_backwards,))
-    monkeypatch.setattr(adequacy, "steers_backwards", lambda one: True)
+    monkeypatch.setattr(adequacy.file_of_ship, "steers_backwards", lambda one: True)
     assert "the wrong way" in why_no_fit(unstable).reason
     assert why_no_fit(unstable).may_lack

@@ -1,14 +1,20 @@
 """Candidates added to the model and fitted: what carries over, and what speaks against each."""
 
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.found_values import (
+    as_slow_as_the_ship,
+    at_a_sensors_end,
+    late_sensor,
+    of_the_ship,
+    turns_round,
+)
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
-from trialid.diagnosis.rudder_jumps import jump_in, own_time
+from trialid.diagnosis.rudder_jumps import jump_in
 from trialid.diagnosis.search.carried import (
     EACH,
     FAINT,
@@ -26,8 +32,7 @@ from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import known_of_ship
-from trialid.names.quantities import RUDDERS
-from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate
+from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 
 HELD_OUT: Final = "the held-out error rises"
@@ -36,13 +41,6 @@ SLIGHT: Final = "it corrects the shapes of others"
 AS_SLOW: Final = "a sensor as slow as that looks like the ship's own memory"
 AS_A_GEAR: Final = "the recorded rudder jumps as an order does, and a gear is as late"
 """Objections in their words."""
-
-SLOW: Final = 0.1
-"""Share of L/U from which on a sensor's lag or delay may be what the hull remembers, in a model
-whose hull is known to be another: what a hull remembers takes 0.2 to 0.6 L/U and more. Where this
-was found, on two models in basins, lags of 0.3 to 0.8 L/U were named for gyros that have none, and
-a delay of -0.18; half of it doubts a lag of 1 s of a ship of 140 m at 14 knots, twice lets that
-delay pass."""
 
 MOST: Final = 0.5
 """Share of the squared error that goes with an effect from which on it has a name although no test
@@ -200,7 +198,7 @@ def _looks_like_the_ship(
         r.candidate.allowed and does_as_well(refit.carried, r.carried) for r in ship
     ):
         return True
-    return (doubted or _slow(refit)) and any(
+    return (doubted or as_slow_as_the_ship(*_found(refit))) and any(
         objection(fit, r, level) in ("", HELD_OUT) and as_good(refit.carried.after, r.carried.after)
         for r in ship
     )
@@ -225,11 +223,6 @@ def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit
     return min([least, *close], key=standing)
 
 
-def of_the_ship(effect: Effect) -> bool:
-    """Whether it moves the ship or her rudder; else it belongs to a sensor or a clock."""
-    return bool({Force, Rate, Mass} & {*effect.forms})
-
-
 def _gives_way(refit: Refit, grown: bool) -> bool:
     """Whether an effect is not named where another is as good."""
     beside = grown and not of_the_ship(refit.candidate.effect)
@@ -239,7 +232,7 @@ def _gives_way(refit: Refit, grown: bool) -> bool:
 def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
     shown = refit.candidate.shown(level) or _takes_most(fit, refit)
-    if not shown or _turns_round(refit) or _at_a_sensors_end(refit):
+    if not shown or turns_round(*_found(refit)) or at_a_sensors_end(*_found(refit)):
         return "chance would do it, or no ship and no sensor has such a value"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
         return NOT_ARRIVED
@@ -257,46 +250,15 @@ def _takes_most(fit: Fit, refit: Refit) -> bool:
     return refit.candidate.allowed and refit.carried.large and fall(fit, refit) > MOST
 
 
+def _found(refit: Refit) -> tuple[Effect, Fit]:
+    return refit.candidate.effect, refit.fit
+
+
 def _late(fit: Fit, refit: Refit, grown: bool) -> str:
     """What speaks against a sensor or a clock that is late: what else is as late."""
-    if _late_sensor(refit) and jump_in(fit) is not None:
+    if late_sensor(refit.candidate.effect) and jump_in(fit) is not None:
         return AS_A_GEAR
-    return AS_SLOW if grown and _slow(refit) else ""
-
-
-def _turns_round(refit: Refit) -> bool:
-    """Whether a coefficient that the model held leaves the range in which it may be named."""
-    effect = refit.candidate.effect
-    return effect.held is not None and not all(
-        p.low <= refit.fit.estimates[n] <= p.high for n, p in effect.parameters.items()
-    )
-
-
-def _at_a_sensors_end(refit: Refit) -> bool:
-    """Whether a sensor's or a clock's number ran to the end of what is possible.
-
-    It then stands for something else. Of real zig-zags of a twin-screw model that were logged by
-    one clock a clock of the heading that drifts by 0.5 % had a name.
-    """
-    effect = refit.candidate.effect
-    return not of_the_ship(effect) and bool({*effect.parameters} & {*refit.fit.at_bounds})
-
-
-def _slow(refit: Refit) -> bool:
-    """Whether it is a sensor or a clock that is late by a share of the ship's own time."""
-    effect, fit = refit.candidate.effect, refit.fit
-    late = [abs(fit.model.value(n)) for n, p in effect.parameters.items() if p.unit == "s"]
-    if not late or of_the_ship(effect):
-        return False
-    in_turn = max(Counter(effect.acts_on(Delayed, Lagged)).values())  # two low-passes add up
-    return in_turn * max(late) > SLOW * own_time(fit)
-
-
-def _late_sensor(refit: Refit) -> bool:
-    """Whether it makes the record of a motion late, and not that of the rudder."""
-    effect = refit.candidate.effect
-    late = any(p.unit == "s" for p in effect.parameters.values())
-    return late and not of_the_ship(effect) and not RUDDERS & {*effect.acts_on(Delayed)}
+    return AS_SLOW if grown and as_slow_as_the_ship(*_found(refit)) else ""
 
 
 def falls(fit: Fit, refit: Refit) -> bool:

@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
+from trialid.diagnosis.found_values import of_the_ship
 from trialid.diagnosis.search.carried import RIVAL, does_as_well
-from trialid.diagnosis.search.refit import Refit, of_the_ship
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 
 

@@ -13,12 +13,13 @@ from itertools import combinations
 
 import numpy as np
 
+from trialid.diagnosis.found_values import of_the_ship
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
 from trialid.diagnosis.search.carry_over import LeftOut, left_out, levels, own_errors
 from trialid.diagnosis.search.falls import fall, fall_of_check
-from trialid.diagnosis.search.refit import begun_at, of_the_ship, settings_with
+from trialid.diagnosis.search.refit import begun_at, settings_with
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.ship.effect import Effect

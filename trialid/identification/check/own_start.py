@@ -23,8 +23,8 @@ compared. With positions of 2 cm and a current 6 are too few: of 50 tactical dia
 74 % were in their ranges, 90 % with 9, 12 or 40."""
 
 RUDDERS_ZERO: Final = "delta_0"
-"""A heading adds it up: a tenth of a degree turns a ship by degrees within a minute or two, whatever
-else her model holds. So it is a held-out trial's own where a heading is compared: of real zig-zags
+"""A heading adds it up: a tenth of a degree turns a ship by degrees within two minutes, whatever
+her model holds. So it is a held-out trial's own where a heading is compared: of real zig-zags
 of a model of 5 m by her heading the speed that she loses took 90 % off the trials that were fitted
 and made the one held out worse, by its rudder's zero alone."""
 

@@ -1,0 +1,52 @@
+"""What the values that a fit found for an effect say of it: a sensor's end, a lag like a hull's."""
+
+from collections import Counter
+from typing import Final
+
+from trialid.diagnosis.rudder_jumps import own_time
+from trialid.identification.fit import Fit
+from trialid.names.quantities import RUDDERS
+from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate
+
+SLOW: Final = 0.1
+"""Share of L/U from which on a sensor's lag or delay may be what the hull remembers, in a model
+whose hull is known to be another: what a hull remembers takes 0.2 to 0.6 L/U and more. Where this
+was found, on two models in basins, lags of 0.3 to 0.8 L/U were named for gyros that have none, and
+a delay of -0.18; half of it doubts a lag of 1 s of a ship of 140 m at 14 knots, twice lets that
+delay pass."""
+
+
+def of_the_ship(effect: Effect) -> bool:
+    """Whether it moves the ship or her rudder; else it belongs to a sensor or a clock."""
+    return bool({Force, Rate, Mass} & {*effect.forms})
+
+
+def turns_round(effect: Effect, fit: Fit) -> bool:
+    """Whether a coefficient that the model held leaves the range in which it may be named."""
+    return effect.held is not None and not all(
+        p.low <= fit.estimates[n] <= p.high for n, p in effect.parameters.items()
+    )
+
+
+def at_a_sensors_end(effect: Effect, fit: Fit) -> bool:
+    """Whether a sensor's or a clock's number ran to the end of what is possible.
+
+    It then stands for something else. Of real zig-zags of a twin-screw model that were logged by
+    one clock a clock of the heading that drifts by 0.5 % had a name.
+    """
+    return not of_the_ship(effect) and bool({*effect.parameters} & {*fit.at_bounds})
+
+
+def as_slow_as_the_ship(effect: Effect, fit: Fit) -> bool:
+    """Whether it is a sensor or a clock that is late by a share of the ship's own time."""
+    late = [abs(fit.model.value(n)) for n, p in effect.parameters.items() if p.unit == "s"]
+    if not late or of_the_ship(effect):
+        return False
+    in_turn = max(Counter(effect.acts_on(Delayed, Lagged)).values())  # two low-passes add up
+    return in_turn * max(late) > SLOW * own_time(fit)
+
+
+def late_sensor(effect: Effect) -> bool:
+    """Whether it makes the record of a motion late, and not that of the rudder."""
+    late = any(p.unit == "s" for p in effect.parameters.values())
+    return late and not of_the_ship(effect) and not RUDDERS & {*effect.acts_on(Delayed)}
