@@ -8,10 +8,10 @@ from trialid.ship.estimate import Given
 from trialid.workflow.first_pipeline import starter
 
 
-def begun(folder, ship, rng, manoeuvres):
+def begun(folder, ship, rng, manoeuvres, heading=False):
     """The pipeline of a log of each of the manoeuvres, by name; one is held out."""
     for name, manoeuvre in manoeuvres.items():
-        mmg.write_log(folder / f"{name}.csv", ship, rng, *manoeuvre)
+        mmg.write_log(folder / f"{name}.csv", ship, rng, *manoeuvre, heading=heading)
     logs = [inspect_log(folder / f"{name}.csv") for name in manoeuvres]
     given = Given(length=ship.L, beam=ship.B, draught=ship.d, block=ship.block)
     for path, text in starter(logs, folder / "begun.toml", None, given).files.items():

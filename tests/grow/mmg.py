@@ -125,23 +125,38 @@ def noise_of(ship):
         "v": 0.01 * ship.U0,
         "u": 0.005 * ship.U0,
         "delta": np.deg2rad(0.1),
+        "psi": np.deg2rad(0.2),
     }
 
 
-def write_log(path, ship, rng, *manoeuvre):
-    """What such a recorder writes of a manoeuvre."""
+ZERO = np.deg2rad(0.3)
+"""Of the rudder from trial to trial, where heading and speed alone are logged."""
+
+
+def write_log(path, ship, rng, *manoeuvre, heading=False):
+    """What such a recorder writes of a manoeuvre; with `heading` by a compass and a speed log."""
     t, u, v, r, delta = sail(ship, *manoeuvre)
+    seen = {"delta": delta, "r": r, "v": v, "u": u}
+    if heading:
+        turned = np.concatenate([[0.0], np.cumsum(0.5 * (r[1:] + r[:-1]) * np.diff(t))])
+        zero = ZERO * rng.standard_normal()
+        seen = {"delta": delta + zero, "psi": np.deg2rad(90.0) + turned, "u": u}
     noise = noise_of(ship)
-    delta, r, v, u = (
-        x + noise[n] * rng.standard_normal(len(t))
-        for n, x in {"delta": delta, "r": r, "v": v, "u": u}.items()
-    )
-    columns = {
-        "time [s]": t,
-        "rudder angle [deg]": np.rad2deg(delta),
-        "yaw rate [deg/s]": np.rad2deg(r),
-        "v [m/s]": v,
-        "u [m/s]": u,
-    }
+    columns = {"time [s]": t}
+    for name, x in seen.items():
+        called, unit = CALLED[name]
+        columns[called] = unit * (x + noise[name] * rng.standard_normal(len(t)))
+    if heading:
+        columns["heading [deg]"] %= 360.0
     table = np.column_stack(list(columns.values()))
     np.savetxt(path, table, "%.5f", ",", header=",".join(columns), comments="")
+
+
+CALLED = {
+    "delta": ("rudder angle [deg]", np.rad2deg(1.0)),
+    "r": ("yaw rate [deg/s]", np.rad2deg(1.0)),
+    "psi": ("heading [deg]", np.rad2deg(1.0)),
+    "v": ("v [m/s]", 1.0),
+    "u": ("u [m/s]", 1.0),
+}
+"""What a recorder calls it, and its unit over ours."""

@@ -21,6 +21,11 @@ def of_the_ship(effect: Effect) -> bool:
     return bool({Force, Rate, Mass} & {*effect.forms})
 
 
+def by_heading(effect: Effect) -> bool:
+    """Whether it is of surroundings that nobody recorded: no force of her own knows the north."""
+    return "psi" in effect.signals
+
+
 def turns_round(effect: Effect, fit: Fit) -> bool:
     """Whether a coefficient that the model held leaves the range in which it may be named."""
     return effect.held is not None and not all(

@@ -34,6 +34,7 @@ def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=(), sta
             name=name,
             parameters={n: SimpleNamespace(unit="1") for n in "abcdef"[:parameters]},
             forms=(),
+            signals=(),
             bound_by_meaning=False,
             held=None,
             stands_for=stands_for,

@@ -46,6 +46,7 @@ def refit(
             forms=FORMS[name == "lag"],
             held=None,
             acts_on=lambda *forms: ("r",),
+            signals=("psi",) if name == "unseen wind" else ("v", "r"),
         ),
         shown=lambda level: level > 0.0,
         allowed=True,
@@ -92,15 +93,6 @@ def test_a_coefficient_that_turns_round_when_it_is_freed_has_no_name(found, name
     new.fit.estimates = {"Yv": found}
     assert (objection(old, new, 0.05) == "") is named
     assert (likeliest_refit(old, [new], 0.05) is new) is named
-
-
-@pytest.mark.parametrize(("name", "named"), [("force", True), ("lag", False)])
-def test_a_sensor_at_the_end_of_what_is_possible_has_no_name(name, named):
-    """A coefficient of the ship may be there."""
-    old, new = refit(name, BEFORE, LESS)
-    assert objection(old, new, 0.05) == ""
-    new.fit.at_bounds = {"a": -0.005}
-    assert (objection(old, new, 0.05) == "") is named
 
 
 def test_the_best_leaves_least_and_what_is_hardly_seen_gives_way_to_its_equal():

@@ -1,0 +1,29 @@
+"""What has no name however much it takes off: a sensor at its end, unseen wind beside the ship."""
+
+import pytest
+from made_up_fits import BEFORE
+from test_refit import ALIKE, LESS, refit
+
+from trialid.diagnosis.search.refit import likeliest_refit, objection
+
+
+@pytest.mark.parametrize(("name", "named"), [("force", True), ("lag", False)])
+def test_a_sensor_at_the_end_of_what_is_possible_has_no_name(name, named):
+    """A coefficient of the ship may be there."""
+    old, new = refit(name, BEFORE, LESS)
+    assert objection(old, new, 0.05) == ""
+    new.fit.at_bounds = {"a": -0.005}
+    assert (objection(old, new, 0.05) == "") is named
+
+
+def test_wind_that_nobody_recorded_gives_way_to_whatever_of_the_ship_does_as_much():
+    """Also where that does not stand out; where hers does less, the wind has the name."""
+    old, wind = refit("unseen wind", BEFORE, ALIKE)
+    force = refit("force", BEFORE, LESS)[1]
+    assert likeliest_refit(old, [wind, force], 0.05) is force
+    hidden = refit("force", BEFORE, LESS)[1]
+    hidden.candidate.shown = lambda level: False
+    assert likeliest_refit(old, [wind, hidden], 0.05) is None
+    weak = refit("force", BEFORE, tuple(0.9 * x for x in BEFORE))[1]
+    assert likeliest_refit(old, [wind, weak], 0.05) is wind
+    assert likeliest_refit(old, [wind], 0.05) is wind
