@@ -59,7 +59,9 @@ def test_a_boat_of_two_shafts_is_begun_and_fitted(tmp_path, monkeypatch) -> None
 def test_sides_that_the_turn_contradicts_are_asked(tmp_path, monkeypatch) -> None:
     done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv", swapped=True)], "--length 2")
     assert done.exit_code == 0, done.output
-    assert "she turns towards the stronger one" in " ".join(done.stdout.split())
+    said = " ".join(done.stdout.split())
+    assert "she turns towards the stronger one" in said
+    assert "or the side of r is wrong" in said
     assert "Not fitted yet" in done.stderr
     assert not (tmp_path / "runs").exists()
 

@@ -25,9 +25,9 @@ PAIRS: Final[tuple[Mapping[str, frozenset[str]], ...]] = (
     {"x": frozenset(("northing", "hochwert")), "y": frozenset(("easting", "rechtswert"))},
 )
 """Words of channels that are a position; one without the other is none: `Breite` is a beam too."""
-AHEAD: Final = (("x", "y"), ("north", "east"), ("n", "e"))
+AXES: Final = (("x", "y"), ("north", "east"), ("n", "e"))
 PLANE: Final = frozenset(("0", "ned", "pos", "position", "pose", "m"))
-"""Words with which one of these letters is a position in a plane: `x0`, `x_ned`, `pos_n`."""
+"""Words with which an axis is a position in a plane: `x0`, `x_ned`, `pos_n`."""
 Track = tuple[float, Vector, Vector]
 """Period [s], metres to the north and to the east; (N,)."""
 
@@ -66,7 +66,7 @@ def _in_a_plane(channels: Iterable[ChannelInspection]) -> dict[str, ChannelInspe
         words(one.name.rpartition(":")[2]): one for one in channels if one.unit in (None, "m")
     }
     for told, one in fields.items():
-        for north, east in AHEAD:
+        for north, east in AXES:
             beside = {*told} - {north}
             if told.count(north) != 1 or not beside <= PLANE or not (beside or north == "north"):
                 continue
@@ -86,6 +86,7 @@ def position_words(channels: Iterable[ChannelInspection]) -> list[str]:
     if not found:
         return []
     named = ", ".join(f"{name} = {one.name}" for name, one in found.items())
+    named += ", if that is to the north" if "x" in found else ""
     return [f"a position is here ({named}): `trialid guide track` says what to do with it"]
 
 

@@ -164,7 +164,7 @@ def _agreement(
         return True, f"side confirmed by the turn: {told}"
     return False, (
         f"FILL IN the unit after settling this: she turns towards the stronger one ({told}): port "
-        "and starboard are exchanged, or the side of {turn.quantity} is wrong"
+        f"and starboard are exchanged, or the side of {turn.quantity} is wrong"
     )
 
 

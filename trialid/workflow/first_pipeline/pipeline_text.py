@@ -98,6 +98,8 @@ def _track(channels: Iterable[ChannelInspection]) -> Iterator[str]:
     if not found:
         return
     yield "# the track, its current and the turning circle: `trialid guide track`"
+    if "x" in found:
+        yield "# (x has to be to the north and y to the east; ROS often has it the other way round)"
     for name, one in found.items():
         keys = {"channel": one.name} | ({} if one.unit else {"unit": UNITS[name]})
         yield f"# {name} = {{ {', '.join(f'{k} = {quote(v)}' for k, v in keys.items())} }}"

@@ -61,8 +61,8 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
     stated = unit or head.unit or unit_of_time(bare(head))
     if stated is None:
         _not_days(table, column, y)
-        stated = _since_1970(y)
-    scale = _seconds_per(table, stated or "s")
+    by_size = None if stated else _since_1970(y)
+    scale = _seconds_per(table, stated or by_size or "s")
     for part in _parts(y):
         wrong = ~(np.abs(y[part] * scale) < LATEST_S)
         if wrong.any():
@@ -72,8 +72,8 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
                 "seconds; state the unit in the header, as in 't[ms]', or delete the line"
             )
     remarks = _resolution(table, column, y, scale)
-    if head.unit is None and unit is None and unit_of_time(bare(head)) is None and stated:
-        remarks = (*remarks, f"its times are {stated} since 1970 by their size: no unit is stated")
+    if by_size:
+        remarks = (*remarks, f"its times are {by_size} since 1970 by their size: no unit is stated")
     t = y.view(np.int64) if table.own else np.empty(len(y), np.int64)
     for part in _parts(y):
         t[part] = np.rint(y[part] * scale * 1e9)
