@@ -86,7 +86,8 @@ def position_words(channels: Iterable[ChannelInspection]) -> list[str]:
     if not found:
         return []
     named = ", ".join(f"{name} = {one.name}" for name, one in found.items())
-    named += ", if that is to the north" if "x" in found else ""
+    told = {word for one in found.values() for word in words(one.name)}
+    named += ", if that is to the north" if "x" in told else ""
     return [f"a position is here ({named}): `trialid guide track` says what to do with it"]
 
 
