@@ -26,6 +26,19 @@ def by_heading(effect: Effect) -> bool:
     return "psi" in effect.signals
 
 
+def her_own(effect: Effect) -> bool:
+    """Whether it is of the ship, and not of wind or current that nobody recorded."""
+    return of_the_ship(effect) and not by_heading(effect)
+
+
+def gives_way(effect: Effect, grown: bool) -> bool:
+    """Whether its name gives way to whatever of the ship does as much.
+
+    A sensor's in a model that has `grown`, and in any model that of surroundings unrecorded.
+    """
+    return by_heading(effect) or (grown and not of_the_ship(effect))
+
+
 def turns_round(effect: Effect, fit: Fit) -> bool:
     """Whether a coefficient that the model held leaves the range in which it may be named."""
     return effect.held is not None and not all(

@@ -9,7 +9,8 @@ import numpy as np
 from trialid.diagnosis.found_values import (
     as_slow_as_the_ship,
     at_a_sensors_end,
-    by_heading,
+    gives_way,
+    her_own,
     late_sensor,
     of_the_ship,
     turns_round,
@@ -195,8 +196,8 @@ def _looks_like_the_ship(
     wind or current that nobody recorded: they know the heading, which swings with all that she
     does. Of 30 ships simulated in calm and logged by heading and speed five had one named.
     """
-    doubted = (grown and not of_the_ship(refit.candidate.effect)) or _by_heading(refit)
-    ship = [r for r in refits if _her_own(r) and r.fit.converged]
+    doubted = gives_way(refit.candidate.effect, grown)
+    ship = [r for r in refits if her_own(r.candidate.effect) and r.fit.converged]
     if doubted and any(
         r.candidate.allowed and does_as_well(refit.carried, r.carried) for r in ship
     ):
@@ -224,14 +225,6 @@ def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit
         return _gives_way(r, grown), not r.candidate.p_value < level, r.cost
 
     return min([least, *close], key=standing)
-
-
-def _by_heading(refit: Refit) -> bool:
-    return by_heading(refit.candidate.effect)
-
-
-def _her_own(refit: Refit) -> bool:
-    return of_the_ship(refit.candidate.effect) and not _by_heading(refit)
 
 
 def _gives_way(refit: Refit, grown: bool) -> bool:

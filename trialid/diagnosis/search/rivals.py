@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from trialid.diagnosis.found_values import of_the_ship
+from trialid.diagnosis.found_values import gives_way, her_own
 from trialid.diagnosis.search.carried import RIVAL, does_as_well
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
@@ -14,16 +14,16 @@ def to_fit(
     """Candidates to fit before they are said to do as well, where slopes are not believed.
 
     A rudder that is stuck takes 40 % off by its slope, and 99 % when it is fitted; what the slopes
-    of others say is then worth as little. In a model that has `grown` a sensor gives way to what is
-    of the ship and does as well: what would, or is alike in trace, is fitted first.
+    of others say is then worth as little. A name that gives way to what is of the ship and does as
+    well (a sensor's in a grown model): what would, or is alike in trace, is fitted first.
     """
     found = _by_slope(named, ranking, refits)
-    if not grown or of_the_ship(named.candidate.effect):
+    if not gives_way(named.candidate.effect, grown):
         return () if _foretold(named) else found
     fitted = {r.candidate.effect.name for r in refits}
     alike = {*named.candidate.family} - fitted
     more = [c for c in ranking if c.allowed and (c in found or c.effect.name in alike)]
-    return tuple(c for c in more if of_the_ship(c.effect) or not _foretold(named))
+    return tuple(c for c in more if her_own(c.effect) or not _foretold(named))
 
 
 def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from itertools import combinations
 
 import numpy as np
 
-from trialid.diagnosis.found_values import of_the_ship
+from trialid.diagnosis.found_values import her_own
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
@@ -100,11 +100,11 @@ def stands(fit: Fit, one: Together) -> bool:
 
 
 def _worth_a_fit(augmented: Augmented) -> list[Pair]:
-    """Pairs that foretell far more than either alone, in all blocks, most first."""
+    """Pairs of her own that foretell far more than either alone, in all blocks, most first."""
     blocks = left_out(
         augmented.fit, augmented.residual, augmented.psi, augmented.S, augmented.stretches
     )
-    traces = [t for t in augmented.traces if t.parameters and of_the_ship(t.effect)]
+    traces = [t for t in augmented.traces if t.parameters and her_own(t.effect)]
     alone = {t.columns: blocks.carried(t.columns).ratio for t in traces}
     found = list[tuple[float, Pair]]()
     for pair in combinations(traces, 2):
