@@ -144,11 +144,26 @@ def test_what_the_file_without_it_foretells_worse_is_not_dropped(
 )
 def test_what_was_promised_is_begun_near_its_end(monkeypatch, errors, troubles, begun):
     """By the refit the error falls to 5 %; from typical values the search ended above."""
+    after, fit, trouble = added(monkeypatch, errors, troubles)
+    assert after == fit.effects == begun
+    assert not trouble
+
+
+def test_what_her_file_would_deny_is_not_begun_by_coefficients_of_its_own(monkeypatch):
+    """They would no longer be held against it."""
+    errors = {"typical": 0.08, "near": 0.08, "all": 0.05}
+    after, _, trouble = added(monkeypatch, errors, {"typical": "no", "near": "no"}, left=3.0)
+    assert (after, trouble) == ("typical", "no")
+
+
+def added(monkeypatch, errors, troubles, left=None):
+    """The file's fit with an effect whose refit left 5 %, from each of its ways to begin."""
     world = {at: (error, None) for at, error in errors.items()}
     stubs = {
         "add_to_pipeline": lambda pipeline, name: SimpleNamespace(after="typical"),
         "started_at": lambda edit, values: SimpleNamespace(after="near"),
         "all_started_at": lambda near, values: "all",
+        "left_by_file": lambda fit: left,
         "available": lambda pipeline: {},
         "fit_of": lambda at, *_: fit_in(world, at),
         "_trouble": lambda before, up, fit, level: troubles.get(fit.effects, ""),
@@ -157,6 +172,4 @@ def test_what_was_promised_is_begun_near_its_end(monkeypatch, errors, troubles, 
     found = SimpleNamespace(eps_rmsn=0.05, estimates={}, model=SimpleNamespace(values={}))
     up = SimpleNamespace(effects=(candidate("a").effect,), fit=found)
     pipeline: Any = SimpleNamespace(diagnose=SimpleNamespace(level=0.05))
-    after, fit, trouble = addition_fit.fit_addition(pipeline, (), None, up, silent)
-    assert after == fit.effects == begun
-    assert not trouble
+    return addition_fit.fit_addition(pipeline, (), None, up, silent)

@@ -143,7 +143,7 @@ def test_a_record_of_26_s_is_too_short(seconds, tmp_path):
 
 @pytest.mark.parametrize(("case", "ship"), [("coaster", "s175q"), ("ferry", "naval")])
 @pytest.mark.study(turn=10)
-def test_another_ships_file_is_said_to_be_wrong(case, ship, tmp_path):
+def test_another_ships_file_is_noticed(case, ship, tmp_path):
     file = HERE.parents[1] / "sample_data" / "ships" / f"{ship}.toml"
     found = why_no_fit(fitted(begun(tmp_path, case, ship=file)))
     assert "the ship as fitted is not the one of her file" in found.reason

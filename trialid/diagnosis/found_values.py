@@ -5,8 +5,9 @@ from typing import Final
 
 from trialid.diagnosis.rudder_jumps import own_time
 from trialid.identification.fit import Fit
-from trialid.names.quantities import RUDDERS
+from trialid.names.quantities import PARTICULARS, RUDDERS
 from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate
+from trialid.ship.model import STATES
 
 SLOW: Final = 0.1
 """Share of L/U from which on a sensor's lag or delay may be what the hull remembers, in a model
@@ -22,8 +23,11 @@ def of_the_ship(effect: Effect) -> bool:
 
 
 def by_heading(effect: Effect) -> bool:
-    """Whether it is of surroundings that nobody recorded: no force of her own knows the north."""
-    return "psi" in effect.signals
+    """Whether it is of surroundings that nobody recorded: no force of her own knows the north.
+
+    One that takes a record of its own beside the heading, as of a wind that was measured, is not.
+    """
+    return "psi" in effect.signals and {*effect.signals} <= {*STATES, *PARTICULARS}
 
 
 def her_own(effect: Effect) -> bool:

@@ -98,7 +98,8 @@ def steers_backwards(fit: Fit) -> bool:
     """Whether the rudder as fitted clearly turns her to the other side than in her file.
 
     Which side is the file's `rudder_positive`, of a placeholder too; a model that lacks something
-    may follow a turn by a ship that is unstable and held by her rudder.
+    may follow a turn by a ship that is unstable and held by her rudder. Of the real turn where this
+    was found it is 4.8 standard errors: half of `CLEARLY` finds it too, twice does not.
     """
     names = [x.name for x in fit.problem.unknowns]
     if STEERS not in names:

@@ -12,6 +12,7 @@ from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.refit import Refit, objection
 from trialid.diagnosis.search.together import Together, stands
 from trialid.errors import TrialidError
+from trialid.identification.file_of_ship import left_by_file
 from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
@@ -68,7 +69,9 @@ def _ways(pipeline: Pipeline, up: Refit | Together) -> Iterator[Pipeline]:
     yield plain
     if placed:
         yield near
-        yield all_started_at(near, up.fit.estimates)
+        # coefficients with starts of their own are not held against her file any more: now they are
+        if left_by_file(up.fit) is None:
+            yield all_started_at(near, up.fit.estimates)
 
 
 def _trouble(before: Fit, up: Refit | Together, fit: Fit, level: float) -> str:

@@ -6,8 +6,8 @@ Ships, sizes and three to five manoeuvres are drawn by seed (`tests/grow/mmg.py`
 which no model here has), logged by a simple recorder without any fault, begun as `trialid start`
 begins them and grown by `--auto`; with `--heading` the recorder has a compass and a speed log, and
 the rudder's zero is another in each trial. Errors are multiples of the sensors' noise. Results
-stand in `results/mmg_ships.md` or `mmg_by_heading.md` with `--write`. Exit status 1 where a sensor
-or a clock is named, or a held-out error rises.
+stand in `results/mmg_ships.md` or `mmg_by_heading.md` with `--write`. Exit status 1 where a sensor,
+a clock, or wind or current is named, or a held-out error rises.
 """
 
 import argparse
@@ -32,7 +32,7 @@ from at_commit import commit_of  # noqa: E402
 from begun import begun  # noqa: E402
 from spread import add_options, spread  # noqa: E402
 
-from trialid.diagnosis.found_values import of_the_ship  # noqa: E402
+from trialid.diagnosis.found_values import her_own  # noqa: E402
 from trialid.diagnosis.search.backward import worth_naming  # noqa: E402
 from trialid.effects import CATALOGUE  # noqa: E402
 from trialid.errors import TrialidError  # noqa: E402
@@ -66,8 +66,8 @@ class Grown:
 
     @property
     def blamed(self) -> list[str]:
-        """Sensors and clocks with a name, of which none is at fault."""
-        return [n for n in self.named if n in CATALOGUE and not of_the_ship(CATALOGUE[n])]
+        """Sensors, clocks, wind and current with a name, of which none is at fault or there."""
+        return [n for n in self.named if n in CATALOGUE and not her_own(CATALOGUE[n])]
 
     @property
     def rises(self) -> bool:
@@ -128,7 +128,8 @@ def page(found: Sequence[Grown]) -> str:
     two = sum(any("," in step for step in x.steps) for x in begun)
     counts = (
         f"Of {len(found)}: begun {len(begun)}; a step in {sum(bool(x.steps) for x in begun)}, two "
-        f"effects at once in {two}; a sensor or clock named in {sum(bool(x.blamed) for x in begun)}"
+        f"effects at once in {two}; a sensor, a clock, wind or current named in "
+        f"{sum(bool(x.blamed) for x in begun)}"
         f"; held out worse in {sum(x.rises for x in begun)}; held out {np.median(first):.1f} to "
         f"{np.median(last):.1f} times the noise (medians).\n"
     )

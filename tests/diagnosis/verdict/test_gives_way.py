@@ -1,10 +1,14 @@
 """What has no name however much it takes off: a sensor at its end, unseen wind beside the ship."""
 
+from types import SimpleNamespace
+
 import pytest
 from made_up_fits import BEFORE
 from test_refit import ALIKE, LESS, refit
 
+from trialid.diagnosis.found_values import by_heading
 from trialid.diagnosis.search.refit import likeliest_refit, objection
+from trialid.effects import CATALOGUE
 
 
 @pytest.mark.parametrize(("name", "named"), [("force", True), ("lag", False)])
@@ -14,6 +18,14 @@ def test_a_sensor_at_the_end_of_what_is_possible_has_no_name(name, named):
     assert objection(old, new, 0.05) == ""
     new.fit.at_bounds = {"a": -0.005}
     assert (objection(old, new, 0.05) == "") is named
+
+
+def test_only_what_nobody_recorded_is_by_the_heading_alone():
+    """What takes a record beside the heading is of a wind or a tug that was measured."""
+    found = {name for name, effect in CATALOGUE.items() if by_heading(effect)}
+    unseen = {"current_in_sway", "current_in_surge", "current_in_speed_record"}
+    assert found == {"steady_wind", *unseen}
+    assert not by_heading(SimpleNamespace(signals=("psi", "true_wind")))
 
 
 def test_wind_that_nobody_recorded_gives_way_to_whatever_of_the_ship_does_as_much():

@@ -194,7 +194,7 @@ def _looks_like_the_ship(
     would be said to do as well does, also where chance would: of a simulated ship the rudder's
     clock drifted for 5 %, where a term of sway takes 4 and does not stand out. So in any model may
     wind or current that nobody recorded: they know the heading, which swings with all that she
-    does. Of 30 ships simulated in calm and logged by heading and speed five had one named.
+    does. Of 30 ships simulated in calm and logged by heading and speed four had one named.
     """
     doubted = gives_way(refit.candidate.effect, grown)
     ship = [r for r in refits if her_own(r.candidate.effect) and r.fit.converged]

@@ -35,7 +35,8 @@ PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
 """No share of full is larger; a stated thrust of a boat that moves is."""
 PULSES: Final = (800.0, 2200.0)
-"""[us] Between which pulses of servos and speed controllers lie."""
+"""[us] Between which pulses of servos and speed controllers lie: 1000 to 2000, some 900 to 2100.
+Only words depend on it: the unit is asked for either way."""
 ARM: Final = 0.2
 """Thrusters stand so far from the middle, over the length of a boat: 0.2 of the Otter and the
 WAM-V, 0.24 of the BlueBoat."""
