@@ -243,3 +243,30 @@ def test_real_records_keep_every_value(path):
     read = hsva_series if path in HSVA else decay_series if path == DECAY else bus_series
     every = read(path)
     assert not _faults([clocks.in_time_order(one) for one in every.values()])
+
+
+def planted_jumps(seeds, sizes=(0.0, 10.0)):
+    """Of simulated headings, those with a jump [deg] from somewhere on that are remarked."""
+    said = dict.fromkeys(sizes, 0)
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        t, y = record(seed).channels["psi"]
+        k = rng.integers(8, len(y) - 8)
+        for size in sizes:
+            there = np.where(np.arange(len(y)) < k, y, y + np.deg2rad(size))
+            one = _series(recording(channel("psi", t, there)), "psi")
+            words = _faults([clocks.in_time_order(one)])
+            said[size] += any("jumped by up to" in one for one in words)
+            assert not words or size
+    return said
+
+
+def test_a_heading_that_jumps_is_told_and_kept():
+    assert planted_jumps(range(14)) == {0.0: 0, 10.0: 14}
+    y = noisy(3)
+    y[800:] += 0.2
+    trial = aligned({"psi": y})
+    (words,) = faulty(trial)
+    assert "psi: 1 value jumped by up to 11 deg off the pace of its neighbours, at 80.0 s" in words
+    assert trial.valid["psi"][20:-20].all()
+    assert not faulty(aligned({"psi": noisy(3)}))

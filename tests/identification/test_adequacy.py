@@ -164,6 +164,17 @@ def test_a_bound_is_remarked_as_the_bounds_value():
     assert any("Kp ended at its bound -6e-06" in line for line in remarks(fit))
 
 
+def test_damping_that_would_drive_her_on_is_remarked(sound):
+    """Of either kind, and neither where it holds her back."""
+    assert not any("drive her on" in line for line in remarks(sound))
+    places = [x.name for x in sound.problem.unknowns]
+    for name in ("Nr", "Nv"):  # what drifting does to her course may have either sign
+        theta = sound.theta.copy()
+        theta[places.index(name)] *= -1.0
+        said = [line for line in remarks(replace(sound, theta=theta)) if "drive her on" in line]
+        assert [line.partition(" ")[0] for line in said] == ["Nr"] * (name == "Nr")
+
+
 def test_a_delay_unlike_others_comes_back_and_is_remarked():
     """Four standard deviations of what is likely: the record overrules, and it is said."""
     trial = noisy(zigzag(10), 10)

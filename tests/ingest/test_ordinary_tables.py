@@ -39,6 +39,7 @@ def stamps(path, channel="u"):
         ("Time", "11.04.2025 12:08:20", "11.04.2025 12:08:21", START),
         ("Time", "11-Apr-2025 12:08:20", "11-Apr-2025 12:08:21", START),
         ("Time", "4/11/2025 12:08:20 PM", "4/13/2025 12:08:20 PM", START),
+        ("", "2025-04-11_12:08:20:000000", "2025-04-11_12:08:20:500000", START),
         ("Uhrzeit", "12:08:20,5", "12:08:21,5", 43_700_500_000_000),
     ],
 )
@@ -53,6 +54,13 @@ def test_time_columns_as_they_are_called_and_written(tmp_path, head, first, seco
 def test_nine_digits_of_a_second_are_kept(tmp_path):
     text = "time,u\n2025/04/11 12:08:20.316091061,1\n2025/04/11 12:08:20.416091062,2\n"
     assert stamps(log(tmp_path, text)) == [START + 316091061, START + 416091062]
+
+
+def test_a_time_that_stands_still_is_no_clock(tmp_path):
+    """A date whose time of day stands in another column is the same in every row."""
+    rows = "".join(f"2025-04-11 00:00:00,{y}\n" for y in range(5))
+    with pytest.raises(LogError, match="time stands still: time tells one time in all 5 rows"):
+        read(log(tmp_path, f"time,u\n{rows}"))
 
 
 def test_dates_with_slashes_are_read_where_a_day_above_12_tells_the_order(tmp_path):

@@ -82,6 +82,7 @@ def test_letters_with_words_behind_them_mean_something_by_their_unit(name, unit)
 
 def test_a_speed_that_does_not_say_of_what():
     assert channel_names.of_some_speed("Fahrt", "kn")
+    assert channel_names.of_some_speed("Boatspeed", "m/s")
     assert channel_names.of_some_speed("speed_kn", "kn")
     assert not channel_names.of_some_speed("Fahrt", "deg")
     assert not channel_names.of_some_speed("wind speed", "kn")

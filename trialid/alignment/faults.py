@@ -18,6 +18,7 @@ from trialid.alignment.fault_samples import (
     joined_runs,
     resolution,
 )
+from trialid.alignment.jumps import jumps
 from trialid.alignment.signal_limits import LIMITS
 from trialid.alignment.sources import SignalSource
 from trialid.alignment.spikes import WIDEST_SPIKE, dropouts, spikes
@@ -95,7 +96,7 @@ def mask_faults(
     Raises AlignmentError when so many values are impossible that the unit must be wrong.
     """
     remarks = []
-    for find in (_range, dropouts, spikes, _saturation):
+    for find in (_range, dropouts, spikes, _saturation, jumps):
         for fault in find(series, zero):
             _check_share(fault, series, where)
             hide = fault.sure and fault.kind not in keep

@@ -62,7 +62,7 @@ def _found(s: Samples, widest: int, only: Mask | None = None) -> tuple[Mask, Mas
     bends = [_bends(s, width) for width in range(1, widest + 1)]
     size = np.zeros(len(s.y))
     for width, bend in enumerate(bends, 1):
-        for i in np.flatnonzero(_returns(s, width, bend) & (bend > SHARP * _usual(bend))):
+        for i in np.flatnonzero(_returns(s, width, bend) & (bend > SHARP * usual_size(bend))):
             run = slice(i + 1, i + 1 + width)
             if only is None or bool(np.all(only[run])):
                 size[run] = np.maximum(size[run], bend[i])
@@ -82,7 +82,8 @@ def _returns(s: Samples, width: int, bend: Vector) -> Mask:
     return np.abs(s.y[width + 1 :] - s.y[:n]) < bend / 2
 
 
-def _usual(bend: Vector) -> float:
+def usual_size(bend: Vector) -> float:
+    """What is usual of what is mostly small: of noise, or half of what one in twenty exceeds."""
     return max(1.4826 * float(np.median(bend)), float(np.quantile(bend, 0.95)) / 2)
 
 

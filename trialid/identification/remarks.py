@@ -1,8 +1,13 @@
 """What to read beside the parameters of a fit, sound or not."""
 
+from typing import Final
+
 from trialid.identification.fit import Fit
 from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import shown_unit
+
+DAMPS: Final = {"Yv": "drifts", "Nr": "turns"}
+"""What holds a hull back, below zero for all of them, and when."""
 
 
 def remarks(fit: Fit) -> tuple[str, ...]:
@@ -27,8 +32,14 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         for n, z in fit.contradicted.items()
         if n not in own
     ]
+    driven = [
+        f"{n} = {said(n, fit.value(n))} would drive her on when she {when}: no hull does, and "
+        "something that is missing may stand in it"
+        for n, when in DAMPS.items()
+        if n in units and fit.value(n) > 0.0
+    ]
     weak = ["the search was slow to the end: some parameters can hardly be told apart"]
-    return (*_untold_GM(fit), *bounds, *against, *(weak if fit.weakly_identified else []))
+    return (*_untold_GM(fit), *bounds, *against, *driven, *(weak if fit.weakly_identified else []))
 
 
 def _untold_GM(fit: Fit) -> list[str]:

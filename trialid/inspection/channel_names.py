@@ -70,7 +70,9 @@ OVER_GROUND: Final = frozenset(
         ("fahrt", "ueber", "grund"), ("füg",), ("fueg",),
     }
 )  # fmt: skip
-SPEEDS: Final = frozenset(("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad"))
+SPEEDS: Final = frozenset(
+    ("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad", "boatspeed", "bsp")
+)
 """Names of a speed that leave open whether through the water or over ground."""
 GROUND: Final = frozenset(("ground", "grund", "cog"))
 

@@ -78,8 +78,13 @@ class Candidate:
         return self.carried.price(len(self.effect.parameters))
 
     def shown(self, level: float) -> bool:
-        """Whether it is there: by the test, or by the blocks left out, one like the other."""
-        return self.allowed and (self.p_value < level or self.carried.large)
+        """Whether it is there: by the test, or by the blocks left out, one like the other.
+
+        Of what the free parameters can mimic blocks tell nothing: with it these are others where
+        they were fitted, and what that does elsewhere is theirs.
+        """
+        by_blocks = self.carried.large and self.visibility > VISIBLE
+        return self.allowed and (self.p_value < level or by_blocks)
 
     def worth_a_name(self, level: float) -> bool:
         """Whether it is there and so much of it carries over that somebody would notice."""

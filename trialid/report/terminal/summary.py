@@ -1,5 +1,6 @@
 """The run on one screen of a terminal: the verdict first, then what it rests on."""
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -41,6 +42,9 @@ class Rows:
     findings: int
 
 
+LEFT: Final = re.compile(r"; left as (it is|they are)$")
+"""How a remark ends on values that a person has to judge."""
+
 ROWS: Final = (
     Rows(trials=8, parameters=12, candidates=4, findings=3),
     Rows(trials=5, parameters=10, candidates=4, findings=3),
@@ -68,7 +72,8 @@ def _screen(run: Result, file: str, rows: Rows) -> "RenderableType":
 
     title = Words(run.pipeline or "trialid", 1, "dim")
     if run.verdict.kind == "no fit":  # before everything: none of what follows may be relied on
-        return Group(title, *_verdict(run), Text(), _errors(run, rows), *_parameters(run, rows))
+        begun = (title, *_verdict(run), Text(), _errors(run, rows))
+        return Group(*begun, *_parameters(run, rows), *_to_check(run))
     return Group(
         title,
         *_verdict(run),
@@ -80,6 +85,7 @@ def _screen(run: Result, file: str, rows: Rows) -> "RenderableType":
         *_ranking(run, rows),
         *_parameters(run, rows),
         *_where(run, rows),
+        *_to_check(run),
     )
 
 
@@ -176,6 +182,14 @@ def _where(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     said = [finding.sentence for finding in run.where if finding.sentence]
     for sentence in said[: rows.findings]:
         yield Words(f"Fails: {sentence.partition(';')[0]}", 2)
+
+
+def _to_check(run: Result) -> "Iterable[RenderableType]":
+    """What in a record may be no measurement and was left in it, of one trial."""
+    said = [(t.name, r) for t in run.trials for r in t.remarks if LEFT.search(r)]
+    for name, remark in said[:1]:
+        more = f" ({len(said) - 1} more on the page)" if len(said) > 1 else ""
+        yield Words(f"To check, in {name}: {plain(remark)}{more}", 2)
 
 
 def _part(split: SplitPart, part: Part) -> str:

@@ -39,9 +39,17 @@ def clock(table: Table, spec: Time | None, zone: str | None) -> Clock:
 
     Several columns that tell the same time are one clock; several that do not are refused.
 
-    Raises LogError for what is no time, and for what may be read in two ways.
+    Raises LogError for what is no time or stands still, and for what may be read in two ways.
     """
-    return _alone(table, zone) if spec is None else _by_template(table, spec, zone)
+    found = _alone(table, zone) if spec is None else _by_template(table, spec, zone)
+    if len(found.t) >= FEWEST and found.t[0] == found.t[-1] and np.ptp(found.t) == 0:
+        named = list_names([table.heads[column].name for column in found.columns])
+        raise LogError(
+            f"{table.path}: its time stands still: {named} tells one time in all {len(found.t)} "
+            "rows; say in a template which columns tell it, date and time of day where they stand "
+            "apart (trialid inspect LOG --template FILE)"
+        )
+    return found
 
 
 def _by_template(table: Table, spec: Time, zone: str | None) -> Clock:

@@ -1,7 +1,8 @@
 """Dates as people and programs write them, to ISO-8601; only where one reading is possible.
 
 `2025/04/11 12:08:20.316091061` begins with the year, `03.06.2026 09:12:00` is written with dots
-where the day comes first, `05-Nov-2023 14:00:00` names its month. With slashes and a year at the
+where the day comes first, `05-Nov-2023 14:00:00` names its month, and of `15:44:39:482290` the last
+are thousandths of thousandths: a count of frames has two digits. With slashes and a year at the
 end the day may come first or the month: the column tells, if a number in it is above 12.
 """
 
@@ -16,8 +17,8 @@ Stamps = tuple[NDArray[np.int64], bool]
 ISO = re.compile(r"\d{4}-\d\d-\d\d([T ]|$)")
 DATED = re.compile(
     r"(?P<first>\d{1,4})(?P<mark>[./-])(?P<second>\d{1,2}|[A-Za-z]{3})(?P=mark)(?P<third>\d{1,4})"
-    r"(?:[T,\s]\s*(?P<hour>\d{1,2}):(?P<minute>\d\d)(?::(?P<second_of>\d\d)"
-    r"(?:[.,](?P<part>\d{1,9}))?)?\s*(?P<half>[AaPp][Mm])?)?"
+    r"(?:[T,_\s]\s*(?P<hour>\d{1,2}):(?P<minute>\d\d)(?::(?P<second_of>\d\d)"
+    r"(?:(?:[.,]|:(?=\d{3}(?:\d{3}){0,2}(?!\d)))(?P<part>\d{1,9}))?)?\s*(?P<half>[AaPp][Mm])?)?"
     r"\s*(?P<zone>Z|UTC|GMT|[+-]\d\d:?\d\d)?"
 )
 MONTHS = {
@@ -41,6 +42,8 @@ def as_iso(texts: Sequence[str]) -> list[str] | None:
 
     >>> as_iso(["2025/04/11 12:08:20.316091061"])
     ['2025-04-11T12:08:20.316091061']
+    >>> as_iso(["2024-03-07_15:44:39:482290"]), as_iso(["2024-03-07_15:44:39:48"])
+    (['2024-03-07T15:44:39.482290'], None)
     >>> as_iso(["03.06.2026 09:12:00"]), as_iso(["03/06/2026 09:12:00"])
     (['2026-06-03T09:12:00'], None)
     >>> as_iso(["03/06/2026 09:12:00", "03/13/2026 09:12:00"])

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -80,9 +80,15 @@ def _table_by(lines: list[str], separator: str) -> tuple[tuple[int, int], str, l
         return (0, 0), separator, []
     width = max(widths, key=lambda one: (widths[one], one))
     data = [i for i in likely if len(split[i]) == width]
-    clean = sum(_clean(field) for i in data for field in split[i])
-    whole = sum(len(split[i]) for i in data)
+    told = _told([split[i] for i in data])
+    clean = sum(_clean(field) for i in data for field in split[i][:told])
+    whole = told * len(data)
     return (len(data) * (10 * clean // whole), clean // len(data)), separator, data
+
+
+def _told(rows: Sequence[Sequence[str]]) -> int:
+    """How many fields the rows have, one less where a separator ends each and names nothing."""
+    return len(rows[0]) - all(not row[-1] for row in rows)
 
 
 def _clean(field: str) -> bool:
@@ -121,7 +127,7 @@ def _laid_out(
     rows = tuple(tuple(fields(lines[i], separator)) for i in data[:200])
     width, first = len(rows[0]), data[0]
     comment = next((c for c in COMMENTS if any(x.startswith(c) for x in lines[:first])), None)
-    at, units_row = _named(lines, separator, width, first)
+    at, units_row = _named(lines, separator, {width, _told(rows)}, first)
     bare = at is None or lines[at].startswith(COMMENTS) or at != first - 1 - units_row
     named = [] if at is None else fields(_uncommented(lines[at]), separator)
     decimal, mixed = _decimal(rows, separator)
@@ -142,10 +148,12 @@ def _laid_out(
     )
 
 
-def _named(lines: list[str], separator: str, width: int, first: int) -> tuple[int | None, bool]:
+def _named(
+    lines: list[str], separator: str, widths: Collection[int], first: int
+) -> tuple[int | None, bool]:
     """The line above the data that has a text for each column, and whether units lie between."""
     rows = [fields(_uncommented(line), separator) for line in lines[:first]]
-    above = [i for i, row in enumerate(rows) if len(row) == width]
+    above = [i for i, row in enumerate(rows) if len(row) in widths]
     units_row = above[-2:] == [first - 2, first - 1] and _units(rows[first - 1])
     return (first - 2 if units_row else above[-1] if above else None), units_row
 

@@ -1,0 +1,44 @@
+"""Jumps of a heading: a step off the pace of the steps beside it, after which it goes on.
+
+A ship's heading goes on from where it was. A compass that swings through a deviation, is switched
+over or loses its reference, and two logs put one after the other, leave a step that no helm makes;
+its model then looks for a force that did it.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trialid.alignment.clocks import Series
+from trialid.alignment.fault_samples import Fault, available_samples, resolution
+from trialid.alignment.spikes import SHARP, usual_size
+from trialid.arrays import Vector
+
+LEAST = np.deg2rad(2.0)
+"""[rad] What is less drowns in a model's error. A compass on a real bus made steps of 0.05 deg that
+are eight times its usual ones; of 420 simulated records none has a step that the rest of the rule
+takes for a jump, with half of this or twice."""
+BESIDE = 3
+"""Steps to each side whose middle is the pace: a jump that takes two samples does not move it."""
+
+
+def jumps(series: Series, zero: float) -> Iterator[Fault]:
+    """Steps of a heading unlike those beside them; `zero` plays no part."""
+    s = available_samples(series)
+    if series.quantity.name != "psi" or len(s.y) < 4 * BESIDE:
+        return
+    steps = np.where(s.near[1:], np.diff(s.y), 0.0)
+    off = np.abs(steps - _pace(steps))
+    far = max(SHARP * usual_size(off), 4.0 * resolution(s.y), LEAST)
+    if (found := off > far).any():
+        samples = np.zeros(len(series.y), np.bool_)
+        samples[s.at[1:][found]] = True
+        words = f"jumped by up to {np.rad2deg(off.max()):.2g} deg off the pace of its neighbours"
+        yield Fault("jumps", words, samples, False)
+
+
+def _pace(steps: Vector) -> Vector:
+    """Median of the steps around each; of the first and last few of those that there are."""
+    padded = np.pad(steps, BESIDE, mode="edge")
+    around = np.lib.stride_tricks.sliding_window_view(padded, 2 * BESIDE + 1)
+    return np.asarray(np.median(around, axis=1))
