@@ -46,10 +46,10 @@ FORCED_AT_REST = {"static_list", "steady_wind", "propeller_unrecorded"}
 
 NO_NULL = {
     "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "propeller_unrecorded",
-    "rudder_backlash", "propeller_thrust", "propeller_rudder", "rudder_race",
+    "rudder_backlash", "propeller_thrust", "propeller_rudder",
+    "rudder_race", "drift_in_speed_record",
 }  # fmt: skip
-"""Never absent: parameters inside the formula (time constants), or instead of another effect."""
-
+"""Never absent: parameters inside the formula (time constants) or none, or instead of others."""
 NOT_LINEAR = NO_NULL | {"rudder_deadband"}
 """No superposition."""
 

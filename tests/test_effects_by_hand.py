@@ -172,13 +172,13 @@ def test_wind_blows_to_lee_and_heels_the_ship_away_from_it() -> None:
 
 def test_a_uniform_current_is_seen_over_ground_only() -> None:
     """2 m/s to the east: along for an eastbound ship, to starboard for a northbound one."""
-    east, north = math.pi / 2, 0.0
-    flow = {"vc_N": 0.0, "vc_E": 2.0}
+    east, north, flow = math.pi / 2, 0.0, {"vc_N": 0.0, "vc_E": 2.0}
     assert sensed("current_in_sway", flow, v=0.3, psi=north)["v"] == pytest.approx(2.3)
     assert sensed("current_in_sway", flow, v=0.3, psi=east)["v"] == pytest.approx(0.3)
     flow = {"uc_N": 0.0, "uc_E": 2.0}
     assert sensed("current_in_surge", flow, u=7.0, psi=north)["u"] == pytest.approx(7.0)
     assert sensed("current_in_surge", flow, u=7.0, psi=east)["u"] == pytest.approx(9.0)
+    assert CATALOGUE["drift_in_speed_record"]({"u": 5.0, "v": -3.0})[0]["u"] == pytest.approx(-1.0)
     recorded = CATALOGUE["current_in_speed_record"]({"psi": east, "Uc_N": 0.0, "Uc_E": 2.0})[0]
     assert recorded["u"] == pytest.approx(-2.0)
 

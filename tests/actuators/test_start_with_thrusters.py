@@ -21,12 +21,15 @@ def started(folder: Path, monkeypatch: pytest.MonkeyPatch, logs: list[Path], opt
     return CliRunner().invoke(commands, ["start", *map(str, logs), *options.split()])
 
 
-def log(path: Path, *, swapped: bool = False, seed: int = 700, drive: str = "rpm") -> Path:
+def log(
+    path: Path, *, swapped: bool = False, seed: int = 700, drive: str = "rpm", full: float = 0.0
+) -> Path:
     """The Otter's log as a table: revolutions, rate of turn, speed."""
     t = np.arange(0.0, 90.0, 0.2)
     sailed = otter.sail(t, otter.some_orders(t, seed))
     rng = np.random.default_rng(seed)
     rpm = sailed.revolutions * 60.0 / (2.0 * np.pi)
+    rpm *= full / np.abs(rpm).max() if full else 1.0
     columns = {
         "time_s": t,
         f"{drive}_port": rpm[:, 1 if swapped else 0],
@@ -91,6 +94,22 @@ def test_two_by_number_whose_turn_tells_nothing_are_asked(tmp_path, monkeypatch)
     assert done.exit_code == 0, done.output
     assert "settling which is to port" in " ".join(done.stdout.split())
     assert not (tmp_path / "runs").exists()
+
+
+def test_shares_of_thrust_are_no_newton(tmp_path, monkeypatch) -> None:
+    """Thrust goes with the square of a share: as newton three effects were named of nothing."""
+    made = log(tmp_path / "a.csv", drive="thrust", full=85.0)
+    done = started(tmp_path, monkeypatch, [made], "--length 2")
+    assert "FILL IN its unit: nothing tells what up to 85 is" in " ".join(done.stdout.split())
+    table = made.read_text(encoding="utf-8").replace("thrust_port,", "thrust_port_pct,")
+    made.write_text(table.replace("thrust_starboard,", "thrust_starboard_pct,"), encoding="utf-8")
+    (tmp_path / "first_trial.toml").unlink()
+    (tmp_path / "first_trial_ship.toml").unlink()
+    assert started(tmp_path, monkeypatch, [made], "--length 2").exit_code == 0
+    text = (tmp_path / "first_trial.toml").read_text(encoding="utf-8")
+    assert 'thruster_port      = { channel = "thrust_port_pct", unit = "%" }' in text
+    ship = (tmp_path / "first_trial_ship.toml").read_text(encoding="utf-8")
+    assert ship.count('command = "share"') == 2
 
 
 @pytest.mark.study(turn=10)

@@ -53,6 +53,23 @@ def test_a_stated_speed_tells_the_unit_of_the_one_over_ground(
     assert "speed = 8" not in text
 
 
+def test_drift_and_current_are_read_out_of_a_speed_over_ground(tmp_path: Path) -> None:
+    """With the heading as a signal: without it what a current does is a force's."""
+    for speed, over in (("SOG", True), ("STW", False)):
+        path = log(tmp_path / f"{speed}.csv", ZIGZAG, 0.9, 1.0)
+        head, *rows = path.read_text(encoding="utf-8").splitlines()
+        turn = np.gradient(np.unwrap(np.deg2rad([float(row.split(",")[1]) for row in rows])))
+        rows = [f"{row},{np.rad2deg(r):.5g}" for row, r in zip(rows, turn, strict=True)]
+        head = head.replace("SOG", speed) + ",ROT[deg/s]"
+        path.write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+        given = (tmp_path / "p.toml", None, Given(length=150.0), APPROACH)
+        text = starter([inspect_log(path)], *given).files[tmp_path / "p.toml"]
+        assert ('"drift_in_speed_record"]' in text) is over
+        assert ('\npsi   = { channel = "HDG"' in text) is over
+        assert ("# left to you: psi" in text) is not over
+        assert 'outputs = ["r"]' in text
+
+
 def test_a_stated_speed_that_fits_no_unit_stays_the_speed(tmp_path: Path) -> None:
     text = begun(tmp_path, 1.0, 3.0).files[tmp_path / "p.toml"]
     assert "SOG" not in text

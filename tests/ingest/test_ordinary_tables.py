@@ -56,6 +56,22 @@ def test_nine_digits_of_a_second_are_kept(tmp_path):
     assert stamps(log(tmp_path, text)) == [START + 316091061, START + 416091062]
 
 
+@pytest.mark.parametrize(("first", "step"), [(0, 1000), (0, 20), (123_456_789, 1_000_000)])
+def test_whole_numbers_that_may_be_milliseconds_are_asked_for(tmp_path, first, step):
+    """Taken for seconds a run of seven minutes was one of five days."""
+    rows = "".join(f"{first + k * step},{k}\n" for k in range(5))
+    with pytest.raises(LogError, match=rf"step by {step} may be seconds, milliseconds"):
+        read(log(tmp_path, f"timestamp,u\n{rows}"))
+    assert len(stamps(log(tmp_path, f"timestamp[ms],u\n{rows}"))) == 5
+
+
+def test_whole_seconds_are_seconds(tmp_path):
+    for first, step in ((0, 1), (0, 5), (1_650_000_000, 60)):
+        rows = "".join(f"{first + k * step},{k}\n" for k in range(5))
+        found = stamps(log(tmp_path, f"timestamp,u\n{rows}"))
+        assert np.diff(found).tolist() == [step * 10**9] * 4
+
+
 def test_a_time_that_stands_still_is_no_clock(tmp_path):
     """A date whose time of day stands in another column is the same in every row."""
     rows = "".join(f"2025-04-11 00:00:00,{y}\n" for y in range(5))

@@ -36,6 +36,9 @@ RECORDERS = {
     "motor_angle_deg": "delta",
     "Steering_deg": "delta",
     "surge_mps": "u",
+    "rot_deg_min": "r",
+    "rot_dpm": "r",
+    "heading_min": None,
 }
 
 WITH_UNITS = {

@@ -189,3 +189,20 @@ def test_two_at_once_are_said_with_the_command_that_adds_them(result):
     assert "Next: trialid run container_ship.toml --auto adds both and goes on" in lines(
         run, file="container_ship.toml"
     )
+
+
+def test_what_a_person_has_to_judge_in_a_record_is_told_whatever_the_verdict(result):
+    run = copy.deepcopy(result)
+    assert not any("To check" in line for line in lines(run, lines=60))
+    run["trials"][0]["remarks"] = [
+        "r: 1 value out of line, at 30.0 s; masked",
+        "psi: 1 value jumped by up to 13 deg, at 41.5 s; left as it is",
+        "heels inward in turns: correlation of phi with r u 1.00",
+    ]
+    for kind in ("missing", "no fit"):
+        run["verdict"]["kind"] = kind
+        said = " ".join(" ".join(lines(run, lines=60)).split())
+        name = run["trials"][0]["name"]
+        assert f"To check, in {name}: psi: 1 value jumped by up to 13 deg" in said
+        assert "(1 more on the page)" in said
+        assert "masked" not in said

@@ -54,8 +54,13 @@ SHARE: Final = 0.12
 0.04 of what it does not hold, and 0.21 or more of what it holds."""
 
 ANYTHING: Final = 0.5
-"""Model error from which on what would not be seen may be anything: half of what moved, or all of
-the error where that is less: then it is not known that any of it is noise."""
+"""Model error from which on what would not be seen may be anything: half of what moved."""
+
+MOSTLY: Final = 0.5
+"""Share of the squared error from which on it is not known that most of it is noise. Of 66 records
+of 33 effects each in white noise and in a sea nothing was missing in 9 and 13, with shares up to
+0.21 and 0.31; in gusts in 15, of which three lie at 0.51 to 0.63. Half of it takes five of the 13
+in a sea away; twice says that nothing is missing of a boat whose compass jumped, at 0.92."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +184,8 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
         )  # fmt: skip
     total = float(np.hypot(parts.noise or 0.0, parts.undermodelling or 0.0))
     return Verdict(
-        "nothing missing" if high < min(ANYTHING, total) else "cannot tell", None, (),
+        "nothing missing" if high < min(ANYTHING, np.sqrt(MOSTLY) * total) else "cannot tell",
+        None, (),
         f"no effect stands out against the noise; a model error of up to {high:.1%} would not "
         f"be seen ({parts.method})",
     )  # fmt: skip
@@ -221,7 +227,7 @@ def _missing(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> V
     alike = f"; this record cannot tell it from {', '.join(others)}" if others else ""
     return Verdict(
         "missing", candidate.effect.name, (candidate.effect.name, *others),
-        f"{subject(fit, named)} {falls_by(fit, named.fit)} "
+        f"{subject(fit, named, len(others))} {falls_by(fit, named.fit)} "
         f"({by_chance(candidate, level)}){alike}",
     )  # fmt: skip
 

@@ -1,11 +1,12 @@
 """Wind, waves, current and shallow water."""
 
-from trialid.maths import Number, cos, sin
+from trialid.maths import Number, clip, cos, sin, sqrt
 from trialid.ship.effect import Force, Measured, Parameter, Steered, effect
 
 WIND = "Isherwood (1973), Blendermann (1994): shape of wind loads; size for a container ship"
 BG72 = "van Berlekom & Goddard (1972), tanker in shallow water"
 AGROUND = 1e-9  # of the length: a quotient stays a number where the depth is the draught
+MOST_DRIFT = 0.9  # of the speed: no ship turns with more, and a search that tries one goes on
 GROUND = "uniform steady current: the ship moves with the water, and does not feel it"
 
 
@@ -92,6 +93,12 @@ def current_in_speed_record(
     return Steered(u=-Uc_N * cos(psi) - Uc_E * sin(psi))
 
 
+@effect(source="kinematics: U^2 = u^2 + v^2")
+def drift_in_speed_record(u, v):
+    """u = sqrt(u^2 - v^2): u, an input, is recorded with the drift in it, as over ground."""
+    return Steered(u=sqrt(u * u - clip(v, MOST_DRIFT * u) ** 2) - u)
+
+
 def _blockage(h: Number, T: Number) -> Number:
     """T / (h - T): zero in deep water, 1 with as much water under the keel as draught."""
     return T / (h - T + AGROUND)
@@ -122,6 +129,6 @@ def shallow_water_yaw(
 
 EFFECTS = (
     steady_wind, apparent_wind, apparent_wind_yaw, apparent_wind_ahead, wave_slope_roll,
-    current_in_sway, current_in_surge, current_in_speed_record,
+    current_in_sway, current_in_surge, current_in_speed_record, drift_in_speed_record,
     shallow_water_sway, shallow_water_yaw,
 )  # fmt: skip

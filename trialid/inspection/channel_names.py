@@ -97,8 +97,10 @@ NO_MEASUREMENT: Final = frozenset(
 
 UNITS_IN_NAMES: Final = {
     "deg": "deg", "degree": "deg", "degrees": "deg", "rad": "rad", "degps": "deg/s",
-    "radps": "rad/s", "dps": "deg/s", "degs": "deg/s", "degpm": "deg/min", "kn": "kn", "kt": "kn",
+    "radps": "rad/s", "dps": "deg/s", "degs": "deg/s", "degpm": "deg/min", "dpm": "deg/min",
+    "kn": "kn", "kt": "kn",
     "kts": "kn", "knots": "kn", "mps": "m/s", "rpm": "rpm", "rps": "rps",
+    "pct": "%", "percent": "%",
     "deg s": "deg/s", "rad s": "rad/s", "m s": "m/s", "deg min": "deg/min",
 }  # fmt: skip
 
@@ -129,7 +131,7 @@ def quantity(name: str, unit: str | None) -> str | None:
     if (letter := ALONE.get(name)) is not None:
         return letter if _fits(letter, unit) else None
     told = words(name)
-    if NO_MEASUREMENT.intersection(words(name.rpartition(":")[2])):
+    if NO_MEASUREMENT.intersection(_without_unit(words(name.rpartition(":")[2]))):
         return None
     found = _qualified(name, unit) or _called(name)
     if found == "psi" and GROUND.intersection(told):
@@ -143,16 +145,22 @@ def quantity(name: str, unit: str | None) -> str | None:
 
 def _qualified(name: str, unit: str | None) -> str | None:
     """The quantity of a letter with words behind it that leave its meaning."""
-    letter, *more = words(name.rpartition(":")[2]) or ("",)
+    letter, *behind = words(name.rpartition(":")[2]) or ("",)
     stated = unit or unit_in_name(name)
-    for count in (2, 1):
-        if " ".join(more[-count:]) in UNITS_IN_NAMES:
-            more = more[:-count]
+    more = _without_unit(behind)
     found = LETTERS.get(letter)
     if found is None or not QUALIFIERS.issuperset(more):
         return None
     known = letter in NAMED or (stated is not None and _fits(found, stated))
     return found if known and (more or letter not in ALONE) else None
+
+
+def _without_unit(field: Sequence[str]) -> Sequence[str]:
+    """The words of a field before those of its unit: `min` of `rot_deg_min` is no smallest."""
+    for count in (2, 1):
+        if " ".join(field[-count:]) in UNITS_IN_NAMES:
+            field = field[:-count]
+    return field
 
 
 def of_some_speed(name: str, unit: str) -> bool:
@@ -163,7 +171,8 @@ def of_some_speed(name: str, unit: str) -> bool:
 
 def over_ground(name: str, unit: str | None) -> bool:
     """Whether a channel is the speed over ground, which no model knows but which is a start."""
-    if NO_MEASUREMENT.intersection(words(name.rpartition(":")[2])) or not _fits("u", unit):
+    field = _without_unit(words(name.rpartition(":")[2]))
+    if NO_MEASUREMENT.intersection(field) or not _fits("u", unit):
         return False
     return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
 

@@ -8,7 +8,7 @@ from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.progress import Progress
 from trialid.trial import Trial
 from trialid.workbench.watch import file_state
-from trialid.workflow.read_trials import align_trial
+from trialid.workflow.read_trials import align_trial, check_own_stretches
 
 
 class Shelf:
@@ -34,6 +34,7 @@ class Shelf:
                 so_far(tuple(done.values()))
             progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
             done[key] = self._kept.get(key) or align_trial(pipeline, trial)
+        check_own_stretches(pipeline, tuple(done.values()))
         self._kept = done
         return tuple(done.values())
 

@@ -2,15 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
+from typing import Final
 
 import numpy as np
 
 from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
+from trialid.alignment.input_gaps import LENGTHS, without_input_gaps
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
 from trialid.diagnosis.rudder_jumps import rudder_jump, said_of
+from trialid.errors import PipelineError
 from trialid.ingest import Aids, LogFile
-from trialid.names.quantities import SIGNALS, Quantity
+from trialid.names.quantities import SIGNALS, Quantity, is_input
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.pipeline_file.form import ClockSection
 from trialid.progress import Progress
@@ -19,6 +23,9 @@ from trialid.trial import Trial
 from trialid.workflow.origin import relative_path
 from trialid.workflow.quantities_read import quantities_of
 
+SHARED: Final = 0.1
+"""Share of a trial's time that another may have of the same log: windows overlap at their ends."""
+
 
 def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
     """Logs of every trial, read and brought onto one clock."""
@@ -26,15 +33,37 @@ def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
     for i, trial in enumerate(pipeline.trials):
         progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
         done.append(align_trial(pipeline, trial, known))
+    check_own_stretches(pipeline, done)
     return _with_jumps(pipeline, done)
+
+
+def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
+    """Refuse trials that are the same stretch of the same log.
+
+    Fitted twice it counts as twice as sure, and held out as well as fitted it foretells itself.
+
+    Raises
+    ------
+    PipelineError
+        Two trials share a log and more than `SHARED` of the shorter one's time.
+    """
+    for one, other in combinations(trials, 2):
+        files = [log.path for log in one.logs if log.sha256 in {x.sha256 for x in other.logs}]
+        begin = max(one.start, other.start)
+        end = min(t.start + t.duration * 1e9 for t in (one, other))
+        shortest = min(one.duration, other.duration)
+        if files and (end - begin) / 1e9 > SHARED * shortest:
+            raise PipelineError(
+                f"{pipeline.path}: trials {one.name!r} and {other.name!r} are the same "
+                f"{(end - begin) / 1e9:.0f} s of {files[0]}; a record cannot be held out that is "
+                "fitted, nor count twice: leave one out, or give each a window of its own"
+            )
 
 
 def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
     """The trials, with a remark where what is called the rudder is its order."""
-    if pipeline.ship is None:
-        return tuple(trials)
-    L, U0 = (read_ship(pipeline.ship).particulars.get(n, 0.0) for n in ("L", "U0"))
-    jump = rudder_jump(trials, L / U0) if L and U0 else None
+    own_time = _own_time(pipeline)
+    jump = None if own_time is None else rudder_jump(trials, own_time)
     if jump is None:
         return tuple(trials)
     return tuple(
@@ -60,7 +89,7 @@ def align_trial(
         log_clocks=[c for g, c in zip(logs, clocks, strict=True) for _ in ingest.files_of(g)],
         keep={q: s.keep for q, s in trial.signals.items() if s.keep},
     )  # fmt: skip
-    made = _at_origin(pipeline, made)
+    made = _at_origin(pipeline, _known_throughout(pipeline, made, known))
     if trial.speed is None:
         return made
     if "u" in made.signals:
@@ -99,6 +128,23 @@ def _at_origin(pipeline: Pipeline, trial: Trial) -> Trial:
     if pipeline.ship is None or not {"x", "y"} <= {*trial.signals}:
         return trial
     return at_origin(trial, read_ship(pipeline.ship).antenna)
+
+
+def _known_throughout(pipeline: Pipeline, trial: Trial, known: Mapping[str, Quantity]) -> Trial:
+    """The trial, or the longest stretch of it in which it is recorded what steers her."""
+    own_time = _own_time(pipeline)
+    if own_time is None:
+        return trial
+    inputs = [name for name in trial.signals if is_input(known[name])]
+    return without_input_gaps(trial, inputs, LENGTHS * own_time)
+
+
+def _own_time(pipeline: Pipeline) -> float | None:
+    """Time in which the ship goes her own length [s]; None where her file does not tell."""
+    if pipeline.ship is None:
+        return None
+    L, U0 = (read_ship(pipeline.ship).particulars.get(n, 0.0) for n in ("L", "U0"))
+    return L / U0 if L and U0 else None
 
 
 def _log_clock(clock: ClockSection | None) -> LogClock | None:

@@ -42,3 +42,17 @@ def test_the_sentence_says_no_chance_that_was_not_shown():
 
 def test_those_alike_in_trace_are_one_family_whatever_they_explain():
     assert decided(0.45, p_value=1.0, alike=("b",)).kind == "missing"
+
+
+@pytest.mark.parametrize(
+    ("count", "begins"),
+    [(3, "a is missing: with it the error"), (9, "one of 10 is missing, first of them a: with it")],
+)
+def test_a_name_with_many_as_good_is_said_to_be_the_first_of_them(count, begins):
+    names = [f"other_{k}" for k in range(count)]
+    first = refit("a", 0.5, 0.07, family=names)
+    others = [refit(name, 0.51, 0.0701, wobble=0.1) for name in names]
+    ranking = [one.candidate for one in (first, *others)]
+    found = decide(fit(0.10), ranking, [first, *others], NO_ROUTE, None, 0.05)
+    assert found.effect == "a"
+    assert found.sentence.startswith(begins)

@@ -42,8 +42,11 @@ class Rows:
     findings: int
 
 
-LEFT: Final = re.compile(r"; left as (it is|they are)$")
-"""How a remark ends on values that a person has to judge."""
+TO_CHECK: Final = re.compile(
+    r"; left as (it is|they are)\b|: only \[.*\] s is used|\bheels inward in turns\b"
+)
+"""What a remark says of values that a person has to judge: a jump, a record that is used in part, a
+roll that may be positive to port."""
 
 ROWS: Final = (
     Rows(trials=8, parameters=12, candidates=4, findings=3),
@@ -186,7 +189,7 @@ def _where(run: Result, rows: Rows) -> "Iterable[RenderableType]":
 
 def _to_check(run: Result) -> "Iterable[RenderableType]":
     """What in a record may be no measurement and was left in it, of one trial."""
-    said = [(t.name, r) for t in run.trials for r in t.remarks if LEFT.search(r)]
+    said = [(t.name, r) for t in run.trials for r in t.remarks if TO_CHECK.search(r)]
     for name, remark in said[:1]:
         more = f" ({len(said) - 1} more on the page)" if len(said) > 1 else ""
         yield Words(f"To check, in {name}: {plain(remark)}{more}", 2)

@@ -34,6 +34,9 @@ from trialid.workflow.first_pipeline.further_signals import with_further
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
 """No share of full is larger; a stated thrust of a boat that moves is."""
+FULL: Final = 100.0
+"""Nor is a percentage; thrusts in newton of a small boat may be smaller, so that none is taken for
+one up to here: the thrust of a share goes with its square."""
 PULSES: Final = (800.0, 2200.0)
 """[us] Between which pulses of servos and speed controllers lie: 1000 to 2000, some 900 to 2100.
 Only words depend on it: the unit is asked for either way."""
@@ -130,7 +133,7 @@ def _unit_by_size(source: ChannelInspection) -> tuple[str, str]:
     largest = max(abs(source.low), abs(source.high))
     if largest <= SHARE:
         return "1", f"; no unit is stated, up to {largest:.3g} can only be a share of full"
-    if "thrust" in words(source.name):
+    if "thrust" in words(source.name) and largest > FULL:
         return "N", (
             f"; CAREFUL: a thrust by its name, and no unit is stated: up to {largest:.3g} is read "
             "as newton, and the gain is of whatever it is"
@@ -180,7 +183,7 @@ def velocity_speed(survey: Inspection) -> Signal | None:
             course = Sketch(x.sketch.t, np.hypot(x.sketch.y, y.sketch.y))
             taken = dataclasses.replace(x, name=stem, angle="speed", sketch=course)
             why = "CAREFUL: the length of a velocity over ground; a current adds to it"
-            return Signal("u", taken, None, None, why, ())
+            return Signal("u", taken, None, None, why, (), over_ground=True)
     return None
 
 

@@ -13,7 +13,7 @@ from trialid.inspection import channel_names
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import approach_by_positions
-from trialid.inspection.relations import RATES, side, slope_agreement, unit_of_rate, unit_of_speed
+from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 
@@ -27,14 +27,15 @@ ASK_UNIT: Final = "FILL IN the unit, the log states none"
 ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
 MEASURED: Final = "side measured"
 CONVENTION: Final = "CAREFUL: side by the format's convention, the motion does not confirm it"
-TURNING: Final = (0.05, 2.5)
-"""Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
-further apart than this range is wide."""
+GROUND: Final = "over ground"
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One line of `[trial.signals]`, and its comment; a value may be `OPEN`."""
+    """One line of `[trial.signals]`, and its comment; a value may be `OPEN`.
+
+    `over_ground` is a speed with drift and current in it.
+    """
 
     quantity: str
     source: ChannelInspection
@@ -42,6 +43,7 @@ class Signal:
     positive: str | None
     why: str
     others: tuple[ChannelInspection, ...]
+    over_ground: bool = False
 
     @property
     def open(self) -> bool:
@@ -67,6 +69,11 @@ class Chosen:
     def quantities(self) -> frozenset[str]:
         """Quantities that the log holds."""
         return frozenset(one.quantity for one in self.signals)
+
+    @property
+    def over_ground(self) -> bool:
+        """Whether the speed is one over ground."""
+        return any(one.over_ground for one in self.signals)
 
     @property
     def states_speed(self) -> bool:
@@ -195,7 +202,7 @@ def other_speed(survey: Inspection, known: float | None, told: str) -> Signal | 
     Of one without a unit a known approach speed [m/s] settles it; `told` is where that is from.
     """
     unsaid = "of which its name does not say relative to what"
-    for sources, words in ((_over_ground(survey), "over ground"), (_some_speed(survey), unsaid)):
+    for sources, words in ((_over_ground(survey), GROUND), (_some_speed(survey), unsaid)):
         for source in sources:
             why = (
                 f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
@@ -205,7 +212,7 @@ def other_speed(survey: Inspection, known: float | None, told: str) -> Signal | 
                 unit = unit_of_speed(source, known)
                 why += f"; {_by_speed(known, told)}"
             if unit is not None:
-                return Signal("u", source, unit, None, why, ())
+                return Signal("u", source, unit, None, why, (), over_ground=words == GROUND)
     return None
 
 
@@ -264,30 +271,6 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
 
 def _unit_of_angle(largest: float, unit: str) -> tuple[str, str]:
     return unit, f"; no unit is stated, but up to {largest:.3g} can only be {unit}"
-
-
-def size_unit(trial: Chosen, length: float, speed: float) -> Chosen:
-    """The same with the unit of a yaw rate by its size, where nothing else tells it.
-
-    A ship in a manoeuvre turns with r L / U between 0.05 and 2.5, her own length [m] and speed
-    [m/s]: faster she would spin about herself, slower is no manoeuvre. Units lie further apart.
-    """
-    signals = tuple(_sized(one, length / speed) for one in trial.signals)
-    return dataclasses.replace(trial, signals=signals)
-
-
-def _sized(signal: Signal, seconds: float) -> Signal:
-    if signal.quantity != "r" or signal.unit != OPEN:
-        return signal
-    largest = float(np.quantile(np.abs(signal.source.sketch.y), 0.99))
-    sizes = {u: largest * units.factor(u, "rad/s") * seconds for u in RATES}
-    fitting = [u for u, size in sizes.items() if TURNING[0] < size < TURNING[1]]
-    if len(fitting) != 1:
-        return signal
-    told = ", ".join(f"{size:.2g} in {u}" for u, size in sizes.items())
-    words = f"unit by its size: r L / U would be {told}"
-    why = signal.why.replace(ASK_UNIT, words)
-    return dataclasses.replace(signal, unit=fitting[0], why=why)
 
 
 def shared_signals(trials: Sequence[Chosen]) -> frozenset[str]:

@@ -34,6 +34,7 @@ moved at random; with half of it that one is told too, with twice none is."""
 
 def with_further(trial: Chosen, live: Live) -> Chosen:
     """The trial with what else its log holds: wind, a sway speed, what is left to the user."""
+    trial = _with_heading(trial, live)
     wind = [plain_signal(name, live, why) for name, why in WIND.items() if live.get(name)]
     whole = len(wind) == len(WIND) and not any(one.open for one in wind)
     found = dataclasses.replace(
@@ -42,6 +43,16 @@ def with_further(trial: Chosen, live: Live) -> Chosen:
         beside=(*_left(trial, live), *(() if whole else ((one, WHOLE_WIND) for one in wind))),
     )
     return _with_sway(found, plain_signal("v", live, "")) if live.get("v") else found
+
+
+def _with_heading(trial: Chosen, live: Live) -> Chosen:
+    """The trial with her heading, where a current is in her speed: without it forces take it up."""
+    if not (trial.over_ground and live.get("psi")) or "psi" in trial.quantities:
+        return trial
+    heading = plain_signal("psi", live, "with a speed over ground the run seeks the current in it")
+    if heading.open:
+        return trial
+    return dataclasses.replace(trial, signals=(*trial.signals, heading))
 
 
 def _left(trial: Chosen, live: Live) -> Iterator[tuple[Signal, str]]:

@@ -202,11 +202,8 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     rolls, order_only = "phi" in known, not several and "delta" not in known
     states = ["v", *(["p"] if rolls else []), "r", *(["phi"] if rolls else [])]
     states += ["psi"] if "psi" in outputs else []
-    effects = [
-        "linear_hull",
-        "rudders" if several else "linear_rudder",
-        *(["linear_roll"] if rolls else []),
-    ]
+    over_ground = all(one.over_ground for one in trials)
+    effects = _effects(several=several, rolls=rolls, over_ground=over_ground)
     yield "[model]"
     yield f"states = {_list(states)}  # what is simulated; the speed is read from the log"
     if order_only:
@@ -232,6 +229,16 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     offset = [] if several else ["rudder_offset"]  # of one rudder; of several `NAME_misaligned`
     nuisance = ["initial_state", "bias", *offset, "delay"]
     yield f"nuisance = {_list(nuisance)}  # of each trial, estimated too"
+
+
+def _effects(*, several: bool, rolls: bool, over_ground: bool) -> list[str]:
+    """The simplest model: linear, and with a speed over ground read as one."""
+    return [
+        "linear_hull",
+        "rudders" if several else "linear_rudder",
+        *(["linear_roll"] if rolls else []),
+        *(["drift_in_speed_record"] if over_ground else []),
+    ]
 
 
 def _names(trials: Sequence[Chosen]) -> list[str]:

@@ -27,6 +27,9 @@ PART = 1 << 20
 """Rows of a column that are gone through at once."""
 QUICKEST = 1e-3
 """[s] Seconds that step by less, among such numbers, are rather days."""
+SLOWEST = 10.0
+"""[s] A manoeuvre is logged quicker: whole numbers that step by more are rather thousandths, at a
+hundred a second and less. Half of it asks of logs every 5 s, twice lets those at 50 a second by."""
 TOLD = "or say in a template how the time is written (trialid inspect LOG --template FILE)"
 OF_DAY = re.compile(r"(\d{1,2}):(\d\d)(?::(\d\d(?:[.,]\d+)?))?")
 
@@ -62,6 +65,8 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
     if stated is None:
         _not_days(table, column, y)
     by_size = None if stated else _since_1970(y)
+    if stated is None and by_size is None:
+        _not_thousandths(table, column, y)
     scale = _seconds_per(table, stated or by_size or "s")
     for part in _parts(y):
         wrong = ~(np.abs(y[part] * scale) < LATEST_S)
@@ -78,6 +83,19 @@ def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
     for part in _parts(y):
         t[part] = np.rint(y[part] * scale * 1e9)
     return Clock(t, (column,), f"column {head.name}", remarks)
+
+
+def _not_thousandths(table: Table, column: int, y: NDArray[np.float64]) -> None:
+    """LogError for whole numbers that may count thousandths of a second, or less, as well."""
+    whole = len(y) > 2 and all((y[part] == np.rint(y[part])).all() for part in _parts(y))
+    if not whole or (SINCE[0] < y.min() and y.max() < SINCE[1]):
+        return
+    if (step := float(np.quantile(np.abs(np.diff(y)), 0.5, method="lower"))) >= SLOWEST:
+        raise LogError(
+            f"{table.where(0, column)}: whole numbers that step by {step:.10g} may be seconds, "
+            f"milliseconds or less; state the unit in the header, as in "
+            f"'{table.heads[column].name}[ms]', {TOLD}"
+        )
 
 
 def _since_1970(y: NDArray[np.float64]) -> str | None:

@@ -1,0 +1,32 @@
+"""Trials that are the same stretch of the same log: none can be held out, nor count twice."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from trialid.errors import PipelineError
+from trialid.trial import LogSource, Trial
+from trialid.workflow.read_trials import check_own_stretches
+
+PIPELINE = SimpleNamespace(path=Path("p.toml"))
+
+
+def of_log(name, begin, seconds, sha256="aa", use="fit"):
+    r = np.zeros(seconds + 1)
+    logs = (LogSource("bridge.mcap", sha256, "mcap"),)
+    valid = np.ones(len(r), np.bool_)
+    return Trial(name, use, 1.0, {"r": r}, {"r": valid}, logs=logs, start=begin * 10**9)
+
+
+@pytest.mark.parametrize("use", ["fit", "check"])
+def test_the_same_stretch_is_refused(use):
+    trials = (of_log("a", 0, 600), of_log("b", 300, 400, use=use))
+    with pytest.raises(PipelineError, match=r"'a' and 'b' are the same 300 s of bridge\.mcap"):
+        check_own_stretches(PIPELINE, trials)
+
+
+def test_other_windows_and_other_logs_are_trials_of_their_own():
+    ends = of_log("b", 590, 400)
+    check_own_stretches(PIPELINE, (of_log("a", 0, 600), ends, of_log("c", 0, 600, "bb")))
