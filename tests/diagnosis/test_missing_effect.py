@@ -189,6 +189,9 @@ def test_nothing_is_missing_only_where_most_of_the_error_is_known_to_be_noise(un
     parts = Split("dependence on the input", "", 0.06, 0.08, (0.0, 0.1), (0.0, unseen))
     found = decide(SimpleNamespace(), (), (), parts, None, 0.05)
     assert found.kind == kind
+    tenth = Split("dependence on the input", "", 0.006, 0.008, (0.0, 0.01), (0.0, 0.1 * unseen))
+    little = decide(SimpleNamespace(), (), (), tenth, None, 0.05)
+    assert little.kind == ("nothing missing" if unseen < 0.1 else "cannot tell")
     assert f"{unseen:.1%} would not be seen" in found.sentence
 
 

@@ -95,7 +95,7 @@ def current_in_speed_record(
 
 @effect(source="kinematics: U^2 = u^2 + v^2")
 def drift_in_speed_record(u, v):
-    """u = sqrt(u^2 - v^2): u, an input, is recorded with the drift in it, as over ground."""
+    """u = sqrt(u^2 - v^2): u, an input, is recorded over ground."""
     return Steered(u=sqrt(u * u - clip(v, MOST_DRIFT * u) ** 2) - u)
 
 
