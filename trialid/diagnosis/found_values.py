@@ -3,6 +3,8 @@
 from collections import Counter
 from typing import Final
 
+import numpy as np
+
 from trialid.diagnosis.rudder_jumps import own_time
 from trialid.identification.fit import Fit
 from trialid.names.quantities import PARTICULARS, RUDDERS
@@ -57,6 +59,17 @@ def at_a_sensors_end(effect: Effect, fit: Fit) -> bool:
     one clock a clock of the heading that drifts by 0.5 % had a name.
     """
     return not of_the_ship(effect) and bool({*effect.parameters} & {*fit.at_bounds})
+
+
+def sweeps_away(effect: Effect, fit: Fit) -> bool:
+    """Whether it is a current that nobody recorded, faster than she goes: no trial is sailed in it.
+
+    Of a boat that goes 0.6 m/s one of 1.2 m/s was said to do as well as what was named.
+    """
+    flow = [fit.estimates[n] for n, p in effect.parameters.items() if p.unit == "m/s"]
+    if not flow or not by_heading(effect):
+        return False
+    return float(np.hypot.reduce(flow)) * own_time(fit) > fit.model.ship.particulars["L"]
 
 
 def as_slow_as_the_ship(effect: Effect, fit: Fit) -> bool:

@@ -4,9 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 from made_up_fits import BEFORE
+from s175q import MODEL, zigzag
 from test_refit import ALIKE, LESS, refit
 
-from trialid.diagnosis.found_values import by_heading
+from trialid.diagnosis.found_values import by_heading, sweeps_away
 from trialid.diagnosis.search.refit import likeliest_refit, objection
 from trialid.effects import CATALOGUE
 
@@ -26,6 +27,17 @@ def test_only_what_nobody_recorded_is_by_the_heading_alone():
     unseen = {"current_in_sway", "current_in_surge", "current_in_speed_record"}
     assert found == {"steady_wind", *unseen}
     assert not by_heading(SimpleNamespace(signals=("psi", "true_wind")))
+
+
+@pytest.mark.parametrize(("north", "east", "swept"), [(5.0, 4.0, False), (6.0, -5.0, True)])
+def test_no_trial_is_sailed_in_a_current_faster_than_the_ship(north, east, swept):
+    """She goes 7.33 m/s; a wind is a force, and is none of it."""
+    problem = SimpleNamespace(trials=[zigzag(10)])
+    for name, counted in (("current_in_speed_record", True), ("steady_wind", False)):
+        effect = CATALOGUE[name]
+        found = dict(zip(effect.parameters, (north, east, 0.0, 0.0), strict=False))
+        fit = SimpleNamespace(model=MODEL, problem=problem, estimates=found)
+        assert sweeps_away(effect, fit) is (swept and counted)
 
 
 def test_wind_that_nobody_recorded_gives_way_to_whatever_of_the_ship_does_as_much():

@@ -13,6 +13,7 @@ from trialid.diagnosis.found_values import (
     her_own,
     late_sensor,
     of_the_ship,
+    sweeps_away,
     turns_round,
 )
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
@@ -233,10 +234,14 @@ def _gives_way(refit: Refit, grown: bool) -> bool:
     return beside or refit.carried.seen < FAINT
 
 
+NO_SUCH_VALUE: Final = (turns_round, at_a_sensors_end, sweeps_away)
+"""What a value is that no ship, no sensor and no trial has."""
+
+
 def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
     shown = refit.candidate.shown(level) or _takes_most(fit, refit)
-    if not shown or turns_round(*_found(refit)) or at_a_sensors_end(*_found(refit)):
+    if not shown or any(no_such(*_found(refit)) for no_such in NO_SUCH_VALUE):
         return "chance would do it, or no ship and no sensor has such a value"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
         return NOT_ARRIVED
