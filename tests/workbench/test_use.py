@@ -56,4 +56,4 @@ def test_the_model_is_handed_out(address: Address, tmp_path: Path) -> None:
 def test_the_panel_links_to_what_is_there(address: Address) -> None:
     part = address.get("/api/screen").json["parts"]["use"]
     assert '<a href="/model/fmu" download>' in part
-    assert 'action="/model/ardupilot"' in part
+    assert 'data-path="/model/ardupilot"' in part
