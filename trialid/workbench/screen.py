@@ -22,8 +22,9 @@ from trialid.result.finding_rows import FindingRow
 from trialid.result.json_file import finite
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries
-from trialid.workbench import error_number, model_rows, step_rows
+from trialid.workbench import error_number, model_rows
 from trialid.workbench.shown import Shown
+from trialid.workbench.steps import step_rows
 from trialid.workflow.origin import signals_of
 from trialid.workflow.outcome import Outcome
 
