@@ -11,8 +11,8 @@ from trialid.report.pages import side_by_side
 from trialid.report.pages.page import page as page_of
 from trialid.result.json_file import result_of
 
-WIDTHS = (390, 1024, 1366)
-"""A phone, a tablet, a laptop."""
+WIDTHS = (390, 800, 1024, 1366)
+"""A phone, a tablet upright and across, a laptop."""
 
 OUTSIDE = """() => {
   const width = document.documentElement.clientWidth;
