@@ -17,6 +17,8 @@ pytest.importorskip("playwright.sync_api")
 pytestmark = pytest.mark.skipif(browser.CHROMIUM is None, reason="needs chromium")
 
 NARROW = {"width": 800, "height": 900}
+PATIENCE = 20_000
+"""[ms] for what takes a second or two."""
 TOKENS = ("the-first-token", "the-second-token")
 
 
@@ -30,6 +32,7 @@ def desk(tmp_path: Path) -> Iterator[Desk]:
 @pytest.fixture
 def screen(desk: Desk, tmp_path: Path) -> Iterator[Screen]:
     with quick.serving(desk) as address, browser.opened(where(address), tmp_path) as found:
+        found.page.set_default_timeout(PATIENCE)
         found.settled()
         yield found
 
@@ -129,6 +132,7 @@ def test_a_server_that_stopped_or_was_started_anew_is_told(desk: Desk, tmp_path:
             opened = browser.opened(where(address, first), tmp_path)
             screen = later.enter_context(opened)
             screen.settled()
+        screen.page.set_default_timeout(PATIENCE)
         page, banner = screen.page, screen.page.locator("#banner")
         banner.filter(has_text="No connection to trialid").wait_for()
         page.get_by_role("button", name=f"Add {ADDED}").click()

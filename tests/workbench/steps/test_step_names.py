@@ -72,6 +72,7 @@ def test_every_step_at_a_desk_has_the_name_of_its_edit(path: Path) -> None:
         assert not [word for word in ('class="fell"', 'class="rose"') if word in error]
         desk.undo(desk.status.version)
         assert words_of(desk) == [*begun, "late fitted", "late held out"]
+        assert quick.steps(path)[2:] == [("dropped", ADDED), *[("as written", None)] * 2]
         edit(desk, "free", parameter="Nrar", free=False)
         assert words_of(desk) == [*begun, "late fitted", "late held out", "fix Nrar"]
         error = screen.parts(desk.shown)["error"]
