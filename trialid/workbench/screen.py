@@ -39,6 +39,9 @@ PARTS = (
 )  # fmt: skip
 """The pieces, each under the name of its place on the page and of its template."""
 
+LONGEST_NAME = 24
+"""Characters of a trial's name that its tab has room for."""
+
 
 @cache
 def environment() -> "jinja2.Environment":
@@ -156,6 +159,7 @@ def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
         yield {
             "place": place,
             "name": name,
+            "short": _shortened(name),
             "track": track_picture(tracks.get(name), _particulars(shown, run)),
             "use": written[name].use if name in written else "fit",
             "errors": errors,
@@ -164,6 +168,11 @@ def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
             "signals": [row for row in signals_of(shown.pipeline) if row.trial == name],
             "findings": _findings(run.where, name),
         }
+
+
+def _shortened(name: str) -> str:
+    """A name that a tab has room for: both its ends, as names of trials differ there."""
+    return name if len(name) <= LONGEST_NAME else f"{name[:10]}…{name[-13:]}"
 
 
 def _particulars(shown: Shown, run: Result) -> Mapping[str, float]:
