@@ -60,6 +60,8 @@ def test_gains_of_an_autopilot_are_saved(screen: Screen) -> None:
     page.get_by_role("button", name=save).click()
     told = page.locator("#use .complaint").filter(has_text="expected a number above 0")
     told.wait_for()
+    below = told.bounding_box()
+    assert below["y"] + below["height"] <= browser.LAPTOP["height"]  # it is seen, not only there
     rudder.fill("35")
     with page.expect_download() as download:
         page.get_by_role("button", name=save).click()

@@ -40,6 +40,7 @@ export async function handOver(row, path) {
     const told = paragraph(error.message, "complaint");
     told.setAttribute("role", "alert");
     row.append(told);
+    told.scrollIntoView({ block: "nearest" });
   }
 }
 
