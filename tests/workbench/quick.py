@@ -205,9 +205,9 @@ class Address:
 
 
 @contextmanager
-def serving(desk: Desk, token: str | None = None) -> Iterator[Address]:
-    """The workbench's real server, on a free port."""
-    with socket.create_server(("127.0.0.1", 0)) as listening:
+def serving(desk: Desk, token: str | None = None, port: int = 0) -> Iterator[Address]:
+    """The workbench's real server, on a free port unless one is given."""
+    with socket.create_server(("127.0.0.1", port)) as listening:
         app = server.application(desk, token)
         config = uvicorn.Config(
             app, log_level="warning", lifespan="off", timeout_graceful_shutdown=1

@@ -34,6 +34,11 @@ def test_a_manoeuvre_is_tried_on_the_spot(address: Address) -> None:
     assert all(p["line"] and p["band"] for p in picture["panels"][1:])
     assert picture["panels"][0]["band"] == ""
     assert len(picture["track"]["boxes"]) == 8
+    said = {"zigzag 20,5 20": "'20,5': is no number; write it like 20.5", "zigzg 10": "'zigzag'"}
+    for orders, words in said.items():
+        error = address.post("/api/try", {"orders": orders}).json["error"]
+        assert words in error
+        assert "CSV" not in error
     for wrong in ({"orders": "zigzg 10"}, {"orders": ""}, {"orders": 3}, [1]):
         refused = address.post("/api/try", wrong)
         assert refused.status == 400
@@ -45,6 +50,10 @@ def test_the_model_is_handed_out(address: Address, tmp_path: Path) -> None:
     assert ship.headers["content-disposition"] == 'attachment; filename="model.toml"'
     assert "uncertainty" in tomllib.loads(ship.body.decode())
     assert json.loads(address.get("/model/nomoto").body)["schema"] == "trialid-nomoto/1"
+    names = {"json": "model.json", "nomoto": "model-nomoto.json", "pid": "model-pid.json"}
+    for kind, name in names.items():
+        told = address.get(f"/model/{kind}").headers["content-disposition"]
+        assert told == f'attachment; filename="{name}"'
     with zipfile.ZipFile(io.BytesIO(address.get("/model/c").body)) as packed:
         assert set(packed.namelist()) == {"model.c", "model.h"}
     assert b"ATC_STR_RAT_FF," in address.get("/model/ardupilot?full_rudder=35").body
@@ -56,4 +65,4 @@ def test_the_model_is_handed_out(address: Address, tmp_path: Path) -> None:
 def test_the_panel_links_to_what_is_there(address: Address) -> None:
     part = address.get("/api/screen").json["parts"]["use"]
     assert '<a href="/model/fmu" download>' in part
-    assert 'action="/model/ardupilot"' in part
+    assert 'data-path="/model/ardupilot"' in part

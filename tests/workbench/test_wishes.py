@@ -51,11 +51,11 @@ def test_every_wish_changes_what_it_says_and_nothing_else(recipe: Pipeline) -> N
     assert bound.words == "bounds of GM -0.5 to 3"
     assert told(bound)["identify"].pop("bounds") == {"GM": [-0.5, 3.0]}
     unbound = ask(bound.after, "bounds", parameter="GM", low=None, high=None)
-    assert (unbound.words, unbound.after.identify.bounds) == ("no bounds of GM", {})
+    assert (unbound.words, unbound.after.text) == ("no bounds of GM", recipe.text)
     valued = ask(recipe, "value", parameter="Ydelta", value=2)
     assert (valued.words, told(valued)["model"]["values"]) == ("Ydelta = 2", {"Ydelta": 2.0})
     own = ask(valued.after, "value", parameter="Ydelta", value=None)
-    assert (own.words, own.after.model.values) == ("no value of Ydelta", {})
+    assert (own.words, own.after.text) == ("no value of Ydelta", recipe.text)
     used = ask(recipe, "use", trial="late", use="fit")
     assert (used.words, [t.use for t in used.after.trials]) == ("late fitted", ["fit", "fit"])
     held = ask(used.after, "use", trial="early", use="check")
@@ -80,6 +80,7 @@ def test_a_bound_may_be_on_one_side_alone(recipe: Pipeline) -> None:
     ({"do": "bounds", "parameter": "GM", "low": 2.0, "high": 1.0}, ("identify.bounds.GM",)),
     ({"do": "bounds", "parameter": "GM", "low": None, "high": None}, ("it is so already",)),
     ({"do": "bounds", "parameter": "Ydelta", "low": 0.0, "high": 1.0}, ("Ydelta",)),
+    ({"do": "bounds", "parameter": "GM", "low": 99.0, "high": None}, ("the start", "untick GM")),
     ({"do": "value", "parameter": "Nx", "value": 1.0}, ("model.values.Nx",)),
     ({"do": "value", "parameter": "GM", "value": None}, ("it is so already",)),
     ({"do": "use", "trial": "lat", "use": "fit"}, ("no trial 'lat'", "'late'")),

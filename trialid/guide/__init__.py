@@ -16,7 +16,7 @@ TOPICS: Final = {
     "own_ship": "a ship file from length, beam and draught; how far off it is",
     "actuators": "several rudders, thrusters, pods; signals of your own",
     "effects": "what a model is made of, and how to write an effect of your own",
-    "verdicts": "what the four verdicts mean, and how each is reached",
+    "verdicts": "what the five verdicts mean, and how each is reached",
     "structures": "whole models compared by leaving out each trial",
     "batch": "a fleet: many ships and voyages, on many cores; what changed",
     "accuracy": "how far off a parameter may be: what each column means",

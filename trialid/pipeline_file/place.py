@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import InlineTable
 
 from trialid import user_files
 from trialid.errors import PipelineError
@@ -81,13 +82,25 @@ def with_key_of(text: str, tables: str, index: int, key: str, value: Any) -> str
 
 
 def without_entry(text: str, table: Keys, name: str) -> str:
-    """The text with an entry of a table less."""
+    """The text with an entry of a table less, and without the `{}` that would be left of it."""
     expected = copy.deepcopy(data_of(text))
     del expected[table[0]][table[1]][name]
     new = _dumped(text, table, "drop", name, lambda section: delitem(section[table[1]], name))
     if not says(new, expected):
         raise PipelineError(by_hand(table, "drop", name))
-    return new
+    return _without_bare(new, table)
+
+
+def _without_bare(text: str, table: Keys) -> str:
+    """The text without an inline table that is empty, unless the user says something beside it."""
+    section: Any = tomlkit.parse(text.removeprefix(BOM))[table[0]]
+    left = section.get(table[1])
+    if left or not isinstance(left, InlineTable) or left.trivia.comment:
+        return text
+    expected = copy.deepcopy(data_of(text))
+    del expected[table[0]][table[1]]
+    new = _dumped(text, table, "drop", table[1], lambda part: delitem(part, table[1]))
+    return new if says(new, expected) else text
 
 
 def _dumped(text: str, keys: Keys, verb: str, name: str, change: Callable[[Any], object]) -> str:

@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from operator import is_
 from typing import Protocol
@@ -22,6 +23,7 @@ from trialid.trial import Trial
 from trialid.workbench.document import Step
 from trialid.workbench.shelf import Shelf
 from trialid.workbench.shown import Shown
+from trialid.workbench.steps import step_names
 from trialid.workbench.watch import Files
 from trialid.workflow import history
 from trialid.workflow.build_model import available, build_model
@@ -105,10 +107,10 @@ def work_out(task: Task, shelf: Shelf, seat: Seat) -> None:
     TrialidError
         The model or the record does not allow it.
     """
-    outcome = None if task.before is None else task.before.run or task.before.before
     catalogue = available(task.pipeline)
     model = build_model(task.pipeline, catalogue)
-    shown = Shown(task.pipeline, catalogue, model, before=outcome)
+    named = {} if task.before is None else task.before.named
+    shown = Shown(task.pipeline, catalogue, model, before=_last(task), named=named)
     if task.before is None:
         seat.show(shown)
 
@@ -129,7 +131,7 @@ def work_out(task: Task, shelf: Shelf, seat: Seat) -> None:
     seat.show(shown)
     run = examine(pipeline, trials, seat.progress, fit)
     outcome = _concluded(replace(task, edit=edit), run.outcome, foreseen, seat)
-    seat.show(replace(shown, run=outcome))
+    seat.show(replace(shown, run=outcome, named=_named(shown, outcome)))
 
 
 def _fit(
@@ -167,31 +169,50 @@ def _concluded(task: Task, outcome: Outcome, foreseen: Foreseen | str, seat: Sea
         outcome = replace(outcome, result=result)
     else:
         so_far, _ = history.read(task.pipeline.path)
-        every = history.continue_steps(*_overtaken(task, so_far, outcome.result.present))
+        every = history.continue_steps(*_began_with(task, so_far, outcome.result.present))
         steps = every[len(so_far) :]
-        result = replace(outcome.result, history=(*every, *proposed_steps(outcome.result)))
-        outcome = replace(outcome, result=result)
+        every = (*every, *proposed_steps(outcome.result))
+        outcome = replace(outcome, result=replace(outcome.result, history=every, change=None))
     if task.recorded:
         seat.record(steps)
     return outcome
 
 
-def _overtaken(
+def _began_with(
     task: Task, steps: tuple[StepRow, ...], present: StepRow
 ) -> tuple[tuple[StepRow, ...], StepRow]:
     """The history with the last model that was worked out, and the present one as it came of that.
 
-    Where effects came one upon the other, none in between was worked out.
+    The present one may have come otherwise when it was worked out. Where effects came one upon the
+    other, none in between was worked out.
     """
-    last = None if task.before is None else task.before.run or task.before.before
+    present = replace(present, step="as written", added=None, dropped=None)
+    last = _last(task)
     if last is None or not task.recorded:
         return steps, present
+    steps = history.continue_steps(steps, last.result.present)
     had, has = last.pipeline.model.effects, task.pipeline.model.effects
     came = [n for n in has if n not in had]
-    if not came or {*had} - {*has}:
-        return steps, present
-    steps = history.continue_steps(steps, last.result.present)
-    return steps, replace(present, step="added", added=", ".join(came))
+    if came and not {*had} - {*has}:
+        present = replace(present, step="added", added=", ".join(came))
+    return steps, present
+
+
+def _last(task: Task) -> Outcome | None:
+    """The last model that was worked out."""
+    return None if task.before is None else task.before.run or task.before.before
+
+
+def _named(shown: Shown, outcome: Outcome) -> Mapping[int, str]:
+    """The names of the steps made here, with that of the present one where it is a step more."""
+    before, present = shown.before, outcome.result.present
+    if before is None or history.same(before.result.present, present):
+        return shown.named
+    place = sum(row.step != "proposed" for row in outcome.result.history) - 1
+    return {
+        **shown.named,
+        place: step_names.change_words(before.pipeline, outcome.pipeline, shown.catalogue),
+    }
 
 
 def _result(before: Shown | None) -> Result | None:
@@ -205,7 +226,9 @@ def _restored(task: Task, kept: Outcome, model: ShipModel, shown: Shown, seat: S
         {n: x for n, x in values.items() if x is not None and n in model.parameters}
     )
     outcome = _concluded(task, kept, "it was fitted before", seat)
-    seat.show(replace(shown, model=fitted, series=kept.series, run=outcome))
+    seat.show(
+        replace(shown, model=fitted, series=kept.series, run=outcome, named=_named(shown, outcome))
+    )
 
 
 def _so_far(task: Task, trials: tuple[Trial, ...]) -> tuple[TrialSeries, ...]:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from trialid.pipeline_file import Pipeline
 from trialid.result.change_rows import Pair
 from trialid.result.schema import Result
 from trialid.workbench.shown import Shown
@@ -12,17 +13,33 @@ from trialid.workflow.outcome import Outcome
 
 @dataclass(frozen=True)
 class ErrorNumber:
-    """Errors of the fitted and of the held-out trials, now and before; None where not known."""
+    """Errors of the fitted and of the held-out trials, now and before; None where not known.
+
+    `alike` says whether both are errors of the same: else neither is the better.
+    """
 
     eps: float | None
     check: float | None
     old: float | None
     old_check: float | None
+    alike: bool
 
 
 def error_number(shown: Shown) -> ErrorNumber:
     """The error: known with the fit, before what it is made of is."""
-    return ErrorNumber(*_now(shown), *_old(shown))
+    return ErrorNumber(*_now(shown), *_old(shown), alike=_alike(shown))
+
+
+def _alike(shown: Shown) -> bool:
+    """Whether the model before was fitted to the same trials, by the same outputs."""
+    if shown.before is None:
+        return True
+    return _scored(shown.before.pipeline) == _scored(shown.pipeline)
+
+
+def _scored(pipeline: Pipeline) -> tuple[object, ...]:
+    fitted = [trial for trial in pipeline.trials if trial.use == "fit"]
+    return fitted, pipeline.identify.outputs
 
 
 def _now(shown: Shown) -> tuple[float | None, float | None]:

@@ -22,8 +22,9 @@ from trialid.result.finding_rows import FindingRow
 from trialid.result.json_file import finite
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries
-from trialid.workbench import error_number, model_rows, step_rows
+from trialid.workbench import error_number, model_rows
 from trialid.workbench.shown import Shown
+from trialid.workbench.steps import step_rows
 from trialid.workflow.origin import signals_of
 from trialid.workflow.outcome import Outcome
 
@@ -37,6 +38,9 @@ PARTS = (
     "model", "use",
 )  # fmt: skip
 """The pieces, each under the name of its place on the page and of its template."""
+
+LONGEST_NAME = 24
+"""Characters of a trial's name that its tab has room for."""
 
 
 @cache
@@ -155,6 +159,7 @@ def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
         yield {
             "place": place,
             "name": name,
+            "short": _shortened(name),
             "track": track_picture(tracks.get(name), _particulars(shown, run)),
             "use": written[name].use if name in written else "fit",
             "errors": errors,
@@ -163,6 +168,11 @@ def _trials(shown: Shown, run: Result) -> Iterator[Plain]:
             "signals": [row for row in signals_of(shown.pipeline) if row.trial == name],
             "findings": _findings(run.where, name),
         }
+
+
+def _shortened(name: str) -> str:
+    """A name that a tab has room for: both its ends, as names of trials differ there."""
+    return name if len(name) <= LONGEST_NAME else f"{name[:10]}…{name[-13:]}"
 
 
 def _particulars(shown: Shown, run: Result) -> Mapping[str, float]:

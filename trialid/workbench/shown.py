@@ -1,7 +1,7 @@
 """What the workbench shows at one moment: frozen, and replaced as a whole when more is known."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import is_
 from typing import Literal
 
@@ -58,6 +58,8 @@ class Shown:
         Everything about this model; None until it is all known.
     before
         Everything about the model before the last change, to be shown beside, or greyed meanwhile.
+    named
+        What was done to come to a step of the history, by its place there, as far as it was here.
     """
 
     pipeline: Pipeline
@@ -68,6 +70,7 @@ class Shown:
     fit: Fit | None = None
     run: Outcome | None = None
     before: Outcome | None = None
+    named: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def stage(self) -> Literal["reading", "measured", "fitted", "diagnosed"]:

@@ -6,7 +6,7 @@ import threading
 import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from trialid.design.prediction.seen_range import seen_ranges
 from trialid.diagnosis.diagnose import examine_fit
@@ -21,10 +21,12 @@ from trialid.workflow.findings import diagnose_settings
 from trialid.workflow.outcome import Outcome
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict, revived_fit
 from trialid.workflow.use.hand_over import WRITERS
-from trialid.workflow.use.orders import named_manoeuvre, stop_order
+from trialid.workflow.use.orders import ASTERN, BY_NAME, STOPS, named_manoeuvre, stop_order
 from trialid.workflow.use.predict import predict_manoeuvre
 from trialid.workflow.use.steering import Wishes
 from trialid.workflow.use.stop import predict_stop
+
+STOP: Final = "stop"
 
 
 @dataclass
@@ -73,6 +75,7 @@ def try_orders(model: FinishedModel, orders: str) -> dict[str, Any]:
     words = orders.split()
     if not words:
         raise PipelineError("write a manoeuvre, as zigzag 20 20 or circle 35")
+    _check_orders(*words)
     stop = stop_order(words)
     made = (
         predict_manoeuvre(model, named_manoeuvre(words))
@@ -88,6 +91,31 @@ def try_orders(model: FinishedModel, orders: str) -> dict[str, Any]:
     return {"name": made.name, "rows": rows, "words": said, "picture": picture}
 
 
+def _check_orders(name: str, *numbers: str) -> None:
+    """Refuse what is no manoeuvre: here, no file of orders is read.
+
+    Raises
+    ------
+    PipelineError
+        There is none of this name, or a number is none.
+    """
+    if name not in (*BY_NAME, STOP):
+        known = "; ".join([*(one.usage for one in BY_NAME.values()), STOPS])
+        raise PipelineError(
+            f"{name!r}: is no manoeuvre; expected {known} ({nearest(name, [*BY_NAME, STOP])})"
+        )
+    for number in numbers:
+        if number != ASTERN and math.isnan(_number(number)):
+            raise PipelineError(f"{number!r}: is no number; write it like 20.5")
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
 def hand_out(model: FinishedModel, kind: str, asked: Mapping[str, str]) -> tuple[str, bytes]:
     """The name and the content of a form of the model; where it has more files, they are zipped.
 
@@ -101,15 +129,21 @@ def hand_out(model: FinishedModel, kind: str, asked: Mapping[str, str]) -> tuple
     rudder, command = _positive(asked, "full_rudder"), _positive(asked, "full_command")
     angle = None if rudder is None else math.radians(rudder)
     made = WRITERS[kind](model, "model", Wishes(full_rudder=angle, full_command=command))
-    files = {f"model{s}": c if isinstance(c, bytes) else c.encode() for s, c in made.items()}
+    files = {s: c if isinstance(c, bytes) else c.encode() for s, c in made.items()}
     if len(files) == 1:
-        [(name, content)] = files.items()
-        return name, content
+        [(suffix, content)] = files.items()
+        return f"{_stem(kind, suffix)}{suffix}", content
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as packed:
-        for name, content in files.items():
-            packed.writestr(name, content)
+        for suffix, content in files.items():
+            packed.writestr(f"model{suffix}", content)
     return f"model-{kind}.zip", stream.getvalue()
+
+
+def _stem(kind: str, suffix: str) -> str:
+    """The name of a file, which says its kind where the ending does not: three end in `.json`."""
+    told = suffix == f".{kind}" or sum(suffix in one.suffixes for one in KINDS.values()) == 1
+    return "model" if told else f"model-{kind}"
 
 
 def _positive(asked: Mapping[str, str], name: str) -> float | None:
@@ -121,10 +155,7 @@ def _positive(asked: Mapping[str, str], name: str) -> float | None:
         It is none above zero.
     """
     given = asked.get(name, "")
-    try:
-        number = float(given) if given else None
-    except ValueError:
-        number = math.nan
+    number = _number(given) if given else None
     if number is not None and not 0.0 < number < math.inf:
         raise PipelineError(f"{name.replace('_', ' ')} {given!r}: expected a number above 0")
     return number

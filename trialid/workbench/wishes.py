@@ -18,6 +18,7 @@ from pydantic import (
 from trialid.errors import PipelineError, TrialidError, nearest
 from trialid.pipeline_file import Pipeline, read
 from trialid.pipeline_file.edit import fix_parameter, set_bounds, set_free, set_use, set_value
+from trialid.ship.model import ShipModel
 from trialid.workflow.build_model import available, build_model, check_bounds, settings_of
 from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
 
@@ -127,8 +128,21 @@ def grant(pipeline: Pipeline, wish: Any) -> Granted:
     if found.after.content == pipeline.content:
         raise PipelineError(f"{found.words}: it is so already")
     model = build_model(found.after, available(found.after))
+    if isinstance(wish, Bounds):
+        _check_start(wish, model)
     check_bounds(found.after, model, settings_of(found.after, model))
     return found
+
+
+def _check_start(wish: Bounds, model: ShipModel) -> None:
+    """Refuse bounds that leave out the start, and say how to give another on the screen."""
+    name, (low, high) = wish.parameter, _ends(wish)
+    start = model.stated(name) if name in model.parameters else None
+    if start is not None and not low <= start <= high:
+        raise PipelineError(
+            f"[{low:g}, {high:g}] leaves out the start {start:.6g} of {name}; widen it, or untick "
+            f"{name}, give it another value and tick it again"
+        )
 
 
 def find_edit(old: Pipeline, new: Pipeline) -> Edit | None:
@@ -168,9 +182,14 @@ def _bounds(pipeline: Pipeline, wish: Bounds) -> Granted:
     name, low, high = wish.parameter, wish.low, wish.high
     if low is None and high is None:
         return _edited(pipeline, f"no bounds of {name}", lambda text: set_bounds(text, name, None))
-    between = (-math.inf if low is None else low, math.inf if high is None else high)
+    between = _ends(wish)
     words = f"bounds of {name} {between[0]:g} to {between[1]:g}"
     return _edited(pipeline, words, lambda text: set_bounds(text, name, between))
+
+
+def _ends(wish: Bounds) -> tuple[float, float]:
+    low, high = wish.low, wish.high
+    return (-math.inf if low is None else low, math.inf if high is None else high)
 
 
 def _value(pipeline: Pipeline, wish: Value) -> Granted:

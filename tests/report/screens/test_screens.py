@@ -11,8 +11,8 @@ from trialid.report.pages import side_by_side
 from trialid.report.pages.page import page as page_of
 from trialid.result.json_file import result_of
 
-WIDTHS = (390, 1024, 1366)
-"""A phone, a tablet, a laptop."""
+WIDTHS = (390, 800, 1024, 1366)
+"""A phone, a tablet upright and across, a laptop."""
 
 OUTSIDE = """() => {
   const width = document.documentElement.clientWidth;
@@ -23,6 +23,12 @@ OUTSIDE = """() => {
       .map((each) => each.textContent));
 }"""
 """Names of panels and of lines that reach beyond their panel."""
+
+BESIDE = """() => Math.min(...[...document.querySelectorAll(".u-wrap")].map((plot) => {
+  const over = plot.querySelector(".u-over").getBoundingClientRect();
+  return plot.getBoundingClientRect().right - over.right;
+}))"""
+"""px right of the plots, for half of the last time."""
 
 EMPTY = """() => [...document.querySelectorAll(".cards article")].map((card) => {
   const box = card.getBoundingClientRect();
@@ -78,6 +84,7 @@ def test_nothing_is_cut_on_a_screen(opened, report, width):
     page = opened(report, width)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.evaluate(OUTSIDE) == []
+    assert page.evaluate(BESIDE) >= 20
     title = page.locator("h1")
     assert title.evaluate("e => e.scrollWidth <= e.clientWidth && e.scrollHeight <= e.clientHeight")
     order = tops(page, "h1", ".verdict .sentence", ".cards", ".panels")

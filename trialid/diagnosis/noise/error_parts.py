@@ -102,11 +102,17 @@ def split_by_noise(
 
 
 def _hardly_known(noise2: float, off: float, unlike: float) -> str:
-    """Why a noise known to `off` and `unlike`, as squares, is no estimate; empty where it is."""
+    """Why a noise known to `off` and `unlike`, as squares, is no estimate; empty where it is.
+
+    >>> _hardly_known(1.0, 1.2, 0.0), _hardly_known(1e-9, 1.2, 0.0)
+    ('too short, the noise is known to +-60% only', 'too short, the noise is hardly known at all')
+    """
     if off + 0.5 * unlike <= 2.0 * TIGHT * noise2:
         return ""
     if unlike > off:
         return f"not alike, errors of the model may differ by {np.sqrt(unlike):.2%}"
+    if off > 2.0 * noise2:  # a percentage of next to nothing says nothing
+        return "too short, the noise is hardly known at all"
     return f"too short, the noise is known to +-{0.5 * off / noise2:.0%} only"
 
 

@@ -2,7 +2,7 @@
 
 import { gaps, rounded } from "./numbers.js";
 import { colour, noiseLines, predictionBand, shade, zeroLine } from "./painting.js";
-import { AXIS, CLOCK, LOW, PAPER, onPaper, widthOf } from "./sizes.js";
+import { AXIS, CLOCK, BESIDE, LOW, PAPER, onPaper, widthOf } from "./sizes.js";
 import { choose, showAll } from "./zoom.js";
 
 export function draw(plot) {
@@ -23,7 +23,7 @@ function options(plot, width) {
   const height = (onPaper() ? PAPER : trial.heights)[drawing.kind];
   const withClock = carriesClock(plot);
   return {
-    width, height: height + (withClock ? CLOCK - 4 : 0), padding: [6, 8, 0, 0],
+    width, height: height + (withClock ? CLOCK - 4 : 0), padding: [6, BESIDE, 0, 0],
     series: [clockSeries(), ...drawing.lines.map((line) => lineSeries(line, trial))],
     scales: { x: { time: false }, ...(plot.empty ? { y: { range: [-1, 1] } } : {}) },
     axes: [timeAxis(withClock), valueAxis(height, plot.empty)],

@@ -1,18 +1,24 @@
 /* What went wrong: about an edit, beside its control where that is still there and seen; all else under the bar. */
 
-import { byId, keyed, state } from "./state.js";
-
-const LOST = "No connection to trialid. Is it still running in its terminal?";
+import { byId, keyed, LOST, state } from "./state.js";
 
 export function complain() {
   const trouble = state.status && state.status.trouble;
   const told = complaint(trouble);
   const row = told && told.key && rowOf(told.key);
-  banner(trouble && !taken(trouble) ? trouble.words : told && !row ? told.words : state.lost ? LOST : "");
-  const shown = [...document.querySelectorAll(".complaint")];
+  banner(bannerWords(trouble, told, row));
+  const shown = [...document.querySelectorAll(".complaint[data-edit]")];
   if (row && shown.length === 1 && shown[0].parentElement === row && shown[0].textContent === told.words) return;
   shown.forEach((each) => each.remove());
   if (row) complainIn(row, told.words, shown.length === 0);
+  if (row) told.seen = true;
+}
+
+/* Without a connection nothing else is news; a refusal that was seen beside its control waits for who comes back. */
+function bannerWords(trouble, told, row) {
+  if (state.lost) return LOST[state.lost];
+  if (trouble && !taken(trouble)) return trouble.words;
+  return told && !row && !told.seen ? told.words : "";
 }
 
 /* About an edit: refused, or taken back since it could not be fitted. */
@@ -39,6 +45,7 @@ function complainIn(row, words, fresh) {
 function complaintOf(words) {
   const told = document.createElement("p");
   told.className = "complaint";
+  told.dataset.edit = "";
   told.setAttribute("role", "alert");
   told.textContent = words;
   return told;

@@ -18,8 +18,13 @@ export const state = {
   refused: null,         // {key, words} of an edit that was refused
   declined: "",          // the numbers of it: leaving the field does not send them again
   replacing: false,      // a part is being replaced
-  lost: false,           // the connection
+  lost: null,            // the connection: how, a name in LOST
   finished: false,       // a fit has ended, and its result is not yet said
+};
+
+export const LOST = {
+  gone: "No connection to trialid. Is it still running in its terminal?",
+  anew: "trialid was started anew. Open the address that it printed in its terminal.",
 };
 
 /* Asks the server; what it refuses is thrown, in its words. */
@@ -27,10 +32,22 @@ export async function answer(path, body) {
   const asked = body === undefined ? {} : {
     method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body),
   };
-  const reply = await fetch(path, { cache: "no-store", ...asked });
+  return (await ask(path, asked)).json().catch(() => ({}));
+}
+
+export async function ask(path, asked) {
+  const reply = await fetch(path, { cache: "no-store", ...asked }).catch(() => { throw lost("gone"); });
+  if (reply.ok) return reply;
+  if (reply.status === 401) throw lost("anew");        // the token in the address is another by now
   const told = await reply.json().catch(() => ({}));
-  if (reply.ok) return told;
   const error = new Error(told.error || "trialid answered " + reply.status);
   error.kind = told.kind;
   throw error;
+}
+
+function lost(how) {
+  state.lost = how;
+  const error = new Error(LOST[how]);
+  error.kind = "lost";
+  return error;
 }

@@ -4,6 +4,7 @@ import { complain } from "./complaints.js";
 import { replace } from "./parts.js";
 import { answer, byId, keyed, partOf, state } from "./state.js";
 import { choose, follow, followAgain } from "./trials.js";
+import { markTried } from "./use.js";
 
 const AGAIN = 1000;                   // ms until the parts are asked for again
 
@@ -17,6 +18,7 @@ export function hear(status) {
   reversible("redo", status.redo);
   byId("again").hidden = Boolean(status.working) || status.stage === "diagnosed";
   complain();
+  markTried();
   announce(before, status);
   if (status.screen !== state.screen) refresh();
   else follow();
@@ -95,7 +97,7 @@ export async function edit(path, body, key) {
     hear(told);
     return true;
   } catch (error) {
-    state.refused = { key, words: error.message };
+    if (error.kind !== "lost") state.refused = { key, words: error.message };
     complain();
     if (error.kind === "changed") hear(await answer("/api/status"));
     return false;

@@ -6,10 +6,14 @@ import { addNamed, boundsLeft, entered, isEdit, send, tick, value } from "./edit
 import { activate, goBack, shortcut, tabKey } from "./keys.js";
 import { answer, byId, state } from "./state.js";
 import { edit, hear } from "./status.js";
-import { tryManoeuvre } from "./use.js";
+import { handOver, tryManoeuvre } from "./use.js";
 import { listenToPlots, setBeside, showStretch } from "./trials.js";
 
+const AGAIN = 3000;                   // ms until a connection that was refused is sought again
+
 function pressed(event) {
+  const file = event.target.closest(".hand-over a");
+  if (file) { event.preventDefault(); handOver(file.closest("[data-row]"), file.href); }
   const button = event.target.closest("button");
   if (!button) return;
   if (button.getAttribute("role") === "tab") activate(button);
@@ -26,10 +30,10 @@ function changed(event) {
 
 async function submitted(event) {
   const form = event.target;
-  if (form.hasAttribute("action")) return;             // a download, which leaves the page as it is
   event.preventDefault();
   if (form.id === "export-copy") await exported({ name: form.elements.name.value.trim() });
   else if (form.id === "try") await tryManoeuvre(form);
+  else if (form.dataset.do === "hand-over") await handOver(form, form.dataset.path + "?" + new URLSearchParams(new FormData(form)));
   else if (form.dataset.do === "add") await addNamed(form.elements.effect);
 }
 
@@ -64,13 +68,22 @@ function listenToBar() {
   byId("export-run").addEventListener("click", () => exported({}));
 }
 
+/* The server's news. One that was started anew counts from the beginning; where the browser has given up, it is
+   asked again, as its new address may have been opened by then. */
 function connect() {
   const events = new EventSource("/api/events");
-  const found = (lost) => { if (state.lost !== lost) { state.lost = lost; complain(); } };
-  // A workbench that was started anew counts from the beginning.
-  events.onopen = () => { if (state.lost) Object.assign(state, { status: null, screen: null, drawn: null }); found(false); };
-  events.onmessage = (event) => { found(false); hear(JSON.parse(event.data)); };
-  events.onerror = () => found(true);
+  events.onopen = () => { if (state.lost) Object.assign(state, { status: null, screen: null, drawn: null }); found(); };
+  events.onmessage = (event) => { found(); hear(JSON.parse(event.data)); };
+  events.onerror = async () => {
+    await answer("/api/status").catch(complain);
+    if (events.readyState === EventSource.CLOSED) setTimeout(connect, AGAIN);
+  };
+}
+
+function found() {
+  if (!state.lost) return;
+  state.lost = null;
+  complain();
 }
 
 listenToPage();

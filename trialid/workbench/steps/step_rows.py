@@ -4,14 +4,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.names.wording import MINUS
 from trialid.report.pictures import error_history
 from trialid.report.pictures.bars import SplitBar
 from trialid.result.change_rows import StepRow
 from trialid.result.schema import Result
 from trialid.workbench import error_number
 from trialid.workbench.shown import Shown
+from trialid.workbench.steps import step_names
 
+NO_FIT: Final = "no fit"
 SHOWN: Final = 6
 """Steps shown at once: the last ones; those before are folded."""
 
@@ -41,28 +42,37 @@ class Steps:
 
 def steps(shown: Shown, run: Result) -> Steps:
     """The history as rows; `run` is that of the model before while this one is computed."""
-    known = [row for row in run.history if row.eps_rmsn is not None]
-    if shown.run is None:
-        known = [row for row in known if row.step != "proposed"]
-    sizes = [row.eps_rmsn or 0.0 for row in known]
-    now = error_number.error_number(shown).eps
-    longest = max([*sizes, now or 0.0], default=0.0) or 1.0
+    known = [*_known(shown, run)]
+    pending = shown.run is None and bool(known or shown.fit)
+    drawn = [row for row, _ in known[max(len(known) + pending - SHOWN, 0) :]]
+    longest = _longest(drawn, error_number.error_number(shown).eps)
     rows = [*_rows(known, longest, shown.run is not None)]
-    if shown.run is None and (known or shown.fit):
+    if pending:
         rows.append(_pending(shown, longest))
     said = error_history.fell(run) if shown.run else ""
     return Steps(tuple(rows[:-SHOWN]), tuple(rows[-SHOWN:]), said)
 
 
-def _rows(known: Sequence[StepRow], longest: float, own: bool) -> Iterator[ShownStep]:
-    kept = [row for row in known if row.step != "proposed"]
-    for row in known:
+def _known(shown: Shown, run: Result) -> Iterator[tuple[StepRow, str]]:
+    """The steps that have an error, with what was done to come to them."""
+    words = step_names.of_rows(run.history)
+    for place, row in enumerate(run.history):
+        if row.eps_rmsn is not None and (shown.run is not None or row.step != "proposed"):
+            yield row, shown.named.get(place, words[place])
+
+
+def _longest(drawn: Sequence[StepRow], now: float | None) -> float:
+    """The error whose bar is the longest: no fit's may be any, and its bar ends there too."""
+    sizes = [row.eps_rmsn or 0.0 for row in drawn if row.verdict != NO_FIT]
+    return max(sizes, default=now or 0.0) or 1.0
+
+
+def _rows(known: Sequence[tuple[StepRow, str]], longest: float, own: bool) -> Iterator[ShownStep]:
+    kept = [row for row, _ in known if row.step != "proposed"]
+    for row, words in known:
         tried = row.step == "proposed"
         kind = "proposed" if tried else "present" if own and row is kept[-1] else "step"
-        bar = _bar(row, longest)
-        yield ShownStep(
-            error_history.step_words(row), bar, row.eps_rmsn_check, row.verdict or "", kind
-        )
+        yield ShownStep(words, _bar(row, longest), row.eps_rmsn_check, row.verdict or "", kind)
 
 
 def _bar(row: StepRow, longest: float) -> SplitBar:
@@ -75,7 +85,7 @@ def _bar(row: StepRow, longest: float) -> SplitBar:
         eps=row.eps_rmsn,
         noise=noise,
         model=row.undermodelling,
-        length=100.0 * eps / longest,
+        length=min(100.0 * eps / longest, 100.0),
         noise_share=share,
         whisker=None,
     )
@@ -84,7 +94,7 @@ def _bar(row: StepRow, longest: float) -> SplitBar:
 def _pending(shown: Shown, longest: float) -> ShownStep:
     """The model that is being computed: its error a second before what it is made of."""
     found = error_number.error_number(shown)
-    length = 100.0 * (found.eps or 0.0) / longest
+    length = min(100.0 * (found.eps or 0.0) / longest, 100.0)
     bar = SplitBar(
         label="",
         eps=found.eps,
@@ -101,7 +111,4 @@ def difference(shown: Shown) -> str:
     """What sets the model shown apart from the one before, in few words."""
     if shown.before is None:
         return "as written"
-    old, new = shown.before.pipeline.model.effects, shown.pipeline.model.effects
-    added = [f"+ {name}" for name in new if name not in old]
-    dropped = [f"{MINUS} {name}" for name in old if name not in new]
-    return ", ".join([*added, *dropped]) or "as edited"
+    return step_names.change_words(shown.before.pipeline, shown.pipeline, shown.catalogue)
