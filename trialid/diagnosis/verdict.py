@@ -64,7 +64,7 @@ in a sea away; twice says that nothing is missing of a boat whose compass jumped
 
 LITTLE: Final = 0.03
 """Model error that is little whatever the noise is: of a model's roll decay 2 % is all that is left.
-Half of it says `cannot tell` of that, twice of no record more that nothing is missing."""
+Half of it says `cannot tell` there, twice of no record more that nothing is missing."""
 
 
 @dataclass(frozen=True)
