@@ -13,15 +13,15 @@ from trialid.errors import NotIdentifiable, nearest
 from trialid.identification import fit as search
 from trialid.identification.fit import Fit
 from trialid.identification.of_each_trial import Nuisance
-from trialid.identification.problem import Settings
-from trialid.identification.ship_priors import ship_priors
 from trialid.identification.trial_score import of_trial
 from trialid.pipeline_file import load
+from trialid.pipeline_file.form import IdentifySection
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
+from trialid.workflow.notebook.asked_settings import asked_diagnosis, asked_settings, checked_trials
 from trialid.workflow.notebook.fit_run import FitRun, diagnosed_run
 from trialid.workflow.notebook.pipeline_run import PipelineRun, pipeline_run
 from trialid.workflow.run import run as run_pipeline
@@ -70,28 +70,22 @@ def identify(
         ship's file states with its scatter, what it says.
     settings
         The rest of a pipeline's `[identify]`: `bounds` (name to a pair), `weights`, `loss`,
-        `starts`, `seed`, `max_iterations`.
+        `starts`, `seed`, `max_iterations`; what a file may not say, none of these may.
 
     Raises
     ------
     TrialidError
         The model or the record does not allow a fit; one line says why.
     """
-    known = [name for name in Settings.__dataclass_fields__ if name not in ("free", "outputs")]
     for name in settings:
-        if name not in known:
-            raise NotIdentifiable(f"identify has no setting {name!r}; {nearest(name, known)}")
+        if name not in IdentifySection.model_fields:
+            hint = nearest(name, IdentifySection.model_fields)
+            raise NotIdentifiable(f"identify has no setting {name!r}; {hint}")
     if isinstance(priors, str) and priors != "ship":
         raise NotIdentifiable(f'priors = {priors!r} is not known; "ship", or a pair for each name')
-    known_before = ship_priors(model, free) if isinstance(priors, str) else priors
-    asked = Settings(
-        free=tuple(free),
-        outputs=tuple(outputs),
-        nuisance=tuple(nuisance),
-        priors=known_before,
-        **settings,
-    )
-    return search.identify(tuple(trials), model, asked)
+    asked = {"free": free, "outputs": outputs, "nuisance": nuisance, "priors": priors, **settings}
+    known = checked_trials(trials, model)
+    return search.identify(known, model, asked_settings(known, model, asked))
 
 
 def diagnose(
@@ -111,9 +105,17 @@ def diagnose(
         What the run is called in tables and reports.
     settings
         The rest of a pipeline's `[diagnose]`: `level`, `refit`, `family_cos`, `noise` [SI].
+
+    Raises
+    ------
+    TrialidError
+        A setting is none, or no number that it may be; one line says which.
     """
+    if not isinstance(fit, Fit):
+        raise NotIdentifiable(f"ti.diagnose: fit: expected what ti.identify gives, got {fit!r}")
     tried = CATALOGUE if candidates is None else candidates
-    return diagnosed_run(fit, DiagnoseSettings(candidates=tried, **settings), name)
+    asked = DiagnoseSettings(candidates=tried, **asked_diagnosis(settings))
+    return diagnosed_run(fit, asked, name)
 
 
 def simulate(
