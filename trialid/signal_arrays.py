@@ -43,7 +43,7 @@ def in_si(
     _check_stated(name, units, positive, wanted)
     values, valid = dict[str, Vector](), dict[str, Mask]()
     for quantity, given in signals.items():
-        y = _numbers(f"trial {name!r}, {quantity}", given)
+        y = numbers(f"trial {name!r}, {quantity}", given)
         if y.shape != clock.shape:
             raise AlignmentError(
                 f"trial {name!r}, {quantity}: {y.size} values for {clock.size} times; give one "
@@ -96,7 +96,7 @@ def _clock(name: str, t: Any, unit: str | None) -> Vector:
         stamps = _read_stamps(name, stamps)
     if stamps.dtype.kind not in "mM":
         factor = unit_table.factor(unit or "s", "s")
-        return factor * _numbers(f"trial {name!r}, {CLOCK}", stamps)
+        return factor * numbers(f"trial {name!r}, {CLOCK}", stamps)
     if unit is not None:
         raise AlignmentError(
             f"trial {name!r}: t holds dates or spans of time, which need no unit; take t={unit!r} "
@@ -118,20 +118,22 @@ def _read_stamps(name: str, stamps: Any) -> Any:
         return pd.DatetimeIndex(dates).tz_localize(None).to_numpy()
     except (TypeError, ValueError, OverflowError) as error:
         raise AlignmentError(
-            f"trial {name!r}: t begins with {stamps.flat[0]!r}; expected seconds, dates as "
-            "2026-03-01T12:00:00+01:00, or spans as pandas.to_timedelta makes them"
+            f"trial {name!r}: t begins with {stamps.ravel().tolist()[0]!r}; expected seconds, "
+            "dates as 2026-03-01T12:00:00+01:00, or spans as pandas.to_timedelta makes them"
         ) from error
 
 
-def _numbers(where: str, given: Any) -> Vector:
-    """Values as numbers, one that is missing as NaN."""
+def numbers(where: str, given: Any) -> Vector:
+    """Values as numbers, one that is missing as NaN; AlignmentError where one is none."""
     plain = np.asarray(given)
     if plain.dtype.kind in "cmM":
         raise AlignmentError(f"{where}: expected numbers, got {plain.dtype}")
     try:
         return np.asarray(plain, dtype=float)
-    except (TypeError, ValueError):
-        return np.array([_number(where, row, value) for row, value in enumerate(plain.flat)])
+    except (TypeError, ValueError):  # which value it is, the library does not say
+        return np.array(
+            [_number(where, row, value) for row, value in enumerate(plain.ravel().tolist())]
+        )
 
 
 def _number(where: str, row: int, value: Any) -> float:

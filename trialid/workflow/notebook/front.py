@@ -21,6 +21,7 @@ from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
+from trialid.workflow.notebook.arguments import path_of
 from trialid.workflow.notebook.asked_settings import asked_diagnosis, asked_settings, checked_trials
 from trialid.workflow.notebook.fit_run import FitRun, diagnosed_run
 from trialid.workflow.notebook.pipeline_run import PipelineRun, pipeline_run
@@ -42,7 +43,7 @@ def run(pipeline: str | Path, progress: Progress = silent) -> PipelineRun:
     TrialidError
         The input is wrong; one line says what, where and what to do.
     """
-    return pipeline_run(run_pipeline(load(Path(pipeline)), progress))
+    return pipeline_run(run_pipeline(load(path_of(pipeline, "ti.run")), progress))
 
 
 def identify(
@@ -139,9 +140,16 @@ def simulate(
     -------
     DataFrame
         Index `t` [s], a column for each output [SI].
+
+    Raises
+    ------
+    TrialidError
+        An output or a start the model has not, a signal the trial lacks, or the model leaves its
+        domain.
     """
     import pandas as pd
 
+    _check_simulated(model, trial)
     values: Mapping[str, float] = {}
     begun = dict(start or {})
     if isinstance(model, Fit):
@@ -150,8 +158,26 @@ def simulate(
         begun = {**own, **begun}
     else:
         simulator = prepare(model, (), outputs)
+    for state in (s for s in begun if s not in simulator.equations.states):
+        known = nearest(state, simulator.equations.states)
+        raise NotIdentifiable(f"ti.simulate: start: no state {state!r} is simulated; {known}")
     response = respond(simulator, trial, values, begun, sensitivities=False)
     if response.departure is not None:
         raise NotIdentifiable(f"the model leaves its domain: {response.departure}")
     index = pd.Index(trial.t, name="t")
     return pd.DataFrame(np.asarray(response.y), index=index, columns=list(outputs))
+
+
+def _check_simulated(model: ShipModel | Fit, trial: Trial) -> None:
+    """Refuse what is no model and no trial, and a trial of a fit that it did not see."""
+    if not isinstance(model, ShipModel | Fit) or not isinstance(trial, Trial):
+        raise NotIdentifiable(
+            "ti.simulate: expected a ti.ShipModel or what ti.identify gives, and a ti.Trial, got a "
+            f"{type(model).__name__} and a {type(trial).__name__}"
+        )
+    fitted = [one.name for one in model.problem.trials] if isinstance(model, Fit) else [trial.name]
+    if trial.use == "fit" and trial.name not in fitted:
+        raise NotIdentifiable(
+            f"ti.simulate: trial {trial.name!r} has use='fit' and was not fitted "
+            f"({nearest(trial.name, fitted)}); make it with use='check'"
+        )
