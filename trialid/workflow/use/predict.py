@@ -15,9 +15,10 @@ from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre, sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.seen_range import beyond_words
-from trialid.errors import DesignError, TrialidError
+from trialid.errors import DesignError, TrialidError, list_names
 from trialid.identification.fit import Fit
 from trialid.names import labels
+from trialid.pipeline_file.contradictions import nearest_signal
 from trialid.ship.effect import Steered
 from trialid.threads import one_thread
 from trialid.trial import Trial
@@ -84,13 +85,15 @@ def predict_orders(
 class OnClock:
     """What became of a table of orders: samples a row, inputs held, columns that nothing reads.
 
-    `loses`: how the speed falls where none is given, in words; empty where it is held.
+    `loses`: how the speed falls where none is given, in words; empty where it is held. `unknown`:
+    columns whose names no signal has.
     """
 
     every: int
     held: Mapping[str, float]
     unread: Collection[str]
     loses: str = ""
+    unknown: tuple[str, ...] = ()
 
 
 ALL: Final = OnClock(1, MappingProxyType({}), ())
@@ -116,7 +119,8 @@ def ready_orders(
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
     unread = {*table.signals} - inputs - {*ship.model.all_states} - STEERED
-    return ship, orders, OnClock(every, held, unread, _loses(ship) if "u" in held else "")
+    loses = _loses(ship) if "u" in held else ""
+    return ship, orders, OnClock(every, held, unread, loses, table.unknown)
 
 
 def spread_of(model: FinishedModel) -> LikelySpread:
@@ -186,6 +190,10 @@ def with_words(
     )
     if orders.unread:
         words.append(f"Not read by the model: {', '.join(sorted(orders.unread))}.")
+    if orders.unknown:
+        hints = {n: nearest_signal(n) for n in orders.unknown}
+        named = [f"{n} ({h})" if h.startswith("did") else n for n, h in hints.items()]
+        words.append(f"Columns passed over, as no signal has their names: {list_names(named)}.")
     shown = {n: f"{n} = {labels.shown_text(n, x)}" for n, x in orders.held.items()}
     if orders.loses:
         begun = shown.pop("u")
