@@ -44,6 +44,11 @@ def test_an_effect_that_has_no_name(given: Any) -> None:
         RUN.add(ti.CATALOGUE["linear_hull"])
 
 
+def test_an_output_that_has_no_name() -> None:
+    with pytest.raises(TrialidError, match="no output .None. was compared"):
+        RUN.plot(None)
+
+
 def test_a_run_is_compared_with_a_run() -> None:
     with pytest.raises(TrialidError, match=r"expected another run, .* got 'runs/better'"):
         RUN.compare("runs/better")

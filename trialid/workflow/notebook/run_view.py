@@ -173,7 +173,7 @@ class RunView:
         """
         from trialid.report.pictures.series_plot import plot
 
-        return plot(self.series, output)
+        return plot(self.series, str(output))
 
     def _repr_html_(self) -> str:
         from trialid.report.pages.card import card
