@@ -45,7 +45,7 @@ def test_an_effect_that_has_no_name(given: Any) -> None:
 
 
 def test_an_output_that_has_no_name() -> None:
-    with pytest.raises(TrialidError, match="no output .None. was compared"):
+    with pytest.raises(TrialidError, match="no output 'None' was compared"):
         RUN.plot(None)
 
 
