@@ -129,6 +129,7 @@ def test_without_it_there_is_none_of_it() -> None:
     [
         ("import nothing_of_that_name\n", "tug-tools: trialid.effects 'tug'"),
         ('"""None."""\n', "declares no effect"),
+        ("import sys\n\nsys.exit(0)\n", "cannot be loaded (SystemExit: 0)"),
         (EFFECTS.replace("skeg_drag", "sway_drag_vav"), "'sway_drag_vav' is there already"),
     ],
 )

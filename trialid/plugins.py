@@ -30,7 +30,14 @@ def plugins(group: Group) -> dict[str, Any]:
     for point in sorted(entry_points(group=group), key=lambda each: each.name):
         try:
             found[point.name] = point.load()
-        except (ImportError, AttributeError, SyntaxError, TypeError, ValueError) as error:
+        except (
+            ImportError,
+            AttributeError,
+            SyntaxError,
+            TypeError,
+            ValueError,
+            SystemExit,  # else the program would end with nothing said
+        ) as error:
             package = point.dist.name if point.dist else point.value
             raise PluginError(
                 f"{package}: {group} {point.name!r} ({point.value}) cannot be loaded "

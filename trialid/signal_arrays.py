@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 
 UNIFORM: Final = 0.01
 """Share of a step by which a clock may waver and still be uniform."""
+SLOWEST: Final = 10.0
+"""[s] A longer step is mostly one of milliseconds or finer: no log of a manoeuvre is as slow."""
+CLOCK: Final = "t"
+"""What the time is called; its unit is seconds where none is stated."""
 
 
 def in_si(
@@ -33,12 +37,13 @@ def in_si(
     wanted
         Every signal there may be, to its unit in SI.
     """
-    clock = np.asarray(t, dtype=float)
-    period = _period(name, clock)
+    clock = _clock(name, t, units.get(CLOCK))
+    period = _period(name, clock, stated=CLOCK in units)
     _check_names(name, signals, units, positive, wanted)
+    _check_stated(name, units, positive, wanted)
     values, valid = dict[str, Vector](), dict[str, Mask]()
     for quantity, given in signals.items():
-        y = np.asarray(given, dtype=float)
+        y = numbers(f"trial {name!r}, {quantity}", given)
         if y.shape != clock.shape:
             raise AlignmentError(
                 f"trial {name!r}, {quantity}: {y.size} values for {clock.size} times; give one "
@@ -51,20 +56,101 @@ def in_si(
     return period, values, valid
 
 
-def columns_of(frame: "pd.DataFrame", units: Mapping[str, str]) -> tuple[Vector, dict[str, Vector]]:
-    """Time [s] from the first row, and the columns that a unit is stated for; (N,) each."""
-    missing = [name for name in units if name not in frame.columns]
-    if missing:
-        hint = nearest(missing[0], [str(column) for column in frame.columns])
-        raise AlignmentError(f"the table has no column {missing[0]!r}; {hint}")
-    stamps: Any = frame["t"] if "t" in frame.columns else frame.index
-    given = np.asarray(stamps)
-    if given.dtype.kind == "M":
-        given = (given - given[0]) / np.timedelta64(1, "s")
-    return given.astype(float), {name: frame[name].to_numpy(float) for name in units}
+def columns_of(frame: "pd.DataFrame", units: Mapping[str, str]) -> tuple[Any, dict[str, Any]]:
+    """Times as the table has them, and the columns that a unit is stated for; (N,) each."""
+    if not hasattr(frame, "columns") or not hasattr(frame, "index"):
+        raise AlignmentError(
+            f"expected a pandas DataFrame, got a {type(frame).__name__}; of arrays "
+            "ti.Trial.from_arrays makes a trial"
+        )
+    wanted = [name for name in units if name != CLOCK]
+    if not wanted:
+        raise AlignmentError(
+            'no column has a unit; name those that are signals, such as units={"r": "deg/s"}'
+        )
+    columns = [str(column) for column in frame.columns]
+    for name in wanted:
+        if name not in frame.columns:
+            raise AlignmentError(f"the table has no column {name!r}; {nearest(name, columns)}")
+    for name in (n for n in (CLOCK, *wanted) if columns.count(n) > 1):
+        raise AlignmentError(f"the table has {columns.count(name)} columns {name!r}; leave one")
+    return _stamps(frame), {name: frame[name] for name in wanted}
 
 
-def _period(name: str, t: Vector) -> float:
+def _stamps(frame: "pd.DataFrame") -> Any:
+    """The column of times, else the index; never one that only numbers the rows."""
+    if CLOCK in frame.columns:
+        return frame[CLOCK]
+    if frame.index.name is None and frame.index.dtype.kind in "iu":
+        raise AlignmentError(
+            "the table has no column 't', and its index only numbers the rows; add the times [s] "
+            "as a column t, or call the index t where it holds them"
+        )
+    return frame.index
+
+
+def _clock(name: str, t: Any, unit: str | None) -> Vector:
+    """Times [s], whatever they were given as: of dates and spans from the first."""
+    stamps = np.asarray(t)
+    if stamps.dtype.kind in "OUST":
+        stamps = _read_stamps(name, stamps)
+    if stamps.dtype.kind not in "mM":
+        factor = unit_table.factor(unit or "s", "s")
+        return factor * numbers(f"trial {name!r}, {CLOCK}", stamps)
+    if unit is not None:
+        raise AlignmentError(
+            f"trial {name!r}: t holds dates or spans of time, which need no unit; take t={unit!r} "
+            "out of units"
+        )
+    return np.asarray((stamps - stamps[:1]) / np.timedelta64(1, "s"))
+
+
+def _read_stamps(name: str, stamps: Any) -> Any:
+    """Numbers, or dates of any zones as UTC, that a column holds as objects or texts."""
+    import pandas as pd
+
+    try:
+        return stamps.astype(float)
+    except (TypeError, ValueError):
+        pass
+    try:
+        dates = pd.to_datetime(stamps, utc=True, format="ISO8601")
+        return pd.DatetimeIndex(dates).tz_localize(None).to_numpy()
+    except (TypeError, ValueError, OverflowError) as error:
+        raise AlignmentError(
+            f"trial {name!r}: t begins with {stamps.ravel().tolist()[0]!r}; expected seconds, "
+            "dates as 2026-03-01T12:00:00+01:00, or spans as pandas.to_timedelta makes them"
+        ) from error
+
+
+def numbers(where: str, given: Any) -> Vector:
+    """Values as numbers, one that is missing as NaN; AlignmentError where one is none."""
+    plain = np.asarray(given)
+    if plain.dtype.kind in "cmM":
+        raise AlignmentError(f"{where}: expected numbers, got {plain.dtype}")
+    try:
+        return np.asarray(plain, dtype=float)
+    except (TypeError, ValueError):  # which value it is, the library does not say
+        return np.array(
+            [_number(where, row, value) for row, value in enumerate(plain.ravel().tolist())]
+        )
+
+
+def _number(where: str, row: int, value: Any) -> float:
+    """One value that is a number, or none at all."""
+    import pandas as pd
+
+    if value is None or value is pd.NA:
+        return float("nan")
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        comma = "; of decimal commas pandas.read_csv(..., decimal=',') makes numbers"
+        hint = comma if "," in str(value) else ""
+        raise AlignmentError(f"{where}: {value!r} (row {row}) is no number{hint}") from error
+
+
+def _period(name: str, t: Vector, *, stated: bool) -> float:
     """The step of a uniform clock [s]."""
     if t.ndim != 1 or t.size < 2 or not np.isfinite(t).all():
         raise AlignmentError(f"trial {name!r}: t must be a row of at least two finite times [s]")
@@ -76,7 +162,40 @@ def _period(name: str, t: Vector) -> float:
             f"trial {name!r}: t is not uniform (at index {worst} it is {off[worst]:.3g} s off a "
             f"step of {period:.4g} s); resample it, or give the log to trialid.align"
         )
+    if period > SLOWEST and not stated:
+        raise AlignmentError(
+            f"trial {name!r}: t goes by {period:.4g} s from row to row, too slow for a manoeuvre; "
+            'state its unit, such as units={"t": "ms"}, or "s" where it is right'
+        )
     return period
+
+
+def _check_stated(
+    name: str, units: Mapping[str, str], positive: Mapping[str, str], wanted: Mapping[str, str]
+) -> None:
+    """Refuse a unit or a side of what is no signal, and a side that is none."""
+    for quantity in units:
+        if quantity not in wanted:
+            raise AlignmentError(
+                f"trial {name!r}: units names {quantity!r}, which is no signal; "
+                f"{nearest(quantity, wanted)}"
+            )
+    for quantity, side in positive.items():
+        if quantity not in wanted:
+            raise AlignmentError(
+                f"trial {name!r}: positive names {quantity!r}, which is no signal; "
+                f"{nearest(quantity, wanted)}"
+            )
+        if side not in ("port", "starboard"):
+            raise AlignmentError(
+                f"trial {name!r}: positive={{{quantity!r}: {side!r}}}; expected 'port' or "
+                "'starboard'"
+            )
+        if quantity in SIGNALS and SIGNALS[quantity].mirror == 1:
+            raise AlignmentError(
+                f"trial {name!r}: {quantity!r} has no port or starboard "
+                f"({SIGNALS[quantity].meaning}); leave it out of positive"
+            )
 
 
 def _check_names(
@@ -87,6 +206,8 @@ def _check_names(
     wanted: Mapping[str, str],
 ) -> None:
     for quantity in signals:
+        if quantity == CLOCK:
+            raise AlignmentError(f"trial {name!r}: 't' is the time; it is no signal beside it")
         if quantity not in wanted:
             raise AlignmentError(
                 f"trial {name!r}: there is no signal {quantity!r}; {nearest(quantity, wanted)}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from trialid.arrays import Mask, Vector
+from trialid.errors import AlignmentError
 from trialid.names.quantities import SIGNALS
 from trialid.signal_arrays import columns_of, in_si
 
@@ -59,6 +60,11 @@ class Trial:
     opening: float = 0.0
 
     def __post_init__(self) -> None:
+        if self.use not in ("fit", "check"):
+            raise AlignmentError(
+                f"trial {self.name!r}: use = {self.use!r}; expected 'fit', or 'check' of one that "
+                "is held out"
+            )
         for array in (*self.signals.values(), *self.valid.values()):
             array.setflags(write=False)
 
@@ -94,11 +100,12 @@ class Trial:
         Parameters
         ----------
         t
-            Time [s]; (N,), uniform to a hundredth of its step.
+            Time [s], or as dates or spans of time; (N,), uniform to a hundredth of its step.
         signals
             Quantity name to values; (N,) each. NaN is what was not measured.
         units
-            Quantity name to the unit its values are in: `deg`, `deg/s`, `kn`.
+            Quantity name to the unit its values are in: `deg`, `deg/s`, `kn`; of `t` too, where it
+            is not in seconds: `ms`.
         positive
             The side a quantity counts positive; of a rudder it has to be said, others are positive
             to starboard where nothing is said.
@@ -109,7 +116,8 @@ class Trial:
         Raises
         ------
         TrialidError
-            The clock is not uniform, a name or a unit is not known, a rudder's side is not said.
+            The clock is not uniform, or goes by more than 10 s from row to row and states no unit;
+            a name, a unit or a side is not known, a rudder's side is not said.
         """
         wanted = {n: q.unit for n, q in SIGNALS.items()} | dict(own or {})
         period, values, valid = in_si(name, t, signals, units, positive or {}, wanted=wanted)
@@ -128,8 +136,8 @@ class Trial:
     ) -> "Trial":
         """A trial from a table: a column for each signal named in `units`.
 
-        Time is a column `t` [s], else the index, in seconds or as dates. The rest as
-        `from_arrays`.
+        Time is a column `t`, else the index: in seconds, or the unit stated for `t`; as dates, with
+        or without a zone, or as spans of time. The rest as `from_arrays`.
         """
         t, signals = columns_of(frame, units)
         return cls.from_arrays(name, t, signals, units=units, positive=positive, use=use, own=own)

@@ -32,10 +32,11 @@ def test_an_effect_of_ones_own(tmp_path: Path) -> None:
         find("stern_wedg", own)
 
 
-def test_ones_own_effect_replaces_that_of_the_catalogue(tmp_path: Path) -> None:
+def test_ones_own_effect_does_not_pass_for_one_of_the_catalogue(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text(OWN.replace("stern_wedge", "static_list"), encoding="utf-8")
-    assert find("static_list", from_file(file)).source == "my towing tank"
+    with pytest.raises(EffectError, match=r"'static_list' has the name of one of the catalogue"):
+        from_file(file)
 
 
 @pytest.mark.parametrize(
@@ -50,6 +51,11 @@ def test_ones_own_effect_replaces_that_of_the_catalogue(tmp_path: Path) -> None:
         (OWN.replace("=Parameter(-0.01, low=-1.0, high=0.0)", ""), "'Yw' has no typical value"),
         (OWN.replace("Force(Y=Yw * tanh(v / 0.1))", "Yw * v"), "returns float; expected one of"),
         (OWN.replace("tanh(v / 0.1)", "tan(v)"), "cannot be evaluated.*'tan'"),
+        (OWN.replace('tank"', 'tank", system="imperial"'), "system='imperial'; expected 'prime'"),
+        (OWN.replace("low=-1.0", "low=1.0"), "from low=1.0 to high=0.0; expected two numbers, low"),
+        (OWN.replace("low=-1.0", 'low="a"'), "from low='a' to high=0.0; expected two numbers"),
+        (OWN.replace("high=0.0", "high=-0.5"), "-0.01 of parameter 'Yw' is outside its range"),
+        ("import sys; sys.exit(0)", "line 1: SystemExit: 0"),
     ],
 )
 def test_a_faulty_effects_file_is_one_clear_line(text: str, says: str, tmp_path: Path) -> None:

@@ -103,6 +103,7 @@ def test_changes_act_on_orders_of_a_table_too(run_folder: Path, tmp_path: Path) 
     [
         (["GM"], "there is no ="),
         (["GM=a"], "expected a name and a number"),
+        (["GM=nan"], "expected a finite number"),
         (["GN=1"], "no such parameter or input held; of 31 known the nearest are GM"),
         (["speed=-1"], "expected a speed above 0"),
     ],

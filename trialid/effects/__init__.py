@@ -54,7 +54,7 @@ CATALOGUE: dict[str, Effect] = _catalogue()
 
 FAULTS = (
     SyntaxError, NameError, ImportError, TypeError, AttributeError, ValueError, ArithmeticError,
-    LookupError, AssertionError, OSError, RuntimeError, MemoryError,
+    LookupError, AssertionError, OSError, RuntimeError, MemoryError, SystemExit,
 )  # fmt: skip
 """What somebody's own Python file may raise while it runs."""
 
@@ -79,7 +79,7 @@ def from_file(path: Path) -> dict[str, Effect]:
     Raises
     ------
     EffectError
-        The file cannot be read or run, or declares no effect.
+        The file cannot be read or run, declares no effect, or one by a name of the catalogue.
     """
     try:
         source = user_files.text(path)
@@ -100,6 +100,11 @@ def from_file(path: Path) -> dict[str, Effect]:
     own = {n: e for n, e in found.items() if e.function.__module__ == module.__name__}
     if not own:
         raise EffectError(f"effects file {path}: declares no effect; write one with @effect")
+    for name in (n for n in own if n in CATALOGUE):
+        raise EffectError(
+            f"effects file {path}: effect {name!r} has the name of one of the catalogue, which "
+            "results would be taken for; rename it"
+        )
     return own
 
 

@@ -3,15 +3,24 @@
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 from trialid import own_files
+from trialid.errors import TrialidError
 from trialid.fleet.change_points import changes
 from trialid.fleet.dask_workers import Pack, check_threads, connect, results
 from trialid.fleet.do_run import Done, failure_row
-from trialid.fleet.finished_runs import Kept, keep_run, kept_run, write_pipelines
+from trialid.fleet.finished_runs import (
+    Kept,
+    keep_run,
+    kept_of,
+    kept_run,
+    put_back,
+    set_aside,
+    write_pipelines,
+)
 from trialid.fleet.parcels import pack
 from trialid.fleet.parquet_tables import CHANGES, PARAMETERS, RUNS_TABLE, write_tables
 from trialid.fleet.plan import plan
@@ -22,6 +31,8 @@ from trialid.report.pages.fleet_page import fleet_page
 from trialid.result.fleet_rows import ChangeRow, FittedRow, RunRow
 
 COPY: Final = "fleet.toml"
+ASIDE: Final = "set_aside"
+"""Where the folders of runs lie that were done and cannot be done now."""
 PAGE: Final = "fleet.html"
 FILES: Final = (COPY, RUNS_TABLE, PARAMETERS, CHANGES, PAGE)
 """What lies in a batch's folder beside `pipelines/` and `runs/`."""
@@ -72,35 +83,62 @@ def batch(fleet: FleetFile, folder: Path, compute: Compute, progress: Progress =
     ------
     TrialidError
         The fleet file or its template is wrong, the folder holds what is not ours, or there are no
-        workers; what was done is kept.
+        workers; what was done is kept. What is wrong with one run is its row, and stops no other.
     """
     own_files.check_folder(folder, FILES, "batch")
     progress("planning", None)
     tasks = plan(fleet, folder)
     with own_files.replacing(folder, below=(COPY,)) as work:
         (work / COPY).write_bytes(fleet.content)
-    made = {task.pipeline.name: task.content for task in tasks if task.made}
-    if made:
-        write_pipelines(made, folder / PIPELINES)
+    tasks = _with_pipelines(tasks, folder)
     found = {task.label.run: _begin(task, folder) for task in tasks}
     todo = [task for task in tasks if found[task.label.run] is None]
     for task, done in _timed(compute, todo, fleet, folder, progress):
+        place, aside = _places(task, folder)
         if done.kept:
-            keep_run(done, folder / RUNS / task.label.run)
-        found[task.label.run] = Kept(row=done.row, fitted=done.fitted)
+            keep_run(done, place)
+        else:
+            set_aside(place, aside)
+        found[task.label.run] = kept_of(done)
     kept = [each.under(task.label) for task in tasks if (each := found[task.label.run]) is not None]
     return _write(fleet, folder, kept, len(todo))
 
 
+def _with_pipelines(tasks: Sequence[Task], folder: Path) -> tuple[Task, ...]:
+    """The tasks, the pipelines that are made for them written; a problem where one is not."""
+    made = {task.pipeline.name: task.content for task in tasks if task.made}
+    refused = write_pipelines(made, folder / PIPELINES) if made else {}
+    return tuple(
+        replace(task, made=False, problem=_below(folder, refused[task.pipeline.name]))
+        if task.made and task.pipeline.name in refused
+        else task
+        for task in tasks
+    )
+
+
 def _begin(task: Task, folder: Path) -> Kept | None:
     """What is known of a run before the work; None where it is to be done."""
+    place, aside = _places(task, folder)
     if task.problem:
+        set_aside(place, aside)
         return Kept(row=failure_row(task.label, task.key, task.problem))
-    place = folder / RUNS / task.label.run
-    kept = kept_run(place, task.key)
+    try:
+        kept = kept_run(place, task.key) or put_back(aside, place, task.key)
+    except TrialidError as error:
+        return Kept(row=failure_row(task.label, task.key, _below(folder, str(error))))
     if kept is None and place.exists():
         own_files.check_all_ours(place)
     return kept
+
+
+def _places(task: Task, folder: Path) -> tuple[Path, Path]:
+    """The folder of a run, and where one is that was done but cannot be now."""
+    return folder / RUNS / task.label.run, folder / ASIDE / task.label.run
+
+
+def _below(folder: Path, said: str) -> str:
+    """What is said of a file of the batch, without the path of the batch."""
+    return said.removeprefix(f"{folder}/")
 
 
 def _timed(

@@ -22,20 +22,30 @@ SCHEMA: Final = "trialid-fleet-run/1"
 
 @dataclass(frozen=True, kw_only=True)
 class Kept:
-    """What is read back of a run that was done: its rows."""
+    """What is read back of a run that was done: its rows, and what its folder has to hold."""
 
     row: RunRow
     fitted: tuple[FittedRow, ...] = ()
+    files: tuple[str, ...] = ()
 
     def under(self, label: RunLabel) -> "Kept":
         """The rows as a plan labels them: a date may have been stated since the run was done."""
         own = vars(label)
         fitted = tuple(replace(row, **own) for row in self.fitted)
-        return Kept(row=replace(self.row, **own), fitted=fitted)
+        return replace(self, row=replace(self.row, **own), fitted=fitted)
 
 
 def kept_run(folder: Path, key: str) -> Kept | None:
-    """The rows of a run that was done of these very inputs; None where it is to be done."""
+    """The rows of a run that was done of these very inputs; None where it is to be done.
+
+    That is so, too, where a file of it is not there any more.
+
+    Raises
+    ------
+    TrialidError
+        A file of it was changed since, or cut off: nobody knows what it is worth.
+    """
+    own_files.check(folder, ())
     try:
         found = read_object(folder / NAME, "")
         if found.pop("schema", None) != SCHEMA:
@@ -43,7 +53,41 @@ def kept_run(folder: Path, key: str) -> Kept | None:
         kept = row_of(Kept, found)
     except TrialidError:
         return None
-    return kept if kept.row.key == key else None
+    whole = all((folder / name).is_file() for name in kept.files)
+    return kept if whole and kept.row.key == key else None
+
+
+def set_aside(folder: Path, aside: Path) -> None:
+    """Move the folder of a run that is no longer what the batch says of it out of the way.
+
+    It is found again by its key, should its inputs be again what they were.
+
+    Raises
+    ------
+    TrialidError
+        An earlier one that it would take the place of holds what is not ours.
+    """
+    if not folder.exists():
+        return
+    if aside.exists():
+        own_files.check_all_ours(aside)
+        shutil.rmtree(aside)
+    aside.parent.mkdir(parents=True, exist_ok=True)
+    folder.rename(aside)
+
+
+def put_back(aside: Path, folder: Path, key: str) -> Kept | None:
+    """The rows of a run of these very inputs that was set aside, its folder put back; else None."""
+    kept = kept_run(aside, key) if aside.exists() and not folder.exists() else None
+    if kept is not None:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        aside.rename(folder)
+    return kept
+
+
+def kept_of(done: Done) -> Kept:
+    """What is to be read back of a run."""
+    return Kept(row=done.row, fitted=done.fitted, files=tuple(done.files))
 
 
 def keep_run(done: Done, folder: Path) -> None:
@@ -57,7 +101,7 @@ def keep_run(done: Done, folder: Path) -> None:
         There is no room, or no right to write; an earlier folder is as it was.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
-    rows = {"schema": SCHEMA, **plain(Kept(row=done.row, fitted=done.fitted))}
+    rows = {"schema": SCHEMA, **plain(kept_of(done))}
     text = json.dumps(rows, indent=1, default=str, allow_nan=False) + "\n"
     with _aside(folder.parent) as work:
         whole = work / folder.name
@@ -92,16 +136,29 @@ def _aside(parent: Path) -> Iterator[Path]:
         shutil.rmtree(work, ignore_errors=True)
 
 
-def write_pipelines(texts: Mapping[str, bytes], folder: Path) -> None:
-    """The pipelines that a fleet makes, where they are not there already.
+def write_pipelines(texts: Mapping[str, bytes], folder: Path) -> dict[str, str]:
+    """Write the pipelines that a fleet makes, where they are not there already.
 
-    Raises
-    ------
-    TrialidError
-        One of that name is not ours, or was changed by hand; nothing is written.
+    Returns
+    -------
+    dict
+        Why one is not written, by name: it is not ours, or was changed by hand. It stays as it is.
     """
     if all((folder / n).is_file() and (folder / n).read_bytes() == x for n, x in texts.items()):
-        return
-    with own_files.replacing(folder) as work:
-        for name, content in texts.items():
-            (work / name).write_bytes(content)
+        return {}
+    try:
+        with own_files.replacing(folder) as work:
+            for name, content in texts.items():
+                (work / name).write_bytes(content)
+    except TrialidError:  # one of them is in the way: of the others each by itself
+        return dict(_each_by_itself(texts, folder))
+    return {}
+
+
+def _each_by_itself(texts: Mapping[str, bytes], folder: Path) -> Iterator[tuple[str, str]]:
+    for name, content in texts.items():
+        try:
+            with own_files.replacing(folder, below=(name,)) as work:
+                (work / name).write_bytes(content)
+        except TrialidError as error:
+            yield name, str(error)

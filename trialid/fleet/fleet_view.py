@@ -9,6 +9,7 @@ from trialid.fleet.batch import Batch, by_dask
 from trialid.fleet.parquet_tables import CHANGES, PARAMETERS, RUNS_TABLE, check_parquet
 from trialid.pipeline_file.fleet_file import load_fleet
 from trialid.progress import Progress, silent
+from trialid.workflow.notebook.arguments import path_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,6 +69,7 @@ def batch(
     TrialidError
         The input is wrong; one line says what, where and what to do.
     """
+    file, place = path_of(fleet, "ti.batch"), path_of(folder, "ti.batch")
     check_parquet()
     compute = by_dask(on, jobs, lambda words: progress(words, None))
-    return FleetView(done_batch.batch(load_fleet(Path(fleet)), Path(folder), compute, progress))
+    return FleetView(done_batch.batch(load_fleet(file), place, compute, progress))

@@ -8,6 +8,7 @@ from trialid.fleet.structure_fits import compute_of
 from trialid.pipeline_file import load
 from trialid.progress import Progress, silent
 from trialid.result.structure_rows import Structures
+from trialid.workflow.notebook.arguments import path_of
 from trialid.workflow.structures.compare_structures import compare_structures
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ def structures(
     TrialidError
         The input is wrong; one line says what, where and what to do.
     """
-    asked, place = load(Path(pipeline)), None if folder is None else Path(folder)
+    asked = load(path_of(pipeline, "ti.structures"))
+    place = None if folder is None else path_of(folder, "ti.structures")
     with compute_of(asked, on, jobs, lambda words: progress(words, None)) as compute:
         return StructuresView(compare_structures(asked, progress, place, stability, compute))

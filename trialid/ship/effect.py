@@ -13,9 +13,11 @@ from trialid.maths import Number
 from trialid.names.quantities import QUANTITIES
 from trialid.ship.effect_checks import (
     check_own,
+    check_range,
     check_readings,
     check_scan,
     check_states,
+    check_system,
     find_forms,
 )
 from trialid.ship.forms import (
@@ -186,14 +188,15 @@ def effect(
     Raises
     ------
     EffectError
-        No docstring, an unknown signal, a parameter without a typical value, or a result that is
-        none of the forms.
+        No docstring, an unknown signal or system, a parameter without a typical value or with a
+        range that does not hold it, or a result that is none of the forms.
     """
 
     def declare(function: Callable[..., Any]) -> Effect:
         name = function.__name__
         if __debug__ and not (function.__doc__ or "").strip():  # python -OO strips them all
             raise EffectError(f"effect {name!r} has no docstring; write its equation there")
+        check_system(name, system)
         own = dict(states or {})
         asked = _own_signals(name, function)
         signals, parameters = _signature(name, function, {**own, **asked})
@@ -261,4 +264,5 @@ def _parameter(effect: str, name: str, start: Any) -> Parameter:
             f"effect {effect!r}: the typical value of parameter {name!r} is {made.start!r}; "
             "it sets the scale of everything relative and must be a number other than 0"
         )
+    check_range(effect, name, made)
     return made

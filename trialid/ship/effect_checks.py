@@ -18,6 +18,32 @@ SIZES: Final = (0.001, 0.1, 1.0, 10.0, 1000.0)
 of 0.1 m, but not at all."""
 
 
+SYSTEMS: Final = ("prime", "SI")
+
+
+def check_system(name: str, system: str) -> None:
+    """Refuse a system of units that is none of the two."""
+    if system not in SYSTEMS:
+        raise EffectError(
+            f"effect {name!r}: system={system!r}; expected {' or '.join(map(repr, SYSTEMS))}"
+        )
+
+
+def check_range(effect: str, name: str, parameter: "Parameter") -> None:
+    """Refuse a range that runs backwards, is none, or leaves out the typical value."""
+    low, high, start = parameter.low, parameter.high, parameter.start
+    if not all(isinstance(end, int | float) for end in (low, high)) or not low < high:
+        raise EffectError(
+            f"effect {effect!r}: parameter {name!r} may be from low={low!r} to high={high!r}; "
+            "expected two numbers, low below high"
+        )
+    if not low <= start <= high:
+        raise EffectError(
+            f"effect {effect!r}: the typical value {start!r} of parameter {name!r} is outside its "
+            f"range, low={low!r} to high={high!r}; change one of them"
+        )
+
+
 def check_own(name: str, asked: "Mapping[str, Signal]", system: "System") -> None:
     """Refuse signals of one's own in the prime system, which has no scale for them."""
     if asked and system == "prime":

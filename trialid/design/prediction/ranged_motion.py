@@ -9,6 +9,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.helm import OVER_GROUND, Vessel, track
 from trialid.design.imo.measure_slopes import SMALL
+from trialid.design.imo.speed_loss import logged_loss
 from trialid.design.prediction.likely_spread import LikelySpread, Range
 from trialid.names.quantities import SIGNALS, Quantity
 from trialid.ship.actuators import actuator_quantities
@@ -32,7 +33,7 @@ class PredictedMotion:
     Attributes
     ----------
     given
-        Orders, rudder and other inputs; (N,) each.
+        Orders, rudder and other inputs; a speed as it was sailed; (N,) each.
     motion
         Simulated motions and the track; (N,) each.
     ranges
@@ -86,11 +87,22 @@ def with_ranges(
     given = [n for n in trial.signals if n in named and n not in (*names, *OVER_GROUND)]
     return PredictedMotion(
         t=trial.t,
-        given={n: trial.signals[n] for n in given},
+        given={n: _as_sailed(ship, n, trial.signals) for n in given},
         motion={n: signals[n] for n in names},
         ranges=ranges,
         quantities={n: quantity_of(ship.model, n) for n in (*given, *outputs)},
     )
+
+
+def _as_sailed(ship: Vessel, name: str, signals: Mapping[str, Vector]) -> Vector:
+    """An input as the ship has it: the speed without what turns have cost, where that was added.
+
+    So her own model, which reads a speed and loses none of it, does the same of what is written.
+    """
+    if name != "u" or logged_loss.name not in {e.name for e in ship.model.effects}:
+        return signals[name]
+    sway = signals.get("v", np.zeros_like(signals["U"]))
+    return np.asarray(np.sqrt(np.maximum(signals["U"] ** 2 - sway**2, 0.0)))
 
 
 def _track(t: Vector, signals: Mapping[str, Vector], speed: float) -> tuple[Vector, Vector]:

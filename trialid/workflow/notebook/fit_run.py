@@ -20,6 +20,7 @@ from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.workflow.findings import narrowing_trial, proposal
 from trialid.workflow.fit_model import time_series
+from trialid.workflow.notebook.arguments import effect_name, path_of
 from trialid.workflow.notebook.run_view import RunView
 
 
@@ -41,7 +42,7 @@ class FitRun(RunView):
             There is no such effect, the model has it already, or it cannot be fitted.
         """
         own = dict(self.settings.candidates)
-        added = find(effect, own) if isinstance(effect, str) else effect
+        added = effect if isinstance(effect, Effect) else find(effect_name(effect, "add"), own)
         if added.name in [e.name for e in self.fit.model.effects]:
             raise EffectError(f"{added.name!r} is in the model already")
         lost = self.fit.model.lost_to(added)
@@ -57,6 +58,7 @@ class FitRun(RunView):
             The model has no such effect, or cannot be fitted without it.
         """
         present = {e.name: e for e in self.fit.model.effects}
+        name = effect_name(name, "drop")
         if name not in present:
             raise EffectError(f"{name!r} is not in the model; {nearest(name, present)}")
         model = self.fit.model - name
@@ -77,12 +79,13 @@ class FitRun(RunView):
         TrialidError
             A file that is not ours stands in the way.
         """
+        place = path_of(folder, "write")
         forces = () if self.findings.force is None else force_series(self.findings.force)
-        with own_files.replacing(Path(folder)) as work:
+        with own_files.replacing(place) as work:
             (work / "result.json").write_text(text_of(self.result), encoding="utf-8")
             write_csv(work / "series.csv", self.series)
             write_page(work / "report.html", self.result, self.series, forces)
-        return Path(folder) / "report.html"
+        return place / "report.html"
 
 
 def diagnosed_run(fit: Fit, settings: DiagnoseSettings, name: str) -> FitRun:

@@ -13,15 +13,16 @@ from trialid.errors import NotIdentifiable, nearest
 from trialid.identification import fit as search
 from trialid.identification.fit import Fit
 from trialid.identification.of_each_trial import Nuisance
-from trialid.identification.problem import Settings
-from trialid.identification.ship_priors import ship_priors
 from trialid.identification.trial_score import of_trial
 from trialid.pipeline_file import load
+from trialid.pipeline_file.form import IdentifySection
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
+from trialid.workflow.notebook.arguments import path_of
+from trialid.workflow.notebook.asked_settings import asked_diagnosis, asked_settings, checked_trials
 from trialid.workflow.notebook.fit_run import FitRun, diagnosed_run
 from trialid.workflow.notebook.pipeline_run import PipelineRun, pipeline_run
 from trialid.workflow.run import run as run_pipeline
@@ -42,7 +43,7 @@ def run(pipeline: str | Path, progress: Progress = silent) -> PipelineRun:
     TrialidError
         The input is wrong; one line says what, where and what to do.
     """
-    return pipeline_run(run_pipeline(load(Path(pipeline)), progress))
+    return pipeline_run(run_pipeline(load(path_of(pipeline, "ti.run")), progress))
 
 
 def identify(
@@ -70,28 +71,22 @@ def identify(
         ship's file states with its scatter, what it says.
     settings
         The rest of a pipeline's `[identify]`: `bounds` (name to a pair), `weights`, `loss`,
-        `starts`, `seed`, `max_iterations`.
+        `starts`, `seed`, `max_iterations`; what a file may not say, none of these may.
 
     Raises
     ------
     TrialidError
         The model or the record does not allow a fit; one line says why.
     """
-    known = [name for name in Settings.__dataclass_fields__ if name not in ("free", "outputs")]
     for name in settings:
-        if name not in known:
-            raise NotIdentifiable(f"identify has no setting {name!r}; {nearest(name, known)}")
+        if name not in IdentifySection.model_fields:
+            hint = nearest(name, IdentifySection.model_fields)
+            raise NotIdentifiable(f"identify has no setting {name!r}; {hint}")
     if isinstance(priors, str) and priors != "ship":
         raise NotIdentifiable(f'priors = {priors!r} is not known; "ship", or a pair for each name')
-    known_before = ship_priors(model, free) if isinstance(priors, str) else priors
-    asked = Settings(
-        free=tuple(free),
-        outputs=tuple(outputs),
-        nuisance=tuple(nuisance),
-        priors=known_before,
-        **settings,
-    )
-    return search.identify(tuple(trials), model, asked)
+    asked = {"free": free, "outputs": outputs, "nuisance": nuisance, "priors": priors, **settings}
+    known = checked_trials(trials, model)
+    return search.identify(known, model, asked_settings(known, model, asked))
 
 
 def diagnose(
@@ -111,9 +106,17 @@ def diagnose(
         What the run is called in tables and reports.
     settings
         The rest of a pipeline's `[diagnose]`: `level`, `refit`, `family_cos`, `noise` [SI].
+
+    Raises
+    ------
+    TrialidError
+        A setting is none, or no number that it may be; one line says which.
     """
+    if not isinstance(fit, Fit):
+        raise NotIdentifiable(f"ti.diagnose: fit: expected what ti.identify gives, got {fit!r}")
     tried = CATALOGUE if candidates is None else candidates
-    return diagnosed_run(fit, DiagnoseSettings(candidates=tried, **settings), name)
+    asked = DiagnoseSettings(candidates=tried, **asked_diagnosis(settings))
+    return diagnosed_run(fit, asked, name)
 
 
 def simulate(
@@ -137,9 +140,16 @@ def simulate(
     -------
     DataFrame
         Index `t` [s], a column for each output [SI].
+
+    Raises
+    ------
+    TrialidError
+        An output or a start the model has not, a signal the trial lacks, or the model leaves its
+        domain.
     """
     import pandas as pd
 
+    _check_simulated(model, trial)
     values: Mapping[str, float] = {}
     begun = dict(start or {})
     if isinstance(model, Fit):
@@ -148,8 +158,26 @@ def simulate(
         begun = {**own, **begun}
     else:
         simulator = prepare(model, (), outputs)
+    for state in (s for s in begun if s not in simulator.equations.states):
+        known = nearest(state, simulator.equations.states)
+        raise NotIdentifiable(f"ti.simulate: start: no state {state!r} is simulated; {known}")
     response = respond(simulator, trial, values, begun, sensitivities=False)
     if response.departure is not None:
         raise NotIdentifiable(f"the model leaves its domain: {response.departure}")
     index = pd.Index(trial.t, name="t")
     return pd.DataFrame(np.asarray(response.y), index=index, columns=list(outputs))
+
+
+def _check_simulated(model: ShipModel | Fit, trial: Trial) -> None:
+    """Refuse what is no model and no trial, and a trial of a fit that it did not see."""
+    if not isinstance(model, ShipModel | Fit) or not isinstance(trial, Trial):
+        raise NotIdentifiable(
+            "ti.simulate: expected a ti.ShipModel or what ti.identify gives, and a ti.Trial, got a "
+            f"{type(model).__name__} and a {type(trial).__name__}"
+        )
+    fitted = [one.name for one in model.problem.trials] if isinstance(model, Fit) else [trial.name]
+    if trial.use == "fit" and trial.name not in fitted:
+        raise NotIdentifiable(
+            f"ti.simulate: trial {trial.name!r} has use='fit' and was not fitted "
+            f"({nearest(trial.name, fitted)}); make it with use='check'"
+        )

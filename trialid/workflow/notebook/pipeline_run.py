@@ -11,6 +11,7 @@ from trialid.result.series import TrialSeries
 from trialid.threads import one_thread
 from trialid.workflow.edit_model import fit_edit, foresee_edit, set_beside
 from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
+from trialid.workflow.notebook.arguments import effect_name, path_of
 from trialid.workflow.notebook.run_view import RunView
 from trialid.workflow.outcome import Run
 from trialid.workflow.run import examine
@@ -37,7 +38,7 @@ class PipelineRun(RunView):
         TrialidError
             There is no such effect, the model has it already, or it cannot be fitted.
         """
-        return self._edited(add_to_pipeline(self.pipeline, effect))
+        return self._edited(add_to_pipeline(self.pipeline, effect_name(effect, "add")))
 
     def drop(self, effect: str) -> "PipelineRun":
         """The run of the pipeline with an effect less.
@@ -47,7 +48,7 @@ class PipelineRun(RunView):
         TrialidError
             The model has no such effect, or cannot be fitted without it.
         """
-        return self._edited(drop_from_pipeline(self.pipeline, effect))
+        return self._edited(drop_from_pipeline(self.pipeline, effect_name(effect, "drop")))
 
     @one_thread
     def _edited(self, edit: Edit) -> "PipelineRun":
@@ -65,7 +66,7 @@ class PipelineRun(RunView):
         TrialidError
             A file that is not ours stands in the way.
         """
-        place = Path(folder)
+        place = path_of(folder, "write")
         check_replaceable(place, self.pipeline)
         write(Run(self.pipeline, self.findings, self.result, self.series), place)
         return place / "report.html"

@@ -4,12 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
+from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
 from trialid.result.build import Findings
 from trialid.result.finding_rows import VerdictPart
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries
 from trialid.trial import Trial
+from trialid.workflow.notebook.arguments import changes_of, count_of, order_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -78,13 +80,13 @@ class RunView:
         Raises
         ------
         TrialidError
-            There is no such manoeuvre or input, or the fit carries no verdict.
+            There is no such manoeuvre or input, both are given, a number is none, or the fit
+            carries no verdict.
         """
         from trialid.workflow.use.in_memory import simulated_frame
-        from trialid.workflow.use.what_if import WhatIf
 
-        words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
-        changes = WhatIf(dict(what_if or {}), tuple(without))
+        words = order_words(manoeuvre, {"period": period, **inputs})
+        changes = changes_of(what_if, without)
         return simulated_frame(self, words, period, inputs, what_if=changes, anyway=anyway)
 
     def draw(
@@ -113,7 +115,8 @@ class RunView:
         """
         from trialid.workflow.use.in_memory import drawn_ships
 
-        words = tuple(f"{x:g}" if isinstance(x, float | int) else x for x in manoeuvre)
+        words = order_words(manoeuvre, {"period": period, **inputs})
+        number, seed = count_of(number, "number", 1), count_of(seed, "seed", 0)
         return drawn_ships(self, words, period, inputs, number=number, seed=seed, anyway=anyway)
 
     @property
@@ -135,11 +138,20 @@ class RunView:
         """Another run and this one side by side: errors, parameters and how far they lie apart.
 
         Columns `other`, `this`, and `apart` in joint standard errors (None for errors).
+
+        Raises
+        ------
+        TrialidError
+            `other` is no run: a finished run's folder is none.
         """
         import pandas as pd
 
         from trialid.report.pages.side_by_side import joint_distance
 
+        if not isinstance(other, RunView):
+            raise TrialidError(
+                f"compare: expected another run, as ti.run and ti.diagnose give, got {other!r}"
+            )
         rows: dict[str, tuple[Any, Any, float | None]] = {}
         for name, of in _ERRORS.items():
             rows[name] = (of(other.result), of(self.result), None)
@@ -161,7 +173,7 @@ class RunView:
         """
         from trialid.report.pictures.series_plot import plot
 
-        return plot(self.series, output)
+        return plot(self.series, str(output))
 
     def _repr_html_(self) -> str:
         from trialid.report.pages.card import card

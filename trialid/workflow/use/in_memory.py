@@ -16,6 +16,7 @@ from trialid.export.predicted_file import predicted_columns
 from trialid.names.quantities import SIGNALS
 from trialid.result.build import Findings
 from trialid.result.schema import Result
+from trialid.signal_arrays import numbers
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict
 from trialid.workflow.use.orders import OrderTable, named_manoeuvre, stop_order
 from trialid.workflow.use.predict import (
@@ -134,14 +135,16 @@ def _table(period: float | None, inputs: Mapping[str, Sequence[float]]) -> Order
     TrialidError
         One is not known, not as long as the others, or not finite; or there is no clock.
     """
-    values = {n: np.asarray(x, dtype=np.float64) for n, x in inputs.items()}
-    for name, one in values.items():
+    for name in inputs:
         if name not in SIGNALS:
             raise TrialidError(f"there is no signal {name!r}; {nearest(name, SIGNALS)}")
+    values = {n: numbers(n, x) for n, x in inputs.items()}
+    for name, one in values.items():
         if one.ndim != 1 or len(one) < 2 or not np.isfinite(one).all():
             raise TrialidError(f"{name}: expected a row of at least two finite numbers, in SI")
     lengths = {len(one) for one in values.values()}
-    if len(lengths) != 1 or period is None or not 0.0 < period < np.inf:
+    timed = isinstance(period, float | int) and 0.0 < period < np.inf
+    if len(lengths) != 1 or period is None or not timed:
         raise TrialidError(
             "expected a manoeuvre as 'zigzag', 20, 20, or inputs of one length and their period "
             "[s]: delta=[...], period=0.5"

@@ -15,6 +15,7 @@ from trialid.design.imo import measures
 from trialid.design.prediction.predicted_motion import Manoeuvre
 from trialid.design.standard import DEGREES, Reading
 from trialid.errors import TrialidError, nearest
+from trialid.export.predicted_file import ENDS
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 
@@ -32,10 +33,14 @@ ORDINALS: Final = ("first", "second", "third")
 
 @dataclass(frozen=True)
 class OrderTable:
-    """Inputs over time in SI, straight between the times; (N,) each."""
+    """Inputs over time in SI, straight between the times; (N,) each.
+
+    `unknown`: columns beside them whose names no signal has.
+    """
 
     t: Vector
     signals: Mapping[str, Vector]
+    unknown: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -181,7 +186,14 @@ def read_orders(path: Path) -> OrderTable:
     if not (np.diff(t) > 0).all():
         row = int(np.flatnonzero(np.diff(t) <= 0)[0]) + 2
         raise TrialidError(f"{path}: t does not rise at row {row}; give one manoeuvre in a file")
-    return OrderTable((t - t[0]) / 1e9, signals)
+    unknown = tuple(name for name in recording.channels if _is_unknown(name))
+    return OrderTable((t - t[0]) / 1e9, signals, unknown)
+
+
+def _is_unknown(column: str) -> bool:
+    """Whether no signal has the name; an end of one's range, as `simulate` writes it, is known."""
+    ends = (column.removesuffix(f"_{end}") for end in ENDS)
+    return not {column, *ends} & {TIME, *SIGNALS}
 
 
 def complete_rows(table: OrderTable, inputs: Collection[str], where: str) -> OrderTable:
@@ -210,4 +222,4 @@ def complete_rows(table: OrderTable, inputs: Collection[str], where: str) -> Ord
     cut = {n: x[kept] for n, x in table.signals.items()}
     begun = {n: x for n, x in cut.items() if n in needed or np.isfinite(x[0])}
     t = table.t[kept]
-    return OrderTable(t - t[0], {n: np.nan_to_num(x) for n, x in begun.items()})
+    return OrderTable(t - t[0], {n: np.nan_to_num(x) for n, x in begun.items()}, table.unknown)

@@ -10,13 +10,16 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.following import GEAR, STEERED, sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
+from trialid.design.imo.speed_loss import logged_loss, loses_speed
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre, sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.seen_range import beyond_words
-from trialid.errors import DesignError, TrialidError
+from trialid.errors import DesignError, TrialidError, list_names
 from trialid.identification.fit import Fit
 from trialid.names import labels
+from trialid.pipeline_file.contradictions import nearest_signal
+from trialid.ship.effect import Steered
 from trialid.threads import one_thread
 from trialid.trial import Trial
 from trialid.workflow.use.finished_model import FinishedModel
@@ -80,11 +83,17 @@ def predict_orders(
 
 @dataclass(frozen=True)
 class OnClock:
-    """What became of a table of orders: samples a row, inputs held, columns that nothing reads."""
+    """What became of a table of orders: samples a row, inputs held, columns that nothing reads.
+
+    `loses`: how the speed falls where none is given, in words; empty where it is held. `unknown`:
+    columns whose names no signal has.
+    """
 
     every: int
     held: Mapping[str, float]
     unread: Collection[str]
+    loses: str = ""
+    unknown: tuple[str, ...] = ()
 
 
 ALL: Final = OnClock(1, MappingProxyType({}), ())
@@ -110,7 +119,8 @@ def ready_orders(
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
     unread = {*table.signals} - inputs - {*ship.model.all_states} - STEERED
-    return ship, orders, OnClock(every, held, unread)
+    loses = _loses(ship) if "u" in held else ""
+    return ship, orders, OnClock(every, held, unread, loses, table.unknown)
 
 
 def spread_of(model: FinishedModel) -> LikelySpread:
@@ -139,6 +149,16 @@ def _ship_for(
     steered = changed_ship(steered, what_if)
     needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
     return steered, {n: steered.constants[n] for n in sorted(needed) if n in steered.constants}
+
+
+def _loses(ship: Vessel) -> str:
+    """How a speed that is given falls, in words; empty where it stays as it is."""
+    model = ship.model
+    own = [e.name for e in model.effects if "u" in e.acts_on(Steered) and e is not logged_loss]
+    if own:
+        return f"as {own[0]} has it"
+    known = {n: model.value(n) for n in logged_loss.parameters if n in model.parameters}
+    return "as in the logs" if loses_speed(known) else ""
 
 
 def _clock(t: Vector, longest: float) -> tuple[Vector, int]:
@@ -170,9 +190,18 @@ def with_words(
     )
     if orders.unread:
         words.append(f"Not read by the model: {', '.join(sorted(orders.unread))}.")
-    if orders.held:
-        listed = ", ".join(f"{n} = {labels.shown_text(n, x)}" for n, x in orders.held.items())
-        words.append(f"Not among the orders, held as in the trials: {listed}.")
+    if orders.unknown:
+        hints = {n: nearest_signal(n) for n in orders.unknown}
+        named = [f"{n} ({h})" if h.startswith("did") else n for n, h in hints.items()]
+        words.append(f"Columns passed over, as no signal has their names: {list_names(named)}.")
+    shown = {n: f"{n} = {labels.shown_text(n, x)}" for n, x in orders.held.items()}
+    if orders.loses:
+        begun = shown.pop("u")
+        words.append(
+            f"Not among the orders: {begun} is how she approaches; turns cost speed {orders.loses}."
+        )
+    if shown:
+        words.append(f"Not among the orders, held as in the trials: {', '.join(shown.values())}.")
     if made.departure is not None:
         words.append(f"The ship leaves her model: {made.departure}; nothing is given beyond.")
     return Prediction(name, made, tuple(words))

@@ -1,5 +1,6 @@
 """The fitted ship with something changed, and what the record says of that."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
@@ -49,6 +50,8 @@ def read_changes(texts: Sequence[str], without: Sequence[str]) -> WhatIf:
                 f"--what-if {text!r}: expected a name and a number, as GM=0.8 or speed=5"
                 + ("" if equals else "; there is no =")
             ) from error
+        if not math.isfinite(values[name.strip()]):
+            raise TrialidError(f"--what-if {text!r}: expected a finite number")
     return WhatIf(values, tuple(without))
 
 

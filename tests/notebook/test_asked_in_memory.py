@@ -1,0 +1,90 @@
+"""What a notebook asks of a fit is held against the rules of a pipeline file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trialid as ti
+from trialid.errors import TrialidError
+from trialid.pipeline_file.form import DiagnoseSection
+from trialid.workflow.notebook.asked_settings import asked_diagnosis, asked_settings
+
+SHIP = Path(__file__).parents[2] / "sample_data" / "ships" / "s175q.toml"
+ASKED = {"free": ["Nr"], "outputs": ["r"]}
+
+
+def weave(name: str = "weave", use: str = "fit", speed: float = 7.3) -> ti.Trial:
+    t = 0.5 * np.arange(200)
+    signals = {"delta": np.sin(t / 10.0), "r": np.cos(t / 10.0), "u": np.full(200, speed)}
+    units = {"delta": "deg", "r": "deg/s", "u": "m/s"}
+    side = {"delta": "starboard"}
+    return ti.Trial.from_arrays(name, t, signals, units=units, positive=side, use=use)
+
+
+@pytest.fixture(scope="module")
+def model() -> ti.ShipModel:
+    effects = tuple(ti.CATALOGUE[e] for e in ("linear_hull", "linear_rudder"))
+    return ti.ShipModel(ti.read_ship(str(SHIP)), ("v", "r"), effects)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"nuisance": ["initial_state", "biass"]}, r"nuisance\[1\]: 'biass' is not allowed"),
+        ({"bounds": {"Nr": (1, 0)}}, r"bounds.Nr: \[1, 0\] runs backwards"),
+        ({"bounds": {"Nr": (5, 6)}}, "bounds.Nr: .* leaves out the start"),
+        ({"bounds": {"Nx": (0, 1)}}, "bounds.Nx: 'Nx' is not free"),
+        ({"priors": {"Nx": (0, 1)}}, "priors.Nx: 'Nx' is not free"),
+        ({"priors": {"Nr": (0, -1)}}, "priors.Nr.std: must be greater than 0"),
+        ({"loss": "hubber"}, "loss: 'hubber' is not allowed; did you mean 'huber'"),
+        ({"norm": "x"}, "norm: 'x' is not allowed"),
+        ({"engine": "x"}, "engine: 'x' is not allowed"),
+        ({"starts": 0}, "starts: must be greater than or equal to 1"),
+        ({"weights": {"r": -1}}, "weights.r: must be greater than 0"),
+        ({"weights": {"rr": 1}}, "weights.rr: not one of identify.outputs"),
+        ({"free": ["Nr", "Nr"]}, "free: 'Nr' stands there 2 times"),
+        ({"free": []}, "free: must not be empty"),
+        ({"free": "Nr"}, "free: must be a list"),
+    ],
+)
+def test_what_a_pipeline_may_not_ask_a_notebook_may_not(model, change: dict, said: str) -> None:
+    with pytest.raises(TrialidError, match=f"^ti.identify: identify.{said}"):
+        ti.identify([weave()], model, **{**ASKED, **change})
+
+
+@pytest.mark.parametrize(
+    ("trials", "said"),
+    [
+        ([], "no trial to fit"),
+        ([weave(use="check")], "no trial to fit"),
+        ([weave(), weave()], "is already the name of"),
+        ([weave(speed=0.1)], "the ship lies still"),
+        (weave(), "expected a list of ti.Trial"),
+        (["zigzag"], "got a list with a str"),
+    ],
+)
+def test_trials_are_held_against_the_rules_of_a_pipeline(model, trials, said: str) -> None:
+    with pytest.raises(TrialidError, match=said):
+        ti.identify(trials, model, **ASKED)
+
+
+def test_a_model_is_none_by_its_name() -> None:
+    with pytest.raises(TrialidError, match=r"expected a ti\.ShipModel, got 'ship'"):
+        ti.identify([weave()], "ship", **ASKED)
+
+
+def test_settings_of_numpy_are_what_a_file_would_say(model) -> None:
+    more = {"bounds": {"Nr": np.array([-1.0, 0.0])}, "priors": {"Nr": (-0.002, np.float64(0.001))}}
+    asked = asked_settings([weave()], model, {**ASKED, **more, "starts": np.int64(2)})
+    assert asked.bounds == {"Nr": (-1.0, 0.0)}
+    assert asked.priors == {"Nr": (-0.002, 0.001)}
+    assert (asked.starts, asked.nuisance) == (2, ("initial_state",))
+
+
+def test_a_diagnosis_takes_what_a_pipeline_takes() -> None:
+    assert asked_diagnosis({})["family_cos"] == DiagnoseSection().family_cos
+    with pytest.raises(TrialidError, match=r"^ti\.diagnose: level: must be less than 1"):
+        asked_diagnosis({"level": 5})
+    with pytest.raises(TrialidError, match="no setting 'levels'; did you mean 'level'"):
+        asked_diagnosis({"levels": 0.1})

@@ -1,0 +1,119 @@
+"""A call with what it cannot take is one line that says what was expected."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trialid as ti
+from trialid.errors import TrialidError
+from trialid.workflow.notebook.arguments import changes_of, count_of, order_words, path_of
+from trialid.workflow.notebook.fit_run import FitRun
+from trialid.workflow.notebook.pipeline_run import PipelineRun
+from trialid.workflow.notebook.run_view import RunView
+from trialid.workflow.use.in_memory import _table
+
+RUN: Any = PipelineRun(None, None, None, ())
+FITTED: Any = FitRun(None, None, None, ())
+
+
+@dataclass(frozen=True)
+class Nothing:
+    """What nobody expects."""
+
+
+@pytest.mark.parametrize("given", [None, "", 3, Nothing()])
+def test_a_path_that_is_none(given: Any, tmp_path: Path) -> None:
+    calls = (ti.run, ti.structures, lambda x: ti.batch(x, tmp_path), RUN.write, FITTED.write)
+    for call in calls:
+        with pytest.raises(TrialidError, match="expected the path of a file or folder, got "):
+            call(given)
+    assert path_of(str(tmp_path), "here") == tmp_path
+
+
+@pytest.mark.parametrize("given", [None, 3, Nothing()])
+def test_an_effect_that_has_no_name(given: Any) -> None:
+    for call in (RUN.add, RUN.drop):
+        with pytest.raises(
+            TrialidError, match="expected an effect's name, as 'righting_arm_cubic'"
+        ):
+            call(given)
+    with pytest.raises(TrialidError, match="save it in a file that the pipeline names"):
+        RUN.add(ti.CATALOGUE["linear_hull"])
+
+
+def test_an_output_that_has_no_name() -> None:
+    with pytest.raises(TrialidError, match="no output 'None' was compared"):
+        RUN.plot(None)
+
+
+def test_a_run_is_compared_with_a_run() -> None:
+    with pytest.raises(TrialidError, match=r"expected another run, .* got 'runs/better'"):
+        RUN.compare("runs/better")
+
+
+def test_orders_on_a_clock_beside_a_manoeuvre_are_not_passed_over() -> None:
+    for call in (RunView().simulate, RunView().draw):
+        with pytest.raises(TrialidError, match=r"delta: orders on a clock .* 'circle'"):
+            call("circle", 35, delta=[0.1, 0.2])
+        with pytest.raises(TrialidError, match="period: orders on a clock stand alone"):
+            call("circle", 35, period=0.5)
+        with pytest.raises(TrialidError, match="None is no part of a manoeuvre"):
+            call("circle", None)
+    assert order_words(("zigzag", 20, 12.5), {"period": None}) == ("zigzag", "20", "12.5")
+    assert order_words((), {"period": 0.5, "delta": [0.1]}) == ()
+
+
+@pytest.mark.parametrize(
+    ("what_if", "without", "said"),
+    [
+        ({"GM": "a"}, (), "what_if GM: expected a finite number, got 'a'"),
+        ({"GM": float("nan")}, (), "what_if GM: expected a finite number, got nan"),
+        ("GM=1", (), "what_if: expected numbers by name"),
+        ({}, "heel_yaw", "without: expected a list of effects' names, got 'heel_yaw'"),
+    ],
+)
+def test_a_change_that_is_no_number(what_if: Any, without: Any, said: str) -> None:
+    with pytest.raises(TrialidError, match=said):
+        RunView().simulate("circle", 35, what_if=what_if, without=without)
+    assert changes_of({"GM": np.float64(0.8)}, ["heel_yaw"]).without == ("heel_yaw",)
+
+
+@pytest.mark.parametrize(
+    ("name", "given"), [("seed", -1), ("number", 0), ("number", "a"), ("number", 1.5)]
+)
+def test_a_count_that_is_none(name: str, given: Any) -> None:
+    with pytest.raises(TrialidError, match=f"^{name}={given!r}: expected a whole number, at least"):
+        RunView().draw("circle", 35, **{name: given})
+    assert count_of(np.int64(3), "seed", 0) == 3
+
+
+def test_orders_that_are_no_numbers() -> None:
+    with pytest.raises(TrialidError, match=r"delta: 'a' \(row 0\) is no number"):
+        _table(0.5, {"delta": ["a", "b"]})
+    with pytest.raises(TrialidError, match="inputs of one length and their period"):
+        _table("a", {"delta": [0.1, 0.2]})
+
+
+def weave(name: str, use: str) -> ti.Trial:
+    t = 0.5 * np.arange(200)
+    signals = {"delta": np.sin(t / 10.0), "r": np.cos(t / 10.0)}
+    units = {"delta": "deg", "r": "deg/s"}
+    side = {"delta": "starboard"}
+    return ti.Trial.from_arrays(name, t, signals, units=units, positive=side, use=use)
+
+
+def test_a_simulation_of_what_cannot_be_simulated() -> None:
+    ship = ti.read_ship(str(Path(__file__).parents[2] / "sample_data" / "ships" / "s175q.toml"))
+    effects = tuple(ti.CATALOGUE[e] for e in ("linear_hull", "linear_rudder"))
+    model = ti.ShipModel(ship, ("v", "r"), effects)
+    with pytest.raises(TrialidError, match="got a NoneType and a Trial"):
+        ti.simulate(None, weave("a", "fit"))
+    with pytest.raises(TrialidError, match="start: no state 'rr' is simulated; did you mean 'r'"):
+        ti.simulate(model, weave("a", "fit"), ("r",), start={"rr": 0.1})
+    fit = ti.identify([weave("a", "fit")], model, free=["Nr"], outputs=["r"], max_iterations=2)
+    with pytest.raises(TrialidError, match="trial 'b' has use='fit' and was not fitted"):
+        ti.simulate(fit, weave("b", "fit"))
+    assert len(ti.simulate(fit, weave("b", "check"))) == 200
