@@ -1,5 +1,6 @@
 """What a notebook asks of a fit is held against the rules of a pipeline file."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,11 @@ import pytest
 import trialid as ti
 from trialid.errors import TrialidError
 from trialid.pipeline_file.form import DiagnoseSection
-from trialid.workflow.notebook.asked_settings import asked_diagnosis, asked_settings
+from trialid.workflow.notebook.asked_settings import (
+    asked_diagnosis,
+    asked_settings,
+    checked_trials,
+)
 
 SHIP = Path(__file__).parents[2] / "sample_data" / "ships" / "s175q.toml"
 ASKED = {"free": ["Nr"], "outputs": ["r"]}
@@ -88,3 +93,19 @@ def test_a_diagnosis_takes_what_a_pipeline_takes() -> None:
         asked_diagnosis({"level": 5})
     with pytest.raises(TrialidError, match="no setting 'levels'; did you mean 'level'"):
         asked_diagnosis({"levels": 0.1})
+
+
+def test_a_rudder_that_is_not_recorded_for_long_is_refused(model: ti.ShipModel) -> None:
+    """As a pipeline cuts the trial there: half her length takes her 11.9 s."""
+    whole = weave()
+    for samples, refused in ((20, False), (30, True)):
+        known = np.ones(200, np.bool_)
+        known[80 : 80 + samples] = False
+        holed = replace(whole, valid={**whole.valid, "delta": known})
+        if refused:
+            with pytest.raises(
+                TrialidError, match=r"'weave': delta not recorded in \[40.0, 54.5\]"
+            ):
+                ti.identify([holed], model, **ASKED)
+        else:
+            assert checked_trials([holed], model) == (holed,)

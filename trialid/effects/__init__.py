@@ -79,7 +79,7 @@ def from_file(path: Path) -> dict[str, Effect]:
     Raises
     ------
     EffectError
-        The file cannot be read or run, declares no effect, or one by a name of the catalogue.
+        The file cannot be read or run, or declares no effect.
     """
     try:
         source = user_files.text(path)
@@ -100,11 +100,6 @@ def from_file(path: Path) -> dict[str, Effect]:
     own = {n: e for n, e in found.items() if e.function.__module__ == module.__name__}
     if not own:
         raise EffectError(f"effects file {path}: declares no effect; write one with @effect")
-    for name in (n for n in own if n in CATALOGUE):
-        raise EffectError(
-            f"effects file {path}: effect {name!r} has the name of one of the catalogue, which "
-            "results would be taken for; rename it"
-        )
     return own
 
 

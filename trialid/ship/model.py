@@ -51,6 +51,7 @@ class ShipModel:
     values: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        _check_kinds(self)
         _check_states(self.states)
         _check_unique(self.effects)
         _check_signals(self)
@@ -177,6 +178,20 @@ def _primed_mass(ship: Ship, name: str) -> float:
 def takes_place(effect: Effect, other: Effect) -> bool:
     """Whether both give one state: it has one equation, and a rudder one gear."""
     return other.name != effect.name and bool({*effect.states} & {*other.states})
+
+
+def _check_kinds(model: ShipModel) -> None:
+    """Refuse names in the place of what they name."""
+    if not isinstance(model.ship, Ship):
+        raise ShipError(f"ShipModel: expected a ship, as ti.read_ship gives, got {model.ship!r}")
+    if isinstance(model.states, str):
+        raise EffectError(f"ShipModel: expected a list of states, got {model.states!r}")
+    for effect in model.effects:
+        if not isinstance(effect, Effect):
+            raise EffectError(
+                f"ShipModel: expected effects, got {effect!r}; of the catalogue they are "
+                "ti.CATALOGUE[name]"
+            )
 
 
 def _check_states(states: tuple[str, ...]) -> None:

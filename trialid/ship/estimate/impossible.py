@@ -63,8 +63,8 @@ def _missing(given: Given) -> Found:
 def _no_numbers(given: Given) -> Found:
     for name in known_names(given):
         value = getattr(given, name)
-        if not math.isfinite(value):
-            yield name, f"{WORDS[name].name} {value} is not a number"
+        if not isinstance(value, int | float) or not math.isfinite(value):
+            yield name, f"{WORDS[name].name} {value!r} is not a number"
         elif value <= 0.0 and name != "x_G":
             yield name, f"{tell(given, name)} is not above zero"
 

@@ -7,8 +7,10 @@ from typing import Any, Final
 import numpy as np
 from pydantic import ValidationError
 
+from trialid.alignment.input_gaps import LENGTHS, without_input_gaps
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.problem import Settings
+from trialid.names.quantities import SIGNALS, is_input
 from trialid.pipeline_file import Pipeline, check_form
 from trialid.pipeline_file.complaints import own_mistakes, problem, refusal
 from trialid.pipeline_file.contradictions import contradictions
@@ -56,7 +58,10 @@ def asked_settings(trials: Sequence[Trial], model: ShipModel, asked: Mapping[str
 
 
 def checked_trials(trials: Sequence[Trial], model: ShipModel) -> tuple[Trial, ...]:
-    """The trials of a fit; NotIdentifiable where they, or the model, are something else."""
+    """The trials of a fit; NotIdentifiable where they, or the model, are something else.
+
+    And where what steers her is not recorded for long in the middle of one.
+    """
     if not isinstance(model, ShipModel):
         raise NotIdentifiable(f"ti.identify: model: expected a ti.ShipModel, got {model!r}")
     found = tuple(trials) if isinstance(trials, Iterable) else ()
@@ -67,7 +72,21 @@ def checked_trials(trials: Sequence[Trial], model: ShipModel) -> tuple[Trial, ..
             "ti.identify: trials: expected a list of ti.Trial, as ti.Trial.from_frame and ti.align "
             f"make them, got a {kind}"
         )
+    for trial in found:
+        _check_gaps(trial, model)
     return found
+
+
+def _check_gaps(trial: Trial, model: ShipModel) -> None:
+    L, U0 = (model.ship.particulars.get(name, 0.0) for name in ("L", "U0"))
+    inputs = [n for n in trial.signals if n not in SIGNALS or is_input(SIGNALS[n])]
+    part = without_input_gaps(trial, inputs, LENGTHS * L / U0) if L and U0 else trial
+    if part.samples < trial.samples:
+        said = part.remarks[-1].partition(": only")[0]
+        raise NotIdentifiable(
+            f"trial {trial.name!r}: {said}: a simulation comes out of that with another state than "
+            "she did; make a trial of each stretch beside it"
+        )
 
 
 def asked_diagnosis(asked: Mapping[str, Any]) -> dict[str, Any]:
