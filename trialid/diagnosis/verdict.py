@@ -63,8 +63,8 @@ of 33 effects each in white noise and in a sea nothing was missing in 9 and 13, 
 in a sea away; twice says that nothing is missing of a boat whose compass jumped, at 0.92."""
 
 LITTLE: Final = 0.03
-"""Model error that is little whatever the noise is: of a model's roll decay 2 % is all that is left.
-Half of it says `cannot tell` there, twice of no record more that nothing is missing."""
+"""Model error that is little whatever the noise is: of a model's roll decay all that is left is
+2 %. Half of it says `cannot tell` there, twice of no record more that nothing is missing."""
 
 
 @dataclass(frozen=True)
