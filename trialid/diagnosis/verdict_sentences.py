@@ -41,9 +41,14 @@ def contradiction(fit: Fit, found: Refit) -> str:
     how = "are lost" if lost else f"go from {fit.eps_check:.2%} to {found.fit.eps_check:.2%}"
     return (
         f"{found.candidate.effect.name} lowers the squared error where it was not fitted by "
-        f"{1.0 - found.carried.ratio:.0%}, but with it the held-out trials {how}: the trials "
+        f"{1.0 - 1.0 / found.carried.worth:.0%}{_of_which(found)}, but with it the held-out trials {how}: the trials "
         "contradict each other about it"
     )
+
+
+def _of_which(found: Refit) -> str:
+    """That the fall is one of each output's own error, where in the whole it is less."""
+    return "" if found.carried.worth * found.carried.ratio < 1.001 else " of each output's own"
 
 
 def unfinished_lead(fit: Fit, named: Refit, ahead: Refit) -> str:

@@ -1,10 +1,13 @@
 """What no test against the noise shows: who explains most of the error is named, others are not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_up_fits import NO_ROUTE, fit, refit
 
 from trialid.diagnosis.verdict import decide
+from trialid.diagnosis.verdict_sentences import contradiction
 
 
 def decided(fall, *, p_value, alike=()):
@@ -56,3 +59,16 @@ def test_a_name_with_many_as_good_is_said_to_be_the_first_of_them(count, begins)
     found = decide(fit(0.10), ranking, [first, *others], NO_ROUTE, None, 0.05)
     assert found.effect == "a"
     assert found.sentence.startswith(begins)
+
+
+@pytest.mark.parametrize(
+    ("own", "said"),
+    [((), "by 10%, but"), (((1.0,) * 8, (0.7,) * 8), "by 30% of each output's own")],
+)
+def test_a_fall_that_held_out_trials_deny_is_that_of_the_output_that_shows_it(own, said):
+    """Of a boat it was said to be 0 %: of the whole, where her rate alone fell."""
+    found = refit("a", 0.9, 0.09, check=0.12)
+    found = replace(found, carried=replace(found.carried, after=(0.9,) * 8, before=(1.0,) * 8))
+    if own:
+        found = replace(found, carried=replace(found.carried, own=own))
+    assert said in contradiction(fit(0.10, 0.11), found)
