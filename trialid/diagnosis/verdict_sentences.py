@@ -41,8 +41,8 @@ def contradiction(fit: Fit, found: Refit) -> str:
     how = "are lost" if lost else f"go from {fit.eps_check:.2%} to {found.fit.eps_check:.2%}"
     return (
         f"{found.candidate.effect.name} lowers the squared error where it was not fitted by "
-        f"{1.0 - 1.0 / found.carried.worth:.0%}{_of_which(found)}, but with it the held-out trials {how}: the trials "
-        "contradict each other about it"
+        f"{1.0 - 1.0 / found.carried.worth:.0%}{_of_which(found)}, but with it the held-out trials "
+        f"{how}: the trials contradict each other about it"
     )
 
 
