@@ -270,3 +270,10 @@ def test_a_heading_that_jumps_is_told_and_kept():
     assert "psi: 1 value jumped by up to 11 deg off the pace of its neighbours, at 80.0 s" in words
     assert trial.valid["psi"][20:-20].all()
     assert not faulty(aligned({"psi": noisy(3)}))
+
+
+def test_samples_that_are_lost_in_a_turn_are_no_jump():
+    y = np.deg2rad(5.0) * T + 1e-3 * np.random.default_rng(5).normal(size=len(T))
+    kept = np.ones(len(T), np.bool_)
+    kept[[500, 700, 701, 900, 901, 902]] = False
+    assert not faulty(aligned({"psi": y[kept]}, t=T[kept]))

@@ -70,6 +70,18 @@ def test_a_run_that_cannot_be_done_now_does_not_show_its_former_success(fleet: P
     assert contents(fleet / "out") == before
 
 
+def test_what_was_set_aside_and_changed_since_is_done_anew(fleet: Path) -> None:
+    log = fleet / "alpha" / "2025-03-10" / "steps-20.csv"
+    log.rename(fleet / "elsewhere.csv")
+    done(fleet)
+    aside = fleet / "out" / "set_aside" / LAST / "result.json"
+    aside.write_bytes(aside.read_bytes()[:500])
+    (fleet / "elsewhere.csv").rename(log)
+    again = done(fleet)
+    assert (again.anew, failed(again)) == (1, [])
+    assert aside.stat().st_size == 500
+
+
 def test_one_pipeline_changed_by_hand_stops_no_other(fleet: Path) -> None:
     shutil.rmtree(fleet / "out" / "runs")
     file = fleet / "out" / "pipelines" / f"{FIRST}.toml"

@@ -39,6 +39,8 @@ RECORDERS = {
     "rot_deg_min": "r",
     "rot_dpm": "r",
     "heading_min": None,
+    "heading_deg_min": None,
+    "rudder_deg_min": None,
 }
 
 WITH_UNITS = {

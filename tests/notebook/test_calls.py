@@ -78,7 +78,8 @@ def test_orders_on_a_clock_beside_a_manoeuvre_are_not_passed_over() -> None:
 def test_a_change_that_is_no_number(what_if: Any, without: Any, said: str) -> None:
     with pytest.raises(TrialidError, match=said):
         RunView().simulate("circle", 35, what_if=what_if, without=without)
-    assert changes_of({"GM": np.float64(0.8)}, ["heel_yaw"]).without == ("heel_yaw",)
+    assert order_words(("zigzag", np.int64(20), np.float64(20.0)), {}) == ("zigzag", "20", "20")
+    assert changes_of({"GM": np.int64(1)}, ["heel_yaw"]).without == ("heel_yaw",)
 
 
 @pytest.mark.parametrize(

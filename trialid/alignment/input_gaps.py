@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from trialid.alignment.fault_samples import joined_runs
+from trialid.alignment.resample import HALF_LENGTH
 from trialid.arrays import Mask
 from trialid.trial import Trial
 
@@ -28,14 +29,15 @@ where it is."""
 
 def without_input_gaps(trial: Trial, inputs: Collection[str], longest: float) -> Trial:
     """The longest stretch of a trial in which no input is unknown for longer than that [s]."""
-    known = np.ones(trial.samples, np.bool_)
-    for name in {*inputs} & {*trial.valid}:
-        known &= _short_gaps_filled(trial.valid[name], longest / trial.period)
+    gaps = {
+        n: _long_gaps(trial.valid[n], longest / trial.period) for n in trial.valid if n in inputs
+    }
+    known = ~np.any([np.zeros(trial.samples, np.bool_), *gaps.values()], axis=0)
     ends = [(i, j + 1) for i, j in joined_runs(known[1:] & known[:-1]) if known[i]]
     if known.all() or not ends:
         return trial
     begin, end = max(ends, key=lambda one: one[1] - one[0])
-    said = _words(trial, inputs, ends)
+    said = _words(trial, [name for name, gap in gaps.items() if gap.any()], ends)
     if end - begin < MOST * trial.samples:
         kept = "it has gaps all over, and what she does after one rests on a straight line"
         return replace(trial, remarks=(*trial.remarks, f"{said}; left as it is: {kept}"))
@@ -53,18 +55,21 @@ def without_input_gaps(trial: Trial, inputs: Collection[str], longest: float) ->
     )
 
 
-def _short_gaps_filled(valid: Mask, longest: float) -> Mask:
-    """Where a signal is known, or unknown for at most so many samples on end."""
-    filled = valid.copy()
+def _long_gaps(valid: Mask, longest: float) -> Mask:
+    """Where a signal is unknown for more than so many samples between two that are known.
+
+    A low-pass takes some more on each side. At the ends nothing is simulated through.
+    """
+    gaps = np.zeros(len(valid), np.bool_)
     for i, j in joined_runs(valid[1:] == valid[:-1]):
-        if j - i + 1 <= longest:
-            filled[i : j + 1] = True
-    return filled
+        inside = i > 0 and j + 1 < len(valid)
+        if inside and not valid[i] and j - i + 1 > longest + 2 * HALF_LENGTH:
+            gaps[i : j + 1] = True
+    return gaps
 
 
-def _words(trial: Trial, inputs: Collection[str], ends: list[tuple[int, int]]) -> str:
-    """Which inputs are unknown, and where: beside the stretches in which they are known."""
-    names = [n for n in trial.signals if n in inputs and not trial.valid[n].all()]
+def _words(trial: Trial, names: list[str], ends: list[tuple[int, int]]) -> str:
+    """That these inputs are unknown, and where: beside the stretches in which they are known."""
     edges = [0, *(edge for one in ends for edge in one), trial.samples]
     gaps = [(i, j) for i, j in zip(edges[::2], edges[1::2], strict=True) if j > i]
     places = ", ".join(_window(trial, one) for one in gaps[:3])

@@ -19,7 +19,8 @@ LEAST = np.deg2rad(2.0)
 are eight times its usual ones; of 420 simulated records none has a step that the rest of the rule
 takes for a jump, with half of this or twice."""
 BESIDE = 3
-"""Steps to each side whose middle is the pace: a jump that takes two samples does not move it."""
+"""Steps to each side whose middle is the pace: a jump that takes two samples does not move it. A
+step over a gap tells nothing."""
 
 
 def jumps(series: Series, zero: float) -> Iterator[Fault]:
@@ -27,8 +28,9 @@ def jumps(series: Series, zero: float) -> Iterator[Fault]:
     s = available_samples(series)
     if series.quantity.name != "psi" or len(s.y) < 4 * BESIDE:
         return
-    steps = np.where(s.near[1:], np.diff(s.y), 0.0)
-    off = np.abs(steps - _pace(steps))
+    dt = np.maximum(np.diff(s.t), series.period)  # what was held up on a bus comes in bursts
+    pace = np.where(s.near[1:], np.diff(s.y) / dt, np.nan)
+    off = np.nan_to_num(np.abs(pace - _usual(pace)) * dt)
     far = max(SHARP * usual_size(off), 4.0 * resolution(s.y), LEAST)
     if (found := off > far).any():
         samples = np.zeros(len(series.y), np.bool_)
@@ -37,8 +39,11 @@ def jumps(series: Series, zero: float) -> Iterator[Fault]:
         yield Fault("jumps", words, samples, False)
 
 
-def _pace(steps: Vector) -> Vector:
-    """Median of the steps around each; of the first and last few of those that there are."""
-    padded = np.pad(steps, BESIDE, mode="edge")
+def _usual(pace: Vector) -> Vector:
+    """Median of the pace around each step, of those that are there."""
+    padded = np.pad(pace, BESIDE, constant_values=np.nan)
     around = np.lib.stride_tricks.sliding_window_view(padded, 2 * BESIDE + 1)
-    return np.asarray(np.median(around, axis=1))
+    there = np.isfinite(around).any(axis=1)
+    usual = np.zeros(len(pace))
+    usual[there] = np.nanmedian(around[there], axis=1)
+    return usual

@@ -7,6 +7,7 @@ WIND = "Isherwood (1973), Blendermann (1994): shape of wind loads; size for a co
 BG72 = "van Berlekom & Goddard (1972), tanker in shallow water"
 AGROUND = 1e-9  # of the length: a quotient stays a number where the depth is the draught
 MOST_DRIFT = 0.9  # of the speed: no ship turns with more, and a search that tries one goes on
+AT_REST = 1e-6  # (m/s)^2: a ship that lies still does not drift
 GROUND = "uniform steady current: the ship moves with the water, and does not feel it"
 
 
@@ -96,7 +97,8 @@ def current_in_speed_record(
 @effect(source="kinematics: U^2 = u^2 + v^2")
 def drift_in_speed_record(u, v):
     """u = sqrt(u^2 - v^2): u, an input, is recorded over ground."""
-    return Steered(u=sqrt(u * u - clip(v, MOST_DRIFT * u) ** 2) - u)
+    drift = clip(u * v / (u * u + AT_REST), MOST_DRIFT)
+    return Steered(u=u * (sqrt(1.0 - drift * drift) - 1.0))
 
 
 def _blockage(h: Number, T: Number) -> Number:

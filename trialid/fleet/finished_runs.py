@@ -77,8 +77,14 @@ def set_aside(folder: Path, aside: Path) -> None:
 
 
 def put_back(aside: Path, folder: Path, key: str) -> Kept | None:
-    """The rows of a run of these very inputs that was set aside, its folder put back; else None."""
-    kept = kept_run(aside, key) if aside.exists() and not folder.exists() else None
+    """The rows of a run of these very inputs that was set aside, its folder put back; else None.
+
+    One that was changed since stays where it is: the run can be done anew.
+    """
+    try:
+        kept = kept_run(aside, key) if aside.exists() and not folder.exists() else None
+    except TrialidError:
+        kept = None
     if kept is not None:
         folder.parent.mkdir(parents=True, exist_ok=True)
         aside.rename(folder)

@@ -73,10 +73,10 @@ def closer_in_pieces(fit: Fit) -> tuple[int, float] | None:
     where others are not `CLOSER`.
     """
     cut = in_pieces(fit.problem, fit.settings, PIECES[0], fit.estimates)
-    as_fitted = [
+    stretches_to_fit = [
         replace(x, low=x.start, high=x.start) if x.trial is None else x for x in cut.unknowns
     ]
-    held = replace(cut, unknowns=tuple(as_fitted))
+    held = replace(cut, unknowns=tuple(stretches_to_fit))
     own, best = (search(problem, fit.settings, problem.start) for problem in (held, cut))
     closer = float(np.sqrt(own.V / best.V)) if own.began and best.began else 1.0
     return (len(cut.trials), closer) if closer >= CLOSER else None

@@ -134,6 +134,8 @@ def quantity(name: str, unit: str | None) -> str | None:
     if NO_MEASUREMENT.intersection(_without_unit(words(name.rpartition(":")[2]))):
         return None
     found = _qualified(name, unit) or _called(name)
+    if found is not None and "min" in told and not _fits(found, unit_in_name(name)):
+        return None  # a smallest angle, no rate per minute
     if found == "psi" and GROUND.intersection(told):
         return None  # a course over ground
     if ORDERED.intersection(told):

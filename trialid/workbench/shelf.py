@@ -8,7 +8,7 @@ from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.progress import Progress
 from trialid.trial import Trial
 from trialid.workbench.watch import file_state
-from trialid.workflow.read_trials import align_trial, check_own_stretches
+from trialid.workflow.read_trials import align_trial, stretches_to_fit
 
 
 class Shelf:
@@ -34,9 +34,8 @@ class Shelf:
                 so_far(tuple(done.values()))
             progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
             done[key] = self._kept.get(key) or align_trial(pipeline, trial)
-        check_own_stretches(pipeline, tuple(done.values()))
         self._kept = done
-        return tuple(done.values())
+        return stretches_to_fit(pipeline, tuple(done.values()))
 
 
 def _key(pipeline: Pipeline, trial: TrialSection) -> str:

@@ -9,19 +9,20 @@ import numpy as np
 
 from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
-from trialid.alignment.input_gaps import LENGTHS, without_input_gaps
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
 from trialid.diagnosis.rudder_jumps import rudder_jump, said_of
 from trialid.errors import PipelineError
 from trialid.ingest import Aids, LogFile
-from trialid.names.quantities import SIGNALS, Quantity, is_input
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.pipeline_file.form import ClockSection
 from trialid.progress import Progress
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
+from trialid.workflow.build_model import available
 from trialid.workflow.origin import relative_path
 from trialid.workflow.quantities_read import quantities_of
+from trialid.workflow.steering_gaps import known_throughout, own_time
 
 SHARED: Final = 0.1
 """Share of a trial's time that another may have of the same log: windows overlap at their ends."""
@@ -33,8 +34,23 @@ def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
     for i, trial in enumerate(pipeline.trials):
         progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
         done.append(align_trial(pipeline, trial, known))
-    check_own_stretches(pipeline, done)
-    return _with_jumps(pipeline, done)
+    return _with_jumps(pipeline, stretches_to_fit(pipeline, done))
+
+
+def stretches_to_fit(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
+    """Trials of their own, each the stretch of it through which she can be simulated.
+
+    Raises
+    ------
+    PipelineError
+        Two are the same stretch of the same log.
+    """
+    check_own_stretches(pipeline, trials)
+    if pipeline.ship is None:
+        return tuple(trials)
+    particulars, catalogue = read_ship(pipeline.ship).particulars, available(pipeline)
+    effects = [catalogue[name] for name in pipeline.model.effects if name in catalogue]
+    return tuple(known_throughout(trial, particulars, effects) for trial in trials)
 
 
 def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
@@ -47,7 +63,9 @@ def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
     PipelineError
         Two trials share a log and more than `SHARED` of the shorter one's time.
     """
-    for one, other in combinations(trials, 2):
+    clocked = {t.name for t in pipeline.trials if any(log.clock for log in t.logs)}
+    plain = [trial for trial in trials if trial.name not in clocked]  # others count as they state
+    for one, other in combinations(plain, 2):
         files = [log.path for log in one.logs if log.sha256 in {x.sha256 for x in other.logs}]
         begin = max(one.start, other.start)
         end = min(t.start + t.duration * 1e9 for t in (one, other))
@@ -62,8 +80,9 @@ def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
 
 def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
     """The trials, with a remark where what is called the rudder is its order."""
-    own_time = _own_time(pipeline)
-    jump = None if own_time is None else rudder_jump(trials, own_time)
+    known = {} if pipeline.ship is None else read_ship(pipeline.ship).particulars
+    time = own_time(known)
+    jump = None if time is None else rudder_jump(trials, time)
     if jump is None:
         return tuple(trials)
     return tuple(
@@ -89,7 +108,7 @@ def align_trial(
         log_clocks=[c for g, c in zip(logs, clocks, strict=True) for _ in ingest.files_of(g)],
         keep={q: s.keep for q, s in trial.signals.items() if s.keep},
     )  # fmt: skip
-    made = _at_origin(pipeline, _known_throughout(pipeline, made, known))
+    made = _at_origin(pipeline, made)
     if trial.speed is None:
         return made
     if "u" in made.signals:
@@ -128,23 +147,6 @@ def _at_origin(pipeline: Pipeline, trial: Trial) -> Trial:
     if pipeline.ship is None or not {"x", "y"} <= {*trial.signals}:
         return trial
     return at_origin(trial, read_ship(pipeline.ship).antenna)
-
-
-def _known_throughout(pipeline: Pipeline, trial: Trial, known: Mapping[str, Quantity]) -> Trial:
-    """The trial, or the longest stretch of it in which it is recorded what steers her."""
-    own_time = _own_time(pipeline)
-    if own_time is None:
-        return trial
-    inputs = [name for name in trial.signals if is_input(known[name])]
-    return without_input_gaps(trial, inputs, LENGTHS * own_time)
-
-
-def _own_time(pipeline: Pipeline) -> float | None:
-    """Time in which the ship goes her own length [s]; None where her file does not tell."""
-    if pipeline.ship is None:
-        return None
-    L, U0 = (read_ship(pipeline.ship).particulars.get(n, 0.0) for n in ("L", "U0"))
-    return L / U0 if L and U0 else None
 
 
 def _log_clock(clock: ClockSection | None) -> LogClock | None:

@@ -75,3 +75,13 @@ def test_a_straight_line_through_two_reversals_is_another_rudder():
         for one in (without_input_gaps(trial, ["delta"], LONGEST), trial)
     )
     assert bridged.eps_rmsn > 1.2 * kept.eps_rmsn
+
+
+def test_ends_and_what_a_filter_takes_beside_a_short_gap_are_no_gaps():
+    """At its ends nothing is simulated through; a low-pass hides five samples on each side."""
+    trial = trial_with_gap(400.0, 400.0 + LONGEST + 4.5)
+    assert without_input_gaps(trial, ["delta"], LONGEST) is trial
+    ends = trial_with_gap(400.0, 401.0)
+    known = (ends.t > 60.0) & (ends.t < 1100.0)
+    ended = replace(ends, valid={**ends.valid, "delta": known})
+    assert without_input_gaps(ended, ["delta"], LONGEST) is ended

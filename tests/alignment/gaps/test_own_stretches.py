@@ -10,7 +10,7 @@ from trialid.errors import PipelineError
 from trialid.trial import LogSource, Trial
 from trialid.workflow.read_trials import check_own_stretches
 
-PIPELINE = SimpleNamespace(path=Path("p.toml"))
+PIPELINE = SimpleNamespace(path=Path("p.toml"), trials=())
 
 
 def of_log(name, begin, seconds, sha256="aa", use="fit"):
@@ -30,3 +30,11 @@ def test_the_same_stretch_is_refused(use):
 def test_other_windows_and_other_logs_are_trials_of_their_own():
     ends = of_log("b", 590, 400)
     check_own_stretches(PIPELINE, (of_log("a", 0, 600), ends, of_log("c", 0, 600, "bb")))
+
+
+def test_logs_that_are_put_on_another_clock_count_as_stated():
+    """The same day's log under two offsets is two parts of it."""
+    log = SimpleNamespace(clock=SimpleNamespace(offset=600.0))
+    stated = [SimpleNamespace(name=name, logs=[log]) for name in ("a", "b")]
+    given = SimpleNamespace(path=Path("p.toml"), trials=stated)
+    check_own_stretches(given, (of_log("a", 0, 600), of_log("b", 0, 600)))

@@ -14,3 +14,15 @@ def test_rows_that_end_with_a_separator_have_the_header_above_them(tmp_path):
     speed = read(log, None, Aids(template=aid)).channels["Boatspeed"]
     assert np.diff(speed.t).tolist() == [10**9, 10**9]
     assert speed.y.tolist() == [5.1, 4.7, 4.9]
+
+
+def test_seconds_that_a_template_states_are_seconds_however_far_apart(tmp_path):
+    """Without it whole numbers that step by ten are asked for."""
+    log, aid = tmp_path / "log.csv", tmp_path / "template.toml"
+    log.write_text("when,heave\n0,1.0\n10,2.0\n20,3.0\n30,1.0\n")
+    drafted = draft_template(log).replace("reviewed = false", "reviewed = true")
+    aid.write_text(drafted)
+    assert 'kind = "seconds"' in drafted
+    assert "# QUESTION: its numbers step by 10: seconds, or is a unit to be stated" in drafted
+    heave = read(log, None, Aids(template=aid)).channels["heave"]
+    assert np.diff(heave.t).tolist() == [10 * 10**9] * 3

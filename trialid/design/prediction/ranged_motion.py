@@ -25,6 +25,9 @@ TRACK: Final = ("x", "y")
 Read = Callable[[Vector, Mapping[str, Vector]], dict[str, float]]
 """Numbers by name of times [s] and signals; those it does not come to are left out."""
 
+OVER_GROUND_SPEED: Final = "drift_in_speed_record"
+"""What reads the drift out of a speed."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PredictedMotion:
@@ -97,10 +100,14 @@ def with_ranges(
 def _as_sailed(ship: Vessel, name: str, signals: Mapping[str, Vector]) -> Vector:
     """An input as the ship has it: the speed without what turns have cost, where that was added.
 
-    So her own model, which reads a speed and loses none of it, does the same of what is written.
+    So her own model, which reads a speed and loses none of it, does the same of what is written;
+    one that reads a speed over ground is given it with the drift.
     """
-    if name != "u" or logged_loss.name not in {e.name for e in ship.model.effects}:
+    acting = {e.name for e in ship.model.effects}
+    if name != "u" or logged_loss.name not in acting:
         return signals[name]
+    if OVER_GROUND_SPEED in acting:
+        return signals["U"]
     sway = signals.get("v", np.zeros_like(signals["U"]))
     return np.asarray(np.sqrt(np.maximum(signals["U"] ** 2 - sway**2, 0.0)))
 

@@ -5,6 +5,7 @@ Limits are those of floating things, not of merchant ships: only what must be a 
 
 import math
 from collections.abc import Callable, Iterator
+from numbers import Real
 from typing import Final
 
 from trialid.ship.estimate.hull_form import GRAVITY, HullForm, complete
@@ -63,7 +64,7 @@ def _missing(given: Given) -> Found:
 def _no_numbers(given: Given) -> Found:
     for name in known_names(given):
         value = getattr(given, name)
-        if not isinstance(value, int | float) or not math.isfinite(value):
+        if not isinstance(value, Real) or not math.isfinite(value):
             yield name, f"{WORDS[name].name} {value!r} is not a number"
         elif value <= 0.0 and name != "x_G":
             yield name, f"{tell(given, name)} is not above zero"

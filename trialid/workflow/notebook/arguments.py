@@ -3,6 +3,7 @@
 import math
 import os
 from collections.abc import Mapping, Sequence
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +43,7 @@ def order_words(manoeuvre: Sequence[Any], others: Mapping[str, Any]) -> tuple[st
         One is no word and no number, or there are orders on a clock beside them.
     """
     for word in manoeuvre:
-        if isinstance(word, bool) or not isinstance(word, str | float | int):
+        if isinstance(word, bool) or not isinstance(word, str | Real):
             raise TrialidError(
                 f"{word!r} is no part of a manoeuvre; expected its name and angles [deg], as "
                 "'zigzag', 20, 20"
@@ -62,7 +63,7 @@ def changes_of(what_if: Any, without: Any) -> WhatIf:
     if not isinstance(values, Mapping):
         raise TrialidError(f"what_if: expected numbers by name, as {{'GM': 0.8}}, got {what_if!r}")
     for name, value in values.items():
-        if not isinstance(value, float | int) or not math.isfinite(value):
+        if not isinstance(value, Real) or not math.isfinite(value):
             raise TrialidError(f"what_if {name}: expected a finite number, got {value!r}")
     if isinstance(without, str) or not all(isinstance(name, str) for name in without):
         raise TrialidError(f"without: expected a list of effects' names, got {without!r}")

@@ -7,10 +7,8 @@ from typing import Any, Final
 import numpy as np
 from pydantic import ValidationError
 
-from trialid.alignment.input_gaps import LENGTHS, without_input_gaps
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.problem import Settings
-from trialid.names.quantities import SIGNALS, is_input
 from trialid.pipeline_file import Pipeline, check_form
 from trialid.pipeline_file.complaints import own_mistakes, problem, refusal
 from trialid.pipeline_file.contradictions import contradictions
@@ -26,6 +24,7 @@ from trialid.pipeline_file.prior_section import Prior
 from trialid.ship.model import ShipModel
 from trialid.trial import Trial
 from trialid.workflow.build_model import check_bounds, check_headway, settings_of
+from trialid.workflow.steering_gaps import known_throughout
 
 CALL: Final = Origin(Path("ti.identify"), b"")
 """Where errors say that it stands: a call has no file."""
@@ -78,9 +77,8 @@ def checked_trials(trials: Sequence[Trial], model: ShipModel) -> tuple[Trial, ..
 
 
 def _check_gaps(trial: Trial, model: ShipModel) -> None:
-    L, U0 = (model.ship.particulars.get(name, 0.0) for name in ("L", "U0"))
-    inputs = [n for n in trial.signals if n not in SIGNALS or is_input(SIGNALS[n])]
-    part = without_input_gaps(trial, inputs, LENGTHS * L / U0) if L and U0 else trial
+    """Refuse a trial with a long gap in what steers her; a pipeline would use a part of it."""
+    part = known_throughout(trial, model.ship.particulars, model.effects)
     if part.samples < trial.samples:
         said = part.remarks[-1].partition(": only")[0]
         raise NotIdentifiable(

@@ -154,7 +154,8 @@ def _ship_for(
 def _loses(ship: Vessel) -> str:
     """How a speed that is given falls, in words; empty where it stays as it is."""
     model = ship.model
-    own = [e.name for e in model.effects if "u" in e.acts_on(Steered) and e is not logged_loss]
+    acting = [e for e in model.effects if "u" in e.acts_on(Steered) and e is not logged_loss]
+    own = [e.name for e in acting if e.parameters]  # what has none only says how a speed is read
     if own:
         return f"as {own[0]} has it"
     known = {n: model.value(n) for n in logged_loss.parameters if n in model.parameters}

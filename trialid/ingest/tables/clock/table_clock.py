@@ -67,7 +67,7 @@ def _by_template(table: Table, spec: Time, zone: str | None) -> Clock:
         return in_samples(table, columns, spec)
     if spec.kind == "time of day":
         return of_day(table, columns[0], spec)
-    return in_seconds(table, columns[0], spec.unit)
+    return in_seconds(table, columns[0], spec.unit, sure=True)
 
 
 def _index(table: Table, name: str) -> int:

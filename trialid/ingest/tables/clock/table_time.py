@@ -57,15 +57,18 @@ def no_zone(table: Table, zone: str | None) -> None:
         )
 
 
-def in_seconds(table: Table, column: int, unit: str | None) -> Clock:
-    """Numbers in a unit of time: the one told, else that of the header or of its name."""
+def in_seconds(table: Table, column: int, unit: str | None, *, sure: bool = False) -> Clock:
+    """Numbers in a unit of time: the one told, else that of the header or of its name.
+
+    `sure` where somebody said that they are seconds, if nothing else is stated.
+    """
     head = table.heads[column]
     y = time_numbers(table, column)
     stated = unit or head.unit or unit_of_time(bare(head))
     if stated is None:
         _not_days(table, column, y)
     by_size = None if stated else _since_1970(y)
-    if stated is None and by_size is None:
+    if stated is None and by_size is None and not sure:
         _not_thousandths(table, column, y)
     scale = _seconds_per(table, stated or by_size or "s")
     for part in _parts(y):

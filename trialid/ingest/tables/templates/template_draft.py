@@ -7,7 +7,7 @@ from typing import Any
 
 from trialid.errors import LogError, printable
 from trialid.ingest.tables import excel_log, mat_log, parquet_log
-from trialid.ingest.tables.clock.table_time import DAYS
+from trialid.ingest.tables.clock.table_time import DAYS, SLOWEST
 from trialid.ingest.tables.table import head
 from trialid.ingest.tables.table_header import is_data
 from trialid.ingest.tables.table_layout import SPACES
@@ -137,9 +137,17 @@ def _times(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     if len(named) > len(columns):
         others = ", ".join(repr(header[i]) for i in named if i not in columns)
         asked.append(f"# QUESTION: or is it {others}?")
+    asked += _large_steps([row[columns[0]] for row in rows[:2]])
     shown = " ".join(rows[0][i] for i in columns) if rows else ""
     written = [quote(header[i]) for i in columns]
     return ["[time]", *asked, f"columns = [{', '.join(written)}]", *_kind(shown, len(columns))]
+
+
+def _large_steps(shown: Sequence[str]) -> Iterator[str]:
+    """Whole numbers that a table's clock asks the unit of."""
+    whole = len(shown) == 2 and all(re.fullmatch(r"\d{1,18}", one) for one in shown)
+    if whole and (step := int(shown[1]) - int(shown[0])) >= SLOWEST:
+        yield f"# QUESTION: its numbers step by {step}: seconds, or is a unit to be stated below?"
 
 
 def _named(name: str) -> bool:
