@@ -58,3 +58,13 @@ def test_in_still_water_drift_is_read_out_of_it(seed):
 @pytest.mark.parametrize("seed", [41, 42])
 def test_a_current_has_its_name(seed):
     assert found(READ, seed, 0.8).verdict.effect == "current_in_speed_record"
+
+
+def test_a_record_that_begins_at_rest_is_fitted():
+    """Of no speed there is no drift, and the slopes are numbers."""
+    trial = over_ground(10, 51)
+    speed = np.where(trial.t < 20.0, 0.0, trial.signals["u"])
+    rested = replace(trial, signals={**trial.signals, "u": speed})
+    fit = identify([rested], READ, SETTINGS)
+    assert fit.converged
+    assert fit.value("Ndelta") == pytest.approx(MODEL.value("Ndelta"), rel=0.1)
