@@ -12,6 +12,7 @@ from trialid.errors import LogError, reason_of
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted
 from trialid.ingest.packages import require
 from trialid.ingest.tables.clock import table_clock
+from trialid.ingest.tables.long_table import key_columns
 from trialid.ingest.tables.table import Table, blank_out, check_width, head
 from trialid.ingest.tables.table_channels import recording
 from trialid.ingest.tables.templates import template
@@ -70,7 +71,8 @@ def _table(path: Path, file: Any, wanted: Wanted, told: Template | None) -> Tabl
         template.check_header(path, [one.text for one in heads], told)
         timed = set(told.time.columns)
     else:
-        timed = {heads[i].text for i in table_clock.columns_of_time(heads)}
+        needed = {*table_clock.columns_of_time(heads), *key_columns(heads)}
+        timed = {heads[i].text for i in needed}
     remarks, chosen = [], []
     for i, (one, kind) in enumerate(zip(heads, schema.types, strict=True)):
         renamed = told.columns[one.text].rename if told and one.text in told.columns else None

@@ -9,6 +9,13 @@ from trialid.errors import LogError, UnitError
 from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
 from trialid.ingest.tables.clock import table_clock
 from trialid.ingest.tables.clock.table_time import Clock
+from trialid.ingest.tables.long_table import (
+    OneAColumn,
+    columns_by_name,
+    key_columns,
+    one_value_a_row,
+    values_of,
+)
 from trialid.ingest.tables.table import Head, Table, check_width, numbers
 from trialid.ingest.tables.templates.template import Template
 from trialid.ingest.tables.written_angles import written_angles
@@ -29,6 +36,8 @@ def recording(
     spec = None if template is None else template.time
     clock = table_clock.clock(renamed, spec, aids.zone)
     remarks = [*table.remarks, *clock.remarks]
+    if template is None and (found := one_value_a_row(table.heads)) is not None:
+        return _by_name(table, found, clock, adapter, wanted)
     channels: dict[str, Channel] = {}
     named = _quantities(renamed.heads)
     for i, one in enumerate(renamed.heads):
@@ -41,6 +50,24 @@ def recording(
         if channel.description:
             remarks.append(f"column {one.name!r}: {channel.description}")
         channels[one.name] = replace(channel, quantity=named.get(one.name))
+    return Recording(table.path, adapter, sha256(table.path), channels, tuple(remarks))
+
+
+def _by_name(table: Table, of: OneAColumn, clock: Clock, adapter: str, wanted: Wanted) -> Recording:
+    """One value a row: each name a channel, with the stamps of its rows."""
+    remarks = [*table.remarks, *clock.remarks]
+    made: dict[str, tuple[Head, Channel]] = {}
+    for one, alone, rows in columns_by_name(table, of):
+        if not is_wanted(one.name, wanted):
+            continue
+        y = values_of(alone, of)
+        if y is None:
+            remarks.append(f"{one.name!r} holds text, left out")
+            continue
+        made[one.name] = one, Channel(one.name, clock.t[rows], y, one.unit, clock.words)
+    named = _quantities(tuple(one for one, _ in made.values()))
+    channels = {name: replace(one, quantity=named.get(name)) for name, (_, one) in made.items()}
+    check_width(table.path, len(channels))
     return Recording(table.path, adapter, sha256(table.path), channels, tuple(remarks))
 
 
@@ -62,6 +89,7 @@ def columns_to_read(heads: Sequence[Head], wanted: Wanted, template: Template | 
         named = heads
         timed = {*table_clock.columns_of_time(heads)}
         timed |= {i for i, one in enumerate(heads) if one.name in table_clock.UNNAMED}
+        timed |= key_columns(heads)
     else:
         named = [_as_told(one, template) for one in heads]
         timed = {i for i, one in enumerate(heads) if one.text in template.time.columns}

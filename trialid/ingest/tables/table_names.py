@@ -23,7 +23,8 @@ PARTS = frozenset(("nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"))
 UNIVERSAL = frozenset(("utc", "gmt"))
 
 
-def _words(name: str) -> list[str]:
+def bare_words(name: str) -> list[str]:
+    """The words of a name in small letters: `_value`, `Msg-ID`."""
     return [word for word in re.split(r"[\W_]+", name.lower()) if word]
 
 
@@ -33,7 +34,7 @@ def is_time(name: str) -> bool:
     >>> [is_time(name) for name in ("time_utc", "DateTime", "t_ms", "utc", "z", "time_constant")]
     [True, True, True, True, False, False]
     """
-    words = _words(name)
+    words = bare_words(name)
     if not words:
         return False
     bare = [word for word in words if word not in UNIVERSAL]
@@ -48,7 +49,7 @@ def is_date(name: str) -> bool:
     >>> is_date("Datum"), is_date("date_utc"), is_date("data")
     (True, True, False)
     """
-    return "_".join(word for word in _words(name) if word not in UNIVERSAL) in DATES
+    return "_".join(word for word in bare_words(name) if word not in UNIVERSAL) in DATES
 
 
 def two_parts(names: Sequence[str]) -> tuple[int, int] | None:
@@ -57,7 +58,7 @@ def two_parts(names: Sequence[str]) -> tuple[int, int] | None:
     >>> two_parts(["header.stamp.secs", "header.stamp.nsecs", "delta"]), two_parts(["sec", "delta"])
     ((0, 1), None)
     """
-    told = [_words(name) or [""] for name in names]
+    told = [bare_words(name) or [""] for name in names]
     wholes, parts = (
         [(i, words[:-1]) for i, words in enumerate(told) if words[-1] in last]
         for last in (WHOLE, PARTS)
@@ -72,7 +73,7 @@ def unit_of_time(name: str) -> str | None:
     >>> unit_of_time("time_ms"), unit_of_time("elapsed_s"), unit_of_time("t")
     ('ms', 's', None)
     """
-    words = _words(name)
+    words = bare_words(name)
     return UNITS.get(words[-1]) if len(words) > 1 else None
 
 
@@ -82,4 +83,4 @@ def is_universal(name: str, unit: str | None) -> bool:
     >>> is_universal("time_utc", None), is_universal("DateTime", "UTC"), is_universal("t", "s")
     (True, True, False)
     """
-    return bool(UNIVERSAL.intersection(_words(name))) or (unit or "").lower() in UNIVERSAL
+    return bool(UNIVERSAL.intersection(bare_words(name))) or (unit or "").lower() in UNIVERSAL
