@@ -133,6 +133,16 @@ def test_flat_tops_are_a_limit_and_a_steady_turn_is_none():
     assert not faulty(aligned({"r": np.deg2rad(1.0) * np.round(y / np.deg2rad(1.0))}))
 
 
+def test_one_long_flat_top_is_a_limit_where_noise_never_stands_still():
+    """Of a turning circle there is one; a coarse sensor's turn stands still elsewhere too."""
+    turn = 0.02 * (1.0 - np.exp(-np.maximum(T - 40.0, 0.0) / 8.0))
+    y = turn + 2e-4 * np.random.default_rng(9).normal(size=len(T))
+    (words,) = faulty(aligned({"r": np.clip(np.round(y, 5), -0.015, 0.015)}))
+    assert "held at the limit 0.8594 deg/s in 1 flat top" in words
+    assert not faulty(aligned({"r": y}))
+    assert not faulty(aligned({"r": np.round(turn, 3)}))
+
+
 def test_a_sensor_that_freezes_while_the_ship_turns():
     phi, r = noisy(5), noisy(6)
     frozen = phi.copy()

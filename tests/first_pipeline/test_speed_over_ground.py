@@ -88,3 +88,23 @@ def test_a_channel_of_which_nothing_was_kept_has_no_unit_by_a_speed(tmp_path: Pa
     speed = next(one for one in survey.channels.values() if one.name.endswith("SOG"))
     assert unit_of_speed(speed, APPROACH) == "m/s"
     assert unit_of_speed(dataclasses.replace(speed, sketch=EMPTY), APPROACH) is None
+
+
+def test_a_turning_circle_that_comes_first_is_not_how_fast_she_comes(tmp_path: Path) -> None:
+    """By the middle of that log she came at a third of it, and IMO asked too little."""
+    speeds = []
+    for names in (("a_turn", "b_zigzag"), ("b_turn", "a_zigzag")):
+        logs = [
+            log(tmp_path / f"{name}.csv", TURN if "turn" in name else ZIGZAG, 0.3, 1.0)
+            for name in names
+        ]
+        for path in logs:
+            told = path.read_text(encoding="utf-8").replace("SOG", "STW[m/s]")
+            path.write_text(told, encoding="utf-8")
+        surveys = [inspect_log(one) for one in sorted(logs)]
+        made = starter(surveys, tmp_path / "p.toml", None, Given(length=150.0), None)
+        text = made.files[tmp_path / "p_ship.toml"]
+        [line] = [one for one in text.splitlines() if one.startswith("U0 = ")]
+        speeds.append(float(line.split()[2]))
+    assert speeds[0] == pytest.approx(speeds[1])
+    assert speeds[0] == pytest.approx(APPROACH, rel=0.05)

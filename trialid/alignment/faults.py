@@ -34,6 +34,9 @@ MOST_WRONG = 0.2
 """Share of impossible values above which the unit is wrong, not the values."""
 FLAT = 4
 """Samples in a flat top, of which there must be two before the value is called a limit."""
+LONG = 20
+"""Samples at a limit that are told by themselves, of a value that stands for no `FLAT` elsewhere. A
+rate of turn whose display ends at 30 deg/min was held for 576 in a turning circle, and fitted."""
 ABRUPT = 0.5
 """A flat top is entered with steps of this share of the usual ones at least."""
 FROZEN_S = 5.0
@@ -171,15 +174,16 @@ def _saturation(series: Series, zero: float) -> Iterator[Fault]:
     for extreme in (s.y.max(), s.y.min()):
         if np.isclose(extreme, zero, rtol=0.0, atol=1e-12) or np.ptp(s.y) == 0:
             continue
-        runs = [r for r in _held(s, extreme) if _abrupt(s, r, usual, levels)]
-        if len(runs) >= 2:
+        held = _held(s, extreme)
+        alone = _held_here_alone(s, held)
+        runs = held if alone else [r for r in held if _abrupt(s, r, usual, levels)]
+        if alone or len(runs) >= 2:
             samples = np.zeros(len(series.y), np.bool_)
             for first, last in runs:
                 samples[s.at[first : last + 1]] = True
             shown = extreme * units.shown_factor(series.quantity)
-            words = (
-                f"held at the limit {shown:.4g} {series.quantity.shown} in {len(runs)} flat tops"
-            )
+            tops = "1 flat top" if len(runs) == 1 else f"{len(runs)} flat tops"
+            words = f"held at the limit {shown:.4g} {series.quantity.shown} in {tops}"
             yield Fault("saturation", words, samples, True)
 
 
@@ -188,6 +192,16 @@ def _held(s: Samples, value: float) -> list[tuple[int, int]]:
     same = np.abs(s.y - value) <= 1e-9 * abs(value)
     runs = joined_runs((same[1:] == same[:-1]) & s.near[1:])
     return [(i, j) for i, j in runs if same[i] and j - i + 1 >= FLAT]
+
+
+def _held_here_alone(s: Samples, held: list[tuple[int, int]]) -> bool:
+    """Whether a value is held long that never stands still elsewhere: noise stops at no turn."""
+    if max((last - first + 1 for first, last in held), default=0) < LONG:
+        return False
+    low, high = s.y.min(), s.y.max()
+    runs = joined_runs((np.diff(s.y) == 0) & s.near[1:])
+    elsewhere = [j - i + 1 for i, j in runs if s.y[i] not in (low, high)]
+    return sum(elsewhere) > LONG and max(elsewhere, default=0) < FLAT
 
 
 def _abrupt(s: Samples, run: tuple[int, int], usual: float, levels: float) -> bool:

@@ -129,15 +129,14 @@ def subject(fit: Fit, named: Refit, others: int = 0) -> str:
 
     With so many others that do as well it is no more than the first of them.
     """
-    if others >= MANY:
-        return (
-            f"one of {others + 1} is missing, first of them {named.candidate.effect.name}: with it"
-        )
     name, held = named.candidate.effect.name, named.candidate.effect.held
     if placed := fit.model.displaced_by(named.candidate.effect):
         return f"{name} belongs in the place of {', '.join(placed)}: with it"
     if held is None:
-        return f"{name} is missing: with it"
+        missing = f"{name} is missing"
+        if others >= MANY:
+            missing = f"one of {others + 1} is missing, first of them {name}"
+        return f"{missing}: with it"
     return f"{name} is held at {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
 
 

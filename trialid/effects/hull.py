@@ -9,6 +9,9 @@ BC93 = "Blanke & Christensen (1993), multipurpose naval vessel"
 CST65 = "Chislett & Strom-Tejsen (1965), Mariner"
 PCC = "SSPA Seaman model of a wind-powered car carrier (wPCC), 1/29.5"
 
+WATER = 0.03
+"""No ship takes more water along than she weighs: 0.01 of a container ship, 0.03 of the fullest."""
+
 STRIPS = tuple((i + 0.5) / 10 - 0.5 for i in range(10))
 """Middles of ten equal pieces of the hull, from aft, over L."""
 
@@ -20,7 +23,15 @@ def linear_hull(v, r, *, Yv=-0.0119, Yr=0.0029, Kv=0.00031, Kr=-0.00007, Nv=-0.0
 
 
 @effect(source=SN82)
-def centripetal_added_mass(u, v, r, *, Xvrm=0.007, Yurm=-0.00024, Kurm=0.0000074):
+def centripetal_added_mass(
+    u,
+    v,
+    r,
+    *,
+    Xvrm=Parameter(0.007, low=-WATER, high=WATER),
+    Yurm=Parameter(-0.00024, low=-WATER, high=WATER),
+    Kurm=0.0000074,
+):
     """X = Xvrm v r,  Y = Yurm u r,  K = Kurm u r: the water that turns with the hull."""
     return Force(X=Xvrm * v * r, Y=Yurm * u * r, K=Kurm * u * r)
 

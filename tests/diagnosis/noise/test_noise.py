@@ -160,6 +160,8 @@ def test_a_slow_rudder_logged_fast_does_not_repeat_itself() -> None:
     held = np.where(np.searchsorted(switches, t) % 2, 0.2, -0.2) * (t > 30.0)
     smooth = np.convolve(held, np.ones(50) / 50, mode="same")
     assert period_of(smooth[:, None] / QUIET_ANGLE) is None
+    order = np.where(np.arange(500) < 60, 0.0, 0.6)  # laid over once, in one step, and held
+    assert period_of(order[:, None] / QUIET_ANGLE) is None
     again = np.tile(smooth[:6000], 3)
     found = period_of(again[:, None] / QUIET_ANGLE)
     assert found is not None

@@ -87,6 +87,8 @@ def period_of(moves: Vector) -> tuple[int, int] | None:
     start = int(away[0])
     active = moves[start:] - moves[start:].mean(axis=0)
     size = np.mean(active**2, axis=0)
+    if not size.any():  # laid over once and held: nothing comes again
+        return None
     gap = np.max([_gaps(x) / s for x, s in zip(active.T, size, strict=True) if s > 0.0], axis=0)
     apart = np.flatnonzero(gap > 1.0)
     if len(apart) == 0:

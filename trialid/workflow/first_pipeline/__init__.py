@@ -93,7 +93,7 @@ def starter(
             f"{pipeline}: no log knows the ship; add --ship SHIP.toml, or --length METRES, and "
             "--beam, --draught, --displacement where you have them"
         )
-    u0 = next((one.speed for one in trials if one.speed), None)
+    u0 = max((one.speed for one in trials if one.speed), default=None)
     if u0 is None:
         raise LogError(
             f"{pipeline}: no log tells the speed in a stated unit; add --speed KNOTS, the approach "
@@ -113,7 +113,7 @@ def starter(
 
 def _begun(pipeline: Path, given: Given, trials: Sequence[Chosen]) -> tuple[Ship, str]:
     """A ship of these particulars, with what drives and steers her in these logs; and her file."""
-    words = next(one.speed_words for one in trials if one.speed)
+    words = next(one.speed_words for one in trials if one.speed == given.speed)
     made = estimate(given, f"ship of {pipeline.stem}")
     ones: tuple[Actuator, ...] = ()
     if is_boat(shared_signals(trials)):

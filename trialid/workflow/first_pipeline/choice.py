@@ -12,7 +12,7 @@ from trialid.errors import LogError
 from trialid.inspection import channel_names
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection, Inspection
-from trialid.inspection.positions import approach_by_positions
+from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
@@ -223,7 +223,10 @@ def _stated(source: ChannelInspection) -> str | None:
 def approach_speed(
     survey: Inspection, live: Live, stated: float | None
 ) -> tuple[float | None, str]:
-    """The approach speed [m/s], None where nothing tells it, and where it is from."""
+    """The approach speed [m/s], None where nothing tells it, and where it is from.
+
+    In turns she loses up to two thirds of it: the middle of a turning circle is no approach.
+    """
     if stated is not None:
         return stated, "as stated"
     through = [(c, "speed through the water") for c in live["u"]]
@@ -231,8 +234,9 @@ def approach_speed(
     unsaid = [(c, "a speed, through water or over ground unsaid") for c in _some_speed(survey)]
     for source, words in (*through, *ground, *unsaid):
         if (unit := _stated(source)) is not None:
-            middle = abs(float(np.median(source.sketch.y))) * units.factor(unit, "m/s")
-            return middle, f"median of {source.key}, {words}"
+            fast = float(np.quantile(np.abs(source.sketch.y), FASTEST))
+            said = f"what {source.key} seldom exceeds, {words}"
+            return fast * units.factor(unit, "m/s"), said
     if (sailed := approach_by_positions(survey.channels.values())) is not None:
         return sailed, "over ground, by her positions"
     return None, ""
