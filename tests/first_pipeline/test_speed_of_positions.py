@@ -8,7 +8,7 @@ from geared_rudder import geared
 
 from trialid.alignment.track.position import RADIUS
 from trialid.inspection import Inspection, inspect_log
-from trialid.inspection.positions import usual_speed
+from trialid.inspection.positions import approach_by_positions, usual_speed
 from trialid.ship.estimate import Given
 from trialid.workflow.first_pipeline import starter
 
@@ -141,3 +141,17 @@ def test_positions_in_a_plane_tell_it_too(
     heads = "time,acc_x,acc_y,speed,heading,rudder"
     np.savetxt(path, table, delimiter=",", header=heads, comments="")
     assert usual_speed(inspect_log(path).channels.values()) is None
+
+
+def test_an_hour_in_which_nothing_was_logged_is_no_standing_still(tmp_path: Path) -> None:
+    """A clock that was put on in the middle: of the hour there are no positions."""
+    path = log(tmp_path / "a.csv", np.random.default_rng(12))
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    late = [
+        ",".join([f"{float(row.split(',')[0]) + 3600.0 * (k > 700):.1f}", row.partition(",")[2]])
+        for k, row in enumerate(rows)
+    ]
+    path.write_text("\n".join([head, *late]) + "\n", encoding="utf-8")
+    found = inspect_log(path).channels.values()
+    assert usual_speed(found) == pytest.approx(SPEED, rel=0.1)
+    assert approach_by_positions(found) == pytest.approx(SPEED, rel=0.1)
