@@ -175,6 +175,17 @@ def test_damping_that_would_drive_her_on_is_remarked(sound):
         assert [line.partition(" ")[0] for line in said] == ["Nr"] * (name == "Nr")
 
 
+def test_a_rudder_that_is_off_amidships_in_all_trials_is_remarked():
+    """Of a single-screw ship one overshoot is twice the other, and predictions have them alike."""
+    settings = replace(SETTINGS, nuisance=("initial_state", "rudder_offset"))
+    for off, said in ((-1.5, True), (0.0, False)):
+        trials = [noisy(zigzag(10), 21), noisy(zigzag(20), 22)]
+        turned = [with_signals(one, delta=one.signals["delta"] - np.deg2rad(off)) for one in trials]
+        lines = [x for x in remarks(identify(turned, MODEL, settings)) if "rudder's zero" in x]
+        assert bool(lines) is said
+        assert not said or "the rudder's zero is -1.5 deg in all trials" in lines[0]
+
+
 def test_a_delay_unlike_others_comes_back_and_is_remarked():
     """Four standard deviations of what is likely: the record overrules, and it is said."""
     trial = noisy(zigzag(10), 10)

@@ -2,9 +2,17 @@
 
 from typing import Final
 
+import numpy as np
+
 from trialid.identification.fit import Fit
 from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import shown_unit
+
+OFF_AMIDSHIPS: Final = np.deg2rad(0.5)
+"""[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm."""
+
+APART: Final = 3.0
+"""Times the scatter over trials from which on a mean is of all of them."""
 
 DAMPS: Final = {"Yv": "drifts", "Nr": "turns"}
 """What holds a hull back, below zero for all of them, and when."""
@@ -39,7 +47,27 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         if n in units and fit.value(n) > 0.0
     ]
     weak = ["the search was slow to the end: some parameters can hardly be told apart"]
-    return (*_untold_GM(fit), *bounds, *against, *driven, *(weak if fit.weakly_identified else []))
+    return (
+        *_untold_GM(fit),
+        *bounds,
+        *against,
+        *driven,
+        *_one_sided(fit),
+        *(weak if fit.weakly_identified else []),
+    )
+
+
+def _one_sided(fit: Fit) -> list[str]:
+    """That her rudder stood off amidships in all trials, which no prediction knows."""
+    unknowns = zip(fit.problem.unknowns, fit.theta, strict=True)
+    zeros = np.array([a for x, a in unknowns if x.column == "delta_0"])
+    if len(zeros) < 2 or abs(zeros.mean()) < max(OFF_AMIDSHIPS, APART * zeros.std(ddof=1)):
+        return []
+    return [
+        f"the rudder's zero is {np.rad2deg(zeros.mean()):.2g} deg in all trials, a screw's side "
+        "push or a feedback's error: what is predicted of her has it at none, and turns to both "
+        "sides alike"
+    ]
 
 
 def _untold_GM(fit: Fit) -> list[str]:
