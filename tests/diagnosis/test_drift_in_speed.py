@@ -1,11 +1,14 @@
 """A speed over ground read as one: drift and current in it are no forces of the ship."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from s175q import MODEL, white, zigzag
 
+from trialid.diagnosis.unrecorded import name_records
+from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -68,3 +71,17 @@ def test_a_record_that_begins_at_rest_is_fitted():
     fit = identify([rested], READ, SETTINGS)
     assert fit.converged
     assert fit.value("Ndelta") == pytest.approx(MODEL.value("Ndelta"), rel=0.1)
+
+
+def test_a_wind_that_nobody_recorded_may_be_the_current_in_a_speed_over_ground():
+    named = Verdict("missing", "steady_wind", ("steady_wind",), "steady_wind is missing")
+    current = CATALOGUE["current_in_speed_record"]
+    for model, said in ((READ, True), (PLAIN, False), (READ + current, False)):
+        fit = SimpleNamespace(
+            model=model, trials=(zigzag(10),), problem=SimpleNamespace(trials=(zigzag(10),))
+        )
+        sentence = name_records(fit, named, [CATALOGUE["steady_wind"], current]).sentence
+        assert ("the speed is over ground, and a current in it" in sentence) is said
+    other = replace(named, effect="yaw_drag_rar")
+    fit.model = READ
+    assert "over ground" not in name_records(fit, other, [CATALOGUE["yaw_drag_rar"]]).sentence

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
 
+from trialid.diagnosis.found_values import by_heading, of_the_ship
 from trialid.diagnosis.rudder_jumps import jump_in, said_of
 from trialid.diagnosis.search.candidates import missing_signals
 from trialid.diagnosis.verdict import Verdict
@@ -21,6 +22,9 @@ from trialid.simulation.integrate import shared_record
 UNANSWERED: Final = ("not in catalogue", "cannot tell")
 """Verdicts with which something is or may be missing that has no name."""
 
+READ_OVER_GROUND, CURRENT = "drift_in_speed_record", "current_in_speed_record"
+"""Effects of a model whose speed is one over ground, and of the current in it."""
+
 SHOWN: Final = 5
 """Signals that a sentence names; the report lists every effect that was not tried."""
 
@@ -30,10 +34,28 @@ def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdi
 
     Whatever it is, with what is recorded as the rudder, where that is its order.
     """
-    unrecorded = _unrecorded(fit, effects) if verdict.kind in UNANSWERED else ""
+    tried = tuple(effects)
+    unrecorded = _unrecorded(fit, tried) if verdict.kind in UNANSWERED else ""
     jump = jump_in(fit)
-    clauses = (verdict.sentence, unrecorded, said_of(jump) if jump else "")
+    clauses = (
+        verdict.sentence,
+        _or_current(fit, verdict, tried),
+        unrecorded,
+        said_of(jump) if jump else "",
+    )
     return replace(verdict, sentence="; ".join(filter(None, clauses)))
+
+
+def _or_current(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> str:
+    """That a wind which nobody recorded may be a current, where the speed is one over ground.
+
+    Of three of four ships in a current, of another hull than the model's, wind was named last.
+    """
+    wind = any(e.name == verdict.effect and by_heading(e) and of_the_ship(e) for e in effects)
+    present = {e.name for e in fit.model.effects}
+    if not wind or READ_OVER_GROUND not in present or CURRENT in present:
+        return ""
+    return "the speed is over ground, and a current in it, unrecorded too, may look like that"
 
 
 def _unrecorded(fit: Fit, effects: Iterable[Effect]) -> str:
