@@ -35,7 +35,7 @@ def test_the_hidden_effect_is_added_and_the_verdict_is_nothing_missing(hidden: P
     assert then.startswith(f"+ {ADDED} ")
     assert then.endswith("nothing missing")
     assert end == "Added no more: the verdict is `nothing missing`."
-    assert what == f"What was missing, the dearest to leave out first: {ADDED}."
+    assert what == f"What was added, the dearest to leave out first: {ADDED}."
     assert left == f"hidden.toml is as it was; --write puts {ADDED} into it."
     assert hidden.read_bytes() == text
     assert sorted(p.name for p in Path().iterdir()) == ["hidden.toml", "runs"]

@@ -164,6 +164,11 @@ def significant_and_small(shown: Sequence[Candidate]) -> str:
     if not shown:
         return ""
     first = min(shown, key=lambda c: c.price)
+    if first.carried.ratio > 1.0:
+        return (
+            f"; {first.effect.name} stands out against the noise (p = {first.p_value:.2g}), but "
+            f"where it was not fitted the squared error rises by {first.carried.ratio - 1.0:.1%}"
+        )
     return (
         f"; {first.effect.name} is significant and small (p = {first.p_value:.2g}): where it was "
         f"not fitted it changes the squared error by {first.carried.ratio - 1.0:+.1%}"

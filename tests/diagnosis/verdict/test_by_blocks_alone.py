@@ -7,7 +7,7 @@ import pytest
 from made_up_fits import NO_ROUTE, fit, refit
 
 from trialid.diagnosis.verdict import decide
-from trialid.diagnosis.verdict_sentences import contradiction
+from trialid.diagnosis.verdict_sentences import contradiction, significant_and_small
 
 
 def decided(fall, *, p_value, alike=()):
@@ -72,3 +72,12 @@ def test_a_fall_that_held_out_trials_deny_is_that_of_the_output_that_shows_it(ow
     if own:
         found = replace(found, carried=replace(found.carried, own=own))
     assert said in contradiction(fit(0.10, 0.11), found)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "said"), [(0.999, "is significant and small"), (3.65, "rises by")]
+)
+def test_what_stands_out_and_makes_others_worse_is_not_small(ratio, said):
+    candidate = refit("a", ratio, 0.1).candidate
+    assert said in significant_and_small([candidate])
+    assert significant_and_small([]) == ""
