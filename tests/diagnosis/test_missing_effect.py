@@ -162,6 +162,10 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
     said = name_records(fit, none, wind).sentence
     words = "something is missing; not every trial is given V_aw, gamma_aw, h, and no"
     assert said.startswith(words)
+    assert (
+        "V_aw, gamma_aw, h"
+        in name_records(fit, replace(none, kind="nothing missing"), wind).sentence
+    )
     blown = replace(trial, signals={**trial.signals, "V_aw": trial.t, "gamma_aw": trial.t})
     fit.trials = (blown,)
     assert "V_aw" not in name_records(fit, none, wind).sentence

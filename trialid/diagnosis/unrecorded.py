@@ -19,8 +19,9 @@ from trialid.ship.effect import Effect
 from trialid.ship.model import STATES
 from trialid.simulation.integrate import shared_record
 
-UNANSWERED: Final = ("not in catalogue", "cannot tell")
-"""Verdicts with which something is or may be missing that has no name."""
+UNANSWERED: Final = ("not in catalogue", "cannot tell", "nothing missing")
+"""Verdicts with which something is or may be missing that has no name: nothing of what was tried is
+missing of a ship in 14 m/s of wind, whose heading and wind nobody gave."""
 
 READ_OVER_GROUND, CURRENT = "drift_in_speed_record", "current_in_speed_record"
 """Effects of a model whose speed is one over ground, and of the current in it."""
