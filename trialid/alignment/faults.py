@@ -200,8 +200,9 @@ def _held_here_alone(s: Samples, held: list[tuple[int, int]]) -> bool:
         return False
     low, high = s.y.min(), s.y.max()
     runs = joined_runs((np.diff(s.y) == 0) & s.near[1:])
-    elsewhere = [j - i + 1 for i, j in runs if s.y[i] not in (low, high)]
-    return sum(elsewhere) > LONG and max(elsewhere, default=0) < FLAT
+    elsewhere = {i: j - i + 1 for i, j in runs if s.y[i] not in (low, high)}
+    levels = len(np.unique(s.y[list(elsewhere)]))  # few are a still value's last digits
+    return levels > LONG and max(elsewhere.values(), default=0) < FLAT
 
 
 def _abrupt(s: Samples, run: tuple[int, int], usual: float, levels: float) -> bool:
