@@ -141,7 +141,7 @@ def test_one_long_flat_top_is_a_limit_where_noise_never_stands_still():
     assert "held at the limit 0.8594 deg/s in 1 flat top" in words
     assert not faulty(aligned({"r": y}))
     assert not faulty(aligned({"r": np.round(turn, 3)}))
-    digits = 0.1 + 1e-17 * np.random.default_rng(9).integers(-3, 4, len(T))
+    digits = 0.1 + 1e-15 * np.clip(np.random.default_rng(9).normal(size=len(T)).cumsum(), -9, 9)
     assert not faulty(aligned({"r": digits}))
 
 

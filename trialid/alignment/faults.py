@@ -37,6 +37,8 @@ FLAT = 4
 LONG = 20
 """Samples at a limit that are told by themselves, of a value that stands for no `FLAT` elsewhere. A
 rate of turn whose display ends at 30 deg/min was held for 576 in a turning circle, and fitted."""
+LAST_DIGITS = 1e-9
+"""Share of a value within which others are the same, worked out another way."""
 ABRUPT = 0.5
 """A flat top is entered with steps of this share of the usual ones at least."""
 FROZEN_S = 5.0
@@ -196,12 +198,13 @@ def _held(s: Samples, value: float) -> list[tuple[int, int]]:
 
 def _held_here_alone(s: Samples, held: list[tuple[int, int]]) -> bool:
     """Whether a value is held long that never stands still elsewhere: noise stops at no turn."""
-    if max((last - first + 1 for first, last in held), default=0) < LONG:
-        return False
     low, high = s.y.min(), s.y.max()
+    longest = max((last - first + 1 for first, last in held), default=0)
+    if longest < LONG or high - low < LAST_DIGITS * max(abs(low), abs(high)):
+        return False
     runs = joined_runs((np.diff(s.y) == 0) & s.near[1:])
     elsewhere = {i: j - i + 1 for i, j in runs if s.y[i] not in (low, high)}
-    levels = len(np.unique(s.y[list(elsewhere)]))  # few are a still value's last digits
+    levels = len(np.unique(s.y[list(elsewhere)]))
     return levels > LONG and max(elsewhere.values(), default=0) < FLAT
 
 
