@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 UNIFORM: Final = 0.01
 """Share of a step by which a clock may waver and still be uniform."""
 SLOWEST: Final = 10.0
-"""[s] A longer step is mostly one of milliseconds or finer: no log of a manoeuvre is as slow."""
+"""[s] No log of a manoeuvre is slower: a longer step is rather one of milliseconds or finer. Half
+of it asks of logs every 5 s, twice takes milliseconds at 50 a second for seconds."""
 CLOCK: Final = "t"
 """What the time is called; its unit is seconds where none is stated."""
 

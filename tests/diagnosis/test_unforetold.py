@@ -11,7 +11,12 @@ from trialid.diagnosis.diagnosed import DiagnoseSettings
 def candidate(name, *, shown, falls):
     carried = SimpleNamespace(falls=falls)
     effect = SimpleNamespace(name=name)
-    return SimpleNamespace(effect=effect, carried=carried, shown=lambda level: shown)
+    return SimpleNamespace(
+        effect=effect,
+        carried=carried,
+        shown=lambda level: shown,
+        worth_a_name=lambda level: shown and falls,
+    )
 
 
 @pytest.mark.parametrize(

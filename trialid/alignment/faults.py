@@ -36,7 +36,8 @@ FLAT = 4
 """Samples in a flat top, of which there must be two before the value is called a limit."""
 LONG = 20
 """Samples at a limit that are told by themselves, of a value that stands for no `FLAT` elsewhere. A
-rate of turn whose display ends at 30 deg/min was held for 576 in a turning circle, and fitted."""
+rate of turn whose display ends at 30 deg/min was held for 576 in a turning circle, and fitted. Of
+420 simulated records none has such a run, with half of this or twice."""
 LAST_DIGITS = 1e-9
 """Share of a value within which others are the same, worked out another way."""
 ABRUPT = 0.5

@@ -16,8 +16,8 @@ from trialid.arrays import Vector
 
 LEAST = np.deg2rad(2.0)
 """[rad] What is less drowns in a model's error. A compass on a real bus made steps of 0.05 deg that
-are eight times its usual ones; of 420 simulated records none has a step that the rest of the rule
-takes for a jump, with half of this or twice."""
+are eight times its usual ones; of 420 simulated records none is told to jump, with
+half of this or twice, and of a jump of 5 deg put into each 408 are, 406 with twice."""
 BESIDE = 3
 """Steps to each side whose middle is the pace: a jump that takes two samples does not move it. A
 step over a gap tells nothing."""

@@ -220,10 +220,10 @@ def refits_of(
     grown: bool = False,
 ) -> Tried:
     """The best candidates fitted, what else would be said to do as well, and what they cover."""
-    shown = [c for c in ranking if c.shown(asked.level)]
+    worth = [c for c in ranking if c.worth_a_name(asked.level)]
     # where no slope foretells a fall, what the test shows is fitted: of four turns in a measured
     # wind its slope foretold a rise of 18 %, and fitted it takes three quarters off one held out
-    worth = [c for c in shown if c.carried.falls] or shown[: asked.refit]
+    worth = worth or [c for c in ranking if c.shown(asked.level)][: asked.refit]
     best = refit_best(fit, worth, asked.refit, asked.level, progress)
     named = likeliest_refit(fit, best, asked.level, grown)
     if named:

@@ -20,19 +20,19 @@ UNITS: Final = frozenset(("unit", "units", "uom", "einheit", "unite", "unidad", 
 
 
 @dataclass(frozen=True)
-class OneAColumn:
-    """The columns of a table with one value a row: names, values, units if there are any."""
+class LongColumns:
+    """Places of the columns of a long table: of names, of values, of units if there are any."""
 
     names: int
     values: int
     units: int | None
 
 
-def one_value_a_row(heads: Sequence[Head]) -> OneAColumn | None:
+def one_value_a_row(heads: Sequence[Head]) -> LongColumns | None:
     """Which columns are which, by their names alone; None of a table with a column a channel.
 
     >>> one_value_a_row([head("time"), head("Tag"), head("Value")])
-    OneAColumn(names=1, values=2, units=None)
+    LongColumns(names=1, values=2, units=None)
     >>> one_value_a_row([head("time"), head("mode"), head("rudder")])
     """
     called = ["".join(bare_words(one.name)) for one in heads]
@@ -41,7 +41,7 @@ def one_value_a_row(heads: Sequence[Head]) -> OneAColumn | None:
     units = [i for i, word in enumerate(called) if word in UNITS]
     if len(values) != 1 or not names:
         return None
-    return OneAColumn(names[0], values[0], units[0] if len(units) == 1 else None)
+    return LongColumns(names[0], values[0], units[0] if len(units) == 1 else None)
 
 
 def key_columns(heads: Sequence[Head]) -> set[int]:
@@ -50,7 +50,7 @@ def key_columns(heads: Sequence[Head]) -> set[int]:
     return set() if of is None else {i for i in (of.names, of.values, of.units) if i is not None}
 
 
-def columns_by_name(table: Table, of: OneAColumn) -> Iterator[tuple[Head, Table, np.ndarray]]:
+def columns_by_name(table: Table, of: LongColumns) -> Iterator[tuple[Head, Table, np.ndarray]]:
     """Each name with its unit, the table of its rows alone, and where these are."""
     names = np.array([_text(one) for one in table.columns[of.names].tolist()], object)
     for name in dict.fromkeys(names.tolist()):
@@ -74,8 +74,8 @@ def _place(table: Table, rows: np.ndarray) -> Callable[[int], str]:
     return place
 
 
-def values_of(table: Table, of: OneAColumn) -> np.ndarray | None:
-    """The values of one name; None where they are texts."""
+def values_of(table: Table, of: LongColumns) -> np.ndarray | None:
+    """The values of one name (N,), NaN where there is none; None where they are texts."""
     try:
         return numbers(table, of.values)
     except LogError:

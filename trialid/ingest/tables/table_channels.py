@@ -10,7 +10,7 @@ from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
 from trialid.ingest.tables.clock import table_clock
 from trialid.ingest.tables.clock.table_time import Clock
 from trialid.ingest.tables.long_table import (
-    OneAColumn,
+    LongColumns,
     columns_by_name,
     key_columns,
     one_value_a_row,
@@ -53,7 +53,9 @@ def recording(
     return Recording(table.path, adapter, sha256(table.path), channels, tuple(remarks))
 
 
-def _by_name(table: Table, of: OneAColumn, clock: Clock, adapter: str, wanted: Wanted) -> Recording:
+def _by_name(
+    table: Table, of: LongColumns, clock: Clock, adapter: str, wanted: Wanted
+) -> Recording:
     """One value a row: each name a channel, with the stamps of its rows."""
     remarks = [*table.remarks, *clock.remarks]
     made: dict[str, tuple[Head, Channel]] = {}

@@ -14,6 +14,7 @@ from trialid.ingest.tables.table import Head, Table, numbers
 from trialid.ingest.tables.table_names import unit_of_time
 from trialid.ingest.tables.templates.template import Time
 from trialid.names import units
+from trialid.signal_arrays import SLOWEST
 
 TIME_NAMES = ("t", "time", "timestamp", "zeit")
 LATEST_S = 9e9
@@ -27,9 +28,6 @@ PART = 1 << 20
 """Rows of a column that are gone through at once."""
 QUICKEST = 1e-3
 """[s] Seconds that step by less, among such numbers, are rather days."""
-SLOWEST = 10.0
-"""[s] A manoeuvre is logged quicker: whole numbers that step by more are rather thousandths, at a
-hundred a second and less. Half of it asks of logs every 5 s, twice lets those at 50 a second by."""
 TOLD = "or say in a template how the time is written (trialid inspect LOG --template FILE)"
 OF_DAY = re.compile(r"(\d{1,2}):(\d\d)(?::(\d\d(?:[.,]\d+)?))?")
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from trialid.errors import LogError, printable
 from trialid.ingest.tables import excel_log, mat_log, parquet_log
-from trialid.ingest.tables.clock.table_time import DAYS, SLOWEST
+from trialid.ingest.tables.clock.table_time import DAYS
 from trialid.ingest.tables.table import head
 from trialid.ingest.tables.table_header import is_data
 from trialid.ingest.tables.table_layout import SPACES
@@ -15,6 +15,7 @@ from trialid.ingest.tables.table_names import is_date, is_time
 from trialid.ingest.tables.templates.template import TAB, WHITESPACE, distinct
 from trialid.ingest.tables.templates.template_guess import Guess, guess, is_number
 from trialid.names.quantities import SIGNALS
+from trialid.signal_arrays import SLOWEST
 from trialid.toml_text import quote
 
 HEAD = 4096
