@@ -141,3 +141,13 @@ def test_a_broken_one_is_one_line_with_its_place_and_the_mend(
     assert mend in outcome.stderr
     assert (folder / "rail.toml").read_bytes() == before
     assert not (folder / "runs").exists()
+
+
+def test_two_files_that_define_one_effect_are_refused(folder):
+    (folder / "ours.py").write_text(OWN, encoding="utf-8")
+    file = folder / "rail.toml"
+    text = file.read_text(encoding="utf-8").replace('["rail.py"]', '["rail.py", "ours.py"]')
+    file.write_text(text, encoding="utf-8")
+    found = trialid_("run", "rail.toml")
+    assert found.exit_code == 2
+    assert "model.effects_from[1]: ours.py and rail.py both define 'wavy_rail'" in found.stderr

@@ -54,7 +54,7 @@ def test_a_stated_speed_tells_the_unit_of_the_one_over_ground(
 
 
 def test_drift_and_current_are_read_out_of_a_speed_over_ground(tmp_path: Path) -> None:
-    """With the heading as a signal: without it what a current does is a force's."""
+    """With the heading as a signal, which also tells the rate's offset."""
     for speed, over in (("SOG", True), ("STW", False)):
         path = log(tmp_path / f"{speed}.csv", ZIGZAG, 0.9, 1.0)
         head, *rows = path.read_text(encoding="utf-8").splitlines()
@@ -65,8 +65,9 @@ def test_drift_and_current_are_read_out_of_a_speed_over_ground(tmp_path: Path) -
         given = (tmp_path / "p.toml", None, Given(length=150.0), APPROACH)
         text = starter([inspect_log(path)], *given).files[tmp_path / "p.toml"]
         assert ('"drift_in_speed_record"]' in text) is over
-        assert ('\npsi   = { channel = "HDG"' in text) is over
-        assert ("# left to you: psi" in text) is not over
+        assert '\npsi   = { channel = "HDG"' in text
+        assert ("the run seeks the current in it" in text) is over
+        assert ("tells the offset of the rate" in text) is not over
         assert 'outputs = ["r"]' in text
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import s175q
 
-from trialid.identification.check.common_values import common_values, mean_between
+from trialid.identification.check.common_values import common_values, weights_between
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
 from trialid.simulation.integrate import prepare, respond
@@ -28,8 +28,16 @@ OFFSET = np.deg2rad(1.0)
     ],
 )
 def test_mean_of_values_known_unequally(values: list, variances: list, mean: float) -> None:
-    found = mean_between(np.array(values), np.array(variances))
-    assert found == pytest.approx(mean, rel=1e-6, abs=1e-9)
+    weights, between = weights_between(np.array(values), np.array(variances))
+    assert weights @ values == pytest.approx(mean, rel=1e-6, abs=1e-9)
+    assert weights.sum() == pytest.approx(1.0)
+    assert between >= 0.0
+
+
+def test_what_lies_between_values_is_what_their_scatter_has_beyond_their_own() -> None:
+    assert weights_between(np.array([0.0, 10.0]), np.array([1.0, 4.0]))[1] == pytest.approx(47.5)
+    assert weights_between(np.array([0.0, 1.0]), np.array([1.0, 4.0]))[1] == 0.0
+    assert weights_between(np.array([7.0]), np.array([1.0]))[1] == 0.0
 
 
 def sailed(name: str, delta: np.ndarray, use: str, rng: np.random.Generator) -> Trial:
@@ -65,6 +73,7 @@ def test_a_trial_that_hardly_knows_the_zero_of_the_rudder_hardly_counts() -> Non
         own = [fit.estimates[f"delta_0 [{n}]"] for n in ("z5", "z20", "turn")]
         plain.append(np.mean(own) - OFFSET)
         weighed.append(fit.common["delta_0"] - OFFSET)
-        assert fit.common == common_values(fit.problem, fit.theta, fit.level)
+        found = common_values(fit.problem, fit.theta, fit.level)
+        assert fit.common == {n: x.mean for n, x in found.items()}
     assert np.std(weighed) < 0.5 * np.sqrt(np.mean(np.square(plain)))
     assert np.sqrt(np.mean(np.square(weighed))) < np.deg2rad(0.05)

@@ -7,7 +7,7 @@ import pytest
 from s175q import MODEL, SETTINGS, waves, white, with_noise, zigzag
 
 from trialid.identification.fit import identify
-from trialid.identification.nuisance_priors import limits, nuisance_prior
+from trialid.identification.nuisance.priors import limits, nuisance_prior
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.roll.roll_range import DAMPING_RATIO, GM_OVER_L
 from trialid.identification.weighing import Weighing, colour_of, level_of
@@ -68,7 +68,7 @@ def test_nuisances_of_short_records_stay_likely_where_alone_they_run_off(short):
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_half_or_twice_of_what_is_likely_does_not_move_the_ship(short, factor, monkeypatch):
     """The ship's own numbers move by less than their errors: the priors hold what nobody saw."""
-    from trialid.identification import of_each_trial as posing
+    from trialid.identification.nuisance import of_each_trial as posing
 
     def other(*asked):
         mean, deviation = nuisance_prior(*asked)

@@ -100,7 +100,8 @@ def test_the_ranges_of_the_shipped_example_hold_its_truth(result):
     for row, true in zip(result.imo.measures, TRUE, strict=True):
         low, high = row.interval
         assert low < true < high
-        assert high - low < 0.13 * true  # the widest, an overshoot of 4 deg, 12.4 %
+        # the widest, an overshoot of 4 deg, 24.8 %; 12.4 % if no feedback could be 0.4 deg off
+        assert high - low < 0.26 * true
 
 
 def test_a_run_without_a_fit_relies_on_none(folder):

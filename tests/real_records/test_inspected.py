@@ -11,7 +11,7 @@ from trialid import pipeline_file
 from trialid.alignment import SignalSource, align
 from trialid.cli import main
 from trialid.errors import AlignmentError
-from trialid.identification.nuisance_priors import DELAY
+from trialid.identification.nuisance.priors import DELAY
 from trialid.ingest import Aids, read
 from trialid.inspection import disagreements, inspect_log
 from trialid.workflow.run import run as run_pipeline

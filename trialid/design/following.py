@@ -19,6 +19,7 @@ from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
 from trialid.design.prediction.engine_orders import at_her_speed
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
+from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.rating import Goal, Noise, goal
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness_of, rivals
@@ -268,15 +269,12 @@ def measures_within(fit: Fit, spread: LikelySpread) -> tuple[Measure, ...]:
 
 
 def sailed_ship(fit: Fit) -> Vessel:
-    """The fitted ship as the standard measures are predicted: she loses speed as in her trials.
+    """The fitted ship as she is predicted: losing speed and steered as in her trials.
 
-    Raises
-    ------
-    DesignError
-        The model does not turn, or is not steered by a rudder.
+    DesignError as `vessel_of`.
     """
-    loss = speed_loss(fit)
-    return vessel_of(fit) if loss is None else with_speed_loss(vessel_of(fit), loss.values)
+    loss, ship = speed_loss(fit), vessel_of(fit, with_rudders_zero(fit))
+    return ship if loss is None else with_speed_loss(ship, loss.values)
 
 
 def approach_speeds(fit: Fit) -> tuple[float, ...]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.identification.fit import Fit
-from trialid.identification.nuisance_priors import speed
+from trialid.identification.nuisance.priors import speed
 from trialid.trial import Trial
 
 FAST: Final = np.deg2rad(300.0)

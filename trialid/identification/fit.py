@@ -10,7 +10,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.errors import NotIdentifiable, SimulationError
 from trialid.identification.arrive import arrive
-from trialid.identification.check.common_values import common_values
+from trialid.identification.check.common_values import Common, common_values
 from trialid.identification.gauss_newton import REASONS, Iteration
 from trialid.identification.one_search import End, Progress, why_no_start
 from trialid.identification.output_error import (
@@ -85,9 +85,14 @@ class Fit:
         return point[1]
 
     @cached_property
+    def of_all_trials(self) -> Mapping[str, Common]:
+        """Shared parameters, and of each sensor the mean over the trials, by the column."""
+        return common_values(self.problem, self.theta, self.level)
+
+    @property
     def common(self) -> Mapping[str, float]:
         """What a trial has that was not fitted: shared parameters, and the mean of each sensor."""
-        return common_values(self.problem, self.theta, self.level)
+        return {name: found.mean for name, found in self.of_all_trials.items()}
 
     @property
     def examined(self) -> "Fit":

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable, nearest
-from trialid.identification.nuisance_priors import speed
-from trialid.identification.of_each_trial import Nuisance, nuisances, with_nuisance
+from trialid.identification.nuisance.of_each_trial import Nuisance, nuisances, with_nuisance
+from trialid.identification.nuisance.priors import speed
 from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask
 from trialid.identification.roll.roll_range import RollRange, roll_range
 from trialid.names.quantities import MASS_PARAMETERS, POSITION

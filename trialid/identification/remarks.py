@@ -58,15 +58,15 @@ def remarks(fit: Fit) -> tuple[str, ...]:
 
 
 def _one_sided(fit: Fit) -> list[str]:
-    """That her rudder stood off amidships in all trials, which no prediction knows."""
+    """That her rudder stood off amidships in all trials, as it does in predictions."""
     unknowns = zip(fit.problem.unknowns, fit.theta, strict=True)
     zeros = np.array([a for x, a in unknowns if x.column == "delta_0"])
     if len(zeros) < 2 or abs(zeros.mean()) < max(OFF_AMIDSHIPS, APART * zeros.std(ddof=1)):
         return []
     return [
         f"the rudder's zero is {np.rad2deg(zeros.mean()):.2g} deg in all trials, a screw's side "
-        "push or a feedback's error: what is predicted of her has it at none, and turns to both "
-        "sides alike"
+        "push or a feedback's error: what is predicted of her has it there, by the recorded "
+        "rudder, and is likely from where it would be without"
     ]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.identification.fit import Fit
-from trialid.identification.nuisance_priors import speed
+from trialid.identification.nuisance.priors import speed
 from trialid.names.quantities import POSITION
 from trialid.simulation.integrate import arguments
 

@@ -21,7 +21,7 @@ class FinishedRun:
     ----------
     values
         Of the fitted parameters, by name.
-    rudder_rate, constants, speed_lost
+    rudder_rate, constants, speed_lost, rudders_zero
         How the ship is sailed where she is predicted.
     intervals
         The value of each standard measure with its 95 % range.
@@ -31,6 +31,7 @@ class FinishedRun:
     rudder_rate: float | None = None
     constants: Mapping[str, float] = field(default_factory=dict)
     speed_lost: Mapping[str, float] = field(default_factory=dict)
+    rudders_zero: float | None = None
     intervals: Mapping[str, tuple[float, tuple[float, float]]] = field(default_factory=dict)
     verdict: str = ""
 
@@ -57,12 +58,13 @@ def finished_run(pipeline: DesignFile) -> FinishedRun:
         rows = result["accuracy"]["parameters"]
         values = {p["name"]: float(p["value"]) for p in rows if p["kind"] == "physical"}
         sailed = result.get("sailed") or {}  # runs of before have none
-        rate = sailed.get("rudder_rate")
+        rate, zero = sailed.get("rudder_rate"), sailed.get("rudders_zero")
         return FinishedRun(
             values=values,
             rudder_rate=None if rate is None else float(rate),
             constants=_numbers(sailed.get("constants")),
             speed_lost=_numbers(sailed.get("speed_lost")),
+            rudders_zero=None if zero is None else float(zero),
             intervals=_intervals(result.get("imo")),
             verdict=str((result.get("verdict") or {}).get("kind", "")),
         )

@@ -7,6 +7,7 @@ import numpy as np
 
 from trialid.design.helm import GEAR_STATE, Vessel
 from trialid.design.imo.speed_loss import NAMES, loses_speed
+from trialid.design.prediction.rudders_zero import ZERO
 from trialid.design.standard import Measure, in_calm
 from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.names import labels
@@ -60,6 +61,7 @@ def sailed_part(ship: Vessel) -> SailedPart:
         rudder_rate=None if GEAR_STATE in ship.model.all_states else ship.rudder_rate,
         constants={n: ship.constants[n] for n in read},
         speed_lost={n: ship.model.value(n) for n in NAMES if n in ship.model.parameters},
+        rudders_zero=ship.model.value(ZERO) if ZERO in ship.model.parameters else None,
     )
 
 
@@ -77,9 +79,14 @@ def sailing_words(ship: Vessel) -> str:
             speed = "; the speed stays: what a turn may cost of it only widens the ranges"
         if loses_speed(how.speed_lost):
             speed = "; speed is lost in turns as in the logs"
+    zero = (
+        ""
+        if how.rudders_zero is None
+        else f", its zero {labels.shown_text('delta', how.rudders_zero)} off as in the trials"
+    )
     return (
         f"Sailed by simulation in calm deep water: approach at {how.speed:.3g} m/s, first to "
-        f"starboard, rudder {rate}{steady}{speed}."
+        f"starboard, rudder {rate}{zero}{steady}{speed}."
     )
 
 

@@ -48,12 +48,15 @@ class SailedPart:
     speed_lost
         By what numbers the logged speed fell in turns; empty where the model says itself what
         turning costs.
+    rudders_zero
+        What her rudder stands off its record by, over the trials; None where no trial has its own.
     """
 
     speed: float
     rudder_rate: float | None = None
     constants: Mapping[str, float] = field(default_factory=dict)
     speed_lost: Mapping[str, float] = field(default_factory=dict)
+    rudders_zero: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -31,10 +31,28 @@ LYING_STILL: Final = 0.1
 
 
 def available(pipeline: Described) -> dict[str, Effect]:
-    """The catalogue, effects of the ship's own actuators, and the user's, by name."""
-    own = [effects.from_file(path) for path in pipeline.model.effects_from]
-    given = {n: e for found in own for n, e in found.items()}
-    return {**effects.CATALOGUE, **_of_actuators(pipeline), **given}
+    """The catalogue, effects of the ship's own actuators, and the user's, by name.
+
+    Raises
+    ------
+    PipelineError
+        Two of the user's files define one name.
+    """
+    return {**effects.CATALOGUE, **_of_actuators(pipeline), **_of_files(pipeline)}
+
+
+def _of_files(pipeline: Described) -> dict[str, Effect]:
+    """The user's own; two of one name are refused, as nobody knows which is meant."""
+    found, first = dict[str, Effect](), dict[str, str]()
+    for i, path in enumerate(pipeline.model.effects_from):
+        for name, effect in effects.from_file(path).items():
+            if name in found:
+                raise PipelineError(
+                    f"{where(pipeline, f'model.effects_from[{i}]')}: {path.name} and {first[name]} "
+                    f"both define {name!r}; rename one"
+                )
+            found[name], first[name] = effect, path.name
+    return found
 
 
 def _of_actuators(pipeline: Described) -> dict[str, Effect]:

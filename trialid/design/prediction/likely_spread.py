@@ -15,6 +15,7 @@ from trialid.accuracy.likely import Standing
 from trialid.arrays import Vector
 from trialid.design.imo.measure_slopes import Shows
 from trialid.design.imo.speed_loss import NAMES, speed_loss
+from trialid.design.prediction.rudders_zero import OfUnknowns, extend_by_zero
 from trialid.identification.fit import Fit
 
 Range = tuple[float, float]
@@ -27,7 +28,8 @@ class LikelySpread:
     Attributes
     ----------
     fitted, held, missing
-        Columns of the fit's unknowns, coefficients held fixed, and what may be missing.
+        Columns of the fit's unknowns and her rudder's zero, coefficients held fixed, and what may
+        be missing.
     covariance
         Of the unknowns by noise, and of what turns cost of the speed.
     standing
@@ -74,8 +76,9 @@ def likely_spread(
     fit: Fit, covariance: Vector, standing: Standing, held: Sequence[str], missing: Sequence[Shows]
 ) -> LikelySpread:
     """All that a prediction is uncertain by; arguments as the accuracy of the fit gives them."""
-    fitted = [x.column if x.trial is None else x.name for x in fit.problem.unknowns]
+    columns = tuple(x.column if x.trial is None else x.name for x in fit.problem.unknowns)
+    of_fit = extend_by_zero(fit, OfUnknowns(columns, np.nan_to_num(covariance), standing))
     loss = speed_loss(fit)
     of_loss = np.zeros((len(NAMES),) * 2) if loss is None else loss.covariance
-    known = block_diag(np.nan_to_num(covariance), of_loss)
-    return LikelySpread(tuple(fitted), tuple(held), tuple(missing), known, standing)
+    known = block_diag(of_fit.covariance, of_loss)
+    return LikelySpread(of_fit.names, tuple(held), tuple(missing), known, of_fit.standing)

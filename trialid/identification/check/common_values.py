@@ -4,7 +4,8 @@ Trials do not tell a sensor's number equally well. Where a turn leaves the rudde
 degree and two zig-zags know it to a fiftieth, the plain mean of all is nobody's.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -20,7 +21,25 @@ UNKNOWN: Final = 1e-12
 """Squared sine of the angle to all other columns at which a record tells nothing of an unknown."""
 
 
-def common_values(problem: Problem, theta: Vector, level: float) -> dict[str, float]:
+@dataclass(frozen=True)
+class Common:
+    """What all trials have of something that is each one's own.
+
+    Attributes
+    ----------
+    mean, variance
+        Over the trials, and between them.
+    places, weights
+        Of each trial's own among the unknowns, and its part in the mean; (n,) each.
+    """
+
+    mean: float
+    variance: float
+    places: tuple[int, ...]
+    weights: Vector
+
+
+def common_values(problem: Problem, theta: Vector, level: float) -> Mapping[str, Common]:
     """Shared parameters, and of what belongs to each trial the mean over them; by the column.
 
     Parameters
@@ -33,25 +52,29 @@ def common_values(problem: Problem, theta: Vector, level: float) -> dict[str, fl
         if not x.column.endswith("(0)"):
             gathered.setdefault(x.column, []).append(i)
     if all(len(places) == 1 for places in gathered.values()):
-        return {n: float(theta[i]) for n, (i,) in gathered.items()}
+        return {n: Common(float(theta[i]), 0.0, (i,), np.ones(1)) for n, (i,) in gathered.items()}
     variances = _variances(problem, theta, level)
-    return {n: mean_between(theta[each], variances[each]) for n, each in gathered.items()}
+    found = {}
+    for name, places in gathered.items():
+        weights, between = weights_between(theta[places], variances[places])
+        found[name] = Common(float(weights @ theta[places]), between, tuple(places), weights)
+    return found
 
 
-def mean_between(values: Vector, variances: Sequence[float] | Vector) -> float:
-    """Mean of values that are known unequally well and differ among themselves, too.
+def weights_between(values: Vector, variances: Sequence[float] | Vector) -> tuple[Vector, float]:
+    """Weights of values that are known unequally well and differ too; the variance between them.
 
     Each weighs by its own variance and that between them, which is what their scatter has beyond
     their own: DerSimonian & Laird (1986), Controlled Clinical Trials 7, 177-188.
     """
-    weights = 1.0 / np.clip(variances, LEAST, 1.0 / LEAST)
+    weights, between = 1.0 / np.clip(variances, LEAST, 1.0 / LEAST), 0.0
     if len(values) > 1:
         mean = float(weights @ values) / float(weights.sum())
         excess = float(weights @ (values - mean) ** 2) - (len(values) - 1)
         span = float(weights.sum() - (weights @ weights) / weights.sum())
         between = max(excess, 0.0) / span if span > 0.0 else 0.0
         weights = 1.0 / (1.0 / weights + between)
-    return float(weights @ values) / float(weights.sum())
+    return weights / weights.sum(), between
 
 
 def _variances(problem: Problem, theta: Vector, level: float) -> Vector:

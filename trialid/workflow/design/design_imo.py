@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Final
 
-from trialid.design.helm import Vessel
+from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.speed_loss import with_speed_loss
+from trialid.design.prediction.rudders_zero import with_zero_at
 from trialid.design.search import Ship
 from trialid.design.standard import Measure, predict
 from trialid.pipeline_file.finished_run import FinishedRun
@@ -29,11 +30,19 @@ def imo(ships: Sequence[Ship], run: FinishedRun) -> Imo:
 
     Of a single ship that a run fitted the run knows how sure they are.
     """
-    vessels = [with_speed_loss(ship.vessel, run.speed_lost) for ship in ships]
+    vessels = [_as_in_run(ship.vessel, run) for ship in ships]
     measures = predict(vessels)
     if len(ships) == 1:
         measures = tuple(_with_range(m, run) for m in measures)
     return Imo(measures, vessels[0], reliable=run.verdict != "no fit")
+
+
+def _as_in_run(ship: Vessel, run: FinishedRun) -> Vessel:
+    """The ship with what the run's trials had beside her model."""
+    if run.rudders_zero is not None:
+        model = with_zero_at(ship.model, run.rudders_zero)
+        ship = vessel(model, ship.period, ship.constants, ship.rudder_rate)
+    return with_speed_loss(ship, run.speed_lost)
 
 
 def _with_range(measure: Measure, run: FinishedRun) -> Measure:

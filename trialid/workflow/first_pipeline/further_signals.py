@@ -7,8 +7,9 @@ from typing import Final
 import numpy as np
 
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.relations import slope_agreement
 from trialid.inspection.sketch import on_one_clock
-from trialid.workflow.first_pipeline.choice import OPEN, Chosen, Live, Signal, plain_signal
+from trialid.workflow.first_pipeline.choice import OPEN, SURE, Chosen, Live, Signal, plain_signal
 
 LEFT: Final[Mapping[str, str]] = {
     "n": "with it the run seeks what the screw does",
@@ -17,6 +18,10 @@ LEFT: Final[Mapping[str, str]] = {
     "psi": "with it the run seeks a steady wind and a current",
 }
 """Inputs that no first model asks for, and what for."""
+
+IN_SPEED: Final = "with a speed over ground the run seeks the current in it"
+BESIDE_RATE: Final = "tells the offset of the rate; with it the run seeks a steady wind, too"
+"""What the heading is read for, beside a speed over ground and beside another."""
 
 WIND: Final[Mapping[str, str]] = {
     "V_aw": "the run seeks what the wind does",
@@ -46,11 +51,15 @@ def with_further(trial: Chosen, live: Live) -> Chosen:
 
 
 def _with_heading(trial: Chosen, live: Live) -> Chosen:
-    """The trial with her heading, where a current is in her speed: without it forces take it up."""
-    if not (trial.over_ground and live.get("psi")) or "psi" in trial.quantities:
+    """The trial with her heading: it tells the rate's offset from forces, and wind and current.
+
+    One that the rate does not go by is left to the user: nobody knows which of them is wrong.
+    """
+    rate = next((one for one in trial.signals if one.quantity == "r"), None)
+    if rate is None or not live.get("psi"):
         return trial
-    heading = plain_signal("psi", live, "with a speed over ground the run seeks the current in it")
-    if heading.open:
+    heading = plain_signal("psi", live, IN_SPEED if trial.over_ground else BESIDE_RATE)
+    if heading.open or abs(slope_agreement(rate.source, heading.source)) <= SURE:
         return trial
     return dataclasses.replace(trial, signals=(*trial.signals, heading))
 

@@ -12,7 +12,7 @@ from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification import fit as search
 from trialid.identification.fit import Fit
-from trialid.identification.of_each_trial import Nuisance
+from trialid.identification.nuisance.of_each_trial import Nuisance
 from trialid.identification.trial_score import of_trial
 from trialid.pipeline_file import load
 from trialid.pipeline_file.form import IdentifySection

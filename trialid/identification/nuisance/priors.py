@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.effects.track import CURRENT as WATER
+from trialid.identification.nuisance.gyro_offset import ANGLES, gyro_offset
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import guess
 from trialid.trial import Trial
@@ -71,7 +72,9 @@ def nuisance_prior(
         return _initial(model, trial, column[:-3])
     if column.startswith("tau_"):
         return null, max(DELAY, trial.period)
-    return null, _offset(model, trial, column, size)
+    usual, of = (null, _offset(model, trial, column, size)), column.removeprefix("b_")
+    seen = gyro_offset(trial, of, OFFSETS[f"b_{ANGLES[of]}"]) if of in ANGLES else None
+    return min(usual, seen or usual, key=lambda known: known[1])
 
 
 def limits(known: Known) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 from trialid.effects import CATALOGUE
 from trialid.effects.track import current
 from trialid.errors import NotIdentifiable
-from trialid.identification.nuisance_priors import limits, nuisance_prior
+from trialid.identification.nuisance.priors import limits, nuisance_prior
 from trialid.identification.output_error import Unknown
 from trialid.names.quantities import OVER_GROUND, SIGNALS
 from trialid.ship.effect import Effect, Parameter
