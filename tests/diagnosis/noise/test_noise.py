@@ -7,7 +7,7 @@ import pytest
 from s175q import MODEL, SETTINGS, waves, white, with_noise, zigzag
 
 from trialid.diagnosis.noise.excitation import QUIET_ANGLE, period_of
-from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.noise.split import INPUT_DRIVEN, split
 from trialid.diagnosis.search.augment import augment
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
@@ -166,3 +166,20 @@ def test_a_slow_rudder_logged_fast_does_not_repeat_itself() -> None:
     found = period_of(again[:, None] / QUIET_ANGLE)
     assert found is not None
     assert found[1] == pytest.approx(6000, abs=2)
+
+
+def test_a_record_of_fewer_values_than_there_are_candidates_is_too_short_for_that_route():
+    whole = zigzag(20)
+    n = 45
+    signals = {name: y[100 : 100 + n] for name, y in whole.signals.items()}
+    valid = {name: np.ones(n, dtype=bool) for name in signals}
+    cut = replace(whole, signals=signals, valid=valid)
+    fit = identify(
+        [with_noise(cut, *white(np.random.default_rng(3), n))],
+        MODEL,
+        replace(SETTINGS, free=("Nv", "Nr")),
+    )
+    augmented = augment(fit, CATALOGUE)
+    assert augmented.S.shape[0] < augmented.S.shape[1]
+    _, routes = split(fit, augmented, {})
+    assert next(r for r in routes if r.method == INPUT_DRIVEN).why.startswith("too short: ")

@@ -257,7 +257,7 @@ def _visible_directions(raw: Vector, whole: Vector, white: Vector) -> Vector:
     seen = np.linalg.norm(raw, axis=0) > SEEN * sizes
     scale = np.where(seen, np.linalg.norm(white, axis=0), 1.0)
     columns = np.where(seen, white / np.where(scale > 0.0, scale, 1.0), 0.0)
-    _, s, Vt = np.linalg.svd(np.linalg.qr(columns, mode="r"))
+    _, s, Vt = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
     kept = s > DISTINCT * s[0]
     return np.asarray(Vt[kept].T / np.where(scale > 0.0, scale, 1.0)[:, None])
 
