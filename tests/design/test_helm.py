@@ -3,6 +3,7 @@ import pytest
 from waters import VESSEL, D
 
 from trialid.design.helm import Follow, Hold, carry_out, ramp, sail, track, vessel
+from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
 from trialid.ship.model import ShipModel
 
@@ -137,3 +138,24 @@ def test_where_she_is_can_be_an_output_as_well():
     ahead = signals["cog"] - signals["psi"]
     assert abs(ahead[30]) < 1e-6
     assert np.all(ahead[-20:] < -0.02)  # she drifts outwards
+
+
+def test_what_only_changes_her_log_is_no_part_of_a_ship_under_orders():
+    """A gyro that is late and off; a rudder whose record is early acts late, and stays."""
+
+    def told():
+        yield Hold(10 * D, 60.0)
+
+    reading = {"delay_r": {"tau_r": 5.0}, "bias_r": {"b_r": 0.01}, "scale_r": {"e_r": 0.3}}
+    model = VESSEL.model
+    for name, values in reading.items():
+        model = (model + CATALOGUE[name]).with_values(values)
+    read = vessel(model, VESSEL.period, VESSEL.constants, VESSEL.rudder_rate)
+    assert not {*reading} & {e.name for e in read.model.effects}
+    bare, own = (carry_out(one, told(), 5.0, 60.0).trial.signals["r"] for one in (VESSEL, read))
+    np.testing.assert_array_equal(own, bare)
+    outputs = read.simulator.outputs
+    assert outputs == VESSEL.simulator.outputs
+    early = (VESSEL.model + CATALOGUE["rudder_record_delay"]).with_values({"tau_delta": 1.0})
+    ready = vessel(early, VESSEL.period, VESSEL.constants, VESSEL.rudder_rate)
+    assert "rudder_record_delay" in {e.name for e in ready.model.effects}

@@ -9,7 +9,7 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Generator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -20,7 +20,7 @@ from trialid.design.drive_commands import Drive
 from trialid.errors import DesignError
 from trialid.names.quantities import POSITION
 from trialid.ship.actuators import Actuator, rudder_signals
-from trialid.ship.model import ShipModel
+from trialid.ship.model import ShipModel, without_sensors
 from trialid.simulation.integrate import Departure, Simulator, prepare, respond
 from trialid.trial import Trial
 
@@ -114,14 +114,14 @@ class Passage:
 def vessel(
     model: ShipModel, period: float, constants: Mapping[str, float], rudder_rate: float
 ) -> Vessel:
-    """Make a ship ready; the heading is added to what is simulated."""
+    """Make a ship ready, her sensors left out; the heading is added to what is simulated."""
     if "r" not in model.states:
         raise DesignError(
             "a manoeuvre needs a ship that turns: put r among the states of the model"
         )
     moving = tuple(s for s in model.states if s not in POSITION)  # the track follows from them
     states = moving if "psi" in moving else (*moving, "psi")
-    sailed = ShipModel(model.ship, states, model.effects, model.values)
+    sailed = replace(without_sensors(model), states=states)
     simulator = prepare(sailed, (), speed_outputs(sailed))
     return Vessel(sailed, simulator, period, dict(constants), rudder_rate)
 

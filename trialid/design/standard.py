@@ -19,8 +19,8 @@ from trialid.design.helm import Instructions, Passage, Vessel, carry_out, vessel
 from trialid.design.imo import measures
 from trialid.design.imo.measures import Criterion
 from trialid.errors import DesignError
-from trialid.ship.effect import SENSORS, Delayed, Effect
-from trialid.ship.model import STATES
+from trialid.ship.effect import Effect
+from trialid.ship.model import moves_her
 from trialid.ship.particulars import Ship
 
 DEGREES: Final = float(np.rad2deg(1.0))
@@ -110,14 +110,8 @@ READINGS: Final = (
 
 
 def acts_in_calm(effect: Effect) -> bool:
-    """Whether an effect moves a ship in deep water without wind, waves, current or a tug.
-
-    What only changes what is logged does not. An input that acts late does: a record of the rudder
-    that is early is no worse told from a gear that is late.
-    """
-    late = {*effect.acts_on(Delayed)} - {*STATES}
-    moves = bool({*effect.forms} - {*SENSORS}) or bool(late)
-    return moves and not AT_SEA & {*effect.signals}
+    """Whether an effect moves a ship in deep water without wind, waves, current or a tug."""
+    return moves_her(effect) and not AT_SEA & {*effect.signals}
 
 
 def in_calm(ship: Vessel) -> Vessel:

@@ -9,6 +9,7 @@ from trialid.errors import EffectError, ShipError, nearest
 from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, POSITION
 from trialid.ship.actuators import actuator_quantities
 from trialid.ship.effect import (
+    SENSORS,
     Delayed,
     Effect,
     Force,
@@ -249,3 +250,19 @@ def late(signal: str) -> str:
 def slope(signal: str) -> str:
     """The input that holds the derivative of a late input by its delay [unit/s]."""
     return f"{signal} slope"
+
+
+def moves_her(effect: Effect) -> bool:
+    """Whether an effect moves a ship, and does not only change what is logged of her.
+
+    An input that acts late does: a record of the rudder that is early is no worse told from a gear
+    that is late.
+    """
+    return bool({*effect.forms} - {*SENSORS}) or bool({*effect.acts_on(Delayed)} - {*STATES})
+
+
+def without_sensors(model: ShipModel) -> ShipModel:
+    """The model of what she does, whatever her sensors make of it."""
+    for effect in (e for e in model.effects if not moves_her(e)):
+        model = model - effect.name
+    return model

@@ -23,8 +23,8 @@ from trialid.errors import EffectError, NotIdentifiable
 from trialid.identification.check.start_error import StartError
 from trialid.identification.fit import Fit
 from trialid.identification.trial_score import of_trial, own_start_error
-from trialid.ship.effect import SENSORS, Effect
-from trialid.ship.model import STATES, ShipModel
+from trialid.ship.effect import Effect
+from trialid.ship.model import STATES, ShipModel, moves_her
 from trialid.simulation.integrate import Simulator, initial, prepare, respond
 from trialid.trial import Trial
 
@@ -190,7 +190,7 @@ def with_track(fit: Fit, trial: Trial) -> ShipModel:
 def _acts(effect: Effect, trial: Trial, model: ShipModel) -> bool:
     """Whether an effect moves the ship by what this trial holds."""
     unknown = ({*effect.signals} & AT_SEA) - {*trial.signals} - {*model.states}
-    return bool({*effect.forms} - {*SENSORS}) and not unknown
+    return moves_her(effect) and not unknown
 
 
 def _own_starts(fit: Fit, trial: Trial) -> dict[str, int]:

@@ -41,7 +41,8 @@ from trialid.design.standard import (
 )
 from trialid.errors import DesignError
 from trialid.names.quantities import SIGNALS
-from trialid.ship.effect import SENSORS, Effect
+from trialid.ship.effect import Effect
+from trialid.ship.model import moves_her
 from trialid.simulation.integrate import respond
 from trialid.trial import Trial
 
@@ -165,7 +166,7 @@ def motions(ship: Vessel) -> tuple[str, ...]:
 def acts_under(effect: Effect, given: set[str]) -> bool:
     """Whether an effect moves a ship of which these signals are given."""
     unknown = ({*effect.signals} & AT_SEA) - given - {"psi"}
-    return bool({*effect.forms} - {*SENSORS}) and not unknown
+    return moves_her(effect) and not unknown
 
 
 def _places(spread: LikelySpread, one: Shows) -> list[int]:
