@@ -186,11 +186,16 @@ def _series(log, quantity):
     return frames.series(SignalSource(quantity, quantity, unit, side), [log], "t")
 
 
+def whole(series):
+    """A clock that spans a series, so that all that is wrong with it is told."""
+    return Grid(int(series.t[0]), 0.5, int((series.t[-1] - series.t[0]) / 5e8) + 2)
+
+
 def _faults(series):
     words = []
     for i, one in enumerate(series):
-        words += faults.mask_faults(one, Grid(int(one.t[0]), 0.5, 100), (), 0.0, "t")[1]
-        stuck = faults.find_stuck(series, i, Grid(int(one.t[0]), 0.5, 100))
+        words += faults.mask_faults(one, whole(one), (), 0.0, "t")[1]
+        stuck = faults.find_stuck(series, i, whole(one))
         words += [f"{one.quantity.name} {stuck.words}"] if stuck else []
     return words
 
@@ -213,7 +218,7 @@ def planted(seeds, find, plant):
         k = rng.choice(np.arange(5, len(y) - 5), max(1, len(y) // 500), replace=False)
         log = recording(channel(find, t, plant(y, k, rng)))
         one = clocks.in_time_order(_series(log, find))
-        left, _ = faults.mask_faults(one, Grid(int(one.t[0]), 0.5, 100), (), 0.0, "t")
+        left, _ = faults.mask_faults(one, whole(one), (), 0.0, "t")
         out = ~np.isfinite(left.y)
         hit, wrong, total = hit + out[k].sum(), wrong + out.sum() - out[k].sum(), total + len(k)
     print(f"{find}: {hit / total:.1%} of {total} found, {wrong} others masked")
@@ -289,3 +294,12 @@ def test_samples_that_are_lost_in_a_turn_are_no_jump():
     kept = np.ones(len(T), np.bool_)
     kept[[500, 700, 701, 900, 901, 902]] = False
     assert not faulty(aligned({"psi": y[kept]}, t=T[kept]))
+
+
+def test_what_is_wrong_outside_a_trials_window_is_not_told_of_it():
+    y = noisy(3)
+    y[800:] += 0.2
+    series = clocks.in_time_order(_series(recording(channel("psi", T, y)), "psi"))
+    before, across = (Grid(int(series.t[0]), 0.1, n) for n in (700, 900))
+    assert faults.mask_faults(series, before, (), 0.0, "t")[1] == []
+    assert len(faults.mask_faults(series, across, (), 0.0, "t")[1]) == 1

@@ -21,7 +21,7 @@ def logged(travel: float = 40.0, unit: str = "deg", rate: float = 10.0, mean: fl
     sketch = SimpleNamespace(y=np.array([mean]))
     source = SimpleNamespace(high=low + travel, low=low, rate=rate, unit=unit, sketch=sketch)
     signals = [SimpleNamespace(quantity=n, unit=unit, source=source) for n in ("delta", "r")]
-    return SimpleNamespace(signals=signals)
+    return SimpleNamespace(signals=signals, window=None)
 
 
 def test_the_trial_in_the_middle_is_held_out() -> None:

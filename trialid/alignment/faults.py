@@ -75,7 +75,7 @@ def mask_all(
         fault = find_stuck(left, i, grid)
         if fault is not None:
             hide = "stuck" not in keep.get(one.quantity.name, ())
-            remarks.append(_words(one, fault, grid, hide))
+            remarks += _words(one, fault, grid, hide)
             left[i] = _without(one, fault.samples) if hide else one
         check(left[i], place)
     return left, remarks
@@ -101,12 +101,12 @@ def mask_faults(
 
     Raises AlignmentError when so many values are impossible that the unit must be wrong.
     """
-    remarks = []
+    remarks = list[str]()
     for find in (_range, dropouts, spikes, _saturation, jumps):
         for fault in find(series, zero):
             _check_share(fault, series, where)
             hide = fault.sure and fault.kind not in keep
-            remarks.append(_words(series, fault, grid, hide))
+            remarks += _words(series, fault, grid, hide)
             series = _without(series, fault.samples) if hide else series
     return series, remarks
 
@@ -115,15 +115,18 @@ def _without(series: Series, samples: Mask) -> Series:
     return replace(series, y=np.where(samples, np.nan, series.y))
 
 
-def _words(series: Series, fault: Fault, grid: Grid, hide: bool) -> str:
-    """Count, first times, what was done."""
+def _words(series: Series, fault: Fault, grid: Grid, hide: bool) -> Iterator[str]:
+    """Count, first times, what was done; nothing of what lies outside the trial's window."""
     t = grid.seconds(series.t[fault.samples])
+    t = t[(t >= 0.0) & (t <= grid.t[-1])]
+    if not len(t):
+        return
     first = ", ".join(f"{one:.1f}" for one in t[:3])
     done = "masked" if hide else "left as they are"
     more = ", ..." if len(t) > 3 else ""
     name, count = series.quantity.name, len(t)
     noun, done = ("value", done.replace("they are", "it is")) if count == 1 else ("values", done)
-    return f"{name}: {count} {noun} {fault.words}, at {first}{more} s; {done}"
+    yield f"{name}: {count} {noun} {fault.words}, at {first}{more} s; {done}"
 
 
 def _check_share(fault: Fault, series: Series, where: str) -> None:

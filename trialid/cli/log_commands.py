@@ -22,6 +22,7 @@ from trialid.errors import TrialidError
 if TYPE_CHECKING:
     from trialid.inspection import Inspection
     from trialid.ship.estimate import Given
+    from trialid.workflow.first_pipeline import Starter
 
 FILE: Final = click.Path(path_type=Path)
 OF_THE_SHIP: Final = tuple(
@@ -217,11 +218,7 @@ def _begin(
     given: "Given",
 ) -> None:  # fmt: skip
     """Write the starter, and say what is left to do, on stderr."""
-    from trialid.workflow.first_pipeline import starter
-
-    stated = None if speed is None else speed * KNOT
-    begun = starter(surveys, pipeline, ship, given, stated)
-    write_new(begun.files)
+    begun = begin_pipeline(surveys, pipeline, ship, speed, given)
     for path in begun.files:
         note(f"Written: {path}")
     for words in begun.to_fill:
@@ -231,6 +228,32 @@ def _begin(
 
         load(pipeline)
         note(f"Read its comments, then: trialid run {pipeline}")
+
+
+def begin_pipeline(
+    surveys: Sequence["Inspection"],
+    pipeline: Path,
+    ship: Path | None,
+    speed: float | None,
+    given: "Given",
+) -> "Starter":
+    """Write the pipeline to begin with; each manoeuvre that a long log holds is a trial."""
+    from trialid.pipeline_file import load
+    from trialid.workflow.first_pipeline import starter
+    from trialid.workflow.first_pipeline.long_log import manoeuvre_windows
+
+    stated = None if speed is None else speed * KNOT
+    begun = starter(surveys, pipeline, ship, given, stated)
+    write_new(begun.files)
+    if begun.to_fill:
+        return begun
+    windows = manoeuvre_windows(load(pipeline), [one.duration for one in surveys])
+    if not any(windows):
+        return begun
+    cut = starter(surveys, pipeline, ship, given, stated, windows)
+    with temporary.replace_whole(pipeline) as draft:  # which stands there since a moment ago
+        draft.write_text(cut.files[pipeline], encoding="utf-8")
+    return cut
 
 
 def write_new(files: Mapping[Path, str]) -> None:

@@ -9,8 +9,14 @@ import click
 
 from trialid.cli.answering import answer, open_pipeline, summary_of, write_or_say_why
 from trialid.cli.console import note, progress_bar, render, say
-from trialid.cli.log_commands import FILE, OF_THE_SHIP, check_new_pipeline, look_into, write_new
-from trialid.cli.particulars_options import KNOT, given_from, particulars_options
+from trialid.cli.log_commands import (
+    FILE,
+    OF_THE_SHIP,
+    begin_pipeline,
+    check_new_pipeline,
+    look_into,
+)
+from trialid.cli.particulars_options import given_from, particulars_options
 
 if TYPE_CHECKING:
     from trialid.workflow.first_pipeline import Starter
@@ -59,17 +65,14 @@ def start(
 ) -> None:
     """Look into each LOG, a file or a folder, write a pipeline and a ship to begin with, and fit.
 
-    A folder of several trials is several trials; the middle one of all is held out. Each choice
+    A folder of several trials is several trials, and so are the manoeuvres of a long log; the
+    middle one of all is held out. Each choice
     stands in the pipeline with its reason; what only you can know is left open there, and then
     nothing is fitted yet. The same by hand: `trialid inspect LOG... --init`, then `trialid run`.
     """
-    from trialid.workflow.first_pipeline import starter
-
     given = given_from(particulars)
     check_new_pipeline(pipeline, ship, speed, given, "--pipeline")
-    stated = None if speed is None else speed * KNOT
-    begun = starter(look_into(logs, layout, dbc, zone), pipeline, ship, given, stated)
-    write_new(begun.files)
+    begun = begin_pipeline(look_into(logs, layout, dbc, zone), pipeline, ship, speed, given)
     told = "" if quiet else "\n".join(map(render, _told(begun)))
     if told:
         say(told)
@@ -83,7 +86,7 @@ def _told(begun: "Starter") -> Iterator[str]:
     """What was taken from the logs, and what was written, in a few lines."""
     from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
 
-    names = [one.path.name for one in begun.trials]
+    names = [one.path.name if one.window is None else one.name for one in begun.trials]
     place = held_out(begun.trials)
     why = why_held_out(begun.trials)
     held = "" if place is None else f"; {names[place]}, {why}, is held out"

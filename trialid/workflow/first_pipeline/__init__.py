@@ -24,6 +24,7 @@ from trialid.workflow.first_pipeline.boat_choice import (
     named_by_ship,
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
+from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.ordered_rudder import with_orders
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.rate_unit import size_unit
@@ -58,6 +59,7 @@ def starter(
     ship: Path | None,
     given: Given,
     speed: float | None = None,
+    windows: Windows = (),
 ) -> Starter:
     """A pipeline for logs, a trial each, one of several held out.
 
@@ -73,6 +75,8 @@ def starter(
         Particulars of the ship, where there is no ship file.
     speed
         Approach speed [m/s], where no log tells it.
+    windows
+        Of each log the manoeuvres that are trials of their own; see `manoeuvre_windows`.
 
     Raises
     ------
@@ -107,8 +111,15 @@ def starter(
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
     trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0)
+    trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
+
+
+def _cut(trials: Sequence[Chosen], windows: Windows) -> list[Chosen]:
+    """Each manoeuvre of a log as a trial; a log without any as the one it is."""
+    found = zip(trials, windows, strict=True)
+    return [replace(one, window=each) for one, own in found for each in own or (None,)]
 
 
 def _begun(pipeline: Path, given: Given, trials: Sequence[Chosen]) -> tuple[Ship, str]:

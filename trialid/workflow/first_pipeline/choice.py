@@ -16,6 +16,7 @@ from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
+from trialid.workflow.first_pipeline.long_log import Window
 
 OPEN: Final = "?"
 """Stands where only the user knows; the pipeline does not run until it is replaced."""
@@ -55,7 +56,8 @@ class Signal:
 class Chosen:
     """One trial: its log and signals, and its speed [m/s] with the words for where it is from.
 
-    `beside` are signals that the log holds and that are left to the user, each with why.
+    `beside` are signals that the log holds and that are left to the user, each with why; `window`
+    is the manoeuvre alone, where a log is cut.
     """
 
     survey: Inspection
@@ -64,11 +66,18 @@ class Chosen:
     speed: float | None
     speed_words: str
     beside: tuple[tuple[Signal, str], ...] = ()
+    window: Window | None = None
 
     @property
     def quantities(self) -> frozenset[str]:
         """Quantities that the log holds."""
         return frozenset(one.quantity for one in self.signals)
+
+    @property
+    def name(self) -> str:
+        """Its file's, and where it is one manoeuvre of it, that one's."""
+        stem = self.path.stem or "trial"
+        return stem if self.window is None else f"{stem} {self.window.kind}"
 
     @property
     def over_ground(self) -> bool:

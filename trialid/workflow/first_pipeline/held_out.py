@@ -36,6 +36,8 @@ def why_held_out(trials: Sequence[Chosen]) -> str:
 
 def _variation(trial: Chosen) -> float:
     """Standard deviation of what steers her; in SI where its unit is known."""
+    if trial.window is not None:
+        return trial.window.variation
     return _si(trial.signals[0]) * float(np.std(trial.signals[0].source.sketch.y))
 
 
@@ -45,6 +47,8 @@ def _travel(trial: Chosen) -> float:
     A rudder by its greatest angle and its mean: a turn at 20 deg takes a ship further than a
     zig-zag of 20, and one at 35 further than any.
     """
+    if trial.window is not None:
+        return trial.window.travel
     steering = trial.signals[0]
     source, factor = steering.source, _si(steering)
     if steering.quantity not in RUDDERS:

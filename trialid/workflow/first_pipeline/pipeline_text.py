@@ -72,7 +72,7 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
         yield f'use = "check"  # held out, {held}: scored, never fitted'
     if trial.states_speed and trial.speed is not None:
         yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
-    yield f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
+    yield _window(trial)
     for remark in _remarks(trial):
         yield f"# {comment(remark)}"
     yield "[trial.signals]"
@@ -90,6 +90,15 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
         yield f"# left to you: {signal.quantity}; {comment(why)}"
         yield f"# {signal.quantity} = {{ {_source(signal, signal.source)} }}"
     yield from _track(trial.survey.channels.values())
+
+
+def _window(trial: Chosen) -> str:
+    """The manoeuvre alone: as it was found in a long log, else for the user to say."""
+    if (found := trial.window) is None:
+        return f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
+    return (
+        f"window = [{found.begin:.1f}, {found.end:.1f}]  # s, {found.kind} deg, as the rudder went"
+    )
 
 
 def _track(channels: Iterable[ChannelInspection]) -> Iterator[str]:
@@ -245,7 +254,7 @@ def _names(trials: Sequence[Chosen]) -> list[str]:
     """A name a trial, from its file; two files of one name are numbered."""
     names: list[str] = []
     for trial in trials:
-        stem = comment(trial.path.stem) or "trial"
+        stem = comment(trial.name)
         name, count = stem, 1
         while name in names:
             count += 1
