@@ -194,8 +194,9 @@ def whole(series):
 def _faults(series):
     words = []
     for i, one in enumerate(series):
-        words += faults.mask_faults(one, whole(one), (), 0.0, "t")[1]
-        stuck = faults.find_stuck(series, i, whole(one))
+        clock = whole(one)
+        words += faults.mask_faults(one, clock, (), 0.0, "t")[1]
+        stuck = faults.find_stuck(series, i, clock)
         words += [f"{one.quantity.name} {stuck.words}"] if stuck else []
     return words
 
@@ -294,12 +295,3 @@ def test_samples_that_are_lost_in_a_turn_are_no_jump():
     kept = np.ones(len(T), np.bool_)
     kept[[500, 700, 701, 900, 901, 902]] = False
     assert not faulty(aligned({"psi": y[kept]}, t=T[kept]))
-
-
-def test_what_is_wrong_outside_a_trials_window_is_not_told_of_it():
-    y = noisy(3)
-    y[800:] += 0.2
-    series = clocks.in_time_order(_series(recording(channel("psi", T, y)), "psi"))
-    before, across = (Grid(int(series.t[0]), 0.1, n) for n in (700, 900))
-    assert faults.mask_faults(series, before, (), 0.0, "t")[1] == []
-    assert len(faults.mask_faults(series, across, (), 0.0, "t")[1]) == 1

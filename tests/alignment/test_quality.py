@@ -96,3 +96,15 @@ def test_what_rounding_adds_is_told_as_a_share_of_the_motion():
     (said,) = (word for word in remarks_on(t, y) if "an error of" in word)
     share = float(said.partition("an error of ")[2].partition("%")[0]) / 100.0
     assert share == pytest.approx(np.std(y - swing(t)) / np.std(y), rel=0.1)
+
+
+def test_what_is_wrong_outside_a_trials_window_is_not_told_of_it():
+    t = np.arange(0.0, 200.0, 0.1)
+    heading = 0.3 * np.sin(0.05 * t) + 1e-3 * np.random.default_rng(3).normal(size=len(t))
+    log = recording(channel("psi", t, np.where(t < 80.0, heading, heading + 0.2)))
+    told = [
+        align("t", "fit", [log], [SignalSource("psi", "psi", "rad")], 0.5, window).remarks
+        for window in ((0.0, 70.0), (0.0, 90.0))
+    ]
+    before, across = (sum("jumped" in words for words in each) for each in told)
+    assert (before, across) == (0, 1)
