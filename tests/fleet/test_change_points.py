@@ -133,6 +133,17 @@ def test_no_change_is_found_where_there_is_none() -> None:
     assert loose >= 25
 
 
+def test_what_a_fleet_without_a_change_shows_as_often_is_not_told() -> None:
+    """Steps that just show: what counts is how many parameters and ships were looked at."""
+    found = [
+        row
+        for seed in range(20)
+        for row in changes(*fleet(3000 + seed, step=-0.004 * seed, voyages=30, ships=2))
+    ]
+    assert len(found) >= 8
+    assert max(row.p_value for row in found) <= 0.05
+
+
 def test_scatter_beyond_the_likely_ranges_is_no_change() -> None:
     """It is told that they vary by more than these."""
     told = [list(changes(*fleet(2000 + seed, scatter=4.0))) for seed in range(50)]

@@ -29,7 +29,8 @@ from trialid.fleet.changes.courses import (
 
 MARKED: Final = 0.1
 """Share of what changes take off the sum of squares that may be left beside them: a wave that
-swings by half the size of a step in the middle."""
+swings by half the size of a step in the middle. Of 40 records with a season and a step of its swing
+39 are told as that step or as varying, with half of it all, with twice of it none."""
 BETTER: Final = 0.5
 """Share of what another account leaves that one must leave to be markedly better: a wave than one
 change, which says less than a wave; two changes than a wave, or those beside single voyages than
