@@ -73,6 +73,22 @@ def test_dates_are_stated_never_made(fleet_folder: Path) -> None:
     assert found[1].date == date(2025, 2, 11)
 
 
+def test_one_voyage_without_a_date_takes_the_order_from_no_other(fleet_folder: Path) -> None:
+    """It stands behind them, though its name comes first."""
+    (fleet_folder / "alpha" / "2025-02-10").rename(fleet_folder / "alpha" / "0 unknown")
+    path = changed(fleet_folder, '"alpha/*"', '"alpha/*"\ndates = {2025-01-10 = 2025-12-24}')
+    found = [v.voyage for v in voyages(load_fleet(path))]
+    assert found == ["2025-03-10", "2025-01-10", "0 unknown"]
+
+
+def test_names_are_in_the_order_of_the_numbers_in_them(fleet_folder: Path) -> None:
+    names = ["leg 2 trip 10", "leg 2 trip 3", "leg 10 trip 1"]
+    for old, new in zip(("01", "02", "03"), names, strict=True):
+        (fleet_folder / "alpha" / f"2025-{old}-10").rename(fleet_folder / "alpha" / new)
+    found = [v.voyage for v in voyages(load_fleet(fleet_folder / "fleet.toml"))]
+    assert found == ["leg 2 trip 3", "leg 2 trip 10", "leg 10 trip 1"]
+
+
 def test_a_voyage_without_its_log_is_a_row_and_not_the_end(
     fleet_folder: Path, tmp_path: Path
 ) -> None:

@@ -9,7 +9,7 @@ from typing import Final
 
 from trialid import own_files
 from trialid.errors import TrialidError
-from trialid.fleet.change_points import changes
+from trialid.fleet.changes import changes, remarks
 from trialid.fleet.dask_workers import Pack, check_threads, connect, results
 from trialid.fleet.do_run import Done, failure_row
 from trialid.fleet.finished_runs import (
@@ -28,7 +28,7 @@ from trialid.fleet.task import PIPELINES, RUNS, Task
 from trialid.pipeline_file.fleet_file import FleetFile
 from trialid.progress import Progress, silent
 from trialid.report.pages.fleet_page import fleet_page
-from trialid.result.fleet_rows import ChangeRow, FittedRow, RunRow
+from trialid.result.fleet_rows import ChangeRow, FittedRow, Remark, RunRow
 
 COPY: Final = "fleet.toml"
 ASIDE: Final = "set_aside"
@@ -50,6 +50,7 @@ class Batch:
     runs: tuple[RunRow, ...]
     fitted: tuple[FittedRow, ...]
     changes: tuple[ChangeRow, ...]
+    remarks: tuple[Remark, ...]
     anew: int
 
     @property
@@ -58,10 +59,15 @@ class Batch:
         failed = sum(row.failure is not None for row in self.runs)
         verdicts = Counter(row.verdict for row in self.runs if row.verdict)
         told = "; ".join(f"{word}: {number}" for word, number in verdicts.most_common())
-        return (
-            f"{self.name}: {len(self.runs)} runs, {self.anew} done now, {failed} failed\n"
-            f"{told or 'no verdicts'}\nchanges found: {len(self.changes)}"
+        varies = sum(row.form == "varies" for row in self.changes)
+        also = f"; parameters that vary as neither a step nor a drift: {varies}" if varies else ""
+        lines = (
+            f"{self.name}: {len(self.runs)} runs, {self.anew} done now, {failed} failed",
+            told or "no verdicts",
+            f"changes found: {len(self.changes) - varies}{also}",
+            *(f"{each.ship}: {each.words}" for each in self.remarks),
         )
+        return "\n".join(lines)
 
 
 def by_dask(on: str, jobs: int | None, tell: Callable[[str], None]) -> Compute:
@@ -175,9 +181,18 @@ def _write(fleet: FleetFile, folder: Path, kept: Sequence[Kept], anew: int) -> B
     runs = tuple(each.row for each in kept)
     fitted = tuple(row for each in kept for row in each.fitted)
     found = tuple(changes(runs, fitted))
-    made = Batch(name=fleet.name, folder=folder, runs=runs, fitted=fitted, changes=found, anew=anew)
+    known = remarks(runs)
+    made = Batch(
+        name=fleet.name,
+        folder=folder,
+        runs=runs,
+        fitted=fitted,
+        changes=found,
+        remarks=known,
+        anew=anew,
+    )
     with own_files.replacing(folder, below=(RUNS_TABLE, PARAMETERS, CHANGES, PAGE)) as work:
         write_tables(work, runs, fitted, found)
-        page = fleet_page(fleet.name, runs, fitted, found)
+        page = fleet_page(fleet.name, runs, fitted, found, known)
         (work / PAGE).write_text(page, encoding="utf-8")
     return made

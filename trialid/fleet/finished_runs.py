@@ -17,7 +17,7 @@ from trialid.result.json_file import plain, read_object, row_of
 
 NAME: Final = "fleet_run.json"
 """In a run's folder: its key and its rows, or its failure."""
-SCHEMA: Final = "trialid-fleet-run/1"
+SCHEMA: Final = "trialid-fleet-run/2"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -75,7 +75,7 @@ class Asked:
 
 
 def voyages(fleet: FleetFile) -> Iterator[Begun]:
-    """Every voyage of every ship: by date where all of hers are dated, else by name."""
+    """Every voyage of every ship: those with a date in that order, then the others by name."""
     folder = fleet.path.parent
     for name, ship in fleet.ships.items():
         found = [
@@ -83,8 +83,7 @@ def voyages(fleet: FleetFile) -> Iterator[Begun]:
             for key in ("voyages", "pipelines")
             for path in _named(folder, getattr(ship, key))
         ]
-        if all(each.date is not None for each in found):
-            found.sort(key=lambda each: each.date or date.min)
+        found.sort(key=lambda each: (each.date is None, each.date or date.min))
         yield from found
 
 
@@ -111,6 +110,15 @@ def _stated_date(name: str) -> date | None:
         return date.fromisoformat(found[0]) if found else None
     except ValueError:
         return None
+
+
+def is_no_day(name: str) -> bool:
+    """Whether a name begins like a date, and with none of the calendar.
+
+    >>> is_no_day("2024-02-30 zig-zag"), is_no_day("2024-02-29"), is_no_day("zig-zag")
+    (True, False, False)
+    """
+    return _DATE.match(name) is not None and _stated_date(name) is None
 
 
 def _asked(fleet: FleetFile, begun: Begun, folder: Path) -> Iterator[Asked]:

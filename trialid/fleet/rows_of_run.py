@@ -21,6 +21,11 @@ def run_row(label: RunLabel, key: str, result: Result) -> RunRow:
         converged=fit.converged,
         trials=len(result.trials),
         samples=fit.samples,
+        effects=", ".join(result.model.effects),
+        free=", ".join(result.model.free),
+        logs=", ".join(
+            f"{g.sha256}:{trial.samples}" for trial in result.trials for g in trial.logs
+        ),
         key=key,
         version=result.version,
     )

@@ -1,5 +1,6 @@
 """The fleet file: TOML that names ships, their voyages or pipelines, and what varies."""
 
+import re
 from collections.abc import Iterator, Mapping
 from datetime import date
 from pathlib import Path
@@ -92,14 +93,23 @@ def load_fleet(path: Path) -> FleetFile:
 
 
 def matches(folder: Path, pattern: str) -> list[Path]:
-    """What a path or pattern names below a folder, hidden things left out, by name."""
+    """What a path or pattern names below a folder, hidden things left out, by name.
+
+    Numbers in names go by value: trip 3 before trip 10.
+    """
     plain = folder / pattern
     base, rest = (Path("/"), pattern[1:]) if pattern.startswith("/") else (folder, pattern)
     try:
         found = [plain] if plain.exists() else base.glob(rest)
-        return sorted(path for path in found if not path.name.startswith("."))
+        return sorted((path for path in found if not path.name.startswith(".")), key=_by_name)
     except (OSError, ValueError):  # a name too long for any file, or no pattern
         return []
+
+
+def _by_name(path: Path) -> tuple[list[str | int], str]:
+    """What paths are sorted by: text as it is, numbers by value; alike in that, by their digits."""
+    parts = re.split(r"([0-9]+)", "\0".join(path.parts))
+    return [int(part) if place % 2 else part for place, part in enumerate(parts)], str(path)
 
 
 def _contradictions(fleet: FleetFile) -> Iterator[Problem]:

@@ -68,10 +68,21 @@ class RunRow(RunLabel):
     """Trials, held-out ones among them."""
     samples: int | None = None
     """Samples of the fitted trials."""
+    effects: str | None = None
+    """The effects of the model that was fitted, with commas."""
+    free: str | None = None
+    """Its free parameters, with commas."""
+    logs: str | None = None
+    """SHA-256 of each log, a colon, and the samples that its trial has; with commas."""
     key: str = ""
     """SHA-256 of all that went into the run."""
     version: str | None = None
     """The version of trialid that did it."""
+
+    @property
+    def model(self) -> tuple[frozenset[str], frozenset[str]]:
+        """Effects and free parameters; estimates are compared within one model."""
+        return frozenset((self.effects or "").split(", ")), frozenset((self.free or "").split(", "))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,8 +106,16 @@ class FittedRow(RunLabel):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Remark:
+    """What is to be known of a ship beside her changes."""
+
+    ship: str
+    words: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class ChangeRow:
-    """A change of a parameter in the course of a ship's voyages."""
+    """What changes of a parameter in the course of a ship's voyages."""
 
     ship: str
     """The ship."""
@@ -104,18 +123,21 @@ class ChangeRow:
     """What changed."""
     unit: str
     """Unit of `size`."""
-    form: Literal["step", "drift"]
-    """A step keeps its size from `voyage` on; a drift begins there and goes on to the last."""
+    form: Literal["step", "drift", "varies"]
+    """A step keeps its size from `voyage` on; a drift begins there and goes on to the last, evenly
+    in time where voyages are dated; `varies`: from voyage to voyage, as neither a step nor a drift
+    tells."""
     voyage: str
-    """The first voyage that shows it."""
+    """The first voyage that shows it; of what varies the one furthest off its level."""
     date: datetime.date | None
     """When that was, where it is stated."""
     earliest: str
-    """The earliest voyage that it can have been at 95 %."""
+    """At 95 % it was after this voyage, any day before the next; of what varies the first one."""
     latest: str
-    """The latest."""
+    """At 95 % it was there by this voyage; of what varies the last one."""
     size: float
-    """How much it is: of a drift, from its begin to the last voyage."""
+    """How much it is: of a drift, from its begin to the last voyage; of what varies, how far that
+    voyage lies off."""
     relative: float | None
     """The same as a share of the level before."""
     p_value: float

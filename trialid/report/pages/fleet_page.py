@@ -7,17 +7,23 @@ from trialid.names import wording
 from trialid.report.pages.page import VERDICTS, assets, environment
 from trialid.report.pictures.voyage_picture import VoyagePicture, voyage_picture
 from trialid.report.tables.rounded_table import Cell, Figure, Table, numeric, percent
-from trialid.result.fleet_rows import ChangeRow, FittedRow, RunRow
+from trialid.result.fleet_rows import ChangeRow, FittedRow, Remark, RunRow
 
 FAILED = "No result"
 Group = tuple[str, list[VoyagePicture]]
 
 
 def fleet_page(
-    name: str, runs: Sequence[RunRow], fitted: Sequence[FittedRow], changes: Sequence[ChangeRow]
+    name: str,
+    runs: Sequence[RunRow],
+    fitted: Sequence[FittedRow],
+    changes: Sequence[ChangeRow],
+    remarks: Sequence[Remark],
 ) -> str:
     """`fleet.html` as text; it stands beside the folder `runs`, whose reports it leads to."""
-    tables = [_verdicts(runs), _missing(runs), _changes(changes), _failures(runs)]
+    told = [_verdicts(runs), _missing(runs), _changes(changes), _remarks(remarks)]
+    tables = [*told, _failures(runs)]
+    found = [row for row in changes if row.form != "varies"]
     return (
         environment()
         .get_template("fleet.html.j2")
@@ -26,9 +32,9 @@ def fleet_page(
             runs=runs,
             ships=len({row.ship for row in runs}),
             failures=sum(row.failure is not None for row in runs),
-            changes=changes,
+            changes=found,
             tables=[(table, numeric(table)) for table in tables if table.rows],
-            over_voyages=over_voyages(fitted, changes),
+            over_voyages=over_voyages(fitted, found),
             over_ships=over_ships(fitted),
             cell=_cell,
             verdict=_verdict,
@@ -57,11 +63,10 @@ def _missing(runs: Sequence[RunRow]) -> Table:
     possible = Counter(
         name for row in runs if row.verdict == "missing" for name in (row.family or "").split(", ")
     )
-    ships = {name: len({row.ship for row in runs if row.effect == name}) for name in possible}
+    ships = {name: len({row.ship for row in runs if row.effect == name}) for name in named}
     rows = tuple(
-        (name, Figure(named[name]), Figure(ships[name]), Figure(number))
-        for name, number in sorted(possible.items(), key=lambda each: (-named[each[0]], each[0]))
-        if name
+        (name, Figure(named[name]), Figure(ships[name]), Figure(possible[name]))
+        for name, _ in sorted(named.items(), key=lambda each: (-each[1], each[0]))
     )
     headings = ("effect", "named in runs", "of ships", "named or not to be told from it")
     return Table("missing", "What is missing, in how many", headings, rows)
@@ -83,6 +88,11 @@ def _change(row: ChangeRow) -> tuple[Cell, ...]:
         *(Figure(row.size * factor, 3), unit, percent(row.relative), Figure(row.p_value, 2)),
         "yes" if row.beyond_likely else "no",
     )
+
+
+def _remarks(remarks: Sequence[Remark]) -> Table:
+    rows = tuple((each.ship, each.words) for each in remarks)
+    return Table("remarks", "To be known of the changes", ("ship", "what"), rows)
 
 
 def _failures(runs: Sequence[RunRow]) -> Table:

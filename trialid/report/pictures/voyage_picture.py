@@ -3,12 +3,18 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from trialid.names import wording
 from trialid.result.fleet_rows import ChangeRow, FittedRow
 
 WIDE = 560.0
 HIGH = 120.0
 MARGIN = 4.0
+NEAR = 3.0
+"""A step that few voyages show is drawn up to three likely ranges, and what is off presses the
+middle half into a quarter of the picture; with half of it up to one and a half and two fifths, with
+twice of it up to six and a seventh."""
 MOST_SHIPS = 40
 """Whose borders a picture of 230 px shows: six pixels for each."""
 
@@ -53,7 +59,8 @@ def voyage_picture(
 ) -> VoyagePicture:
     """The picture of a parameter; each of `rows` has a value, `names` are those of the axis.
 
-    The scale holds every estimate, and likely ranges as far as they are not very wide.
+    The scale holds every estimate that is not far from the others, and likely ranges as far as
+    they are not very wide; what is beyond stands at the border.
     """
     unit, factor = wording.shown_unit(rows[0].unit)
     bottom, top = _scale(rows)
@@ -114,12 +121,20 @@ def _across(place: float, count: int) -> float:
 
 
 def _scale(rows: Sequence[FittedRow]) -> tuple[float, float]:
-    """The ends of the scale: all estimates, and ranges up to four times their spread around."""
-    values = [row.value or 0.0 for row in rows]
-    low, high = min(values), max(values)
+    """The ends of the scale: estimates near the middle half, and ranges up to twice their spread.
+
+    Near is within `NEAR` times the width of that half, or of a usual likely range.
+    """
+    values = np.array([row.value or 0.0 for row in rows])
+    lower, upper = (float(each) for each in np.quantile(values, (0.25, 0.75)))
+    ends = [(row.likely_low, row.likely_high) for row in rows]
+    ranges = [high - low for low, high in ends if low is not None and high is not None]
+    room = NEAR * max(upper - lower, float(np.median(ranges or [0.0])))
+    near = values[(values >= lower - room) & (values <= upper + room)]
+    low, high = float(near.min()), float(near.max())
     spread = (high - low) or abs(high) or 1.0
-    ends = [end for row in rows for end in (row.likely_low, row.likely_high) if end is not None]
+    known = [end for pair in ends for end in pair if end is not None]
     return (
-        min([low, *(max(end, low - 2.0 * spread) for end in ends)]),
-        max([high, *(min(end, high + 2.0 * spread) for end in ends)]) or low + spread,
+        min([low, *(max(end, low - 2.0 * spread) for end in known)]),
+        max([high, *(min(end, high + 2.0 * spread) for end in known)]) or low + spread,
     )

@@ -1,0 +1,105 @@
+"""What is told beside changes: the order of voyages, copies, models, effects missing since."""
+
+from dataclasses import replace
+from datetime import date
+
+import numpy as np
+from records_of_ships import rows_of
+
+from trialid.fleet.changes import remarks
+from trialid.result.fleet_rows import RunRow
+
+DAYS = range(0, 480, 30)
+
+
+def voyages(many: int = 16, days: range | None = DAYS) -> list[RunRow]:
+    return rows_of(np.ones(many), days)[0]
+
+
+def words(runs: list[RunRow]) -> list[str]:
+    assert {each.ship for each in remarks(runs)} <= {"ann"}
+    return [each.words for each in remarks(runs)]
+
+
+def test_of_voyages_with_dates_and_one_model_nothing_is_told() -> None:
+    assert words(voyages()) == []
+
+
+def test_voyages_without_dates_are_told_to_be_in_the_order_of_names() -> None:
+    told = "no voyage has a date: they are in the order of their names, trip 0 to trip 15"
+    assert words(voyages(days=None)) == [told]
+    assert words(voyages(5, None)) == []  # too few for a change
+
+
+def test_some_without_a_date_are_named() -> None:
+    runs = [replace(row, date=None) if k in (3, 7) else row for k, row in enumerate(voyages())]
+    assert words(runs) == [
+        "2 of 16 voyages have no date, and no say in her changes: trip 3 and trip 7"
+    ]
+
+
+def test_a_day_that_no_calendar_has_is_told() -> None:
+    names = ["2024-02-30 trip", "2024-02-29 trip"]
+    runs = [replace(voyages()[k], voyage=name, date=None) for k, name in enumerate(names)]
+    told = "2024-02-30 trip begins with no day of the calendar; write when it was into dates"
+    assert words(runs) == [told]
+
+
+def test_copied_voyages_are_told_in_one_line() -> None:
+    logs = {k: f"{k}:700" for k in range(16)} | {5: "2:700", 9: "7:700, 8:700"}
+    runs = [replace(row, logs=logs[k]) for k, row in enumerate(voyages())]
+    told = "trip 2 = trip 5, trip 7 = trip 9 and trip 8 = trip 9"
+    assert words(runs) == [
+        f"voyages hold the same log, and count as if they were independent: {told}"
+    ]
+    twice = [row for row in runs[:3] for row in (row, replace(row, run=row.run + "x", seed=4))]
+    assert words(twice) == []  # a voyage done in two ways is one
+
+
+def test_models_that_differ_are_told_with_what_differs() -> None:
+    first = {"effects": "hull, drag", "free": "GM, Nr"}
+    other = {"effects": "hull, memory", "free": "GM"}
+    runs = [replace(row, **(first if k < 10 else other)) for k, row in enumerate(voyages())]
+    (told,) = words(runs)
+    assert told.endswith(
+        "10 voyages have that of trip 0; 6 that of trip 10, with memory, without drag, Nr not free"
+    )
+
+
+def missing(row: RunRow, *family: str) -> RunRow:
+    return replace(row, verdict="missing", effect=family[0], family=", ".join(family))
+
+
+def test_an_effect_missing_from_a_voyage_on_is_told() -> None:
+    runs = [
+        missing(row, "rudder_scale", "Kdelta", *(["roll_cubic"] if k % 3 else []))
+        if k >= 8
+        else row
+        for k, row in enumerate(voyages())
+    ]
+    told = (
+        "from trip 8 on rudder_scale or Kdelta is missing in 8 of 8, before in 0 of 8: a change of "
+        "that may stand in the changes told"
+    )
+    assert words(runs) == [told]
+    (back,) = words(list(reversed(runs)))
+    assert "is missing in 0 of 8, before in 8 of 8" in back
+
+
+def test_effects_missing_here_and_there_are_missing_since_no_voyage() -> None:
+    """Each second voyage or by chance: one ship of twenty at most."""
+    runs = voyages()
+    assert words([missing(row, "a") if k % 2 else row for k, row in enumerate(runs)]) == []
+    assert words([missing(row, "a") for row in runs]) == []
+    alarms = 0
+    for seed in range(100):
+        rng = np.random.default_rng(seed)
+        drawn = [rng.choice(list("abcdefgh"), rng.integers(0, 4), replace=False) for _ in runs]
+        told = [missing(r, *map(str, d)) if len(d) else r for r, d in zip(runs, drawn, strict=True)]
+        alarms += bool(words(told))
+    assert alarms <= 5
+
+
+def test_runs_without_a_fit_are_missing_nothing() -> None:
+    runs = [replace(row, date=date(2024, 1, 1), failure="empty") for row in voyages()]
+    assert words(runs) == []

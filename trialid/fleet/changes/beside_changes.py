@@ -1,0 +1,156 @@
+"""What is to be known beside a fleet's changes: order, copies, models, and what is missing since.
+
+None of it is a change of a ship's parameter, and each may stand behind one that is told.
+"""
+
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+from scipy.stats import fisher_exact
+
+from trialid.fleet.changes.changes_of_ships import FEWEST, LEVEL, is_sound, with_a_say
+from trialid.fleet.changes.courses import EITHER_SIDE
+from trialid.fleet.plan import is_no_day
+from trialid.result.fleet_rows import Remark, RunRow
+
+NAMED: Final = 3
+"""Voyages or effects that a line names before it only counts them."""
+
+Key = TypeVar("Key", bound=Hashable)
+
+
+def remarks(runs: Sequence[RunRow]) -> tuple[Remark, ...]:
+    """Every line, ship by ship; a voyage done in several ways counts once."""
+    voyages = {(row.ship, row.voyage): row for row in reversed(runs)}  # of each its first run
+    ordered = [row for row in dict.fromkeys(runs) if voyages[row.ship, row.voyage] is row]
+    return tuple(
+        Remark(ship=ship, words=words)
+        for ship, rows in _grouped(ordered, lambda row: row.ship).items()
+        for tell in (_dates, _copies, _models, _missing_since)
+        for words in tell(rows)
+    )
+
+
+def _grouped(rows: Sequence[RunRow], key: Callable[[RunRow], Key]) -> dict[Key, list[RunRow]]:
+    found: dict[Key, list[RunRow]] = {}
+    for row in rows:
+        found.setdefault(key(row), []).append(row)
+    return found
+
+
+def _dates(rows: Sequence[RunRow]) -> Iterator[str]:
+    """In which order the voyages are, and which of them have no place in it."""
+    for row in rows:
+        if row.date is None and is_no_day(row.voyage):
+            yield f"{row.voyage} begins with no day of the calendar; write when it was into dates"
+    sound = [row for row in rows if is_sound(row)]
+    undated = [row.voyage for row in sound if row.date is None]
+    if len(sound) < FEWEST or not undated:
+        return
+    if len(undated) == len(sound):
+        yield (
+            "no voyage has a date: they are in the order of their names, "
+            f"{undated[0]} to {undated[-1]}"
+        )
+        return
+    yield (
+        f"{len(undated)} of {len(sound)} voyages have no date, and no say in her changes: "
+        f"{_few(undated)}"
+    )
+
+
+def _few(names: Sequence[str], last: str = "and") -> str:
+    """Some names in words.
+
+    >>> _few(["a", "b"]), _few(["a", "b", "c", "d", "e"])
+    ('a and b', 'a, b, c and 2 more')
+    """
+    more = [f"{len(names) - NAMED} more"] if len(names) > NAMED else []
+    *first, end = [*names[:NAMED], *more]
+    return f"{', '.join(first)} {last} {end}" if first else end
+
+
+def _copies(rows: Sequence[RunRow]) -> Iterator[str]:
+    """Voyages that hold the same log."""
+    holders: dict[str, list[str]] = {}
+    for row in rows:
+        for log in {*(row.logs or "").split(", ")} - {""}:
+            holders.setdefault(log, []).append(row.voyage)
+    alike = {tuple(voyages) for voyages in holders.values() if len(voyages) > 1}
+    if alike:
+        told = _few([" = ".join(voyages) for voyages in sorted(alike)])
+        yield f"voyages hold the same log, and count as if they were independent: {told}"
+
+
+def _models(rows: Sequence[RunRow]) -> Iterator[str]:
+    """How the models of her voyages differ."""
+    (effects, free), *others = models = _grouped(
+        [row for row in rows if is_sound(row)] or list(rows), lambda row: row.model
+    )
+    if not others:
+        return
+    told = [f"{len(models[effects, free])} voyages have that of {models[effects, free][0].voyage}"]
+    for other in others:
+        differs = [
+            *(f"with {name}" for name in sorted(other[0] - effects)),
+            *(f"without {name}" for name in sorted(effects - other[0])),
+            *(f"{name} free" for name in sorted(other[1] - free)),
+            *(f"{name} not free" for name in sorted(free - other[1])),
+        ]
+        one = models[other]
+        told.append(f"{len(one)} that of {one[0].voyage}, {', '.join(differs)}")
+    yield f"her models differ, and changes are sought within each: {'; '.join(told)}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Since:
+    """Effects that are missing from a voyage on, or no longer: in how many after it and before."""
+
+    p_value: float
+    effects: tuple[str, ...]
+    first: int
+    after: int
+    before: int
+
+
+def _missing_since(rows: Sequence[RunRow]) -> Iterator[str]:
+    """An effect that is missing from some voyage on, or no longer, in each model."""
+    for own in _grouped(with_a_say(rows), lambda row: row.model).values():
+        since = _since(own)
+        if since is None or since.p_value > LEVEL:
+            continue
+        yield (
+            f"from {own[since.first].voyage} on {_few(since.effects, 'or')} is missing in "
+            f"{since.after} of {len(own) - since.first}, before in {since.before} of "
+            f"{since.first}: a change of that may stand in the changes told"
+        )
+
+
+def _since(rows: Sequence[RunRow]) -> Since | None:
+    """The effect and voyage that part her record most; chance is that of all that were tried."""
+    patterns = _patterns(rows)
+    splits = range(EITHER_SIDE, len(rows) - EITHER_SIDE + 1)
+    found = []
+    for missing, effects in patterns.items():
+        for first in splits:
+            after, before = sum(missing[first:]), sum(missing[:first])
+            table = [[after, len(rows) - first - after], [before, first - before]]
+            p_value = float(fisher_exact(table).pvalue) * len(patterns) * len(splits)
+            found.append(
+                Since(p_value=p_value, effects=effects, first=first, after=after, before=before)
+            )
+    return min(found, key=lambda each: each.p_value, default=None)
+
+
+def _patterns(rows: Sequence[RunRow]) -> dict[tuple[bool, ...], tuple[str, ...]]:
+    """In which voyages effects are missing or not to be told from it, those alike together."""
+    families = [row.family or "" if row.verdict == "missing" else "" for row in rows]
+    held = [family.split(", ") for family in families]
+    named = [row.effect for row in rows if row.verdict == "missing"]
+    found: dict[tuple[bool, ...], tuple[str, ...]] = {}
+    every = {name for family in held for name in family if name}
+    for name in sorted(every, key=lambda name: (-named.count(name), name)):
+        missing = tuple(name in family for family in held)
+        found[missing] = (*found.get(missing, ()), name)
+    return found
