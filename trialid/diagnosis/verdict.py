@@ -13,6 +13,7 @@ from trialid.diagnosis.search.falls import fall, worse_held_out
 from trialid.diagnosis.search.refit import (
     AS_A_GEAR,
     AS_SLOW,
+    BESIDE,
     HELD_OUT,
     MOST,
     NOT_ARRIVED,
@@ -22,6 +23,7 @@ from trialid.diagnosis.search.refit import (
     falls,
     likeliest_refit,
     objection,
+    outputs_beside,
 )
 from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
@@ -35,6 +37,7 @@ from trialid.diagnosis.verdict_sentences import (
     denied_lead,
     explains_little,
     falls_by,
+    moved_otherwise,
     no_split,
     one_of,
     outdone_by_a_shape,
@@ -116,6 +119,8 @@ def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> 
     """What one check alone denies, where nothing stands them all; None where that is nothing."""
     if (against := _standing_but(HELD_OUT, fit, refits, level)) is not None:
         return contradiction(fit, against)
+    if (apart := _standing_but(BESIDE, fit, refits, level)) is not None:
+        return moved_otherwise(fit, apart, outputs_beside(fit, apart))
     for why in (AS_A_GEAR, AS_SLOW) if grown else (AS_A_GEAR,):
         if (late := _standing_but(why, fit, refits, level)) is not None:
             return as_late(fit, late, why)

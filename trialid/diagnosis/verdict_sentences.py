@@ -12,6 +12,7 @@ from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import AS_SLOW, Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
+from trialid.identification.explained import of_use, unexplained_share
 from trialid.identification.fit import Fit
 
 MANY: Final = 8
@@ -33,6 +34,17 @@ def as_late(fit: Fit, found: Refit, why: str) -> str:
     """A sensor is as late as something else would be, her own memory or her steering gear."""
     but = f"beside the effects that were added {why}, which does as much" if why == AS_SLOW else why
     return f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but {but}"
+
+
+def moved_otherwise(fit: Fit, found: Refit, outputs: Sequence[str]) -> str:
+    """What the model leaves most of goes on as before: waves, or whatever else moves it."""
+    left = unexplained_share(found.fit, of_use(found.fit, "fit"))
+    rest = " and ".join(f"{np.sqrt(left[c]):.0%} of {c}" for c in outputs)
+    return (
+        f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but {rest} is left as "
+        "before: something else moves that, as a swell does, and what it does to the rest may be "
+        "all that was found"
+    )
 
 
 def contradiction(fit: Fit, found: Refit) -> str:

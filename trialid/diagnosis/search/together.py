@@ -19,7 +19,7 @@ from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
 from trialid.diagnosis.search.carry_over import LeftOut, left_out, levels, own_errors
 from trialid.diagnosis.search.falls import fall, fall_of_check
-from trialid.diagnosis.search.refit import begun_at, settings_with
+from trialid.diagnosis.search.refit import begun_at, outputs_beside, settings_with
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.ship.effect import Effect
@@ -86,7 +86,7 @@ def stands(fit: Fit, one: Together) -> bool:
     """Whether nothing speaks against two effects once they are fitted.
 
     A tenth of the squared error must go: off what they were fitted to, off blocks left out, one
-    like the other, and off trials held out.
+    like the other, and off trials held out; and of an output of which much is left, too.
     """
     new = {n for e in one.effects for n in e.parameters}
     held = fit.eps_check is None or fall_of_check(fit, one) > 1.0 - LARGE
@@ -94,6 +94,7 @@ def stands(fit: Fit, one: Together) -> bool:
         one.fit.converged
         and not new & {*one.fit.at_bounds}
         and held
+        and not outputs_beside(fit, one)
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large
     )
