@@ -24,9 +24,9 @@ from trialid.workflow.first_pipeline.boat_choice import (
     named_by_ship,
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
-from trialid.workflow.first_pipeline.ordered_rudder import with_orders
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.rate_unit import size_unit
+from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track

@@ -194,7 +194,7 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
 
 def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
-    if known & {one.drive for one in ship.actuators if one.drive}:
+    if known & {n for one in ship.actuators if (d := one.drive) for n in (d, f"{d}_order")}:
         yield from boat_model(trials, ship)
         return
     several = bool(known & rudder_signals(ship.actuators))
