@@ -106,7 +106,8 @@ def starter(
     elif is_boat(shared_signals(trials)):
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
-    trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0)
+    drives = frozenset(one.drive for one in own.actuators if one.drive)
+    trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0, drives)
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
 

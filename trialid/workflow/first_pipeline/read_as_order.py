@@ -10,7 +10,7 @@ from trialid.arrays import Vector
 from trialid.diagnosis.rudder_jumps import Course, Jump, Steps, jump_of, jump_where
 from trialid.inspection.channel_names import ORDERED, words
 from trialid.names import units
-from trialid.workflow.first_pipeline.boat_choice import at_rest, thrusters_among
+from trialid.workflow.first_pipeline.boat_choice import at_rest
 from trialid.workflow.first_pipeline.choice import Chosen, Signal
 
 ORDER_WORDS: Final = ORDERED | {"pwm", "throttle", "servo"}
@@ -24,12 +24,16 @@ motor whose time constant is half a sample as much is left two samples on. With 
 of 0.4 samples are told from orders, with twice those of 0.6."""
 
 
-def with_orders(trials: Sequence[Chosen], own_time: float) -> list[Chosen]:
+def with_orders(trials: Sequence[Chosen], own_time: float, drives: frozenset[str]) -> list[Chosen]:
     """The trials with the order in place of what is fed back, where that of all together jumps.
 
-    `own_time` is how long the ship takes for her own length [s].
+    Parameters
+    ----------
+    own_time
+        How long the ship takes for her own length [s].
+    drives
+        Signals of what drives her, beside the rudder.
     """
-    drives = frozenset(one.quantity for trial in trials for one in thrusters_among(trial.signals))
     found = _jump(trials, {"delta"}, lambda courses: jump_of(courses, own_time))
     ordered = _read_as(trials, {"delta"}, f"it {found}, which no gear does" if found else "")
     return _read_as(ordered, drives, _of_drives(trials, drives, own_time))
@@ -37,7 +41,8 @@ def with_orders(trials: Sequence[Chosen], own_time: float) -> list[Chosen]:
 
 def _of_drives(trials: Sequence[Chosen], drives: frozenset[str], own_time: float) -> str:
     """Why drives are orders; empty where they may be what the motors do."""
-    told = {w for one in trials for s in thrusters_among(one.signals) for w in words(s.source.name)}
+    ones = [s for one in trials for s in one.signals if s.quantity in drives]
+    told = {word for one in ones for word in words(one.source.name)}
     if found := sorted(ORDER_WORDS & told):
         return f"an order by its name ({found[0]})"
 
