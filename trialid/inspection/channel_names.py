@@ -70,6 +70,8 @@ OVER_GROUND: Final = frozenset(
         ("fahrt", "ueber", "grund"), ("füg",), ("fueg",),
     }
 )  # fmt: skip
+COURSES: Final = (("cog",), ("course", "over", "ground"), ("kurs", "über", "grund"), ("course",))
+"""Names of the course over ground; a `Kurs` alone is a heading."""
 SPEEDS: Final = frozenset(
     ("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad", "boatspeed", "bsp")
 )
@@ -177,6 +179,14 @@ def over_ground(name: str, unit: str | None) -> bool:
     if NO_MEASUREMENT.intersection(field) or not _fits("u", unit):
         return False
     return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
+
+
+def is_course(name: str, description: str, unit: str | None) -> bool:
+    """Whether a channel is the course over ground, by its name or what the format says of it."""
+    field = _without_unit(words(name.rpartition(":")[2]))
+    if (NO_MEASUREMENT | ORDERED).intersection(field) or not _fits("psi", unit):
+        return False
+    return tuple(field) in COURSES or description.endswith("course over ground")
 
 
 def unit_in_name(name: str) -> str | None:

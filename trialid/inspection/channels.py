@@ -109,12 +109,11 @@ def _orientations(recording: Recording) -> Iterator[ChannelInspection]:
                 found = frames.series(source, [recording], "")
             except TrialidError:
                 return  # its four fields do not share their stamps: not one quaternion
-            one = Channel(name, found.t, np.asarray(found.y), "rad", found.clock)
-            seen = _channel(one, health(one.t, one.clock, None), defines=True)
-            words = "defined by the format"
             side = None if recording.adapter == NO_ROS else REP_103.get(quantity)
-            guess = Guess(quantity, "format", words, side)
-            yield dataclasses.replace(seen, angle=angle, guess=guess)
+            y = np.asarray(found.y)
+            one = Channel(name, found.t, y, "rad", found.clock, quantity=quantity, positive=side)
+            seen = _channel(one, health(one.t, one.clock, None), defines=True)
+            yield dataclasses.replace(seen, angle=angle)
 
 
 def _quaternions(channels: Mapping[str, Channel]) -> Iterator[str]:

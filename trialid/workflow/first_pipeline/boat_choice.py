@@ -29,7 +29,8 @@ from trialid.workflow.first_pipeline.choice import (
     rate_signal,
     through_water,
 )
-from trialid.workflow.first_pipeline.further_signals import with_further
+from trialid.workflow.first_pipeline.further_signals import with_further, with_heading
+from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
@@ -95,7 +96,8 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"
     signals = (*drives, turn, speed)
-    return Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
+    boat = Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
+    return with_course(with_heading(boat, live))
 
 
 def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
