@@ -12,9 +12,9 @@ from trialid.alignment.sources import SignalSource
 from trialid.errors import TrialidError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Gaps, Guess
-from trialid.inspection.relations import TURNS
 from trialid.inspection.sketch import join_sketches, sketch
 from trialid.inspection.stamps import Health, health
+from trialid.inspection.usual_units import to_si
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
 
@@ -66,6 +66,7 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
     unit = channel.unit or channel_names.unit_in_name(channel.name)
     guess = _guess(channel, unit, defines)
     angle = guess is not None and SIGNALS[guess.quantity].angle
+    size = to_si(unit or "", "rad")
     return ChannelInspection(
         name=channel.name,
         start=stamps.start,
@@ -81,7 +82,7 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
         unit_in_name=None if channel.unit else channel_names.unit_in_name(channel.name),
         description=channel.description,
         guess=guess,
-        sketch=sketch(t, y, TURNS.get(unit or "") if angle else None),
+        sketch=sketch(t, y, 2.0 * np.pi / size if angle and size else None),
     )
 
 
