@@ -59,9 +59,8 @@ QUALIFIERS: Final = frozenset(
 )  # fmt: skip
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
 
-LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", "steering": "delta",
-    "nozzle": "delta", "azimuth": "delta",
-}  # fmt: skip
+TURNED: Final = dict.fromkeys(("steering", "nozzle", "azimuth"), "delta")
+LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
 """What such words may follow; a letter alone and the words only with a unit that fits."""
 
 NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
