@@ -159,6 +159,33 @@ def test_the_antenna_is_taken_back_to_the_origin_with_heading_and_roll():
         at_origin(blind, {"x": 10.0})
 
 
+@pytest.mark.parametrize("rate", [True, False])
+def test_speed_and_course_at_the_antenna_are_those_of_the_origin(rate: bool) -> None:
+    """A boat that turns and slides, and by the sea rolls; with a rate of turn or by the heading."""
+    t = np.arange(0.0, 60.0, 0.1)
+    psi = 0.8 * np.sin(0.3 * t) + 0.1 * t
+    r = 0.24 * np.cos(0.3 * t) + 0.1
+    phi = 0.1 * np.sin(0.9 * t)
+    u, v = 2.0 + 0.3 * np.sin(0.2 * t), -0.4 * np.sin(0.3 * t)
+    at = {"x": 1.5, "y": -0.6, "z": -2.0}
+    aside = at["y"] * np.cos(phi) - at["z"] * np.sin(phi)
+    rolled = (-at["y"] * np.sin(phi) - at["z"] * np.cos(phi)) * 0.09 * np.cos(0.9 * t)
+    ahead, side = u - r * aside, v + r * at["x"] + rolled
+    signals = {"psi": psi, "phi": phi, "sog": np.hypot(ahead, side)}
+    signals |= {"cog": psi + np.arctan2(side, ahead)} | ({"r": r} if rate else {})
+    trial = Trial("t", "fit", 0.1, signals, {n: np.ones(len(t), bool) for n in signals})
+    moved = at_origin(trial, at)
+    assert moved.remarks[-1].startswith("sog, cog: moved from the antenna to the origin")
+    inner = slice(1, -1)
+    np.testing.assert_allclose(moved.signals["sog"][inner], np.hypot(u, v)[inner], atol=2e-3)
+    course = (psi + np.arctan2(v, u))[inner]
+    np.testing.assert_allclose(moved.signals["cog"][inner], course, atol=2e-3)
+    for lacks, says in (("psi", "which sog, cog needs; map psi"), ("cog", "needs both; map cog")):
+        less = {n: x for n, x in signals.items() if n != lacks}
+        with pytest.raises(AlignmentError, match=says):
+            at_origin(replace(trial, signals=less), at)
+
+
 def test_a_ship_file_says_where_the_antenna_is(tmp_path):
     from s175q import ROOT
 

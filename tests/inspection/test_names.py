@@ -38,6 +38,14 @@ RECORDERS = {
     "surge_mps": "u",
     "rot_deg_min": "r",
     "rot_dpm": "r",
+    "engine_rpm": "n",
+    "Engine RPM": "n",
+    "jet_rpm": "n",
+    "engine_rpm_links": "n_p",
+    "Drehzahl rechts": "n_s",
+    "nozzle_deg": "delta",
+    "azimuth_deg": "delta",
+    "gyro_z_rps": "r",
     "heading_min": None,
     "heading_deg_min": None,
     "rudder_deg_min": None,
@@ -69,7 +77,8 @@ WITH_UNITS = {
 
 OTHERS = (
     "heading_error", "desired_yaw_rate", "roll_std", "/imu:orientation_covariance[3]", "x", "U10",
-    "engine_rpm", "rudder_temperature", "heading_status", "yaw_rate_setpoint", "/imu:linear.z",
+    "engine_temperature", "engine_rpm_error", "satellite_azimuth",
+    "rudder_temperature", "heading_status", "yaw_rate_setpoint", "/imu:linear.z",
     "heading_deviation", "max_roll", "t", "", "ATT:DesYaw", "GPS_RAW_INT/1/1:hdg_acc",
     "NAV_CONTROLLER_OUTPUT/1/1:nav_roll", "MANUAL_CONTROL/255/190:r", "/joy:u",
 )  # fmt: skip
@@ -118,6 +127,7 @@ def test_a_unit_of_something_else_refutes_the_name():
 def test_speed_over_ground_is_no_speed_through_the_water():
     assert channel_names.over_ground("RMC/GP:speed_over_ground", "kn")
     assert channel_names.quantity("RMC/GP:speed_over_ground", "kn") is None
+    assert channel_names.over_ground("gps_speed_kn", "kn")
     assert not channel_names.over_ground("speed_through_water", "kn")
 
 
@@ -126,3 +136,16 @@ def test_every_phrase_leads_to_its_quantity():
     for quantity, text in channel_names.PHRASES.items():
         for phrase in text.split(", "):
             assert channel_names.quantity(phrase.replace(" ", "_"), None) == quantity, phrase
+
+
+def test_a_gyro_in_rps_is_in_doubt_and_a_shaft_is_not():
+    assert channel_names.unit_in_name("gyro_z_rps") is None
+    assert channel_names.unit_in_name("yaw_rate_rps") is None
+    assert channel_names.unit_in_name("shaft_rps") == "rps"
+
+
+def test_a_course_over_ground():
+    for name, told in (("cog_deg", True), ("Course", True), ("heading", False), ("Kurs", False)):
+        assert channel_names.is_course(name, "", "deg") is told
+    assert channel_names.is_course("GPS:GCrs", "GPS, course over ground", "deg")
+    assert not channel_names.is_course("course_setpoint", "", "deg")

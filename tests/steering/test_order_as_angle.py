@@ -38,7 +38,7 @@ def moved(rate: float, period: float, amplitude: float = 20.0, noise: float = 0.
 def test_an_order_jumps(period: float, amplitude: float) -> None:
     found = jump_of([moved(np.inf, period, amplitude)], OWN_TIME)
     assert found is not None
-    assert np.rad2deg(found.angle) == pytest.approx(2.0 * amplitude, rel=0.03)
+    assert np.rad2deg(found.size) == pytest.approx(2.0 * amplitude, rel=0.03)
     assert found.time == pytest.approx(period)
     assert str(found) == f"jumps by {2 * amplitude:.0f} deg within {period:g} s"
 

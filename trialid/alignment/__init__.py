@@ -17,7 +17,7 @@ from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.log_clock import LogClock
 from trialid.alignment.sources import SignalSource, log_with, seams
 from trialid.alignment.stamps import clock_health, dejitter
-from trialid.alignment.track import antenna, position
+from trialid.alignment.track import antenna, astern, position
 from trialid.errors import AlignmentError
 from trialid.recording import Recording
 from trialid.trial import LogSource, Trial
@@ -74,7 +74,7 @@ def align(
     grid = clocks.common(series, period, window, where)
     series, found = _without_faults(series, sources, grid, keep or {}, at)
     signals = _on_grid(series, sources, grid, where)
-    trial = antenna.with_course(_trial(name, use, recordings, signals, grid))
+    trial = astern.with_sign(antenna.with_course(_trial(name, use, recordings, signals, grid)))
     agreement = _agreement(trial, sources, recordings, where)
     remarks = (
         *_of_logs(recordings, sources),
@@ -82,6 +82,7 @@ def align(
         *(word for _, words in repairs for word in words),
         *_of_signals(logged, series, sources, grid),
         *found,
+        *trial.remarks,
         *quality.of_trial(series, grid, window),
         *agreement,
     )

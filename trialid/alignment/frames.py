@@ -22,7 +22,7 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     """The signal in SI on its sensor's own clock, in the order of the log."""
     quantity = _quantity(source, where)
     _check_side(source, quantity, where)
-    taken = _speed if source.as_ == "speed" else _angle
+    taken = _velocity if source.as_ in ("speed", "course") else _angle
     channel = taken(source, recordings, where) if source.as_ else None
     channel = channel or find(source.channel, recordings, where)
     factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
@@ -123,16 +123,23 @@ def _angle(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     return Channel(source.channel, first.t, angle, "rad", first.clock, received=first.received)
 
 
-def _speed(source: SignalSource, recordings: Sequence[Recording], where: str) -> Channel:
-    """The length of a horizontal velocity, whatever its axes: fields `channel`.x and .y."""
+def _velocity(source: SignalSource, recordings: Sequence[Recording], where: str) -> Channel:
+    """The length of a horizontal velocity, whatever its axes, or its angle from x to y [rad].
+
+    Fields `channel`.x and .y. Of the axes of ROS, x to the east and y to the north, the
+    angle counts as yaw does: positive = "port", and zero in the east.
+    """
     x, y = (find(f"{source.channel}.{axis}", recordings, where) for axis in "xy")
     if not np.array_equal(x.t, y.t):
         raise AlignmentError(
             f"{where}: the fields of {source.channel!r} do not share their stamps; a velocity "
             "needs both at once"
         )
-    speed = np.hypot(sensor_values(x.y), sensor_values(y.y))
-    return Channel(source.channel, x.t, speed, x.unit, x.clock, received=x.received)
+    ahead, aside = sensor_values(x.y), sensor_values(y.y)
+    angle = source.as_ == "course"
+    value = np.arctan2(aside, ahead) if angle else np.hypot(ahead, aside)
+    unit = "rad" if angle else x.unit
+    return Channel(source.channel, x.t, value, unit, x.clock, received=x.received)
 
 
 def _euler(name: str | None, x: Vector, y: Vector, z: Vector, w: Vector) -> Vector:

@@ -39,7 +39,7 @@ class SignalSource:
         Side the logged number is positive to; None where the quantity has no side, and where the
         log follows our own direction (starboard). The rudder's must be stated.
     as_
-        Which angle of a quaternion is meant, or the speed of a velocity; None for a plain number.
+        Which angle of a quaternion, or speed or course of a velocity; None for a plain number.
     delay
         How much later than the motion the sensor stamps it [s].
     gain, offset
@@ -57,7 +57,7 @@ class SignalSource:
     channel: str
     unit: str | None = None
     positive: Literal["starboard", "port"] | None = None
-    as_: Literal["roll", "pitch", "yaw", "speed"] | None = None
+    as_: Literal["roll", "pitch", "yaw", "speed", "course"] | None = None
     delay: float = 0.0
     gain: float = 1.0
     offset: float = 0.0

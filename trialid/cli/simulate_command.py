@@ -87,8 +87,9 @@ def _told(orders: tuple[str, ...], changes: tuple[str, ...], without: tuple[str,
     what_if = read_changes(changes, without)
     first = Path(orders[0])
     if len(orders) == 1 and (first.exists() or first.suffix):
-        table = asked.read_orders(first)
-        return lambda model: predict_orders(model, table, first.stem, what_if)
+        return lambda model: predict_orders(
+            model, asked.read_orders(first, model.quantities), first.stem, what_if
+        )
     if first.exists():
         raise TrialidError(f"ORDERS {first}: a table of orders stands alone; leave out the rest")
     stop = asked.stop_order(orders)

@@ -4,11 +4,12 @@ Logs call both `rudder`. A gear takes seconds to move the rudder of a ship and a
 that of a model; who takes the order for the angle finds the gear's lag in the gyro.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trialid.arrays import Vector
 from trialid.identification.fit import Fit
@@ -33,16 +34,22 @@ Course = tuple[Vector, Vector]
 """Times [s] and rudder angles [rad], NaN where it was not measured; (n,) each."""
 
 
+Steps = NDArray[np.bool_]
+"""Which steps from one sample to the next are made at once; (n - 1,)."""
+
+
 @dataclass(frozen=True)
 class Jump:
-    """How far a rudder goes [rad] from one sample to the next, and the time between [s]."""
+    """How far a rudder [rad], or a drive [1], goes between two samples, and the time [s]."""
 
-    angle: float
+    size: float
     time: float
+    shown: str = "deg"
 
     def __str__(self) -> str:
         """In words, for a sentence."""
-        return f"jumps by {np.rad2deg(self.angle):.0f} deg within {self.time:.2g} s"
+        size = np.rad2deg(self.size) if self.shown == "deg" else 100.0 * self.size
+        return f"jumps by {size:.0f} {self.shown} within {self.time:.2g} s"
 
 
 def jump_of(courses: Iterable[Course], own_time: float) -> Jump | None:
@@ -55,18 +62,30 @@ def jump_of(courses: Iterable[Course], own_time: float) -> Jump | None:
     own_time
         Time in which the ship goes her own length [s].
     """
+    return jump_where(
+        courses, lambda t, y: np.abs(np.diff(y)) * own_time > FAST * np.diff(t), LEAST
+    )
+
+
+def jump_where(
+    courses: Iterable[Course], at_once: Callable[[Vector, Vector], Steps], least: float
+) -> Jump | None:
+    """The usual jump, where most that is moved is moved `at_once`, in steps of more than `least`.
+
+    `at_once` is given times and values.
+    """
     jumps, times, moved = list[Vector](), list[Vector](), 0.0
     for t, y in courses:
-        steps, between = np.abs(np.diff(y)), np.diff(t)
+        steps, between, quick = np.abs(np.diff(y)), np.diff(t), at_once(t, y)
         known = np.isfinite(steps) & (between > 0.0)
-        steps, between = steps[known], between[known]
+        steps, between, quick = steps[known], between[known], quick[known]
         if not len(steps):
             continue
         moves = steps > 3.0 * np.median(steps)
-        at_once = moves & (steps > LEAST) & (steps * own_time > FAST * between)
+        taken = moves & (steps > least) & quick
         moved += float(steps[moves].sum())
-        jumps.append(steps[at_once])
-        times.append(between[at_once])
+        jumps.append(steps[taken])
+        times.append(between[taken])
     every = np.concatenate(jumps or [np.zeros(0)])
     if not len(every) or every.sum() < MOST * moved:
         return None

@@ -211,7 +211,8 @@ def _shared(simulator: Simulator, name: str, settings: Settings, step: float) ->
     low, high = settings.bounds.get(name) or _range(simulator.model, name, step)
     start = simulator.model.value(name)
     size = abs(start) if start else abs(parameter.start)
-    beside = is_sensor(simulator.model, name) and simulator.model.states
+    of_a_drive = any(e.of_a_drive for e in simulator.model.effects if name in e.parameters)
+    beside = simulator.model.states and is_sensor(simulator.model, name) and not of_a_drive
     kind: Kind = "nuisance" if beside else "physical"  # where nothing moves, sensors are the matter
     prior = settings.priors.get(name)
     return Unknown(

@@ -16,7 +16,7 @@ PHRASES: Final = {
     "delta": "rudder, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
     "ruderwinkel, rorvinkel, roerhoek, roderutslag, angle de barre, angle barre, angolo timone, "
     "angulo timon, ángulo timón, steering angle, outboard angle, motor angle, drive angle, "
-    "nozzle angle, tiller angle",
+    "nozzle angle, tiller angle, azimuth angle, pod angle, jet angle",
     "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
     "wendegeschw, drehgeschw, "
@@ -33,7 +33,8 @@ PHRASES: Final = {
     "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w",
     "v": "sway speed, sway velocity",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
-    "drehzahl, wellendrehzahl, propellerdrehzahl",
+    "drehzahl, wellendrehzahl, propellerdrehzahl, engine rpm, engine speed, motordrehzahl, "
+    "jet rpm, impeller rpm",
     "V_aw": "aws, apparent wind speed, wind speed apparent, relative wind speed, "
     "wind speed relative, wind velocity relative, wind velo relative, relative wind velocity",
     "gamma_aw": "awa, apparent wind angle, wind angle apparent, relative wind angle, "
@@ -58,7 +59,8 @@ QUALIFIERS: Final = frozenset(
 )  # fmt: skip
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
 
-LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", "steering": "delta"}
+TURNED: Final = dict.fromkeys(("steering", "nozzle", "azimuth"), "delta")
+LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
 """What such words may follow; a letter alone and the words only with a unit that fits."""
 
 NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
@@ -67,9 +69,12 @@ NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
 OVER_GROUND: Final = frozenset(
     {
         ("sog",), ("speed", "over", "ground"), ("speed", "ground"), ("fahrt", "über", "grund"),
-        ("fahrt", "ueber", "grund"), ("füg",), ("fueg",),
+        ("fahrt", "ueber", "grund"), ("füg",), ("fueg",), ("gps", "speed"), ("gnss", "speed"),
+        ("speed", "gps"), ("speed", "gnss"),
     }
 )  # fmt: skip
+COURSES: Final = (("cog",), ("course", "over", "ground"), ("kurs", "über", "grund"), ("course",))
+"""Names of the course over ground; a `Kurs` alone is a heading."""
 SPEEDS: Final = frozenset(
     ("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad", "boatspeed", "bsp")
 )
@@ -104,10 +109,14 @@ UNITS_IN_NAMES: Final = {
     "deg s": "deg/s", "rad s": "rad/s", "m s": "m/s", "deg min": "deg/min",
 }  # fmt: skip
 
+ENGINES: Final = (("engine", "rpm"), ("engine", "speed"))
+"""An engine is no measurement of a ship's motion, but for its revolutions."""
+
 _WORD: Final = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
 SIDES: Final = {
     "port": "n_p", "left": "n_p", "bb": "n_p", "starboard": "n_s", "stbd": "n_s", "stb": "n_s",
-    "right": "n_s",
+    "right": "n_s", "links": "n_p", "rechts": "n_s", "backbord": "n_p", "steuerbord": "n_s",
+    "bakboord": "n_p", "stuurboord": "n_s", "babord": "n_p", "tribord": "n_s", "styrbord": "n_s",
 }  # fmt: skip
 
 
@@ -131,7 +140,10 @@ def quantity(name: str, unit: str | None) -> str | None:
     if (letter := ALONE.get(name)) is not None:
         return letter if _fits(letter, unit) else None
     told = words(name)
-    if NO_MEASUREMENT.intersection(_without_unit(words(name.rpartition(":")[2]))):
+    about = {*_without_unit(words(name.rpartition(":")[2]))}
+    if any(_holds(told, phrase) for phrase in ENGINES):
+        about -= {"engine"}
+    if NO_MEASUREMENT & about:
         return None
     found = _qualified(name, unit) or _called(name)
     if found is not None and "min" in told and not _fits(found, unit_in_name(name)):
@@ -179,6 +191,14 @@ def over_ground(name: str, unit: str | None) -> bool:
     return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
 
 
+def is_course(name: str, description: str, unit: str | None) -> bool:
+    """Whether a channel is the course over ground, by its name or what the format says of it."""
+    field = _without_unit(words(name.rpartition(":")[2]))
+    if (NO_MEASUREMENT | ORDERED).intersection(field) or not _fits("psi", unit):
+        return False
+    return tuple(field) in COURSES or description.endswith("course over ground")
+
+
 def unit_in_name(name: str) -> str | None:
     """The unit a channel's name ends with, or is: `roll_deg`, `speed_mps`, `RPM`.
 
@@ -192,7 +212,8 @@ def unit_in_name(name: str) -> str | None:
         return field[0]
     for count in (2, 1):
         if len(field) > count and (unit := UNITS_IN_NAMES.get(" ".join(field[-count:]))):
-            return unit
+            rate = unit == "rps" and _longest(field) in ("r", "p")
+            return None if rate else unit  # of a gyro it is rad/s to robots
     return None
 
 

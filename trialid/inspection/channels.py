@@ -12,9 +12,9 @@ from trialid.alignment.sources import SignalSource
 from trialid.errors import TrialidError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Gaps, Guess
-from trialid.inspection.relations import TURNS
 from trialid.inspection.sketch import join_sketches, sketch
 from trialid.inspection.stamps import Health, health
+from trialid.inspection.usual_units import to_si
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
 
@@ -66,6 +66,7 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
     unit = channel.unit or channel_names.unit_in_name(channel.name)
     guess = _guess(channel, unit, defines)
     angle = guess is not None and SIGNALS[guess.quantity].angle
+    size = to_si(unit or "", "rad")
     return ChannelInspection(
         name=channel.name,
         start=stamps.start,
@@ -81,7 +82,7 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
         unit_in_name=None if channel.unit else channel_names.unit_in_name(channel.name),
         description=channel.description,
         guess=guess,
-        sketch=sketch(t, y, TURNS.get(unit or "") if angle else None),
+        sketch=sketch(t, y, 2.0 * np.pi / size if angle and size else None),
     )
 
 
@@ -109,12 +110,11 @@ def _orientations(recording: Recording) -> Iterator[ChannelInspection]:
                 found = frames.series(source, [recording], "")
             except TrialidError:
                 return  # its four fields do not share their stamps: not one quaternion
-            one = Channel(name, found.t, np.asarray(found.y), "rad", found.clock)
-            seen = _channel(one, health(one.t, one.clock, None), defines=True)
-            words = "defined by the format"
             side = None if recording.adapter == NO_ROS else REP_103.get(quantity)
-            guess = Guess(quantity, "format", words, side)
-            yield dataclasses.replace(seen, angle=angle, guess=guess)
+            y = np.asarray(found.y)
+            one = Channel(name, found.t, y, "rad", found.clock, quantity=quantity, positive=side)
+            seen = _channel(one, health(one.t, one.clock, None), defines=True)
+            yield dataclasses.replace(seen, angle=angle)
 
 
 def _quaternions(channels: Mapping[str, Channel]) -> Iterator[str]:

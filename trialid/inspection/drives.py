@@ -18,7 +18,7 @@ DRIVES: Final = frozenset(
 NO_DRIVE: Final = frozenset(
     words(
         "rudder angle pos position joint temperature temp voltage current fuel oil pressure torque "
-        "load hours trim tilt state status enable"
+        "load hours trim tilt state status enable steer steering"
     )
 )
 """... and of one that only is about what drives her."""

@@ -117,7 +117,7 @@ class ChannelInspection:
     unit: str | None = None
     unit_in_name: str | None = None
     description: str = ""
-    angle: Literal["roll", "yaw", "speed"] | None = None
+    angle: Literal["roll", "yaw", "speed", "course"] | None = None
     guess: Guess | None = None
     sketch: Sketch = field(default=EMPTY, repr=False, compare=False)
 

@@ -17,15 +17,13 @@ from trialid.arrays import Mask
 from trialid.inspection.inspected import ChannelInspection, Guess
 from trialid.inspection.sketch import Vector, on_one_clock
 from trialid.inspection.usual_units import to_si
-from trialid.names.units import USUAL
+from trialid.names import units
 
 SLOPES: Final = {"r": "psi", "p": "phi"}
 """A rate and the angle it is the slope of."""
 
 SURE: Final = 0.95
 """Correlation from which a channel without a telling name is taken to be the rate of an angle."""
-
-TURNS: Final = {"deg": 360.0, "rad": 2 * np.pi}
 
 MOST_UNNAMED: Final = 60
 """More unnamed channels than this are a log of something else; they are not tried one by one."""
@@ -125,7 +123,8 @@ def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | Non
         return None
     period, (y, x), whole = common
     factor = abs(_factor(y, x * size, period, whole))
-    fitting = [unit for unit in RATES if 0.8 < factor / USUAL[unit][1] < 1.25]
+    able = (*RATES, "rps")  # a name that ends so may mean either
+    fitting = [unit for unit in able if 0.8 < factor / units.factor(unit, "rad/s") < 1.25]
     stated = rate.unit or rate.unit_in_name
     return next((unit for unit in fitting if stated in (None, unit)), None)
 

@@ -61,8 +61,11 @@ class SignalSource(Section):
     positive: Literal["starboard", "port"] | None = None
     """The side the channel counts positive; left out: as the guide's nomenclature; a rudder's is
     never left out."""
-    angle: Literal["roll", "pitch", "yaw", "speed"] | None = Field(default=None, alias="as")
-    """The angle to take out of an orientation quaternion, or the speed of a velocity in x and y."""
+    angle: Literal["roll", "pitch", "yaw", "speed", "course"] | None = Field(
+        default=None, alias="as"
+    )
+    """The angle to take out of an orientation quaternion, or the speed or the course of a velocity
+    in x and y; the course is counted like yaw, from x to y."""
     delay: Delay = 0.0
     """How much later than the ship the channel shows it [s]."""
     keep: tuple[Fault, ...] = ()

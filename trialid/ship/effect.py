@@ -77,6 +77,9 @@ class Effect:
     stands_for
         Motion that it stands for in a model that neither simulates nor records it: every ship has
         that motion, so that no other effect has a name where this one does as well.
+    within
+        Inputs of which small values show it, and below which share of the largest they have to be:
+        a dead band that no order lies in is nothing but another gain.
     """
 
     name: str
@@ -91,6 +94,7 @@ class Effect:
     held: float | None = None
     corrects: str = ""
     stands_for: str = ""
+    within: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def equation(self) -> str:
@@ -132,6 +136,12 @@ class Effect:
     def measures(self) -> tuple[str, ...]:
         """Signals whose record it changes: adds to, delays or filters."""
         return self.acts_on(*SENSORS)
+
+    @property
+    def of_a_drive(self) -> bool:
+        """Whether it says what an actuator of the ship's own makes of what it is given."""
+        moved = {*self.acts_on(Steered)}
+        return bool(moved) and moved.isdisjoint(QUANTITIES) and moved <= {*self.signals}
 
     @property
     def place(self) -> str:

@@ -54,8 +54,8 @@ KEYS: Final = {
     "standard deviation as a share of the number, zero for one that is exact; `default` for all "
     f"others, {UNCERTAIN:g} where not given. It widens the likely ranges of what is fitted, and "
     'with `priors = "ship"` in a pipeline it holds what is fitted about these numbers.',
-    "antenna": "Where the antenna of the positions stands, from the origin [m]: `x` ahead, `y` to "
-    "starboard, `z` below (above: negative); zero where not given.",
+    "antenna": "Where the antenna of positions, `sog` and `cog` stands, from the origin [m]: `x` "
+    "ahead, `y` to starboard, `z` below (above: negative); zero where not given.",
     "actuator": "A table `[[actuator]]` for each rudder, thruster, pod, tunnel and jet, where "
     "there is more than one rudder; see the guide's page of actuators.",
     "notes": "Anything a reader should know of it.",

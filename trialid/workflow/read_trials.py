@@ -144,7 +144,7 @@ def _sources(trial: TrialSection, known: Mapping[str, Quantity]) -> list[SignalS
 
 def _at_origin(pipeline: Pipeline, trial: Trial) -> Trial:
     """The trial with the track of the ship's origin, where her file says where the antenna is."""
-    if pipeline.ship is None or not {"x", "y"} <= {*trial.signals}:
+    if pipeline.ship is None or not {"x", "y", "sog", "cog"} & {*trial.signals}:
         return trial
     return at_origin(trial, read_ship(pipeline.ship).antenna)
 

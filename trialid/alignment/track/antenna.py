@@ -25,7 +25,9 @@ WAY: Final = 30.0
 
 
 def at_origin(trial: Trial, antenna: Mapping[str, float]) -> Trial:
-    """The trial with `x` and `y` moved from the antenna to the ship's origin, by heading and roll.
+    """The trial with what its receiver tells moved from the antenna to the ship's origin.
+
+    `x` and `y` by heading and roll; `sog` and `cog` by the rate of turn, too.
 
     Parameters
     ----------
@@ -35,24 +37,55 @@ def at_origin(trial: Trial, antenna: Mapping[str, float]) -> Trial:
     Raises
     ------
     AlignmentError
-        No heading is recorded.
+        No heading is recorded, or of speed and course but one.
     """
-    if not antenna or not {"x", "y"} <= {*trial.signals}:
+    pairs = (("x", "y"), ("sog",), ("cog",))
+    told = [n for names in pairs if {*names} <= {*trial.signals} for n in names]
+    if not any(antenna.values()) or not told:
         return trial
     if "psi" not in trial.signals:
         raise AlignmentError(
             f"trial {trial.name!r}: the ship file has an [antenna], and without a heading nobody "
-            "knows where it was; map psi, or take the section out"
+            f"knows where it was, which {', '.join(told)} needs; map psi, or take the section out"
         )
-    psi, phi = trial.signals["psi"], trial.signals.get("phi", np.zeros(trial.samples))
-    ahead, aside = arm(antenna, phi)
+    ahead, aside = arm(antenna, trial.signals.get("phi", np.zeros(trial.samples)))
+    moved = _position(trial, ahead, aside) if "x" in told else {}
+    moved |= _velocity(trial, ahead, aside) if {"sog", "cog"} & {*told} else {}
+    moved = {n: x for n, x in moved.items() if n in told}
+    known = trial.valid["psi"] & trial.valid.get("r", True)
+    valid = {**trial.valid, **{n: trial.valid[n] & known for n in moved}}
+    names = ", ".join(moved)
+    remark = f"{names}: moved from the antenna to the origin by the ship file's [antenna]"
+    signals = {**trial.signals, **moved}
+    return replace(trial, signals=signals, valid=valid, remarks=(*trial.remarks, remark))
+
+
+def _position(trial: Trial, ahead: Vector, aside: Vector) -> dict[str, Vector]:
+    psi = trial.signals["psi"]
     north = ahead * np.cos(psi) - aside * np.sin(psi)
     east = ahead * np.sin(psi) + aside * np.cos(psi)
-    moved = {"x": trial.signals["x"] - north, "y": trial.signals["y"] - east}
-    valid = {n: trial.valid[n] & trial.valid["psi"] for n in moved}
-    signals, valid = {**trial.signals, **moved}, {**trial.valid, **valid}
-    remark = "x, y: moved from the antenna to the origin by the ship file's [antenna]"
-    return replace(trial, signals=signals, valid=valid, remarks=(*trial.remarks, remark))
+    return {"x": trial.signals["x"] - north, "y": trial.signals["y"] - east}
+
+
+def _velocity(trial: Trial, ahead: Vector, aside: Vector) -> dict[str, Vector]:
+    """Speed and course of the origin: what turning and rolling do at the antenna taken off.
+
+    A course alone is moved by the recorded speed u, of a speed alone nobody knows the direction.
+    """
+    s = trial.signals
+    speed = s.get("sog", s.get("u"))
+    if "cog" not in s or speed is None:
+        lacks = "cog" if "cog" not in s else "sog"
+        raise AlignmentError(
+            f"trial {trial.name!r}: the ship file has an [antenna], and what turning adds to speed "
+            f"and course there needs both; map {lacks} too, or take the section out"
+        )
+    r = s.get("r", np.gradient(s["psi"], trial.period))
+    drift = s["cog"] - s["psi"]
+    u = np.abs(speed) * np.cos(drift) + r * aside
+    v = np.abs(speed) * np.sin(drift) - r * ahead - np.gradient(aside, trial.period)
+    turned = np.angle(np.exp(1j * (np.arctan2(v, u) - drift)))
+    return {"sog": np.hypot(u, v), "cog": s["cog"] + turned}
 
 
 def arm(antenna: Mapping[str, float], phi: Vector) -> tuple[Vector, Vector]:

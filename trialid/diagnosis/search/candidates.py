@@ -1,6 +1,7 @@
 """Which effects can be tried on a model and its record, and why the others cannot."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 
@@ -9,6 +10,14 @@ from trialid.ship.effect import Effect, Steered
 from trialid.ship.model import STATES, ShipModel, takes_place
 from trialid.simulation.integrate import record_for, signals_of
 from trialid.trial import Trial
+
+AT_ZERO: Final = 0.01
+"""Share of the largest up to which an input is at zero: revolutions of a motor that stands still
+are logged with noise."""
+WHILE: Final = 0.01
+"""Share of the samples that lie near zero for a while. A motor of 0.3 s that is turned round ten
+times in two minutes passes there in 0.003 of them, so that half of it tells the same; one order of
+3 s in a trial of two minutes is 0.025, which twice takes too."""
 
 
 def candidates_for(
@@ -27,6 +36,24 @@ def candidates_for(
         else:
             able[name] = effect
     return able, left_out
+
+
+def out_of_reach(trials: Sequence[Trial], able: Mapping[str, Effect]) -> dict[str, str]:
+    """Effects that small values of an input show, of which these trials have next to none."""
+    return {
+        name: f"needs {', '.join(effect.within)} below {max(effect.within.values()):.0%} of the "
+        "largest for a while, and not at zero"
+        for name, effect in able.items()
+        if effect.within and not any(_small(trials, n, x) for n, x in effect.within.items())
+    }
+
+
+def _small(trials: Sequence[Trial], name: str, below: float) -> bool:
+    """Whether an input lies near zero, and not at it, for a while of these trials."""
+    held = [t.signals[source] for t in trials if (source := record_for(t, name))]
+    size = np.abs(np.concatenate(held or [np.zeros(1)]))
+    share = size / (size.max() or 1.0)
+    return float(np.mean((share > AT_ZERO) & (share < below))) >= WHILE
 
 
 def _why_not(model: ShipModel, trial: Trial, effect: Effect, able: Mapping[str, Effect]) -> str:

@@ -56,6 +56,11 @@ lowers the error by no more says nothing either: a thruster that is dead is also
 where it gives no thrust."""
 
 
+OTHER_THAN_A_GAIN: Final = 0.01
+"""Share of a fault's trace that no free parameter can leave: the only engine of a boat, whose gain
+is free, is weak by 1e-7 of it, one thruster of two with a gain in common by 0.5."""
+
+
 LeavesNoise = Callable[[Fit], bool]
 """Whether what a fit leaves is no more than noise."""
 
@@ -151,6 +156,8 @@ def _fitted(fit: Fit, effect: Effect, progress: Progress) -> Refit | None:
         return None
     if fitted is None or fitted.eps_rmsn > ALIKE * GROSS or why_no_fit(fitted):
         return None
+    if not effect.is_whole and _is_a_gain(fitted, effect):
+        return None
     carried = Carried.between(own_errors(fit.examined), own_errors(fitted, levels(fit.examined)))
     candidate = Candidate(
         effect=effect,
@@ -164,6 +171,16 @@ def _fitted(fit: Fit, effect: Effect, progress: Progress) -> Refit | None:
         carried=carried,
     )
     return Refit(candidate, on_every_sample(fit, fitted), carried)
+
+
+def _is_a_gain(fit: Fit, effect: Effect) -> bool:
+    """Whether free parameters do the same: then it is another value of theirs, and not missing."""
+    own = np.array([x.name in effect.parameters for x in fit.problem.unknowns])
+    rest, trace = fit.psi[:, ~own], fit.psi[:, own]
+    sizes = np.linalg.norm(rest, axis=0)
+    rest = rest[:, sizes > 0.0] / sizes[sizes > 0.0]
+    left = trace - rest @ np.linalg.lstsq(rest, trace, rcond=None)[0]
+    return bool(np.linalg.norm(left) < OTHER_THAN_A_GAIN * np.linalg.norm(trace))
 
 
 def _as_begun(fit: Fit) -> ShipModel:

@@ -73,6 +73,7 @@ def make_effect(
     parameters: Mapping[str, Parameter],
     states: Mapping[str, str | None] | None = None,
     system: System = "SI",
+    within: Mapping[str, float] | None = None,
 ) -> Effect:
     """An effect of a ship's own actuators: its function takes any signals by their names."""
     function.__name__, function.__doc__ = name, equation
@@ -88,4 +89,5 @@ def make_effect(
         forms=tuple(type(part) for part in parts),
         system=system,
         source=source,
+        within=dict(within or {}),
     )

@@ -22,6 +22,8 @@ TRIED = tuple(2.0 * 0.87**i for i in range(16))
 a quarter of it, so near each other that one is within 7 % of what is true. Half as many missed a
 drive that gave out at 0.77 of full."""
 M22 = "Miyauchi et al. (2022), J. Mar. Sci. Technol. 27: Y and N lose a share of their own with Fr"
+DEAD = 0.1
+"""Share of full that dead bands of motors go to: with no order below it a band is another gain."""
 EXACT = 12
 """Digits of a cosine: that of 90 deg is zero."""
 
@@ -124,6 +126,7 @@ def _deadband(ship: Ship, kind: str, ones: Sequence[Actuator]) -> Effect:
         source="speed controllers of small motors: 2 to 10 % of full",
         signals=[one.name for one in ones],
         parameters={f"dead_{kind}": Parameter(0.05 * size, unit, low=0.0, high=0.5 * size)},
+        within={one.name: DEAD for one in ones},
     )
 
 

@@ -25,9 +25,9 @@ from trialid.workflow.first_pipeline.boat_choice import (
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
 from trialid.workflow.first_pipeline.long_log import Windows
-from trialid.workflow.first_pipeline.ordered_rudder import with_orders
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.rate_unit import size_unit
+from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track
@@ -110,7 +110,8 @@ def starter(
     elif is_boat(shared_signals(trials)):
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
-    trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0)
+    drives = frozenset(one.drive for one in own.actuators if one.drive)
+    trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0, drives)
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))

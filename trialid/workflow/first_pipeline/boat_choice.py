@@ -29,7 +29,8 @@ from trialid.workflow.first_pipeline.choice import (
     rate_signal,
     through_water,
 )
-from trialid.workflow.first_pipeline.further_signals import with_further
+from trialid.workflow.first_pipeline.further_signals import with_further, with_heading
+from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
@@ -39,7 +40,9 @@ FULL: Final = 100.0
 one up to here: the thrust of a share goes with its square."""
 PULSES: Final = (800.0, 2200.0)
 """[us] Between which pulses of servos and speed controllers lie: 1000 to 2000, some 900 to 2100.
-Only words depend on it: the unit is asked for either way."""
+Only words depend on it, and whether she goes astern: the unit is asked for either way."""
+REST: Final = 1500.0
+"""[us] The pulse at which speed controllers that go both ways stand still."""
 ARM: Final = 0.2
 """Thrusters stand so far from the middle, over the length of a boat: 0.2 of the Otter and the
 WAM-V, 0.24 of the BlueBoat."""
@@ -93,7 +96,8 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"
     signals = (*drives, turn, speed)
-    return Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
+    boat = Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
+    return with_course(with_heading(boat, live))
 
 
 def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
@@ -138,7 +142,7 @@ def _unit_by_size(source: ChannelInspection) -> tuple[str, str]:
             f"; CAREFUL: a thrust by its name, and no unit is stated: up to {largest:.3g} is read "
             "as newton, and the gain is of whatever it is"
         )
-    if PULSES[0] < source.low and source.high < PULSES[1]:
+    if at_rest(source):
         return OPEN, (
             f"; FILL IN its unit: {source.low:.4g} to {source.high:.4g} look like pulse widths "
             "[us], about 1500 at rest; `trialid guide actuators` has the line that makes a share "
@@ -148,6 +152,11 @@ def _unit_by_size(source: ChannelInspection) -> tuple[str, str]:
         f"; FILL IN its unit: nothing tells what up to {largest:.3g} is; where it is no thrust, "
         "its command in the ship file too"
     )
+
+
+def at_rest(drive: ChannelInspection) -> float:
+    """What a drive shows where it does nothing: that of pulses of servos, else 0."""
+    return REST if PULSES[0] < drive.low and drive.high < PULSES[1] else 0.0
 
 
 def _agreement(

@@ -5,8 +5,9 @@ from typing import Final
 
 from trialid.effects.actuators.pushes import push_effects
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boat_choice import thrusters_among
+from trialid.workflow.first_pipeline.boat_choice import at_rest, thrusters_among
 from trialid.workflow.first_pipeline.choice import Chosen
+from trialid.workflow.first_pipeline.held_out import held_out
 
 ASTERN: Final = 0.1
 """Share of the largest push ahead that one astern must reach to tell a gain of its own."""
@@ -28,7 +29,7 @@ def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
         '"still_water_yaw_quadratic"]'
     )
     if not astern:
-        yield f"values = {{ {held} }}  # never run astern: any number does as well"
+        yield f"values = {{ {held} }}  # no fitted trial goes astern: nothing tells it"
     yield ""
     yield "[identify]"
     yield "# A record of motions gives accelerations, never forces: with the mass held, gains and"
@@ -46,5 +47,10 @@ def _rate(trials: Sequence[Chosen]) -> bool:
 
 
 def _goes_astern(trials: Sequence[Chosen]) -> bool:
-    ranges = [one.source for trial in trials for one in thrusters_among(trial.signals)]
-    return all(one.low < -ASTERN * one.high for one in ranges)
+    """Whether any thruster of any trial that is fitted does: the gain is one of all of them."""
+    held = held_out(trials)
+    fitted = [trial for place, trial in enumerate(trials) if place != held]
+    drives = [one.source for trial in fitted for one in thrusters_among(trial.signals)]
+    return any(
+        one.low - rest < -ASTERN * (one.high - rest) for one in drives for rest in [at_rest(one)]
+    )

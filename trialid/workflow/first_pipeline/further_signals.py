@@ -39,7 +39,7 @@ moved at random; with half of it that one is told too, with twice none is."""
 
 def with_further(trial: Chosen, live: Live) -> Chosen:
     """The trial with what else its log holds: wind, a sway speed, what is left to the user."""
-    trial = _with_heading(trial, live)
+    trial = with_heading(trial, live)
     wind = [plain_signal(name, live, why) for name, why in WIND.items() if live.get(name)]
     whole = len(wind) == len(WIND) and not any(one.open for one in wind)
     found = dataclasses.replace(
@@ -50,17 +50,21 @@ def with_further(trial: Chosen, live: Live) -> Chosen:
     return _with_sway(found, plain_signal("v", live, "")) if live.get("v") else found
 
 
-def _with_heading(trial: Chosen, live: Live) -> Chosen:
+def with_heading(trial: Chosen, live: Live) -> Chosen:
     """The trial with her heading: it tells the rate's offset from forces, and wind and current.
 
-    One that the rate does not go by is left to the user: nobody knows which of them is wrong.
+    One that the rate does not go by is left to the user: nobody knows which of them is wrong. Of a
+    quaternion the rate also tells the side.
     """
     rate = next((one for one in trial.signals if one.quantity == "r"), None)
     if rate is None or not live.get("psi"):
         return trial
     heading = plain_signal("psi", live, IN_SPEED if trial.over_ground else BESIDE_RATE)
-    if heading.open or abs(slope_agreement(rate.source, heading.source)) <= SURE:
+    found = slope_agreement(rate.source, heading.source)
+    if heading.open or abs(found) <= SURE:
         return trial
+    if (found < 0.0) != (rate.positive == "port"):
+        heading = dataclasses.replace(heading, positive="port")
     return dataclasses.replace(trial, signals=(*trial.signals, heading))
 
 

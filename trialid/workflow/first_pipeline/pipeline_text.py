@@ -28,6 +28,8 @@ UNITS: Final = {"lat": "deg", "lon": "deg", "x": "m", "y": "m"}
 MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
 
+SPEED: Final = ("u", "cog")
+"""What changes so slowly that its sensor sets no pace."""
 PERIODS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
 SWAY: Final = ("Yv", "Ydelta")
 """What a record of sway tells of it; most of Yr goes with the centrifugal force, which is known."""
@@ -181,7 +183,8 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
 def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:
     chosen = period(trials, length, speed)
     slowest = min(
-        (s.source for t in trials for s in t.signals if s.quantity != "u"), key=lambda c: c.rate
+        (s.source for t in trials for s in t.signals if s.quantity not in SPEED),
+        key=lambda c: c.rate,
     )
     yield "[align]"
     yield (
@@ -195,7 +198,7 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
 
     Nor shorter than she needs: a simulation at 100 Hz tells no more of a ship, and takes longer.
     """
-    rates = [s.source.rate for t in trials for s in t.signals if s.quantity != "u"]
+    rates = [s.source.rate for t in trials for s in t.signals if s.quantity not in SPEED]
     slow = 1.0 / min(rates)
     quick = min(0.5, length / max(speed, 0.1) / STEPS_A_LENGTH)
     return max((p for p in PERIODS if p <= max(slow, quick) * 1.05), default=PERIODS[0])
@@ -203,7 +206,7 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
 
 def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
-    if known & {one.drive for one in ship.actuators if one.drive}:
+    if known & {n for one in ship.actuators if (d := one.drive) for n in (d, f"{d}_order")}:
         yield from boat_model(trials, ship)
         return
     several = bool(known & rudder_signals(ship.actuators))

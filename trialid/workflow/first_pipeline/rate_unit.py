@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.inspection.channel_names import words
 from trialid.inspection.relations import RATES
 from trialid.names import units
 from trialid.workflow.first_pipeline.choice import ASK_UNIT, OPEN, Chosen, Signal
@@ -25,7 +26,7 @@ def size_unit(trial: Chosen, length: float, speed: float) -> Chosen:
 
 
 def _sized(signal: Signal, seconds: float) -> Signal:
-    if signal.quantity != "r" or signal.unit != OPEN:
+    if signal.quantity != "r" or signal.unit != OPEN or _turns(signal):
         return signal
     largest = float(np.quantile(np.abs(signal.source.sketch.y), 0.99))
     sizes = {u: largest * units.factor(u, "rad/s") * seconds for u in RATES}
@@ -36,3 +37,8 @@ def _sized(signal: Signal, seconds: float) -> Signal:
     words = f"unit by its size: r L / U would be {told}"
     why = signal.why.replace(ASK_UNIT, words)
     return dataclasses.replace(signal, unit=fitting[0], why=why)
+
+
+def _turns(signal: Signal) -> bool:
+    """Whether its name ends with `rps`, radians or turns a second, which no size tells apart."""
+    return "rps" in words(signal.source.name)

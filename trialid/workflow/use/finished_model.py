@@ -1,6 +1,6 @@
 """The fitted model of a finished run, with how sure it is, from the run's folder and its logs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -9,10 +9,13 @@ from trialid.design.prediction.seen_range import SeenRange, seen_ranges
 from trialid.diagnosis.diagnose import examine_fit
 from trialid.errors import NotIdentifiable, PipelineError, TrialidError
 from trialid.identification.fit import Fit, revive
+from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
 from trialid.report.words.doubt import doubtful
 from trialid.result.schema import Result
+from trialid.ship.actuators import actuator_quantities
+from trialid.ship.quantity_of import quantity_of
 from trialid.threads import one_thread
 from trialid.trial import Trial
 from trialid.workflow.build_model import available, build_model, settings_of
@@ -46,6 +49,14 @@ class FinishedModel:
     def fit(self) -> Fit:
         """The fit, its search over."""
         return self.done.fit
+
+    @property
+    def quantities(self) -> Mapping[str, Quantity]:
+        """What may be ordered or given by name: the dictionary's, and the model's own signals."""
+        model = self.fit.model
+        drives = actuator_quantities(model.ship.actuators)
+        own = {name: quantity_of(model, name) for one in model.effects for name in one.own}
+        return {**SIGNALS, **drives, **own}
 
     @property
     def reliable(self) -> bool:

@@ -13,7 +13,6 @@ from trialid.design.prediction.predicted_motion import motions
 from trialid.design.prediction.seen_range import seen_ranges
 from trialid.errors import TrialidError, nearest
 from trialid.export.predicted_file import predicted_columns
-from trialid.names.quantities import SIGNALS
 from trialid.result.build import Findings
 from trialid.result.schema import Result
 from trialid.signal_arrays import numbers
@@ -62,7 +61,7 @@ def simulated_frame(
     elif words:
         made = predict_manoeuvre(model, named_manoeuvre(words), what_if)
     else:
-        made = predict_orders(model, _table(period, inputs), "orders", what_if)
+        made = predict_orders(model, _table(model, period, inputs), "orders", what_if)
     columns = {n: x for n, _, x in predicted_columns(made.motion)}
     frame = pd.DataFrame(columns, index=pd.Index(made.motion.t, name="t"))
     frame.attrs |= {"numbers": dict(made.motion.numbers), "words": made.words}
@@ -118,7 +117,7 @@ def drawn_ships(
         ships = draw_ships(ship, spread, number, seed)
         numbers, t, motion = sail_draws(ship, asked, spread, ships), np.zeros(0), {}
     else:
-        ship, orders, _ = ready_orders(model, _table(period, inputs), "orders")
+        ship, orders, _ = ready_orders(model, _table(model, period, inputs), "orders")
         ships = draw_ships(ship, spread, number, seed)
         numbers, t = {}, orders.t
         motion = simulate_draws(ship, orders, spread, ships, motions(ship))
@@ -127,7 +126,9 @@ def drawn_ships(
     return Draws(pd.DataFrame(about), pd.DataFrame(numbers), t, motion, model.doubts)
 
 
-def _table(period: float | None, inputs: Mapping[str, Sequence[float]]) -> OrderTable:
+def _table(
+    model: FinishedModel, period: float | None, inputs: Mapping[str, Sequence[float]]
+) -> OrderTable:
     """Orders of one length on an even clock.
 
     Raises
@@ -135,9 +136,10 @@ def _table(period: float | None, inputs: Mapping[str, Sequence[float]]) -> Order
     TrialidError
         One is not known, not as long as the others, or not finite; or there is no clock.
     """
+    known = model.quantities
     for name in inputs:
-        if name not in SIGNALS:
-            raise TrialidError(f"there is no signal {name!r}; {nearest(name, SIGNALS)}")
+        if name not in known:
+            raise TrialidError(f"there is no signal {name!r}; {nearest(name, known)}")
     values = {n: numbers(n, x) for n, x in inputs.items()}
     for name, one in values.items():
         if one.ndim != 1 or len(one) < 2 or not np.isfinite(one).all():

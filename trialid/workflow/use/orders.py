@@ -17,7 +17,7 @@ from trialid.design.standard import DEGREES, Reading
 from trialid.errors import TrialidError, nearest
 from trialid.export.predicted_file import ENDS
 from trialid.names import units
-from trialid.names.quantities import SIGNALS
+from trialid.names.quantities import SIGNALS, Quantity
 
 REVERSALS: Final = 4
 LARGEST: Final = 90.0
@@ -156,11 +156,11 @@ BY_NAME: Final = {
 """Manoeuvres that can be asked for by a word."""
 
 
-def read_orders(path: Path) -> OrderTable:
+def read_orders(path: Path, known: Mapping[str, Quantity] = SIGNALS) -> OrderTable:
     """The orders in a table: a column t, and inputs by their names with their units.
 
     Names and signs are those of the dictionary, as `delta[deg]`: positive turns the ship to
-    starboard.
+    starboard; `known` has those of the ship's actuators, too.
 
     Raises
     ------
@@ -170,13 +170,13 @@ def read_orders(path: Path) -> OrderTable:
     recording = ingest.read(path)
     signals, t = dict[str, Vector](), None
     for name, channel in recording.channels.items():
-        if name not in SIGNALS or name == TIME:
+        if name not in known or name == TIME:
             continue
         if channel.unit is None:
             raise TrialidError(
-                f"{path}: column {name}: no unit; write its header as {name}[{SIGNALS[name].shown}]"
+                f"{path}: column {name}: no unit; write its header as {name}[{known[name].shown}]"
             )
-        signals[name] = channel.y * units.factor(channel.unit, SIGNALS[name].unit)
+        signals[name] = channel.y * units.factor(channel.unit, known[name].unit)
         t = channel.t
     if t is None or len(t) < FEWEST:
         raise TrialidError(
@@ -186,14 +186,14 @@ def read_orders(path: Path) -> OrderTable:
     if not (np.diff(t) > 0).all():
         row = int(np.flatnonzero(np.diff(t) <= 0)[0]) + 2
         raise TrialidError(f"{path}: t does not rise at row {row}; give one manoeuvre in a file")
-    unknown = tuple(name for name in recording.channels if _is_unknown(name))
+    unknown = tuple(name for name in recording.channels if _is_unknown(name, known))
     return OrderTable((t - t[0]) / 1e9, signals, unknown)
 
 
-def _is_unknown(column: str) -> bool:
+def _is_unknown(column: str, known: Collection[str]) -> bool:
     """Whether no signal has the name; an end of one's range, as `simulate` writes it, is known."""
     ends = (column.removesuffix(f"_{end}") for end in ENDS)
-    return not {column, *ends} & {TIME, *SIGNALS}
+    return not {column, *ends} & {TIME, *known}
 
 
 def complete_rows(table: OrderTable, inputs: Collection[str], where: str) -> OrderTable:

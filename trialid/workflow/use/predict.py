@@ -1,7 +1,7 @@
 """A finished run's model under orders: series, ranges, numbers, and what to know of them."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
 
@@ -18,6 +18,7 @@ from trialid.design.prediction.seen_range import beyond_words
 from trialid.errors import DesignError, TrialidError, list_names
 from trialid.identification.fit import Fit
 from trialid.names import labels
+from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file.contradictions import nearest_signal
 from trialid.ship.effect import Steered
 from trialid.threads import one_thread
@@ -104,9 +105,10 @@ def ready_orders(
     model: FinishedModel, table: OrderTable, name: str, what_if: WhatIf = AS_FITTED
 ) -> tuple[Vessel, Trial, OnClock]:
     """The ship and the orders of a table on an even clock; see `predict_orders`."""
+    table = _as_recorded(model.fit, table)
     ship, held = _ship_for(model, {*table.signals}, what_if)
     inputs = {*ship.simulator.equations.inputs}
-    acting = inputs | ({"delta_order"} if "delta" in inputs else set())
+    acting = inputs | {f"{name}_order" for name in inputs}  # as of a perfect gear
     if not {*table.signals} & acting:
         raise TrialidError(
             f"{name}: holds no input of the model; expected {', '.join(sorted(inputs))}, it has "
@@ -118,9 +120,17 @@ def ready_orders(
     signals = {n: np.interp(t, table.t, x) for n, x in table.signals.items()}
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
-    unread = {*table.signals} - inputs - {*ship.model.all_states} - STEERED
+    unread = {*table.signals} - acting - {*ship.model.all_states} - STEERED
     loses = _loses(ship) if "u" in held else ""
     return ship, orders, OnClock(every, held, unread, loses, table.unknown)
+
+
+def _as_recorded(fit: Fit, table: OrderTable) -> OrderTable:
+    """The table with what is told to a thruster as its order, where the trials have that alone."""
+    known = {*fit.problem.trials[0].signals}
+    told = {n: f"{n}_order" for n in table.signals if n not in SIGNALS and n not in known}
+    signals = {told[n] if told.get(n) in known else n: x for n, x in table.signals.items()}
+    return replace(table, signals=signals)
 
 
 def spread_of(model: FinishedModel) -> LikelySpread:
@@ -148,6 +158,7 @@ def _ship_for(
         steered = vessel(model.fit.model, steered.period, steered.constants, steered.rudder_rate)
     steered = changed_ship(steered, what_if)
     needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
+    needed = {name for name in needed if f"{name}_order" not in given}
     return steered, {n: steered.constants[n] for n in sorted(needed) if n in steered.constants}
 
 
