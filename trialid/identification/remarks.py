@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 
 from trialid.identification.fit import Fit
+from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import shown_unit
 
@@ -72,11 +73,10 @@ def _one_sided(fit: Fit) -> list[str]:
 
 def _untold_GM(fit: Fit) -> list[str]:
     """That the record does not choose among metacentric heights, where it does not."""
-    roll = fit.problem.roll
-    if not fit.rivals or roll is None:
+    if not fit.rivals or fit.problem.roll is None:
         return []
-    if not roll.is_a_ships(fit.theta):
-        ratio = abs(roll.ratio(fit.theta))
+    if not is_a_ships(fit.problem, fit.theta):
+        ratio = abs(damped_by(fit.problem, fit.theta))
         return [
             f"the record does not tell GM: her roll is damped by {ratio:.2g} of what is critical, "
             f"as no ship's is, so that {fit.value('GM'):.3g} m is of a swell or of nothing"
