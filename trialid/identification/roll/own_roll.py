@@ -20,7 +20,7 @@ ROLLING: Final = ("phi", "p")
 DIES_AWAY: Final = 0.5
 """Share of the roll of a record's first third that its last third may have of a decay; a swell goes
 on. Half of it refuses a ship that 0.007 of what is critical stills in thirty cycles, with 0.41;
-twice takes every record for one that happens to end in less."""
+twice of it all seven drawn ships in zig-zags that were looked at stay above, at 1.04 to 1.43."""
 
 
 def damped_by(problem: Problem, theta: Vector) -> float:
@@ -40,7 +40,7 @@ def damped_by(problem: Problem, theta: Vector) -> float:
 
 
 def _slowed(problem: Problem, theta: Vector, trial: int, X: Vector) -> tuple[Vector, Vector]:
-    """By how much rolling slows her roll in one trial [rad/s^2], and her roll rate [rad/s]; (N,)."""
+    """What rolling does to her roll in one trial [rad/s^2], and her roll rate [rad/s]; (N,)."""
     simulator: Simulator = problem.simulator
     equations, place = simulator.equations, simulator.equations.states.index("p")
     values = {**simulator.fixed, **problem.values(theta, trial)}
@@ -74,7 +74,7 @@ def is_a_ships(problem: Problem, theta: Vector) -> bool:
 
 
 def dies_away(problem: Problem) -> bool:
-    """Whether the roll of every trial as it was recorded is by far the greatest in the beginning."""
+    """Whether the roll of every trial, as recorded, is by far the greatest in the beginning."""
     places = [c for c, name in enumerate(problem.outputs) if name in ROLLING]
     return all(
         _late(trial.signals[problem.outputs[c]][mask[:, c]]) < DIES_AWAY

@@ -35,7 +35,7 @@ LEAST: Final = 1e-6
 """Share of L below which GM counts as this: the logarithm needs a positive number."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RollRange:
     """Rows of a search for GM and the roll damping.
 
@@ -117,4 +117,11 @@ def roll_range(
     inertia = mass_scale("I_xx", L, rho) * (model.value("I_xx") - model.value("Kpdot"))
     critical = -2.0 * float(np.sqrt(rho * g * nabla * inertia)) / (0.5 * rho * L**4 * U)
     swing = float(np.sqrt(rho * g * nabla / inertia))
-    return RollRange(places["GM"], places.get("Kp"), L, critical, swing, known)
+    return RollRange(
+        GM=places["GM"],
+        Kp=places.get("Kp"),
+        length=L,
+        critical=critical,
+        swing=swing,
+        known=known,
+    )
