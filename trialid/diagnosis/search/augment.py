@@ -92,7 +92,9 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     fit = with_means(fit).examined
     problem = fit.problem
     base = _fitted_model(fit)
-    able, left_out = candidates_for(base, shared_record(fit.trials), catalogue)
+    length = base.ship.particulars["L"]
+    sized = {name: effect.of_ship(length) for name, effect in catalogue.items()}
+    able, left_out = candidates_for(base, shared_record(fit.trials), sized)
     able, silent = _with_trace(able, problem.outputs)
     linear = [e for e in able.values() if not e.scanned]
     point = _linear(fit, base, linear)
