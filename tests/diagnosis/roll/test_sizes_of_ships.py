@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from decays import Roller
 
@@ -77,6 +76,6 @@ def test_a_value_that_does_not_grow_with_a_ship_is_of_no_length():
     with pytest.raises(EffectError, match="not known to grow"):
 
         @effect(source="none")
-        def odd(p, *, K_odd=Parameter(1.0, "rad", of_length=np.float64(100.0))):
+        def odd(p, *, K_odd=Parameter(1.0, "rad", of_length=100.0)):
             """K = K_odd p: none."""
             return Force(K=K_odd * p)
