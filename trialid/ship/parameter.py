@@ -52,7 +52,8 @@ class Parameter:
         if self.of_length is None:
             return self
         times = (length / self.of_length) ** FROUDE[self.unit]
-        return replace(self, start=self.start * times, of_length=None)
+        scan = tuple(x * times for x in self.scan)
+        return replace(self, start=self.start * times, scan=scan, of_length=None)
 
 
 @dataclass(frozen=True)
