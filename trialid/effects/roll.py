@@ -74,8 +74,8 @@ def righting_arm_speed(
 )
 def anti_roll_tank(
     phi, q_t, w_t, L, rho, g, nabla, *,
-    s_t=Parameter(0.1, "m", low=0.0, high=3.0, scan=(0.1,), of_length=S175),
-    omega_t=Parameter(1.5, low=0.3, high=10.0, null=None, scan=(0.5, 0.8, 1.2, 1.8, 2.7, 4.0)),
+    s_t=Parameter(0.1, "m", low=0.0, high=3.0, of_length=S175),
+    omega_t=Parameter(1.5, low=0.3, high=10.0, null=None),
     zeta_t=Parameter(0.15, low=0.01, high=2.0, null=None),
 ):  # fmt: skip
     """K = rho g nabla s_t (q_t - phi): water in a tank that swings at its own frequency.
