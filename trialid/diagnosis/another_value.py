@@ -70,7 +70,7 @@ def _told(fit: Fit, score: Score) -> Iterator[str]:
 
 
 def _starts(fit: Fit, score: Score) -> Iterator[tuple[int, float]]:
-    """Each parameter of the ship by its place, and where to begin; of GM at the best of a scan too."""
+    """Each parameter of the ship by its place, and a start; of GM the best of a scan too."""
     for place, unknown in enumerate(fit.problem.unknowns):
         if unknown.trial is None and unknown.kind == "physical":
             begun = float(fit.theta[place])
