@@ -47,6 +47,8 @@ class Trial:
         Stamp of the first sample on the clock of the logs [ns].
     opening
         Where a window of the logs begins that the trial is [s], as a pipeline states it.
+    sided
+        Quantities whose positive side was stated: what speaks against it is no doubt of it.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Trial:
     logs: tuple[LogSource, ...] = field(default=())
     start: int = 0
     opening: float = 0.0
+    sided: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         if self.use not in ("fit", "check"):
@@ -121,7 +124,7 @@ class Trial:
         """
         wanted = {n: q.unit for n, q in SIGNALS.items()} | dict(own or {})
         period, values, valid = in_si(name, t, signals, units, positive or {}, wanted=wanted)
-        return cls(name, use, period, values, valid)
+        return cls(name, use, period, values, valid, sided=frozenset(positive or {}))
 
     @classmethod
     def from_frame(

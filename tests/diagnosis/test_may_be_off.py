@@ -8,7 +8,7 @@ import pytest
 from trialid.diagnosis import may_be_off as tested
 from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.search.augment import Trace
-from trialid.ship.effect import Parameter
+from trialid.ship.effect import Parameter, Rate
 
 
 def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None):
@@ -18,14 +18,16 @@ def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None):
     parameters = parameters or {"Nrar": Parameter(-0.0015), "Nvar": Parameter(0.005)}
     names = tuple(parameters)
     places = tuple(range(len(names)))
-    effect = SimpleNamespace(name="drag", parameters=parameters, is_whole=False, held=None)
+    effect = SimpleNamespace(
+        name="drag", parameters=parameters, is_whole=False, held=None, forms=(Rate,)
+    )
     traces = [Trace(effect, places, names, {})]
     if tried:
         traces = [Trace(effect, (0,), (), {"Nrar": x}) for x in tried]
     ship = SimpleNamespace(value=lambda name: -0.004, ship=SimpleNamespace(share_off=lambda n: 0.1))
     problem = SimpleNamespace(
         simulator=SimpleNamespace(model=ship),
-        unknowns=[SimpleNamespace(prior=None), SimpleNamespace(prior=prior)],
+        unknowns=[SimpleNamespace(column=n, prior=p) for n, p in (("Nr", None), ("Nv", prior))],
     )
     fit = SimpleNamespace(problem=problem, level=0.02, theta=np.array([1.0, 3e-3]))
     augmented = SimpleNamespace(

@@ -86,7 +86,9 @@ def align(
         *quality.of_trial(series, grid, window),
         *agreement,
     )
-    return dataclasses.replace(trial, remarks=remarks, opening=window[0] if window else 0.0)
+    stated = frozenset(s.quantity for s in sources if s.positive is not None)
+    opening = window[0] if window else 0.0
+    return dataclasses.replace(trial, remarks=remarks, opening=opening, sided=stated)
 
 
 def _agreement(

@@ -6,6 +6,7 @@ from functools import partial
 
 from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, Diagnosis
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
+from trialid.diagnosis.heel_side import leans_inward, settle_side
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.may_be_off import doubts
@@ -94,7 +95,7 @@ def _verdict(
     found = with_motion(fit, found, ranking, refits, asked.level)
     named = None if grown else _named(found, refits)
     found = with_held_out(fit, found, lambda: before.accuracy.covariance, asked.level, named)
-    return name_records(fit, found, asked.candidates.values())
+    return settle_side(fit, name_records(fit, found, asked.candidates.values()))
 
 
 def _or_of_two(
@@ -106,6 +107,8 @@ def _or_of_two(
 ) -> tuple[Verdict, Together | None]:
     """The verdict, and two effects at once, where none has a name and the catalogue may hold it."""
     if verdict.kind not in ("cannot tell", "not in catalogue") or (whole and whole.gap):
+        return verdict, None
+    if leans_inward(fit):
         return verdict, None
     found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
     return (verdict if found is None else verdict_on_two(fit, found)), found
@@ -161,7 +164,7 @@ def _no_fit(
     return Diagnosis(
         before=before,
         left_out=left_out,
-        verdict=Verdict("no fit", None, (), f"no fit: {failed}"),
+        verdict=settle_side(fit, Verdict("no fit", None, (), f"no fit: {failed}")),
         where=where(fit),
     )
 

@@ -11,6 +11,7 @@ import numpy as np
 from trialid.accuracy.likely import WIDE, Averaged, Rows, Standing, stand
 from trialid.accuracy.one_missing import Rival
 from trialid.arrays import Vector
+from trialid.diagnosis.restated import restates
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.ship.effect import Parameter
@@ -51,7 +52,8 @@ def doubts(augmented: Augmented) -> Doubts:
     """What the rows of a fit say of the catalogue and of the model as it is.
 
     What is there whole or not at all has no size that could be small and unseen: it is left out,
-    and so is the freeing of what was held fixed, which counts with its own uncertainty.
+    and so are the freeing of what was held fixed, which counts with its own uncertainty, and what
+    says again what is free.
     """
     fit = augmented.fit
     ship = fit.problem.simulator.model
@@ -75,7 +77,8 @@ def _may_be_missing(augmented: Augmented) -> tuple[Vector, tuple[Trace, ...]]:
     """The traces that count, and their columns alone."""
     kept, columns = list[Trace](), list[int]()
     for trace in augmented.traces:
-        if not trace.effect.is_whole and trace.effect.held is None:
+        effect = trace.effect
+        if effect.held is None and not effect.is_whole and not restates(effect, augmented.fit):
             first = len(columns)
             columns += trace.columns
             kept.append(replace(trace, columns=tuple(range(first, len(columns)))))

@@ -42,6 +42,7 @@ from trialid.diagnosis.verdict_sentences import (
     one_of,
     outdone_by_a_shape,
     significant_and_small,
+    small_rest,
     subject,
     two_together,
     unfinished_lead,
@@ -112,7 +113,7 @@ def decide(
     if (denied := _denied(fit, refits, level, grown=grown)) is not None:
         return Verdict("cannot tell", None, (), denied)
     small = [c for c in ranking if c.shown(level) and not c.carried.falls]
-    return _unnamed(parts, whole, small)
+    return _unnamed(parts, whole, small, fit.eps_rmsn)
 
 
 def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> str | None:
@@ -169,13 +170,17 @@ def verdict_on_two(fit: Fit, found: Together) -> Verdict:
     return Verdict("cannot tell", None, (), two_together(fit, found), found.names)
 
 
-def _unnamed(parts: Split, whole: Completeness | None, shown: Sequence[Candidate]) -> Verdict:
-    """What to say where no effect is worth a name."""
-    said = _unnamed_plainly(parts, whole)
+def _unnamed(
+    parts: Split, whole: Completeness | None, shown: Sequence[Candidate], total: float
+) -> Verdict:
+    """What to say where no effect is worth a name; `total` is all of the error."""
+    said = _unnamed_plainly(parts, whole, total)
     return replace(said, sentence=f"{said.sentence}{significant_and_small(shown)}")
 
 
-def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
+def _unnamed_plainly(parts: Split, whole: Completeness | None, total: float) -> Verdict:
+    if parts.undermodelling_interval is None and total < LITTLE:
+        return Verdict("nothing missing", None, (), small_rest(total))
     if parts.undermodelling_interval is None:
         return Verdict("cannot tell", None, (), no_split(parts))
     low, high = parts.undermodelling_interval
@@ -191,9 +196,9 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
             f"the model leaves an error of {low:.1%} to {high:.1%} that is not noise "
             f"({parts.method}), and no effect of the catalogue explains it",
         )  # fmt: skip
-    total = float(np.hypot(parts.noise or 0.0, parts.undermodelling or 0.0))
+    known = float(np.hypot(parts.noise or 0.0, parts.undermodelling or 0.0))
     return Verdict(
-        "nothing missing" if _is_little(high, total) else "cannot tell", None, (),
+        "nothing missing" if _is_little(high, known) else "cannot tell", None, (),
         f"no effect stands out against the noise; a model error of up to {high:.1%} would not "
         f"be seen ({parts.method})",
     )  # fmt: skip

@@ -109,6 +109,13 @@ def no_split(parts: Split) -> str:
     )
 
 
+def small_rest(total: float) -> str:
+    """All of the error is little, and what it is made of is nothing to ask."""
+    return (
+        f"no effect stands out, and all that is left is {total:.1%}, noise and model error together"
+    )
+
+
 def one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
     """Something is missing by the blocks alone, and effects unlike each other mend it."""
     freed = " freed" if named.candidate.effect.held is not None else ""

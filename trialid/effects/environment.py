@@ -2,6 +2,7 @@
 
 from trialid.maths import Number, clip, cos, sin, sqrt
 from trialid.ship.effect import Force, Measured, Parameter, Steered, effect
+from trialid.ship.parameter import S175
 
 WIND = "Isherwood (1973), Blendermann (1994): shape of wind loads; size for a container ship"
 BG72 = "van Berlekom & Goddard (1972), tanker in shallow water"
@@ -62,7 +63,9 @@ def apparent_wind_ahead(V_aw, gamma_aw, *, C_ax=Parameter(0.00001, low=0.0, high
 
 
 @effect(source="Froude-Krylov moment of long waves")
-def wave_slope_roll(alpha_w, rho, g, nabla, *, GM_w=Parameter(0.5, "m", low=0.0, high=20.0)):
+def wave_slope_roll(
+    alpha_w, rho, g, nabla, *, GM_w=Parameter(0.5, "m", low=0.0, high=20.0, of_length=S175)
+):
     """K = rho g nabla GM_w alpha_w: she rights herself to the slope of a measured wave."""
     return Force(K=rho * g * nabla * GM_w * alpha_w)
 

@@ -5,13 +5,16 @@ says how little of each is visible. Coefficients are primed.
 """
 
 from trialid.ship.effect import Force, Mass, Parameter, effect
+from trialid.ship.parameter import S175
 
 LOADING = "loading condition; size by judgement"
 SN82 = "Son & Nomoto (1982), container ship S-175: 10 % of the added mass"
 
 
 @effect(source="inclining test or loading computer: 10 to 30 %")
-def metacentric_height_error(phi, rho, g, nabla, *, dGM=Parameter(0.05, "m", low=-5.0, high=5.0)):
+def metacentric_height_error(
+    phi, rho, g, nabla, *, dGM=Parameter(0.05, "m", low=-5.0, high=5.0, of_length=S175)
+):
     """K = -rho g nabla dGM phi: GM is not what was stated."""
     return Force(K=-rho * g * nabla * dGM * phi)
 

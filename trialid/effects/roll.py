@@ -2,6 +2,7 @@
 
 from trialid.maths import sqrt
 from trialid.ship.effect import Force, Parameter, Rate, effect
+from trialid.ship.parameter import S175
 
 SN82 = "Son & Nomoto (1982), container ship S-175"
 ITTC = "ITTC Recommended Procedure 7.5-02-07-04.5, numerical estimation of roll damping"
@@ -11,7 +12,7 @@ BK99 = "Blanke & Knudsen (1999), Eq. 1: righting arm G_z"
 @effect(source=BK99)
 def linear_roll(
     p, phi, rho, g, nabla, *,
-    Kp=Parameter(-0.0000075, high=0.0), GM=Parameter(0.5, "m", low=0.0),
+    Kp=Parameter(-0.0000075, high=0.0), GM=Parameter(0.5, "m", low=0.0, of_length=S175),
 ):  # fmt: skip
     """K = Kp p - rho g nabla GM phi: damping that grows with speed; righting moment."""
     return Force(K=Kp * p - rho * g * nabla * GM * phi)
@@ -24,7 +25,7 @@ def heel_roll(phi, *, Kphi=Parameter(-0.00002, low=-0.0005, high=0.0005)):
 
 
 @effect(source=BK99, system="SI")
-def still_water_roll_damping(p, *, Kp0=Parameter(-1e6, "N m s", high=0.0)):
+def still_water_roll_damping(p, *, Kp0=Parameter(-1e6, "N m s", high=0.0, of_length=S175)):
     """K = Kp0 p: damping that is there at rest."""
     return Force(K=Kp0 * p)
 
@@ -42,19 +43,25 @@ def cubic_roll_damping(p, *, Kppp=Parameter(-0.00005, low=-0.01, high=0.0)):
 
 
 @effect(source=BK99)
-def righting_arm_cubic(phi, rho, g, nabla, *, GM3=Parameter(2.0, "m", low=-50.0, high=50.0)):
+def righting_arm_cubic(
+    phi, rho, g, nabla, *, GM3=Parameter(2.0, "m", low=-50.0, high=50.0, of_length=S175)
+):
     """K = -rho g nabla GM3 phi^3 (wall sides: BM/2): the righting arm hardens or softens."""
     return Force(K=-rho * g * nabla * GM3 * phi**3)
 
 
 @effect(source=BK99)
-def righting_arm_quintic(phi, rho, g, nabla, *, GM5=Parameter(20.0, "m", low=-1000.0, high=1000.0)):
+def righting_arm_quintic(
+    phi, rho, g, nabla, *, GM5=Parameter(20.0, "m", low=-1000.0, high=1000.0, of_length=S175)
+):
     """K = -rho g nabla GM5 phi^5: the righting arm at large heel."""
     return Force(K=-rho * g * nabla * GM5 * phi**5)
 
 
 @effect(source="squat and the wave along the hull; size by judgement")
-def righting_arm_speed(u, phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-50.0, high=50.0)):
+def righting_arm_speed(
+    u, phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-50.0, high=50.0, of_length=S175)
+):
     """K = -rho g nabla GM_F (F^2 - F0^2) phi: GM changes with the Froude number F = u / sqrt(g L).
 
     g L (F^2 - F0^2) is u^2 - U0^2, and in primes the length is 1.
@@ -67,7 +74,7 @@ def righting_arm_speed(u, phi, rho, nabla, U0, *, GM_F=Parameter(1.0, "m", low=-
 )
 def anti_roll_tank(
     phi, q_t, w_t, L, rho, g, nabla, *,
-    s_t=Parameter(0.1, "m", low=0.0, high=3.0),
+    s_t=Parameter(0.1, "m", low=0.0, high=3.0, of_length=S175),
     omega_t=Parameter(1.5, low=0.3, high=10.0, null=None),
     zeta_t=Parameter(0.15, low=0.01, high=2.0, null=None),
 ):  # fmt: skip
@@ -84,7 +91,7 @@ def anti_roll_tank(
 
 
 @effect(source=BK99)
-def static_list(rho, g, nabla, *, a_0=Parameter(0.002, "m", low=-0.5, high=0.5)):
+def static_list(rho, g, nabla, *, a_0=Parameter(0.002, "m", low=-0.5, high=0.5, of_length=S175)):
     """K = rho g nabla a_0: a steady heel at any speed, from cargo or tanks."""
     return Force(K=rho * g * nabla * a_0)
 

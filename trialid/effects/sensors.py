@@ -2,6 +2,7 @@
 
 from trialid.maths import cos
 from trialid.ship.effect import Effect, Measured, Parameter, effect
+from trialid.ship.parameter import S175
 
 PRACTICE = "sensor practice: typical sizes from data sheets and sea trials"
 MOUNT = "mounting: 0.5 to 3 deg"
@@ -103,25 +104,27 @@ def inclinometer_sway(u, r, v_dot, g, *, k_incl=Parameter(1.0, low=0.0, high=2.0
 
 
 @effect(source=PENDULUM)
-def inclinometer_lever(p_dot, g, *, z_incl=Parameter(5.0, "m", low=-60.0, high=60.0)):
+def inclinometer_lever(
+    p_dot, g, *, z_incl=Parameter(5.0, "m", low=-60.0, high=60.0, of_length=S175)
+):
     """phi_measured = phi + z_incl (dp/dt) / g: a pendulum z_incl below the roll axis."""
     return Measured(phi=z_incl * p_dot / g)
 
 
 @effect(source=ANTENNA)
-def lever_arm_x(r, *, x_s=Parameter(30.0, "m", low=-300.0, high=300.0)):
+def lever_arm_x(r, *, x_s=Parameter(30.0, "m", low=-300.0, high=300.0, of_length=S175)):
     """v_measured = v + x_s r: the antenna or log is x_s ahead of the origin."""
     return Measured(v=x_s * r)
 
 
 @effect(source=ANTENNA)
-def lever_arm_y(r, *, y_s=Parameter(3.0, "m", low=-60.0, high=60.0)):
+def lever_arm_y(r, *, y_s=Parameter(3.0, "m", low=-60.0, high=60.0, of_length=S175)):
     """u_measured = u - y_s r: the antenna or log is y_s to starboard of the middle."""
     return Measured(u=-y_s * r)
 
 
 @effect(source=ANTENNA)
-def lever_arm_z(p, *, z_s=Parameter(-20.0, "m", low=-80.0, high=80.0)):
+def lever_arm_z(p, *, z_s=Parameter(-20.0, "m", low=-80.0, high=80.0, of_length=S175)):
     """v_measured = v - z_s p: the antenna is z_s below the origin (above: z_s < 0)."""
     return Measured(v=-z_s * p)
 

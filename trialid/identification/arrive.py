@@ -12,6 +12,7 @@ from trialid.identification.one_search import End, Progress, cost_at, random_sta
 from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
 from trialid.identification.record_starts import record_starts
+from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.roll_range import RollRange
 from trialid.identification.roll.told_gm import FAR, along_GM, rivals, roll_error
 from trialid.identification.weighing import NO_NOISE
@@ -173,8 +174,8 @@ def _doubt_of_roll(problem: Problem, roll: RollRange, end: End) -> str:
     stated, found = (t[roll.GM] for t in (problem.start, end.minimum.theta))
     if abs(np.log(max(found, 1e-9) / max(stated, 1e-9))) > np.log(FAR):
         return f"GM was found at {found:.3g} m, far from the {stated:.3g} m it began with"
-    if not roll.is_a_ships(end.minimum.theta):
-        ratio = roll.ratio(end.minimum.theta)
+    if not is_a_ships(problem, end.minimum.theta):
+        ratio = damped_by(problem, end.minimum.theta)
         return f"roll was found damped by {abs(ratio):.2g} of what is critical, as no ship is"
     return "roll is hardly explained" if roll_error(problem, end) > DOUBTFUL else ""
 

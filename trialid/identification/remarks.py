@@ -5,11 +5,22 @@ from typing import Final
 import numpy as np
 
 from trialid.identification.fit import Fit
+from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import shown_unit
 
 OFF_AMIDSHIPS: Final = np.deg2rad(0.5)
-"""[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm."""
+"""[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm; and a list
+that is seen, where sensors are mounted to that."""
+
+STANDS_OFF: Final = {
+    "delta_0": "the rudder's zero is {} deg in all trials, a screw's side push or a feedback's "
+    "error: what is predicted of her has it there, by the recorded rudder, and is likely from "
+    "where it would be without",
+    "b_phi": "the heel's zero is {} deg in all trials, a list or how the sensor is mounted: what "
+    "is predicted of her has her upright; where she does list, `trialid add` static_list",
+}
+"""What to say of a number of each trial that is the same in all of them."""
 
 APART: Final = 3.0
 """Times the scatter over trials from which on a mean is of all of them."""
@@ -58,25 +69,30 @@ def remarks(fit: Fit) -> tuple[str, ...]:
 
 
 def _one_sided(fit: Fit) -> list[str]:
-    """That her rudder stood off amidships in all trials, as it does in predictions."""
-    unknowns = zip(fit.problem.unknowns, fit.theta, strict=True)
-    zeros = np.array([a for x, a in unknowns if x.column == "delta_0"])
-    if len(zeros) < 2 or abs(zeros.mean()) < max(OFF_AMIDSHIPS, APART * zeros.std(ddof=1)):
-        return []
+    """What stands off by the same in all trials: a rudder's zero, in predictions too; a heel's."""
+    found = {column: _in_all(fit, column) for column in STANDS_OFF}
     return [
-        f"the rudder's zero is {np.rad2deg(zeros.mean()):.2g} deg in all trials, a screw's side "
-        "push or a feedback's error: what is predicted of her has it there, by the recorded "
-        "rudder, and is likely from where it would be without"
+        STANDS_OFF[column].format(f"{np.rad2deg(off):.2g}")
+        for column, off in found.items()
+        if off is not None
     ]
+
+
+def _in_all(fit: Fit, column: str) -> float | None:
+    """Mean over the trials of what is far off in all of them [rad], None where it is not."""
+    unknowns = zip(fit.problem.unknowns, fit.theta, strict=True)
+    each = np.array([a for x, a in unknowns if x.column == column])
+    if len(each) < 2 or abs(each.mean()) < max(OFF_AMIDSHIPS, APART * each.std(ddof=1)):
+        return None
+    return float(each.mean())
 
 
 def _untold_GM(fit: Fit) -> list[str]:
     """That the record does not choose among metacentric heights, where it does not."""
-    roll = fit.problem.roll
-    if not fit.rivals or roll is None:
+    if not fit.rivals or fit.problem.roll is None:
         return []
-    if not roll.is_a_ships(fit.theta):
-        ratio = abs(roll.ratio(fit.theta))
+    if not is_a_ships(fit.problem, fit.theta):
+        ratio = abs(damped_by(fit.problem, fit.theta))
         return [
             f"the record does not tell GM: her roll is damped by {ratio:.2g} of what is critical, "
             f"as no ship's is, so that {fit.value('GM'):.3g} m is of a swell or of nothing"

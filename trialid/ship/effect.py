@@ -3,7 +3,7 @@
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from traceback import extract_tb
 from typing import Any, Literal
@@ -105,6 +105,11 @@ class Effect:
     def nulls(self) -> dict[str, float]:
         """Parameter values at which it is absent; what only shapes it stays typical."""
         return {n: p.start if p.null is None else p.null for n, p in self.parameters.items()}
+
+    def of_ship(self, length: float) -> "Effect":
+        """The same with typical values for a ship of this length [m]."""
+        sized = {n: p.of_ship(length) for n, p in self.parameters.items()}
+        return self if sized == self.parameters else replace(self, parameters=sized)
 
     @property
     def tried(self) -> bool:

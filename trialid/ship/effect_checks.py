@@ -8,6 +8,7 @@ import numpy as np
 from trialid.errors import EffectError, nearest
 from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, SIGNALS
 from trialid.ship.forms import FORMS, SENSORS, Force, Mass, Rate, Result
+from trialid.ship.parameter import FROUDE
 
 if TYPE_CHECKING:
     from trialid.ship.effect import Parameter, Signal, System
@@ -41,6 +42,12 @@ def check_range(effect: str, name: str, parameter: "Parameter") -> None:
         raise EffectError(
             f"effect {effect!r}: the typical value {start!r} of parameter {name!r} is outside its "
             f"range, low={low!r} to high={high!r}; change one of them"
+        )
+    if parameter.of_length is not None and parameter.unit not in FROUDE:
+        raise EffectError(
+            f"effect {effect!r}: parameter {name!r} is typical of a ship of {parameter.of_length} "
+            f"m, and a value in {parameter.unit!r} is not known to grow with her; expected "
+            f"{' or '.join(FROUDE)}, or no of_length"
         )
 
 

@@ -95,9 +95,11 @@ class ShipModel:
 
     @cached_property
     def parameters(self) -> dict[str, Parameter]:
-        """Every parameter: the masses, then those of the effects in order."""
+        """Every parameter, of this ship's size: the masses, then those of the effects in order."""
         masses = {n: Parameter(_primed_mass(self.ship, n)) for n in MASS_PARAMETERS}
-        return masses | {n: p for e in self.effects for n, p in e.parameters.items()}
+        own = {n: p for e in self.effects for n, p in e.parameters.items()}
+        length = self.ship.particulars["L"]
+        return masses | {n: p.of_ship(length) for n, p in own.items()}
 
     @cached_property
     def all_states(self) -> tuple[str, ...]:

@@ -43,8 +43,14 @@ def fit_of(*scores, y_rms=1.0, ship=SHIP):
     """A fit as far as its residual goes."""
     left = [s.trial.signals["r"] - s.response.y[:, 0] for s in scores if s.trial.use == "fit"]
     eps = float(np.sqrt(np.mean(np.concatenate(left) ** 2))) / y_rms
+    read = SimpleNamespace(equations=SimpleNamespace(inputs=("delta", "u")))
     problem = SimpleNamespace(
-        outputs=("r",), y_rms=np.array([y_rms]), weights=np.ones(1), unknowns=()
+        outputs=("r",),
+        y_rms=np.array([y_rms]),
+        weights=np.ones(1),
+        unknowns=(),
+        simulator=read,
+        trials=tuple(s.trial for s in scores if s.trial.use == "fit"),
     )
     return SimpleNamespace(
         model=SimpleNamespace(ship=ship),

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale
 from trialid.ship.effect import Steered
+from trialid.ship.model import STANDSTILL
 from trialid.ship.rigid_body import ROWS
 from trialid.simulation.delay import shift
 from trialid.simulation.graph import gradient
@@ -161,7 +162,8 @@ def _acting(
             for part in effect({**signals, **theta}):
                 if isinstance(part, Steered):
                     signals |= {n: signals[n] + x for n, x in part.items()}
-    signals["U"] = np.hypot(signals["u"], signals.get("v", np.zeros(len(at))))
+    speed = np.hypot(signals["u"], signals.get("v", np.zeros(len(at))))
+    signals["U"] = np.hypot(speed, STANDSTILL)  # as it is simulated: by none no motion has a number
     return signals
 
 

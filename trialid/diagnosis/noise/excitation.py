@@ -3,7 +3,7 @@
 The rudder of a ship with one; of any other boat the record of every actuator she has.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from trialid.ship.actuators import Actuator
 from trialid.ship.particulars import Ship
+from trialid.simulation.integrate import record_for
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -52,6 +53,16 @@ def excitation(ship: Ship, trial: Trial) -> Vector | None:
     columns = [] if delta is None else [delta / QUIET_ANGLE]
     columns += [x for one in ship.actuators for x in _moves(one, trial)]
     return np.column_stack(columns) if columns else None
+
+
+def is_driven(inputs: Iterable[str], trials: Iterable[Trial]) -> bool:
+    """Whether anything moves that a model reads, beside the speed she had, which drives none.
+
+    What is left of a ship let go depends on where she began, and on nothing that comes again.
+    """
+    asked = {*inputs} - {"u"}
+    recorded = ((t, record_for(t, n)) for t in trials for n in asked)
+    return any(float(np.ptp(t.signals[n])) > 0.0 for t, n in recorded if n is not None)
 
 
 def _moves(one: Actuator, trial: Trial) -> Iterator[Vector]:

@@ -26,6 +26,7 @@ from trialid.diagnosis.noise.error_parts import Interval, Split, may_be_noise, s
 from trialid.diagnosis.noise.excitation import (
     are_same,
     excitation,
+    is_driven,
     period_of,
     quiet_seconds,
     rest_ends,
@@ -214,6 +215,8 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
     method = INPUT_DRIVEN
     if not augmented.traces:
         return Split(method, "no candidate effect that acts linearly on the outputs")
+    if not is_driven(fit.problem.simulator.equations.inputs, fit.problem.trials):
+        return Split(method, "nothing that was recorded drives her: an input has to move")
     raw, white, parts = (
         augmented.evidence.raw, augmented.evidence.white, augmented.evidence.parts,
     )  # fmt: skip

@@ -92,7 +92,9 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     fit = with_means(fit).examined
     problem = fit.problem
     base = _fitted_model(fit)
-    able, left_out = candidates_for(base, shared_record(fit.trials), catalogue)
+    length = base.ship.particulars["L"]
+    sized = {name: effect.of_ship(length) for name, effect in catalogue.items()}
+    able, left_out = candidates_for(base, shared_record(fit.trials), sized)
     left_out |= out_of_reach(fit.trials, able)
     able = {name: effect for name, effect in able.items() if name not in left_out}
     able, silent = _with_trace(able, problem.outputs)

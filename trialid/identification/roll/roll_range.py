@@ -25,7 +25,7 @@ FACTOR: Final = float(np.log(3.0))
 """One standard deviation. A factor of 1.7 would pull multihulls, of 9 would hold nothing."""
 
 NO_SHIPS: Final = 6.0
-"""Factor from the middle at which a damping ratio, below 0.01 or above 0.36, is no ship's: an
+"""Factor from the middle at which a damping ratio, below 0.01 or above 0.36, is doubted: an
 oscillation that goes on by itself is a swell's, and a heel that merely follows the turn has no
 period. Of 22 drawn ships whose GM was stated wrong and that were looked at 17 had such a ratio;
 half of the factor doubts a twentieth of all ships drawn with ratios of 0.02 to 0.2, twice of it
@@ -35,7 +35,7 @@ LEAST: Final = 1e-6
 """Share of L below which GM counts as this: the logarithm needs a positive number."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RollRange:
     """Rows of a search for GM and the roll damping.
 
@@ -47,6 +47,8 @@ class RollRange:
         Of the ship [m].
     critical
         Kp of critical damping at a GM of 1 m, negative; in proportion to sqrt(GM).
+    swing
+        Frequency of small rolls at a GM of 1 m [rad/s]; in proportion to sqrt(GM) too.
     known
         Places with a prior of their own: of those this says nothing.
     """
@@ -55,6 +57,7 @@ class RollRange:
     Kp: int | None
     length: float
     critical: float
+    swing: float
     known: frozenset[int] = frozenset()
 
     def damping(self, GM: float, ratio: float) -> float:
@@ -76,9 +79,9 @@ class RollRange:
         GM = max(float(theta[self.GM]), LEAST * self.length)
         return float(theta[self.Kp]) / self.damping(GM, 1.0)
 
-    def is_a_ships(self, theta: Vector) -> bool:
-        """Whether a ship may be damped so."""
-        return DAMPING_RATIO / NO_SHIPS < self.ratio(theta) < DAMPING_RATIO * NO_SHIPS
+    def frequency(self, theta: Vector) -> float:
+        """Of small rolls with a GM [rad/s]."""
+        return self.swing * float(np.sqrt(max(float(theta[self.GM]), LEAST * self.length)))
 
     def rows(self, theta: Vector) -> tuple[Vector, Vector]:
         """Residual and gradient of the rows, in standard deviations; (k,), (k, n_theta)."""
@@ -113,4 +116,12 @@ def roll_range(
     L, rho, g, nabla = (model.ship.particulars[n] for n in ("L", "rho", "g", "nabla"))
     inertia = mass_scale("I_xx", L, rho) * (model.value("I_xx") - model.value("Kpdot"))
     critical = -2.0 * float(np.sqrt(rho * g * nabla * inertia)) / (0.5 * rho * L**4 * U)
-    return RollRange(places["GM"], places.get("Kp"), L, critical, known)
+    swing = float(np.sqrt(rho * g * nabla / inertia))
+    return RollRange(
+        GM=places["GM"],
+        Kp=places.get("Kp"),
+        length=L,
+        critical=critical,
+        swing=swing,
+        known=known,
+    )

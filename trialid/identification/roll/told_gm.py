@@ -11,6 +11,7 @@ from trialid.identification.gauss_newton import minimise
 from trialid.identification.one_search import End
 from trialid.identification.output_error import Problem, ranges, stretches
 from trialid.identification.record_starts import Part, of_roll, rows_of
+from trialid.identification.roll.own_roll import goes_on, only_follows
 from trialid.identification.roll.roll_range import FACTOR, GM_OVER_L
 from trialid.identification.weighing import Weighing, contradictions
 from trialid.linear_algebra import triangle
@@ -63,7 +64,7 @@ def along_GM(problem: Problem, best: End) -> list[End]:
     Nothing where no GM is searched for, or what was fitted is no resonance of hers.
     """
     roll = problem.roll
-    if roll is None or not best.began or not roll.is_a_ships(best.minimum.theta):
+    if roll is None or not best.began or goes_on(problem, best.minimum.theta):
         return []
     if _plainly_told(problem, roll.GM, best):
         return []
@@ -109,7 +110,7 @@ def rivals(
     place, limit = roll.GM, best.cost(best.colour) + RIVAL
     near = [e.minimum.theta for e in ends if e.cost(best.colour) < limit]
     near += _on_time(problem, best)
-    if not roll.is_a_ships(best.minimum.theta):
+    if _is_no_ships(problem, best, walked):
         near += _as_ships_have(problem, best)
     near += [end.minimum.theta for end in walked]
     near.sort(key=lambda theta: float(theta[place]))
@@ -120,6 +121,15 @@ def rivals(
         distinct += [theta] if ALIKE * distinct[-1][place] < theta[place] else []
     names = [x.name for x in problem.unknowns]
     return tuple(dict(zip(names, theta.tolist(), strict=True)) for theta in distinct)
+
+
+def _is_no_ships(problem: Problem, best: End, walked: Sequence[End]) -> bool:
+    """Whether it is a swell's, or a heel without a period that other GM leave as it is.
+
+    Fins may damp a ship by half of what is critical, and her record tell GM all the same.
+    """
+    theta = best.minimum.theta
+    return goes_on(problem, theta) or (bool(walked) and only_follows(problem, theta))
 
 
 def roll_error(problem: Problem, end: End) -> float:

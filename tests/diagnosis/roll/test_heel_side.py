@@ -1,0 +1,80 @@
+"""A roll sensor of the wrong side: before its side is settled no effect has a name."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import MODEL, white, with_noise, zigzag
+
+from trialid.diagnosis.heel_side import leans_inward, settle_side
+from trialid.diagnosis.verdict import Verdict
+from trialid.identification.fit import identify
+from trialid.identification.problem import Settings
+from trialid.trial import Trial
+from trialid.workflow.notebook.front import diagnose
+
+FREE = ("Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
+SETTINGS = Settings(FREE, ("r", "phi"), nuisance=("initial_state", "bias"))
+PLAIN = replace(MODEL, effects=tuple(e for e in MODEL.effects if e.name != "roll_drag_vav"))
+
+
+def sailed(side=1.0, sided=frozenset()):
+    made = []
+    for angle, use in ((10, "fit"), (20, "fit"), (5, "check")):
+        trial = zigzag(angle, use=use)
+        trial = with_noise(trial, *white(np.random.default_rng(70 + angle), trial.samples))
+        signals = {**trial.signals, "phi": side * trial.signals["phi"]}
+        made.append(replace(trial, signals=signals, sided=sided))
+    return made
+
+
+def of_trials(fit, trials):
+    made = zip(fit.scores, trials, strict=True)
+    return replace(fit, scores=tuple(replace(score, trial=trial) for score, trial in made))
+
+
+@pytest.fixture(scope="module")
+def wrong():
+    return identify(sailed(-1.0), PLAIN, SETTINGS)
+
+
+def test_the_side_comes_first_and_nothing_is_named(wrong):
+    found = diagnose(wrong)
+    assert found.verdict.effect is None
+    assert found.verdict.kind in {"cannot tell", "no fit"}
+    assert 'write positive = "port" for phi' in found.verdict.sentence
+
+
+def test_a_fit_that_fails_says_it_too(wrong):
+    no_fit = settle_side(wrong, Verdict("no fit", None, (), "no fit: another ship"))
+    assert no_fit.kind == "no fit"
+    assert no_fit.sentence.startswith("no fit: another ship; she heels into her turns in zigzag-")
+
+
+@pytest.mark.parametrize("kind", ["missing", "not in catalogue", "cannot tell"])
+def test_what_would_be_named_is_not(wrong, kind):
+    found = settle_side(wrong, Verdict(kind, "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is"))
+    assert (found.kind, found.effect, found.family) == ("cannot tell", None, ())
+    assert found.sentence.startswith("she heels into her turns")
+
+
+def test_healthy_ships_and_stated_sides_have_their_verdict(wrong):
+    named = Verdict("missing", "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is")
+    stated = sailed(-1.0, frozenset({"phi"}))
+    fits = [
+        identify(sailed(), PLAIN, SETTINGS),
+        of_trials(wrong, stated),
+        of_trials(wrong, sailed()),
+    ]
+    for fit in fits:
+        assert leans_inward(fit) == ()
+        assert settle_side(fit, named) is named
+
+
+def test_a_side_is_stated_with_the_signal():
+    t = np.arange(200) * 0.5
+    signals = {"phi": np.sin(t), "r": np.cos(t)}
+    made = Trial.from_arrays(
+        "a", t, signals, units={"phi": "deg", "r": "deg/s"}, positive={"phi": "port"}
+    )
+    assert made.sided == {"phi"}

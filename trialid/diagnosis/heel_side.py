@@ -1,0 +1,75 @@
+"""Whether her roll is recorded to the side that it counts: before that is known nothing has a name.
+
+A displacement ship heels out of her turns. A roll that is positive to port looks like one that
+heels into them, and then what pushes her over in a turn is missing with the wrong sign: effects of
+the hull take it up. A planing boat does heel inward, and only who was aboard knows.
+"""
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trialid.diagnosis.verdict import Verdict
+from trialid.identification.fit import Fit
+from trialid.trial import Trial
+
+NAMING: Final = ("missing", "not in catalogue", "cannot tell")
+"""Verdicts that something is missing, or may be: none can be told of a roll of the wrong side."""
+
+
+CLEARLY: Final = 0.7
+"""Correlation of heel and r u from which on she leans to one side in her turns. Of 104 records of a
+stranger's ships it is -0.85 to -0.28, and 0.03 at most in 180 of drawn ships in a swell: half of it
+trips none of them either; at twice nothing is told."""
+
+TURNS: Final = np.deg2rad(20.0)
+"""[rad] Least change of heading that is a turn; zig-zags of 2 and 5 deg of the S-175 have less."""
+
+
+def leans_inward(fit: Fit) -> tuple[str, ...]:
+    """Trials in which she heels into her turns, where the roll counts and nobody stated its side.
+
+    None where she heels outward in another.
+    """
+    read = {*fit.problem.outputs, *fit.problem.simulator.equations.inputs}
+    if "phi" not in read or any("phi" in t.sided for t in fit.trials):
+        return ()
+    leans = {t.name: _lean(t) for t in fit.trials}
+    if min(leans.values()) < -CLEARLY:
+        return ()
+    return tuple(name for name, lean in leans.items() if lean > CLEARLY)
+
+
+def _lean(trial: Trial) -> float:
+    """Correlation of her heel with her rate of turn times her speed; 0 where nothing tells it."""
+    if not {"phi", "r"} <= trial.signals.keys():
+        return 0.0
+    known = trial.valid["phi"] & trial.valid["r"]
+    phi, r = trial.signals["phi"][known], trial.signals["r"][known]
+    speed = trial.signals["u"][known] if "u" in trial.signals else np.ones(len(r))
+    turned = float(np.ptp(np.cumsum(r))) * trial.period if len(r) else 0.0
+    if turned < TURNS or not (np.ptp(phi) > 0.0 and np.ptp(r * speed) > 0.0):
+        return 0.0
+    return float(np.corrcoef(phi, r * speed)[0, 1])
+
+
+def settle_side(fit: Fit, verdict: Verdict) -> Verdict:
+    """The verdict; of a roll that may be of the other side, that and how to settle it."""
+    inward = leans_inward(fit)
+    if not inward:
+        return verdict
+    if verdict.kind == "no fit":
+        return replace(verdict, sentence=f"{verdict.sentence}; {_doubt(inward)}")
+    if verdict.kind not in NAMING:
+        return verdict
+    return Verdict("cannot tell", None, (), f"{_doubt(inward)}; until then no effect is named")
+
+
+def _doubt(inward: tuple[str, ...]) -> str:
+    listed = ", ".join(inward[:3]) + (" and more" if inward[3:] else "")
+    return (
+        f"she heels into her turns in {listed}, as of a roll that is positive to port, where ships "
+        'heel outward: write positive = "port" for phi, or positive = "starboard" where she does '
+        "heel inward"
+    )
