@@ -191,12 +191,19 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
 def test_nothing_is_missing_only_where_most_of_the_error_is_known_to_be_noise(unseen, kind):
     """An error of 10 %: beside 6.5 % most of it is noise, beside 8 % that is not known."""
     parts = Split("dependence on the input", "", 0.06, 0.08, (0.0, 0.1), (0.0, unseen))
-    found = decide(SimpleNamespace(), (), (), parts, None, 0.05)
+    found = decide(SimpleNamespace(eps_rmsn=0.1), (), (), parts, None, 0.05)
     assert found.kind == kind
     tenth = Split("dependence on the input", "", 0.006, 0.008, (0.0, 0.01), (0.0, 0.1 * unseen))
-    little = decide(SimpleNamespace(), (), (), tenth, None, 0.05)
+    little = decide(SimpleNamespace(eps_rmsn=0.01), (), (), tenth, None, 0.05)
     assert little.kind == ("nothing missing" if unseen < 0.1 else "cannot tell")
     assert f"{unseen:.1%} would not be seen" in found.sentence
+
+
+@pytest.mark.parametrize(("left", "kind"), [(0.005, "nothing missing"), (0.02, "cannot tell")])
+def test_where_no_noise_is_told_hardly_anything_may_be_left(left, kind):
+    parts = Split("not separable", "no route")
+    found = decide(SimpleNamespace(eps_rmsn=left), (), (), parts, None, 0.05)
+    assert found.kind == kind
 
 
 def test_what_free_parameters_can_mimic_is_not_shown():
@@ -207,3 +214,7 @@ def test_what_free_parameters_can_mimic_is_not_shown():
         one = Candidate(CATALOGUE["yaw_cubic_rrr"], {}, **said, family=(), allowed=True)
         assert replace(one, carried=carried).shown(0.05) is shown
         assert replace(one, carried=carried, p_value=0.01).shown(0.05) is shown
+    most = Carried((1.0,) * 8, (0.2,) * 8)
+    assert replace(one, carried=most, p_value=0.01).shown(0.05)
+    hardly = replace(one, carried=most, visibility=0.5 * VISIBLE)
+    assert not hardly.shown(0.05)

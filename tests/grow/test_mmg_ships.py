@@ -54,11 +54,14 @@ def test_two_effects_do_what_none_does_alone(found):
     assert all(objection(fit, alone, 0.05) for alone in found.refits)
 
 
+LOOKED_AT = ("eps_rmsn", "eps_by_output", "eps_check", "at_bounds", "converged")
+
+
 def test_each_check_can_deny_two_effects(found):
     """Of trials held out a tenth of the squared error must go, too."""
     fit, both = found.before.fit, found.together
     assert stands(fit, both)
-    told = {n: getattr(both.fit, n) for n in ("eps_rmsn", "eps_check", "at_bounds", "converged")}
+    told = {n: getattr(both.fit, n) for n in LOOKED_AT}
     for name, other in {
         "eps_rmsn": 0.96 * fit.eps_rmsn,
         "eps_check": 0.96 * fit.eps_check,

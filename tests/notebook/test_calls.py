@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import trialid as ti
 from trialid.errors import TrialidError
+from trialid.names.quantities import SIGNALS
 from trialid.workflow.notebook.arguments import changes_of, count_of, order_words, path_of
 from trialid.workflow.notebook.fit_run import FitRun
 from trialid.workflow.notebook.pipeline_run import PipelineRun
@@ -91,11 +93,15 @@ def test_a_count_that_is_none(name: str, given: Any) -> None:
     assert count_of(np.int64(3), "seed", 0) == 3
 
 
+TOLD: Any = SimpleNamespace(quantities=SIGNALS)
+"""A model as far as its orders go."""
+
+
 def test_orders_that_are_no_numbers() -> None:
     with pytest.raises(TrialidError, match=r"delta: 'a' \(row 0\) is no number"):
-        _table(0.5, {"delta": ["a", "b"]})
+        _table(TOLD, 0.5, {"delta": ["a", "b"]})
     with pytest.raises(TrialidError, match="inputs of one length and their period"):
-        _table("a", {"delta": [0.1, 0.2]})
+        _table(TOLD, "a", {"delta": [0.1, 0.2]})
 
 
 def weave(name: str, use: str) -> ti.Trial:

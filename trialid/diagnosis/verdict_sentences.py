@@ -12,7 +12,6 @@ from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.refit import AS_SLOW, Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
-from trialid.identification.explained import of_use, unexplained_share
 from trialid.identification.fit import Fit
 
 MANY: Final = 8
@@ -38,8 +37,7 @@ def as_late(fit: Fit, found: Refit, why: str) -> str:
 
 def moved_otherwise(fit: Fit, found: Refit, outputs: Sequence[str]) -> str:
     """What the model leaves most of goes on as before: waves, or whatever else moves it."""
-    left = unexplained_share(found.fit, of_use(found.fit, "fit"))
-    rest = " and ".join(f"{np.sqrt(left[c]):.0%} of {c}" for c in outputs)
+    rest = " and ".join(f"{found.fit.eps_by_output[c]:.0%} of {c}" for c in outputs)
     return (
         f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but {rest} is left as "
         "before: something else moves that, as a swell does, and what it does to the rest may be "
@@ -109,10 +107,10 @@ def no_split(parts: Split) -> str:
     )
 
 
-def small_rest(total: float) -> str:
+def small_rest(left: float) -> str:
     """All of the error is little, and what it is made of is nothing to ask."""
     return (
-        f"no effect stands out, and all that is left is {total:.1%}, noise and model error together"
+        f"no effect stands out, and all that is left is {left:.1%}, noise and model error together"
     )
 
 

@@ -32,7 +32,6 @@ from trialid.diagnosis.search.carry_over import levels, own_errors
 from trialid.diagnosis.search.falls import Refitted, fall, fall_of_all, own_fall, worse_held_out
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
-from trialid.identification.explained import of_use, unexplained_share
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import known_of_ship
@@ -48,10 +47,10 @@ BESIDE: Final = "something else moves what the model leaves most of, and this ma
 """Objections in their words."""
 
 LEFT: Final = 0.25
-"""Share of an output's variance left from which on something else moves it. Of ships that roll in a
-swell of their own period 0.29 to 0.35 of the roll is left, and three of eleven had an effect of the
-yaw named that the ship did not have; half of it is left of a real ship's sway in wind (0.19, of
-which the wind takes half), twice lets the three pass."""
+"""Share of an output's mean square left from which on something else moves it. Of ships that roll
+in a swell of their own period 0.29 to 0.35 of the roll is left, and three of eleven had an effect
+of the yaw named that the ship did not have. Half of it is left of a real ship's sway in wind (0.19,
+of which the wind takes half); with twice the three have their names."""
 
 TOUCHED: Final = 0.05
 """Part of that which an effect must take to have a share in it: those three took 0.003 at most, a
@@ -268,7 +267,7 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
 
 def outputs_beside(fit: Fit, refit: Refitted) -> tuple[str, ...]:
     """Outputs that the model leaves much of, and of which the effect takes nothing."""
-    before, after = (unexplained_share(one, of_use(one, "fit")) for one in (fit, refit.fit))
+    before, after = ({n: e**2 for n, e in f.eps_by_output.items()} for f in (fit, refit.fit))
     much = (name for name, left in before.items() if left > LEFT)
     return tuple(name for name in much if after[name] > (1.0 - TOUCHED) * before[name])
 
