@@ -13,7 +13,7 @@ from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.completeness import completeness
 from trialid.diagnosis.search.refit import likeliest_refit, refit
-from trialid.diagnosis.search.score import CLEAR, VISIBLE, Candidate, rank
+from trialid.diagnosis.search.score import VISIBLE, Candidate, rank
 from trialid.diagnosis.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict, decide, replace
 from trialid.effects import CATALOGUE
@@ -206,15 +206,11 @@ def test_where_no_noise_is_told_hardly_anything_may_be_left(left, kind):
     assert found.kind == kind
 
 
-def test_what_free_parameters_can_mimic_is_not_shown():
-    """Blocks agree, and a test too: it depends on what of its trace is left."""
+def test_what_free_parameters_can_mimic_is_not_shown_by_blocks():
+    """Blocks agree, no test says so: it depends on what of its trace is left."""
     carried = Carried((1.0,) * 8, (0.6,) * 8)
-    for visibility, shown in ((2.0 * CLEAR, True), (0.5 * CLEAR, False)):
+    for visibility, shown in ((10.0 * VISIBLE, True), (0.1 * VISIBLE, False)):
         said = {"eps_predicted": 0.1, "score": 0.0, "p_value": 1.0, "visibility": visibility}
         one = Candidate(CATALOGUE["yaw_cubic_rrr"], {}, **said, family=(), allowed=True)
         assert replace(one, carried=carried).shown(0.05) is shown
-        assert replace(one, carried=carried, p_value=0.01).shown(0.05) is shown
-    most = Carried((1.0,) * 8, (0.2,) * 8)
-    assert replace(one, carried=most, p_value=0.01).shown(0.05)
-    hardly = replace(one, carried=most, visibility=0.5 * VISIBLE)
-    assert not hardly.shown(0.05)
+        assert replace(one, carried=carried, p_value=0.01).shown(0.05)

@@ -1,4 +1,4 @@
-"""What the test shows although no slope foretells a fall is fitted before it is given up."""
+"""What the test shows more surely is fitted although no slope foretells a fall."""
 
 from types import SimpleNamespace
 
@@ -8,36 +8,41 @@ from trialid.diagnosis import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 
 
-def candidate(name, *, shown, falls):
-    carried = SimpleNamespace(falls=falls)
-    effect = SimpleNamespace(name=name)
+def candidate(name, p_value, falls):
     return SimpleNamespace(
-        effect=effect,
-        carried=carried,
-        shown=lambda level: shown,
-        worth_a_name=lambda level: shown and falls,
+        effect=SimpleNamespace(name=name),
+        p_value=p_value,
+        carried=SimpleNamespace(falls=falls),
+        shown=lambda level: p_value < level,
+        worth_a_name=lambda level: p_value < level and falls,
     )
 
 
 @pytest.mark.parametrize(
     ("ranking", "fitted"),
     [
-        ([("a", True, True), ("b", True, False)], ["a"]),
-        ([("a", False, True), ("b", True, False)], ["b"]),
-        ([("a", False, True), ("b", False, False)], []),
+        ([("a", 0.01, True), ("b", 0.02, False)], ["a"]),  # less sure than what is named
+        ([("a", 0.01, True), ("b", 0.002, False)], ["a", "b"]),
+        ([("a", 0.2, True), ("b", 0.01, False)], ["b"]),  # nothing else is shown
+        ([("a", 0.2, True), ("b", 0.2, False)], []),
     ],
 )
-def test_which_candidates_are_fitted_first(monkeypatch, ranking, fitted):
+def test_which_candidates_are_fitted(monkeypatch, ranking, fitted):
     asked = []
 
-    def best(fit, worth, most, level, progress):
+    def refit(fit, worth, *more):
         asked.extend(c.effect.name for c in worth)
-        return ()
+        return [SimpleNamespace(candidate=c) for c in worth]
 
-    monkeypatch.setattr(diagnose, "refit_best", best)
-    monkeypatch.setattr(diagnose, "likeliest_refit", lambda *given: None)
-    monkeypatch.setattr(diagnose, "refit", lambda *given: ())
+    def likeliest(fit, done, *more):
+        return min(done, key=lambda r: r.candidate.p_value, default=None)
+
+    monkeypatch.setattr(diagnose, "refit_best", refit)
+    monkeypatch.setattr(diagnose, "likeliest_refit", likeliest)
+    monkeypatch.setattr(diagnose, "refit", refit)
+    monkeypatch.setattr(diagnose, "foretell_far_more", lambda *given: ())
+    monkeypatch.setattr(diagnose, "to_fit", lambda *given: ())
     monkeypatch.setattr(diagnose, "look_beside", lambda *given, **named: None)
-    made = [candidate(name, shown=shown, falls=falls) for name, shown, falls in ranking]
+    made = [candidate(*each) for each in ranking]
     diagnose.refits_of(None, made, DiagnoseSettings(candidates={}), lambda words: None)
     assert asked == fitted

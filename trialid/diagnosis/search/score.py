@@ -27,17 +27,6 @@ VISIBLE: Final = 0.001
 """Below this share of its sensitivity left, an effect cannot be told from the free parameters."""
 
 
-CLEAR: Final = 0.01
-"""The same for a name, unless most of the error goes. Of 462 records of 33 effects each in three
-noises three had a wrong name, two of which left 0.005 and 0.006 of their sensitivity and took 7
-and 11 % off blocks left out; none of 243 right ones left less than 0.022. With half of it those two
-have their names, with twice nothing changes."""
-
-MOST_GOES: Final = 0.5
-"""Share of the squared error of blocks left out that may stay with what is seen less clearly. Of a
-real roll decay the righting arm and the damping leave 0.29 and 0.02 to 0.03, and are seen by 0.008
-and 0.002: with half of it the arm has no name, with twice the two wrong ones have theirs."""
-
 OUTSIDE: Final = 2.5
 """Standard errors by which a value must lie outside its range to be unphysical."""
 
@@ -91,12 +80,11 @@ class Candidate:
     def shown(self, level: float) -> bool:
         """Whether it is there: by the test, or by the blocks left out, one like the other.
 
-        Of what the free parameters can mimic neither tells, unless most goes with it: with it
-        these are others where they were fitted, and what that does elsewhere is theirs.
+        Of what the free parameters can mimic blocks tell nothing: with it these are others where
+        they were fitted, and what that does elsewhere is theirs.
         """
-        clear = self.visibility > CLEAR or self.carried.ratio < MOST_GOES
         by_blocks = self.carried.large and self.visibility > VISIBLE
-        return self.allowed and clear and (self.p_value < level or by_blocks)
+        return self.allowed and (self.p_value < level or by_blocks)
 
     def worth_a_name(self, level: float) -> bool:
         """Whether it is there and so much of it carries over that somebody would notice."""
