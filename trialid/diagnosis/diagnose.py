@@ -108,7 +108,7 @@ def _or_of_two(
     """The verdict, and two effects at once, where none has a name and the catalogue may hold it."""
     if verdict.kind not in ("cannot tell", "not in catalogue") or (whole and whole.gap):
         return verdict, None
-    if leans_inward(fit):
+    if verdict.family or leans_inward(fit):  # one alone does it, or a sensor is in doubt
         return verdict, None
     found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
     return (verdict if found is None else verdict_on_two(fit, found)), found

@@ -81,7 +81,8 @@ the same of them, with twice nothing is missing while the damping is."""
 class Verdict:
     """What the record says is missing, in one of four kinds, with the sentence a person reads.
 
-    `together` are two effects that do at once what none does alone.
+    `family` are the effect and what it is not told from; without an effect those of which one is
+    missing. `together` are two effects that do at once what none does alone.
     """
 
     kind: str
@@ -155,7 +156,8 @@ def _judged(
         return Verdict("not in catalogue", None, (), explains_little(named, share, parts))
     others = rivals(named, ranking, refits)
     if fall(fit, named) < MOST and _open(named, others, ranking, level):
-        return Verdict("cannot tell", None, (), one_of(fit, named, others))
+        either = (named.candidate.effect.name, *others)
+        return Verdict("cannot tell", None, either, one_of(fit, named, others))
     return _missing(fit, named, others, level)
 
 

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from made_up_fits import NO_ROUTE, fit, refit
 
+from trialid.diagnosis import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.verdict import decide
 from trialid.diagnosis.verdict_sentences import contradiction, significant_and_small
+from trialid.progress import silent
 
 
 def decided(fall, *, p_value, alike=()):
@@ -31,8 +34,20 @@ def test_of_effects_unlike_each_other_one_that_explains_most_is_named(fall, p_va
     if kind == "cannot tell":
         assert "as well it may be b" in found.sentence
         assert "(p = 1 over the catalogue)" in found.sentence
-    else:
-        assert found.family == ("a", "b")
+    assert found.family == ("a", "b")
+
+
+def test_of_several_of_which_one_is_missing_no_two_are_tried_at_once(monkeypatch):
+    found = decided(0.45, p_value=1.0)
+    tried = []
+    monkeypatch.setattr(diagnose, "two_at_once", lambda *given: tried.append(given))
+    monkeypatch.setattr(diagnose, "leans_inward", lambda fit: ())
+    asked = DiagnoseSettings(candidates={})
+    assert diagnose._or_of_two(fit(0.10), found, None, asked, silent) == (found, None)
+    assert not tried
+    none = replace(found, family=())
+    diagnose._or_of_two(fit(0.10), none, None, asked, silent)
+    assert len(tried) == 1
 
 
 def test_the_sentence_says_no_chance_that_was_not_shown():
