@@ -101,7 +101,7 @@ def test_no_sensor_is_late_where_the_rudder_jumps(T: float) -> None:
 
 @pytest.mark.study(turn=0)
 def test_where_nobody_looks_at_the_rudder_a_sensor_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refit, "rudder_jump", lambda *_: None)
+    monkeypatch.setattr(refit, "jump_in", lambda *_: None)
     assert named(identify(recorded_orders(6.0), s175q.MODEL, s175q.SETTINGS)) == "lag_phi"
 
 
