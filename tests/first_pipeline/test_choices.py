@@ -77,6 +77,16 @@ def test_samples_are_as_far_apart_as_signals_and_ship_allow(
     assert period([logged(rate=rate) for rate in rates], length, speed) == wanted
 
 
+def test_a_slow_compass_beside_a_rate_sets_no_pace() -> None:
+    """A heading once a second beside a gyro of 10 Hz; where it alone tells the turn it does."""
+    quick, slow = (logged(rate=rate).signals for rate in (10.0, 1.0))
+    heading = SimpleNamespace(quantity="psi", unit="deg", source=slow[1].source)
+    rated = SimpleNamespace(signals=[*quick, heading], window=None)
+    alone = SimpleNamespace(signals=[quick[0], heading], window=None)
+    assert period([rated], 2.0, 1.0) == 0.1
+    assert period([alone], 2.0, 1.0) == 1.0
+
+
 def test_a_stated_speed_is_taken_as_it_is() -> None:
     nothing = SimpleNamespace(channels={})
     live: dict[str, Any] = {"u": ()}

@@ -133,7 +133,7 @@ def test_no_change_is_found_where_there_is_none() -> None:
         y = Estimates(np.random.default_rng(seed).standard_normal(20), np.ones(20))
         loose += bool(find_changes(y, 0.05 * len(courses_of(np.arange(20.0))) * 2))
     assert alarms <= 5
-    assert loose >= 3
+    assert loose >= 6
 
 
 def test_what_a_fleet_without_a_change_shows_as_often_is_not_told() -> None:

@@ -20,7 +20,7 @@ from trialid.ship.model import ShipModel
 from trialid.workflow.use.finished_model import FinishedModel, finished_model
 from trialid.workflow.use.orders import named_manoeuvre, stop_order
 from trialid.workflow.use.predict import predict_manoeuvre, spread_of
-from trialid.workflow.use.what_if import WhatIf, known_changes, read_changes
+from trialid.workflow.use.what_if import WhatIf, changed_ship, known_changes, read_changes
 
 FIRST = "first overshoot 20/20 [deg]"
 ASKED = named_manoeuvre(["zigzag", "20"])
@@ -55,7 +55,6 @@ def test_another_speed_is_that_of_a_ship_built_so(model: FinishedModel) -> None:
 
 
 def predict_rate(model: FinishedModel) -> float:
-    from trialid.design.following import sailed_ship
 
     return sailed_ship(model.fit).rudder_rate
 
@@ -72,7 +71,7 @@ def test_a_number_that_is_stated_is_not_uncertain_and_its_place_is_told(
     heel = [float(np.abs(x.motion.motion["phi"]).max()) for x in (found, near)]
     assert abs(heel[0] - heel[1]) > 0.05 * heel[1]
     plain = predict_manoeuvre(model, ASKED)
-    told = "What if GM = 1.4: another ship or loading than the record's"
+    told = "What if GM = 1.4 m: another ship or loading than the record's"
     assert any(told in words for words in found.words)
     assert any("which the record allows (GM likely" in w for w in near.words)
     assert not any("What if" in w for w in plain.words)
@@ -208,10 +207,23 @@ def test_a_shaft_whose_pull_astern_was_fitted_stops_by_that() -> None:
 
 
 def test_speed_does_not_change_where_it_is_simulated() -> None:
-    from trialid.workflow.use.what_if import changed_ship
-
     ship = vessel(surging(), 0.5, {"u": 7.0, "n": 5.0}, 0.05)
     with pytest.raises(TrialidError, match="follows from the shaft"):
         changed_ship(ship, WhatIf({"speed": 5.0}))
     faster = changed_ship(ship, WhatIf({"n": 6.0}))
     assert faster.constants["n"] == 6.0
+
+
+def test_what_the_trials_had_beside_her_model_may_be_another(model: FinishedModel) -> None:
+    made = predict_manoeuvre(model, ASKED, read_changes(["lost_in_turns=3"], ()))
+    [told] = [one for one in made.words if one.startswith("What if")]
+    assert told.startswith("What if lost_in_turns = 3: ")
+    assert told.endswith(" as in the trials, over all of them.")
+
+
+def test_an_angle_is_stated_in_degrees() -> None:
+    """A rudder a degree off, not a radian."""
+    model = (surging() + CATALOGUE["rudder_offset"]).with_values({"delta_0": 0.0})
+    ship = vessel(model, 0.5, {"u": 7.0, "n": 5.0}, 0.05)
+    changed = changed_ship(ship, WhatIf({"delta_0": 1.0}))
+    assert changed.model.value("delta_0") == pytest.approx(np.deg2rad(1.0))

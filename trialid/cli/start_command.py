@@ -66,9 +66,9 @@ def start(
     """Look into each LOG, a file or a folder, write a pipeline and a ship to begin with, and fit.
 
     A folder of several trials is several trials, and so are the manoeuvres of a long log; the
-    middle one of all is held out. Each choice
-    stands in the pipeline with its reason; what only you can know is left open there, and then
-    nothing is fitted yet. The same by hand: `trialid inspect LOG... --init`, then `trialid run`.
+    middle one of all is held out. Each choice stands in the pipeline with its reason; what only you
+    can know is left open there, and then nothing is fitted yet. The same by hand: `trialid inspect
+    LOG... --init`, then `trialid run`.
     """
     given = given_from(particulars)
     check_new_pipeline(pipeline, ship, speed, given, "--pipeline")

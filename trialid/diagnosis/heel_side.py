@@ -14,10 +14,6 @@ from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit
 from trialid.trial import Trial
 
-NAMING: Final = ("missing", "not in catalogue", "cannot tell")
-"""Verdicts that something is missing, or may be: none can be told of a roll of the wrong side."""
-
-
 CLEARLY: Final = 0.7
 """Correlation of heel and r u from which on she leans to one side in her turns. Of 104 records of a
 stranger's ships it is -0.85 to -0.28, and 0.03 at most in 180 of drawn ships in a swell: half of it
@@ -57,12 +53,10 @@ def _lean(trial: Trial) -> float:
 def settle_side(fit: Fit, verdict: Verdict) -> Verdict:
     """The verdict; of a roll that may be of the other side, that and how to settle it."""
     inward = leans_inward(fit)
-    if not inward:
+    if not inward or verdict.kind == "nothing missing":
         return verdict
     if verdict.kind == "no fit":
         return replace(verdict, sentence=f"{verdict.sentence}; {_doubt(inward)}")
-    if verdict.kind not in NAMING:
-        return verdict
     return Verdict("cannot tell", None, (), f"{_doubt(inward)}; until then no effect is named")
 
 

@@ -153,7 +153,8 @@ class NextTrialPart:
 class VerdictPart:
     """What is missing, in one word and in one sentence; `no fit` says why nothing can be said.
 
-    `together` are two effects that do at once what none does alone.
+    `family` are the effect and what it is not told from; without an effect those of which one is
+    missing. `together` are two effects that do at once what none does alone.
     """
 
     kind: str | None = None

@@ -68,7 +68,7 @@ def _expected(c: Candidate, name: str, refit: Fit | None) -> CandidateParameterR
 def _standing(c: Candidate, found: Diagnosis) -> str:
     if c.effect.name == found.verdict.effect:
         return "missing"
-    if c.effect.name in found.verdict.family:
+    if found.verdict.effect is not None and c.effect.name in found.verdict.family:
         return "same family"
     if c.visibility <= VISIBLE:
         return "not visible"

@@ -20,7 +20,9 @@ from trialid.ship.model import ShipModel
 ZERO: Final = "delta_0"
 OFFSET: Final = CATALOGUE["rudder_offset"]
 FEEDBACKS: Final = 0.5
-"""How likely it is the feedback's, which a ship has not: nothing is known of it beforehand."""
+"""How likely it is the feedback's, which a ship has not: nothing is known of it beforehand. A range
+then reaches 1.39 times as far as from the one to the other; with half of it 0.98 times, short of a
+ship without, with twice 1.96 times."""
 
 
 def with_rudders_zero(fit: Fit) -> ShipModel:
@@ -31,13 +33,15 @@ def with_rudders_zero(fit: Fit) -> ShipModel:
 
 def with_zero_at(model: ShipModel, zero: float) -> ShipModel:
     """A model whose rudder stands off its record by so much [rad]; its own where it has one."""
-    own = OFFSET.name in {e.name for e in model.effects}
-    return model if own else (model + OFFSET).with_values({ZERO: zero})
+    return model if _has_it(model) else (model + OFFSET).with_values({ZERO: zero})
 
 
 def _of_each_trial(fit: Fit) -> Common | None:
-    own = OFFSET.name in {e.name for e in fit.model.effects}
-    return None if own else fit.of_all_trials.get(ZERO)
+    return None if _has_it(fit.model) else fit.of_all_trials.get(ZERO)
+
+
+def _has_it(model: ShipModel) -> bool:
+    return OFFSET.name in {effect.name for effect in model.effects}
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from trialid.diagnosis.found_values import gives_way, her_own
 from trialid.diagnosis.search.carried import RIVAL, does_as_well
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
+from trialid.ship.effect import Effect
 
 
 def to_fit(
@@ -35,12 +36,17 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
     others = [r for r in refits if r is not named]
     good = {r.candidate.effect.name for r in others if does_as_well(named.carried, r.carried)}
     apart = {r.candidate.effect.name for r in others} - good
-    apart |= {c.effect.name for c in ranking if c.effect.bound_by_meaning and not c.allowed}
+    apart |= {c.effect.name for c in ranking if _has_ends(c.effect) and not c.allowed}
     if _foretold(named):
         good |= {c.effect.name for c in _by_slope(named, ranking, refits)}
     close = [c.effect.name for c in ranking if c.effect.name in good and c.allowed]
     alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
     return (*close, *alike)
+
+
+def _has_ends(effect: Effect) -> bool:
+    """Whether a value beyond its range says that it is not this, as of a coefficient."""
+    return effect.bound_by_meaning or effect.held is not None
 
 
 def _foretold(named: Refit) -> bool:

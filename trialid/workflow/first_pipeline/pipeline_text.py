@@ -28,8 +28,8 @@ UNITS: Final = {"lat": "deg", "lon": "deg", "x": "m", "y": "m"}
 MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
 
-SPEED: Final = ("u", "cog")
-"""What changes so slowly that its sensor sets no pace."""
+NO_PACE: Final = frozenset(("u", "cog"))
+"""What changes so slowly that its sensor sets no pace; nor does a heading beside its rate."""
 PERIODS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
 SWAY: Final = ("Yv", "Ydelta")
 """What a record of sway tells of it; most of Yr goes with the centrifugal force, which is known."""
@@ -182,10 +182,7 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
 
 def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:
     chosen = period(trials, length, speed)
-    slowest = min(
-        (s.source for t in trials for s in t.signals if s.quantity not in SPEED),
-        key=lambda c: c.rate,
-    )
+    slowest = min(_paces(trials), key=lambda c: c.rate)
     yield "[align]"
     yield (
         f"period = {chosen:g}  # s; the slowest signal, {comment(slowest.key)}, has "
@@ -198,10 +195,17 @@ def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
 
     Nor shorter than she needs: a simulation at 100 Hz tells no more of a ship, and takes longer.
     """
-    rates = [s.source.rate for t in trials for s in t.signals if s.quantity not in SPEED]
-    slow = 1.0 / min(rates)
+    slow = 1.0 / min(one.rate for one in _paces(trials))
     quick = min(0.5, length / max(speed, 0.1) / STEPS_A_LENGTH)
     return max((p for p in PERIODS if p <= max(slow, quick) * 1.05), default=PERIODS[0])
+
+
+def _paces(trials: Sequence[Chosen]) -> Iterator[ChannelInspection]:
+    """Channels that have to be followed from sample to sample."""
+    for trial in trials:
+        rated = any(one.quantity == "r" for one in trial.signals)
+        slow = NO_PACE | {"psi"} if rated else NO_PACE
+        yield from (one.source for one in trial.signals if one.quantity not in slow)
 
 
 def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[str]:

@@ -5,12 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from trialid.design.following import sailed_ship
 from trialid.design.helm import Vessel, vessel
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.seen_range import SeenRange
 from trialid.errors import TrialidError, nearest
 from trialid.names import labels
 from trialid.names.quantities import SIGNALS
+from trialid.names.wording import shown_unit
 from trialid.ship.model import ShipModel
 from trialid.workflow.use.finished_model import FinishedModel
 
@@ -73,7 +75,7 @@ def changed_ship(ship: Vessel, asked: WhatIf) -> Vessel:
             model = _at_speed(model, value)
             constants |= {"u": value}
         elif name in model.parameters:
-            model = model.with_values({name: value})
+            model = model.with_values({name: value / _shown(model, name)[1]})
         elif name in constants and name in model.recorded:
             constants[name] = value
         else:
@@ -83,6 +85,12 @@ def changed_ship(ship: Vessel, asked: WhatIf) -> Vessel:
                 f"{nearest(name, known)}"
             )
     return vessel(model, ship.period, constants, ship.rudder_rate)
+
+
+def _shown(model: ShipModel, name: str) -> tuple[str, float]:
+    """The unit in which a report shows a parameter, after a blank, and the factor to it."""
+    unit, factor = shown_unit(model.parameters[name].unit)
+    return ("" if unit == "1" else f" {unit}"), factor
 
 
 def _at_speed(model: ShipModel, speed: float) -> ShipModel:
@@ -132,14 +140,20 @@ def _of_value(model: FinishedModel, name: str, value: float) -> str:
         signal = "u" if name == SPEED else name
         return f"What if {name} = {labels.shown_text(signal, value)}: {_seen(model, signal, value)}"
     row = next((r for r in model.result.physical if r.name == name), None)
+    own = name in model.fit.model.parameters
+    sailed = model.fit.model if own else sailed_ship(model.fit).model
+    unit, factor = _shown(sailed, name)
+    stated = f"What if {name} = {value:g}{unit}"
     if row is None:
-        before = model.fit.model.value(name) if name in model.fit.model.parameters else None
-        return f"What if {name} = {value:g}: held at {before:.4g} in the fit, not asked of it."
+        before = f"{factor * sailed.value(name):.4g}{unit}"
+        held = f"held at {before} in the fit, not asked of it"
+        return f"{stated}: {held if own else f'{before} as in the trials, over all of them'}."
     if row.likely is None:
-        return f"What if {name} = {value:g}: fitted {row.value:.4g}, nobody knows how sure."
-    within = row.likely[0] <= value <= row.likely[1]
+        fitted = factor * model.fit.value(name)
+        return f"{stated}: fitted {fitted:.4g}{unit}, nobody knows how sure."
+    within = row.likely[0] <= value / factor <= row.likely[1]
     says = "which the record allows" if within else "another ship or loading than the record's"
-    return f"What if {name} = {value:g}: {says} ({_likely(name, row.likely, row.unit)})."
+    return f"{stated}: {says} ({_likely(name, row.likely, row.unit)})."
 
 
 def _seen(model: FinishedModel, signal: str, value: float) -> str:
@@ -151,5 +165,6 @@ def _seen(model: FinishedModel, signal: str, value: float) -> str:
 
 
 def _likely(name: str, ends: tuple[float, float] | None, unit: str) -> str:
-    low, high = ends or (float("nan"), float("nan"))
-    return f"{name} likely {low:.4g} to {high:.4g}{'' if unit == '1' else f' {unit}'}"
+    shown, factor = shown_unit(unit)
+    low, high = (factor * x for x in ends or (float("nan"), float("nan")))
+    return f"{name} likely {low:.4g} to {high:.4g}{'' if shown == '1' else f' {shown}'}"
