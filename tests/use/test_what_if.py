@@ -8,6 +8,7 @@ import s175q
 from test_bad_input import trialid_
 from typical import known_by
 
+from trialid.design.following import sailed_ship
 from trialid.design.helm import carry_out, vessel
 from trialid.design.imo import measures
 from trialid.design.manoeuvres import zigzag
