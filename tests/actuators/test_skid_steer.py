@@ -48,8 +48,8 @@ def test_from_the_log_to_a_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     done = CliRunner().invoke(commands, ["start", "a.bin", "b.bin", "--length", "2", "--quiet"])
     assert done.exit_code == 0, done.output
     text = (tmp_path / "first_trial.toml").read_text(encoding="utf-8")
-    assert 'thruster_port      = { channel = "servo/1:throttle_left", unit = "1" }' in text
-    assert "# thruster_port: by its parameters; side confirmed by the turn" in text
+    assert 'thruster_port_order      = { channel = "servo/1:throttle_left", unit = "1" }' in text
+    assert "# thruster_port_order: by its parameters; side confirmed by the turn" in text
     assert 'command = "share"' in (tmp_path / "first_trial_ship.toml").read_text(encoding="utf-8")
     found = result_of(tmp_path / "runs" / "first_trial" / "result.json")
     assert found.fit.converged
