@@ -1,16 +1,19 @@
-"""A long log is cut into the manoeuvres it holds; a log of one manoeuvre is a trial as it is."""
+"""A long log is cut into the manoeuvres it holds, or where she is steered most; one is a trial."""
 
+import dataclasses
 import functools
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pytest
 import sailed_days
 from click.testing import CliRunner
 
 from trialid import pipeline_file
 from trialid.cli.main import commands
-from trialid.workflow.first_pipeline.long_log import FEW, LONG, windows_of
+from trialid.trial import Trial
+from trialid.workflow.first_pipeline.long_log import FEW, LONG, STRETCH, windows_of
 from trialid.workflow.read_trials import align_trials
 
 DAYS = range(6100, 6120)
@@ -80,3 +83,51 @@ def test_a_pipeline_begins_with_a_trial_for_each_manoeuvre(tmp_path: Path) -> No
         assert abs(trial.duration - (end - begin)) < 3.0
         assert np.max(np.abs(trial.signals["delta"])) > np.deg2rad(8.0)
     assert sum(t.duration for t in trials) < 0.5 * sail_day(6103, STEERED)[0].duration
+
+
+LENGTH, SPEED, PERIOD = 90.0, 7.5, 0.5
+
+
+def passage(lengths: float, seed: int) -> tuple[Trial, np.ndarray]:
+    """Under an autopilot: noise about zero, as large as `swing` [rad]; a tenth of it in harbour.
+
+    The harbour is first, with the rudder hard over at random; a recorder fails in the largest
+    swing.
+    """
+    rng = np.random.default_rng([seed, 61])
+    samples = int(lengths * LENGTH / SPEED / PERIOD)
+    stretch = round(STRETCH * LENGTH / SPEED / PERIOD)
+    swing = np.repeat(np.deg2rad(rng.uniform(0.2, 3.0, samples // stretch + 1)), stretch)[:samples]
+    delta = swing * rng.uniform(-1.0, 1.0, samples)
+    u = np.full(samples, SPEED)
+    harbour = slice(0, samples // 10)
+    delta[harbour], u[harbour] = 0.6 * rng.choice([-1.0, 1.0], samples // 10), 1.0
+    signals = {"delta": delta, "r": 0.01 * delta, "u": u}
+    valid = {n: np.ones(samples, np.bool_) for n in signals}
+    lost = int(np.argmax(np.where(u > 2.0, swing, 0.0)))
+    valid["r"][lost : lost + stretch] = False
+    return Trial("day", "fit", PERIOD, signals, valid), swing
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_passage_begins_with_the_stretches_in_which_she_is_steered_most(seed: int) -> None:
+    trial, swing = passage(40 * STRETCH, seed)
+    found = windows_of(trial, LENGTH, SPEED)
+    assert len(found) == FEW
+    assert all(a.end <= b.begin for a, b in pairwise(found))
+    taken = np.zeros(trial.samples, np.bool_)
+    for one in found:
+        assert one.end - one.begin == pytest.approx(STRETCH * LENGTH / SPEED)
+        taken |= (trial.t >= one.begin) & (trial.t < one.end)
+    assert not taken[trial.signals["u"] < 2.0].any()
+    assert trial.valid["r"][taken].all()
+    able = trial.valid["r"] & (trial.signals["u"] > 2.0)
+    assert np.median(swing[taken]) > np.quantile(swing[able], 0.75)
+    assert swing[taken].min() > np.median(swing[able])
+
+
+def test_a_shorter_passage_is_one_trial_and_so_is_one_that_is_never_steered() -> None:
+    assert not windows_of(passage(1.9 * FEW * STRETCH, 1)[0], LENGTH, SPEED)
+    trial, _ = passage(40 * STRETCH, 2)
+    still = dataclasses.replace(trial, signals={**trial.signals, "delta": np.zeros(trial.samples)})
+    assert not windows_of(still, LENGTH, SPEED)

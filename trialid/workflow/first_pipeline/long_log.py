@@ -1,4 +1,8 @@
-"""Manoeuvres in a long log: each a trial of its own, so that harbour and passage are not fitted."""
+"""Manoeuvres in a long log: each a trial of its own, so that harbour and passage are not fitted.
+
+A log as long that holds no two of them, a passage under an autopilot, is begun with the stretches
+in which she is steered most: the rest of it would say the same again.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,6 +36,15 @@ FEW: Final = 8
 """Manoeuvres that a pipeline begins with, the first of each kind and angle first: what a fit learns
 from a ninth it has mostly seen."""
 
+STRETCH: Final = 90.0
+"""Ship lengths of a stretch without a manoeuvre: what one is given. A day of a 96 m ferry at 15 kn
+has 6800, of which the fit then reads 720; with half of it 360, with twice 1440."""
+
+UNDER_WAY: Final = 0.5
+"""Share of the approach speed that a ship makes all through such a stretch: less is harbour."""
+
+KNOWN: Final = 0.9
+"""Share of a stretch in which every signal was measured."""
 
 ANGLES: Final = 5.0
 """[deg] Steps in which rudder angles are ordered: within one they are the same manoeuvre again."""
@@ -80,7 +93,8 @@ def manoeuvre_windows(pipeline: Pipeline, durations: Sequence[float]) -> Windows
 def windows_of(trial: Trial, length: float, speed: float) -> tuple[Window, ...]:
     """The manoeuvres of a long trial in the order of time, those that are whole.
 
-    None where it is short or mostly theirs, and where there is but one: nothing could be held out.
+    None where it is short or mostly theirs. Where there is but one nothing could be held out: then
+    the stretches in which she is steered most, none where they would be most of the trial.
 
     Parameters
     ----------
@@ -95,9 +109,11 @@ def windows_of(trial: Trial, length: float, speed: float) -> tuple[Window, ...]:
     every = _apart(steered, length / speed / trial.period, trial.samples)
     spans = [span for span in every if any(not m.remark for m in span.parts)]
     taken = sum(span.end - span.begin for span in spans)
-    if len(spans) < 2 or taken > MOSTLY * trial.samples:
+    if taken > MOSTLY * trial.samples:
         return ()
-    return tuple(_window(trial, rudder, span) for span in _first_of_each(spans))
+    if len(spans) < 2:
+        return _steered_most(trial, rudder, round(STRETCH * length / speed / trial.period), speed)
+    return tuple(_manoeuvre(trial, rudder, span) for span in _first_of_each(spans))
 
 
 @dataclass(frozen=True)
@@ -136,12 +152,36 @@ def _first_of_each(spans: Sequence[Span]) -> list[Span]:
     return sorted(chosen, key=lambda span: span.begin)
 
 
-def _window(trial: Trial, rudder: Vector, span: Span) -> Window:
-    part, first = rudder[span.begin : span.end], span.parts[0]
+def _manoeuvre(trial: Trial, rudder: Vector, span: Span) -> Window:
+    first = span.parts[0]
+    return _window(trial, rudder, (span.begin, span.end), first.kind, first.rudder)
+
+
+def _window(
+    trial: Trial, rudder: Vector, ends: tuple[int, int], kind: str, angle: float | None = None
+) -> Window:
+    """With the angle of its order; without one that of the rudder at its farthest."""
+    begin, end = ends
+    part = rudder[begin:end]
+    most = float(np.max(np.abs(part)))
     return Window(
-        f"{first.kind} {abs(np.rad2deg(first.rudder)):.0f}",
-        span.begin * trial.period,
-        span.end * trial.period,
-        float(np.max(np.abs(part)) + abs(np.mean(part))),
+        f"{kind} {np.rad2deg(most if angle is None else abs(angle)):.0f}",
+        begin * trial.period,
+        end * trial.period,
+        most + float(np.abs(np.mean(part))),
         float(np.std(part)),
     )
+
+
+def _steered_most(trial: Trial, rudder: Vector, samples: int, speed: float) -> tuple[Window, ...]:
+    """At most `FEW` stretches of so many samples, those in which the rudder varies most."""
+    if FEW * samples > MOSTLY * trial.samples:
+        return ()
+    known = np.all([*trial.valid.values()], axis=0)
+    if "u" in trial.signals:
+        known &= trial.signals["u"] > UNDER_WAY * speed
+    begins = range(0, trial.samples - samples + 1, samples)
+    able = [at for at in begins if known[at : at + samples].mean() >= KNOWN]
+    most = sorted(able, key=lambda at: -float(np.std(rudder[at : at + samples])))[:FEW]
+    found = [_window(trial, rudder, (at, at + samples), "steered") for at in sorted(most)]
+    return tuple(one for one in found if one.variation > 0.0)
