@@ -48,6 +48,15 @@ def test_duplicates_and_steps_back():
     assert "r: 10 samples with the stamp of another one dropped" in found
 
 
+@pytest.mark.parametrize(("back", "told"), [(3599.5, True), (3605.0, True), (1800.0, False)])
+def test_a_clock_set_back_by_an_hour_is_asked_for(back, told):
+    t = np.arange(0.0, 4000.0, 0.5)
+    found = remarks_on(np.concatenate([t, t[-1] - back + t]), swing)
+    words = next(one for one in found if "steps back" in one)
+    assert f"by up to {back:.4g} s" in words
+    assert ("a local clock set back by an hour" in words) == told
+
+
 def test_of_two_samples_with_one_stamp_the_first_logged_stays():
     t = np.arange(0, 100, 0.5)
     log = recording(channel("x", np.repeat(t, 2), np.tile([1.0, 9.0], len(t))))

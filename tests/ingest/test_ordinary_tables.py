@@ -83,9 +83,19 @@ def test_dates_with_slashes_are_read_where_a_day_above_12_tells_the_order(tmp_pa
     sure = log(tmp_path, "time,u\n03/12/2026 09:00:00,1\n03/13/2026 09:00:00,2\n")
     assert np.diff(stamps(sure)).tolist() == [86_400 * 10**9]
     for date in ("03/12/2026", "03-12-2026", "03.12.26"):
-        unsure = log(tmp_path, f"time,u\n{date} 09:00:00,1\n{date} 09:00:01,2\n")
-        with pytest.raises(LogError, match="one way only"):
-            read(unsure)
+        why = "one way only" if "." in date else f"'{date}' may be day 3 of month 12 or day 12 of"
+        for rows in ("time,u\n{} 09:00:00,1\n{} 09:00:01,2\n", "date,time,u\n{},09:00:00,1\n"):
+            if "." in date and rows.startswith("date"):
+                continue  # told as two columns that are none together
+            unsure = log(tmp_path, rows.format(date, date))
+            with pytest.raises(LogError, match=why):
+                read(unsure)
+
+
+def test_a_date_that_is_the_same_in_either_order_is_read(tmp_path):
+    one = stamps(log(tmp_path, "time,u\n03/03/2026 09:00:00,1\n03/03/2026 09:00:01,2\n"))
+    other = stamps(log(tmp_path, "time,u\n2026-03-03 09:00:00,1\n2026-03-03 09:00:01,2\n"))
+    assert list(one) == list(other)
 
 
 def test_what_pandas_writes_by_default(tmp_path):

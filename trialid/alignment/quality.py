@@ -23,9 +23,18 @@ JITTER = 0.2
 """Spread of the time between samples, as a share of it, that is worth a remark."""
 COARSE = 0.02
 """Share of its motion that the rounding of a signal may be without a remark."""
+HOUR_S = 3600.0
 STUCK_S = 10.0
 STUCK_SHARE = 0.1
 """A motion that does not change for so long, and for this share of the trial, is worth a remark."""
+
+
+def steps_back(count: int, largest: float) -> str:
+    """How often a clock steps back and how far at most [s], in a clause."""
+    words = f"time steps back {count} times, by up to {largest:.4g} s"
+    if abs(largest - HOUR_S) > STUCK_S:
+        return words
+    return f"{words} (a local clock set back by an hour, whose samples mix? cut the log there)"
 
 
 def of_clock(logged: Series, ordered: Series) -> Iterator[str]:
@@ -34,8 +43,7 @@ def of_clock(logged: Series, ordered: Series) -> Iterator[str]:
     yield f"{name}: {len(ordered.t)} samples, {1 / ordered.period:.4g} Hz, {logged.clock}"
     back = -np.diff(logged.t)[np.diff(logged.t) < 0]
     if len(back):
-        largest = back.max() / 1e9
-        yield f"{name}: time steps back {len(back)} times, by up to {largest:.3g} s; sorted"
+        yield f"{name}: {steps_back(len(back), back.max() / 1e9)}; sorted"
     twice = len(logged.t) - len(ordered.t)
     if twice:
         yield f"{name}: {twice} samples with the stamp of another one dropped"

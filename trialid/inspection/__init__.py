@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from trialid.alignment.clocks import CALENDAR_NS
+from trialid.alignment.quality import steps_back
 from trialid.errors import LogError
 from trialid.ingest import LogFile, adapter_of, files_of
 from trialid.ingest.adapter import NO_AIDS, Aids
@@ -93,10 +94,7 @@ def _of_clock(one: ChannelInspection) -> Iterator[str]:
     """Warnings about a channel's stamps, which are those of its whole message."""
     name, clock, late = one.message or "the table", one.clock, one.clock.received
     if clock.steps_back:
-        yield (
-            f"{name}: time steps back {clock.steps_back} times, by up to "
-            f"{clock.furthest_back:.3g} s"
-        )
+        yield f"{name}: {steps_back(clock.steps_back, clock.furthest_back)}"
     if late is not None and abs(late.drift) * (one.end - one.start) / 1e9 > 0.1:
         yield f"{name}: its clock drifts by {late.drift * 1e6:.3g} ppm against the recorder's"
     if one.rate and clock.jitter * one.rate > 0.5:

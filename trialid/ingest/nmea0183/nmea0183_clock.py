@@ -1,4 +1,4 @@
-"""ZDA and RMC sentences as the clock of a log whose lines have no stamps."""
+"""ZDA, RMC and fixes of a receiver as the clock of a log whose lines have no stamps."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,8 @@ from trialid.ingest.nmea0183.nmea0183_stamps import NONE, SECOND, days_of
 
 Ints = NDArray[np.int64]
 
-CLOCKS = ("ZDA", "RMC")
+CLOCKS = {"ZDA": 1, "RMC": 1, "GGA": 1, "GNS": 1, "GLL": 5}
+"""In which field a sentence states its time of day; the first two have a date, too."""
 DAY = 86_400 * SECOND
 JUMP = 5.0
 """Times further apart than this many usual steps are not interpolated between."""
@@ -43,14 +44,17 @@ class Clock:
 
 
 def ticks(block: Sentences, rows: Places, sentence: str, offset: int) -> Ticks:
-    """Times that some ZDA or RMC sentences state; rows count from `offset`."""
-    of_day = _time_of_day(block, block.field(rows, 1))
+    """Times that some sentences of one kind state; rows count from `offset`."""
+    of_day = _time_of_day(block, block.field(rows, CLOCKS[sentence]))
+    sound, days = np.zeros(len(rows), np.bool_), np.zeros(len(rows), np.int64)
     if sentence == "ZDA":
         days, sound = _date_of_zda(block, rows)
         valid = np.ones(len(rows), np.bool_)
-    else:
+    elif sentence == "RMC":
         days, sound = _date_of_rmc(block, rows)
         valid = block.letter(rows, 2) == ord("A")
+    else:  # a quality, modes or a status: without a fix 0, N or V
+        valid = ~np.isin(block.letter(rows, 6), [ord(no) for no in "0NV"])
     timed = of_day != NONE
     dated = np.where(sound & timed, days * DAY + of_day, NONE)
     return Ticks(rows[timed] + offset, dated[timed], of_day[timed], valid[timed])

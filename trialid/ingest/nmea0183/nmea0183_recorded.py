@@ -222,8 +222,8 @@ def _timed(path: Path, stream: Stream, zone: str | None) -> Timed:
     clock = nmea0183_clock.clock(stream.total, ticks)
     if clock is None:
         raise LogError(
-            f"{path}: no time in the log: its lines have no stamps and there is no ZDA or RMC that "
-            "states one; record it with stamps on the lines, or with the GPS on the same stream"
+            f"{path}: no time in the log: its lines have no stamps and no ZDA, RMC, GGA, GNS or "
+            "GLL states one; record it with stamps on the lines, or with the GPS on the same stream"
         )
     return Timed(clock.t, None, clock.words, (*clock.remarks, *_untimed(clock.t)))
 

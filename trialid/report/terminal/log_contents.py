@@ -249,7 +249,7 @@ def _worst(group: Sequence[ChannelInspection]) -> tuple[str, str, str]:
     late = [one.clock.received for one in group if one.clock.received is not None]
     return (
         f"{jitter:.2g} %" if jitter >= 0.01 else "0 %",
-        f"{back.steps_back} (to {back.furthest_back:.3g} s)" if back.steps_back else "-",
+        f"{back.steps_back} (to {back.furthest_back:.4g} s)" if back.steps_back else "-",
         _against(late)
         if all(one.same_epoch for one in group if one.clock.received)
         else "another date",

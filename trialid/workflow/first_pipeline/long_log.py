@@ -178,8 +178,8 @@ def _steered_most(trial: Trial, rudder: Vector, samples: int, speed: float) -> t
     if FEW * samples > MOSTLY * trial.samples:
         return ()
     known = np.all([*trial.valid.values()], axis=0)
-    if "u" in trial.signals:
-        known &= trial.signals["u"] > UNDER_WAY * speed
+    if (ahead := trial.signals.get("u")) is not None:
+        known &= ahead > UNDER_WAY * speed
     begins = range(0, trial.samples - samples + 1, samples)
     able = [at for at in begins if known[at : at + samples].mean() >= KNOWN]
     most = sorted(able, key=lambda at: -float(np.std(rudder[at : at + samples])))[:FEW]

@@ -117,6 +117,8 @@ def _apart(table: Table, dates: Sequence[int], clock_at: int, zone: str | None) 
     columns = (dates[0], clock_at)
     if len(dates) == 1 and _is_dated(table, columns):
         return date_clock(table, columns, _spec(table, columns), zone)
+    if len(dates) == 1 and (either := table_stamps.day_or_month(str(table.columns[dates[0]][0]))):
+        raise LogError(f"{table.path}: {either}; write ISO-8601 dates, {TOLD}")
     raise LogError(
         f"{table.path}: date and time stand in separate columns, {table.heads[dates[0]].name!r} "
         f"and {table.heads[clock_at].name!r}; write one column of ISO-8601 dates, {TOLD}"

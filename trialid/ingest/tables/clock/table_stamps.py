@@ -28,6 +28,7 @@ MONTHS = {
     )
 }
 LOOKS_DATED = re.compile(r"\d{4}[./-]\d{1,2}[./-]\d|\d{1,2}[./-](\d{1,2}|[A-Za-z]{3})[./-]\d{4}")
+EITHER = re.compile(r"(?P<first>\d{1,2})[/-](?P<second>\d{1,2})[/-]\d{4}")
 CLOCK = re.compile(r"\d{1,2}:\d\d:\d\d([.,]\d+)?")
 """A time of day that can be none of minutes and seconds."""
 
@@ -59,6 +60,20 @@ def as_iso(texts: Sequence[str]) -> list[str] | None:
     return [_iso(one, order) for one in dates]
 
 
+def day_or_month(text: str) -> str:
+    """Why a date is none in a table that does not tell its day from its month; empty else.
+
+    >>> day_or_month("03/04/2025 10:00:00")
+    "'03/04/2025' may be day 3 of month 4 or day 4 of month 3"
+    """
+    one = EITHER.match(text)
+    first, second = (int(one["first"]), int(one["second"])) if one else (0, 0)
+    if one is None or first == second or max(first, second) > 12:
+        return ""
+    both = f"day {first} of month {second} or day {second} of month {first}"
+    return f"{one.group()!r} may be {both}"
+
+
 def _order(dates: Sequence[re.Match[str]]) -> str | None:
     """Which of year, month and day comes first, in all of them."""
     first = dates[0]
@@ -68,6 +83,8 @@ def _order(dates: Sequence[re.Match[str]]) -> str | None:
         return written
     day_first = any(int(one["first"]) > 12 for one in dates)
     month_first = any(one["second"].isdigit() and int(one["second"]) > 12 for one in dates)
+    if all(one["first"] == one["second"] for one in dates):
+        return "dmy"  # and "mdy": the third of the third is one day
     if day_first == month_first:
         return None
     return "dmy" if day_first else "mdy"

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import LogError, UnitError
+from trialid.ingest.tables.clock import table_stamps
 from trialid.ingest.tables.table import Head, Table, numbers
 from trialid.ingest.tables.table_names import unit_of_time
 from trialid.ingest.tables.templates.template import Time
@@ -157,6 +158,8 @@ def _first_text(table: Table, column: int) -> int:
 def _no_time(table: Table, row: int, column: int, cause: LogError | None) -> NoReturn:
     text = show_value(table, row, column)
     place = f"{table.where(row, column)}: {text!r} is no time"
+    if either := table_stamps.day_or_month(text):
+        raise LogError(f"{table.where(row, column)}: {either}; write ISO-8601 dates, {TOLD}")
     if re.match(r"\d{1,2}[./-]\d{1,2}[./-]\d{2,4}", text):
         raise LogError(f"{place} that can be read in one way only; write ISO-8601 dates, {TOLD}")
     raise LogError(
