@@ -34,7 +34,7 @@ def test_the_time_of_day_of_a_fix_is_the_clock_where_nothing_tells_a_date(tmp_pa
 
 def test_a_receiver_without_a_fix_counts_on_and_is_not_believed(tmp_path):
     def tick(i):
-        return gga(START + (i * SECOND if i > 5 else 100 * i * SECOND), quality=int(i > 5))
+        return gga(START + (i if i > 5 else i - 900) * SECOND, quality=int(i > 5))
 
     channel = read_text(tmp_path, unstamped(tick)).channels["ROT/TI:rate"]
     assert channel.y.min() > 5
