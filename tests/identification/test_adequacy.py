@@ -101,12 +101,33 @@ def test_a_record_that_ends_before_she_has_settled_is_too_short():
     model = MODEL
     whole = noisy(zigzag(10), 7)
     settings = replace(SETTINGS, free=("Ndelta", "Kdelta"))
-    slow = slowest_motion(identify([whole], model, settings)).seconds
+    slow = slowest_motion(identify([whole], model, settings), 0).seconds
     for factor, refused in ((0.9, True), (1.2, False)):
         piece = cut(whole, factor * SLOWEST_TIMES * slow, begin=60.0)
         fit = replace(identify([piece], model, settings), converged=True)
         found = why_no_fit(fit)
         assert ("too short" in str(found)) == refused, (factor, found)
+
+
+def at_speed(trial, speed):
+    u, known = np.full(trial.samples, speed), np.ones(trial.samples, np.bool_)
+    return replace(trial, signals={**trial.signals, "u": u}, valid={**trial.valid, "u": known})
+
+
+@pytest.mark.parametrize("first", ["circle", "zigzag"])
+def test_a_slower_trial_beside_it_makes_no_record_too_short(first):
+    """A turning circle halves her speed, and comes first by its name."""
+    whole = noisy(zigzag(10), 7)
+    settings = replace(SETTINGS, free=("Ndelta", "Kdelta"))
+    slow = slowest_motion(identify([whole], MODEL, settings), 0).seconds
+    piece = cut(whole, 1.2 * SLOWEST_TIMES * slow, begin=60.0)
+    approach = MODEL.ship.particulars["U0"]
+    piece, slower = at_speed(piece, approach), replace(at_speed(piece, approach / 2), name="circle")
+    trials = [slower, piece] if first == "circle" else [piece, slower]
+    fit = replace(identify(trials, MODEL, settings), converged=True)
+    assert "too short" not in str(why_no_fit(fit))
+    alone = replace(identify([slower], MODEL, settings), converged=True)
+    assert "too short" in str(why_no_fit(alone))
 
 
 def test_the_slowest_motion_is_that_of_the_equations():
@@ -117,7 +138,7 @@ def test_the_slowest_motion_is_that_of_the_equations():
     trial = with_signals(trial, u=np.full(trial.samples, 7.33), v=np.zeros(trial.samples))
     fit = identify([trial], yaw, Settings(("Ndelta",), ("r",), nuisance=("initial_state",)))
     by_hand = (0.000456 + 0.000419) / 0.004 * 175.0 / 7.33
-    assert slowest_motion(fit).seconds == pytest.approx(by_hand, rel=0.01)
+    assert slowest_motion(fit, 0).seconds == pytest.approx(by_hand, rel=0.01)
 
 
 def test_a_search_that_stopped_early_is_no_fit():

@@ -156,13 +156,17 @@ def _at_noise_level(fit: Fit) -> Inadequate | None:
 
 
 def _too_short(fit: Fit) -> Inadequate | None:
-    """No trial lasts long enough to see the slowest motion settle."""
-    slow = slowest_motion(fit)
-    longest = max(s.trial.duration for s in of_use(fit, "fit"))
-    if slow is None or longest >= SLOWEST_TIMES * slow.seconds:
+    """No trial lasts long enough, by its own clock, to see the slowest motion settle."""
+    trials = fit.problem.trials
+    each = [(t.duration, slowest_motion(fit, i)) for i, t in enumerate(trials)]
+    known = [(duration, slow) for duration, slow in each if slow is not None]
+    if not known:
+        return None
+    lasts, slow = max(known, key=lambda one: one[0] / one[1].seconds)
+    if lasts >= SLOWEST_TIMES * slow.seconds:
         return None
     return Inadequate(
-        f"the record is too short: {longest:.3g} s, where {slow.words} takes "
+        f"the record is too short: {lasts:.3g} s, where {slow.words} takes "
         f"{slow.seconds:.3g} s and must be seen {SLOWEST_TIMES:g} times over",
         f"record at least {np.ceil(SLOWEST_TIMES * slow.seconds):.0f} s in one go",
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.nuisance.of_each_trial import Nuisance, nuisances, with_nuisance
-from trialid.identification.nuisance.priors import speed
+from trialid.identification.nuisance.priors import fastest
 from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask
 from trialid.identification.roll.roll_range import RollRange, roll_range
 from trialid.names.quantities import MASS_PARAMETERS, POSITION
@@ -131,14 +131,16 @@ def question(
     y_rms = norms(trials, compared, settings.outputs, settings.norm, length)
     weights = np.array([settings.weights.get(c, 1.0) for c in settings.outputs])
     weights = weights / np.sqrt(np.mean(weights**2))
-    roll = _roll(simulator.model, trials[0], unknowns) if settings.hold_nuisance else None
+    roll = _roll(simulator.model, trials, unknowns) if settings.hold_nuisance else None
     return Problem(simulator, tuple(trials), unknowns, compared, y_rms, weights, roll=roll)
 
 
-def _roll(model: ShipModel, trial: Trial, unknowns: Sequence[Unknown]) -> RollRange | None:
+def _roll(
+    model: ShipModel, trials: Sequence[Trial], unknowns: Sequence[Unknown]
+) -> RollRange | None:
     places = {x.name: i for i, x in enumerate(unknowns) if x.trial is None}
     own = frozenset(i for i, x in enumerate(unknowns) if x.prior is not None)
-    return roll_range(model, speed(model, trial), places, own)
+    return roll_range(model, fastest(model, trials), places, own)
 
 
 def _check_ready(simulator: Simulator, trials: Sequence[Trial]) -> None:

@@ -32,10 +32,14 @@ class Motion:
     words: str
 
 
-def slowest_motion(fit: Fit) -> Motion | None:
-    """The slowest motion of the fitted ship, None where nothing is simulated or nothing settles."""
-    model, trial = fit.model, fit.problem.trials[0]
-    step = _one_sample(fit)
+def slowest_motion(fit: Fit, place: int) -> Motion | None:
+    """The slowest motion of the fitted ship at the speed of the fitted trial at this place.
+
+    None where nothing is simulated or nothing settles. Each trial has a clock of its own: of a
+    turning circle, which halves her speed, all takes twice as long as of a zig-zag.
+    """
+    model, trial = fit.model, fit.problem.trials[place]
+    step = _one_sample(fit, place)
     if step is None:
         return None
     with np.errstate(divide="ignore"):
@@ -56,14 +60,14 @@ def _motion(rate: complex, longest: float) -> Motion:
     return Motion(lag, "the slowest motion of the fitted ship")
 
 
-def _one_sample(fit: Fit) -> Vector | None:
+def _one_sample(fit: Fit, place: int) -> Vector | None:
     """Derivative of the states after one sample by those before, near a straight course; (n, n)."""
-    simulator, trial = fit.problem.simulator, fit.problem.trials[0]
+    simulator, trial = fit.problem.simulator, fit.problem.trials[place]
     states = simulator.equations.states
     moving = [i for i, s in enumerate(states) if s not in NEUTRAL]
     if not moving:
         return None
-    theta, x0, u, limit = arguments(simulator, trial, fit.problem.values(fit.theta, 0), {})
+    theta, x0, u, limit = arguments(simulator, trial, fit.problem.values(fit.theta, place), {})
     straight = np.array([0.0 if s in STRAIGHT else x for s, x in zip(states, x0, strict=True)])
     steady = np.median(u, axis=0)
     steady[[i for i, n in enumerate(simulator.equations.inputs) if n in STRAIGHT]] = 0.0

@@ -6,7 +6,7 @@ the ship's own coefficients with them. Each is therefore held about what a senso
 the first moments of the record, make likely; a record that sees it clearly is not held back.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Final
 
 import numpy as np
@@ -89,6 +89,11 @@ def speed(model: ShipModel, trial: Trial) -> float:
     u = trial.signals.get("u")
     known = model.ship.particulars["U0"] if u is None else float(np.median(np.abs(u)))
     return max(known, 0.1 * float(np.sqrt(g * L)))
+
+
+def fastest(model: ShipModel, trials: Iterable[Trial]) -> float:
+    """How fast she goes in the fastest trial [m/s]; a turning circle takes half of it."""
+    return max(speed(model, trial) for trial in trials)
 
 
 def _offset(model: ShipModel, trial: Trial, column: str, size: float) -> float:
