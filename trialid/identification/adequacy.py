@@ -14,7 +14,7 @@ from trialid.identification import file_of_ship
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
 from trialid.identification.fit import Fit
 from trialid.identification.gauss_newton import REASONS
-from trialid.identification.time_scales import slowest_motion
+from trialid.identification.time_scales import longest_by_its_clock
 from trialid.identification.trial_score import Score
 from trialid.identification.weighing import NO_NOISE
 from trialid.simulation.integrate import record_for
@@ -157,14 +157,10 @@ def _at_noise_level(fit: Fit) -> Inadequate | None:
 
 def _too_short(fit: Fit) -> Inadequate | None:
     """No trial lasts long enough, by its own clock, to see the slowest motion settle."""
-    trials = fit.problem.trials
-    each = [(t.duration, slowest_motion(fit, i)) for i, t in enumerate(trials)]
-    known = [(duration, slow) for duration, slow in each if slow is not None]
-    if not known:
+    found = longest_by_its_clock(fit)
+    if found is None or found[0] >= SLOWEST_TIMES * found[1].seconds:
         return None
-    lasts, slow = max(known, key=lambda one: one[0] / one[1].seconds)
-    if lasts >= SLOWEST_TIMES * slow.seconds:
-        return None
+    lasts, slow = found
     return Inadequate(
         f"the record is too short: {lasts:.3g} s, where {slow.words} takes "
         f"{slow.seconds:.3g} s and must be seen {SLOWEST_TIMES:g} times over",

@@ -145,7 +145,9 @@ def of_roll(problem: Problem) -> NDArray[np.bool_]:
     """Which unknowns act on roll alone, by the letters of SNAME; (n_theta,)."""
     own = {f"{kind}_{c}" for kind in ("b", "tau", "T", "e") for c in ROLLING}
     own |= {f"{c}(0)" for c in ROLLING}
-    return np.array([x.column in own or x.column.startswith(("K", "GM")) for x in problem.unknowns])
+    return np.array(
+        [x.column in own or x.column.startswith(("K", "GM", "I_xx")) for x in problem.unknowns]
+    )
 
 
 def _linear(problem: Problem) -> NDArray[np.bool_]:

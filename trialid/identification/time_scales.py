@@ -32,11 +32,21 @@ class Motion:
     words: str
 
 
+def longest_by_its_clock(fit: Fit) -> tuple[float, Motion] | None:
+    """How long the fitted trial lasts [s] that holds its slowest motion most often, and that one.
+
+    Each trial has a clock of its own: of a turning circle, which halves her speed, all takes twice
+    as long as of a zig-zag.
+    """
+    each = [(t.duration, slowest_motion(fit, i)) for i, t in enumerate(fit.problem.trials)]
+    known = [(lasts, slow) for lasts, slow in each if slow is not None]
+    return max(known, key=lambda one: one[0] / one[1].seconds, default=None)
+
+
 def slowest_motion(fit: Fit, place: int) -> Motion | None:
     """The slowest motion of the fitted ship at the speed of the fitted trial at this place.
 
-    None where nothing is simulated or nothing settles. Each trial has a clock of its own: of a
-    turning circle, which halves her speed, all takes twice as long as of a zig-zag.
+    None where nothing is simulated or nothing settles.
     """
     model, trial = fit.model, fit.problem.trials[place]
     step = _one_sample(fit, place)

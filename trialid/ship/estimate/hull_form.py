@@ -35,6 +35,12 @@ def length_over_beam(length: float) -> float:
     return 4.0 + 0.025 * (min(max(length, 30.0), 130.0) - 30.0)
 
 
+CODE_FROM: Final = 24.0
+MODEL_OF: Final = 100.0
+"""[m] The code's ships are 24 m and longer. What is shorter is a boat, 11 % above the coefficient
+of a ship of 100 m, or the model of a ship, which of 20 to 200 m is 9 % above to 11 % below."""
+
+
 def typical(length: float) -> dict[str, Ratio]:
     """Ratios of a ship of which nothing but the length [m] is known."""
     least = "DNV's least, 0.01 (1 + 25 (B/L)^2) L T"
@@ -47,8 +53,15 @@ def typical(length: float) -> dict[str, Ratio]:
         "A_R/LT": Ratio("rudder area", 0.0, 0.35, least),
         "aspect": Ratio("rudder aspect ratio", 1.6, 0.25, "1.2 to 2 of published ships"),
         "D/T": Ratio("propeller over draught", 0.6, 0.3, "0.4 to 0.8 of published ships"),
-        "k/CB": Ratio("roll period, by a factor", 1.0, 0.12, "2008 IS Code, 2.3.4"),
+        "k/CB": _roll_period(length),
     }
+
+
+def _roll_period(length: float) -> Ratio:
+    """How far the code's roll period is off; what is too short for it may be a boat or a model."""
+    boat = length < CODE_FROM
+    words = "2008 IS Code, 2.3.4" + (f", for {CODE_FROM:g} m and more" if boat else "")
+    return Ratio("roll period, by a factor", 1.0, 0.16 if boat else 0.12, words)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +127,7 @@ def complete(given: Given, factors: Mapping[str, float] = MappingProxyType({})) 
     L = given.length
     ratio = {n: r.value * factors.get(n, 1.0) for n, r in typical(L).items()}
     B, T, block = _box(given, L, ratio)
-    C = 0.373 + 0.023 * B / T - 0.043 * L / 100.0
+    C = 0.373 + 0.023 * B / T - 0.043 * (L if L >= CODE_FROM else MODEL_OF) / 100.0
     U = given.speed or ratio["Fn"] * math.sqrt(GRAVITY * L)
     radius, GM = _roll(given, C * B * ratio["k/CB"], ratio["GM/B"] * B)
     least = 0.01 * (1.0 + 25.0 * (B / L) ** 2) * L * T * factors.get("A_R/LT", 1.0)

@@ -5,6 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.positions import positions
@@ -230,7 +232,8 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
         lag = min(1.0, GEAR * own_time)
         words = "s, typical; put it into free once the rest fits"
         yield f"values = {{ T_delta = {lag:.2g} }}  # {words}"
-    free = ["Nv", "Nr", "Ndelta", *(SWAY if "v" in known else []), *(ROLL if rolls else [])]
+    roll = [*ROLL, *(["I_xx"] if _surer_of_GM(ship) else [])] if rolls else []
+    free = ["Nv", "Nr", "Ndelta", *(SWAY if "v" in known else []), *roll]
     yield ""
     yield "[identify]"
     if "v" in known:
@@ -238,6 +241,8 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     else:
         yield "# Masses and the sway coefficients stay as the ship file has them: the yaw alone"
         yield "# does not tell them apart. Free them where the speed v is recorded."
+    if "I_xx" in free:
+        yield "# GM is known, and a roll tells its ratio to I_xx: so both, each as well as known."
     yield f"free = {_list(free)}"
     if any(name in ship.uncertainty for name in free):
         yield 'priors = "ship"  # held about her file\'s numbers, as far as it says they scatter'
@@ -245,6 +250,12 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     offset = [] if several else ["rudder_offset"]  # of one rudder; of several `NAME_misaligned`
     nuisance = ["initial_state", "bias", *offset, "delay"]
     yield f"nuisance = {_list(nuisance)}  # of each trial, estimated too"
+
+
+def _surer_of_GM(ship: Ship) -> bool:
+    """Whether GM is known twice as well as the inertia in roll: a roll tells their ratio alone."""
+    known = ship.uncertainty
+    return known.get("GM", np.inf) < 0.5 * known.get("I_xx", 0.0)
 
 
 def _effects(*, several: bool, rolls: bool, over_ground: bool) -> list[str]:
