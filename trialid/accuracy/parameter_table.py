@@ -242,6 +242,25 @@ def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> Param
     return replace(row, likely=likely, widened_by=averaged.widest[place])
 
 
+def embrace(accuracy: Accuracy, named: Accuracy, effect: str) -> Accuracy:
+    """The same with ranges that hold what the model with a named effect says of each parameter.
+
+    By slopes a fit far off foretells half of the way that its parameters go when it is added.
+    """
+    there = {row.name: row.likely for row in named.parameters}
+    rows = tuple(_embraced(row, there.get(row.name), effect) for row in accuracy.parameters)
+    return replace(accuracy, parameters=rows)
+
+
+def _embraced(
+    row: ParameterAccuracy, there: tuple[float, float] | None, effect: str
+) -> ParameterAccuracy:
+    if row.likely is None or there is None:
+        return row
+    both = min(row.likely[0], there[0]), max(row.likely[1], there[1])
+    return row if both == row.likely else replace(row, likely=both, widened_by=effect)
+
+
 def with_rivals(accuracy: Accuracy, rivals: Sequence[Mapping[str, float]]) -> Accuracy:
     """The same with ranges that reach about each rival by the share they reach about the fit.
 

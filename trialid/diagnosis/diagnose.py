@@ -68,7 +68,7 @@ def diagnose(
     verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
     wanted = force or verdict.kind == "not in catalogue"
     return Diagnosis(
-        before=before,
+        before=before.beside(verdict.effect, after),
         ranking=ranking,
         left_out=left_out,
         refits=tried.refits,

@@ -1,10 +1,10 @@
 """What is asked of a diagnosis, and what it finds out."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from trialid.accuracy.parameter_table import Accuracy
+from trialid.accuracy.parameter_table import Accuracy, embrace
 from trialid.diagnosis.force.missing_force import MissingForce
 from trialid.diagnosis.may_be_off import Doubts
 from trialid.diagnosis.noise.error_parts import Split
@@ -47,17 +47,31 @@ class DiagnoseSettings:
 
 @dataclass(frozen=True)
 class Diagnosed:
-    """One fit with what its error is made of and how far its parameters can be trusted."""
+    """One fit with what its error is made of and how far its parameters can be trusted.
+
+    `named` is the model with the effect that is missing in it, where one has a name.
+    """
 
     fit: Fit
     split: Split
     routes: tuple[Split, ...]
     doubts: Doubts
+    named: "tuple[str, Diagnosed] | None" = None
+
+    def beside(self, effect: str | None, named: "Diagnosed | None") -> "Diagnosed":
+        """The same beside the model with the effect that is missing, where one has a name."""
+        if effect is None or named is None:
+            return self
+        return replace(self, named=(effect, named))
 
     @cached_property
     def accuracy(self) -> Accuracy:
         """Eq. 8 to 14 and likely ranges of every unknown."""
-        return accuracy_of(self.fit, self.split, self.doubts.averaged)
+        own = accuracy_of(self.fit, self.split, self.doubts.averaged)
+        if self.named is None:
+            return own
+        effect, other = self.named
+        return embrace(own, other.accuracy, effect)
 
     @cached_property
     def band(self) -> dict[str, float]:

@@ -1,0 +1,61 @@
+"""What the model with a named effect says of a parameter lies in its likely range."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy, embrace
+from trialid.diagnosis import diagnosed
+
+
+def row(name, likely, kind="physical"):
+    known = dict.fromkeys(("S_i", "S_imin", "R_i", "standard_error", "white_error"), 1.0)
+    return ParameterAccuracy(
+        name=name,
+        kind=kind,
+        unit="1",
+        value=1.0,
+        reference=1.0,
+        noise_error=None,
+        undermodelling_error=None,
+        n_effective=9.0,
+        likely=likely,
+        widened_by="another",
+        **known,
+    )
+
+
+def table(*rows):
+    return Accuracy(rows, 1.0, 1.0, 1.0, 9.0, weak=(), covariance=np.eye(len(rows)))
+
+
+@pytest.mark.parametrize(
+    ("own", "there", "both"),
+    [
+        ((0.0, 2.0), (1.5, 3.0), (0.0, 3.0)),
+        ((0.0, 2.0), (-4.0, -3.0), (-4.0, 2.0)),
+        ((0.0, 2.0), (0.5, 1.0), (0.0, 2.0)),
+        (None, (0.5, 1.0), None),
+        ((0.0, 2.0), None, (0.0, 2.0)),
+    ],
+)
+def test_a_range_embraces_what_the_model_with_the_effect_says(own, there, both):
+    [found] = embrace(table(row("Nv", own)), table(row("Nv", there)), "cross_flow_drag").parameters
+    assert found.likely == both
+    assert found.widened_by == ("another" if both == own else "cross_flow_drag")
+
+
+def test_a_diagnosis_beside_the_model_with_its_effect(monkeypatch):
+    tables = {"without": table(row("Nv", (0.0, 2.0))), "with": table(row("Nv", (1.5, 3.0)))}
+    monkeypatch.setattr(diagnosed, "accuracy_of", lambda fit, split, averaged: tables[fit])
+    doubts = SimpleNamespace(averaged=None)
+    before, after = (diagnosed.Diagnosed(fit, None, (), doubts) for fit in tables)
+    assert before.beside("cross_flow_drag", after).accuracy.parameters[0].likely == (0.0, 3.0)
+    assert before.beside(None, after).accuracy.parameters[0].likely == (0.0, 2.0)
+
+
+def test_a_parameter_that_the_other_model_has_not_stays():
+    [found] = embrace(table(row("Nv", (0.0, 2.0))), table(row("Nr", (5.0, 6.0))), "x").parameters
+    assert found == replace(row("Nv", (0.0, 2.0)))
