@@ -5,7 +5,7 @@ import pytest
 
 from trialid.alignment import frames
 from trialid.alignment.sources import SignalSource
-from trialid.errors import UnitError
+from trialid.errors import AlignmentError, UnitError
 from trialid.inspection import channel_names, inspect_log
 from trialid.inspection.drives import drives_among
 from trialid.inspection.name_words import sides
@@ -153,3 +153,5 @@ def test_revolutions_in_one_over_a_second_are_asked_for(tmp_path):
     assert turns.y == pytest.approx(np.full(3, 2.0 * np.pi))
     with pytest.raises(UnitError):
         frames.series(SignalSource("n", name), [log], "")
+    with pytest.raises(AlignmentError, match="the log states '1/s'"):
+        frames.series(SignalSource("r", name, unit="deg/s"), [log], "")
