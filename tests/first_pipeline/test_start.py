@@ -114,6 +114,40 @@ def test_a_folder_of_trials_is_several_and_a_split_recording_is_one(tmp_path):
     assert len(whole.files) == 3
 
 
+def of_two_rudders(path):
+    _, delta, *_ = trial()
+    return log(path, rudder_port_in_deg=delta, rudder_stbd_in_deg=1.01 * delta)
+
+
+def test_a_rudder_that_is_left_out_is_told(tmp_path, monkeypatch):
+    """Her own file has one rudder, so that of two one is read."""
+    begun_by = log(tmp_path / "b.csv")
+    assert started(tmp_path, monkeypatch, begun_by, *SHIP).exit_code == 0
+    made = of_two_rudders(tmp_path / "a.csv")
+    made.write_text(made.read_text(encoding="utf-8").replace("rudder[deg]", "spare[deg]"))
+    words = ("--ship", "first_trial_ship.toml", "--pipeline", "p.toml")
+    told = " ".join(started(tmp_path, monkeypatch, made, *words).stdout.split())
+    assert "delta: rudder_port, by its name;" in told
+    assert "; CAREFUL: rudder_stbd, another of them, left out: commented out in the" in told
+
+
+def test_the_water_and_the_natural_roll_are_her_particulars(tmp_path, monkeypatch):
+    made = log(tmp_path / "a.csv")
+    of_her = (*SHIP, "--rho", "998.5", "--roll-period", "12")
+    begun = started(tmp_path, monkeypatch, made, *of_her)
+    assert begun.exit_code == 0, begun.output
+    ship = (tmp_path / "first_trial_ship.toml").read_text(encoding="utf-8")
+    assert "rho = 998.5  # kg/m^3, as stated" in ship
+    assert read_ship(tmp_path / "first_trial_ship.toml").particulars["rho"] == 998.5
+    for words, said in (
+        (("--ship", "first_trial_ship.toml", "--rho", "998.5"), "--rho is for a new ship file"),
+        ((*SHIP, "--rho", "0.9985"), "density of the water 0.9985 kg/m^3 is no water's"),
+    ):
+        done = started(tmp_path, monkeypatch, made, *words, "--pipeline", "p.toml")
+        assert done.exit_code == 2
+        assert said in done.stderr
+
+
 def test_a_boat_of_thrusters_is_told_what_she_is(tmp_path, monkeypatch):
     made = log(tmp_path / "a.csv")
     text = made.read_text(encoding="utf-8").replace("rudder", "thrust_left", 1)

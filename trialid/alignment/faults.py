@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trialid.alignment.brief_steps import long_dropouts, long_spikes
 from trialid.alignment.clocks import Grid, Series, check
 from trialid.alignment.fault_samples import (
     Fault,
@@ -102,7 +103,7 @@ def mask_faults(
     Raises AlignmentError when so many values are impossible that the unit must be wrong.
     """
     remarks = list[str]()
-    for find in (_range, dropouts, spikes, _saturation, jumps):
+    for find in FINDS:
         for fault in find(series, zero):
             _check_share(fault, series, where)
             hide = fault.sure and fault.kind not in keep
@@ -219,6 +220,10 @@ def _abrupt(s: Samples, run: tuple[int, int], usual: float, levels: float) -> bo
         return False
     outer = (s.y[first - 1] - s.y[first - 2], s.y[last + 2] - s.y[last + 1])
     return min(abs(step) for step in outer) > max(ABRUPT * usual, 3 * levels)
+
+
+FINDS = (_range, dropouts, long_dropouts, spikes, long_spikes, _saturation, jumps)
+"""In this order: what one finds is hidden from the next."""
 
 
 def find_stuck(series: Sequence[Series], i: int, grid: Grid) -> Fault | None:

@@ -14,6 +14,10 @@ from trialid.recording import Channel, Recording
 
 MARKER = 1e30
 """No measurement is as large: loggers write the largest number for what is not available."""
+TURNS_OF_WHAT = frozenset(("1/s", "s^-1", "s-1", "Hz"))
+"""Units of a log that do not say whether revolutions or radians; of a shaft a pipeline says it, a
+rate of turn in them is in radians."""
+SHAFTS = frozenset(("n", "n_p", "n_s"))
 
 Vector = NDArray[np.float64]
 
@@ -89,6 +93,8 @@ def _unit(source: SignalSource, channel: Channel, quantity: Quantity, where: str
 
 def _same(stated: str, logged: str, quantity: Quantity, where: str) -> bool:
     factor = _factor(stated, quantity, where)
+    if logged in TURNS_OF_WHAT and quantity.name in SHAFTS:
+        return True  # it leaves open what turns, and the pipeline says it
     try:
         return bool(np.isclose(units.factor(logged, quantity.unit), factor, rtol=1e-6))
     except UnitError:

@@ -16,6 +16,7 @@ from trialid.cli.particulars_options import (
     given_from,
     option_names,
     particulars_options,
+    water_option,
 )
 from trialid.errors import TrialidError
 
@@ -25,8 +26,9 @@ if TYPE_CHECKING:
     from trialid.workflow.first_pipeline import Starter
 
 FILE: Final = click.Path(path_type=Path)
-OF_THE_SHIP: Final = tuple(
-    ["--length", "--beam", "--draught", "--block", "--displacement", "--gm", "--rudder-area"]
+OF_THE_SHIP: Final = (
+    *("--length", "--beam", "--draught", "--block", "--displacement", "--gm", "--roll-period"),
+    *("--rudder-area", "--rho"),
 )
 """What `--init` asks for; `trialid ship` takes more."""
 
@@ -173,7 +175,7 @@ def check_new_pipeline(
     option: str = "--init",
 ) -> None:
     """Refuse, before the logs are read, what cannot be written; `option` asked for it."""
-    _check_said(pipeline, ship, speed, option_names(given))
+    _check_said(pipeline, ship, speed, [*option_names(given), *water_option(given)])
     if pipeline is None:
         return
     _check_given(f"{option} {pipeline}", given)

@@ -77,3 +77,10 @@ def option_names(given: "Given") -> list[str]:
 
     known = known_names(given)
     return [o for o, p in PARTICULARS.items() if p.name in known and p.name != "rho"]
+
+
+def water_option(given: "Given") -> list[str]:
+    """The water's option, where it was told and is not the sea's."""
+    from trialid.ship.estimate.particulars_given import SEA
+
+    return ["--rho"] if given.rho != SEA else []

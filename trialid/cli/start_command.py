@@ -20,6 +20,7 @@ from trialid.cli.particulars_options import given_from, particulars_options
 
 if TYPE_CHECKING:
     from trialid.workflow.first_pipeline import Starter
+    from trialid.workflow.first_pipeline.choice import Signal
 
 FIRST: Final = Path("first_trial.toml")
 
@@ -92,13 +93,23 @@ def _told(begun: "Starter") -> Iterator[str]:
     held = "" if place is None else f"; {names[place]}, {why}, is held out"
     yield f"{len(names)} trial{'s' * (len(names) > 1)}: {_few(names)}{held}."
     for signal in begun.trials[0].signals:
-        yield f"{signal.quantity}: {signal.source.key}, {signal.why}."
+        yield f"{signal.quantity}: {signal.source.key}, {signal.why}{_left_out(signal)}."
     if beside := begun.trials[0].beside:
         left = ", ".join(f"{signal.quantity} ({signal.source.key})" for signal, _ in beside)
         yield f"In the log too, commented out in the pipeline with why: {left}."
     yield f"Written, each choice with its reason: {' and '.join(map(str, begun.files))}."
     for words in begun.to_fill:
         yield f"To fill in: {words}"
+
+
+def _left_out(signal: "Signal") -> str:
+    """Words on other rudders, which steer her too; one of two gyros is enough."""
+    from trialid.workflow.first_pipeline.choice import RUDDERS
+
+    if signal.quantity not in RUDDERS or not signal.others:
+        return ""
+    names = _few([one.key for one in signal.others])
+    return f"; CAREFUL: {names}, another of them, left out: commented out in the pipeline"
 
 
 def _few(names: Sequence[str]) -> str:

@@ -11,13 +11,19 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.verdict import Verdict
+from trialid.errors import list_names
 from trialid.identification.fit import Fit
+from trialid.names.quantities import SIGNALS
 from trialid.trial import Trial
 
 CLEARLY: Final = 0.7
 """Correlation of heel and r u from which on she leans to one side in her turns. Of 104 records of a
 stranger's ships it is -0.85 to -0.28, and 0.03 at most in 180 of drawn ships in a swell: half of it
 trips none of them either; at twice nothing is told."""
+
+TURNING: Final = frozenset(("r", "psi"))
+ABOUT_X: Final = frozenset(("phi", "p"))
+"""What tells to which side she turns, and what goes by an axis that points ahead with z up too."""
 
 TURNS: Final = np.deg2rad(20.0)
 """[rad] Least change of heading that is a turn; zig-zags of 2 and 5 deg of the S-175 have less."""
@@ -55,15 +61,33 @@ def settle_side(fit: Fit, verdict: Verdict) -> Verdict:
     inward = leans_inward(fit)
     if not inward or verdict.kind == "nothing missing":
         return verdict
+    doubt = _doubt(inward, _turned_about(fit, inward))
     if verdict.kind == "no fit":
-        return replace(verdict, sentence=f"{verdict.sentence}; {_doubt(inward)}")
-    return Verdict("cannot tell", None, (), f"{_doubt(inward)}; until then no effect is named")
+        return replace(verdict, sentence=f"{verdict.sentence}; {doubt}")
+    return Verdict("cannot tell", None, (), f"{doubt}; until then no effect is named")
 
 
-def _doubt(inward: tuple[str, ...]) -> str:
+def _turned_about(fit: Fit, inward: tuple[str, ...]) -> tuple[str, ...]:
+    """Signals that axes with z up turn about, where nobody stated the side of her turns.
+
+    About x, which stays, so that the roll does; what goes to a side or turns to one does not.
+    """
+    trials = [t for t in fit.trials if t.name in inward]
+    if any(TURNING & t.sided for t in trials):
+        return ()
+    names = dict.fromkeys(name for t in trials for name in t.signals)
+    return tuple(n for n in names if n in SIGNALS and SIGNALS[n].mirror < 0 and n not in ABOUT_X)
+
+
+def _doubt(inward: tuple[str, ...], turned: tuple[str, ...]) -> str:
+    """Both readings; that of axes with z up only where her turns may be of the other side."""
     listed = ", ".join(inward[:3]) + (" and more" if inward[3:] else "")
+    axes = (
+        f", or {list_names(turned)} all do, as with z up (for each of these, "
+        "else starboard is port in all predictions)"
+    )
     return (
-        f"she heels into her turns in {listed}, as of a roll that is positive to port, where ships "
-        'heel outward: write positive = "port" for phi, or positive = "starboard" where she does '
-        "heel inward"
+        f"she heels into her turns in {listed}, where ships heel outward: phi alone counts to "
+        f'port (write positive = "port" for phi){axes if turned else ""}; or positive = '
+        '"starboard" for phi where she does heel inward'
     )

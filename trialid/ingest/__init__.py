@@ -1,7 +1,7 @@
 """Log file to Recording: `read(path)` finds the adapter by what the file contains."""
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -122,12 +122,20 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
         names = ", ".join(adapter.name for adapter in able)
         verdict = f"more than one adapter recognises it (of {names})"
     else:
-        verdict = f"is none of the formats that are read ({FORMATS})"
+        none = f"is none of the formats that are read ({FORMATS})"
+        verdict = "; ".join([none, *_nearly(head)])
     raise LogError(
         f"{path}: {verdict}; it begins {head[:16]!r}; give the log as its recorder wrote it, or "
         "export it as CSV with a header row and a time column; a table of another layout needs a "
         "template (trialid inspect LOG --template FILE)"
     )
+
+
+def _nearly(head: bytes) -> Iterator[str]:
+    """What a file lacks to be of a format, in words."""
+    for adapter in ADAPTERS:
+        if adapter.nearly is not None and (words := adapter.nearly(head)) is not None:
+            yield words
 
 
 def _able(path: Path, head: bytes, aids: Aids) -> list[Adapter]:

@@ -73,6 +73,9 @@ class Adapter:
     by_template
         For formats that a template can lay out: True when the first bytes are of a file that the
         format may hold, whatever its content looks like; None when `recognises` says it all.
+    nearly
+        For formats with a near miss: what the first bytes of a file that it does not recognise
+        lack, in words; None where that cannot be told.
     """
 
     name: str
@@ -82,6 +85,7 @@ class Adapter:
     batches: Callable[[Path, Aids], Iterable[Wanted]] = whole
     general: bool = False
     by_template: Callable[[bytes], bool] | None = None
+    nearly: Callable[[bytes], str | None] | None = None
 
 
 def is_wanted(channel: str, wanted: Wanted) -> bool:

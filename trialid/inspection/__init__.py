@@ -6,13 +6,16 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from trialid.alignment import frames
 from trialid.alignment.clocks import CALENDAR_NS
 from trialid.alignment.quality import steps_back
 from trialid.errors import LogError
 from trialid.ingest import LogFile, adapter_of, files_of
 from trialid.ingest.adapter import NO_AIDS, Aids
 from trialid.inspection import channels, relations
+from trialid.inspection.channel_names import quantity
 from trialid.inspection.inspected import ChannelInspection, Inspection, LogFileInspection
+from trialid.inspection.speed_letters import axes_words, with_speed_letters
 from trialid.inspection.trials_in_folder import follow_one_another
 
 __all__ = ["Inspection", "inspect_log", "inspect_trials"]
@@ -63,7 +66,7 @@ def _together(path: Path, read: Sequence[File], aids: Aids) -> Inspection:
         remarks = "; ".join(remark for file in files for remark in file.remarks)
         raise LogError(f"{path}: holds no channel of numbers; {remarks or 'take another log'}")
     together = {key: channels.merge_channels(pieces) for key, pieces in parts.items()}
-    known = relations.recognise(together)
+    known = with_speed_letters(relations.recognise(together))
     return Inspection(path, files, known, tuple(_warnings(list(known.values()))), aids)
 
 
@@ -86,8 +89,23 @@ def _warnings(all_of_them: Sequence[ChannelInspection]) -> Iterator[str]:
     yield from _wild_stamps(all_of_them)
     useful = [one for one in all_of_them if one.guess is not None]
     yield from dict.fromkeys(words for one in useful for words in _of_clock(one))
+    yield from axes_words({one.key: one for one in all_of_them})
+    yield from map(_turns_of_what, filter(_of_some_turns, all_of_them))
     if not useful:
         yield "no channel looks like a ship's motion; map channels by hand in a pipeline"
+
+
+def _of_some_turns(one: ChannelInspection) -> bool:
+    """Whether it is called a shaft's revolutions, in a unit that does not say what turns."""
+    shaft = quantity(one.name, None) in ("n", "n_p", "n_s")
+    return shaft and one.guess is None and one.unit in frames.TURNS_OF_WHAT
+
+
+def _turns_of_what(one: ChannelInspection) -> str:
+    return (
+        f"{one.name}: {one.unit} may be revolutions or radians in a second: map it by hand with "
+        'unit = "rps" or unit = "rad/s"'
+    )
 
 
 def _of_clock(one: ChannelInspection) -> Iterator[str]:

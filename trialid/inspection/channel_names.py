@@ -5,15 +5,22 @@ could be two quantities, that speaks of a limit or an error, or whose unit does 
 """
 
 import functools
-import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+from trialid.inspection.name_words import (
+    SIDES,
+    UNITS_IN_NAMES,
+    sides,
+    without_side,
+    without_unit,
+    words,
+)
 from trialid.inspection.usual_units import to_si
 from trialid.names.quantities import SIGNALS
 
 PHRASES: Final = {
-    "delta": "rudder, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
+    "delta": "rudder, rud, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
     "ruderwinkel, rorvinkel, roerhoek, roderutslag, angle de barre, angle barre, angolo timone, "
     "angulo timon, ángulo timón, steering angle, outboard angle, motor angle, drive angle, "
     "nozzle angle, tiller angle, azimuth angle, pod angle, jet angle",
@@ -34,7 +41,8 @@ PHRASES: Final = {
     "v": "sway speed, sway velocity",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
     "drehzahl, wellendrehzahl, propellerdrehzahl, engine rpm, engine speed, motordrehzahl, "
-    "jet rpm, impeller rpm",
+    "jet rpm, impeller rpm, revolutions, rate of revolutions, shaft revolutions, "
+    "propeller revolutions, revolution rate",
     "V_aw": "aws, apparent wind speed, wind speed apparent, relative wind speed, "
     "wind speed relative, wind velocity relative, wind velo relative, relative wind velocity",
     "gamma_aw": "awa, apparent wind angle, wind angle apparent, relative wind angle, "
@@ -65,6 +73,12 @@ LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
 
 NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
 """Letters that mean the same without a unit too."""
+
+BARE: Final = frozenset(("u", "v", "p", "r", "phi", "psi", "delta", "n"))
+"""Letters that mean it as capitals or with the unit behind them, where that fits: `R [deg/s]`,
+`psi_deg`. A depth is not among them: `H [m]` is a wave's height as often."""
+SIDED: Final = frozenset(("delta", "n"))
+"""Quantities of which a ship may have one to each side: `delta_PS`, `n_S`."""
 
 OVER_GROUND: Final = frozenset(
     {
@@ -100,33 +114,8 @@ NO_MEASUREMENT: Final = frozenset(
 )  # fmt: skip
 """Words that make a field something else; in a topic they say nothing: `/state:heading`."""
 
-UNITS_IN_NAMES: Final = {
-    "deg": "deg", "degree": "deg", "degrees": "deg", "rad": "rad", "degps": "deg/s",
-    "radps": "rad/s", "dps": "deg/s", "degs": "deg/s", "degpm": "deg/min", "dpm": "deg/min",
-    "kn": "kn", "kt": "kn",
-    "kts": "kn", "knots": "kn", "mps": "m/s", "rpm": "rpm", "rps": "rps",
-    "pct": "%", "percent": "%",
-    "deg s": "deg/s", "rad s": "rad/s", "m s": "m/s", "deg min": "deg/min",
-}  # fmt: skip
-
 ENGINES: Final = (("engine", "rpm"), ("engine", "speed"))
 """An engine is no measurement of a ship's motion, but for its revolutions."""
-
-_WORD: Final = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
-SIDES: Final = {
-    "port": "n_p", "left": "n_p", "bb": "n_p", "starboard": "n_s", "stbd": "n_s", "stb": "n_s",
-    "right": "n_s", "links": "n_p", "rechts": "n_s", "backbord": "n_p", "steuerbord": "n_s",
-    "bakboord": "n_p", "stuurboord": "n_s", "babord": "n_p", "tribord": "n_s", "styrbord": "n_s",
-}  # fmt: skip
-
-
-def words(name: str) -> tuple[str, ...]:
-    """A name in lower-case words.
-
-    >>> words("/imu:angular_velocity.z"), words("rudderAngle_deg")
-    (('imu', 'angular', 'velocity', 'z'), ('rudder', 'angle', 'deg'))
-    """
-    return tuple(word.lower() for word in _WORD.findall(name))
 
 
 def quantity(name: str, unit: str | None) -> str | None:
@@ -140,7 +129,7 @@ def quantity(name: str, unit: str | None) -> str | None:
     if (letter := ALONE.get(name)) is not None:
         return letter if _fits(letter, unit) else None
     told = words(name)
-    about = {*_without_unit(words(name.rpartition(":")[2]))}
+    about = {*without_unit(words(name.rpartition(":")[2]))}
     if any(_holds(told, phrase) for phrase in ENGINES):
         about -= {"engine"}
     if NO_MEASUREMENT & about:
@@ -153,28 +142,29 @@ def quantity(name: str, unit: str | None) -> str | None:
     if ORDERED.intersection(told):
         found = "delta_order" if found in ("delta", "delta_order") else None
     if found == "n":
-        found = next((SIDES[word] for word in told if word in SIDES), "n")
+        found = next(iter(sorted(sides(name))), "n")
     return found if found is not None and _fits(found, unit) else None
 
 
 def _qualified(name: str, unit: str | None) -> str | None:
     """The quantity of a letter with words behind it that leave its meaning."""
     letter, *behind = words(name.rpartition(":")[2]) or ("",)
-    stated = unit or unit_in_name(name)
-    more = _without_unit(behind)
     found = LETTERS.get(letter)
-    if found is None or not QUALIFIERS.issuperset(more):
+    more = without_unit(behind)
+    about = without_side(name, more) if found in SIDED else more
+    if found is None or not QUALIFIERS.issuperset(about):
         return None
-    known = letter in NAMED or (stated is not None and _fits(found, stated))
-    return found if known and (more or letter not in ALONE) else None
+    stated = unit or unit_in_name(name)
+    fits = stated is not None and _fits(found, stated)
+    if about or letter not in ALONE:
+        return found if fits or letter in NAMED else None
+    named = letter in NAMED and any(word in SIDES for word in more)
+    return found if named or (fits and letter in BARE and is_column(name)) else None
 
 
-def _without_unit(field: Sequence[str]) -> Sequence[str]:
-    """The words of a field before those of its unit: `min` of `rot_deg_min` is no smallest."""
-    for count in (2, 1):
-        if " ".join(field[-count:]) in UNITS_IN_NAMES:
-            field = field[:-count]
-    return field
+def is_column(name: str) -> bool:
+    """Whether a name is a table's column and no field of a message, whose letters have others."""
+    return not {":", "/"} & {*name}
 
 
 def of_some_speed(name: str, unit: str) -> bool:
@@ -185,7 +175,7 @@ def of_some_speed(name: str, unit: str) -> bool:
 
 def over_ground(name: str, unit: str | None) -> bool:
     """Whether a channel is the speed over ground, which no model knows but which is a start."""
-    field = _without_unit(words(name.rpartition(":")[2]))
+    field = without_unit(words(name.rpartition(":")[2]))
     if NO_MEASUREMENT.intersection(field) or not _fits("u", unit):
         return False
     return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
@@ -193,7 +183,7 @@ def over_ground(name: str, unit: str | None) -> bool:
 
 def is_course(name: str, description: str, unit: str | None) -> bool:
     """Whether a channel is the course over ground, by its name or what the format says of it."""
-    field = _without_unit(words(name.rpartition(":")[2]))
+    field = without_unit(words(name.rpartition(":")[2]))
     if (NO_MEASUREMENT | ORDERED).intersection(field) or not _fits("psi", unit):
         return False
     return tuple(field) in COURSES or description.endswith("course over ground")

@@ -12,6 +12,7 @@ from trialid.alignment.sources import SignalSource
 from trialid.errors import TrialidError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Gaps, Guess
+from trialid.inspection.name_words import words as words_of
 from trialid.inspection.sketch import join_sketches, sketch
 from trialid.inspection.stamps import Health, health
 from trialid.inspection.usual_units import to_si
@@ -97,7 +98,7 @@ def _guess(channel: Channel, unit: str | None, defines: bool) -> Guess | None:
     if channel.name.endswith("angular_velocity.z"):
         return Guess(found, "name", "by its name (ROS: to port)", REP_103[found])
     words = "by its name"
-    if "kurs" in channel_names.words(channel.name):
+    if "kurs" in words_of(channel.name):
         words = "by its name (if it is not the course over ground)"
     return Guess(found, "name", words, channel.positive)
 

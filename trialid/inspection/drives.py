@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from trialid.inspection.channel_names import SIDES, words
 from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.name_words import sides, words
 from trialid.inspection.usual_units import to_si
 from trialid.names.quantities import SIGNALS
 
@@ -39,22 +39,33 @@ def drives_of(survey: Inspection) -> tuple[ChannelInspection, ...]:
     """
     found: dict[str, list[ChannelInspection]] = {"n_p": [], "n_s": []}
     for one in filter(_drives, survey.channels.values()):
-        sides = {SIDES[word] for word in words(one.name) if word in SIDES} or _by_format(one)
-        if len(sides) == 1:
-            found[sides.pop()].append(one)
+        of = sides(one.name) or _by_format(one)
+        if len(of) == 1:
+            found[of.pop()].append(one)
     if not any(found.values()):
         return _numbered(survey)
     return tuple(ones[0] for ones in found.values() if len(ones) == 1)
 
 
 def drives_among(survey: Inspection) -> list[str]:
-    """Names of all channels that seem to drive her."""
-    return [one.name for one in survey.channels.values() if _drives(one)]
+    """Names of all channels that seem to drive her; a lone shaft and its thrust steer nobody."""
+    found = [
+        one
+        for one in survey.channels.values()
+        if _drives(one) and (has_side(one) or not _force(one))
+    ]
+    called = any(DRIVES & {*words(one.name)} for one in found)
+    return [one.name for one in found] if called or len(found) > 1 else []
+
+
+def _force(one: ChannelInspection) -> bool:
+    """Whether it is what a drive is measured to push with, and no order to it."""
+    return to_si(one.unit or one.unit_in_name or "", "N") is not None
 
 
 def has_side(drive: ChannelInspection) -> bool:
     """Whether a drive's name or format tells its side; else it has a number alone."""
-    return bool({*words(drive.name)} & {*SIDES} or _by_format(drive))
+    return bool(sides(drive.name) or _by_format(drive))
 
 
 def _numbered(survey: Inspection) -> tuple[ChannelInspection, ...]:

@@ -7,8 +7,9 @@ import numpy as np
 
 from trialid.alignment.track.position import plane
 from trialid.arrays import Vector
-from trialid.inspection.channel_names import words
+from trialid.inspection.channel_names import is_column
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.name_words import words
 from trialid.inspection.sketch import on_one_clock
 from trialid.inspection.usual_units import to_si
 
@@ -65,14 +66,20 @@ def positions(channels: Iterable[ChannelInspection]) -> dict[str, ChannelInspect
 
 
 def _in_a_plane(channels: Iterable[ChannelInspection]) -> dict[str, ChannelInspection]:
-    """Two channels in metres called alike but for their axes, `x0` and `y0`; or nothing."""
+    """Two channels in metres called alike but for their axes, `x0` and `y0`; or nothing.
+
+    A table's `X [mm]` says by its unit what it is; of messages `x` alone is many things.
+    """
     fields = {
-        words(one.name.rpartition(":")[2]): one for one in channels if one.unit in (None, "m")
+        words(one.name.rpartition(":")[2]): one
+        for one in channels
+        if one.unit is None or to_si(one.unit, "m") is not None
     }
     for told, one in fields.items():
         for north, east in AXES:
             beside = {*told} - {north}
-            if told.count(north) != 1 or not beside <= PLANE or not (beside or north == "north"):
+            plain = north == "north" or (north == "x" and one.unit and is_column(one.name))
+            if told.count(north) != 1 or not beside <= PLANE or not (beside or plain):
                 continue
             other = fields.get(tuple(east if word == north else word for word in told))
             if other is not None:

@@ -45,6 +45,18 @@ def test_the_side_comes_first_and_nothing_is_named(wrong):
     assert 'write positive = "port" for phi' in found.verdict.sentence
 
 
+def test_both_readings_are_named_where_the_side_of_her_turns_is_nobodys_word(wrong):
+    """With z up all but the roll count to port, and the mirror of a ship sails as well."""
+    said = diagnose(wrong).verdict.sentence
+    assert "phi alone counts to port" in said
+    assert "or delta, r all do, as with z up" in said
+    assert "else starboard is port in all predictions" in said
+    stated = of_trials(wrong, sailed(-1.0, frozenset({"r"})))
+    said = settle_side(stated, Verdict("missing", "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is"))
+    assert "phi alone counts to port" in said.sentence
+    assert "z up" not in said.sentence
+
+
 def test_a_fit_that_fails_says_it_too(wrong):
     no_fit = settle_side(wrong, Verdict("no fit", None, (), "no fit: another ship"))
     assert no_fit.kind == "no fit"

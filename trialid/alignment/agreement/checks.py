@@ -83,6 +83,8 @@ def _heel(trial: Trial) -> Iterator[Finding]:
         return
     side = "inward" if found.correlation > 0 else "outward"
     words = f"heels {side} in turns: correlation of phi with r u {found.correlation:.2f}"
+    if side == "inward":
+        words += "; if she does not, phi counts to port, or all else that has a side does (z up)"
     evidence = {"correlation": found.correlation, "lag": found.lag}
     yield Finding("heel", "remark", ("phi", "r"), words, evidence)
 

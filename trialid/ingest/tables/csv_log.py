@@ -1,10 +1,11 @@
 """CSV logs: a header row, a time column, one column a channel; any other text by a template.
 
 A column is `name`, `name[unit]` or `name (unit)`, or a second row gives the units; titles may stand
-above the header. Separator: comma, semicolon or tab; with the last two the decimals may stand
-behind a comma. The time column is called `t`, `time_utc`, `elapsed_s`, `Uhrzeit` or the like and
-holds seconds from any origin, another stated unit of time, dates, or times of day. Whatever could
-be read in two ways is refused: a template says which.
+above the header. Separator: comma, semicolon or tab, or blanks where each row has as many numbers
+as the header has words; but with the first the decimals may stand behind a comma. The time column
+is called `t`, `time_utc`, `elapsed_s`, `Uhrzeit` or the like and holds seconds from any origin,
+another stated unit of time, dates, or times of day. Whatever could be read in two ways is refused:
+a template says which.
 """
 
 import re
@@ -13,11 +14,11 @@ from pathlib import Path
 
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
 from trialid.ingest.bytes.encoded_text import UTF_16
-from trialid.ingest.tables import table_header, table_text
+from trialid.ingest.tables import table_blanks, table_header, table_text
 from trialid.ingest.tables.table import Head
 from trialid.ingest.tables.table import head as head_of
 from trialid.ingest.tables.table_channels import columns_to_read, recording
-from trialid.ingest.tables.table_layout import Layout, decode_text, of_template
+from trialid.ingest.tables.table_layout import SPACES, Layout, decode_text, of_template
 from trialid.ingest.tables.table_names import is_time
 from trialid.ingest.tables.table_tidy import tidy
 from trialid.ingest.tables.templates import template
@@ -34,7 +35,7 @@ def recognises(head: bytes) -> bool:
     lines = _text(head).splitlines(keepends=True)
     if not lines:
         return False
-    if _header(lines) is not None:
+    if _header(lines) is not None or table_blanks.header_of(_whole(lines)) is not None:
         return True
     first = _fields(lines[0], _separator(lines[0]))
     if not lines[0].endswith(("\n", "\r")) and len(first) > 2:
@@ -45,6 +46,16 @@ def recognises(head: bytes) -> bool:
     told = [line for line in lines[1:] if line.strip()]
     timed = any(is_time(head_of(text).name) for text in first)
     return timed or any(_is_row(line, lines[0]) for line in told[:2])
+
+
+def nearly(head: bytes) -> str | None:
+    """What a table whose columns stand blanks apart lacks to be read."""
+    return table_blanks.doubt(_whole(_text(head).splitlines(keepends=True)))
+
+
+def _whole(lines: Sequence[str]) -> Sequence[str]:
+    """The lines of a beginning without a last one that may be cut anywhere."""
+    return lines if not lines or lines[-1].endswith(("\n", "\r")) else lines[:-1]
 
 
 def _is_row(line: str, above: str) -> bool:
@@ -100,7 +111,11 @@ def _header(lines: Sequence[str]) -> tuple[str, int, bool] | None:
 
 def _layout(path: Path) -> Layout:
     with path.open("rb") as file:
-        lines = _text(file.read(TOP)).splitlines()[: table_header.DEEPEST + 8]
+        lines = _text(file.read(TOP)).splitlines(keepends=True)
+    spaced = table_blanks.header_of(_whole(lines))
+    if spaced is not None:
+        return Layout(SPACES, skip=spaced[0], units_row=spaced[1])
+    lines = [line.rstrip("\r\n") for line in lines[: table_header.DEEPEST + 8]]
     found = _header(lines)
     if found is not None:
         separator, skip, units_row = found
@@ -113,5 +128,11 @@ def _layout(path: Path) -> Layout:
 
 
 ADAPTER = Adapter(
-    "csv", recognises, read, frozenset({"template", "zone"}), general=True, by_template=is_text
+    "csv",
+    recognises,
+    read,
+    frozenset({"template", "zone"}),
+    general=True,
+    by_template=is_text,
+    nearly=nearly,
 )

@@ -125,7 +125,8 @@ def _top(path: Path, raw: bytes, layout: Layout, template: Template | None) -> T
     for _ in range(layout.skip):
         next(lines, None)
     reader = csv.reader(
-        (decode_text(line, layout.encoding) for line, _ in lines.each()), **_dialect(layout)
+        (_ends_bare(decode_text(line, layout.encoding), layout) for line, _ in lines.each()),
+        **_dialect(layout),
     )
     try:
         rows = [next(reader, []) for _ in range(layout.header_rows)]
@@ -170,6 +171,11 @@ class _Lines:
                 yield next(self)
             except StopIteration:
                 return
+
+
+def _ends_bare(line: str, layout: Layout) -> str:
+    """The line without blanks at its ends, where blanks part fields."""
+    return line.strip() if layout.separator == SPACES else line
 
 
 def _dialect(layout: Layout) -> dict[str, Any]:
@@ -254,7 +260,7 @@ def _rows(
         for number, line in enumerate(io.StringIO(text, newline=""), top.lines + 1):
             if not (comment and line.lstrip().startswith(comment)):
                 numbers.append(number)
-                yield line.strip() if layout.separator == SPACES else line
+                yield _ends_bare(line, layout)
 
     reader = csv.reader(kept(), **_dialect(layout))
     rows, lines, blank = [], [], 0

@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 
 from trialid.errors import LogError
-from trialid.inspection.channel_names import words
 from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.name_words import words
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS

@@ -14,6 +14,7 @@ from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
+from trialid.inspection.speed_letters import of_either
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.long_log import Window
@@ -262,7 +263,7 @@ def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
 def _some_speed(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
         unit = _stated(one) or "m/s"  # as above
-        if not one.constant and channel_names.of_some_speed(one.name, unit):
+        if not one.constant and (of_either(one) or channel_names.of_some_speed(one.name, unit)):
             yield one
 
 

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.inspection.channel_names import words
+from trialid.inspection.name_words import words
 from trialid.inspection.relations import RATES
 from trialid.names import units
 from trialid.workflow.first_pipeline.choice import ASK_UNIT, OPEN, Chosen, Signal

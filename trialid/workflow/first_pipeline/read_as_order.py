@@ -8,7 +8,8 @@ import numpy as np
 
 from trialid.arrays import Vector
 from trialid.diagnosis.rudder_jumps import Course, Jump, Steps, jump_of, jump_where
-from trialid.inspection.channel_names import ORDERED, words
+from trialid.inspection.channel_names import ORDERED
+from trialid.inspection.name_words import words
 from trialid.names import units
 from trialid.workflow.first_pipeline.boat_choice import at_rest
 from trialid.workflow.first_pipeline.choice import Chosen, Signal

@@ -4,8 +4,8 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Final
 
-from trialid.inspection.channel_names import SIDES, words
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.name_words import sides
 from trialid.ship.actuators import Actuator
 from trialid.ship.particulars import Ship
 from trialid.workflow.first_pipeline.choice import Chosen, Signal, live_sources, rudder_signal
@@ -29,7 +29,7 @@ def with_twins(trials: Sequence[Chosen], ship: Ship | None) -> list[Chosen]:
     found = [sides_of(one) for one in trials]
     if names is None or not all(found):
         return list(trials)
-    return [_with(one, sides, names) for one, sides in zip(trials, found, strict=True)]
+    return [_with(one, by_side, names) for one, by_side in zip(trials, found, strict=True)]
 
 
 def _named(ship: Ship) -> dict[str, str] | None:
@@ -48,18 +48,19 @@ def sides_of(trial: Chosen) -> dict[str, ChannelInspection]:
 
 
 def _side(one: ChannelInspection) -> set[str]:
-    told = {SIDES[word] for word in words(one.name) if word in SIDES}
-    return told or {side for number, side in INSTANCES.items() if number in one.description}
+    return sides(one.name) or {
+        side for number, side in INSTANCES.items() if number in one.description
+    }
 
 
-def _with(trial: Chosen, sides: dict[str, ChannelInspection], names: dict[str, str]) -> Chosen:
+def _with(trial: Chosen, by_side: dict[str, ChannelInspection], names: dict[str, str]) -> Chosen:
     rate = next((s for s in trial.signals if s.quantity == "r"), None)
     psi = live_sources(trial.survey, "psi")
     rudders = []
     for side, name in names.items():
-        one = sides[side]
+        one = by_side[side]
         found = rudder_signal("delta", {"delta": (one,), "psi": psi}, rate)
-        told = "by its name" if SIDES.keys() & {*words(one.name)} else "by its instance, CAREFUL"
+        told = "by its name" if sides(one.name) else "by its instance, CAREFUL"
         why = f"{found.why}; to {'port' if side == 'n_p' else 'starboard'} {told}: {UNSEEN}"
         rudders.append(dataclasses.replace(found, quantity=name, why=why))
     rest = [s for s in trial.signals if s.quantity != "delta"]

@@ -1,0 +1,93 @@
+"""The words of a channel's name: its unit behind an underscore, and the side it is of."""
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+UNITS_IN_NAMES: Final = {
+    "deg": "deg",
+    "degree": "deg",
+    "degrees": "deg",
+    "rad": "rad",
+    "degps": "deg/s",
+    "radps": "rad/s",
+    "dps": "deg/s",
+    "degs": "deg/s",
+    "degpm": "deg/min",
+    "dpm": "deg/min",
+    "kn": "kn",
+    "kt": "kn",
+    "kts": "kn",
+    "knots": "kn",
+    "mps": "m/s",
+    "rpm": "rpm",
+    "rps": "rps",
+    "pct": "%",
+    "percent": "%",
+    "deg s": "deg/s",
+    "rad s": "rad/s",
+    "m s": "m/s",
+    "deg min": "deg/min",
+}
+
+_WORD: Final = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
+SIDES: Final = {
+    "port": "n_p",
+    "left": "n_p",
+    "bb": "n_p",
+    "starboard": "n_s",
+    "stbd": "n_s",
+    "stb": "n_s",
+    "right": "n_s",
+    "links": "n_p",
+    "rechts": "n_s",
+    "backbord": "n_p",
+    "steuerbord": "n_s",
+    "ps": "n_p",
+    "sb": "n_s",
+    "bakboord": "n_p",
+    "stuurboord": "n_s",
+    "babord": "n_p",
+    "tribord": "n_s",
+    "styrbord": "n_s",
+}
+LETTERS: Final = {"p": "n_p", "s": "n_s"}
+HAVE_SIDES: Final = frozenset(("delta", "n", "rud", "rudder", "rpm"))
+"""Words behind which these letters, the last of a name, are a side: `DELTA_P`, `n_S`."""
+
+
+def words(name: str) -> tuple[str, ...]:
+    """A name in lower-case words.
+
+    >>> words("/imu:angular_velocity.z"), words("rudderAngle_deg")
+    (('imu', 'angular', 'velocity', 'z'), ('rudder', 'angle', 'deg'))
+    """
+    return tuple(word.lower() for word in _WORD.findall(name))
+
+
+def without_unit(field: Sequence[str]) -> Sequence[str]:
+    """The words of a field before those of its unit: `min` of `rot_deg_min` is no smallest."""
+    for count in (2, 1):
+        if " ".join(field[-count:]) in UNITS_IN_NAMES:
+            field = field[:-count]
+    return field
+
+
+def sides(name: str) -> set[str]:
+    """The sides that a name says, as shafts have them; a `P` or `S` at its end says one too.
+
+    >>> sides("rud_sb_deg"), sides("DELTA_P"), sides("rudder")
+    ({'n_s'}, {'n_p'}, set())
+    """
+    told = without_unit(words(name))
+    named = {SIDES[word] for word in told if word in SIDES}
+    behind = len(told) > 1 and told[-2] in HAVE_SIDES
+    return named or ({LETTERS[told[-1]]} if behind and told[-1] in LETTERS else set())
+
+
+def without_side(name: str, told: Sequence[str]) -> Sequence[str]:
+    """Some words of a name without the one that says its side, if it is of one."""
+    if len(sides(name)) != 1:
+        return told
+    kept = [word for word in told if word not in SIDES]
+    return kept if len(kept) < len(told) else told[:-1]
