@@ -77,7 +77,7 @@ class Chosen:
     def name(self) -> str:
         """Its file's, and where it is one manoeuvre of it, that one's."""
         stem = self.path.stem or "trial"
-        return stem if self.window is None else f"{stem} {self.window.kind}"
+        return stem if self.window is None else f"{stem} {self.window.kind}".rstrip()
 
     @property
     def over_ground(self) -> bool:

@@ -95,12 +95,11 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
 
 
 def _window(trial: Chosen) -> str:
-    """The manoeuvre alone: as it was found in a long log, else for the user to say."""
+    """The manoeuvre alone: as it was found in a log, else for the user to say."""
     if (found := trial.window) is None:
         return f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
-    return (
-        f"window = [{found.begin:.1f}, {found.end:.1f}]  # s, {found.kind} deg, as the rudder went"
-    )
+    why = found.released or f"{found.kind} deg, as the rudder went"
+    return f"window = [{found.begin:.1f}, {found.end:.1f}]  # s, {why}"
 
 
 def _track(channels: Iterable[ChannelInspection]) -> Iterator[str]:
