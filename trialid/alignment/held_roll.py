@@ -108,7 +108,7 @@ def held_roll(trial: Trial) -> Held | None:
     if _steered(trial):
         return None
     rest = float(np.median(np.array_split(phi, 3)[-1]))
-    noise = _noise(phi)
+    noise = noise_of(phi)
     for begin, end in reversed(_plateaus(phi - rest, noise)):
         heel = float(np.median(phi[begin:end]))
         after = np.sign(heel - rest) * (phi[end:] - rest)
@@ -147,7 +147,7 @@ def _swing(after: Vector, heel: float, noise: float) -> int | None:
     return 2 * half if free else None
 
 
-def _noise(y: Vector) -> float:
+def noise_of(y: Vector) -> float:
     """Standard deviation of what is white in it, by its third differences: swings have little."""
     return float(np.median(np.abs(np.diff(y, 3)))) / 0.6745 / 20.0**0.5
 
@@ -186,10 +186,10 @@ def _known(valid: Mask) -> Mask:
 def _steered(trial: Trial) -> bool:
     """Whether a rudder goes far in a trial."""
     rudders = [n for n in trial.signals if n in SIGNALS and SIGNALS[n].steers]
-    return any(_went(trial.signals[n]) > STEERED for n in rudders)
+    return any(course_span(trial.signals[n]) > STEERED for n in rudders)
 
 
-def _went(y: Vector) -> float:
+def course_span(y: Vector) -> float:
     """How far a signal goes, beside its noise: of its smooth course from end to end."""
     pieces = np.array_split(y, max(min(len(y) // 5, 20), 1))
     middles = [float(np.median(piece)) for piece in pieces]
@@ -202,4 +202,4 @@ def _turned(trial: Trial, part: slice) -> float:
     if r is not None:
         return abs(float(np.sum(r[part]))) * trial.period
     psi = trial.signals.get("psi")
-    return 0.0 if psi is None else _went(psi[part])
+    return 0.0 if psi is None else course_span(psi[part])

@@ -32,11 +32,11 @@ class Fitted(Protocol):
 def dampings(
     named: Candidate, ranking: Sequence[Candidate], fitted: Collection[str]
 ) -> list[Candidate]:
-    """Plain damping to fit before a resonance has the name, whatever its slope says.
+    """Plain damping to fit before a resonance, or another damping, has the name; by no slope.
 
-    Nothing where what would be named brings none; `fitted` are names of what is done.
+    Nothing where what would be named is neither; `fitted` are names of what is done.
     """
-    if not _resonates(named.effect):
+    if not (_resonates(named.effect) or _damps_beside(named.effect, named.effect)):
         return []
     able = (c for c in ranking if c.effect.name not in fitted)
     return [c for c in able if _damps_beside(c.effect, named.effect)]
@@ -46,7 +46,7 @@ def is_plain_damping(mine: Fitted, others: Sequence[Fitted], level: float) -> bo
     """Whether plain damping does as well as a resonance, or takes most of what no test shows.
 
     Most is `RIVAL` of its fall, as a logarithm. Of what two true tanks take it takes 0.03 and
-    nothing, of what a tank takes where damping at rest is missing 0.97 and more.
+    nothing, of what a tank takes where damping at rest is missing 0.94 and more.
     """
     if not _resonates(mine.candidate.effect):
         return False

@@ -56,8 +56,8 @@ class Window:
     """A stretch of a log [s] in which she was put through something, and how far she was steered.
 
     `travel` and `variation` [rad] are of the rudder: its greatest angle and its mean, and its
-    standard deviation. `released` says that she was held before, and is empty of a manoeuvre; then
-    `kind` is empty.
+    standard deviation; of the roll, where no rudder is. `released` says that she was held before;
+    then `kind` is empty.
     """
 
     kind: str
@@ -124,8 +124,9 @@ def _let_go(trial: Trial) -> tuple[Window, ...]:
     """What follows a heel that is held, where she is let go from one."""
     if (held := held_roll(trial)) is None:
         return ()
-    rudder = rudder_of(trial)
-    after = np.zeros(1) if rudder is None else rudder[held.release :]
+    steered = rudder_of(trial)
+    moved = trial.signals.get("phi", np.zeros(1)) if steered is None else steered
+    after = moved[held.release :]
     window = Window(
         kind="",
         begin=released_at(trial, held),

@@ -11,10 +11,12 @@ from trialid.inspection.positions import positions
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
-from trialid.toml_text import quote
+from trialid.toml_text import array, quote
 from trialid.workflow.first_pipeline.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
 from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
+from trialid.workflow.first_pipeline.roll_decay import decay_model, is_of_decays
+from trialid.workflow.first_pipeline.sample_period import align_lines
 
 HEAD: Final = """\
 # Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
@@ -28,9 +30,6 @@ UNITS: Final = {"lat": "deg", "lon": "deg", "x": "m", "y": "m"}
 MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
 
-NO_PACE: Final = frozenset(("u", "cog"))
-"""What changes so slowly that its sensor sets no pace; nor does a heading beside its rate."""
-PERIODS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
 SWAY: Final = ("Yv", "Ydelta")
 """What a record of sway tells of it; most of Yr goes with the centrifugal force, which is known."""
 ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
@@ -39,8 +38,6 @@ ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
 GEAR: Final = 0.05
 """Lag of a small ship's gear, as a share of the time in which she goes her own length: that of a
 ship of 160 m at 15 knots is 1 s."""
-STEPS_A_LENGTH: Final = 40
-"""Samples while the ship moves by her own length: she does little in a fortieth of that."""
 
 
 def pipeline_text(
@@ -58,7 +55,7 @@ def pipeline_text(
         lines += ["", *_trial(path, name, trial, why_held_out(trials) if place == held else "")]
     lines += [
         "",
-        *_align(trials, length, speed),
+        *align_lines(trials, length, speed),
         "",
         *_model(trials, ship, length / max(speed, 0.1)),
     ]
@@ -73,7 +70,8 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
     if held:
         yield f'use = "check"  # held out, {held}: scored, never fitted'
     if trial.states_speed and trial.speed is not None:
-        yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
+        why = ": no log has u" if trial.speed else ""
+        yield f"speed = {float(trial.speed):.4g}  # m/s, {comment(trial.speed_words)}{why}"
     yield _window(trial)
     for remark in _remarks(trial):
         yield f"# {comment(remark)}"
@@ -179,36 +177,11 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
     }
 
 
-def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:
-    chosen = period(trials, length, speed)
-    slowest = min(_paces(trials), key=lambda c: c.rate)
-    yield "[align]"
-    yield (
-        f"period = {chosen:g}  # s; the slowest signal, {comment(slowest.key)}, has "
-        f"{slowest.rate:.3g} Hz; her own length takes the ship {length / max(speed, 1e-3):.3g} s"
-    )
-
-
-def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
-    """Time between samples [s]: as the slowest signal has it, but no longer than the ship allows.
-
-    Nor shorter than she needs: a simulation at 100 Hz tells no more of a ship, and takes longer.
-    """
-    slow = 1.0 / min(one.rate for one in _paces(trials))
-    quick = min(0.5, length / max(speed, 0.1) / STEPS_A_LENGTH)
-    return max((p for p in PERIODS if p <= max(slow, quick) * 1.05), default=PERIODS[0])
-
-
-def _paces(trials: Sequence[Chosen]) -> Iterator[ChannelInspection]:
-    """Channels that have to be followed from sample to sample."""
-    for trial in trials:
-        rated = any(one.quantity == "r" for one in trial.signals)
-        slow = NO_PACE | {"psi"} if rated else NO_PACE
-        yield from (one.source for one in trial.signals if one.quantity not in slow)
-
-
 def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
+    if is_of_decays(trials):
+        yield from decay_model(trials, ship)
+        return
     if known & {n for one in ship.actuators if (d := one.drive) for n in (d, f"{d}_order")}:
         yield from boat_model(trials, ship)
         return
@@ -220,11 +193,11 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     over_ground = all(one.over_ground for one in trials)
     effects = _effects(several=several, rolls=rolls, over_ground=over_ground)
     yield "[model]"
-    yield f"states = {_list(states)}  # what is simulated; the speed is read from the log"
+    yield f"states = {array(states)}  # what is simulated; the speed is read from the log"
     if order_only:
         yield "# only the order is logged: the rudder follows it with a lag, T_delta"
         effects.insert(0, "rudder_servo")
-    yield f"effects = {_list(effects)}  # `trialid effects` lists what there is"
+    yield f"effects = {array(effects)}  # `trialid effects` lists what there is"
     if order_only:
         lag = min(1.0, GEAR * own_time)
         words = "s, typical; put it into free once the rest fits"
@@ -237,13 +210,13 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     else:
         yield "# Masses and the sway coefficients stay as the ship file has them: the yaw alone"
         yield "# does not tell them apart. Free them where the speed v is recorded."
-    yield f"free = {_list(free)}"
+    yield f"free = {array(free)}"
     if any(name in ship.uncertainty for name in free):
         yield 'priors = "ship"  # held about her file\'s numbers, as far as it says they scatter'
-    yield f"outputs = {_list(outputs)}"
+    yield f"outputs = {array(outputs)}"
     offset = [] if several else ["rudder_offset"]  # of one rudder; of several `NAME_misaligned`
     nuisance = ["initial_state", "bias", *offset, "delay"]
-    yield f"nuisance = {_list(nuisance)}  # of each trial, estimated too"
+    yield f"nuisance = {array(nuisance)}  # of each trial, estimated too"
 
 
 def _effects(*, several: bool, rolls: bool, over_ground: bool) -> list[str]:
@@ -273,10 +246,6 @@ def _relative(path: Path, pipeline: Path) -> str:
     """A path as the pipeline's folder sees it."""
     folder = pipeline.resolve().parent
     return Path(os.path.relpath(path.resolve(), folder)).as_posix()
-
-
-def _list(entries: Sequence[str]) -> str:
-    return f"[{', '.join(quote(entry) for entry in entries)}]"
 
 
 def comment(text: str) -> str:

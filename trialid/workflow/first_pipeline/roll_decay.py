@@ -1,0 +1,170 @@
+"""Logs of a ship that is let go from a heel and not steered: a pipeline for her roll alone.
+
+Nothing there tells a rudder's side, nor does any yaw: what moves her is her own righting moment,
+and what the swings lose is her damping.
+"""
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from trialid.alignment.held_roll import NOISE, STEERED, course_span, noise_of
+from trialid.arrays import Vector
+from trialid.inspection.drives import drives_of
+from trialid.inspection.inspected import Inspection
+from trialid.inspection.usual_units import to_si
+from trialid.names.quantities import SIGNALS
+from trialid.ship.particulars import Ship
+from trialid.toml_text import array
+from trialid.workflow.first_pipeline.choice import (
+    RUDDERS,
+    Chosen,
+    Live,
+    Signal,
+    approach_speed,
+    choose_speed,
+    live_sources,
+    plain_signal,
+)
+
+SWINGS: Final = 4
+"""Half swings that tell a decay, each less than the one before: fewer are an answer to anything.
+Half of it takes a turning circle's heel for one, twice of it asks for a damping below 0.1 of what
+is critical."""
+
+SEEN: Final = 0.05
+"""Share of the greatest swing above which one counts. Half of it counts noise, twice of it misses
+the fourth swing of a model with large bilge keels."""
+
+GROWS: Final = 1.1
+"""Times the swing before it that one may be, beside noise: a ship in waves swings up again. Half of
+it takes nothing for a decay that is damped little, twice of it takes a zig-zag's."""
+
+DIES: Final = 0.5
+"""Share of the first swing that the last may have. Half of it misses records that are cut off
+early, twice of it asks for nothing."""
+
+TURNS: Final = float(np.deg2rad(30.0))
+"""[rad] What she turns through by herself at most while she swings: a course that nobody keeps.
+Half of it misses a model that sheers off as she heels, twice is the first part of a turn."""
+
+FROUDE: Final = 0.02
+"""Of what a log of a ship at rest holds as her speed, over sqrt(g L): 0.14 m/s of 5 m. Half of it
+is the noise of a carriage's speed, with twice of it flow past the keels damps a ship."""
+
+
+def decays_among(
+    surveys: Sequence[Inspection],
+    stated: float | None,
+    length: float | None,
+    own: Ship | None = None,
+) -> list[Chosen]:
+    """Each log as a trial of her roll alone; nothing where one of them is something else.
+
+    Parameters
+    ----------
+    stated
+        The user's word for the speed [m/s], where no log tells it.
+    length, own
+        Of the ship [m], or her file, where it is known: it tells what is at rest.
+    """
+    if not all(map(_is_decay, surveys)):
+        return []
+    known = length if own is None else own.particulars.get("L")
+    rest = FROUDE * float(np.sqrt(9.81 * (known or 1.0)))
+    return [_choose(one, stated, rest) for one in surveys]
+
+
+def is_of_decays(trials: Sequence[Chosen]) -> bool:
+    """Whether trials are those of `decays_among`."""
+    return all(one.quantity in ("phi", "u") for trial in trials for one in trial.signals)
+
+
+def _is_decay(survey: Inspection) -> bool:
+    live = {name: live_sources(survey, name) for name in SIGNALS}
+    rolls = live.get("phi")
+    if not rolls or len(drives_of(survey)) == 2:
+        return False
+    steered = [plain_signal(name, live, "") for name in RUDDERS if live[name]]
+    still = all(_span(one) <= STEERED for one in steered)
+    return still and _turned(live) <= TURNS and _period(rolls[0].sketch.y) is not None
+
+
+def _span(signal: Signal) -> float:
+    """How far an angle goes beside its noise [rad]; of an unknown unit as far as can be."""
+    size = 1.0 if signal.source.angle else to_si(signal.unit or "", "rad")
+    return float("inf") if size is None else course_span(signal.source.sketch.y) * size
+
+
+def _turned(live: Live) -> float:
+    """Angle that she turns through [rad], by the heading, else by its rate; 0 where none is."""
+    if live.get("psi"):
+        return _span(plain_signal("psi", live, ""))
+    if not live.get("r"):
+        return 0.0
+    rate = plain_signal("r", live, "")
+    size = to_si(rate.unit or "", "rad/s")
+    course = rate.source.sketch
+    turned = np.cumsum(course.y[1:] * np.diff(course.t) / 1e9) if size else np.array([np.inf])
+    return float(np.max(np.abs(turned), initial=0.0)) * (size or 1.0)
+
+
+def _period(roll: Vector) -> float | None:
+    """Samples in a roll period of swings that die out about a heel; None of anything else."""
+    if len(roll) < 4 * SWINGS:
+        return None
+    off = roll - np.median(np.array_split(roll, 3)[-1])
+    least = max(SEEN * float(np.max(np.abs(off))), NOISE * noise_of(roll))
+    at = np.flatnonzero(np.abs(off) > least)
+    turns = np.flatnonzero(np.diff(np.sign(off[at]))) + 1
+    swings = [float(np.max(np.abs(off[part]))) for part in np.split(at, turns) if len(part)]
+    if len(swings) < SWINGS or swings[-1] > DIES * swings[0]:
+        return None
+    if any(b > GROWS * a + least for a, b in pairwise(swings)):
+        return None
+    return 2.0 * float(np.median(np.diff(at[turns])))
+
+
+def roll_period(trials: Sequence[Chosen]) -> float:
+    """Of small rolls [s], the shortest of all logs."""
+    rolls = (trial.signals[0].source.sketch for trial in trials)
+    return min((_period(one.y) or 0.0) * float(np.median(np.diff(one.t))) / 1e9 for one in rolls)
+
+
+def _choose(survey: Inspection, stated: float | None, rest: float) -> Chosen:
+    """Her roll, and the speed where she makes any; what else the log holds is left out."""
+    live = {name: live_sources(survey, name) for name in SIGNALS}
+    roll = plain_signal("phi", live, "she swings and is not steered: her roll alone is fitted")
+    speed, words = approach_speed(survey, live, None)
+    trial = Chosen(survey=survey, path=survey.path, signals=(roll,), speed=speed, speed_words=words)
+    if speed is None:
+        said = "CAREFUL: no log tells a speed, read as at rest; write hers where she made way"
+        return dataclasses.replace(
+            trial, speed=stated or 0.0, speed_words=words if stated else said
+        )
+    if speed < rest:
+        return dataclasses.replace(trial, speed=0.0, speed_words=f"at rest, by {words}")
+    ahead = choose_speed(survey, live, speed, words)
+    return dataclasses.replace(trial, signals=(roll, *([ahead] if ahead else [])))
+
+
+def decay_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
+    """Lines of `[model]` and `[identify]`."""
+    rests, sails = (any((t.speed == 0.0) is at_rest for t in trials) for at_rest in (True, False))
+    effects = ["linear_roll", *(["still_water_roll_damping"] if rests else [])]
+    free = [*(["Kp"] if sails else []), *(["Kp0"] if rests else []), "GM"]
+    yield "[model]"
+    yield 'states = ["p", "phi"]  # her roll alone: the sway and yaw that go with it are small'
+    yield f"effects = {array(effects)}  # `trialid effects` lists what there is"
+    yield ""
+    yield "[identify]"
+    if rests:
+        yield "# Kp grows with her speed; at rest Kp0 damps her."
+    yield f"free = {array(free)}"
+    if any(name in ship.uncertainty for name in free):
+        yield 'priors = "ship"  # held about her file\'s numbers, as far as it says they scatter'
+    yield 'outputs = ["phi"]'
+    yield 'nuisance = ["initial_state", "bias"]  # of each trial, estimated too'
