@@ -99,6 +99,8 @@ def test_what_does_not_die_out_is_no_decay():
     assert _period(roll) == pytest.approx(PERIOD / (t[1] - t[0]), rel=0.05)
     rng = np.random.default_rng(3)
     assert _period(5.0 * np.sin(0.5 * t)) is None
+    assert _period(5.0 * np.exp(-0.003 * t) * np.cos(0.1 * np.pi * t)) is None
+    assert _period(5.0 * np.exp(-0.01 * t) * np.cos(0.1 * np.pi * t)) is not None
     assert _period(rng.standard_normal(len(t))) is None
     assert _period(3.0 - 3.0 * np.exp(-t / 10.0) * np.cos(0.1 * t)) is None
     assert _period(roll[::-1]) is None
