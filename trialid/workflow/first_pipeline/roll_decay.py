@@ -33,28 +33,28 @@ from trialid.workflow.first_pipeline.choice import (
 
 SWINGS: Final = 4
 """Half swings that tell a decay, each less than the one before. All of 300 drawn decays have them,
-damped by 0.02 to 0.15 of what is critical, and 2 of 165 zig-zags and turns whose rudder and yaw were
-hidden. Half of it does not tell where the swings die out to, twice of it misses 39."""
+damped by 0.02 to 0.15 of what is critical, and 2 of 165 zig-zags and turns whose rudder and yaw
+were hidden. Half of it does not tell where the swings die out to, twice of it misses 39."""
 
 SEEN: Final = 0.05
-"""Share of the greatest swing above which one counts. Of those decays half of it misses 3, and twice
-of it takes 4 of the zig-zags."""
+"""Share of the greatest swing above which one counts. Of those decays half of it misses 3, and
+twice of it takes 4 of the zig-zags."""
 
 GROWS: Final = 1.1
 """Times the swing before it that one may be, beside `SEEN`: noise adds to it. Of those decays half
 of it takes 4, and twice of it takes 6 of the zig-zags."""
 
 DIES: Final = 0.5
-"""Share of the first swing that the last may have. Of those decays half of it misses 7, and twice of
-it takes 14 of the zig-zags."""
+"""Share of the first swing that the last may have. Of those decays half of it misses 7, and twice
+of it takes 14 of the zig-zags."""
 
 TURNS: Final = float(np.deg2rad(30.0))
-"""[rad] What she turns through at most while she swings: a course that nobody keeps. Of models of 5 m
-let go under way half of it would do, and twice of it is the first part of a turn."""
+"""[rad] What she turns through at most while she swings: a course that nobody keeps. Of models of
+5 m let go under way half of it would do, and twice of it is the first part of a turn."""
 
 FROUDE: Final = 0.02
-"""Of what a log of a ship at rest holds as her speed, over sqrt(g L): 0.14 m/s of 5 m, where it held
-0.01 of noise. Half of it would do there, with twice of it a ship of 100 m makes 2.4 knots."""
+"""Of what a log of a ship at rest holds as her speed, over sqrt(g L): 0.14 m/s of 5 m, where it
+held 0.01 of noise. Half of it would do there, with twice of it a ship of 100 m makes 2.4 knots."""
 
 
 def decays_among(
