@@ -7,6 +7,7 @@ damping on the wrong side. So plain damping is fitted, too, before a resonance h
 """
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from typing import Final, Protocol
 
 from trialid.diagnosis.search.carried import RIVAL, Carried, does_as_well
@@ -34,12 +35,13 @@ def dampings(
 ) -> list[Candidate]:
     """Plain damping to fit before a resonance, or another damping, has the name; by no slope.
 
-    Nothing where what would be named is neither; `fitted` are names of what is done.
+    Nothing where what would be named is neither; `fitted` are names of what is done. That a slope
+    leads out of the range is nothing against it: it is fitted within.
     """
     if not (_resonates(named.effect) or _damps_beside(named.effect, named.effect)):
         return []
     able = (c for c in ranking if c.effect.name not in fitted)
-    return [c for c in able if _damps_beside(c.effect, named.effect)]
+    return [replace(c, allowed=True) for c in able if _damps_beside(c.effect, named.effect)]
 
 
 def is_plain_damping(mine: Fitted, others: Sequence[Fitted], level: float) -> bool:

@@ -276,8 +276,7 @@ def outputs_beside(fit: Fit, refit: Refitted) -> tuple[str, ...]:
 
 def _takes_most(fit: Fit, refit: Refit) -> bool:
     """Whether once it is fitted most goes with it, in all blocks, whatever its slope had shown."""
-    within = not {*refit.candidate.effect.parameters} & {*refit.fit.at_bounds}
-    return (refit.candidate.allowed or within) and refit.carried.large and fall(fit, refit) > MOST
+    return refit.candidate.allowed and refit.carried.large and fall(fit, refit) > MOST
 
 
 def _found(refit: Refit) -> tuple[Effect, Fit]:
