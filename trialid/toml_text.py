@@ -1,6 +1,7 @@
 """Texts as TOML writes them, for files that are made."""
 
 import json
+from collections.abc import Sequence
 
 
 def quote(text: str) -> str:
@@ -10,3 +11,12 @@ def quote(text: str) -> str:
     "a \"b\"\n" "bell\u0007" "\u007f"
     """
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def array(entries: Sequence[str]) -> str:
+    """A TOML array of strings on one line.
+
+    >>> print(array(["p", "phi"]))
+    ["p", "phi"]
+    """
+    return f"[{', '.join(map(quote, entries))}]"

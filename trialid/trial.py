@@ -1,7 +1,7 @@
 """A trial: one manoeuvre, every signal in SI on one clock; the only thing the identifier sees."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -144,3 +144,14 @@ class Trial:
         """
         t, signals = columns_of(frame, units)
         return cls.from_arrays(name, t, signals, units=units, positive=positive, use=use, own=own)
+
+    def part(self, begin: int, end: int, remark: str) -> "Trial":
+        """The samples from `begin` up to `end`, as a window of the logs, with a remark on it."""
+        return replace(
+            self,
+            signals={name: y[begin:end] for name, y in self.signals.items()},
+            valid={name: mask[begin:end] for name, mask in self.valid.items()},
+            remarks=(*self.remarks, remark),
+            start=self.start + round(begin * self.period * 1e9),
+            opening=self.opening + begin * self.period,
+        )

@@ -10,7 +10,7 @@ from trialid.diagnosis.diagnosed import DiagnoseSettings
 
 def candidate(name, p_value, falls):
     return SimpleNamespace(
-        effect=SimpleNamespace(name=name),
+        effect=SimpleNamespace(name=name, states={}, forms=()),
         p_value=p_value,
         carried=SimpleNamespace(falls=falls),
         shown=lambda level: p_value < level,

@@ -8,7 +8,7 @@ import pytest
 
 from trialid.workflow.first_pipeline.choice import approach_speed
 from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
-from trialid.workflow.first_pipeline.pipeline_text import period
+from trialid.workflow.first_pipeline.sample_period import period
 from trialid.workflow.first_pipeline.twin_rudders import sides_of
 
 

@@ -10,6 +10,9 @@ and what the record says of beta follows from its visible trace, S less what A r
 prior of its typical size. Each thing that may be missing makes a model; they are averaged by how
 well they stand: Hoeting et al. (1999), Bayesian model averaging: a tutorial, Statistical Science
 14. Numbers that were held fixed are part of every model, each uncertain by what its source says.
+
+All of that is linear and knows no ends, as a normal distribution does; a parameter has them. Its
+range ends where the search did: a GM of 0.012 m was likely from -0.012 m.
 """
 
 from collections.abc import Sequence
@@ -35,6 +38,22 @@ by kind of record; with 1 and 4 a point or two fewer; with 2 and 8 as many, a te
 
 CONFIDENCE: Final = 0.975
 """Student's level of either end of a range."""
+
+
+Range = tuple[float, float]
+ANYWHERE: Final[Range] = (-float("inf"), float("inf"))
+
+
+def cut_to_ends(likely: Range | None, ends: Range) -> Range | None:
+    """A likely range as far as the ends go between which a parameter may lie.
+
+    >>> cut_to_ends((-0.5, 2.0), (0.0, float("inf"))), cut_to_ends((-3.0, -2.0), (0.0, 1.0))
+    ((0.0, 2.0), (0.0, 0.0))
+    """
+    if likely is None:
+        return None
+    low, high = (min(max(end, ends[0]), ends[1]) for end in likely)
+    return low, high
 
 
 def share_off(value: float | None, likely: tuple[float, float] | None) -> float | None:

@@ -22,7 +22,7 @@ from trialid.accuracy.equations import (
     sensitivity_range,
 )
 from trialid.accuracy.felt import Draw
-from trialid.accuracy.likely import Averaged, share_off
+from trialid.accuracy.likely import ANYWHERE, Averaged, Range, cut_to_ends, share_off
 from trialid.accuracy.weak import Weakness, weak_directions, without_nuisance
 from trialid.arrays import Vector
 from trialid.linear_algebra import triangle
@@ -37,9 +37,10 @@ class ParameterAccuracy:
     """One row of the accuracy table; errors absolute unless called relative.
 
     `freedom` are the degrees of freedom of the standard error: noise as slow as the manoeuvre tells
-    little of itself. `likely` is where the parameter lies at 95 % whatever is missing, None where
-    nobody can say; `widened_by` what makes it wider than noise does, empty where that is what was
-    held fixed; `prior_share` how much of what is known of it is its prior's, None without.
+    little of itself. `likely` is where the parameter lies at 95 % whatever is missing, never beyond
+    the `ends` that it was searched between, None where nobody can say; `widened_by` what makes it
+    wider than noise does, empty where that is what was held fixed; `prior_share` how much of what
+    is known of it is its prior's, None without.
     """
 
     name: str
@@ -59,6 +60,7 @@ class ParameterAccuracy:
     likely: tuple[float, float] | None = None
     widened_by: str | None = None
     prior_share: float | None = None
+    ends: Range = ANYWHERE
 
     @property
     def may_be_off(self) -> float | None:
@@ -102,6 +104,8 @@ class Subject:
     reference: float
     prior: float | None = None
     """Standard deviation of what is known of it beforehand, in its unit."""
+    ends: Range = ANYWHERE
+    """Between which it was searched: a GM is not negative."""
 
 
 def assess(
@@ -200,6 +204,7 @@ def _rows(
             white_error=float(plain[i] * abs(s.reference)),
             n_effective=float(n_effective[i]),
             freedom=float(found.freedom[i]),
+            ends=s.ends,
         )
         for i, s in enumerate(subjects)
     )
@@ -239,7 +244,7 @@ def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> Param
     if row.kind != "physical":
         return row
     likely = averaged.range(place, row.value, row.standard_error, row.freedom)
-    return replace(row, likely=likely, widened_by=averaged.widest[place])
+    return replace(row, likely=cut_to_ends(likely, row.ends), widened_by=averaged.widest[place])
 
 
 def embrace(accuracy: Accuracy, named: Accuracy, effect: str) -> Accuracy:
@@ -286,7 +291,8 @@ def _with_rivals(row: ParameterAccuracy, rivals: Sequence[float]) -> ParameterAc
         reached.append((rival - share * (row.value - low), rival + share * (high - row.value)))
     whole = (min(x for x, _ in reached), max(x for _, x in reached))
     wider = whole[1] - whole[0] > 2.0 * (high - low)
-    return replace(row, likely=whole, widened_by=ANOTHER_GM if wider else row.widened_by)
+    widened_by = ANOTHER_GM if wider else row.widened_by
+    return replace(row, likely=cut_to_ends(whole, row.ends), widened_by=widened_by)
 
 
 def _scaled(known: float | None, relative: float, reference: float) -> float | None:

@@ -42,18 +42,10 @@ def without_input_gaps(trial: Trial, inputs: Collection[str], longest: float) ->
     if end - begin < MOST * trial.samples:
         kept = "it has gaps all over, and what she does after one rests on a straight line"
         return replace(trial, remarks=(*trial.remarks, f"{said}; left as it is: {kept}"))
-    part = slice(begin, end)
     others = [_window(trial, one) for one in ends if one != (begin, end)]
     advice = f"; for a trial of their own: window = {' or '.join(others)}" if others else ""
     remark = f"{said}: only {_window(trial, (begin, end))} s is used{advice}"
-    return replace(
-        trial,
-        signals={name: y[part] for name, y in trial.signals.items()},
-        valid={name: mask[part] for name, mask in trial.valid.items()},
-        remarks=(*trial.remarks, remark),
-        start=trial.start + round(begin * trial.period * 1e9),
-        opening=trial.opening + begin * trial.period,
-    )
+    return trial.part(begin, end, remark)
 
 
 def _long_gaps(valid: Mask, longest: float) -> Mask:

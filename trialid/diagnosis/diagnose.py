@@ -13,6 +13,7 @@ from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import with_means
+from trialid.diagnosis.plain_damping import dampings
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.completeness import Completeness, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
@@ -230,6 +231,10 @@ def refits_of(
     named = likeliest_refit(fit, best, asked.level, grown)
     if named:
         best += refit(fit, foretell_far_more(fit, ranking, best), progress)
+        named = likeliest_refit(fit, best, asked.level, grown)
+    if named:
+        fitted = [r.candidate.effect.name for r in best]
+        best += refit(fit, dampings(named.candidate, ranking, fitted), progress)
         named = likeliest_refit(fit, best, asked.level, grown)
     others = to_fit(named, ranking, best, grown) if named else ()
     return look_beside(

@@ -26,8 +26,9 @@ def accuracy_of(fit: Fit, parts: Split, averaged: Averaged) -> Accuracy:
         typical = unknown.kind == "nuisance" or near_zero
         reference = unknown.size if typical else float(value)
         known = unknown.prior[1] if unknown.prior else None
+        ends, name, kind = (unknown.low, unknown.high), unknown.name, unknown.kind
         subjects.append(
-            Subject(unknown.name, unknown.kind, unknown.unit, float(value), reference, known)
+            Subject(name, kind, unknown.unit, float(value), reference, known, ends=ends)
         )
     made = assess(
         subjects=subjects,

@@ -9,6 +9,7 @@ import numpy as np
 
 from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
+from trialid.alignment.held_roll import without_held_roll
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
 from trialid.diagnosis.rudder_jumps import rudder_jump, said_of
 from trialid.errors import PipelineError
@@ -40,12 +41,15 @@ def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
 def stretches_to_fit(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
     """Trials of their own, each the stretch of it through which she can be simulated.
 
+    Where she is held at a heel and let go that begins at the release.
+
     Raises
     ------
     PipelineError
         Two are the same stretch of the same log.
     """
     check_own_stretches(pipeline, trials)
+    trials = [without_held_roll(trial) for trial in trials]
     if pipeline.ship is None:
         return tuple(trials)
     particulars, catalogue = read_ship(pipeline.ship).particulars, available(pipeline)

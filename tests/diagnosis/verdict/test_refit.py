@@ -43,6 +43,7 @@ def refit(
         effect=SimpleNamespace(
             name=name,
             parameters={"a": SimpleNamespace(unit="1")},
+            states={},
             forms=FORMS[name == "lag"],
             held=None,
             acts_on=lambda *forms: ("r",),

@@ -34,6 +34,14 @@ MOVES = 0.25
 FOLLOWS, FOLLOWS_PART = 0.8, 0.6
 """Correlation of rudder and rate of turn, in all and in each part, when the one follows the other
 at once."""
+STANDS = 0.25
+"""Of a rudder that stands still the steps from sample to sample have this share at least of what
+white noise has: a mean over samples leaves 0.4 of it, zig-zags of 10 samples from one reversal to
+the next 0.2, of 20 0.1. Of four roll decays with the rudder amidships one was refused, as inverted
+by chance: with twice of it, too. Half of it is a zig-zag of 16 samples."""
+FIDGETS = float(np.deg2rad(5.0))
+"""[rad] And it goes no further than that from end to end. Half of it is the noise of some, twice of
+it a zig-zag of 5 deg in a slow log."""
 DEPENDENT = 0.03
 """Share of a signal that must be left without the damping; less tells delays, not signs."""
 
@@ -105,6 +113,8 @@ def answer(trial: Trial, rudder: str, turning: tuple[Vector, Mask]) -> Turning:
 
 def answer_of(rudder: Vector, rate: Vector, both: Mask, period: float) -> Turning:
     """The same of a rudder and a rate of turn on one clock, `period` [s], where both are valid."""
+    if _stands(rudder[both]):
+        return Turning(0.0, 0.0, "dr/dt")
     whole, parts = agreement(rudder, rate, both, damping=rate)
     for side in (1.0, -1.0):
         if contradicts((-side * whole, [-side * part for part in parts])):
@@ -114,6 +124,13 @@ def answer_of(rudder: Vector, rate: Vector, both: Mask, period: float) -> Turnin
         sign = float(np.sign(at_once.correlation))
         return Turning(sign, at_once.correlation, "r, which follows at once")
     return Turning(0.0, whole, "dr/dt")
+
+
+def _stands(rudder: Vector) -> bool:
+    """Whether nothing of a rudder is more than the noise of its sensor: that tells no side."""
+    if len(rudder) < FEWEST_STRETCHES or np.ptp(rudder) > FIDGETS:
+        return False
+    return float(np.mean(np.diff(rudder) ** 2)) >= STANDS * 2.0 * float(np.var(rudder))
 
 
 def _follows(found: relation.Relation) -> bool:

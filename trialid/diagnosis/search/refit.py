@@ -17,6 +17,7 @@ from trialid.diagnosis.found_values import (
     turns_round,
 )
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
+from trialid.diagnosis.plain_damping import is_plain_damping
 from trialid.diagnosis.rudder_jumps import jump_in
 from trialid.diagnosis.search.carried import (
     EACH,
@@ -176,6 +177,7 @@ def likeliest_refit(
         for r in refits
         if not objection(fit, r, level, grown)
         and not _looks_like_the_ship(fit, r, refits, level, grown)
+        and not is_plain_damping(r, [o for o in refits if o.fit.converged], level)
     ]
     best = best_of(able, level, grown)
     if best is None or grown:  # what is added later is held against these trials step by step

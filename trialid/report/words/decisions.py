@@ -78,7 +78,7 @@ def _lacking(
         port, starboard = (one.key for one in drives)
         yield f"no rudder moves; {port} and {starboard} seem to drive her: `trialid start` tries"
     elif not alive & {"delta", "delta_order"}:
-        yield "no rudder or rudder order that moves is recognised: a fit needs one"
+        yield "no rudder or rudder order that moves is recognised: all but roll decays need one"
     if not alive & {"r", "psi", "phi"}:
         yield "no yaw rate, heading or roll angle that moves is recognised: a fit needs a motion"
     if "u" not in alive:

@@ -28,6 +28,7 @@ from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.rate_unit import size_unit
 from trialid.workflow.first_pipeline.read_as_order import with_orders
+from trialid.workflow.first_pipeline.roll_decay import decays_among
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track
@@ -42,6 +43,13 @@ __all__ = ["Starter", "begun_ship", "starter"]
 
 
 STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
+
+
+NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
+NO_SERVICE_SPEED: Final = (
+    "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "
+    "--speed KNOTS"
+)
 
 
 @dataclass(frozen=True)
@@ -85,24 +93,18 @@ def starter(
     """
     own = read_ship(ship) if ship is not None else None
     known = without_axes_of_earth(surveys)
-    chosen = _with_speeds([choose(one, speed) for one in known], speed)
-    trials = without_small_roll(with_sides(with_twins(chosen, own)))
-    trials = [
-        with_velocities_beside(held_against_track(one), survey)
-        for one, survey in zip(trials, surveys, strict=True)
-    ]
-    _check_shared(trials)
+    decays = decays_among(known, speed, given.length, own)
+    trials = decays or _steered(known, surveys, own, speed)
     if ship is None and given.length is None:
         raise LogError(
             f"{pipeline}: no log knows the ship; add --ship SHIP.toml, or --length METRES, and "
             "--beam, --draught, --displacement where you have them"
         )
-    u0 = max((one.speed for one in trials if one.speed), default=None)
+    u0 = max((one.speed for one in trials if one.speed), default=speed)
+    if u0 is None and decays and own is not None:
+        u0 = own.particulars.get("U0")
     if u0 is None:
-        raise LogError(
-            f"{pipeline}: no log tells the speed in a stated unit; add --speed KNOTS, the approach "
-            "speed"
-        )
+        raise LogError(f"{pipeline}: {NO_SERVICE_SPEED if decays else NO_SPEED}")
     files: dict[Path, str] = {}
     if ship is None or own is None:
         ship = begun_ship(pipeline)
@@ -111,10 +113,28 @@ def starter(
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
     drives = frozenset(one.drive for one in own.actuators if one.drive)
-    trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0, drives)
+    if not decays:
+        trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0, drives)
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
+
+
+def _steered(
+    known: Sequence[Inspection],
+    surveys: Sequence[Inspection],
+    own: Ship | None,
+    speed: float | None,
+) -> list[Chosen]:
+    """What to take from each log of a ship that is steered; LogError where they hold too little."""
+    chosen = _with_speeds([choose(one, speed) for one in known], speed)
+    trials = without_small_roll(with_sides(with_twins(chosen, own)))
+    trials = [
+        with_velocities_beside(held_against_track(one), survey)
+        for one, survey in zip(trials, surveys, strict=True)
+    ]
+    _check_shared(trials)
+    return trials
 
 
 def _cut(trials: Sequence[Chosen], windows: Windows) -> list[Chosen]:
@@ -125,7 +145,8 @@ def _cut(trials: Sequence[Chosen], windows: Windows) -> list[Chosen]:
 
 def _begun(pipeline: Path, given: Given, trials: Sequence[Chosen]) -> tuple[Ship, str]:
     """A ship of these particulars, with what drives and steers her in these logs; and her file."""
-    words = next(one.speed_words for one in trials if one.speed == given.speed)
+    told = (one.speed_words for one in trials if one.speed == given.speed)
+    words = next(told, "as stated")
     made = estimate(given, f"ship of {pipeline.stem}")
     ones: tuple[Actuator, ...] = ()
     if is_boat(shared_signals(trials)):

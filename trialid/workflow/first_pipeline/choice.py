@@ -78,7 +78,7 @@ class Chosen:
     def name(self) -> str:
         """Its file's, and where it is one manoeuvre of it, that one's."""
         stem = self.path.stem or "trial"
-        return stem if self.window is None else f"{stem} {self.window.kind}"
+        return stem if self.window is None else f"{stem} {self.window.kind}".rstrip()
 
     @property
     def over_ground(self) -> bool:
@@ -113,12 +113,9 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     signals += [r] if r else [plain_signal("psi", live, "no yaw rate is logged")]
     signals += [plain_signal("phi", live, "")] if live["phi"] else []
     known, words = approach_speed(survey, live, speed)
-    if live["u"]:
-        signals.append(through_water(live, known, words))
-    elif (other := other_speed(survey, known, words)) and (
-        speed is None or not _stated(other.source)
-    ):
-        signals.append(other)
+    ahead = choose_speed(survey, live, known, words)
+    if ahead and (live.get("u") or speed is None or not _stated(ahead.source)):
+        signals.append(ahead)
     return Chosen(
         survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words
     )
@@ -188,6 +185,13 @@ def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
 
 def _with_side(plain: Signal, positive: str, words: str) -> Signal:
     return dataclasses.replace(plain, positive=positive, why=f"{plain.why}; {words}")
+
+
+def choose_speed(survey: Inspection, live: Live, known: float | None, told: str) -> Signal | None:
+    """The speed through the water, else another; see `through_water` and `other_speed`."""
+    if live["u"]:
+        return through_water(live, known, told)
+    return other_speed(survey, known, told)
 
 
 def through_water(live: Live, known: float | None, told: str) -> Signal:

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.alignment.held_roll import held_roll, released_at
 from trialid.arrays import Vector
 from trialid.design.imo.excursions import rudder_of
 from trialid.design.imo.recognise import recognise
@@ -50,12 +51,13 @@ ANGLES: Final = 5.0
 """[deg] Steps in which rudder angles are ordered: within one they are the same manoeuvre again."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Window:
     """A stretch of a log [s] in which she was put through something, and how far she was steered.
 
     `travel` and `variation` [rad] are of the rudder: its greatest angle and its mean, and its
-    standard deviation.
+    standard deviation; of the roll, where no rudder is. `released` says that she was held before;
+    then `kind` is empty.
     """
 
     kind: str
@@ -63,6 +65,7 @@ class Window:
     end: float
     travel: float
     variation: float
+    released: str = ""
 
 
 Windows = tuple[tuple[Window, ...], ...]
@@ -70,20 +73,21 @@ Windows = tuple[tuple[Window, ...], ...]
 
 
 def manoeuvre_windows(pipeline: Pipeline, durations: Sequence[float]) -> Windows:
-    """The manoeuvres in each log of a pipeline that has just been begun.
+    """The manoeuvres in each log of a pipeline that has just been begun, or its swing when let go.
 
-    Logs of `durations` [s] that are short are not read; one that cannot be has none, and the run
-    says why.
+    Logs of `durations` [s] that are short are not read where they hold no roll; one that cannot be
+    has none, and the run says why.
     """
     assert pipeline.ship is not None  # a pipeline is begun with a ship
     particulars = read_ship(pipeline.ship).particulars
     length, speed = (particulars[n] for n in ("L", "U0"))
 
     def of_log(section: TrialSection, duration: float) -> tuple[Window, ...]:
-        if duration < LONG * length / speed:
+        if duration < LONG * length / speed and "phi" not in section.signals:
             return ()
         try:
-            return windows_of(align_trial(pipeline, section), length, speed)
+            trial = align_trial(pipeline, section)
+            return windows_of(trial, length, speed) or _let_go(trial)
         except TrialidError:
             return ()
 
@@ -114,6 +118,24 @@ def windows_of(trial: Trial, length: float, speed: float) -> tuple[Window, ...]:
     if len(spans) < 2:
         return _steered_most(trial, rudder, round(STRETCH * length / speed / trial.period), speed)
     return tuple(_manoeuvre(trial, rudder, span) for span in _first_of_each(spans))
+
+
+def _let_go(trial: Trial) -> tuple[Window, ...]:
+    """What follows a heel that is held, where she is let go from one."""
+    if (held := held_roll(trial)) is None:
+        return ()
+    steered = rudder_of(trial)
+    moved = trial.signals.get("phi", np.zeros(1)) if steered is None else steered
+    after = moved[held.release :]
+    window = Window(
+        kind="",
+        begin=released_at(trial, held),
+        end=trial.opening + trial.duration,
+        travel=float(np.max(np.abs(after)) + np.abs(np.mean(after))),
+        variation=float(np.std(after)),
+        released=f"from where she is let go: {held.stands(trial)}",
+    )
+    return (window,)
 
 
 @dataclass(frozen=True)
@@ -165,11 +187,11 @@ def _window(
     part = rudder[begin:end]
     most = float(np.max(np.abs(part)))
     return Window(
-        f"{kind} {np.rad2deg(most if angle is None else abs(angle)):.0f}",
-        begin * trial.period,
-        end * trial.period,
-        most + float(np.abs(np.mean(part))),
-        float(np.std(part)),
+        kind=f"{kind} {np.rad2deg(most if angle is None else abs(angle)):.0f}",
+        begin=begin * trial.period,
+        end=end * trial.period,
+        travel=most + float(np.abs(np.mean(part))),
+        variation=float(np.std(part)),
     )
 
 

@@ -5,18 +5,19 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
 from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.positions import positions
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
-from trialid.toml_text import quote
+from trialid.toml_text import array, quote
 from trialid.workflow.first_pipeline.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+from trialid.workflow.first_pipeline.free_lines import free_lines
 from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
+from trialid.workflow.first_pipeline.roll_decay import decay_model, is_of_decays
+from trialid.workflow.first_pipeline.sample_period import align_lines
 
 HEAD: Final = """\
 # Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
@@ -30,9 +31,6 @@ UNITS: Final = {"lat": "deg", "lon": "deg", "x": "m", "y": "m"}
 MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
 
-NO_PACE: Final = frozenset(("u", "cog"))
-"""What changes so slowly that its sensor sets no pace; nor does a heading beside its rate."""
-PERIODS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
 SWAY: Final = ("Yv", "Ydelta")
 """What a record of sway tells of it; most of Yr goes with the centrifugal force, which is known."""
 ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
@@ -41,8 +39,6 @@ ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
 GEAR: Final = 0.05
 """Lag of a small ship's gear, as a share of the time in which she goes her own length: that of a
 ship of 160 m at 15 knots is 1 s."""
-STEPS_A_LENGTH: Final = 40
-"""Samples while the ship moves by her own length: she does little in a fortieth of that."""
 
 
 def pipeline_text(
@@ -60,7 +56,7 @@ def pipeline_text(
         lines += ["", *_trial(path, name, trial, why_held_out(trials) if place == held else "")]
     lines += [
         "",
-        *_align(trials, length, speed),
+        *align_lines(trials, length, speed),
         "",
         *_model(trials, ship, length / max(speed, 0.1)),
     ]
@@ -75,7 +71,8 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
     if held:
         yield f'use = "check"  # held out, {held}: scored, never fitted'
     if trial.states_speed and trial.speed is not None:
-        yield f"speed = {trial.speed:.4g}  # m/s, {comment(trial.speed_words)}: no log has u"
+        why = ": no log has u" if trial.speed else ""
+        yield f"speed = {float(trial.speed):.4g}  # m/s, {comment(trial.speed_words)}{why}"
     yield _window(trial)
     for remark in _remarks(trial):
         yield f"# {comment(remark)}"
@@ -97,12 +94,11 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
 
 
 def _window(trial: Chosen) -> str:
-    """The manoeuvre alone: as it was found in a long log, else for the user to say."""
+    """The manoeuvre alone: as it was found in a log, else for the user to say."""
     if (found := trial.window) is None:
         return f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
-    return (
-        f"window = [{found.begin:.1f}, {found.end:.1f}]  # s, {found.kind} deg, as the rudder went"
-    )
+    why = found.released or f"{found.kind} deg, as the rudder went"
+    return f"window = [{found.begin:.1f}, {found.end:.1f}]  # s, {why}"
 
 
 def _track(channels: Iterable[ChannelInspection]) -> Iterator[str]:
@@ -182,36 +178,11 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
     }
 
 
-def _align(trials: Sequence[Chosen], length: float, speed: float) -> Iterator[str]:
-    chosen = period(trials, length, speed)
-    slowest = min(_paces(trials), key=lambda c: c.rate)
-    yield "[align]"
-    yield (
-        f"period = {chosen:g}  # s; the slowest signal, {comment(slowest.key)}, has "
-        f"{slowest.rate:.3g} Hz; her own length takes the ship {length / max(speed, 1e-3):.3g} s"
-    )
-
-
-def period(trials: Sequence[Chosen], length: float, speed: float) -> float:
-    """Time between samples [s]: as the slowest signal has it, but no longer than the ship allows.
-
-    Nor shorter than she needs: a simulation at 100 Hz tells no more of a ship, and takes longer.
-    """
-    slow = 1.0 / min(one.rate for one in _paces(trials))
-    quick = min(0.5, length / max(speed, 0.1) / STEPS_A_LENGTH)
-    return max((p for p in PERIODS if p <= max(slow, quick) * 1.05), default=PERIODS[0])
-
-
-def _paces(trials: Sequence[Chosen]) -> Iterator[ChannelInspection]:
-    """Channels that have to be followed from sample to sample."""
-    for trial in trials:
-        rated = any(one.quantity == "r" for one in trial.signals)
-        slow = NO_PACE | {"psi"} if rated else NO_PACE
-        yield from (one.source for one in trial.signals if one.quantity not in slow)
-
-
 def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[str]:
     known = frozenset.intersection(*(one.quantities for one in trials))
+    if is_of_decays(trials):
+        yield from decay_model(trials, ship)
+        return
     if known & {n for one in ship.actuators if (d := one.drive) for n in (d, f"{d}_order")}:
         yield from boat_model(trials, ship)
         return
@@ -223,17 +194,16 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     over_ground = all(one.over_ground for one in trials)
     effects = _effects(several=several, rolls=rolls, over_ground=over_ground)
     yield "[model]"
-    yield f"states = {_list(states)}  # what is simulated; the speed is read from the log"
+    yield f"states = {array(states)}  # what is simulated; the speed is read from the log"
     if order_only:
         yield "# only the order is logged: the rudder follows it with a lag, T_delta"
         effects.insert(0, "rudder_servo")
-    yield f"effects = {_list(effects)}  # `trialid effects` lists what there is"
+    yield f"effects = {array(effects)}  # `trialid effects` lists what there is"
     if order_only:
         lag = min(1.0, GEAR * own_time)
         words = "s, typical; put it into free once the rest fits"
         yield f"values = {{ T_delta = {lag:.2g} }}  # {words}"
-    roll = [*ROLL, *(["I_xx"] if _surer_of_GM(ship) else [])] if rolls else []
-    free = ["Nv", "Nr", "Ndelta", *(SWAY if "v" in known else []), *roll]
+    free = ["Nv", "Nr", "Ndelta", *(SWAY if "v" in known else []), *(ROLL if rolls else [])]
     yield ""
     yield "[identify]"
     if "v" in known:
@@ -241,21 +211,11 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     else:
         yield "# Masses and the sway coefficients stay as the ship file has them: the yaw alone"
         yield "# does not tell them apart. Free them where the speed v is recorded."
-    if "I_xx" in free:
-        yield "# GM is known, and a roll tells its ratio to I_xx: so both, each as well as known."
-    yield f"free = {_list(free)}"
-    if any(name in ship.uncertainty for name in free):
-        yield 'priors = "ship"  # held about her file\'s numbers, as far as it says they scatter'
-    yield f"outputs = {_list(outputs)}"
+    yield from free_lines(free, ship)
+    yield f"outputs = {array(outputs)}"
     offset = [] if several else ["rudder_offset"]  # of one rudder; of several `NAME_misaligned`
     nuisance = ["initial_state", "bias", *offset, "delay"]
-    yield f"nuisance = {_list(nuisance)}  # of each trial, estimated too"
-
-
-def _surer_of_GM(ship: Ship) -> bool:
-    """Whether GM is known twice as well as the inertia in roll: a roll tells their ratio alone."""
-    known = ship.uncertainty
-    return known.get("GM", np.inf) < 0.5 * known.get("I_xx", 0.0)
+    yield f"nuisance = {array(nuisance)}  # of each trial, estimated too"
 
 
 def _effects(*, several: bool, rolls: bool, over_ground: bool) -> list[str]:
@@ -285,10 +245,6 @@ def _relative(path: Path, pipeline: Path) -> str:
     """A path as the pipeline's folder sees it."""
     folder = pipeline.resolve().parent
     return Path(os.path.relpath(path.resolve(), folder)).as_posix()
-
-
-def _list(entries: Sequence[str]) -> str:
-    return f"[{', '.join(quote(entry) for entry in entries)}]"
 
 
 def comment(text: str) -> str:

@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 from pydantic import ValidationError
 
+from trialid.alignment.held_roll import held_roll
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.problem import Settings
 from trialid.pipeline_file import Pipeline, check_form
@@ -77,7 +78,12 @@ def checked_trials(trials: Sequence[Trial], model: ShipModel) -> tuple[Trial, ..
 
 
 def _check_gaps(trial: Trial, model: ShipModel) -> None:
-    """Refuse a trial with a long gap in what steers her; a pipeline would use a part of it."""
+    """Refuse a trial of which a pipeline would use a part.
+
+    With a long gap in what steers her, or a heel that is held and let go.
+    """
+    if (held := held_roll(trial)) is not None:
+        raise NotIdentifiable(f"trial {trial.name!r}: {held.words(trial)}")
     part = known_throughout(trial, model.ship.particulars, model.effects)
     if part.samples < trial.samples:
         said = part.remarks[-1].partition(": only")[0]

@@ -1,0 +1,61 @@
+"""A heel that is held and let go is found by the roll alone, and no free swing is taken for one."""
+
+from dataclasses import replace
+
+import numpy as np
+from drawn_decays import drawn
+
+from trialid.alignment.held_roll import held_roll, released_at, without_held_roll
+
+SEEDS = range(700, 760)
+
+
+def test_of_sixty_that_are_held_most_are_told_and_none_is_cut_far_off():
+    late = []
+    for seed in SEEDS:
+        trial, release = drawn(seed, held=True)
+        if (held := held_roll(trial)) is not None:
+            late.append(trial.t[held.release] - release * trial.period)
+    assert len(late) >= 54
+    assert np.median(late) >= 0.0
+    assert max(late) < 1.2  # a tenth of the longer period
+
+
+def test_of_sixty_that_are_free_none_is_said_to_be_held():
+    assert all(held_roll(drawn(seed, held=False)[0]) is None for seed in SEEDS)
+
+
+def test_what_lies_before_the_release_is_left_out_and_said():
+    trial, release = drawn(7, held=True, r=0.0)
+    part = without_held_roll(trial)
+    cut = trial.samples - part.samples
+    assert release <= cut <= release + 6
+    np.testing.assert_array_equal(part.signals["r"], trial.signals["r"][cut:])
+    assert part.opening == cut * trial.period
+    at = released_at(trial, held_roll(trial))
+    assert f"she was held; begin the window at {at:.1f} s: only [" in part.remarks[-1]
+
+
+def test_a_swing_from_there_on_is_left_as_it_is():
+    part = without_held_roll(drawn(7, held=True)[0])
+    assert without_held_roll(part) is part
+
+
+def test_a_rudder_that_goes_over_heels_her_and_no_hand():
+    trial, release = drawn(7, held=True, delta=0.0)
+    assert held_roll(trial) is not None
+    rudder = np.where(np.arange(trial.samples) < release, 0.3, 0.0)
+    assert held_roll(replace(trial, signals={**trial.signals, "delta": rudder})) is None
+
+
+def test_a_steady_turn_heels_her_and_no_hand():
+    trial, release = drawn(7, held=True, r=0.0)
+    turns = np.where(np.arange(trial.samples) < release, 0.5, 0.0)
+    assert held_roll(replace(trial, signals={**trial.signals, "r": turns})) is None
+
+
+def test_a_straight_line_through_a_gap_is_no_hold():
+    trial, release = drawn(7, held=True)
+    known = np.ones(trial.samples, np.bool_)
+    known[2 : release - 1] = False
+    assert held_roll(replace(trial, valid={"phi": known})) is None
