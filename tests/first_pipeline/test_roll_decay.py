@@ -8,7 +8,7 @@ from test_first_pipeline import L, written
 from trialid import pipeline_file
 from trialid.cli.main import commands
 from trialid.result.json_file import read
-from trialid.workflow.first_pipeline.roll_decay import _period
+from trialid.workflow.first_pipeline.roll_decay import _decay
 
 PERIOD = 12.0
 
@@ -96,11 +96,32 @@ def test_a_ship_that_is_steered_or_turns_is_none_of_these(tmp_path, monkeypatch,
 
 def test_what_does_not_die_out_is_no_decay():
     t, roll = swing(12.0, 1)
-    assert _period(roll) == pytest.approx(PERIOD / (t[1] - t[0]), rel=0.05)
+    assert _decay(roll).period == pytest.approx(PERIOD / (t[1] - t[0]), rel=0.05)
     rng = np.random.default_rng(3)
-    assert _period(5.0 * np.sin(0.5 * t)) is None
-    assert _period(5.0 * np.exp(-0.003 * t) * np.cos(0.1 * np.pi * t)) is None
-    assert _period(5.0 * np.exp(-0.01 * t) * np.cos(0.1 * np.pi * t)) is not None
-    assert _period(rng.standard_normal(len(t))) is None
-    assert _period(3.0 - 3.0 * np.exp(-t / 10.0) * np.cos(0.1 * t)) is None
-    assert _period(roll[::-1]) is None
+    assert _decay(5.0 * np.sin(0.5 * t)) is None
+    assert _decay(5.0 * np.exp(-0.003 * t) * np.cos(0.1 * np.pi * t)) is None
+    assert _decay(5.0 * np.exp(-0.01 * t) * np.cos(0.1 * np.pi * t)) is not None
+    assert _decay(rng.standard_normal(len(t))) is None
+    assert _decay(3.0 - 3.0 * np.exp(-t / 10.0) * np.cos(0.1 * t)) is None
+    assert _decay(roll[::-1]) is None
+
+
+@pytest.mark.parametrize("quiet", [0.0, 21.3])
+def test_a_swing_that_is_worked_up_by_hand_is_hers_from_the_greatest_on(
+    tmp_path, monkeypatch, quiet
+):
+    """She lies still, is rolled by hand three times, further each time, and is left alone."""
+    _, roll = swing(12.0, 5, held=0.0)
+    before = np.arange(0.0, 1.5 * PERIOD, 0.2)
+    by_hand = -12.0 * (before / before[-1]) ** 2 * np.cos(2.0 * np.pi * before / PERIOD)
+    whole = np.concatenate([np.zeros(int(quiet / 0.2)), by_hand, roll])
+    log = written(tmp_path / "d.csv", t_in_s=0.2 * np.arange(len(whole)), roll_in_deg=whole)
+    done = started(tmp_path, monkeypatch, [log], "--speed", "15")
+    assert done.exit_code == 0, done.output
+    [trial] = pipeline_file.load(tmp_path / "first_trial.toml").trials
+    begun = quiet + before[-1]
+    assert begun - 0.3 <= trial.window[0] <= begun + 1.0
+    found = read(tmp_path / "runs" / "first_trial" / "result.json")
+    assert found.fit.eps_rmsn < 0.1
+    estimates = {p.name: p.value for p in found.accuracy.parameters}
+    assert estimates["GM"] > 0.0

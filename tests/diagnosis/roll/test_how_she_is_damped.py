@@ -49,6 +49,15 @@ def test_a_light_roll_that_dies_away_in_the_record_is_her_own():
     assert said(fit) == []
 
 
+@pytest.mark.parametrize(("ratio", "hers"), [(0.004, True), (0.0, False)])
+def test_a_swing_let_go_may_die_away_slowly_but_a_swell_goes_on(ratio, hers):
+    """0.004 of what is critical in 25 cycles leave 0.66 of it; of the other nothing is lost."""
+    her = Roller(length=3.0, GM=0.03, ratio=ratio)
+    fit = her.fit(her.decays(11, cycles=25, speed=1.0))
+    assert dies_away(fit.problem) == hers
+    assert (said(fit) == []) == hers
+
+
 @pytest.mark.parametrize("times", [12.0, 18.0])
 def test_a_ship_with_fins_tells_gm_where_her_zig_zags_do(times):
     """Damped by half of what is critical, and by most of it."""

@@ -140,7 +140,7 @@ def _steered(
 def _cut(trials: Sequence[Chosen], windows: Windows) -> list[Chosen]:
     """Each manoeuvre of a log as a trial; a log without any as the one it is."""
     found = zip(trials, windows, strict=True)
-    return [replace(one, window=each) for one, own in found for each in own or (None,)]
+    return [replace(one, window=each) for one, own in found for each in own or (one.window,)]
 
 
 def _begun(pipeline: Path, given: Given, trials: Sequence[Chosen]) -> tuple[Ship, str]:

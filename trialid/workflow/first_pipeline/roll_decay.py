@@ -31,6 +31,7 @@ from trialid.workflow.first_pipeline.choice import (
     plain_signal,
 )
 from trialid.workflow.first_pipeline.free_lines import free_lines
+from trialid.workflow.first_pipeline.long_log import Window
 
 SWINGS: Final = 4
 """Half swings that tell a decay, each less than the one before. All of 300 drawn decays have them,
@@ -92,13 +93,13 @@ def _is_decay(survey: Inspection) -> bool:
         return False
     steered = [plain_signal(name, live, "") for name in RUDDERS if live[name]]
     still = all(_span(one) <= STEERED for one in steered)
-    return still and _turned(live) <= TURNS and _period(rolls[0].sketch.y) is not None
+    return still and _turned(live) <= TURNS and _decay(rolls[0].sketch.y) is not None
 
 
 def _span(signal: Signal) -> float:
-    """How far an angle goes beside its noise [rad]; of an unknown unit as far as can be."""
-    size = 1.0 if signal.source.angle else to_si(signal.unit or "", "rad")
-    return float("inf") if size is None else course_span(signal.source.sketch.y) * size
+    """How far an angle goes beside its noise [rad]; of an unknown unit at most, in radians."""
+    size = None if signal.source.angle else to_si(signal.unit or "", "rad")
+    return course_span(signal.source.sketch.y) * (size or 1.0)
 
 
 def _turned(live: Live) -> float:
@@ -110,44 +111,77 @@ def _turned(live: Live) -> float:
     rate = plain_signal("r", live, "")
     size = to_si(rate.unit or "", "rad/s")
     course = rate.source.sketch
-    turned = np.cumsum(course.y[1:] * np.diff(course.t) / 1e9) if size else np.array([np.inf])
+    turned = np.cumsum(course.y[1:] * np.diff(course.t) / 1e9)
     return float(np.max(np.abs(turned), initial=0.0)) * (size or 1.0)
 
 
-def _period(roll: Vector) -> float | None:
-    """Samples in a roll period of swings that die out about a heel; None of anything else."""
+@dataclasses.dataclass(frozen=True)
+class _Decay:
+    """Swings that die out: the sample of the greatest, how many samples a period has."""
+
+    begin: int
+    period: float
+
+
+def _decay(roll: Vector) -> _Decay | None:
+    """Swings that die out about a heel; None of anything else.
+
+    What comes before the greatest is none of hers: she is rolled by hand until she swings.
+    """
     if len(roll) < 4 * SWINGS:
         return None
     first, _ = _swings(roll, float(np.median(np.array_split(roll, 3)[-1])))
     if len(first) < SWINGS:
         return None
-    before, middle, after = first[-3:]  # what they die by cancels to the second order
+    before, middle, after = roll[first[-3:]]  # what they die by cancels to the second order
     rest = float(before + 2.0 * middle + after) / 4.0
     ends, turns = _swings(roll, rest)
     size = SEEN * float(np.max(np.abs(roll - rest)))
-    swings = [abs(float(end) - rest) for end in ends]
+    every = np.abs(roll[ends] - rest)
+    free = int(np.argmax(every)) if len(every) else 0
+    swings = every[free:].tolist()
     if len(swings) < SWINGS or swings[-1] > DIES * swings[0]:
         return None
     if any(b > GROWS * a + size for a, b in pairwise(swings)):
         return None
-    return 2.0 * float(np.median(np.diff(turns)))
+    return _Decay(int(ends[free]), 2.0 * float(np.median(np.diff(turns[free:]))))
 
 
-def _swings(roll: Vector, rest: float) -> tuple[Vector, NDArray[np.intp]]:
-    """Where each half swing about a heel ends, and the samples at which another begins."""
+def _swings(roll: Vector, rest: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Samples at which each half swing about a heel ends, and at which another begins."""
     off = roll - rest
     least = max(SEEN * float(np.max(np.abs(off))), NOISE * noise_of(roll))
     at = np.flatnonzero(np.abs(off) > least)
     turns = np.flatnonzero(np.diff(np.sign(off[at]))) + 1
     parts = [part for part in np.split(at, turns) if len(part)]
-    ends = [roll[part[np.argmax(np.abs(off[part]))]] for part in parts]
-    return np.array(ends), at[turns]
+    ends = [part[np.argmax(np.abs(off[part]))] for part in parts]
+    return np.array(ends, dtype=np.intp), at[turns]
 
 
 def roll_period(trials: Sequence[Chosen]) -> float:
     """Of small rolls [s], the shortest of all logs."""
-    rolls = (trial.signals[0].source.sketch for trial in trials)
-    return min((_period(one.y) or 0.0) * float(np.median(np.diff(one.t))) / 1e9 for one in rolls)
+    rolls = [trial.signals[0].source.sketch for trial in trials]
+    found = [(_decay(one.y), float(np.median(np.diff(one.t))) / 1e9) for one in rolls]
+    return min(decay.period * step if decay else 0.0 for decay, step in found)
+
+
+def _rolled_by_hand(trial: Chosen) -> Window | None:
+    """What follows the greatest swing, where she is rolled up to it; None where it is the first."""
+    roll = trial.signals[0]
+    seen, size = roll.source.sketch, to_si(roll.unit or "", "rad") or 1.0
+    decay = _decay(seen.y)
+    if decay is None or decay.begin < decay.period:
+        return None
+    begin = float(seen.t[decay.begin] - seen.t[0]) / 1e9
+    after = size * seen.y[decay.begin :]
+    return Window(
+        kind="",
+        begin=begin,
+        end=float(seen.t[-1] - seen.t[0]) / 1e9,
+        travel=float(np.max(np.abs(after)) + np.abs(np.mean(after))),
+        variation=float(np.std(after)),
+        released="her greatest swing; before it she is at rest, or rolled by hand",
+    )
 
 
 def _choose(survey: Inspection, stated: float | None, rest: float) -> Chosen:
@@ -156,6 +190,7 @@ def _choose(survey: Inspection, stated: float | None, rest: float) -> Chosen:
     roll = plain_signal("phi", live, "she swings and is not steered: her roll alone is fitted")
     speed, words = approach_speed(survey, live, None)
     trial = Chosen(survey=survey, path=survey.path, signals=(roll,), speed=speed, speed_words=words)
+    trial = dataclasses.replace(trial, window=_rolled_by_hand(trial))
     if speed is None:
         said = "CAREFUL: no log tells a speed, read as at rest; write hers where she made way"
         return dataclasses.replace(
