@@ -21,7 +21,8 @@ PARTS = Split(
 
 
 def unknown(name, size, prior=None):
-    return SimpleNamespace(name=name, kind="physical", unit="1", size=size, prior=prior)
+    ends = {"low": -np.inf, "high": np.inf}
+    return SimpleNamespace(name=name, kind="physical", unit="1", size=size, prior=prior, **ends)
 
 
 def fit_of(theta, sizes):

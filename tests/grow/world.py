@@ -53,7 +53,7 @@ def own_errors(fit: Any, weights: Any = None, times: float = 1.0) -> Errors:
 
 def candidate(name: str) -> Any:
     return SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters={name: SimpleNamespace(unit="1")},
+        effect=SimpleNamespace(name=name, parameters={name: SimpleNamespace(unit="1")}, states={},
                                forms=(Force,), held=None, signals=()),
         family=(name,), p_value=0.001,
         shown=lambda level: True, carried=SimpleNamespace(seen=1.0),
