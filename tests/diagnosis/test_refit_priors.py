@@ -7,6 +7,7 @@ import pytest
 from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
 
 from trialid.diagnosis.search.refit import refit
+from trialid.diagnosis.search.rivals import _held_back, rivals
 from trialid.diagnosis.search.score import rank
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
@@ -55,3 +56,27 @@ def test_what_the_ships_file_says_of_it_counts(trials):
     assert loose.value("Nrar") == pytest.approx(3.0 * MODEL.value("Nrar"), rel=0.1)
     assert abs(held.value("Nrar")) < 0.99 * abs(loose.value("Nrar"))
     assert "Nrar" in held.contradicted
+
+
+OTHER = CATALOGUE["yaw_cubic_rrr"]
+
+
+@pytest.mark.parametrize(("spread", "held"), [(0.05, True), (5.0, False)])
+def test_what_is_held_back_by_the_file_may_be_meant_as_well(trials, spread, held):
+    """Of three times her file's number the cube does more, where that is held to a twentieth."""
+    ship = replace(SHIP, uncertainty={"default": 10.0, "Nrar": spread})
+    base = replace(MODEL - "yaw_drag_rar", ship=ship)
+    asked = replace(SETTINGS, free=FREE, priors=ship_priors(base, FREE), priors_of_ship=True)
+    fit = identify(trials, base, asked)
+    ranking, _ = rank(fit, {EFFECT.name: EFFECT, OTHER.name: OTHER})
+    cube, square = sorted(
+        refit(fit, ranking, lambda words: None), key=lambda r: r.candidate.effect.name
+    )
+    assert cube.candidate.effect is OTHER
+    assert _held_back(square) == held
+    assert not _held_back(cube)
+    if held:
+        assert cube.fit.eps_rmsn < square.fit.eps_rmsn
+        assert EFFECT.name in rivals(cube, ranking, (cube, square))
+    else:
+        assert square.fit.eps_rmsn < cube.fit.eps_rmsn

@@ -2,10 +2,16 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from trialid.accuracy.parameter_table import prior_shares
 from trialid.diagnosis.found_values import gives_way, her_own
 from trialid.diagnosis.search.carried import RIVAL, does_as_well
+from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
+from trialid.identification.weighing import CONTRADICTS
+from trialid.linear_algebra import triangle
 from trialid.ship.effect import Effect
 
 
@@ -31,10 +37,13 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
     """Effects that this record cannot tell from the named one: as good, or alike in trace.
 
     As good is what leaves no more of the blocks left out than chance would, and explains more than
-    half of what the named one does, when it is fitted; by its slope where slopes are believed.
+    half of what the named one does, when it is fitted; by its slope where slopes are believed. What
+    is held back by what was known of it might be: of a model whose eddies damped her by ten times
+    the estimate, damping by the cube had the name, of which nothing was known.
     """
     others = [r for r in refits if r is not named]
-    good = {r.candidate.effect.name for r in others if does_as_well(named.carried, r.carried)}
+    as_well = (r for r in others if does_as_well(named.carried, r.carried) or _held_back(r))
+    good = {r.candidate.effect.name for r in as_well}
     apart = {r.candidate.effect.name for r in others} - good
     apart |= {c.effect.name for c in ranking if _has_ends(c.effect) and not c.allowed}
     if _foretold(named):
@@ -47,6 +56,30 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
 def _has_ends(effect: Effect) -> bool:
     """Whether a value beyond its range says that it is not this, as of a coefficient."""
     return effect.bound_by_meaning or effect.held is not None
+
+
+def _held_back(refit: Refit) -> bool:
+    """Whether what was known of a parameter that was added keeps it from where the record has it.
+
+    By how far the prior moves it over its standard error: with `share` the variance that is left
+    over the prior's, (value - mean) / std sqrt(share) / (1 - share).
+    """
+    fit, added = refit.fit, refit.candidate.effect.parameters
+    known = {i: x.prior for i, x in enumerate(fit.problem.unknowns) if x.prior and x.name in added}
+    if not known:
+        return False
+    shares = prior_shares(triangle(fit.psi), prior_rows(fit)[:, 0])
+    assert shares is not None
+    moved = (
+        abs(float(fit.theta[i]) - mean) / deviation * float(np.sqrt(shares[i])) / _told(shares[i])
+        for i, (mean, deviation) in known.items()
+    )
+    return any(x > CONTRADICTS for x in moved)
+
+
+def _told(share: float) -> float:
+    """What the record tells of a parameter, where so much of what is known is its prior's."""
+    return max(1.0 - share, 1e-9)
 
 
 def _foretold(named: Refit) -> bool:
