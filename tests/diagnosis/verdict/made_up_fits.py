@@ -20,7 +20,7 @@ def fit(eps, check=None, converged=True):
         eps_by_output={"r": eps},
         at_bounds={},
         eps_check_by_output={} if check is None else {"r": check},
-        problem=SimpleNamespace(weights=np.ones(1)),
+        problem=SimpleNamespace(weights=np.ones(1), unknowns=()),
         model=SimpleNamespace(displaced_by=lambda effect: ()),
     )
 
