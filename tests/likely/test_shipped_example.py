@@ -67,7 +67,7 @@ def test_what_is_said_of_the_noise_holds_the_noise(before):
 
 
 def test_a_range_is_no_bound_for_everything(parameters):
-    """Ranges that held the truth by being endless would say nothing: half are within a quarter."""
+    """Ranges that held the truth by being endless would say nothing: half are within 0.3."""
     widths = sorted(p.may_be_off for p in parameters)
     assert widths[len(widths) // 2] < 0.3
 

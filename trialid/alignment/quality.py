@@ -23,7 +23,8 @@ JITTER = 0.2
 """Spread of the time between samples, as a share of it, that is worth a remark."""
 COARSE = 0.02
 """Share of its motion that the rounding of a signal may be without a remark."""
-HOUR_S = 3600.0
+HOUR_S, ABOUT_S = 3600.0, 10.0
+"""A clock that steps back by an hour, about, was set: a recorder that loses time does by chance."""
 STUCK_S = 10.0
 STUCK_SHARE = 0.1
 """A motion that does not change for so long, and for this share of the trial, is worth a remark."""
@@ -32,7 +33,7 @@ STUCK_SHARE = 0.1
 def steps_back(count: int, largest: float) -> str:
     """How often a clock steps back and how far at most [s], in a clause."""
     words = f"time steps back {count} times, by up to {largest:.4g} s"
-    if abs(largest - HOUR_S) > STUCK_S:
+    if abs(largest - HOUR_S) > ABOUT_S:
         return words
     return f"{words} (a local clock set back by an hour, whose samples mix? cut the log there)"
 

@@ -53,7 +53,7 @@ def ticks(block: Sentences, rows: Places, sentence: str, offset: int) -> Ticks:
     elif sentence == "RMC":
         days, sound = _date_of_rmc(block, rows)
         valid = block.letter(rows, 2) == ord("A")
-    else:  # a quality, modes or a status: without a fix 0, N or V
+    else:  # a quality, a mode or a status; without a fix 0, N or V
         valid = ~np.isin(block.letter(rows, 6), [ord(no) for no in "0NV"])
     timed = of_day != NONE
     dated = np.where(sound & timed, days * DAY + of_day, NONE)

@@ -68,6 +68,20 @@ class Window:
     released: str = ""
 
 
+def window_over(
+    moved: Vector, begin: float, end: float, *, kind: str = "", released: str = ""
+) -> Window:
+    """The window [s] over which the rudder, or the roll where none is, `moved` so [rad]; (n,)."""
+    return Window(
+        kind=kind,
+        begin=begin,
+        end=end,
+        travel=float(np.max(np.abs(moved)) + np.abs(np.mean(moved))),
+        variation=float(np.std(moved)),
+        released=released,
+    )
+
+
 Windows = tuple[tuple[Window, ...], ...]
 """Of each log; empty where it is a trial as it is."""
 
@@ -126,16 +140,9 @@ def _let_go(trial: Trial) -> tuple[Window, ...]:
         return ()
     steered = rudder_of(trial)
     moved = trial.signals.get("phi", np.zeros(1)) if steered is None else steered
-    after = moved[held.release :]
-    window = Window(
-        kind="",
-        begin=released_at(trial, held),
-        end=trial.opening + trial.duration,
-        travel=float(np.max(np.abs(after)) + np.abs(np.mean(after))),
-        variation=float(np.std(after)),
-        released=f"from where she is let go: {held.stands(trial)}",
-    )
-    return (window,)
+    begin, end = released_at(trial, held), trial.opening + trial.duration
+    why = f"from where she is let go: {held.stands(trial)}"
+    return (window_over(moved[held.release :], begin, end, released=why),)
 
 
 @dataclass(frozen=True)
@@ -183,16 +190,10 @@ def _window(
     trial: Trial, rudder: Vector, ends: tuple[int, int], kind: str, angle: float | None = None
 ) -> Window:
     """With the angle of its order; without one that of the rudder at its farthest."""
-    begin, end = ends
-    part = rudder[begin:end]
-    most = float(np.max(np.abs(part)))
-    return Window(
-        kind=f"{kind} {np.rad2deg(most if angle is None else abs(angle)):.0f}",
-        begin=begin * trial.period,
-        end=end * trial.period,
-        travel=most + float(np.abs(np.mean(part))),
-        variation=float(np.std(part)),
-    )
+    part = rudder[slice(*ends)]
+    most = np.max(np.abs(part)) if angle is None else abs(angle)
+    begin, end = (place * trial.period for place in ends)
+    return window_over(part, begin, end, kind=f"{kind} {np.rad2deg(most):.0f}")
 
 
 def _steered_most(trial: Trial, rudder: Vector, samples: int, speed: float) -> tuple[Window, ...]:

@@ -31,7 +31,7 @@ from trialid.workflow.first_pipeline.choice import (
     plain_signal,
 )
 from trialid.workflow.first_pipeline.free_lines import free_lines
-from trialid.workflow.first_pipeline.long_log import Window
+from trialid.workflow.first_pipeline.long_log import Window, window_over
 
 SWINGS: Final = 4
 """Half swings that tell a decay, each less than the one before. All of 300 drawn decays have them,
@@ -172,16 +172,9 @@ def _rolled_by_hand(trial: Chosen) -> Window | None:
     decay = _decay(seen.y)
     if decay is None or decay.begin < decay.period:
         return None
-    begin = float(seen.t[decay.begin] - seen.t[0]) / 1e9
-    after = size * seen.y[decay.begin :]
-    return Window(
-        kind="",
-        begin=begin,
-        end=float(seen.t[-1] - seen.t[0]) / 1e9,
-        travel=float(np.max(np.abs(after)) + np.abs(np.mean(after))),
-        variation=float(np.std(after)),
-        released="her greatest swing; before it she is at rest, or rolled by hand",
-    )
+    begin, end = (float(seen.t[at] - seen.t[0]) / 1e9 for at in (decay.begin, -1))
+    why = "her greatest swing; before it she is at rest, or rolled by hand"
+    return window_over(size * seen.y[decay.begin :], begin, end, released=why)
 
 
 def _choose(survey: Inspection, stated: float | None, rest: float) -> Chosen:
