@@ -11,7 +11,7 @@ from trialid.identification.gauss_newton import REASONS
 from trialid.identification.one_search import End, Progress, cost_at, random_starts, search
 from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
-from trialid.identification.record_starts import record_starts
+from trialid.identification.record_starts import record_starts, with_own_starts
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.roll_range import RollRange
 from trialid.identification.roll.told_gm import FAR, along_GM, rivals, roll_error
@@ -79,7 +79,7 @@ def arrive(
     if embedded is not None and _is_worse(problem, settings, embedded, best_of(ends)):
         ends.append(search(problem, settings, embedded, progress))
         told.append("searched again from where the smaller model had ended, which was better")
-    steps = (_by_record, _further, _by_chance) if embedded is None else (_further,)
+    steps = (_by_ship, _by_record, _further, _by_chance) if embedded is None else (_further,)
     for step in steps:
         more, words = step(problem, settings, ends, progress)
         ends, told = [*ends, *more], [*told, *words]
@@ -102,6 +102,20 @@ def _lower(walked: Sequence[End], best: End) -> End | None:
 
 Step = tuple[list[End], list[str]]
 """Ends of further searches, and what was done, in words."""
+
+
+def _by_ship(problem: Problem, settings: Settings, ends: Sequence[End], progress: Progress) -> Step:
+    """From the ship as stated, where her trials' own starts alone are what the search missed."""
+    best = best_of(ends)
+    if not _doubt(problem, best):
+        return [], []
+    start = with_own_starts(problem)
+    if not _is_worse(problem, settings, start, best):
+        return [], []
+    end = search(problem, settings, start, progress)
+    return [end], [
+        "searched again from the ship as stated, which was better once each trial began right"
+    ]
 
 
 def _by_record(

@@ -75,6 +75,16 @@ def record_starts(problem: Problem, settings: Settings) -> list[Vector]:
     return [*_in_pieces(problem, settings), *_by_motion(problem)]
 
 
+def with_own_starts(problem: Problem) -> Vector:
+    """The ship as stated, what each trial has for itself found while she is held; (n_theta,).
+
+    A ship that is unstable on her course shows no other way how good her numbers are.
+    """
+    of_a_trial = np.array([x.trial is not None for x in problem.unknowns])
+    every = np.arange(Weighing(problem).rows)
+    return _descend(problem, problem.start, every, of_a_trial)
+
+
 def _in_pieces(problem: Problem, settings: Settings) -> list[Vector]:
     """Where the trials lead in pieces, ever longer; (n_theta,), none where nothing can be sailed.
 

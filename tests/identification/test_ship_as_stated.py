@@ -1,0 +1,62 @@
+"""A ship stated right whose trial begins wrong: her own start is found before anything else is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import GYRO, SHIP, zigzag
+
+from trialid.effects import CATALOGUE
+from trialid.identification.arrive import _by_ship
+from trialid.identification.one_search import cost_at, search
+from trialid.identification.problem import Settings, pose_problem
+from trialid.identification.record_starts import with_own_starts
+from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import prepare, respond
+
+FREE = ("Yv", "Yr", "Nv", "Nr", "Ydelta", "Ndelta")
+SETTINGS = Settings(FREE, ("r",), nuisance=("initial_state",))
+WINDOW = slice(300, 1200)
+"""Begins in a turn: the log has no v, so the stated start takes her for going straight ahead."""
+
+
+def unstable():
+    parts = (CATALOGUE["linear_hull"], CATALOGUE["linear_rudder"])
+    return ShipModel(SHIP, ("v", "r"), parts).with_values({"Nv": -0.009})
+
+
+@pytest.fixture(scope="module")
+def problem():
+    """The truth's own numbers as the stated ones, on her record from the middle of a zig-zag."""
+    blank = zigzag(20)
+    whole = respond(prepare(unstable(), (), ("r",)), blank, {}, {"u": 7.33}, sensitivities=False)
+    noise = GYRO * np.random.default_rng(3).standard_normal(WINDOW.stop - WINDOW.start)
+    signals = {"delta": blank.signals["delta"][WINDOW], "r": whole.y[WINDOW, 0] + noise}
+    valid = {n: blank.valid[n][WINDOW] for n in signals}
+    return pose_problem([replace(blank, signals=signals, valid=valid)], unstable(), SETTINGS)
+
+
+def cost(problem, theta):
+    return cost_at(problem, SETTINGS, theta, 1.0)
+
+
+def test_the_ship_is_held_and_what_is_the_trials_own_is_found(problem):
+    own = with_own_starts(problem)
+    of_the_ship = np.array([x.trial is None for x in problem.unknowns])
+    assert np.array_equal(own[of_the_ship], problem.start[of_the_ship])
+    arrived = search(problem, SETTINGS, problem.start)
+    missed = cost(problem, problem.start) - arrived.cost(1.0)
+    assert cost(problem, own) - arrived.cost(1.0) < 0.05 * missed
+
+
+def test_a_search_that_left_the_stated_ship_for_worse_begins_there_again(problem):
+    lost = search(problem, SETTINGS, problem.start, max_iterations=1)
+    ends, words = _by_ship(problem, SETTINGS, [lost], lambda iteration: None)
+    assert ends[0].minimum.converged
+    assert ends[0].cost(1.0) < lost.cost(1.0) - 10.0
+    assert "the ship as stated" in words[0]
+
+
+def test_a_search_that_arrived_does_not(problem):
+    arrived = search(problem, SETTINGS, problem.start)
+    assert _by_ship(problem, SETTINGS, [arrived], lambda iteration: None) == ([], [])
