@@ -28,6 +28,7 @@ from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.rate_unit import size_unit
 from trialid.workflow.first_pipeline.read_as_order import with_orders
+from trialid.workflow.first_pipeline.revolutions import with_revolutions
 from trialid.workflow.first_pipeline.roll_decay import decays_among
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
@@ -128,7 +129,7 @@ def _steered(
 ) -> list[Chosen]:
     """What to take from each log of a ship that is steered; LogError where they hold too little."""
     chosen = _with_speeds([choose(one, speed) for one in known], speed)
-    trials = without_small_roll(with_sides(with_twins(chosen, own)))
+    trials = with_revolutions(without_small_roll(with_sides(with_twins(chosen, own))))
     trials = [
         with_velocities_beside(held_against_track(one), survey)
         for one, survey in zip(trials, surveys, strict=True)
