@@ -143,6 +143,15 @@ def test_a_gm_that_leans_on_a_clock_no_sensor_has_is_not_told():
     assert any("is no sensor's" in line for line in remarks(fit))
 
 
+def test_a_gm_that_leans_on_two_clocks_each_just_likely_is_not_told():
+    """A swell was taken for her roll, by an inclinometer 3.0 and 2.7 deviations early."""
+    drawn = draw(10582)
+    fit = identify(drawn.trials, begun(drawn), SETTINGS)
+    assert not fit.contradicted
+    assert fit.value("GM") < 0.25 * drawn.GM
+    assert fit.rivals[-1]["GM"] == pytest.approx(drawn.GM, rel=0.2)
+
+
 def test_a_clock_that_is_off_hides_no_gm_of_a_ship_that_rolls():
     """Recorded 2 s late, as no sensor is; her resonance is told without it."""
     late = []

@@ -14,6 +14,7 @@ from trialid.identification import file_of_ship
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
 from trialid.identification.fit import Fit
 from trialid.identification.gauss_newton import REASONS
+from trialid.identification.nuisance.at_the_end import at_the_end
 from trialid.identification.time_scales import longest_by_its_clock
 from trialid.identification.trial_score import Score
 from trialid.identification.weighing import NO_NOISE
@@ -190,11 +191,10 @@ def _search_failed(fit: Fit) -> Inadequate | None:
 
 def _sensor_at_bound(fit: Fit) -> Inadequate | None:
     """A bias, a delay or a rudder's zero ran to its bound: it stands for something else."""
-    nuisance = {x.name for x in fit.problem.unknowns if x.kind == "nuisance" and x.prior}
-    held = [n for n in fit.at_bounds if n in nuisance]
+    held = at_the_end(fit.problem.unknowns, fit.theta)
     if not held:
         return None
-    bounds = ", ".join(f"{n} = {fit.at_bounds[n]:.3g}" for n in held)
+    bounds = ", ".join(f"{n} = {value:.3g}" for n, value in held.items())
     return Inadequate(
         f"what no sensor does had to be assumed: {bounds}, the end of what is possible",
         "look at that signal's clock, sign and unit, and whether the model is one of this ship; "

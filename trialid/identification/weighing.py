@@ -44,15 +44,16 @@ def contradictions(problem: Problem, theta: Vector) -> dict[str, float]:
 
     Either the sensor is unlike others of its kind, or the model puts an error of its own there.
     """
-    unknowns = problem.unknowns
-    off = {
-        x.name: (float(a) - x.prior[0]) / x.prior[1]
-        for x, a in zip(unknowns, theta, strict=True)
-        if x.prior
-    }
+    off = deviations(problem, theta)
     if problem.roll is not None:
-        off |= {unknowns[i].name: z for i, z in problem.roll.off(theta).items()}
-    return {name: z for name, z in off.items() if abs(z) > CONTRADICTS}
+        off |= problem.roll.off(theta)
+    return {problem.unknowns[i].name: z for i, z in off.items() if abs(z) > CONTRADICTS}
+
+
+def deviations(problem: Problem, theta: Vector) -> dict[int, float]:
+    """Standard deviations of its own prior by which each unknown is off, by its place in theta."""
+    ended = enumerate(zip(problem.unknowns, theta, strict=True))
+    return {i: (float(a) - x.prior[0]) / x.prior[1] for i, (x, a) in ended if x.prior}
 
 
 class Weighing:
