@@ -8,7 +8,7 @@ import pytest
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.verdict import Verdict
-from trialid.result.missing_rows import missing_rows, standing
+from trialid.result.missing_rows import missing_rows, place_in_ranking
 from trialid.ship.effect import Parameter
 
 
@@ -76,4 +76,4 @@ def test_what_is_not_worth_a_name_is_called_small_only_where_it_is(after, said):
     carried = Carried((1.0,) * 3, after)
     one = replace(candidate("w"), p_value=0.001, carried=carried)
     found = SimpleNamespace(verdict=Verdict("cannot tell", None, (), ""))
-    assert standing(one, found) == said
+    assert place_in_ranking(one, found) == said

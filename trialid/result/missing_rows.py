@@ -47,7 +47,7 @@ def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Diagnosis) -> 
         better_in=c.carried.better,
         blocks=c.carried.blocks,
         sign_kept=c.carried.steady,
-        verdict=standing(c, found),
+        verdict=place_in_ranking(c, found),
         sentence=_sentence(c, refit, found),
         held=c.effect.held,
     )
@@ -65,7 +65,7 @@ def _expected(c: Candidate, name: str, refit: Fit | None) -> CandidateParameterR
     )
 
 
-def standing(c: Candidate, found: Diagnosis) -> str:
+def place_in_ranking(c: Candidate, found: Diagnosis) -> str:
     """What a candidate is called in the ranking."""
     if c.effect.name == found.verdict.effect:
         return "missing"

@@ -101,4 +101,4 @@ def test_what_stands_out_and_makes_others_worse_is_not_small(ratio, said):
 def test_what_falls_in_few_blocks_is_not_small():
     candidate = refit("a", 0.97, 0.1, wobble=0.05).candidate
     assert not candidate.carried.in_most
-    assert "falls in 4 of 8 blocks only" in significant_and_small([candidate])
+    assert "falls in 3 of 6 blocks only" in significant_and_small([candidate])

@@ -142,11 +142,14 @@ def _errors(run: Result, rows: Rows) -> "Table":
         add_row(table, f"... and {wording.count_of(len(trials) - len(shown), 'more trial')}")
     by_output = percents(fit.eps_rmsn_by_output[name] for name in outputs)
     add_row(table, "all fitted trials", "", *by_output, percent(fit.eps_rmsn), style="bold")
-    check = percent(fit.eps_rmsn_check)
-    if not any(trial.use == "check" for trial in trials):
-        check = "none"
+    check = percent(fit.eps_rmsn_check) if _holds_out(run) else "none"
     add_row(table, "all held-out trials", "", *[""] * len(outputs), check)
     return table
+
+
+def _holds_out(run: Result) -> bool:
+    """Whether any trial is held out."""
+    return any(trial.use == "check" for trial in run.trials)
 
 
 def _made_of(run: Result) -> str:
@@ -246,10 +249,13 @@ def _ranking(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     if not run.missing:
         return
     yield Text()
-    headings = ("effect tried", "verdict", "would leave", "refitted", "held out", "p")
-    table = new_table(*headings, words=2)
+    held_out = ("held out",) * _holds_out(run)  # no column of dashes that costs names their ends
+    table = new_table(
+        *("effect tried", "verdict", "would leave", "refitted", *held_out, "p"), words=2
+    )
     for row in run.missing[: rows.candidates]:
-        errors = (row.eps_rmsn_predicted, row.eps_rmsn_refitted, row.eps_rmsn_check)
+        errors = [row.eps_rmsn_predicted, row.eps_rmsn_refitted, row.eps_rmsn_check]
+        errors = errors[: 2 + len(held_out)]
         effect = f"{row.rank or ''} {row.effect}".strip()
         p_value = number(row.p_value, 2)
         add_row(table, effect, row.verdict or "", *percents(errors), p_value)
