@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
+from trialid.result.finding_rows import VerdictPart
 from trialid.result.fit_rows import ParameterRow
 
 HALF: Final = 0.5
@@ -32,6 +33,24 @@ def doubtful(parameters: Sequence[ParameterRow]) -> str:
     verb = "move" if len(idle) > 1 else "moves"
     said = f"{', '.join(idle)} {verb} nothing that is fitted here." if idle else ""
     return f"{_disbelieved([row for row in rows if not is_idle(row)])} {said}".strip()
+
+
+def missing_words(verdict: VerdictPart) -> str:
+    """What the verdict says the model lacks, for who uses it; empty where it says nothing of that.
+
+    >>> missing_words(VerdictPart(kind="missing", effect="static_list"))
+    'The run says that static_list is missing; this is the model without it.'
+    >>> missing_words(VerdictPart(kind="cannot tell", together=("a", "b")))
+    'The run says that more is missing, as a and b together; this is the model without them.'
+    """
+    if verdict.together:
+        both = " and ".join(verdict.together)
+        said = f"The run says that more is missing, as {both} together"
+        return f"{said}; this is the model without them."
+    if verdict.kind not in ("missing", "not in catalogue"):
+        return ""
+    what = verdict.effect or "something outside the catalogue"
+    return f"The run says that {what} is missing; this is the model without it."
 
 
 def is_idle(row: ParameterRow) -> bool:
