@@ -55,7 +55,12 @@ def test_no_fit_says_nothing_of_the_ship(result):
 
 def test_margins_within_the_noise_tell_no_stability(result):
     run = copy.deepcopy(result)
+    for row in run["accuracy"]["parameters"]:
+        row["likely"] = [0.9 * row["value"], 1.1 * row["value"]]
     assert "Stable." in words_of(run)
+    for row in run["accuracy"]["parameters"]:
+        row["likely"] = [-2.0 * row["value"], 4.0 * row["value"]]
+    assert "Stable as fitted, by " in words_of(run)
     run["accuracy"]["stability"]["stable"] = None
     assert "Stable or not: this record does not tell" in words_of(run)
 

@@ -133,6 +133,7 @@ def _filters() -> dict[str, Any]:
         "percent_range": wording.percent_range,
         "by_error": wording.by_error,
         "doubtful": doubt.doubtful,
+        "stability_words": doubt.stability_words,
         "prior_words": beforehand.prior_words,
         "likely": run_tables.likely,
         "criterion": imo_tables.criterion,
