@@ -10,3 +10,5 @@ def test_numbers_of_a_test_have_units() -> None:
         "units": {"angles": "deg", "period": "s", "turn": "1"},
     }
     assert numbers_of({"programme": [one]}) == "2 angles, period 1164 s, turn 3"
+    two = {"numbers": {"angle": 35.0, "heading": 24.9}, "units": {"angle": "deg", "heading": "deg"}}
+    assert numbers_of({"programme": [two]}) == "35\N{DEGREE SIGN}, heading 24.9\N{DEGREE SIGN}"

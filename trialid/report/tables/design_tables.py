@@ -83,6 +83,10 @@ def numbers_of(test: Mapping[str, Any]) -> str:
     return "; ".join(_short(one) for one in test["programme"])
 
 
+_SHORT: Final = {"deg": "\N{DEGREE SIGN}", "s": " s", "deg/s": " deg/s"}
+"""Units beside numbers in a narrow column; a rudder angle needs no further word."""
+
+
 def _short(test: Mapping[str, Any]) -> str:
     told = []
     for name in ("angle", "heading", "angles", "rates", "period", "turn", "differences", "turning"):
@@ -90,8 +94,8 @@ def _short(test: Mapping[str, Any]) -> str:
         if isinstance(value, list):
             told.append(f"{len(value)} {name}")
         elif value is not None:
-            unit = test.get("units", {}).get(name, "1")
-            told.append(f"{name} {value:.4g}{'' if unit == '1' else f' {unit}'}")
+            unit = _SHORT.get(test.get("units", {}).get(name, "1"), "")
+            told.append(f"{name} {value:.4g}{unit}".removeprefix("angle "))
     return ", ".join(told[:3])
 
 
