@@ -111,8 +111,8 @@ def test_no_feasible_test_is_said():
 def test_the_sentence_of_two_that_come_apart():
     found = Separation(("a", "b"), (), Likeness(0.9876, (1.0, 2.0)), Likeness(0.1, (20.0, 9.0)), 5)
     assert found.sentence == (
-        "a and b come apart: |cos| 0.100 (so far 0.988), and the right one wins by 9 in the "
-        "logarithm of the odds"
+        "a and b come apart: |cos| 0.100 (so far 0.988), log odds for the right one 9, where 6 "
+        "are enough"
     )
 
 

@@ -257,14 +257,14 @@ def test_other_sources_stand_beside_commented_out(tmp_path):
 
 def test_no_rudder_no_motion_no_ship_are_one_line_each(tmp_path):
     t, delta, r, _, u = trial()
-    still = written(
-        tmp_path / "a.csv", t=t, rudder_in_deg=0 * t, rot_in_deg_per_s=r, stw_in_m_per_s=u
-    )
+    own = {"t": t, "rot_in_deg_per_s": r, "stw_in_m_per_s": u}
+    still = written(tmp_path / "a.csv", rudder_in_deg=0 * t, **own)
     blind = written(tmp_path / "b.csv", t=t, rudder_in_deg=delta, stw_in_m_per_s=u)
     for log, words in ((still, "no moving rudder"), (blind, "no moving yaw rate or heading")):
         with pytest.raises(LogError, match=words) as caught:
             begun(tmp_path, [log])
-        assert "\n" not in str(caught.value)
+        ends = [line.rpartition("; see ")[2] for line in str(caught.value).split("\n")]
+        assert ends == [f"`trialid inspect --all {log}`, and map them by hand"]
     with pytest.raises(LogError, match=r"add --ship SHIP.toml, or --length"):
         begun(tmp_path, LOGS[:1], length=None)
 

@@ -73,6 +73,17 @@ def test_a_new_ship_at_rest_asks_for_the_speed_she_goes_at(tmp_path, monkeypatch
     assert "add --speed KNOTS" in done.stderr
 
 
+def test_where_no_log_tells_a_speed_one_number_is_not_asked_for_two(tmp_path, monkeypatch):
+    """`she rolls at rest; add --speed` was answered by a model that makes way at that speed."""
+    logs = [decay(tmp_path / "d.csv", 12.0, 1)]
+    done = started(tmp_path, monkeypatch, logs)
+    assert "no log tells whether she makes way" in done.stderr
+    assert "rolls at rest" not in done.stderr
+    assert started(tmp_path, monkeypatch, logs, "--speed", "15").exit_code == 0
+    text = (tmp_path / "first_trial.toml").read_text(encoding="utf-8")
+    assert "# m/s, as stated; 0 where she rolled at rest: no log has u" in text
+
+
 def test_where_no_log_tells_a_speed_she_is_read_as_at_rest_and_that_is_said(tmp_path, monkeypatch):
     logs = [decay(tmp_path / "d.csv", 12.0, 1)]
     monkeypatch.chdir(tmp_path)

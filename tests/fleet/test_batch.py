@@ -148,8 +148,10 @@ def test_a_picture_over_ships_parts_them_and_tells_ranges() -> None:
     assert picture.borders == (280.0,)
     assert picture.whiskers[0].words == "a-1: 0.300 m, likely 0.250 to 0.400"
     assert voyage_picture("GM", rows, [each.run for each in rows], ()).borders == ()
+    assert picture.names == ("a", "a", "b", "b")
     many = [row(f"{n}", 1) for n in range(50) for _ in (1, 2)]
-    assert voyage_picture("GM", many, [each.ship for each in many], ()).borders == ()
+    crowded = voyage_picture("GM", many, [each.ship for each in many], ())
+    assert (crowded.borders, crowded.names) == ((), ())
 
 
 def test_without_dask_one_line_says_how_to_get_it(

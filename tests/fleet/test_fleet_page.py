@@ -28,6 +28,17 @@ def test_effects_that_no_run_names_have_no_row() -> None:
     assert rows_under(page, "missing") == [["Kr", "3", "1", "4"], ["Kv", "1", "1", "4"]]
 
 
+def test_one_run_a_ship_is_drawn_with_what_dots_and_lines_are() -> None:
+    """`Drawn as above` stood where nothing was above."""
+    runs, fitted = rows_of(np.ones(2), (0, 30))
+    ships = {run.run: f"ship-{place}" for place, run in enumerate(runs)}
+    runs = [replace(row, ship=ships[row.run]) for row in runs]
+    page = fleet_page("f", runs, [replace(row, ship=ships[row.run]) for row in fitted], (), ())
+    assert "Parameters over voyages" not in page
+    assert "A dot is an estimate, its line the likely range" in page
+    assert ">ship-0</span><span" in page
+
+
 def test_what_varies_and_what_is_to_be_known_stand_in_tables_and_on_the_terminal(tmp_path) -> None:
     runs, fitted = rows_of(np.where(np.arange(16) % 2, 0.72, 0.9))
     found, known = tuple(changes(runs, fitted)), remarks(runs)

@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy, embrace
+from trialid.design.imo.measures import Criterion
+from trialid.design.standard import Measure
 from trialid.diagnosis import diagnosed
+from trialid.workflow import findings
 
 
 def row(name, likely, kind="physical"):
@@ -59,3 +62,30 @@ def test_a_diagnosis_beside_the_model_with_its_effect(monkeypatch):
 def test_a_parameter_that_the_other_model_has_not_stays():
     [found] = embrace(table(row("Nv", (0.0, 2.0))), table(row("Nr", (5.0, 6.0))), "x").parameters
     assert found == replace(row("Nv", (0.0, 2.0)))
+
+
+@pytest.mark.parametrize(("effect", "low"), [("cross_flow_drag", 3.5), (None, 4.0)])
+def test_standard_measures_embrace_what_the_model_with_the_effect_says(monkeypatch, effect, low):
+    """A criterion is kept or not by the range, which was that of the model without the effect."""
+    criterion = Criterion("advance", 5.0, "m", "turning circle")
+    ranges = {"without": (4.0, 5.0), "with": (3.5, 4.5)}
+
+    def measures(fit, spread):
+        del spread
+        return (Measure(criterion, 4.5, ranges[fit]),)
+
+    nothing = SimpleNamespace(numbers=(), turns=(), manoeuvres=())
+    for name, value in (
+        ("likely_spread", lambda *args: None),
+        ("measure_trials", lambda *args: nothing),
+        ("_ship", lambda fit: None),
+    ):
+        monkeypatch.setattr(findings, name, value)
+    monkeypatch.setattr(findings.following, "measures_within", measures)
+    monkeypatch.setattr(findings.observed, "overshoots", lambda fit: ())
+    accuracy = SimpleNamespace(parameters=(), covariance=None)
+    doubts = SimpleNamespace(standing=None, held=(), missing=())
+    before, after = (SimpleNamespace(fit=f, accuracy=accuracy, doubts=doubts) for f in ranges)
+    found = SimpleNamespace(before=before, after=after, verdict=SimpleNamespace(effect=effect))
+    [measure] = findings._imo(SimpleNamespace(imo=True), found, None)["measures"]
+    assert measure.interval == (low, 5.0)

@@ -8,10 +8,10 @@ from trialid.report.pictures.error_history import (
     MOST,
     OWN,
     error_history,
-    fell,
     interval,
     step_words,
 )
+from trialid.report.words.fall import fell
 from trialid.result.change_rows import StepRow
 from trialid.result.json_file import result_of
 

@@ -62,7 +62,8 @@ def test_the_verdict_comes_first_and_then_what_to_do(result):
     assert place < shown.index("") < [s.startswith("error, share") for s in shown].index(True)
     run = copy.deepcopy(result)
     run["verdict"]["kind"] = "nothing missing"
-    assert not [line for line in lines(run, file="a.toml") if line.startswith("Next: ")]
+    (line,) = [line for line in lines(run, file="a.toml") if line.startswith("Next: ")]
+    assert line.startswith("Next: Use the model within the orders")
     run["verdict"]["kind"] = "not in catalogue"
     (line,) = [line for line in lines(run, file="a.toml") if line.startswith("Next: ")]
     assert line.startswith("Next: trialid run a.toml --draft my_effect.py")
@@ -186,7 +187,7 @@ def test_a_heading_that_may_be_any_has_no_band_of_three_turns(result):
 def test_two_at_once_are_said_with_the_command_that_adds_them(result):
     run = copy.deepcopy(result)
     run["verdict"] |= {"kind": "cannot tell", "effect": None, "together": ["a", "b"]}
-    assert "Next: trialid run container_ship.toml --auto adds both and goes on" in lines(
+    assert "Next: trialid run container_ship.toml --auto  # adds both, goes on" in lines(
         run, file="container_ship.toml"
     )
 

@@ -1,11 +1,14 @@
 """The table of candidates: what the verdict names comes first, with what it leaves when fitted."""
 
+from dataclasses import replace
 from types import SimpleNamespace
+
+import pytest
 
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.verdict import Verdict
-from trialid.result.missing_rows import missing_rows
+from trialid.result.missing_rows import missing_rows, place_in_ranking
 from trialid.ship.effect import Parameter
 
 
@@ -58,3 +61,19 @@ def test_what_no_slope_showed_is_told_with_what_it_leaves_when_fitted():
     assert "leaves no trace" in hidden.sentence
     assert hidden.sentence.endswith("but fitted it brings the error from 3.00% to 1.20%")
     assert hidden.verdict == "same family"
+
+
+@pytest.mark.parametrize(
+    ("after", "said"),
+    [
+        ((0.99, 0.99, 0.999), "significant and small"),
+        ((0.70, 1.10, 1.05), "not in most blocks"),
+        ((1.10, 1.10, 0.99), "does not carry over"),
+    ],
+)
+def test_what_is_not_worth_a_name_is_called_small_only_where_it_is(after, said):
+    """A wind that took a fifth of the squared error off, in three blocks of six, was small."""
+    carried = Carried((1.0,) * 3, after)
+    one = replace(candidate("w"), p_value=0.001, carried=carried)
+    found = SimpleNamespace(verdict=Verdict("cannot tell", None, (), ""))
+    assert place_in_ranking(one, found) == said

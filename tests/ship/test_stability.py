@@ -7,7 +7,7 @@ import pytest
 
 from trialid.effects import CATALOGUE
 from trialid.ship.model import ShipModel
-from trialid.ship.stability import couple_roll, levers, stability
+from trialid.ship.stability import Stability, couple_roll, levers, stability
 from trialid.simulation.integrate import prepare, respond
 from trialid.simulation.reference import evaluator
 from trialid.simulation.trace import trace
@@ -44,6 +44,13 @@ def test_by_hand() -> None:
     assert (found.L_r, found.L_v, found.margin, found.standard_error) == (1.0, 0.25, 0.75, None)
     assert found.stable
     assert not stability(c | {"Nv": -5.0}).stable
+
+
+@pytest.mark.parametrize(("error", "told"), [(0.3, True), (0.4, None), (float("nan"), None)])
+def test_a_margin_within_the_noise_tells_nothing(error: float, told: bool | None) -> None:
+    """At a dock a ship was said to be unstable by -0.05 +- 0.33."""
+    assert Stability(1.0, 0.25, 0.75, error).stable is told
+    assert Stability(0.25, 1.0, -0.75, error).stable is (None if told is None else False)
 
 
 @pytest.mark.parametrize(("ship", "printed"), [(RUDDER, 0.162), (HULL, 0.055)])

@@ -111,6 +111,16 @@ def test_a_fit_without_a_verdict_says_so_first(tmp_path: Path) -> None:
     assert UNRELIABLE in text
 
 
+def test_what_the_model_lacks_is_said_first() -> None:
+    """A form that called all criteria kept kept silent about the verdict."""
+    said = "missing; this is the model without it."
+    named = replace(RESULT, verdict=replace(RESULT.verdict, kind="missing", effect="static_list"))
+    text = form(finished(named))
+    assert text.index(f"The run says that static_list is {said}") < text.index("522.6")
+    found = replace(RESULT, verdict=replace(RESULT.verdict, kind="nothing missing", effect=None))
+    assert said not in form(finished(found))
+
+
 def test_a_run_without_measures_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(TrialidError, match="write imo = true into its pipeline"):
         write_form(finished(replace(RESULT, imo=None)), tmp_path)

@@ -76,6 +76,14 @@ def test_a_number_that_is_stated_is_not_uncertain_and_its_place_is_told(
     assert any(told in words for words in found.words)
     assert any("which the record allows (GM likely" in w for w in near.words)
     assert not any("What if" in w for w in plain.words)
+    ratio = 1.4 / model.fit.model.value("GM")
+    [told] = [w for w in found.words if "I_xx is held" in w]
+    assert f"the ratio alone, which is now {ratio:.3g} times" in told
+    [told] = [
+        w for w in predict_manoeuvre(model, ASKED, WhatIf({"I_xx": 1.0})).words if "GM is" in w
+    ]
+    assert f"{model.fit.model.value('I_xx'):.3g} times" in told
+    assert not any("is held: of" in w for w in plain.words)
 
 
 def test_an_effect_is_left_out_and_the_record_speaks_against_it(model: FinishedModel) -> None:

@@ -56,6 +56,17 @@ def cut_to_ends(likely: Range | None, ends: Range) -> Range | None:
     return low, high
 
 
+def wider(own: Range | None, there: Range | None) -> Range | None:
+    """A range that holds another one too; its own where either is not known.
+
+    >>> wider((0.0, 2.0), (-4.0, -3.0)), wider(None, (0.5, 1.0)), wider((0.0, 2.0), None)
+    ((-4.0, 2.0), None, (0.0, 2.0))
+    """
+    if own is None or there is None:
+        return own
+    return min(own[0], there[0]), max(own[1], there[1])
+
+
 def share_off(value: float | None, likely: tuple[float, float] | None) -> float | None:
     """How far a likely range goes from its value, as a share of it; None where unknown.
 

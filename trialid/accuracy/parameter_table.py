@@ -22,7 +22,7 @@ from trialid.accuracy.equations import (
     sensitivity_range,
 )
 from trialid.accuracy.felt import Draw
-from trialid.accuracy.likely import ANYWHERE, Averaged, Range, cut_to_ends, share_off
+from trialid.accuracy.likely import ANYWHERE, Averaged, Range, cut_to_ends, share_off, wider
 from trialid.accuracy.weak import Weakness, weak_directions, without_nuisance
 from trialid.arrays import Vector
 from trialid.linear_algebra import triangle
@@ -260,9 +260,7 @@ def embrace(accuracy: Accuracy, named: Accuracy, effect: str) -> Accuracy:
 def _embraced(
     row: ParameterAccuracy, there: tuple[float, float] | None, effect: str
 ) -> ParameterAccuracy:
-    if row.likely is None or there is None:
-        return row
-    both = min(row.likely[0], there[0]), max(row.likely[1], there[1])
+    both = wider(row.likely, there)
     return row if both == row.likely else replace(row, likely=both, widened_by=effect)
 
 
@@ -290,8 +288,8 @@ def _with_rivals(row: ParameterAccuracy, rivals: Sequence[float]) -> ParameterAc
         share = max(1.0, abs(rival / row.value))
         reached.append((rival - share * (row.value - low), rival + share * (high - row.value)))
     whole = (min(x for x, _ in reached), max(x for _, x in reached))
-    wider = whole[1] - whole[0] > 2.0 * (high - low)
-    widened_by = ANOTHER_GM if wider else row.widened_by
+    much = whole[1] - whole[0] > 2.0 * (high - low)
+    widened_by = ANOTHER_GM if much else row.widened_by
     return replace(row, likely=cut_to_ends(whole, row.ends), widened_by=widened_by)
 
 

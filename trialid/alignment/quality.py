@@ -16,7 +16,7 @@ from trialid.alignment.resample import (
 )
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
-from trialid.names import units
+from trialid.names import units, wording
 from trialid.names.quantities import MOTIONS
 
 JITTER = 0.2
@@ -47,7 +47,7 @@ def of_clock(logged: Series, ordered: Series) -> Iterator[str]:
         yield f"{name}: {steps_back(len(back), back.max() / 1e9)}; sorted"
     twice = len(logged.t) - len(ordered.t)
     if twice:
-        yield f"{name}: {twice} samples with the stamp of another one dropped"
+        yield f"{name}: {wording.count_of(twice, 'sample')} with the stamp of another one dropped"
     missing = int(np.sum(~np.isfinite(ordered.y)))
     if missing:
         yield f"{name}: {missing} of {len(ordered.y)} values not available"
@@ -119,7 +119,7 @@ def _gaps(series: Series, grid: Grid) -> Iterator[str]:
         total = sum(b - a for a, b in gaps)
         places = ", ".join(f"{a:.1f}-{b:.1f} s" for a, b in gaps[:3])
         more = f" and {len(gaps) - 3} more" if len(gaps) > 3 else ""
-        count = "1 gap" if len(gaps) == 1 else f"{len(gaps)} gaps"
+        count = wording.count_of(len(gaps), "gap")
         yield f"{series.quantity.name}: {count}, {total:.1f} s in all, at {places}{more}; masked"
 
 

@@ -17,6 +17,7 @@ from trialid.cli.log_commands import (
     look_into,
 )
 from trialid.cli.particulars_options import given_from, particulars_options
+from trialid.names import wording
 
 if TYPE_CHECKING:
     from trialid.workflow.first_pipeline import Starter
@@ -91,7 +92,7 @@ def _told(begun: "Starter") -> Iterator[str]:
     place = held_out(begun.trials)
     why = why_held_out(begun.trials)
     held = "" if place is None else f"; {names[place]}, {why}, is held out"
-    yield f"{len(names)} trial{'s' * (len(names) > 1)}: {_few(names)}{held}."
+    yield f"{wording.count_of(len(names), 'trial')}: {_few(names)}{held}."
     for signal in begun.trials[0].signals:
         yield f"{signal.quantity}: {signal.source.key}, {signal.why}{_left_out(signal)}."
     if beside := begun.trials[0].beside:

@@ -81,14 +81,13 @@ class Separation:
         if not self.after.separate:
             return (
                 f"no feasible test separates {one} from {other}: the best found leaves "
-                f"|cos| {self.after.cosine:.3f}, and the right one would win by "
-                f"{min(self.after.odds):.1f} in the logarithm of the odds, where {ENOUGH:g} "
-                "are needed"
+                f"|cos| {self.after.cosine:.3f}, and log odds for the right one of "
+                f"{min(self.after.odds):.1f}, where {ENOUGH:g} are needed"
             )
         came = "" if self.before is None else f" (so far {self.before.cosine:.3f})"
         return (
-            f"{one} and {other} come apart: |cos| {self.after.cosine:.3f}{came}, and the right one "
-            f"wins by {min(self.after.odds):.0f} in the logarithm of the odds"
+            f"{one} and {other} come apart: |cos| {self.after.cosine:.3f}{came}, log odds for the "
+            f"right one {min(self.after.odds):.0f}, where {ENOUGH:g} are enough"
         )
 
 

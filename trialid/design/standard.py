@@ -8,11 +8,12 @@ asks for one ship twice gets one number.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
+from trialid.accuracy.likely import wider
 from trialid.arrays import Vector
 from trialid.design import manoeuvres
 from trialid.design.helm import Instructions, Passage, Vessel, carry_out, vessel
@@ -62,6 +63,15 @@ class Measure:
         if high <= largest:
             return True
         return False if low > largest else None
+
+
+def embrace(measures: Sequence[Measure], there: Sequence[Measure]) -> tuple[Measure, ...]:
+    """The same with ranges that hold those of another model of the ship, where both have one."""
+    others = {one.criterion.name: one.interval for one in there}
+    return tuple(
+        replace(one, interval=wider(one.interval, others.get(one.criterion.name)))
+        for one in measures
+    )
 
 
 Read = Callable[[Passage, Vector | None], list[float]]

@@ -186,6 +186,12 @@ def significant_and_small(shown: Sequence[Candidate]) -> str:
             f"; {first.effect.name} stands out against the noise (p = {first.p_value:.2g}), but "
             f"where it was not fitted the squared error rises by {first.carried.ratio - 1.0:.1%}"
         )
+    if not first.carried.in_most:
+        return (
+            f"; {first.effect.name} stands out against the noise (p = {first.p_value:.2g}), but "
+            f"where it was not fitted the error falls in {first.carried.better} of "
+            f"{first.carried.blocks} blocks only"
+        )
     return (
         f"; {first.effect.name} is significant and small (p = {first.p_value:.2g}): where it was "
         f"not fitted it changes the squared error by {first.carried.ratio - 1.0:+.1%}"

@@ -25,6 +25,7 @@ from trialid.fleet.parcels import pack
 from trialid.fleet.parquet_tables import CHANGES, PARAMETERS, RUNS_TABLE, write_tables
 from trialid.fleet.plan import plan
 from trialid.fleet.task import PIPELINES, RUNS, Task
+from trialid.names import wording
 from trialid.pipeline_file.fleet_file import FleetFile
 from trialid.progress import Progress, silent
 from trialid.report.pages.fleet_page import fleet_page
@@ -61,8 +62,9 @@ class Batch:
         told = "; ".join(f"{word}: {number}" for word, number in verdicts.most_common())
         varies = sum(row.form == "varies" for row in self.changes)
         also = f"; parameters that vary as neither a step nor a drift: {varies}" if varies else ""
+        runs = wording.count_of(len(self.runs), "run")
         lines = (
-            f"{self.name}: {len(self.runs)} runs, {self.anew} done now, {failed} failed",
+            f"{self.name}: {runs}, {self.anew} done now, {failed} failed",
             told or "no verdicts",
             f"changes found: {len(self.changes) - varies}{also}",
             *(f"{each.ship}: {each.words}" for each in self.remarks),

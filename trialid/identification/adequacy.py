@@ -18,6 +18,7 @@ from trialid.identification.nuisance.at_the_end import at_the_end
 from trialid.identification.time_scales import longest_by_its_clock
 from trialid.identification.trial_score import Score
 from trialid.identification.weighing import NO_NOISE
+from trialid.names import wording
 from trialid.simulation.integrate import record_for
 
 RUDDER_RANGE: Final = 0.035
@@ -150,8 +151,7 @@ def _at_noise_level(fit: Fit) -> Inadequate | None:
     if any(ratio > ABOVE_NOISE for ratio in over_noise(fit, of_use(fit, "fit")).values()):
         return None
     return Inadequate(
-        f"she never moves: {' and '.join(fit.problem.outputs)} stay within {ABOVE_NOISE:g} times "
-        "the noise of their sensors",
+        f"she never moves: {' and '.join(fit.problem.outputs)} within {ABOVE_NOISE:g} x the noise",
         "fit a record of a manoeuvre under way, or check the channels",
     )
 
@@ -180,10 +180,10 @@ def _no_number(fit: Fit) -> Inadequate | None:
 def _search_failed(fit: Fit) -> Inadequate | None:
     if fit.converged:
         return None
-    steps = max(len(fit.iterations) - 1, 0)
+    steps = wording.count_of(max(len(fit.iterations) - 1, 0), "step")
     bounds = f", {', '.join(fit.at_bounds)} at a bound" if fit.at_bounds else ""
     return Inadequate(
-        f"the search did not converge: {REASONS[fit.reason]} ({steps} steps, error "
+        f"the search did not converge: {REASONS[fit.reason]} ({steps}, error "
         f"{fit.eps_rmsn:.1%}{bounds})",
         "free fewer parameters, or start nearer the ship in [model.values] or in her file",
     )

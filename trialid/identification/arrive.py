@@ -16,6 +16,7 @@ from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.roll_range import RollRange
 from trialid.identification.roll.told_gm import FAR, along_GM, rivals, roll_error
 from trialid.identification.weighing import NO_NOISE
+from trialid.names import wording
 
 Vector = NDArray[np.float64]
 
@@ -205,5 +206,5 @@ def _words(why: str, what: str, ends: Sequence[End], more: Sequence[End]) -> lis
     before = best_of(ends)
     won = before.cost(before.colour) - best_of([before, *more]).cost(before.colour)
     better = "one of them went further" if won > NOTICED else "none went further"
-    began = "1 start" if len(more) == 1 else f"{len(more)} starts"
+    began = wording.count_of(len(more), "start")
     return [f"{why}: searched again from {began} ({what}), {better}"]

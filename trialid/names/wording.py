@@ -77,6 +77,15 @@ def digits_by_error(value: float | None, error: float | None) -> int:
     return min(max(digits, 2), 7)
 
 
+def count_of(count: int, one: str, many: str = "") -> str:
+    """How many there are of something, one being one; `many` where an s alone makes no plural.
+
+    >>> count_of(1, "effect"), count_of(16, "effect"), count_of(0, "remark on it", "remarks on it")
+    ('1 effect', '16 effects', '0 remarks on it')
+    """
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
 def sign_text(value: float | None) -> str:
     """A move with its sign, one place.
 

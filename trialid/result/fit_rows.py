@@ -58,9 +58,19 @@ class ModelPart:
     nuisance: tuple[str, ...] = ()
 
     @property
+    def turns(self) -> bool:
+        """Whether orders can be sailed: a model of her roll alone has no course."""
+        return "r" in self.states
+
+    @property
+    def by_rudder(self) -> bool:
+        """Whether one rudder angle steers."""
+        return self.turns and bool({"delta", "delta_order"} & {*self.inputs})
+
+    @property
     def by_thrusters(self) -> bool:
         """Whether thrusters steer and no rudder does."""
-        return "thrusters" in self.effects and not {"delta", "delta_order"} & {*self.inputs}
+        return self.turns and "thrusters" in self.effects and not self.by_rudder
 
 
 @dataclass(frozen=True, kw_only=True)

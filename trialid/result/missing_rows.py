@@ -47,7 +47,7 @@ def _candidate(rank: int, c: Candidate, refit: Fit | None, found: Diagnosis) -> 
         better_in=c.carried.better,
         blocks=c.carried.blocks,
         sign_kept=c.carried.steady,
-        verdict=_standing(c, found),
+        verdict=place_in_ranking(c, found),
         sentence=_sentence(c, refit, found),
         held=c.effect.held,
     )
@@ -65,7 +65,8 @@ def _expected(c: Candidate, name: str, refit: Fit | None) -> CandidateParameterR
     )
 
 
-def _standing(c: Candidate, found: Diagnosis) -> str:
+def place_in_ranking(c: Candidate, found: Diagnosis) -> str:
+    """What a candidate is called in the ranking."""
     if c.effect.name == found.verdict.effect:
         return "missing"
     if found.verdict.effect is not None and c.effect.name in found.verdict.family:
@@ -76,7 +77,14 @@ def _standing(c: Candidate, found: Diagnosis) -> str:
         return "unphysical"
     if c.worth_a_name(0.05):
         return "stands out" if c.p_value < 0.05 else "lowers the error"
-    return "significant and small" if c.shown(0.05) else "no evidence"
+    return _short_of_a_name(c) if c.shown(0.05) else "no evidence"
+
+
+def _short_of_a_name(c: Candidate) -> str:
+    """What is there against the noise and not worth a name: why not, small being one reason."""
+    if c.carried.ratio > 1.0:
+        return "does not carry over"
+    return "significant and small" if c.carried.in_most else "not in most blocks"
 
 
 def _chance(candidate: Candidate) -> str:

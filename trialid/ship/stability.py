@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,11 @@ from trialid.maths import Number
 
 PARTS = ("Yv", "Yr", "Nv", "Nr")
 ROLL_PARTS = ("Yphi", "Nphi", "Kv", "Kr")
+
+SURE: Final = 2.0
+"""Standard errors that a margin has to be off zero to tell its sign: 95 times of 100. Of a ship
+without any margin one would call every third stable or unstable, four one of 16 000, and four would
+be silent about margins that two tell."""
 
 
 def levers(c: Mapping[str, Number]) -> tuple[Number, Number]:
@@ -35,8 +41,16 @@ class Stability:
     standard_error: float | None
 
     @property
-    def stable(self) -> bool:
-        """Eq. 16: directionally stable when L_r - L_v > 0."""
+    def stable(self) -> bool | None:
+        """Eq. 16: directionally stable when L_r - L_v > 0; None where noise alone may have made it.
+
+        >>> Stability(0.32, 0.37, -0.05, 0.33).stable is None
+        True
+        >>> Stability(0.54, 0.35, 0.18, 0.02).stable
+        True
+        """
+        if self.standard_error is not None and not abs(self.margin) > SURE * self.standard_error:
+            return None
         return self.margin > 0.0
 
 

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trialid.names import labels
-from trialid.names.model_kinds import KINDS
 from trialid.report.pages import page as report
 from trialid.report.pictures import bars
 from trialid.report.pictures.panels import encode_floats, trial_panels
 from trialid.report.pictures.track_picture import track_picture
+from trialid.report.tables import use_tables
 from trialid.report.words import advice, ranking
 from trialid.result.finding_rows import FindingRow
 from trialid.result.json_file import finite
@@ -138,7 +138,7 @@ def _context(shown: Shown) -> Plain:
         "effects": model_rows.effects(shown),
         "masses": model_rows.masses(shown),
         "nuisance": run.nuisance,
-        "kinds": KINDS,
+        "kinds": use_tables.kinds_of(run.model),
         "addable": sorted(set(shown.catalogue) - set(shown.pipeline.model.effects)),
         "equations": {name: effect.equation for name, effect in shown.catalogue.items()},
     }

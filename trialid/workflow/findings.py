@@ -1,6 +1,7 @@
 """All that a run finds out: the diagnosis, the next trial, standard measures."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from trialid.design.imo import observed
 from trialid.design.imo.trial_measures import measure_trials
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.separation import Separation
+from trialid.design.standard import Measure, embrace
 from trialid.design.steering.nomoto import Nomoto, nomoto
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, Diagnosis
@@ -69,7 +71,7 @@ def find_out(
         proposal=proposal(found.before.fit.examined, found.verdict, catalogue),
         narrowing=narrowing_trial(found, catalogue),
         ship=ship,
-        **_imo(pipeline, found.before, ship),
+        **_imo(pipeline, found, ship),
     )
 
 
@@ -114,22 +116,48 @@ def _ship(fit: Fit) -> Vessel | None:
         return None
 
 
-def _imo(pipeline: Pipeline, done: Diagnosed, ship: Vessel | None) -> dict[str, Any]:
-    """IMO's measures of the fitted ship and of the trials, where the pipeline asks for them."""
+def _imo(pipeline: Pipeline, found: Diagnosis, ship: Vessel | None) -> dict[str, Any]:
+    """IMO's measures of the fitted ship and of the trials, where the pipeline asks for them.
+
+    Where an effect has a name the ranges hold what the model with it says, as parameters' do.
+    """
     if not pipeline.imo:
         return {}
-    off, fit = done.doubts, done.fit
-    spread = likely_spread(fit, done.accuracy.covariance, off.standing, off.held, off.missing)
+    done, fit = found.before, found.before.fit
+    spread = _spread(done)
     wider = {p.name: float(student(p.freedom) / student(np.inf)) for p in done.accuracy.parameters}
     errors = {p.name: wider[p.name] * p.standard_error for p in done.accuracy.parameters}
-    found = measure_trials(fit, errors, spread)
-    by_heading = {one.trial for one in found.numbers if one.kind == "zig-zag"}
+    sailed = measure_trials(fit, errors, spread)
+    by_heading = {one.trial for one in sailed.numbers if one.kind == "zig-zag"}
     integrals = (one for one in observed.overshoots(fit) if one.trial not in by_heading)
+    measures, steering = following.measures_within(fit, spread), _steering(ship, spread)
+    if found.after is not None and found.verdict.effect is not None:
+        measures, steering = _beside(measures, steering, found.after)
     return {
-        "measures": following.measures_within(fit, spread),
+        "measures": measures,
         "overshoots": tuple(integrals),
-        "turns": found.turns,
-        "manoeuvres": found.manoeuvres,
-        "measured": found.numbers,
-        "steering": _steering(ship, spread),
+        "turns": sailed.turns,
+        "manoeuvres": sailed.manoeuvres,
+        "measured": sailed.numbers,
+        "steering": steering,
     }
+
+
+def _spread(done: Diagnosed) -> LikelySpread:
+    """All that predictions by a fit are uncertain by."""
+    off = done.doubts
+    return likely_spread(done.fit, done.accuracy.covariance, off.standing, off.held, off.missing)
+
+
+def _beside(
+    measures: tuple[Measure, ...], steering: Nomoto | None, named: Diagnosed
+) -> tuple[tuple[Measure, ...], Nomoto | None]:
+    """The same with ranges that hold those of the model with the effect that has a name.
+
+    What an effect makes of her that cannot be sailed, as an order that comes late, widens none.
+    """
+    spread, fit = _spread(named), named.fit
+    with suppress(DesignError):
+        measures = embrace(measures, following.measures_within(fit, spread))
+    there = None if steering is None else _steering(_ship(fit), spread)
+    return measures, steering if steering is None or there is None else steering.embracing(there)

@@ -96,3 +96,9 @@ def test_what_stands_out_and_makes_others_worse_is_not_small(ratio, said):
     candidate = refit("a", ratio, 0.1).candidate
     assert said in significant_and_small([candidate])
     assert significant_and_small([]) == ""
+
+
+def test_what_falls_in_few_blocks_is_not_small():
+    candidate = refit("a", 0.97, 0.1, wobble=0.05).candidate
+    assert not candidate.carried.in_most
+    assert "falls in 3 of 6 blocks only" in significant_and_small([candidate])

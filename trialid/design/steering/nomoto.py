@@ -19,6 +19,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.accuracy.likely import wider
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.measure_slopes import tried_ship, with_columns
@@ -58,6 +59,11 @@ class Nomoto:
     ship: LinearShip
     A_likely: Vector
     B_likely: Vector
+
+    def embracing(self, there: "Nomoto") -> "Nomoto":
+        """The same with ranges that hold those of another model of the ship."""
+        ranges = {n: wider(own, there.ranges.get(n)) for n, own in self.ranges.items()}
+        return replace(self, ranges=ranges)
 
 
 def nomoto(ship: Vessel, spread: LikelySpread) -> Nomoto:

@@ -60,7 +60,7 @@ def steered_by(ship: Vessel) -> SteeredBy:
     if not _opposite(ones):
         raise DesignError(
             "K, T and gains are those of a rudder angle, or of two thrusters alike, one to port "
-            f"and one to starboard; this model is steered by {', '.join(pair) or 'nothing'}"
+            f"and one to starboard; this model has the inputs {', '.join(eq.inputs)}"
         )
     if "u" not in eq.states:
         raise DesignError(

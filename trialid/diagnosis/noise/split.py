@@ -45,6 +45,7 @@ from trialid.diagnosis.noise.variance import hac
 from trialid.diagnosis.search.augment import Augmented
 from trialid.diagnosis.search.carry_over import left_out
 from trialid.identification.fit import Fit
+from trialid.names import wording
 from trialid.trial_rows import Stretch
 
 Vector = NDArray[np.float64]
@@ -223,7 +224,8 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
     T = _visible_directions(raw.S, augmented.S, white.S)
     Z = white.S @ T
     if len(Z) < 20 * Z.shape[1]:
-        return Split(method, f"too short: {len(Z)} compared values for {Z.shape[1]} directions")
+        many = wording.count_of(Z.shape[1], "direction")
+        return Split(method, f"too short: {len(Z)} compared values for {many}")
     beta = np.asarray(np.linalg.lstsq(Z, white.residual, rcond=None)[0])
     inverse = np.linalg.inv(Z.T @ Z)
     left = white.residual - Z @ beta
@@ -232,7 +234,8 @@ def _input_driven(fit: Fit, augmented: Augmented) -> Split:
         _unexplained(fit, c, raw.S @ T, beta, covariance, augmented.stretches)
         for c in range(len(fit.problem.outputs))
     ]
-    why = f"what {Z.shape[1]} directions of candidate effects explain beyond chance is model"
+    many = wording.count_of(Z.shape[1], "direction")
+    why = f"what {many} of candidate effects can explain beyond chance is model"
     return split_by_noise(fit, method, why, found, at_most=_at_most(fit, augmented, T, beta))
 
 

@@ -115,6 +115,11 @@ class Carried:
         return len(self.before)
 
     @property
+    def in_most(self) -> bool:
+        """Whether the error is smaller in more than half of the blocks."""
+        return 2 * self.better > self.blocks
+
+    @property
     def falls(self) -> bool:
         """Whether so much carries over that it is worth a name, and in more than half of them.
 

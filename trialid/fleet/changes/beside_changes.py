@@ -12,6 +12,7 @@ from scipy.stats import fisher_exact
 from trialid.fleet.changes.changes_of_ships import FEWEST, LEVEL, is_sound, with_a_say
 from trialid.fleet.changes.courses import EITHER_SIDE
 from trialid.fleet.plan import is_no_day
+from trialid.names import wording
 from trialid.result.fleet_rows import Remark, RunRow
 
 NAMED: Final = 3
@@ -90,7 +91,9 @@ def _models(rows: Sequence[RunRow]) -> Iterator[str]:
     )
     if not others:
         return
-    told = [f"{len(models[effects, free])} voyages have that of {models[effects, free][0].voyage}"]
+    own = models[effects, free]
+    have = wording.count_of(len(own), "voyage has", "voyages have")
+    told = [f"{have} that of {own[0].voyage}"]
     for other in others:
         differs = [
             *(f"with {name}" for name in sorted(other[0] - effects)),

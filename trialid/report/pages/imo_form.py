@@ -17,6 +17,7 @@ from trialid.report.pictures.input_course import input_courses
 from trialid.report.pictures.track_picture import TrackPicture, track_picture
 from trialid.report.tables import form_tables, imo_tables
 from trialid.report.tables.rounded_table import Cell, numeric
+from trialid.report.words import doubt
 
 OPEN: Final = (
     *("Ship's name, IMO number", "Flag, class, yard, hull number", "Date and place of the trials"),
@@ -60,6 +61,7 @@ def form(run: Finished) -> str:
             tracks=_tracks(run),
             pictures=_pictures(run),
             blanks=OPEN,
+            lacking=doubt.missing_words(result.verdict),
             corrections=imo_tables.corrections(result),
             cell=_cell,
         )

@@ -11,7 +11,7 @@ from trialid.report.pictures import bars, error_history, force_plots, panels, wh
 from trialid.report.pictures.track_picture import track_picture
 from trialid.report.script import script
 from trialid.report.tables import imo_tables, run_tables, use_tables
-from trialid.report.words import advice, beforehand, doubt, ranking
+from trialid.report.words import advice, beforehand, doubt, fall, ranking
 from trialid.result.change_rows import ChangePart
 from trialid.result.finding_rows import CandidateRow
 from trialid.result.fit_rows import TrialRow
@@ -68,9 +68,10 @@ def page(run: Result, series: Sequence[TrialSeries], forces: Sequence[ForceSerie
             done=_done(run),
             proposed=_proposed(run),
             descent=error_history.error_history(run),
-            fell=error_history.fell(run),
+            fell=fall.fell(run),
             ranked=ranking.ranking(run),
             advised=advice.advice(run),
+            first=advice.first_step(run),
             trust=advice.trust(run),
             split=bars.split_bars(run),
             physical=list(zip(run.physical, range_bars, strict=True)),
@@ -127,10 +128,12 @@ def _filters() -> dict[str, Any]:
     """What the templates write numbers and names with."""
     return {
         "number": wording.number,
+        "count_of": wording.count_of,
         "percent": wording.percent,
         "percent_range": wording.percent_range,
         "by_error": wording.by_error,
         "doubtful": doubt.doubtful,
+        "stability_words": doubt.stability_words,
         "prior_words": beforehand.prior_words,
         "likely": run_tables.likely,
         "criterion": imo_tables.criterion,

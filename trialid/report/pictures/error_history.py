@@ -7,8 +7,8 @@ the held-out ones. A whisker is the interval of the model part, where the run kn
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from trialid.names import wording
@@ -26,6 +26,8 @@ TOP, FLOOR = 24.0, 204.0
 BAR, GAP = 30.0, 6.0
 LINE: Final = 13.0
 """Height of a line of a label."""
+BESIDE, ABOVE = 10.0, 6.0
+"""How far a number stands from its mark."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,8 @@ class Bar:
 class Column:
     """One step; `noise` and `model` are None where they are not told apart, then there is `whole`.
 
-    `y` and `check` are the heights of the error of the fitted and of the held-out trials.
+    `y` and `check` are the heights of the error of the fitted and of the held-out trials, and their
+    numbers stand at `error_y` and `check_y`, to the left or to the right.
     """
 
     x: float
@@ -59,6 +62,14 @@ class Column:
     check_error: str
     present: bool
     proposed: bool
+    error_y: float = 0.0
+    check_y: float = 0.0
+    to_the_left: bool = False
+
+    @property
+    def label_x(self) -> float:
+        """Where its numbers end, or begin."""
+        return self.x - BESIDE if self.to_the_left else self.x + BESIDE
 
 
 @dataclass(frozen=True)
@@ -77,14 +88,14 @@ class ErrorHistory:
 
 def error_history(run: Result) -> ErrorHistory | None:
     """The picture of a run's history, None where no step has an error."""
-    known = [row for row in run.history if _number(row.eps_rmsn)]
+    known = [row for row in run.history if is_number(row.eps_rmsn)]
     shown = known[-MOST:]
     if not shown:
         return None
     top = max(_reach(row, run) for row in shown) or 1.0
     step = max(76.0, min(190.0, (1100.0 - LEFT - RIGHT) / len(shown)))
     present = _present(shown)
-    columns = tuple(
+    columns = _lettered(
         _column(row, run, LEFT + (k + 0.5) * step, top, _words(row, row is present, step))
         for k, row in enumerate(shown)
     )
@@ -101,7 +112,8 @@ def error_history(run: Result) -> ErrorHistory | None:
     )
 
 
-def _number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Whether a value is there, and finite."""
     return isinstance(value, int | float) and math.isfinite(value)
 
 
@@ -118,13 +130,13 @@ def interval(row: StepRow, run: Result) -> tuple[float, float] | None:
         found = run.before_after.undermodelling_interval if run.before_after else None
     elif found is None and row is _present(run.history):
         found = run.split.ends("undermodelling")
-    return (found[0], found[1]) if found and all(map(_number, found)) else None
+    return (found[0], found[1]) if found and all(map(is_number, found)) else None
 
 
 def _reach(row: StepRow, run: Result) -> float:
     """The largest error of a step."""
     ends = interval(row, run) or ()
-    return max(e for e in (row.eps_rmsn, row.eps_rmsn_check, *ends) if _number(e))
+    return max(e for e in (row.eps_rmsn, row.eps_rmsn_check, *ends) if is_number(e))
 
 
 def _height(value: float, top: float) -> float:
@@ -138,7 +150,7 @@ def _column(row: StepRow, run: Result, x: float, top: float, words: Sequence[str
     return Column(
         x=x,
         words=tuple(words),
-        said=_said(row),
+        said=step_sentence(row),
         y=FLOOR - _height(error, top),
         error=_bare(error),
         noise=None if noise is None else _bar("noise", noise, x - BAR - 0.5 * GAP, top, None),
@@ -153,12 +165,33 @@ def _column(row: StepRow, run: Result, x: float, top: float, words: Sequence[str
     )
 
 
+def _lettered(columns: Iterable[Column]) -> tuple[Column, ...]:
+    """The columns with their numbers where no line runs: away from a line that rises to the next.
+
+    Lines come from the left and mostly from above; of two numbers that are near the upper one gives
+    way.
+    """
+    drawn = list(columns)
+    return tuple(map(_with_numbers, drawn, [*drawn[1:], None]))
+
+
+def _with_numbers(column: Column, following: Column | None) -> Column:
+    rises = following is not None and following.y < column.y
+    error_y, check_y = column.y - ABOVE, (column.check or 0.0) - ABOVE
+    if column.check is not None and abs(error_y - check_y) < LINE:
+        if column.check < column.y:
+            check_y = error_y - LINE
+        else:
+            error_y = check_y - LINE
+    return replace(column, error_y=error_y, check_y=check_y, to_the_left=rises)
+
+
 def _parts(row: StepRow) -> tuple[float | None, float | None, float, float | None]:
     """Noise and model, both or neither, the error and the held-out one."""
     noise, model = row.noise, row.undermodelling
-    if not (_number(noise) and _number(model)):
+    if not (is_number(noise) and is_number(model)):
         noise = model = None
-    check = row.eps_rmsn_check if _number(row.eps_rmsn_check) else None
+    check = row.eps_rmsn_check if is_number(row.eps_rmsn_check) else None
     return noise, model, row.eps_rmsn or 0.0, check
 
 
@@ -217,12 +250,12 @@ def break_lines(text: str, room: int) -> list[str]:
     return [line.rstrip() for line in lines]
 
 
-def _said(row: StepRow) -> str:
+def step_sentence(row: StepRow) -> str:
     """A step in one sentence, for who does not see the picture."""
     said = f"{step_words(row)}: error {wording.percent(row.eps_rmsn)}"
     parts = (("noise", "noise"), ("model", "undermodelling"), ("held out", "eps_rmsn_check"))
     return said + "".join(f", {word} {wording.percent(getattr(row, key))}" for word, key in parts
-                          if _number(getattr(row, key)))  # fmt: skip
+                          if is_number(getattr(row, key)))  # fmt: skip
 
 
 def _ticks(top: float) -> list[tuple[float, str]]:
@@ -239,38 +272,3 @@ def _ticks(top: float) -> list[tuple[float, str]]:
 def _joined(points: Sequence[tuple[float, float]]) -> str:
     """A polyline; nothing joins a single point."""
     return "" if len(points) < 2 else " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-
-
-def fell(run: Result) -> str:
-    """What the picture shows, in words."""
-    known = [row for row in run.history if _number(row.eps_rmsn)]
-    if not known:
-        return "No step has an error."
-    first, last = known[0], known[-1]
-    if first is last:
-        return f"One model so far, {_said(last)}.{_zero(last, run)}"
-    words = f"The error goes from {_pair(first, last, 'eps_rmsn')}"
-    parts = (("held out", "eps_rmsn_check"), ("the model part", "undermodelling"),
-             ("the noise part", "noise"))  # fmt: skip
-    for word, key in parts:
-        if _number(getattr(first, key)) and _number(getattr(last, key)):
-            words += f", {word} from {_pair(first, last, key)}"
-    return (
-        f"{words}.{_zero(last, run)} The right effect lowers the model part and the held-out error "
-        "and leaves the noise part as it was: the sea and the sensors are the same."
-    )
-
-
-def _pair(first: StepRow, last: StepRow, key: str) -> str:
-    return f"{wording.percent(getattr(first, key))} to {wording.percent(getattr(last, key))}"
-
-
-def _zero(row: StepRow, run: Result) -> str:
-    """What an interval that holds zero means."""
-    ends = interval(row, run)
-    if ends is None or ends[0] > 0.0:
-        return ""
-    return (
-        " The interval of the model part holds zero: what is left may be noise alone, and a model "
-        f"error below {wording.percent(ends[1])} would not be seen."
-    )

@@ -15,6 +15,8 @@ NEAR = 3.0
 """A step that few voyages show is drawn up to three likely ranges, and what is off presses the
 middle half into a quarter of the picture; with half of it up to one and a half and two fifths, with
 twice of it up to six and a seventh."""
+MOST_NAMES = 6
+"""That a picture of 230 px names, one below each: some seven letters have room."""
 MOST_SHIPS = 40
 """Whose borders a picture of 230 px shows: six pixels for each."""
 
@@ -52,6 +54,7 @@ class VoyagePicture:
     whiskers: tuple[Whisker, ...]
     marks: tuple[Mark, ...]
     borders: tuple[float, ...]
+    names: tuple[str, ...] = ()
 
 
 def voyage_picture(
@@ -96,6 +99,7 @@ def voyage_picture(
             for each in changes
         ),
         borders=_borders(names),
+        names=tuple(names) if len(names) <= MOST_NAMES else (),
     )
 
 

@@ -71,18 +71,20 @@ def _tests(tests: Sequence[Mapping[str, Any]], wanted: Sequence[str]) -> "Table"
     for test in tests:
         rating = test["rating"]
         if rating is None:
-            add_row(table, test["name"], _numbers(test), "not feasible", "", "", "", style="red")
+            add_row(table, test["name"], numbers_of(test), "not feasible", "", "", "", style="red")
             continue
-        add_row(
-            table, test["name"], _numbers(test), number(rating["R"], 4), number(rating["S_min"], 2),
-            *_worst(rating, wanted),
-        )  # fmt: skip
+        known = number(rating["R"], 4), number(rating["S_min"], 2)
+        add_row(table, test["name"], numbers_of(test), *known, *_worst(rating, wanted))
     return table
 
 
-def _numbers(test: Mapping[str, Any]) -> str:
+def numbers_of(test: Mapping[str, Any]) -> str:
     """The numbers of a programme's tests, short."""
     return "; ".join(_short(one) for one in test["programme"])
+
+
+_SHORT: Final = {"deg": "\N{DEGREE SIGN}", "s": " s", "deg/s": " deg/s"}
+"""Units beside numbers in a narrow column; a rudder angle needs no further word."""
 
 
 def _short(test: Mapping[str, Any]) -> str:
@@ -92,7 +94,8 @@ def _short(test: Mapping[str, Any]) -> str:
         if isinstance(value, list):
             told.append(f"{len(value)} {name}")
         elif value is not None:
-            told.append(f"{name} {value:.4g}")
+            unit = _SHORT.get(test.get("units", {}).get(name, "1"), "")
+            told.append(f"{name} {value:.4g}{unit}".removeprefix("angle "))
     return ", ".join(told[:3])
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from trialid.effects import CATALOGUE
-from trialid.names.model_kinds import KINDS
-from trialid.result.fit_rows import ParameterRow
+from trialid.names.model_kinds import KINDS, Kind
+from trialid.result.fit_rows import ModelPart, ParameterRow
 from trialid.result.schema import Result
 
 
@@ -36,12 +36,22 @@ def equations(run: Result) -> Iterator[EquationRow]:
 
 
 def commands(run: Result) -> Iterator[CommandRow]:
-    """What can be done with the run, from its own folder."""
-    marked = " --anyway" if run.verdict.kind == "no fit" else ""
-    manoeuvre = "stop" if run.model.by_thrusters else "zigzag 20 20"
-    yield CommandRow(f"trialid simulate . {manoeuvre}{marked}", "a manoeuvre with likely ranges")
-    yield CommandRow(f"trialid simulate . orders.csv{marked}", "orders of your own")
-    for name, kind in KINDS.items():
-        needs = kind.needs_by_thrusters if run.model.by_thrusters else kind.needs
+    """What can be done with the run, from its own folder; nothing that its model would refuse."""
+    model, marked = run.model, " --anyway" if run.verdict.kind == "no fit" else ""
+    if model.by_rudder or model.by_thrusters:
+        manoeuvre = "zigzag 20 20" if model.by_rudder else "stop"
+        yield CommandRow(
+            f"trialid simulate . {manoeuvre}{marked}", "a manoeuvre with likely ranges"
+        )
+    if model.turns:
+        yield CommandRow(f"trialid simulate . orders.csv{marked}", "orders of your own")
+    for name, kind in kinds_of(model).items():
+        needs = kind.needs_by_thrusters if model.by_thrusters else kind.needs
         said = f" {needs}" if needs else ""
         yield CommandRow(f"trialid export . --as {name}{said}{marked}", kind.words)
+
+
+def kinds_of(model: ModelPart) -> dict[str, Kind]:
+    """What a model can be written as: one that nothing known steers has no K, T and gains."""
+    steered = model.by_rudder or model.by_thrusters
+    return {name: kind for name, kind in KINDS.items() if steered or not kind.steered}

@@ -153,7 +153,7 @@ def _parameters(change: ChangePart, rows: Rows) -> "Iterable[RenderableType]":
         )  # fmt: skip
     yield table
     left = len(change.parameters) - len(shown)
-    more = f"; {left} more parameters moved less" if left else ""
+    more = f"; {wording.count_of(left, 'more parameter')} moved less" if left else ""
     yield Words(f"moved, foreseen: in standard errors (+-) of the fit before{more}", 2, "dim")
     yield Text()
 

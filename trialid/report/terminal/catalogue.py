@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from trialid.effects.coverage import Row, Seen, left_out, rows, rows_of, trial_results
 from trialid.names.quantities import ACCELERATIONS
-from trialid.names.wording import percent
+from trialid.names.wording import count_of, percent
 from trialid.ship.effect import SENSORS, Effect, Parameter, Steered
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def _count(effects: Mapping[str, Effect]) -> str:
     told = [f"  {kinds.count(k)} {k}: {meaning}" for k, meaning in KINDS.items()]
     said = f"they say {len(rows()) - len(left_out())} of {len(rows())} things that were considered"
     more = "All about one, its equation first: trialid effects NAME"
-    return "\n".join([f"{len(effects)} effects; {said}. Scored", *told, more])
+    return "\n".join([f"{count_of(len(effects), 'effect')}; {said}. Scored", *told, more])
 
 
 def _reasons() -> Sequence[Any]:

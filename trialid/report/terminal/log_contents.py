@@ -16,7 +16,7 @@ from trialid.errors import printable
 from trialid.inspection.disagreements import findings
 from trialid.inspection.inspected import ChannelInspection, Inspection, Received
 from trialid.inspection.positions import position_words
-from trialid.names import labels
+from trialid.names import labels, wording
 from trialid.names.quantities import SIGNALS
 from trialid.report.terminal.terminal import Words, add_row, cut, new_table
 from trialid.report.words.decisions import decisions
@@ -220,7 +220,9 @@ def _folded(rest: Sequence[ChannelInspection]) -> Iterator[Any]:
     yield table
     left = len(groups) - MOST_MESSAGES
     if left > 0:
-        yield Words(f"and {left} more messages; --all shows every channel", 1, "dim")
+        yield Words(
+            f"and {wording.count_of(left, 'more message')}; --all shows every channel", 1, "dim"
+        )
 
 
 def _clocks(survey: Inspection) -> Iterator[Any]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from trialid.names import wording
 from trialid.report.terminal.terminal import percent
 from trialid.result.change_rows import StepRow
 
@@ -39,7 +40,7 @@ def rows(history: Sequence[StepRow], most: int = SHOWN) -> Iterable[str]:
     steps = [step for step in history if step.step != "proposed"]
     yield heading()
     if len(steps) > most:
-        yield f"... {len(steps) - most} earlier steps"
+        yield f"... {wording.count_of(len(steps) - most, 'earlier step')}"
     yield from (line(step) for step in steps[-most:])
 
 

@@ -107,13 +107,18 @@ def _next(run: Result, file: str) -> "Iterable[RenderableType]":
     if file and verdict.kind == "missing" and verdict.effect:
         yield Words(f"Next: {advice.command_on(file, 'add', verdict.effect)}", 2)
     if file and verdict.together:
-        yield Words(f"Next: {advice.command_on(file, 'run', '--auto')} adds both and goes on", 2)
+        yield Words(f"Next: {advice.command_on(file, 'run', '--auto')}  # adds both, goes on", 2)
     if file and verdict.kind == "not in catalogue":
         yield Words(
-            f"Next: {advice.command_on(file, 'run', '--draft', 'my_effect.py')} writes the force "
-            "that is missing, to be edited",
+            f"Next: {advice.command_on(file, 'run', '--draft', 'my_effect.py')}  # writes the "
+            "missing force, to be edited",
             2,
         )
+    if verdict.kind == "nothing missing" or (
+        verdict.kind == "cannot tell" and not verdict.together
+    ):
+        first = advice.first_step(run)
+        yield from (Words(f"Next: {plain(each.words)}", 2) for each in (first,) if each is not None)
     if run.before_after is not None and verdict.kind != "missing":
         yield Words(_change(run.before_after), 2)
     if verdict.next_trial and verdict.next_trial.sentence:
@@ -134,14 +139,17 @@ def _errors(run: Result, rows: Rows) -> "Table":
         use = "held out" if trial.use == "check" else "fitted"
         add_row(table, trial.name, use, *percents(map(trial.eps_rmsn.get, outputs)), "")
     if len(shown) < len(trials):
-        add_row(table, f"... and {len(trials) - len(shown)} more trials")
+        add_row(table, f"... and {wording.count_of(len(trials) - len(shown), 'more trial')}")
     by_output = percents(fit.eps_rmsn_by_output[name] for name in outputs)
     add_row(table, "all fitted trials", "", *by_output, percent(fit.eps_rmsn), style="bold")
-    check = percent(fit.eps_rmsn_check)
-    if not any(trial.use == "check" for trial in trials):
-        check = "none"
+    check = percent(fit.eps_rmsn_check) if _holds_out(run) else "none"
     add_row(table, "all held-out trials", "", *[""] * len(outputs), check)
     return table
+
+
+def _holds_out(run: Result) -> bool:
+    """Whether any trial is held out."""
+    return any(trial.use == "check" for trial in run.trials)
 
 
 def _made_of(run: Result) -> str:
@@ -241,10 +249,13 @@ def _ranking(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     if not run.missing:
         return
     yield Text()
-    headings = ("effect tried", "verdict", "would leave", "refitted", "held out", "p")
-    table = new_table(*headings, words=2)
+    held_out = ("held out",) * _holds_out(run)  # no column of dashes that costs names their ends
+    table = new_table(
+        *("effect tried", "verdict", "would leave", "refitted", *held_out, "p"), words=2
+    )
     for row in run.missing[: rows.candidates]:
-        errors = (row.eps_rmsn_predicted, row.eps_rmsn_refitted, row.eps_rmsn_check)
+        errors = [row.eps_rmsn_predicted, row.eps_rmsn_refitted, row.eps_rmsn_check]
+        errors = errors[: 2 + len(held_out)]
         effect = f"{row.rank or ''} {row.effect}".strip()
         p_value = number(row.p_value, 2)
         add_row(table, effect, row.verdict or "", *percents(errors), p_value)

@@ -51,6 +51,12 @@ def advice(run: Result) -> tuple[Advice, ...]:
     return (*found, *_unchecked(run), *_loose(run))
 
 
+def first_step(run: Result) -> Advice | None:
+    """What to do first, beside the next trial: that has a line of its own wherever this has."""
+    planned = [*_planned(run)]
+    return next((each for each in advice(run) if each not in planned), None)
+
+
 def command(run: Result, verb: str, *words: str) -> str:
     """A command of trialid on this run's pipeline.
 
@@ -125,10 +131,8 @@ def _nothing(run: Result) -> Iterable[Advice]:
     ends = run.split.ends("undermodelling")
     limit = f" A model error of up to {wording.percent(ends[1])} would not be seen." if ends else ""
     yield Advice(
-        "No effect is to be added on the strength of this record."
-        + limit
-        + " Use the model within "
-        "the orders, speeds and heel that the trials cover."
+        "Use the model within the orders, speeds and heel that the trials cover; no effect is to "
+        f"be added on the strength of this record.{limit}"
     )
 
 
@@ -207,10 +211,11 @@ def _loose(run: Result) -> Iterable[Advice]:
 def trust(run: Result) -> str:
     """What the accuracy table comes to, beside those not to be believed."""
     known = [(r.may_be_off, r.name) for r in run.physical if r.may_be_off is not None]
-    if not known:
+    if not known or run.verdict.kind == "no fit":
         return ""
     least, name = min(known)
-    words = f"Best known is {name}, to {wording.percent(least, 2)}. {widest_range(run)}"
+    best = f"Best known is {name}, to {wording.percent(least, 2)}. " if least <= doubt.HALF else ""
+    words = f"{best}{widest_range(run)}"
     if run.verdict.effect and run.before_after:
         words += f" With {run.verdict.effect} in the model the ranges are others: add it first."
     return words

@@ -4,7 +4,9 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from trialid.result.fit_rows import ParameterRow
+from trialid.result.finding_rows import VerdictPart
+from trialid.result.fit_rows import LeversPart, ParameterRow
+from trialid.ship.stability import PARTS
 
 HALF: Final = 0.5
 """A parameter that may be off by more than this share of its value is not to be believed."""
@@ -32,6 +34,41 @@ def doubtful(parameters: Sequence[ParameterRow]) -> str:
     verb = "move" if len(idle) > 1 else "moves"
     said = f"{', '.join(idle)} {verb} nothing that is fitted here." if idle else ""
     return f"{_disbelieved([row for row in rows if not is_idle(row)])} {said}".strip()
+
+
+def missing_words(verdict: VerdictPart) -> str:
+    """What the verdict says the model lacks, for who uses it; empty where it says nothing of that.
+
+    >>> missing_words(VerdictPart(kind="missing", effect="static_list"))
+    'The run says that static_list is missing; this is the model without it.'
+    >>> missing_words(VerdictPart(kind="cannot tell", together=("a", "b")))
+    'The run says that more is missing, as a and b together; this is the model without them.'
+    """
+    if verdict.together:
+        both = " and ".join(verdict.together)
+        said = f"The run says that more is missing, as {both} together"
+        return f"{said}; this is the model without them."
+    if verdict.kind not in ("missing", "not in catalogue"):
+        return ""
+    what = verdict.effect or "something outside the catalogue"
+    return f"The run says that {what} is missing; this is the model without it."
+
+
+def stability_words(levers: LeversPart, parameters: Sequence[ParameterRow]) -> str:
+    """Whether she is stable on her course, and what that rests on where it may be believed less.
+
+    >>> stability_words(LeversPart(stable=True), [ParameterRow(name="Nv", value=-1.0,
+    ...                                                        likely=(-2.0, 0.1))])
+    'Stable as fitted, by Nv, which may be off by more than half.'
+    """
+    if levers.stable is None:
+        return "Stable or not: this record does not tell."
+    word = "Stable" if levers.stable else "Unstable"
+    rows = [row for row in parameters if row.name in PARTS and not is_idle(row)]
+    doubted = [row.name for row in rows if not _share(row) <= HALF]
+    if not doubted:
+        return f"{word}."
+    return f"{word} as fitted, by {' and '.join(doubted)}, which may be off by more than half."
 
 
 def is_idle(row: ParameterRow) -> bool:

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -26,6 +26,21 @@ WORTH: Final = ("stands out", "lowers the error")
 NOTHING: Final = "no evidence"
 HIDDEN: Final = "not visible"
 IMPOSSIBLE: Final = "unphysical"
+
+MEANS: Final = {
+    "missing": "named by the verdict",
+    "same family": "this record cannot tell it from the one named",
+    "stands out": "there against the noise, and the error falls where it was not fitted",
+    "lowers the error": "a tenth of the squared error goes where it was not fitted, blocks alike, "
+    "though no test against the noise shows it",
+    "significant and small": "there against the noise, of a size that nobody would notice",
+    "not in most blocks": "there against the noise, but where it was not fitted the error falls in "
+    "half of the blocks or fewer",
+    "does not carry over": "there against the noise, but where it was not fitted the error rises",
+    "no evidence": "no more than chance would do",
+}
+"""What the verdicts on candidates mean; each trial left out in turn is a block, of few trials a
+stretch of time."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +90,7 @@ class Ranking:
     ruled_out: tuple[tuple[CandidateRow, str], ...]
     hidden: tuple[CandidateRow, ...]
     not_tried: tuple[tuple[str, tuple[str, ...]], ...]
+    standing: tuple[tuple[str, str], ...]
 
 
 def ranking(run: Result) -> Ranking:
@@ -97,7 +113,14 @@ def ranking(run: Result) -> Ranking:
         ruled_out=tuple((row, reason(row)) for row in rows if row.verdict == IMPOSSIBLE),
         hidden=tuple(row for row in rows if row.verdict == HIDDEN),
         not_tried=tuple(_by_reason(run.not_tried)),
+        standing=tuple(_standing(heads, rest)),
     )
+
+
+def _standing(*groups: Sequence[CandidateRow]) -> Iterable[tuple[str, str]]:
+    """What the verdicts mean that are shown."""
+    shown = {row.verdict for rows in groups for row in rows}
+    return ((word, meaning) for word, meaning in MEANS.items() if word in shown)
 
 
 def _leader(row: CandidateRow, run: Result) -> Leader:

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.report.pictures import error_history
 from trialid.report.pictures.bars import SplitBar
+from trialid.report.words import fall
 from trialid.result.change_rows import StepRow
 from trialid.result.schema import Result
 from trialid.workbench import error_number
@@ -49,7 +49,7 @@ def steps(shown: Shown, run: Result) -> Steps:
     rows = [*_rows(known, longest, shown.run is not None)]
     if pending:
         rows.append(_pending(shown, longest))
-    said = error_history.fell(run) if shown.run else ""
+    said = fall.fell(run) if shown.run else ""
     return Steps(tuple(rows[:-SHOWN]), tuple(rows[-SHOWN:]), said)
 
 

@@ -51,6 +51,12 @@ NO_SERVICE_SPEED: Final = (
     "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "
     "--speed KNOTS"
 )
+NO_WAY: Final = (
+    "she swings, and no log tells whether she makes way; with --speed KNOTS she does, and at that; "
+    "of decays at rest make her file first, with her service speed (trialid ship OUT.toml --length "
+    "METRES --speed KNOTS), and add --ship OUT.toml"
+)
+"""Of decays: the number that a new ship is made of would be her speed in the logs too."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +111,9 @@ def starter(
     if u0 is None and decays and own is not None:
         u0 = own.particulars.get("U0")
     if u0 is None:
-        raise LogError(f"{pipeline}: {NO_SERVICE_SPEED if decays else NO_SPEED}")
+        unknown = any("CAREFUL" in one.speed_words for one in decays)
+        of_decays = NO_WAY if unknown else NO_SERVICE_SPEED
+        raise LogError(f"{pipeline}: {of_decays if decays else NO_SPEED}")
     files: dict[Path, str] = {}
     if ship is None or own is None:
         ship = begun_ship(pipeline)

@@ -1,6 +1,7 @@
 """A boat that steers by two thrusters: which channels drive her, and which of them is to port."""
 
 import dataclasses
+import shlex
 from collections.abc import Iterator
 from typing import Final
 
@@ -90,7 +91,8 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     if speed is None:
         raise LogError(
             f"{survey.path}: she steers by two thrusters, and no speed is recognised, which is "
-            "half of what they do; map one by hand, see `trialid inspect --all`"
+            "half of what they do; map one by hand, see `trialid inspect --all "
+            f"{shlex.quote(str(survey.path))}`"
         )
     if known is None and speed.source.angle == "speed":
         known = float(np.median(speed.source.sketch.y))

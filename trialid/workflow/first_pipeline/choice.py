@@ -1,6 +1,7 @@
 """Which channel a starter pipeline takes for each signal, how it is read, and why."""
 
 import dataclasses
+import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -130,7 +131,7 @@ def _what_then(survey: Inspection) -> str:
             "called left and right or 1 and 2, beside heading or yaw rate; map others by hand, "
             "see `trialid guide actuators`"
         )
-    return "see `trialid inspect --all`, and map the channels by hand"
+    return f"see `trialid inspect --all {shlex.quote(str(survey.path))}`, and map them by hand"
 
 
 Live = dict[str, tuple[ChannelInspection, ...]]

@@ -8,6 +8,7 @@ from typing import Final
 from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.positions import positions
+from trialid.names import wording
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
@@ -86,7 +87,8 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
             yield f"{words}  # {_facts(other)}"
         yield from _mean(signal)
         if len(signal.others) > MOST_OTHERS:
-            yield f"# and {len(signal.others) - MOST_OTHERS} more sources: `trialid inspect`"
+            more = wording.count_of(len(signal.others) - MOST_OTHERS, "more source")
+            yield f"# and {more}: `trialid inspect`"
     for signal, why in trial.beside:
         yield f"# left to you: {signal.quantity}; {comment(why)}"
         yield f"# {signal.quantity} = {{ {_source(signal, signal.source)} }}"
@@ -136,7 +138,7 @@ def _remarks(trial: Chosen) -> Iterator[str]:
 
 
 def _facts(one: ChannelInspection) -> str:
-    gaps = f", {one.gaps.count} gaps" if one.gaps.count else ""
+    gaps = f", {wording.count_of(one.gaps.count, 'gap')}" if one.gaps.count else ""
     return f"{one.rate:.3g} Hz{gaps}"
 
 

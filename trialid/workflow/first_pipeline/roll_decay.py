@@ -54,6 +54,8 @@ TURNS: Final = float(np.deg2rad(30.0))
 """[rad] What she turns through at most while she swings: a course that nobody keeps. Of models of
 5 m let go under way half of it would do, and twice of it is the first part of a turn."""
 
+AS_STATED: Final = "as stated; 0 where she rolled at rest"
+
 FROUDE: Final = 0.02
 """Of what a log of a ship at rest holds as her speed, over sqrt(g L): 0.14 m/s of 5 m, where it
 held 0.01 of noise. Half of it would do there, with twice of it a ship of 100 m makes 2.4 knots."""
@@ -187,7 +189,7 @@ def _choose(survey: Inspection, stated: float | None, rest: float) -> Chosen:
     if speed is None:
         said = "CAREFUL: no log tells a speed, read as at rest; write hers where she made way"
         return dataclasses.replace(
-            trial, speed=stated or 0.0, speed_words=words if stated else said
+            trial, speed=stated or 0.0, speed_words=AS_STATED if stated else said
         )
     if speed < rest:
         return dataclasses.replace(trial, speed=0.0, speed_words=f"at rest, by {words}")

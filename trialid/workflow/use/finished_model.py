@@ -12,7 +12,7 @@ from trialid.identification.fit import Fit, revive
 from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
-from trialid.report.words.doubt import doubtful
+from trialid.report.words.doubt import doubtful, missing_words
 from trialid.result.schema import Result
 from trialid.ship.actuators import actuator_quantities
 from trialid.ship.quantity_of import quantity_of
@@ -68,10 +68,7 @@ class FinishedModel:
         """What anybody who uses the model has to know of it, a sentence each."""
         verdict = self.result.verdict
         said = [verdict.sentence or "no fit"] if not self.reliable else []
-        if verdict.kind in ("missing", "not in catalogue"):
-            what = verdict.effect or "something outside the catalogue"
-            said.append(f"The run says that {what} is missing; this is the model without it.")
-        said += filter(None, [doubtful(self.result.physical)])
+        said += filter(None, [missing_words(verdict), doubtful(self.result.physical)])
         return (*said, *(f"{line}." for line in self.result.fit.remarks))
 
 

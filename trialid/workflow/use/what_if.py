@@ -16,6 +16,9 @@ from trialid.names.wording import shown_unit
 from trialid.ship.model import ShipModel
 from trialid.workflow.use.finished_model import FinishedModel
 
+ROLL: Final = ("GM", "I_xx")
+"""Righting moment and inertia, of which a ship that rolls tells the ratio."""
+
 SPEED: Final = "speed"
 """What the approach speed [m/s] is called among changes."""
 
@@ -118,8 +121,24 @@ def change_words(model: FinishedModel, asked: WhatIf) -> tuple[str, ...]:
     said = [_of_effect(model, name) for name in asked.without]
     said += [_of_value(model, name, value) for name, value in asked.values.items()]
     if any(name not in (SPEED, "u") and name not in SIGNALS for name in asked.values):
-        said.append("Nothing else changes with it, as it may in a ship: she is not fitted so.")
+        said.append("All else is held as fitted, though in a ship it may change with that.")
+        said += _of_roll(model.fit.model, asked.values)
     return tuple(said)
+
+
+def _of_roll(model: ShipModel, values: Mapping[str, float]) -> list[str]:
+    """That one of two is changed of which a roll tells the ratio alone."""
+    changed = {*ROLL} & {*values}
+    if "phi" not in model.states or len(changed) != 1 or not {*ROLL} <= {*model.parameters}:
+        return []
+    [name] = changed
+    [held] = {*ROLL} - changed
+    ratio = values[name] / _shown(model, name)[1] / model.value(name)
+    times = ratio if name == "GM" else 1.0 / ratio
+    return [
+        f"{held} is held: of {' and '.join(ROLL)} a roll tells the ratio alone, which is now "
+        f"{times:.3g} times the record's."
+    ]
 
 
 def _of_effect(model: FinishedModel, name: str) -> str:
