@@ -29,6 +29,7 @@ from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.rate_unit import size_unit
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.roll_decay import decays_among
+from trialid.workflow.first_pipeline.rudder_unit import with_rudder_units
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track
@@ -114,7 +115,8 @@ def starter(
     L = own.particulars["L"]
     drives = frozenset(one.drive for one in own.actuators if one.drive)
     if not decays:
-        trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0, drives)
+        trials = with_rudder_units([size_unit(one, L, u0) for one in trials], L, u0)
+        trials = with_orders(trials, L / u0, drives)
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
