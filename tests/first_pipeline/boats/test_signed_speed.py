@@ -62,6 +62,17 @@ def test_ahead_alone_nothing_is_read_or_said(tmp_path: Path) -> None:
     assert 'psi                      = { channel = "heading_deg", unit = "deg" }' in text
 
 
+@pytest.mark.parametrize("velocity", ["", "/gps:twist.linear"])
+def test_a_boat_that_is_carried_across_has_no_speed_ahead(tmp_path: Path, velocity: str) -> None:
+    """Her speed over ground is that of the water: it was fitted as hers, and a dead band named."""
+    made = receiver(tmp_path / "held.csv", 0.0, velocity, (-2.5, 2.5))
+    first = begun(tmp_path, made)
+    [asked] = first.to_fill
+    assert "course and heading are so far apart" in asked
+    [line] = [x for x in first.files[tmp_path / "p.toml"].splitlines() if x.startswith("u ")]
+    assert 'unit = "?"' in line
+
+
 def test_a_signed_speed_keeps_its_sign(tmp_path: Path) -> None:
     made = receiver(tmp_path / "back.csv", 0.9)
     begun(tmp_path, made)

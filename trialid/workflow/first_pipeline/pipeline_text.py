@@ -13,7 +13,7 @@ from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
 from trialid.toml_text import array, quote
 from trialid.workflow.first_pipeline.boat_model import boat_model
-from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+from trialid.workflow.first_pipeline.choice import OPEN, RUDDERS, Chosen, Signal
 from trialid.workflow.first_pipeline.free_lines import free_lines
 from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
 from trialid.workflow.first_pipeline.roll_decay import decay_model, is_of_decays
@@ -173,7 +173,7 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
     return {
         "channel": one.name,
         "as": one.angle,
-        "unit": None if one.angle else unit,
+        "unit": None if one.angle and unit != OPEN else unit,
         "positive": positive,
     }
 

@@ -4,35 +4,53 @@ import dataclasses
 
 import numpy as np
 
-from trialid.alignment.track.astern import astern
-from trialid.arrays import Vector
+from trialid.alignment.track.astern import astern, moves_along
+from trialid.arrays import Mask, Vector
 from trialid.inspection.channel_names import is_course
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.sketch import Sketch, on_one_clock
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import Chosen, Signal
+from trialid.workflow.first_pipeline.choice import OPEN, Chosen, Signal
 
 TOLD = "CAREFUL: more than 90 deg off the heading"
+ACROSS = (
+    "FILL IN the unit after settling this: course and heading are so far apart that she is carried "
+    "across as much as she goes ahead, or one of them is wrong: a speed over ground is not hers "
+    "there. Log sog cos(cog - heading), or take windows in which she goes ahead"
+)
 
 
 def with_course(trial: Chosen) -> Chosen:
     """The trial with the course over ground where the boat goes astern; the run signs u by it.
 
-    Without a heading in it nothing tells, and nothing is read; nor of a speed through the water.
+    Without a heading in it nothing tells, and nothing is read; nor of a speed through the water. Of
+    a boat that holds her place against wind and current the speed over ground is no speed ahead: in
+    a model of one a dead band of 38 % of full had a name that she did not have.
     """
     by_name = {one.quantity: one for one in trial.signals}
     speed, heading = by_name.get("u"), by_name.get("psi")
     if speed is None or heading is None or _logs_water(speed.source):
         return trial
     course = _course(trial, speed.source, heading)
-    seconds = _astern(speed, course, heading) if course else 0.0
-    if course is None or not seconds:
+    common = _on_one_clock(speed, course, heading) if course else None
+    if course is None or common is None:
         return trial
+    period, motion = common
+    if not moves_along(*motion):
+        asked = dataclasses.replace(speed, unit=OPEN, why=f"{speed.why}; {ACROSS}")
+        return _with(trial, speed, asked)
+    if (back := astern(*motion)) is None:
+        return trial
+    seconds = float(back.sum()) * period
     why = f"{TOLD} in {seconds:.3g} s: there the run reads u, which has no sign, as astern"
     told = dataclasses.replace(course, why=f"{course.why}; {why}")
     signed = dataclasses.replace(speed, why=f"{speed.why}; negative where cog says astern")
-    signals = (signed if one is speed else one for one in trial.signals)
-    return dataclasses.replace(trial, signals=(*signals, told))
+    return _with(trial, speed, signed, told)
+
+
+def _with(trial: Chosen, speed: Signal, read: Signal, *more: Signal) -> Chosen:
+    signals = (read if one is speed else one for one in trial.signals)
+    return dataclasses.replace(trial, signals=(*signals, *more))
 
 
 def _course(trial: Chosen, speed: ChannelInspection, heading: Signal) -> Signal | None:
@@ -50,16 +68,17 @@ def _course(trial: Chosen, speed: ChannelInspection, heading: Signal) -> Signal 
     return None
 
 
-def _astern(speed: Signal, course: Signal, heading: Signal) -> float:
-    """How long she goes astern [s]."""
-    sketches = [one.source.sketch for one in (speed, course, heading)]
-    common = on_one_clock(*sketches)
+Motion = tuple[Vector, Vector, Vector, Mask]
+"""Speed, course and heading [rad], and where all are known."""
+
+
+def _on_one_clock(speed: Signal, course: Signal, heading: Signal) -> tuple[float, Motion] | None:
+    """The period [s] and the motion; None where they have too little in common."""
+    common = on_one_clock(*(one.source.sketch for one in (speed, course, heading)))
     if common is None:
-        return 0.0
-    period, (u, *angles), whole = common
-    chi, psi = (_angle(y, one) for y, one in zip(angles, (course, heading), strict=True))
-    back = astern(u, chi, psi, whole)
-    return 0.0 if back is None else float(back.sum()) * period
+        return None
+    period, (u, chi, psi), whole = common
+    return period, (u, _angle(chi, course), _angle(psi, heading), whole)
 
 
 def _angle(y: Vector, signal: Signal) -> Vector:
