@@ -26,10 +26,8 @@ from trialid.workflow.first_pipeline.boat_choice import (
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
 from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
-from trialid.workflow.first_pipeline.rate_unit import size_unit
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.roll_decay import decays_among
-from trialid.workflow.first_pipeline.rudder_unit import with_rudder_units
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track
@@ -39,6 +37,7 @@ from trialid.workflow.first_pipeline.twin_rudders import (
     twin_actuators,
     with_twins,
 )
+from trialid.workflow.first_pipeline.unit_by_turning import size_unit, with_rudder_units
 
 __all__ = ["Starter", "begun_ship", "starter"]
 

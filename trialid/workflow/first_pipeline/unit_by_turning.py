@@ -1,4 +1,4 @@
-"""The unit of a rudder whose numbers are small and that no log states."""
+"""Units of a yaw rate and of a small rudder that no log states, by how fast a ship can turn."""
 
 import dataclasses
 from collections.abc import Mapping, Sequence
@@ -6,14 +6,56 @@ from typing import Final
 
 import numpy as np
 
+from trialid.inspection.name_words import words
+from trialid.inspection.relations import RATES
 from trialid.names import units
-from trialid.workflow.first_pipeline.choice import AS_RADIANS, BY_SIZE, Chosen, Signal
+from trialid.workflow.first_pipeline.choice import (
+    AS_RADIANS,
+    ASK_UNIT,
+    BY_SIZE,
+    OPEN,
+    Chosen,
+    Signal,
+)
+
+TURNING: Final = (0.05, 2.5)
+"""Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
+further apart than this range is wide."""
 
 TURNED: Final = 0.1
 """Rate of turn, in her own lengths and speed, over the rudder in radians: ships, boats and models
 have 0.3 to 3 once they turn, in a fast zig-zag less. Degrees taken for radians give 0.005 to 0.05.
 At half of it a ferry that is hardly steered is read in degrees still (0.02), as a cargo ship in a
 sea is (0.04), and at twice; a fast zig-zag (0.2 and more) at twice no longer in radians."""
+
+
+def size_unit(trial: Chosen, length: float, speed: float) -> Chosen:
+    """The same with the unit of a yaw rate by its size, where nothing else tells it.
+
+    A ship in a manoeuvre turns with r L / U between 0.05 and 2.5, her own length [m] and speed
+    [m/s]: faster she would spin about herself, slower is no manoeuvre. Units lie further apart.
+    """
+    signals = tuple(_sized(one, length / speed) for one in trial.signals)
+    return dataclasses.replace(trial, signals=signals)
+
+
+def _sized(signal: Signal, seconds: float) -> Signal:
+    if signal.quantity != "r" or signal.unit != OPEN or _turns(signal):
+        return signal
+    largest = float(np.quantile(np.abs(signal.source.sketch.y), 0.99))
+    sizes = {u: largest * units.factor(u, "rad/s") * seconds for u in RATES}
+    fitting = [u for u, size in sizes.items() if TURNING[0] < size < TURNING[1]]
+    if len(fitting) != 1:
+        return signal
+    told = ", ".join(f"{size:.2g} in {u}" for u, size in sizes.items())
+    words = f"unit by its size: r L / U would be {told}"
+    why = signal.why.replace(ASK_UNIT, words)
+    return dataclasses.replace(signal, unit=fitting[0], why=why)
+
+
+def _turns(signal: Signal) -> bool:
+    """Whether its name ends with `rps`, radians or turns a second, which no size tells apart."""
+    return "rps" in words(signal.source.name)
 
 
 def with_rudder_units(trials: Sequence[Chosen], length: float, speed: float) -> list[Chosen]:
@@ -44,7 +86,7 @@ def _told(trial: Chosen, known: Mapping[str, str], seconds: float) -> Chosen:
             signals.append(one)
         elif one.source.name in known:
             signals.append(_in_degrees(one, f"deg as in {known[one.source.name]}"))
-        elif rate is not None and (size := _turned(one, rate) * seconds) < TURNED:
+        elif rate is not None and (size := _answer(one, rate) * seconds) < TURNED:
             words = f"deg, for of radians she would turn by r L / U = {size:.2g} a radian only"
             signals.append(_in_degrees(one, words))
         else:
@@ -52,7 +94,7 @@ def _told(trial: Chosen, known: Mapping[str, str], seconds: float) -> Chosen:
     return dataclasses.replace(trial, signals=tuple(signals))
 
 
-def _turned(rudder: Signal, rate: Signal) -> float:
+def _answer(rudder: Signal, rate: Signal) -> float:
     """How fast she turns [rad/s] by the rudder as logged, both by what is root mean square."""
     r = rate.source.sketch.y * units.factor(rate.unit or "rad/s", "rad/s")
     most = float(np.sqrt(np.mean(rudder.source.sketch.y**2)))
