@@ -53,6 +53,14 @@ def test_an_angle_that_counts_to_port_is_read_so(tmp_path: Path) -> None:
     assert text.count('unit = "deg", positive = "port"') == 2
 
 
+def test_angles_that_are_called_so_are_no_rudders(tmp_path: Path) -> None:
+    """`azimuth angle` alone is what steers a boat; with one to each side she has two pods."""
+    names = ("azimuth_angle_port [deg]", "azimuth_angle_stbd [deg]")
+    text = begun(tmp_path, pods(tmp_path / "a.csv", names)).files[tmp_path / "p.toml"]
+    assert 'effects = ["azimuths", ' in text
+    assert "rudder" not in text.split("[model]")[0]
+
+
 def test_one_angle_alone_turns_no_pods(tmp_path: Path) -> None:
     text = begun(tmp_path, pods(tmp_path / "a.csv", NAMES[:1])).files[tmp_path / "p.toml"]
     assert 'effects = ["thrusters", ' in text

@@ -31,7 +31,7 @@ from trialid.workflow.first_pipeline.choice import (
 )
 from trialid.workflow.first_pipeline.further_signals import with_further, with_heading
 from trialid.workflow.first_pipeline.signed_speed import with_course
-from trialid.workflow.first_pipeline.turned_drives import ANGLE, angle_signals
+from trialid.workflow.first_pipeline.turned_drives import ANGLE, angle_signals, angles_of
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 SHARE: Final = 1.05
@@ -81,8 +81,8 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     """
     live = {name: live_sources(survey, name) for name in SIGNALS}
     steered = any(live[name] for name in RUDDERS)
-    turns = live.get("r") or live.get("psi")
-    if steered or not turns or len(drives_of(survey)) != 2:
+    turns, drives = live.get("r") or live.get("psi"), drives_of(survey)
+    if not turns or len(drives) != 2 or (steered and not angles_of(survey, drives)):
         return with_further(choose_signals(survey, speed), live)
     return _choose_boat(survey, live, speed)
 

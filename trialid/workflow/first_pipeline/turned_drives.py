@@ -9,8 +9,9 @@ from trialid.inspection.relations import side
 from trialid.inspection.usual_units import to_si
 from trialid.workflow.first_pipeline.choice import OPEN, Signal
 
-TURNED: Final = frozenset(words("azimuth azimut azi pod asd angle"))
-"""Words of the angle that a drive is turned to, ..."""
+PODS: Final = frozenset(words("azimuth azimut azi pod asd"))
+THRUSTERS: Final = frozenset(words("thr thruster thrusters"))
+"""Words of the angle that a drive is turned to, of the second ones beside `angle`, ..."""
 NO_ANGLE: Final = frozenset(words("rudder pitch blade trim tilt wind heading roll bow"))
 """... and of angles of something else."""
 ANGLE: Final = "_angle"
@@ -29,18 +30,25 @@ def angle_signals(survey: Inspection, drives: Sequence[Signal], turn: Signal) ->
 
     A pod stands aft: where it pushes to starboard her stern goes there, and she turns to port.
     """
+    angles = angles_of(survey, [one.source for one in drives])
+    return [_signal(one, angle, turn) for one, angle in zip(drives, angles, strict=False)]
+
+
+def angles_of(
+    survey: Inspection, drives: Sequence[ChannelInspection]
+) -> tuple[ChannelInspection, ...]:
+    """The angle that each of these drives is turned to; nothing where not each has one."""
     found = [[*_angles(survey, one)] for one in drives]
-    if not all(len(ones) == 1 for ones in found):
-        return []
-    return [_signal(one, ones[0], turn) for one, ones in zip(drives, found, strict=True)]
+    return tuple(ones[0] for ones in found) if all(len(ones) == 1 for ones in found) else ()
 
 
-def _angles(survey: Inspection, drive: Signal) -> Iterator[ChannelInspection]:
-    mine = _whose(drive.source)
+def _angles(survey: Inspection, drive: ChannelInspection) -> Iterator[ChannelInspection]:
+    mine = _whose(drive)
     for one in survey.channels.values():
         told = {*words(one.name)}
-        is_angle = TURNED & told and not NO_ANGLE & told and one is not drive.source
-        if is_angle and mine and _whose(one) == mine and _is_angle(one):
+        is_of_pod = PODS & told or ("angle" in told and THRUSTERS & told)
+        of_another = NO_ANGLE & told or not mine or _whose(one) != mine
+        if is_of_pod and not of_another and one is not drive and _is_angle(one):
             yield one
 
 
@@ -51,8 +59,7 @@ def _whose(one: ChannelInspection) -> set[str]:
 
 def _is_angle(one: ChannelInspection) -> bool:
     unit = one.unit or one.unit_in_name
-    stated = unit is None or to_si(unit, "rad") is not None
-    return stated and not one.constant and one.mostly_there
+    return to_si(unit or "deg", "rad") is not None and not one.constant and one.mostly_there
 
 
 def _signal(drive: Signal, source: ChannelInspection, turn: Signal) -> Signal:
