@@ -15,6 +15,7 @@ from trialid.design.helm import vessel
 from trialid.design.steering.gains import heading_gains, rate_gains
 from trialid.design.steering.nomoto import nomoto
 from trialid.design.steering.steered_by import steered_by
+from trialid.effects.actuators import actuator_effects
 from trialid.errors import DesignError
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
@@ -105,6 +106,16 @@ def moved(**places: float) -> ShipModel:
     base = truth()
     ones = tuple(replace(a, y=places.get(a.name, a.y)) for a in base.ship.actuators)
     return replace(base, ship=replace(base.ship, actuators=ones))
+
+
+def test_a_thruster_that_may_be_late_steers_as_before() -> None:
+    """What may be missing reads order and drive: no gains were to be had of such a boat."""
+    late = actuator_effects(truth().ship, ("left", "right"))["left_late"]
+    ship = boat((truth() - "thrusters_lag" + late).with_values({"tau_left": 0.5}))
+    assert {"left", "left_order"} <= {*ship.simulator.equations.inputs}
+    found = steered_by(ship)
+    assert found.inputs == {"left": 1.0, "left_order": 1.0, "right": -1.0}
+    assert found.states == {"left": 1.0, "right": -1.0}
 
 
 def test_what_does_not_steer_so_is_refused() -> None:

@@ -8,7 +8,7 @@ import pytest
 from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 from scipy.signal import lfilter
 
-from trialid.diagnosis.search import backward
+from trialid.diagnosis.search import backward, carry_over
 from trialid.diagnosis.search.carried import Carried, as_good
 from trialid.diagnosis.search.carry_over import BLOCKS, WHOLE, LeftOut, left_out, own_errors
 from trialid.diagnosis.search.score import rank
@@ -276,3 +276,23 @@ def test_what_is_hardly_seen_must_fall_further_to_be_worth_a_name():
     assert Carried(BEFORE, after, seen=0.2).falls
     assert not Carried(BEFORE, after, seen=0.002).falls
     assert Carried(BEFORE, tuple(0.7 * x for x in BEFORE), seen=0.002).falls
+
+
+def test_what_ended_at_a_bound_in_one_fit_is_moved_in_neither(monkeypatch):
+    """A gain that one block alone teaches: at its bound before the effect, found with it."""
+    fit, residual, psi, S, parts = made(2, hidden=2.0)
+    psi[ROWS // BLOCKS :, 0] *= 0.01
+    psi[:, SHARED : SHARED + OWN] = 0.0  # its own trial's would carry it over the block's end
+    monkeypatch.setattr(carry_over, "stretches", lambda problem: parts)
+    of = {**vars(fit), "eps_rmsn": 1.0}
+    before = SimpleNamespace(**{**of, "at_bounds": {"x0": 0.0}}, residual=residual, psi=psi)
+    noise = residual - 2.0 * S[:, 0]
+    after = SimpleNamespace(**of, residual=noise, psi=psi)
+    apart = Carried.between(own_errors(before), own_errors(after))
+    carried = carry_over.carried_between(before, after)
+    assert apart.before[0] == pytest.approx(carried.before[0])
+    assert apart.after[0] > 10.0 * carried.after[0]
+    assert carried.falls
+    assert carried.better == BLOCKS
+    back = carry_over.carried_between(after, before)
+    assert back.after == pytest.approx(carried.before)

@@ -111,5 +111,5 @@ def test_two_rudders_by_their_names_or_counted_from_port(
     )
     found: Any = (starboard, port)
     survey = SimpleNamespace(sources=lambda quantity: found if quantity == "delta" else ())
-    trial: Any = SimpleNamespace(survey=survey)
+    trial: Any = SimpleNamespace(survey=survey, quantities={"delta"})
     assert sides_of(trial) == {"n_p": port, "n_s": starboard}

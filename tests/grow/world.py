@@ -46,9 +46,13 @@ def with_(effects: str, more: str) -> str:
     return "".join(sorted(effects + more))
 
 
-def own_errors(fit: Any, weights: Any = None, times: float = 1.0) -> Errors:
+def own_errors(fit: Any, times: float = 1.0) -> Errors:
     errors = tuple(times * fit.eps_rmsn**2 * ERRORS)
     return Errors(errors, errors)
+
+
+def carried_between(before: Any, after: Any, *_: Any) -> Carried:
+    return Carried.between(own_errors(before), own_errors(after))
 
 
 def candidate(name: str) -> Any:
@@ -65,7 +69,7 @@ def pairs_in(world: World, fit: Any) -> Iterator[Together]:
     for names in combinations(sorted(set("".join(world)) - set(fit.effects)), 2):
         with suppress(SimulationError):
             new = fit_in(world, with_(fit.effects, "".join(names)))
-            carried = Carried.between(own_errors(fit), own_errors(new))
+            carried = carried_between(fit, new)
             effects = tuple(candidate(name).effect for name in names)
             if stands(fit, found := Together(effects, new, carried)):
                 yield found
@@ -77,7 +81,7 @@ def found_in(world: World, fit: Any, grown: bool) -> Any:
     for name in sorted(set("".join(world)) - set(fit.effects)):
         with suppress(SimulationError):
             new = fit_in(world, with_(fit.effects, name))
-            found = Carried.between(own_errors(fit), own_errors(new))
+            found = carried_between(fit, new)
             refits.append(refitted.Refit(candidate(name), new, found))
     named = refitted.likeliest_refit(fit, refits, 0.05)
     pair = next(pairs_in(world, fit), None)
@@ -134,7 +138,7 @@ def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
         "add_to_pipeline": lambda r, n: edit("added", r, n, with_(r.effects, n)),
         "drop_from_pipeline": lambda r, n: edit("dropped", r, n, r.effects.replace(n, "")),
         "started_at": lambda *_: None, "fit_of": lambda r, *_: fit_in(world, r.effects),
-        "own_errors": own_errors, "worths": worths,
+        "carried_between": carried_between, "worths": worths,
     }  # fmt: skip
     stub_all(monkeypatch, stubs)
     return list(grow.stages(recipe(""), lambda words, share: None))

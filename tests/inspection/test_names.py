@@ -8,6 +8,9 @@ RECORDERS = {
     "harbour/@v0/s175q/pubsub/rudder_angle_deg/steering_gear:value": "delta",
     "harbour/@v0/s175q/pubsub/yaw_rate_degps/gyro:value": "r",
     "gyro_z": "r",
+    "compass": "psi",
+    "Rel wind speed": "V_aw",
+    "rel_wind_dir": "gamma_aw",
     "Fahrt durchs Wasser": "u",
     "FdW": "u",
     "Krängungswinkel": "phi",
@@ -47,6 +50,7 @@ RECORDERS = {
     "azimuth_deg": "delta",
     "gyro_z_rps": "r",
     "heading_min": None,
+    "mag/compass_x": None,
     "heading_deg_min": None,
     "rudder_deg_min": None,
 }

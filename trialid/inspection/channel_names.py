@@ -44,10 +44,12 @@ PHRASES: Final = {
     "jet rpm, impeller rpm, revolutions, rate of revolutions, shaft revolutions, "
     "propeller revolutions, revolution rate",
     "V_aw": "aws, apparent wind speed, wind speed apparent, relative wind speed, "
-    "wind speed relative, wind velocity relative, wind velo relative, relative wind velocity",
+    "wind speed relative, wind velocity relative, wind velo relative, relative wind velocity, "
+    "rel wind speed, wind speed rel",
     "gamma_aw": "awa, apparent wind angle, wind angle apparent, relative wind angle, "
     "relative wind direction, wind angle relative, wind direction relative, wind dir relative, "
-    "relative wind dir",
+    "relative wind dir, rel wind angle, rel wind dir, rel wind direction, wind angle rel, "
+    "wind dir rel",
     "h": "depth, water depth, depth below keel, depth below transducer",
 }
 """What recorders call a quantity."""
@@ -55,8 +57,9 @@ PHRASES: Final = {
 ALONE: Final = {
     "u": "u", "v": "v", "p": "p", "r": "r", "phi": "phi", "psi": "psi", "delta": "delta",
     "n": "n", "h": "h", "delta_c": "delta_order", "delta_order": "delta_order",
+    "compass": "psi",
 }  # fmt: skip
-"""Letters that mean a quantity only where they are the whole name of a column."""
+"""Words that mean a quantity only where they are the whole name of a column."""
 
 QUALIFIERS: Final = frozenset(
     (

@@ -7,8 +7,7 @@ elsewhere it is given the refit's, so that the file alone gives the fit again.
 from collections.abc import Iterator
 from dataclasses import replace
 
-from trialid.diagnosis.search.carried import Carried
-from trialid.diagnosis.search.carry_over import levels, own_errors
+from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.refit import Refit, objection
 from trialid.diagnosis.search.together import Together, stands
 from trialid.errors import TrialidError
@@ -76,9 +75,8 @@ def _ways(pipeline: Pipeline, up: Refit | Together) -> Iterator[Pipeline]:
 
 def _trouble(before: Fit, up: Refit | Together, fit: Fit, level: float) -> str:
     """What speaks against what is added as it is fitted from the file, empty where nothing does."""
-    after = own_errors(fit, levels(before))
     if isinstance(up, Together):
-        found = replace(up, fit=fit, carried=Carried.between(own_errors(before), after))
+        found = replace(up, fit=fit, carried=carried_between(before, fit))
         return "" if stands(before, found) else "the file does not give the fit again"
-    carried = Carried.between(own_errors(before), after, up.candidate.carried.seen)
+    carried = carried_between(before, fit, up.candidate.carried.seen)
     return objection(before, Refit(up.candidate, fit, carried), level)

@@ -73,3 +73,10 @@ def test_small_orders_for_a_while_are_asked_for(tmp_path: Path, first, tried: bo
     signals["thruster_port_order"] = np.where(T < 60.0, signals["thruster_port_order"], first)
     trial = Trial("a", "fit", 0.1, signals, {n: np.ones(len(T), bool) for n in signals})
     assert ("thrusters_deadband" not in out_of_reach([trial], effects)) == tried
+
+
+def test_no_motor_does_nothing_below_a_fifth_of_full(tmp_path: Path) -> None:
+    """A boat that held her place had a band of 0.38 named; bands of motors go to 0.1."""
+    begun(tmp_path, *logs(tmp_path, pushes))
+    band = actuator_effects(read_ship(tmp_path / "p_ship.toml"))["thrusters_deadband"]
+    assert band.parameters["dead_thrusters"].high == pytest.approx(0.2)

@@ -55,11 +55,49 @@ def test_a_boat_that_goes_astern_is_read_so_and_told(tmp_path: Path, velocity: s
     assert trial.signals["u"].min() < -0.3
 
 
+def test_a_heading_of_ros_is_turned_to_the_north(tmp_path: Path) -> None:
+    """It counts from the east: a current to the north was one to the west."""
+    made = receiver(tmp_path / "back.csv", 0.9, "/gps:twist.linear")
+    assert "counted from the east" in begun(tmp_path, made).files[tmp_path / "p.toml"]
+    [trial] = align_trials(pipeline_file.load(tmp_path / "p.toml"), silent)
+    t = trial.opening + trial.period * np.arange(trial.samples)
+    true = np.interp(t, T, sailed(pushes(4, astern=0.9))["psi"]) + 0.4
+    np.testing.assert_allclose(np.cos(trial.signals["psi"] - true), 1.0, atol=1e-3)
+    ahead = trial.signals["u"] > 0.3
+    assert np.cos(trial.signals["cog"] - true)[ahead].min() > 0.99
+
+
+def test_a_velocity_in_her_own_axes_is_her_speed(tmp_path: Path) -> None:
+    """Odometry has it so: its angle is no course, and nothing is asked."""
+    p = pushes(4)
+    seen = sailed(p)
+    half = (0.5 * np.pi - seen["psi"]) / 2.0
+    noise = 0.02 * np.random.default_rng(1).standard_normal(len(T))
+    columns = {"motor_left_pct": 100.0 * p[:, 0], "motor_right_pct": 100.0 * p[:, 1]}
+    columns |= {"yaw_rate_dps": np.rad2deg(seen["r"])}
+    columns |= {f"/odom:orientation.{a}": np.zeros(len(T)) for a in "xy"}
+    columns |= {"/odom:orientation.z": np.sin(half), "/odom:orientation.w": np.cos(half)}
+    columns |= {"/odom:twist.linear.x [m/s]": seen["u"], "/odom:twist.linear.y [m/s]": noise}
+    first = begun(tmp_path, table(tmp_path / "odom.csv", columns))
+    assert not first.to_fill
+
+
 def test_ahead_alone_nothing_is_read_or_said(tmp_path: Path) -> None:
     made = receiver(tmp_path / "ahead.csv", 0.0)
     text = begun(tmp_path, made).files[tmp_path / "p.toml"]
     assert "cog" not in text
     assert 'psi                      = { channel = "heading_deg", unit = "deg" }' in text
+
+
+@pytest.mark.parametrize("velocity", ["", "/gps:twist.linear"])
+def test_a_boat_that_is_carried_across_has_no_speed_ahead(tmp_path: Path, velocity: str) -> None:
+    """Her speed over ground is that of the water: it was fitted as hers, and a dead band named."""
+    made = receiver(tmp_path / "held.csv", 0.0, velocity, (-2.5, 2.5))
+    first = begun(tmp_path, made)
+    [asked] = first.to_fill
+    assert "course and heading are so far apart" in asked
+    [line] = [x for x in first.files[tmp_path / "p.toml"].splitlines() if x.startswith("u ")]
+    assert 'unit = "?"' in line
 
 
 def test_a_signed_speed_keeps_its_sign(tmp_path: Path) -> None:

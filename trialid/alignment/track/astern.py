@@ -24,12 +24,21 @@ def astern(speed: Vector, course: Vector, heading: Vector, known: Mask) -> Mask 
     None too where the course does not follow the heading, or mostly against it: then the heading
     may be off by half a turn.
     """
-    along = np.cos(course - heading)
-    moving = known & (speed > MOVING * np.median(speed[known])) if known.any() else known
-    if not moving.any() or float(np.mean(np.abs(along[moving]))) < ALONG:
+    if not moves_along(speed, course, heading, known):
         return None
-    back = along < 0.0
-    return back if LEAST <= float(np.mean(back[moving])) < 0.5 else None
+    back = np.cos(course - heading) < 0.0
+    return back if LEAST <= float(np.mean(back[_moving(speed, known)])) < 0.5 else None
+
+
+def moves_along(speed: Vector, course: Vector, heading: Vector, known: Mask) -> bool:
+    """Whether she moves ahead or astern of this heading [rad], and not across it, in the mean."""
+    moving = _moving(speed, known)
+    along = np.abs(np.cos(course - heading))[moving]
+    return bool(moving.any()) and float(np.mean(along)) >= ALONG
+
+
+def _moving(speed: Vector, known: Mask) -> Mask:
+    return known & (speed > MOVING * np.median(speed[known])) if known.any() else known
 
 
 def with_sign(trial: Trial) -> Trial:

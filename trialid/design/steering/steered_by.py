@@ -5,7 +5,7 @@ from that of the starboard one, both about the command that holds the speed; so 
 starboard by a positive one, as by a rudder. A skid-steered vehicle of ArduPilot Rover mixes alike.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -48,15 +48,10 @@ def steered_by(ship: Vessel) -> SteeredBy:
     rudder = next((d for d in RUDDERS if d in eq.inputs), None)
     if rudder is not None:
         return SteeredBy(name=rudder, inputs={rudder: 1.0})
-    driven = {
-        n: a
-        for a in ship.model.ship.actuators
-        if a.kind in PUSHING
-        for n in (a.drive, f"{a.drive}_order")
-        if n in eq.inputs
-    }
-    pair = sorted(driven, key=lambda n: driven[n].y)
-    ones = tuple(driven[n] for n in pair)
+    ones = tuple(
+        sorted((a for a in ship.model.ship.actuators if _told(a, eq.inputs)), key=lambda a: a.y)
+    )
+    names = [n for a in ones for n in _told(a, eq.inputs)]
     if not _opposite(ones):
         raise DesignError(
             "K, T and gains are those of a rudder angle, or of two thrusters alike, one to port "
@@ -64,15 +59,22 @@ def steered_by(ship: Vessel) -> SteeredBy:
         )
     if "u" not in eq.states:
         raise DesignError(
-            f"{' and '.join(pair)} steer about the commands that hold the speed, which this model "
+            f"{' and '.join(names)} steer about the commands that hold the speed, which this model "
             "is given and does not simulate: put u among its states"
         )
+    signs = dict(zip(ones, (1.0, -1.0), strict=True))
     return SteeredBy(
         name=DIFFERENCE,
-        inputs=dict(zip(pair, (1.0, -1.0), strict=True)),
-        states=dict(zip((a.name for a in ones), (1.0, -1.0), strict=True)),
+        inputs={n: sign for a, sign in signs.items() for n in _told(a, eq.inputs)},
+        states={a.name: sign for a, sign in signs.items()},
         thrusters=ones,
     )
+
+
+def _told(one: Actuator, inputs: Sequence[str]) -> list[str]:
+    """Inputs that say what an actuator pushes with; one that may be late reads its order, too."""
+    both = (one.drive, f"{one.drive}_order") if one.kind in PUSHING else ()
+    return [n for n in both if n in inputs]
 
 
 def _opposite(ones: tuple[Actuator, ...]) -> bool:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trialid.diagnosis.search.carried import SHAPE, Carried, Errors
-from trialid.diagnosis.search.carry_over import left_out, levels, own_errors
+from trialid.diagnosis.search.carry_over import carried_between, left_out, levels, own_errors
 from trialid.diagnosis.search.falls import worse_held_out
 from trialid.diagnosis.verdict import NAMED
 from trialid.errors import TrialidError
@@ -67,7 +67,7 @@ def worths(
     known
         What was found out about this fit already: no model is fitted twice.
     """
-    after, weights, found = own_errors(fit), levels(fit), list[Worth]()
+    found = list[Worth]()
     done = {w.together: w for w in known}
     for effect in effects:
         near = (kin or {}).get(effect.name, frozenset())
@@ -75,8 +75,7 @@ def worths(
         together = tuple(e.name for e in out)
         if together not in done:
             less = model_without(fit, trials, out)
-            before = own_errors(less, weights) if less is not None else _linearly(fit, out)
-            done[together] = Worth(effect.name, together, less, Carried.between(before, after))
+            done[together] = Worth(effect.name, together, less, _carried(less, fit, out))
         found.append(replace(done[together], effect=effect.name))
     return tuple(sorted(found, key=lambda w: -w.costs))
 
@@ -94,6 +93,13 @@ def model_without(fit: Fit, trials: Sequence[Trial], effects: Sequence[Effect]) 
     except TrialidError:  # the rest cannot do without it
         return None
     return found if found.converged else None
+
+
+def _carried(less: Fit | None, fit: Fit, out: Sequence[Effect]) -> Carried:
+    """What the effects that are out do to the error: by the fit without them, or to first order."""
+    if less is not None:
+        return carried_between(less, fit, weights=levels(fit))
+    return Carried.between(_linearly(fit, out), own_errors(fit))
 
 
 def _linearly(fit: Fit, effects: Sequence[Effect]) -> Errors:

@@ -9,7 +9,7 @@ with it: Stone (1974), Cross-validatory choice and assessment of statistical pre
 Soc B 36. All of it is linear algebra on columns that exist, no further simulation.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -111,6 +111,7 @@ def left_out(
     S: Vector,
     parts: Sequence[Stretch],
     weights: Vector | None = None,
+    held: Collection[str] = (),
 ) -> LeftOut:
     """Blocks of time left out in turn, each trial's own nuisances taken out over the whole of it.
 
@@ -122,9 +123,12 @@ def left_out(
         Normed stacked rows, as `linearise` gives them at the fit; (M,), (M, n_theta), (M, n_S).
     weights
         What a squared error of each output counts by its own; `levels` of the fit unless given.
+    held
+        Names of what stays where it is, beside what lies at a bound.
     """
     weights = levels(fit) if weights is None else weights
-    free = [i for i, x in enumerate(fit.problem.unknowns) if x.name not in fit.at_bounds]
+    stays = {*fit.at_bounds, *held}
+    free = [i for i, x in enumerate(fit.problem.unknowns) if x.name not in stays]
     shared = [i for i in free if fit.problem.unknowns[i].trial is None]
     priors, grams, owns = prior_rows(fit), [], []
     pieces = _pieces(len({p.trial for p in parts}))
@@ -158,10 +162,31 @@ def prior_rows(fit: Fit) -> Vector:
     return rows
 
 
-def own_errors(fit: Fit, weights: Vector | None = None) -> Errors:
+def own_errors(fit: Fit, weights: Vector | None = None, held: Collection[str] = ()) -> Errors:
     """Left-out squared errors of a fit about its own optimum; `weights` of another's `levels`."""
-    none = np.zeros((len(fit.residual), 0))
-    return left_out(fit, fit.residual, fit.psi, none, stretches(fit.problem), weights).errors()
+    none, parts = np.zeros((len(fit.residual), 0)), stretches(fit.problem)
+    return left_out(fit, fit.residual, fit.psi, none, parts, weights, held=held).errors()
+
+
+def carried_between(
+    before: Fit, after: Fit, seen: float = 1.0, weights: Vector | None = None
+) -> Carried:
+    """What lies between two fits, each about its own optimum.
+
+    What either has at its bound is moved in neither: moved in one alone, all that a single block
+    teaches of it would count against that one. Of a boat in a current that goes astern in one of
+    six blocks the gain astern ended at zero, with the current in the model it did not: the error
+    fell from 48 to 20 %, and of that it was said that it hardly falls.
+
+    Parameters
+    ----------
+    weights
+        What a squared error of each output counts by its own; `levels` of `before` unless given.
+    """
+    weights = levels(before) if weights is None else weights
+    held = {*before.at_bounds, *after.at_bounds}
+    old, new = (own_errors(fit, weights, held) for fit in (before, after))
+    return Carried.between(old, new, seen)
 
 
 def _pieces(trials: int) -> int:

@@ -11,8 +11,8 @@ from typing import Final
 import numpy as np
 
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
-from trialid.diagnosis.search.carried import Carried, as_good
-from trialid.diagnosis.search.carry_over import levels, own_errors
+from trialid.diagnosis.search.carried import as_good
+from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
@@ -158,7 +158,7 @@ def _fitted(fit: Fit, effect: Effect, progress: Progress) -> Refit | None:
         return None
     if not effect.is_whole and _is_a_gain(fitted, effect):
         return None
-    carried = Carried.between(own_errors(fit.examined), own_errors(fitted, levels(fit.examined)))
+    carried = carried_between(fit.examined, fitted)
     candidate = Candidate(
         effect=effect,
         expected=start,

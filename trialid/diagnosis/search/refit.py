@@ -29,7 +29,7 @@ from trialid.diagnosis.search.carried import (
     does_as_well,
     is_far,
 )
-from trialid.diagnosis.search.carry_over import levels, own_errors
+from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.falls import Refitted, fall, fall_of_all, own_fall, worse_held_out
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
@@ -93,15 +93,14 @@ def refit(fit: Fit, candidates: Sequence[Candidate], progress: Progress) -> list
     if not candidates:
         return []
     fit = with_means(fit)
-    before, weights = own_errors(fit.examined), levels(fit.examined)
     for candidate in candidates:
         progress(f"trying {candidate.effect.name}")
         try:
             found = _fitted(fit.examined, candidate)
         except TrialidError:  # it cannot be fitted on this record: it is not the missing one
             continue
-        after = Carried.between(before, own_errors(found, weights), candidate.carried.seen)
-        done.append(Refit(candidate, on_every_sample(fit, found), after))
+        carried = carried_between(fit.examined, found, candidate.carried.seen)
+        done.append(Refit(candidate, on_every_sample(fit, found), carried))
     return done
 
 

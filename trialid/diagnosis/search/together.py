@@ -17,7 +17,7 @@ from trialid.diagnosis.found_values import her_own
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
-from trialid.diagnosis.search.carry_over import LeftOut, left_out, levels, own_errors
+from trialid.diagnosis.search.carry_over import LeftOut, carried_between, left_out
 from trialid.diagnosis.search.falls import fall, fall_of_check
 from trialid.diagnosis.search.refit import begun_at, outputs_beside, settings_with
 from trialid.errors import TrialidError
@@ -62,7 +62,6 @@ def two_at_once(
     """
     fit = with_means(fit)
     pairs = _worth_a_fit(augment(fit, catalogue))
-    before, weights = own_errors(fit.examined), levels(fit.examined)
     done = list[Together]()
     for pair in _unlike(pairs, most):
         effects = tuple(trace.effect for trace in pair)
@@ -71,7 +70,7 @@ def two_at_once(
             found = _fitted(fit.examined, effects)
         except TrialidError:  # these two cannot be fitted on this record
             continue
-        carried = Carried.between(before, own_errors(found, weights))
+        carried = carried_between(fit.examined, found)
         done.append(Together(effects, on_every_sample(fit, found), carried))
     able = [one for one in done if stands(fit, one)]
     best = min(able, key=lambda one: one.cost, default=None)

@@ -24,6 +24,9 @@ drive that gave out at 0.77 of full."""
 M22 = "Miyauchi et al. (2022), J. Mar. Sci. Technol. 27: Y and N lose a share of their own with Fr"
 DEAD = 0.1
 """Share of full that dead bands of motors go to: with no order below it a band is another gain."""
+WIDEST = 2.0 * DEAD
+"""Share of full that a fitted band may come to: at half of it bands of real motors lie at its end,
+at twice it a boat that only held her place had one of 0.38 named, which she had not."""
 EXACT = 12
 """Digits of a cosine: that of 90 deg is zero."""
 
@@ -125,7 +128,7 @@ def _deadband(ship: Ship, kind: str, ones: Sequence[Actuator]) -> Effect:
         equation=f"n = n - clip(n, dead_{kind}): small orders do nothing, large ones act less",
         source="speed controllers of small motors: 2 to 10 % of full",
         signals=[one.name for one in ones],
-        parameters={f"dead_{kind}": Parameter(0.05 * size, unit, low=0.0, high=0.5 * size)},
+        parameters={f"dead_{kind}": Parameter(0.05 * size, unit, low=0.0, high=WIDEST * size)},
         within={one.name: DEAD for one in ones},
     )
 

@@ -15,7 +15,7 @@ from trialid.workflow.first_pipeline.axes_of_earth import (
     with_velocities_beside,
     without_axes_of_earth,
 )
-from trialid.workflow.first_pipeline.boat_choice import (
+from trialid.workflow.first_pipeline.boats.boat_choice import (
     PORT,
     actuator_lines,
     boat_actuators,
@@ -26,7 +26,6 @@ from trialid.workflow.first_pipeline.boat_choice import (
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
 from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
-from trialid.workflow.first_pipeline.rate_unit import size_unit
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_revolutions
 from trialid.workflow.first_pipeline.roll_decay import decays_among
@@ -39,6 +38,7 @@ from trialid.workflow.first_pipeline.twin_rudders import (
     twin_actuators,
     with_twins,
 )
+from trialid.workflow.first_pipeline.unit_by_turning import size_unit, with_rudder_units
 
 __all__ = ["Starter", "begun_ship", "starter"]
 
@@ -123,7 +123,8 @@ def starter(
     L = own.particulars["L"]
     drives = frozenset(one.drive for one in own.actuators if one.drive)
     if not decays:
-        trials = with_orders([size_unit(one, L, u0) for one in trials], L / u0, drives)
+        trials = with_rudder_units([size_unit(one, L, u0) for one in trials], L, u0)
+        trials = with_orders(trials, L / u0, drives)
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))

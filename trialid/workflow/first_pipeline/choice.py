@@ -26,7 +26,13 @@ OPEN: Final = "?"
 RUDDERS: Final = ("delta", "delta_order")
 SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
-ASK_UNIT: Final = "FILL IN the unit, the log states none"
+ASK_UNIT, BY_SIZE = "FILL IN the unit, the log states none", "no unit is stated, but up to"
+AS_RADIANS: Final = (
+    "CAREFUL: no unit is stated: so small a rudder is read in radians; a share of full, with unit "
+    '= "deg" and gain = the degrees at full, looks the same'
+)
+OF_FULL: Final = "share of the full deflection"  # as a format says it
+ASK_FULL: Final = 'FILL IN unit = "deg" and gain = the degrees at full, of which it is a share'
 ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
 MEASURED: Final = "side measured"
 CONVENTION: Final = "CAREFUL: side by the format's convention, the motion does not confirm it"
@@ -35,9 +41,9 @@ GROUND: Final = "over ground"
 
 @dataclass(frozen=True)
 class Signal:
-    """One line of `[trial.signals]`, and its comment; a value may be `OPEN`.
+    """One line of `[trial.signals]` and its comment; a value may be `OPEN`.
 
-    `over_ground` is a speed with drift and current in it.
+    A speed `over_ground` has drift and current in it.
     """
 
     quantity: str
@@ -267,7 +273,7 @@ def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
 
 def _some_speed(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
-        unit = _stated(one) or "m/s"  # as above
+        unit = _stated(one) or "m/s"
         if not one.constant and (of_either(one) or channel_names.of_some_speed(one.name, unit)):
             yield one
 
@@ -281,15 +287,12 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
     if source.unit_in_name is not None:
         return source.unit_in_name, "; unit by its name"
     largest = max(abs(source.low), abs(source.high))
-    if quantity in RUDDERS:
-        return _unit_of_angle(largest, "deg" if largest > 1.6 else "rad")
-    if quantity in ("psi", "phi") and largest > 6.5:
-        return _unit_of_angle(largest, "deg")
+    if quantity in RUDDERS and largest <= 1.6:
+        share = OF_FULL in source.description
+        return (OPEN, f"; {ASK_FULL}") if share else ("rad", f"; {AS_RADIANS}")
+    if quantity in RUDDERS or (quantity in ("psi", "phi") and largest > 6.5):
+        return "deg", f"; {BY_SIZE} {largest:.3g} can only be deg"
     return OPEN, f"; {ASK_UNIT}"
-
-
-def _unit_of_angle(largest: float, unit: str) -> tuple[str, str]:
-    return unit, f"; no unit is stated, but up to {largest:.3g} can only be {unit}"
 
 
 def shared_signals(trials: Sequence[Chosen]) -> frozenset[str]:

@@ -23,6 +23,12 @@ IN_SPEED: Final = "with a speed over ground the run seeks the current in it"
 BESIDE_RATE: Final = "tells the offset of the rate; with it the run seeks a steady wind, too"
 """What the heading is read for, beside a speed over ground and beside another."""
 
+COUNTED: Final = (
+    "; CAREFUL: counted from the east, as ROS has it: where the frame's x axis is another, north "
+    "and east of wind and current are not the earth's"
+)
+"""Of a quaternion."""
+
 WIND: Final[Mapping[str, str]] = {
     "V_aw": "the run seeks what the wind does",
     "gamma_aw": "CAREFUL: where the wind comes from, 0 from ahead, positive from starboard",
@@ -64,7 +70,8 @@ def with_heading(trial: Chosen, live: Live) -> Chosen:
     if heading.open or abs(found) <= SURE:
         return trial
     if (found < 0.0) != (rate.positive == "port"):
-        heading = dataclasses.replace(heading, positive="port")
+        why = f"{heading.why}{COUNTED if heading.source.angle else ''}"
+        heading = dataclasses.replace(heading, positive="port", why=why)
     return dataclasses.replace(trial, signals=(*trial.signals, heading))
 
 

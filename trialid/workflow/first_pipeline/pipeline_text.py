@@ -13,12 +13,13 @@ from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
 from trialid.toml_text import array, quote
-from trialid.workflow.first_pipeline.boat_model import boat_model
-from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+from trialid.workflow.first_pipeline.boats.boat_model import boat_model
+from trialid.workflow.first_pipeline.choice import OPEN, RUDDERS, Chosen, Signal
 from trialid.workflow.first_pipeline.free_lines import free_lines
 from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
 from trialid.workflow.first_pipeline.roll_decay import decay_model, is_of_decays
 from trialid.workflow.first_pipeline.sample_period import align_lines
+from trialid.workflow.first_pipeline.signed_speed import FROM_EAST, from_east
 
 HEAD: Final = """\
 # Begun by `trialid inspect --init` from what the log{s} hold{not_s}. Read every comment, then
@@ -161,11 +162,12 @@ def _source(signal: Signal, one: ChannelInspection) -> str:
     return _written(_keys(signal, one))
 
 
-def _written(keys: Mapping[str, str | None]) -> str:
-    return ", ".join(f"{key} = {quote(value)}" for key, value in keys.items() if value)
+def _written(keys: Mapping[str, str | float | None]) -> str:
+    told = ((k, x if isinstance(x, float) else quote(x)) for k, x in keys.items() if x)
+    return ", ".join(f"{key} = {value}" for key, value in told)
 
 
-def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
+def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | float | None]:
     """The keys of one signal; of another source than the chosen one, its own unit."""
     own = one is signal.source
     unit = signal.unit if own else one.unit or one.unit_in_name or signal.unit
@@ -175,8 +177,9 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | None]:
     return {
         "channel": one.name,
         "as": one.angle,
-        "unit": None if one.angle else unit,
+        "unit": None if one.angle and unit != OPEN else unit,
         "positive": positive,
+        "offset": FROM_EAST if from_east(one, positive) else None,
     }
 
 

@@ -1,71 +1,110 @@
 """A speed over ground has no sign: the course beside it tells where a boat goes astern."""
 
 import dataclasses
+from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
-from trialid.alignment.track.astern import astern
-from trialid.arrays import Vector
+from trialid.alignment.track.astern import ALONG, astern, moves_along
+from trialid.arrays import Mask, Vector
 from trialid.inspection.channel_names import is_course
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.sketch import Sketch, on_one_clock
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import Chosen, Signal
+from trialid.workflow.first_pipeline.choice import OPEN, Chosen, Signal
 
 TOLD = "CAREFUL: more than 90 deg off the heading"
+ACROSS = (
+    "FILL IN the unit after settling this: course and heading are so far apart that she is carried "
+    "across as much as she goes ahead, or one of them is wrong: a speed over ground is not hers "
+    "there. Log sog cos(cog - heading), or take windows in which she goes ahead"
+)
+
+FROM_EAST: Final = -1.5708
+"""[rad] What turns an angle that counts from the east to port into one from the north."""
+
+
+def from_east(source: ChannelInspection, positive: str | None) -> bool:
+    """Whether an angle is one of the axes of ROS, x to the east and y to the north (REP-103)."""
+    return source.angle in ("yaw", "course") and positive == "port"
 
 
 def with_course(trial: Chosen) -> Chosen:
     """The trial with the course over ground where the boat goes astern; the run signs u by it.
 
-    Without a heading in it nothing tells, and nothing is read; nor of a speed through the water.
+    Without a heading in it nothing tells, and nothing is read; nor of a speed through the water. Of
+    a boat that holds her place against wind and current the speed over ground is no speed ahead: in
+    a model of one a dead band of 38 % of full had a name that she did not have.
     """
     by_name = {one.quantity: one for one in trial.signals}
     speed, heading = by_name.get("u"), by_name.get("psi")
     if speed is None or heading is None or _logs_water(speed.source):
         return trial
-    course = _course(trial, speed.source, heading)
-    seconds = _astern(speed, course, heading) if course else 0.0
-    if course is None or not seconds:
+    courses = [*_courses(trial, speed.source)]
+    read = [(c, *m) for c in courses if (m := _on_one_clock(speed, c, heading)) is not None]
+    along = next((one for one in read if moves_along(*one[2])), None)
+    if not read or (along is None and _of_her_own_axes(speed.source, courses[0])):
         return trial
+    if along is None:
+        asked = dataclasses.replace(speed, unit=OPEN, why=f"{speed.why}; {ACROSS}")
+        return _with(trial, speed, asked)
+    course, period, motion = along
+    if (back := astern(*motion)) is None:
+        return trial
+    seconds = float(back.sum()) * period
     why = f"{TOLD} in {seconds:.3g} s: there the run reads u, which has no sign, as astern"
     told = dataclasses.replace(course, why=f"{course.why}; {why}")
     signed = dataclasses.replace(speed, why=f"{speed.why}; negative where cog says astern")
-    signals = (signed if one is speed else one for one in trial.signals)
-    return dataclasses.replace(trial, signals=(*signals, told))
+    return _with(trial, speed, signed, told)
 
 
-def _course(trial: Chosen, speed: ChannelInspection, heading: Signal) -> Signal | None:
-    """The course of the velocity that the speed is of, counted as the heading; or by its name."""
+def _with(trial: Chosen, speed: Signal, read: Signal, *more: Signal) -> Chosen:
+    signals = (read if one is speed else one for one in trial.signals)
+    return dataclasses.replace(trial, signals=(*signals, *more))
+
+
+def _courses(trial: Chosen, speed: ChannelInspection) -> Iterator[Signal]:
+    """The course of the velocity that the speed is of, in either axes; or one by its name."""
     channels = trial.survey.channels
     if speed.angle == "speed":
         x, y = (channels[f"{speed.name}.{axis}"].sketch for axis in "xy")
         seen = Sketch(x.t, np.unwrap(np.arctan2(y.y, x.y)))
         source = dataclasses.replace(speed, angle="course", unit="rad", sketch=seen)
-        return Signal("cog", source, None, heading.positive, "the direction of that velocity", ())
+        for positive in ("port", None):  # east and north, or north and east
+            yield Signal("cog", source, None, positive, "the direction of that velocity", ())
+        return
     for one in channels.values():
         unit = one.unit or one.unit_in_name
         if not one.constant and is_course(one.name, one.description, unit):
-            return Signal("cog", one, unit or "deg", None, "by its name", ())
-    return None
+            yield Signal("cog", one, unit or "deg", None, "by its name", ())
+            return
 
 
-def _astern(speed: Signal, course: Signal, heading: Signal) -> float:
-    """How long she goes astern [s]."""
-    sketches = [one.source.sketch for one in (speed, course, heading)]
-    common = on_one_clock(*sketches)
+def _of_her_own_axes(speed: ChannelInspection, course: Signal) -> bool:
+    """Whether a velocity is ahead and across, whatever she is heading, as odometry has it."""
+    along = np.abs(np.cos(course.source.sketch.y))
+    return speed.angle == "speed" and float(np.mean(along)) >= ALONG
+
+
+Motion = tuple[Vector, Vector, Vector, Mask]
+"""Speed, course and heading [rad], and where all are known."""
+
+
+def _on_one_clock(speed: Signal, course: Signal, heading: Signal) -> tuple[float, Motion] | None:
+    """The period [s] and the motion; None where they have too little in common."""
+    common = on_one_clock(*(one.source.sketch for one in (speed, course, heading)))
     if common is None:
-        return 0.0
-    period, (u, *angles), whole = common
-    chi, psi = (_angle(y, one) for y, one in zip(angles, (course, heading), strict=True))
-    back = astern(u, chi, psi, whole)
-    return 0.0 if back is None else float(back.sum()) * period
+        return None
+    period, (u, chi, psi), whole = common
+    return period, (u, _angle(chi, course), _angle(psi, heading), whole)
 
 
 def _angle(y: Vector, signal: Signal) -> Vector:
     """Clockwise, in rad."""
     factor = to_si(signal.unit or signal.source.unit or "rad", "rad") or 1.0
-    return -factor * y if signal.positive == "port" else factor * y
+    turned = factor * y + (FROM_EAST if from_east(signal.source, signal.positive) else 0.0)
+    return -turned if signal.positive == "port" else turned
 
 
 def _logs_water(source: ChannelInspection) -> bool:

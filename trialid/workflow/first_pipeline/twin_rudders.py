@@ -42,7 +42,7 @@ def _named(ship: Ship) -> dict[str, str] | None:
 
 def sides_of(trial: Chosen) -> dict[str, ChannelInspection]:
     """Rudder angles of a log by their side; empty where there is not one to each."""
-    sources = live_sources(trial.survey, "delta")
+    sources = live_sources(trial.survey, "delta") if "delta" in trial.quantities else ()
     found = {side: one for one in sources for side in _side(one)}
     return found if len(sources) == len(found) == 2 else {}
 

@@ -16,6 +16,7 @@ from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator, Command, actuator_tables
 from trialid.ship.particulars import Ship
+from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE, angle_signals, angles_of
 from trialid.workflow.first_pipeline.choice import (
     OPEN,
     RUDDERS,
@@ -47,6 +48,8 @@ REST: Final = 1500.0
 ARM: Final = 0.2
 """Thrusters stand so far from the middle, over the length of a boat: 0.2 of the Otter and the
 WAM-V, 0.24 of the BlueBoat."""
+ARM_OF_PODS: Final = 0.08
+"""Of pods: 0.08 of a research vessel, 0.09 of tugs; turned alike they do without it."""
 AFT: Final = -0.4
 """And so far aft, which where both push alike tells nothing."""
 
@@ -54,6 +57,10 @@ AFT: Final = -0.4
 ASSUMED: Final = {
     "thruster": (
         "# ASSUMED: where the thrusters stand. Measure it: the moment goes with it, and what is",
+        "# found of the inertia in yaw too.",
+    ),
+    "azimuth": (
+        "# ASSUMED: where the pods stand. Measure it: the moment goes with it, and what is",
         "# found of the inertia in yaw too.",
     ),
     "rudder": (
@@ -75,8 +82,8 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     """
     live = {name: live_sources(survey, name) for name in SIGNALS}
     steered = any(live[name] for name in RUDDERS)
-    turns = live.get("r") or live.get("psi")
-    if steered or not turns or len(drives_of(survey)) != 2:
+    turns, drives = live.get("r") or live.get("psi"), drives_of(survey)
+    if not turns or len(drives) != 2 or (steered and not angles_of(survey, drives)):
         return with_further(choose_signals(survey, speed), live)
     return _choose_boat(survey, live, speed)
 
@@ -97,7 +104,7 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     if known is None and speed.source.angle == "speed":
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"
-    signals = (*drives, turn, speed)
+    signals = (*angle_signals(survey, drives, turn), *drives, turn, speed)
     boat = Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
     return with_course(with_heading(boat, live))
 
@@ -207,12 +214,13 @@ def boat_actuators(signals: tuple[Signal, ...], ship: Ship) -> tuple[Actuator, .
     """Both thrusters of a boat, where nobody says where they stand."""
     length = ship.particulars.get("L", 0.0)
     units = {one.quantity: one.unit or "1" for one in signals}
+    turned = f"{PORT}{ANGLE}" in units
     return tuple(
         Actuator(
             name=name,
-            kind="thruster",
+            kind="azimuth" if turned else "thruster",
             x=round(AFT * length, 2),
-            y=round(sign * ARM * length, 2),
+            y=round(sign * (ARM_OF_PODS if turned else ARM) * length, 2),
             command=_command(units[name]),
         )
         for name, sign in ((PORT, -1.0), (STARBOARD, 1.0))
@@ -241,20 +249,24 @@ def named_by_ship(signals: tuple[Signal, ...], ship: Ship) -> tuple[Signal, ...]
     LogError
         Her file does not name one to each side.
     """
-    port = [a.name for a in ship.actuators if a.kind == "thruster" and a.y < 0.0]
-    starboard = [a.name for a in ship.actuators if a.kind == "thruster" and a.y > 0.0]
+    kind = "azimuth" if any(one.quantity.endswith(ANGLE) for one in signals) else "thruster"
+    port = [a.name for a in ship.actuators if a.kind == kind and a.y < 0.0]
+    starboard = [a.name for a in ship.actuators if a.kind == kind and a.y > 0.0]
     if len(port) != 1 or len(starboard) != 1:
         raise LogError(
-            f"the log has two thrusters, and the file of ship {ship.name!r} names {len(port)} to "
-            f"port and {len(starboard)} to starboard; write an [[actuator]] for each, see "
+            f"the log has two of kind {kind}, and the file of ship {ship.name!r} names {len(port)} "
+            f"to port and {len(starboard)} to starboard; write an [[actuator]] for each, see "
             "`trialid guide actuators`"
         )
     names = {PORT: port[0], STARBOARD: starboard[0]}
+    names |= {f"{ours}{ANGLE}": f"{hers}{ANGLE}" for ours, hers in names.items()}
     return tuple(
         dataclasses.replace(one, quantity=names.get(one.quantity, one.quantity)) for one in signals
     )
 
 
 def thrusters_among(signals: tuple[Signal, ...]) -> tuple[Signal, ...]:
-    """Those that no dictionary has: what drives her."""
-    return tuple(one for one in signals if one.quantity not in SIGNALS)
+    """Those that no dictionary has: what drives her, and not to where."""
+    return tuple(
+        one for one in signals if one.quantity not in SIGNALS and not one.quantity.endswith(ANGLE)
+    )

@@ -5,7 +5,7 @@ from typing import Final
 
 from trialid.effects.actuators.pushes import push_effects
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boat_choice import at_rest, thrusters_among
+from trialid.workflow.first_pipeline.boats.boat_choice import at_rest, thrusters_among
 from trialid.workflow.first_pipeline.choice import Chosen
 from trialid.workflow.first_pipeline.held_out import held_out
 
@@ -15,18 +15,17 @@ ASTERN: Final = 0.1
 
 def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     """Lines of `[model]` and `[identify]`."""
-    thrusters = next(one for one in push_effects(ship) if one.name == "thrusters")
-    gains = thrusters.parameters
+    kind = "azimuths" if any(one.kind == "azimuth" for one in ship.actuators) else "thrusters"
+    gains = next(one for one in push_effects(ship) if one.name == kind).parameters
     astern = _goes_astern(trials)
-    free = [name for name in gains if astern or name.startswith("k_ahead")]
+    free = [name for name in gains if astern or "ahead" in name]
     held = ", ".join(f"{n} = {p.start:.4g}" for n, p in gains.items() if n not in free)
     yield "[model]"
     turn, states = ("r", '"u", "r"') if _rate(trials) else ("psi", '"u", "r", "psi"')
     yield f"states = [{states}]  # no log of such a boat has sway; the run says if it shows"
     yield "# thrust k n |n| (k T where thrust is logged) at the places the ship file states"
     yield (
-        'effects = ["thrusters", "surge_resistance", "still_water_yaw", '
-        '"still_water_yaw_quadratic"]'
+        f'effects = ["{kind}", "surge_resistance", "still_water_yaw", "still_water_yaw_quadratic"]'
     )
     if not astern:
         yield f"values = {{ {held} }}  # no fitted trial goes astern: nothing tells it"

@@ -1,0 +1,67 @@
+"""Two pods: their angles are read, which were passed over for two thrusters that never turn."""
+
+from pathlib import Path
+
+import numpy as np
+from made_boat import T, begun, table
+
+from trialid import pipeline_file
+from trialid.workflow.run import run
+
+
+def turned(seed: int) -> np.ndarray:
+    """Angles of both pods alike [rad], clockwise from ahead, held for 10 s each."""
+    steps = np.random.default_rng(seed).uniform(-0.5, 0.5, len(T) // 100)
+    return np.repeat(steps, 100)
+
+
+def pods(path: Path, names: tuple[str, str], seed: int = 3, sign: float = 1.0) -> Path:
+    """A log of a ship of 20 m that pods turn: to port where they push to starboard."""
+    a = turned(seed)
+    u, r, psi = (np.zeros(len(T)) for _ in range(3))
+    u[0] = 4.0
+    for k in range(len(T) - 1):
+        u[k + 1] = u[k] + 0.1 * (0.8 * np.cos(a[k]) - 0.05 * u[k] * abs(u[k]))
+        r[k + 1] = r[k] + 0.1 * (-0.05 * np.sin(a[k]) - 0.4 * r[k])
+        psi[k + 1] = psi[k] + 0.1 * r[k]
+    rng = np.random.default_rng(seed)
+    rpm = 120.0 + rng.standard_normal(len(T))
+    columns = {f"Azimuth {side} rpm": rpm for side in ("port", "stbd")}
+    columns |= {name: sign * np.rad2deg(a) for name in names}
+    columns["yaw_rate_dps"] = np.rad2deg(r) + 0.02 * rng.standard_normal(len(T))
+    columns["stw_mps"] = u + 0.01 * rng.standard_normal(len(T))
+    return table(path, columns)
+
+
+NAMES = ("Azimuth port angle [deg]", "Azimuth stbd angle [deg]")
+
+
+def test_pods_are_begun_with_their_angles(tmp_path: Path) -> None:
+    logs = [pods(tmp_path / f"run{i}.csv", NAMES, i) for i in range(3)]
+    made = begun(tmp_path, *logs)
+    text, ship = made.files[tmp_path / "p.toml"], made.files[tmp_path / "p_ship.toml"]
+    assert 'thruster_port_angle      = { channel = "Azimuth port angle", unit = "deg" }' in text
+    assert 'effects = ["azimuths", ' in text
+    assert '"k_pod_ahead"' in text
+    assert ship.count('kind = "azimuth"') == 2
+    done = run(pipeline_file.load(tmp_path / "p.toml"))
+    assert done.result.fit.eps_rmsn_by_output["r"] < 0.05
+
+
+def test_an_angle_that_counts_to_port_is_read_so(tmp_path: Path) -> None:
+    text = begun(tmp_path, pods(tmp_path / "a.csv", NAMES, sign=-1.0)).files[tmp_path / "p.toml"]
+    assert text.count('unit = "deg", positive = "port"') == 2
+
+
+def test_angles_that_are_called_so_are_no_rudders(tmp_path: Path) -> None:
+    """`azimuth angle` alone is what steers a boat; with one to each side she has two pods."""
+    names = ("azimuth_angle_port [deg]", "azimuth_angle_stbd [deg]")
+    text = begun(tmp_path, pods(tmp_path / "a.csv", names)).files[tmp_path / "p.toml"]
+    assert 'effects = ["azimuths", ' in text
+    assert "rudder" not in text.split("[model]")[0]
+
+
+def test_one_angle_alone_turns_no_pods(tmp_path: Path) -> None:
+    text = begun(tmp_path, pods(tmp_path / "a.csv", NAMES[:1])).files[tmp_path / "p.toml"]
+    assert 'effects = ["thrusters", ' in text
+    assert "_angle" not in text

@@ -1,0 +1,74 @@
+"""Two drives that are turned: pods and azimuth thrusters, each with the angle it pushes at."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.name_words import sides, words
+from trialid.inspection.relations import side
+from trialid.inspection.usual_units import to_si
+from trialid.workflow.first_pipeline.choice import OPEN, Signal
+
+PODS: Final = frozenset(words("azimuth azimut azi pod asd"))
+THRUSTERS: Final = frozenset(words("thr thruster thrusters"))
+"""Words of the angle that a drive is turned to, of the second ones beside `angle`, ..."""
+NO_ANGLE: Final = frozenset(words("rudder pitch blade trim tilt wind heading roll bow"))
+"""... and of angles of something else."""
+ANGLE: Final = "_angle"
+"""What the angle of a drive is called behind its name."""
+
+CLOCKWISE: Final = "clockwise from ahead, as to starboard she turns to port by it"
+TO_PORT: Final = "positive to port, as she turns to starboard by it"
+UNSEEN: Final = (
+    "CAREFUL: taken as clockwise from ahead, to where it pushes; the motion does not show which "
+    "way it counts"
+)
+
+
+def angle_signals(survey: Inspection, drives: Sequence[Signal], turn: Signal) -> list[Signal]:
+    """The angle of each of two drives, its sense by the turn; none where not each has one.
+
+    A pod stands aft: where it pushes to starboard her stern goes there, and she turns to port.
+    """
+    angles = angles_of(survey, [one.source for one in drives])
+    return [_signal(one, angle, turn) for one, angle in zip(drives, angles, strict=False)]
+
+
+def angles_of(
+    survey: Inspection, drives: Sequence[ChannelInspection]
+) -> tuple[ChannelInspection, ...]:
+    """The angle that each of these drives is turned to; nothing where not each has one."""
+    found = [[*_angles(survey, one)] for one in drives]
+    return tuple(ones[0] for ones in found) if all(len(ones) == 1 for ones in found) else ()
+
+
+def _angles(survey: Inspection, drive: ChannelInspection) -> Iterator[ChannelInspection]:
+    mine = _whose(drive)
+    for one in survey.channels.values():
+        told = {*words(one.name)}
+        is_of_pod = PODS & told or ("angle" in told and THRUSTERS & told)
+        of_another = NO_ANGLE & told or not mine or _whose(one) != mine
+        if is_of_pod and not of_another and one is not drive and _is_angle(one):
+            yield one
+
+
+def _whose(one: ChannelInspection) -> set[str]:
+    """Its side, or its number where it has none."""
+    return sides(one.name) or {word for word in words(one.name) if word in ("1", "2")}
+
+
+def _is_angle(one: ChannelInspection) -> bool:
+    unit = one.unit or one.unit_in_name
+    return to_si(unit or "deg", "rad") is not None and not one.constant and one.mostly_there
+
+
+def _signal(drive: Signal, source: ChannelInspection, turn: Signal) -> Signal:
+    towards = turn.positive or "starboard" if turn.quantity == "r" else None
+    found = side(source, turn.source, towards)
+    told = "" if found is None else f" (correlation with {found.by} {found.strength:+.2f})"
+    sense = UNSEEN if found is None else CLOCKWISE if found.side == "port" else TO_PORT
+    unit = source.unit or source.unit_in_name or OPEN
+    asked = "; FILL IN the unit, the log states none" if unit == OPEN else ""
+    positive = "port" if sense is TO_PORT else None
+    why = f"by its name; {sense}{told}{asked}"
+    return Signal(f"{drive.quantity}{ANGLE}", source, unit, positive, why, ())

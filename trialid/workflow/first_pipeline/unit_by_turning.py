@@ -1,0 +1,106 @@
+"""Units of a yaw rate and of a small rudder that no log states, by how fast a ship can turn."""
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from trialid.inspection.name_words import words
+from trialid.inspection.relations import RATES
+from trialid.names import units
+from trialid.workflow.first_pipeline.choice import (
+    AS_RADIANS,
+    ASK_UNIT,
+    BY_SIZE,
+    OPEN,
+    Chosen,
+    Signal,
+)
+
+TURNING: Final = (0.05, 2.5)
+"""Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
+further apart than this range is wide."""
+
+TURNED: Final = 0.1
+"""Rate of turn, in her own lengths and speed, over the rudder in radians: ships, boats and models
+have 0.3 to 3 once they turn, in a fast zig-zag less. Degrees taken for radians give 0.005 to 0.05.
+At half of it a ferry that is hardly steered is read in degrees still (0.02), as a cargo ship in a
+sea is (0.04), and at twice; a fast zig-zag (0.2 and more) at twice no longer in radians."""
+
+
+def size_unit(trial: Chosen, length: float, speed: float) -> Chosen:
+    """The same with the unit of a yaw rate by its size, where nothing else tells it.
+
+    A ship in a manoeuvre turns with r L / U between 0.05 and 2.5, her own length [m] and speed
+    [m/s]: faster she would spin about herself, slower is no manoeuvre. Units lie further apart.
+    """
+    signals = tuple(_sized(one, length / speed) for one in trial.signals)
+    return dataclasses.replace(trial, signals=signals)
+
+
+def _sized(signal: Signal, seconds: float) -> Signal:
+    if signal.quantity != "r" or signal.unit != OPEN or _turns(signal):
+        return signal
+    largest = float(np.quantile(np.abs(signal.source.sketch.y), 0.99))
+    sizes = {u: largest * units.factor(u, "rad/s") * seconds for u in RATES}
+    fitting = [u for u, size in sizes.items() if TURNING[0] < size < TURNING[1]]
+    if len(fitting) != 1:
+        return signal
+    told = ", ".join(f"{size:.2g} in {u}" for u, size in sizes.items())
+    words = f"unit by its size: r L / U would be {told}"
+    why = signal.why.replace(ASK_UNIT, words)
+    return dataclasses.replace(signal, unit=fitting[0], why=why)
+
+
+def _turns(signal: Signal) -> bool:
+    """Whether its name ends with `rps`, radians or turns a second, which no size tells apart."""
+    return "rps" in words(signal.source.name)
+
+
+def with_rudder_units(trials: Sequence[Chosen], length: float, speed: float) -> list[Chosen]:
+    """The trials, a rudder of small numbers in degrees where another log or her turning says so.
+
+    Up to 1.6 may be radians, or degrees of a ship that is hardly steered.
+    """
+    known = _by_size(trials)
+    return [_told(one, known, length / speed) for one in trials]
+
+
+def _by_size(trials: Sequence[Chosen]) -> Mapping[str, str]:
+    """Logs whose numbers leave degrees alone, by the name of the channel."""
+    return {
+        s.source.name: one.path.name
+        for one in trials
+        for s in one.signals
+        if s.unit == "deg" and BY_SIZE in s.why
+    }
+
+
+def _told(trial: Chosen, known: Mapping[str, str], seconds: float) -> Chosen:
+    """`seconds` is the time in which she goes her own length."""
+    rate = next((s for s in trial.signals if s.quantity == "r" and not s.open), None)
+    signals = []
+    for one in trial.signals:
+        if AS_RADIANS not in one.why:
+            signals.append(one)
+        elif one.source.name in known:
+            signals.append(_in_degrees(one, f"deg as in {known[one.source.name]}"))
+        elif rate is not None and (size := _answer(one, rate) * seconds) < TURNED:
+            words = f"deg, for of radians she would turn by r L / U = {size:.2g} a radian only"
+            signals.append(_in_degrees(one, words))
+        else:
+            signals.append(one)
+    return dataclasses.replace(trial, signals=tuple(signals))
+
+
+def _answer(rudder: Signal, rate: Signal) -> float:
+    """How fast she turns [rad/s] by the rudder as logged, both by what is root mean square."""
+    r = rate.source.sketch.y * units.factor(rate.unit or "rad/s", "rad/s")
+    most = float(np.sqrt(np.mean(rudder.source.sketch.y**2)))
+    return float(np.sqrt(np.mean(r**2))) / max(most, 1e-9)
+
+
+def _in_degrees(rudder: Signal, words: str) -> Signal:
+    why = rudder.why.replace(AS_RADIANS, f"no unit is stated: {words}")
+    return dataclasses.replace(rudder, unit="deg", why=why)
