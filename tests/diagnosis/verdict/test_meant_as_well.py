@@ -93,3 +93,19 @@ def test_what_is_held_of_the_roll_is_freed_where_no_roll_is_compared(without_two
     yaw = replace(without_two.settings, outputs=("r",))
     fit = identify(without_two.trials, without_two.model, yaw)
     assert "GM" not in held_instead(fit, tried(fit, "yaw_drag_rar"), silent)
+
+
+def test_what_is_held_and_moves_nothing_is_no_hindrance(without_two):
+    """Of the yaw alone inertia in roll is in the file, and nothing of it in the record."""
+    yaw = replace(MODEL, states=("v", "r"), effects=MODEL.effects[:2])
+    known = replace(SHIP, uncertainty={"default": 1e-4})
+    trials = [with_speed(trial) for trial in without_two.trials]
+    asked = replace(without_two.settings, free=("Nv", "Nr", "Ndelta"), outputs=("r",))
+    fit = identify(trials, replace(yaw, ship=known), asked)
+    assert held_instead(fit, tried(fit, "yaw_drag_rar"), silent) == ()
+
+
+def with_speed(trial):
+    """The trial with her speed as an input."""
+    signals = {**trial.signals, "u": np.full(trial.samples, 7.33)}
+    return replace(trial, signals=signals, valid={n: np.ones(trial.samples, bool) for n in signals})
