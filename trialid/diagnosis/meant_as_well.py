@@ -77,7 +77,8 @@ def held_instead(fit: Fit, named: Refit, progress: Progress) -> tuple[str, ...]:
     """
     fit = with_means(fit).examined
     model = fit.problem.simulator.model
-    held = {n: model.value(n) for n in fixed_coefficients(fit)}
+    own = named.candidate.effect.parameters  # a coefficient that is freed is no rival of itself
+    held = {n: model.value(n) for n in fixed_coefficients(fit) if n not in own}
     known = {n: (x, abs(x) * model.ship.share_off(n)) for n, x in held.items()}
     known = {n: each for n, each in known.items() if each[1] > 0.0}
     if not known:

@@ -7,6 +7,7 @@ import pytest
 from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
 
 from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
+from trialid.diagnosis.search.freed import free_coefficient
 from trialid.diagnosis.search.refit import refit
 from trialid.diagnosis.search.score import rank
 from trialid.diagnosis.verdict import Verdict
@@ -73,6 +74,19 @@ def test_what_is_held_is_told_as_far_as_its_source_lets_it_be_off(knows, told):
     fit = identify(trials, replace(MODEL, ship=known), replace(SETTINGS, free=FREE))
     found = held_instead(fit, tried(fit, "yaw_inertia_error"), silent)
     assert {*found} == ({*water} if told else set())
+
+
+def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
+    """Of a ship whose yaw moment of drift is 1.5 times her file's, and all else is known."""
+    known = replace(SHIP, uncertainty={"default": 0.0, "Nvav": 0.3})
+    truth = MODEL.with_values({"Nvav": 1.5 * MODEL.value("Nvav")})
+    fit = identify(sailed(truth), replace(MODEL, ship=known), replace(SETTINGS, free=FREE))
+    freed = {"Nvav": free_coefficient(fit.model, "Nvav")}
+    ranking, _ = rank(fit, freed)
+    [named] = refit(fit, ranking, silent)
+    assert held_instead(fit, named, silent) == ()
+    [other] = refit(fit, rank(fit, {"rudder_cubic": CATALOGUE["rudder_cubic"]})[0], silent)
+    assert held_instead(fit, other, silent) == ("Nvav",)
 
 
 @pytest.mark.parametrize(
