@@ -49,6 +49,18 @@ def test_of_two_trials_the_one_that_excites_her_more_is_fitted() -> None:
     assert held_out([varied(0.35, -0.35, "rad"), smaller]) == 1
 
 
+def test_a_decay_is_held_out_only_where_hardly_any_trial_is_steered() -> None:
+    """She is let go and her rudder keeps the course: that tells nothing of how she steers."""
+    zigzags, decays = [logged(20.0), logged(40.0), logged(30.0)], [logged(3.0)] * 3
+    assert held_out([*decays, *zigzags]) == 5
+    assert why_held_out([*decays, *zigzags]) == (
+        "the middle one of those that are steered, by its rudder"
+    )
+    assert held_out([*decays, *zigzags[:2]]) == 2
+    assert why_held_out([*decays, *zigzags[:2]]) == "the middle one by its rudder"
+    assert held_out(decays) == 1
+
+
 def varied(low: float, high: float, unit: str = "deg") -> Any:
     """A trial whose rudder lies at one angle and at another, as often."""
     made = logged(unit=unit)

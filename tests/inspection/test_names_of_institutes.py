@@ -46,6 +46,9 @@ CAPITALS = {
     ("delta_p", "Pa"): None,
     ("delta_t", "deg"): None,
     ("n_P", "rps"): "n_p",
+    ("rev", None): "n",
+    ("REV", "rpm"): "n",
+    ("fw_rev", "rpm"): None,
 }
 OF_A_SIDE = {
     "rud_ps": {"n_p"},

@@ -76,6 +76,32 @@ def test_the_gear_that_moved_the_rudder_is_named(gear, values, effect, said) -> 
     assert found.sentence.startswith(said)
 
 
+def test_the_gear_of_a_model_is_among_those_tried() -> None:
+    """A model of 5 m whose rudder goes 9 deg/s at most: by Froude's law 1.6 deg/s of 160 m."""
+    length, speed = 5.0, 1.25
+    small = {"L": length, "nabla": s175q.SHIP.particulars["nabla"] * (length / 175.0) ** 3}
+    small |= {"U0": speed}
+    ship = replace(s175q.SHIP, particulars={**s175q.SHIP.particulars, **small})
+    hull = tuple(CATALOGUE[n] for n in ("linear_hull", "linear_rudder"))
+    model = replace(s175q.MODEL, ship=ship, states=("v", "r"), effects=hull)
+    swift = {"T_servo": 0.3, "rate_max": float(np.deg2rad(9.0))}
+    made = (model + CATALOGUE["rudder_servo_limited"]).with_values(swift)
+    rng, trials = np.random.default_rng(9), []
+    for angle, half in ((10.0, 11.0), (20.0, 13.0), (15.0, 9.0)):
+        order = np.deg2rad(angle) * np.sign(np.sin(np.pi * (0.05 * np.arange(1600) + 0.1) / half))
+        signals = {"delta_order": order, "u": np.full(1600, speed), "r": np.zeros(1600)}
+        valid = {n: np.ones(1600, dtype=bool) for n in signals}
+        blank = Trial(f"{angle:.0f}", "fit", 0.05, signals, valid)
+        y = respond(prepare(made, (), ("r",)), blank, {}, {}, sensitivities=False).y[:, 0]
+        noisy = y + 0.02 * np.std(y) * rng.standard_normal(1600)
+        trials.append(replace(blank, signals={**signals, "r": noisy}))
+    fast = (model + CATALOGUE["rudder_servo"]).with_values({"T_delta": 1.0})
+    settings = replace(s175q.SETTINGS, free=("Nv", "Nr", "Ndelta"), outputs=("r",))
+    tried = {n: CATALOGUE[n] for n in (*FEW, "rudder_backlash")}
+    found = diagnose(identify(trials, fast, settings), DiagnoseSettings(candidates=tried))
+    assert found.verdict.effect == "rudder_servo_limited"
+
+
 def test_a_state_has_one_equation() -> None:
     slow = (s175q.MODEL + CATALOGUE["rudder_servo"]).with_values({"T_delta": 2.0})
     limited = CATALOGUE["rudder_servo_limited"]

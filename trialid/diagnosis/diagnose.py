@@ -10,6 +10,7 @@ from trialid.diagnosis.heel_side import leans_inward, settle_side
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.may_be_off import doubts
+from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import with_means
@@ -73,7 +74,7 @@ def diagnose(
         ranking=ranking,
         left_out=left_out,
         refits=tried.refits,
-        verdict=verdict,
+        verdict=_beside_others(fit, verdict, tried.refits, asked, progress),
         where=where(fit),
         after=after,
         force=_force(after.fit if after else fit, asked.level, progress) if wanted else None,
@@ -97,6 +98,26 @@ def _verdict(
     named = None if grown else _named(found, refits)
     found = with_held_out(fit, found, lambda: before.accuracy.covariance, asked.level, named)
     return settle_side(fit, name_records(fit, found, asked.candidates.values()))
+
+
+def _beside_others(
+    fit: Fit,
+    verdict: Verdict,
+    refits: Sequence[Refit],
+    asked: DiagnoseSettings,
+    progress: Progress,
+) -> Verdict:
+    """The verdict with what its name is not told from beside single effects."""
+    named = _named(verdict, refits)
+    if named is None:
+        return verdict
+
+    def said(words: str) -> None:
+        progress(words, 0.85)
+
+    tried = _catalogue(fit, asked)
+    two = two_instead(fit, named, verdict.family, tried, asked.refit, said)
+    return also_from(verdict, two, held_instead(fit, named, said) if asked.coefficients else ())
 
 
 def _or_of_two(

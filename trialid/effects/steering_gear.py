@@ -15,11 +15,12 @@ def rudder_servo(
     return Rate(delta=(delta_order - delta) / T_delta)
 
 
+# a model's gear is faster by the root of its scale: 5 m with 9 deg/s had a play named in its place
 @effect(source="SOLAS II-1/29.3: 65 deg in 28 s at least", states=FOLLOWS)
 def rudder_servo_limited(
     delta_order, delta, *,
     T_servo=Parameter(1.0, "s", low=0.05, high=20.0, null=None),
-    rate_max=Parameter(0.05, "rad/s", low=0.005, high=1.0, scan=(0.02, 0.04, 0.08)),
+    rate_max=Parameter(0.05, "rad/s", low=0.005, high=1.0, scan=(0.02, 0.04, 0.08, 0.16, 0.32)),
 ):  # fmt: skip
     """d(delta)/dt = clip((delta_order - delta) / T_servo, rate_max): a pump of limited flow."""
     return Rate(delta=clip((delta_order - delta) / T_servo, rate_max))

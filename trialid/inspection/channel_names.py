@@ -56,7 +56,7 @@ PHRASES: Final = {
 
 ALONE: Final = {
     "u": "u", "v": "v", "p": "p", "r": "r", "phi": "phi", "psi": "psi", "delta": "delta",
-    "n": "n", "h": "h", "delta_c": "delta_order", "delta_order": "delta_order",
+    "n": "n", "rev": "n", "h": "h", "delta_c": "delta_order", "delta_order": "delta_order",
     "compass": "psi",
 }  # fmt: skip
 """Words that mean a quantity only where they are the whole name of a column."""
@@ -77,7 +77,7 @@ LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
 NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
 """Letters that mean the same without a unit too."""
 
-BARE: Final = frozenset(("u", "v", "p", "r", "phi", "psi", "delta", "n"))
+BARE: Final = frozenset(("u", "v", "p", "r", "phi", "psi", "delta", "n", "rev"))
 """Letters that mean it as capitals or with the unit behind them, where that fits: `R [deg/s]`,
 `psi_deg`. A depth is not among them: `H [m]` is a wave's height as often."""
 SIDED: Final = frozenset(("delta", "n"))

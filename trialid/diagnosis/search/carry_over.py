@@ -224,7 +224,9 @@ def _reduced(grams: Vector, owns: Vector, known: Vector, shared: int) -> LeftOut
     `known` are the sums of products of their priors.
     """
     whole = grams.sum(axis=0)
-    sizes = np.sqrt(np.maximum(np.diag(whole), 1e-300))
+    squares = np.diag(whole)
+    squares = np.where(squares > 0.0, squares, np.diag(known))  # of what moves nothing here
+    sizes = np.sqrt(np.maximum(squares, 1e-300))
     lengths = np.outer(sizes, sizes)  # columns of length one
     grams, owns, whole, known = (x / lengths for x in (grams, owns, whole, known))
     scale = lengths[shared:, shared:]

@@ -45,6 +45,12 @@ class Together:
         return tuple(e.name for e in self.effects)
 
     @property
+    def arrives(self) -> bool:
+        """Whether the search did, with none of their parameters at an end of its range."""
+        new = {n for e in self.effects for n in e.parameters}
+        return self.fit.converged and not new & {*self.fit.at_bounds}
+
+    @property
     def cost(self) -> float:
         """What pairs are ordered by, the least first: what is left, and 1 % a parameter."""
         return self.carried.log_ratio + EACH * sum(len(e.parameters) for e in self.effects)
@@ -60,8 +66,26 @@ def two_at_once(
     most
         How many pairs are fitted.
     """
+    done = fit_pairs(fit, catalogue, most, progress)
+    able = [one for one in done if stands(fit, one)]
+    best = min(able, key=lambda one: one.cost, default=None)
+    if best is None:
+        return None
+    others = (one for one in able if one is not best)
+    alike = (one.names for one in others if as_good(best.carried.after, one.carried.after))
+    return replace(best, alike=tuple(alike))
+
+
+def fit_pairs(
+    fit: Fit,
+    catalogue: Mapping[str, Effect],
+    most: int,
+    progress: Callable[[str], None],
+    among: Callable[[Pair], bool] = lambda pair: True,
+) -> list[Together]:
+    """The pairs that foretell most, of those that are meant, fitted; what cannot be is left out."""
     fit = with_means(fit)
-    pairs = _worth_a_fit(augment(fit, catalogue))
+    pairs = [pair for pair in _worth_a_fit(augment(fit, catalogue)) if among(pair)]
     done = list[Together]()
     for pair in _unlike(pairs, most):
         effects = tuple(trace.effect for trace in pair)
@@ -72,13 +96,7 @@ def two_at_once(
             continue
         carried = carried_between(fit.examined, found)
         done.append(Together(effects, on_every_sample(fit, found), carried))
-    able = [one for one in done if stands(fit, one)]
-    best = min(able, key=lambda one: one.cost, default=None)
-    if best is None:
-        return None
-    others = (one for one in able if one is not best)
-    alike = (one.names for one in others if as_good(best.carried.after, one.carried.after))
-    return replace(best, alike=tuple(alike))
+    return done
 
 
 def stands(fit: Fit, one: Together) -> bool:
@@ -87,11 +105,9 @@ def stands(fit: Fit, one: Together) -> bool:
     A tenth of the squared error must go: off what they were fitted to, off blocks left out, one
     like the other, and off trials held out; and of an output of which much is left, too.
     """
-    new = {n for e in one.effects for n in e.parameters}
     held = fit.eps_check is None or fall_of_check(fit, one) > 1.0 - LARGE
     return (
-        one.fit.converged
-        and not new & {*one.fit.at_bounds}
+        one.arrives
         and held
         and not outputs_beside(fit, one)
         and fall(fit, one) > 1.0 - LARGE

@@ -65,10 +65,13 @@ def late_roll(problem: Problem, theta: Vector) -> dict[int, float]:
 def along_GM(problem: Problem, best: End) -> list[End]:
     """Ends with GM ever further off to either side, all else fitted again: what is hardly worse.
 
-    Nothing where no GM is searched for, or what was fitted is no resonance of hers.
+    Nothing where no GM is searched for or no roll compared, or what was fitted is no resonance of
+    hers.
     """
     roll = problem.roll
     if roll is None or not best.began or goes_on(problem, best.minimum.theta):
+        return []
+    if not len(rows_of(problem, ("phi", "p"))):
         return []
     if _plainly_told(problem, roll.GM, best):
         return []

@@ -1,13 +1,19 @@
 """Which of several trials is held out: one that lies within what the others tried."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
+from trialid.alignment.held_roll import STEERED
 from trialid.errors import UnitError
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+
+ENOUGH: Final = 3
+"""Steered trials of which one is held out beside others: two are left to fit, as one of two may be
+a turn. Of twice as many, four zig-zags beside five decays a decay would be held out."""
 
 
 def held_out(trials: Sequence[Chosen]) -> int | None:
@@ -16,13 +22,14 @@ def held_out(trials: Sequence[Chosen]) -> int | None:
     The largest is fitted: it shows most of what a ship does, and a model of the smaller ones alone
     would be asked for more than it has seen. Of an even number it is the smaller of the middle two.
     Of two it is the one that excites her less: a steady turn alone tells how fast she turns, and
-    not how she comes to it.
+    not how she comes to it. What nothing steers, roll decays beside zig-zags, says nothing of how
+    she steers: three that are steered are enough to hold one of them out.
     """
     if len(trials) < 2:
         return None
     measure = _variation if len(trials) == 2 else _travel
-    order = sorted(range(len(trials)), key=lambda place: measure(trials[place]))
-    return order[(len(trials) - 1) // 2]
+    order = sorted(_tell_most(trials), key=lambda place: measure(trials[place]))
+    return order[(len(order) - 1) // 2]
 
 
 def why_held_out(trials: Sequence[Chosen]) -> str:
@@ -31,7 +38,19 @@ def why_held_out(trials: Sequence[Chosen]) -> str:
     name = "rudder" if steered in RUDDERS else steered
     if len(trials) == 2:
         return f"the one whose {name} varies less"
-    return f"the middle one by its {name}"
+    of_these = " of those that are steered," * (len(_tell_most(trials)) < len(trials))
+    return f"the middle one{of_these} by its {name}"
+
+
+def _tell_most(trials: Sequence[Chosen]) -> Sequence[int]:
+    """Places of the trials one of which is held out: those that are steered, where they do."""
+    steered = [place for place, trial in enumerate(trials) if _is_steered(trial)]
+    return steered if len(steered) >= ENOUGH else range(len(trials))
+
+
+def _is_steered(trial: Chosen) -> bool:
+    """Whether a rudder goes further to a side than to keep a course; by other means, yes."""
+    return trial.signals[0].quantity not in RUDDERS or _travel(trial) > STEERED / 2.0
 
 
 def _variation(trial: Chosen) -> float:

@@ -1,0 +1,125 @@
+"""What a name is not told from beside single effects: two others at once, and what is held."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
+
+from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
+from trialid.diagnosis.search.freed import free_coefficient
+from trialid.diagnosis.search.refit import refit
+from trialid.diagnosis.search.score import rank
+from trialid.diagnosis.verdict import Verdict
+from trialid.effects import CATALOGUE
+from trialid.identification.fit import identify
+
+FREE = ("Nv", "Nr", "Ndelta", "Yv")
+TWO = ("yaw_drag_rar", "heel_yaw")
+TRIED = {n: CATALOGUE[n] for n in (*TWO, "heel_yaw_cubic", "yaw_cubic_rrr")}
+
+
+def silent(words):
+    """Say nothing of how far it is."""
+
+
+def sailed(truth):
+    """Zig-zags of 10 and 20 deg as she sails them, with noise."""
+    made = []
+    for angle in (10, 20):
+        trial = zigzag(angle, truth)
+        made.append(with_noise(trial, *white(np.random.default_rng(angle), trial.samples)))
+    return made
+
+
+def tried(fit, name):
+    """The model with one effect more."""
+    ranking, _ = rank(fit, {name: CATALOGUE[name]})
+    [found] = refit(fit, ranking, silent)
+    return found
+
+
+@pytest.fixture(scope="module")
+def without_two():
+    """A fit that lacks two effects, both four times those of the ship's file."""
+    truth = MODEL.with_values({n: 4.0 * MODEL.value(n) for n in ("Nrar", "Nphi")})
+    base = replace(MODEL, effects=tuple(e for e in MODEL.effects if e.name not in TWO))
+    return identify(sailed(truth), base, replace(SETTINGS, free=FREE))
+
+
+def test_two_do_what_one_of_four_coefficients_does(without_two):
+    named = tried(without_two, "heel_yaw_cubic")
+    found = two_instead(without_two, named, ("heel_yaw_cubic",), TRIED, 4, silent)
+    assert found is not None
+    assert {*found.names} == {*TWO}
+
+
+def test_what_is_told_already_is_not_told_as_one_of_two(without_two):
+    named = tried(without_two, "heel_yaw_cubic")
+    told = ("heel_yaw_cubic", *TWO)
+    assert two_instead(without_two, named, told, TRIED, 4, silent) is None
+
+
+def test_two_are_no_plainer_than_one_coefficient(without_two):
+    named = tried(without_two, "yaw_cubic_rrr")
+    assert two_instead(without_two, named, ("yaw_cubic_rrr",), TRIED, 4, silent) is None
+
+
+@pytest.mark.parametrize(("knows", "told"), [(0.3, True), (0.05, False)])
+def test_what_is_held_is_told_as_far_as_its_source_lets_it_be_off(knows, told):
+    """Of a ship whose added masses are 1.5 times what her file says; all else is weighed."""
+    water = {name: 1.5 * SHIP.mass[name] for name in ("Nrdot", "Yvdot")}
+    known = replace(SHIP, uncertainty={"default": 0.0, **dict.fromkeys(water, knows)})
+    trials = sailed(replace(MODEL, ship=replace(SHIP, mass={**SHIP.mass, **water})))
+    fit = identify(trials, replace(MODEL, ship=known), replace(SETTINGS, free=FREE))
+    found = held_instead(fit, tried(fit, "yaw_inertia_error"), silent)
+    assert {*found} == ({*water} if told else set())
+
+
+def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
+    """Of a ship whose yaw moment of drift is 1.5 times her file's, and all else is known."""
+    known = replace(SHIP, uncertainty={"default": 0.0, "Nvav": 0.3})
+    truth = MODEL.with_values({"Nvav": 1.5 * MODEL.value("Nvav")})
+    fit = identify(sailed(truth), replace(MODEL, ship=known), replace(SETTINGS, free=FREE))
+    freed = {"Nvav": free_coefficient(fit.model, "Nvav")}
+    ranking, _ = rank(fit, freed)
+    [named] = refit(fit, ranking, silent)
+    assert held_instead(fit, named, silent) == ()
+    [other] = refit(fit, rank(fit, {"rudder_cubic": CATALOGUE["rudder_cubic"]})[0], silent)
+    assert held_instead(fit, other, silent) == ("Nvav",)
+
+
+@pytest.mark.parametrize(
+    ("family", "held", "said"),
+    [
+        (("a",), (), "a is missing"),
+        (("a",), ("m",), "a is missing; this record cannot tell it from what is held"),
+        (("a", "b"), ("m",), "a is missing; nor from what is held"),
+    ],
+)
+def test_it_is_said_after_what_is_said(family, held, said):
+    found = also_from(Verdict("missing", "a", family, "a is missing"), None, held)
+    assert found.sentence.split(", off by")[0] == said
+
+
+def test_what_is_held_of_the_roll_is_freed_where_no_roll_is_compared(without_two):
+    """GM is one of it, and a search of other GMs has nothing to go by there."""
+    yaw = replace(without_two.settings, outputs=("r",))
+    fit = identify(without_two.trials, without_two.model, yaw)
+    assert "GM" not in held_instead(fit, tried(fit, "yaw_drag_rar"), silent)
+
+
+def test_what_is_held_and_moves_nothing_is_no_hindrance(without_two):
+    """Of the yaw alone inertia in roll is in the file, and nothing of it in the record."""
+    yaw = replace(MODEL, states=("v", "r"), effects=MODEL.effects[:2])
+    known = replace(SHIP, uncertainty={"default": 1e-4})
+    trials = [with_speed(trial) for trial in without_two.trials]
+    asked = replace(without_two.settings, free=("Nv", "Nr", "Ndelta"), outputs=("r",))
+    fit = identify(trials, replace(yaw, ship=known), asked)
+    assert held_instead(fit, tried(fit, "yaw_drag_rar"), silent) == ()
+
+
+def with_speed(trial):
+    """The trial with her speed as an input."""
+    signals = {**trial.signals, "u": np.full(trial.samples, 7.33)}
+    return replace(trial, signals=signals, valid={n: np.ones(trial.samples, bool) for n in signals})

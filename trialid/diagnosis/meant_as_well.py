@@ -1,0 +1,109 @@
+"""What a named effect may stand in for: two others at once, or numbers that the model holds.
+
+Single effects are its rivals by `search.rivals`. An effect of several coefficients can do what two
+plain ones do together, and what any can do numbers may that are held at what a file says of them.
+Of a made model of a ferry, decays beside zig-zags, `heel_yaw_cubic` was named, four coefficients,
+not told from `heel_drift` alone. She has neither: her roll is damped at rest, too, her rudders'
+flow goes by the screws, and her added masses lie one to two standard deviations off their formulas.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+from trialid.diagnosis.noise.thinning import with_means
+from trialid.diagnosis.search.augment import fixed_coefficients
+from trialid.diagnosis.search.carried import EACH, does_as_well
+from trialid.diagnosis.search.carry_over import carried_between
+from trialid.diagnosis.search.refit import Refit
+from trialid.diagnosis.search.together import Pair, Together, fit_pairs
+from trialid.diagnosis.verdict import Verdict
+from trialid.errors import TrialidError
+from trialid.identification.fit import Fit, identify
+from trialid.ship.effect import Effect
+
+Progress = Callable[[str], None]
+
+PAIR: Final = 2
+"""Coefficients that two effects have at least."""
+
+WITHIN: Final = 2.0
+"""Standard deviations that a number that is held may be off. Of four made ships with nine names, at
+2 what is held did as much as three of them; free to go anywhere as much as all nine, one added mass
+eight deviations off. At half of it the two that a ship of these lies off are shut out."""
+
+TOLD: Final = 2
+"""Numbers that are held, those moved most, that a sentence tells of."""
+
+
+def also_from(found: Verdict, two: Together | None, held: Sequence[str]) -> Verdict:
+    """The verdict with what its name is not told from, beside what it says already."""
+    others = list[str]()
+    if two:
+        others.append(f"{' and '.join(two.names)} together")
+    if held:
+        others.append(f"what is held, off by what its source allows, {' and '.join(held)} most")
+    begin = "nor" if len(found.family) > 1 else "this record cannot tell it"
+    words = "".join(f"; {'nor' if i else begin} from {x}" for i, x in enumerate(others))
+    return replace(found, sentence=found.sentence + words)
+
+
+def two_instead(
+    fit: Fit,
+    named: Refit,
+    told: Sequence[str],
+    catalogue: Mapping[str, Effect],
+    most: int,
+    progress: Progress,
+) -> Together | None:
+    """Two effects, neither of them told already, that do as well with no more coefficients."""
+    coefficients = len(named.candidate.effect.parameters)
+    if coefficients < PAIR:
+        return None
+
+    def as_plain(pair: Pair) -> bool:
+        new = all(trace.effect.name not in told for trace in pair)
+        return new and sum(len(trace.parameters) for trace in pair) <= coefficients
+
+    done = fit_pairs(fit, catalogue, most, progress, as_plain)
+    able = [p for p in done if p.arrives and does_as_well(named.carried, p.carried)]
+    return min(able, key=lambda one: one.cost, default=None)
+
+
+def held_instead(fit: Fit, named: Refit, progress: Progress) -> tuple[str, ...]:
+    """Numbers that are held and do as well, off by no more than what is known of them; the first.
+
+    All are freed at once, each about its value and near it. They count as any parameter does.
+    """
+    fit = with_means(fit).examined
+    model = fit.problem.simulator.model
+    own = named.candidate.effect.parameters  # a coefficient that is freed is no rival of itself
+    held = {n: model.value(n) for n in fixed_coefficients(fit) if n not in own}
+    known = {n: (x, abs(x) * model.ship.share_off(n)) for n, x in held.items()}
+    known = {n: each for n, each in known.items() if each[1] > 0.0}
+    if not known:
+        return ()
+    progress("freeing what is held")
+    try:
+        freed = _freed(fit, known)
+    except TrialidError:  # they cannot be sought on this record
+        return ()
+    carried = carried_between(fit, freed)
+    if not freed.converged or carried.log_ratio + EACH * (len(known) - 1) > named.cost:
+        return ()
+    moved = {n: abs(freed.value(n) - x) / off for n, (x, off) in known.items()}
+    return tuple(sorted(known, key=lambda n: -moved[n])[:TOLD])
+
+
+def _freed(fit: Fit, known: Mapping[str, tuple[float, float]]) -> Fit:
+    """The same model with these numbers sought, by their values and standard deviations."""
+    asked = fit.settings
+    ends = {n: (x - WITHIN * off, x + WITHIN * off) for n, (x, off) in known.items()}
+    wider = replace(
+        asked,
+        free=(*asked.free, *known),
+        priors={**asked.priors, **known},
+        bounds={**asked.bounds, **ends},
+    )
+    near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
+    return identify(fit.trials, fit.model, wider, near=near)
