@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from made_boat import T, begun, late, pushes, sailed, table
 
+from trialid import pipeline_file
 from trialid.inspection import inspect_log
 from trialid.inspection.drives import drives_among, drives_of
 
@@ -53,3 +54,14 @@ def test_a_steering_command_is_no_thruster(tmp_path: Path) -> None:
     survey = inspect_log(table(tmp_path / "a.csv", columns | {"yaw_rate_dps": np.sin(T)}))
     assert drives_among(survey) == ["throttle_pct"]
     assert drives_of(survey) == ()
+
+
+def test_revolutions_that_drive_her_are_read_once(tmp_path: Path) -> None:
+    """They change, and are a thruster's: no shaft beside it has them, too."""
+    turns = 1000.0 * late(pushes(2), 0.4)
+    seen = sailed(turns / 1000.0)
+    columns = {"rpm_port [rpm]": turns[:, 0], "rpm_stbd [rpm]": turns[:, 1], "r [rad/s]": seen["r"]}
+    text = begun(tmp_path, table(tmp_path / "a.csv", columns | {"stw [m/s]": seen["u"]}))
+    signals = pipeline_file.load(tmp_path / "p.toml").trials[0].signals
+    assert {"thruster_port", "thruster_starboard"} <= {*signals}, text
+    assert not {"n_p", "n_s"} & {*signals}

@@ -36,9 +36,12 @@ def with_revolutions(trials: Sequence[Chosen]) -> list[Chosen]:
 
 
 def _shafts(trial: Chosen, names: Sequence[str]) -> tuple[Signal, ...]:
-    """Signals of all these shafts; none where one of them is not there with its unit."""
+    """Signals of all these shafts; none where one is not there with its unit, or drives a boat."""
+    used = {one.source.key for one in trial.signals}
     live = {
-        name: tuple(one for one in trial.survey.sources(name) if one.mostly_there)
+        name: tuple(
+            one for one in trial.survey.sources(name) if one.mostly_there and one.key not in used
+        )
         for name in names
         if name not in trial.quantities
     }
