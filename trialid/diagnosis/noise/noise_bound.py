@@ -55,9 +55,7 @@ def held_against(
         return chosen
     least = min(able, key=lambda f: f.eps_rmsn)
     if chosen.method == INPUT_DRIVEN and (least.eps_rmsn / fit.eps_rmsn) ** 2 < FALL:
-        said = (
-            f"{_said(chosen)} at most: how much less is not told before {_added(fit, least)} is in"
-        )
+        said = f"{_said(chosen)} at most: how much less is not told without {_added(fit, least)}"
         return Split("not separable", said, at_most=most)
     return _bounded(chosen, fit, least)
 
