@@ -30,6 +30,8 @@ from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import far_ahead
 from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.verdict_sentences import (
+    NONE_HOLDS,
+    NONE_STANDS_OUT,
     as_late,
     by_chance,
     contradiction,
@@ -119,8 +121,7 @@ def decide(
         return _judged(fit, named, ranking, refits, parts, level=level, grown=grown)
     if (denied := _denied(fit, refits, level, grown=grown)) is not None:
         return Verdict("cannot tell", None, (), denied)
-    small = [c for c in ranking if c.shown(level) and not c.carried.falls]
-    return _unnamed(parts, whole, small, fit.eps_rmsn)
+    return _unnamed(parts, whole, [c for c in ranking if c.shown(level)], fit.eps_rmsn)
 
 
 def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> str | None:
@@ -182,15 +183,17 @@ def _unnamed(
     parts: Split, whole: Completeness | None, shown: Sequence[Candidate], left: float
 ) -> Verdict:
     """What to say where no effect is worth a name; `left` is all of the error."""
-    said = _unnamed_plainly(parts, whole)
+    small = [c for c in shown if not c.carried.falls]
+    none = NONE_STANDS_OUT if len(small) == len(shown) else NONE_HOLDS
+    said = _unnamed_plainly(parts, whole, none)
     if parts.undermodelling_interval is None and left < HARDLY:
-        said = Verdict("nothing missing", None, (), small_rest(left))
-    return replace(said, sentence=f"{said.sentence}{significant_and_small(shown)}")
+        said = Verdict("nothing missing", None, (), small_rest(left, none))
+    return replace(said, sentence=f"{said.sentence}{significant_and_small(small)}")
 
 
-def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
+def _unnamed_plainly(parts: Split, whole: Completeness | None, none: str) -> Verdict:
     if parts.undermodelling_interval is None:
-        return Verdict("cannot tell", None, (), no_split(parts))
+        return Verdict("cannot tell", None, (), no_split(parts, none))
     low, high = parts.undermodelling_interval
     if low > 0.0 and whole is not None and whole.any_shape <= 0.0:
         return Verdict(
@@ -207,8 +210,8 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None) -> Verdict:
     total = float(np.hypot(parts.noise or 0.0, parts.undermodelling or 0.0))
     return Verdict(
         "nothing missing" if _is_little(high, total) else "cannot tell", None, (),
-        f"no effect stands out against the noise; a model error of up to {high:.1%} would not "
-        f"be seen ({parts.method})",
+        f"{none}{' against the noise' * (none == NONE_STANDS_OUT)}; a model error of up to "
+        f"{high:.1%} would not be seen ({parts.method})",
     )  # fmt: skip
 
 

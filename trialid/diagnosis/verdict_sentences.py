@@ -14,6 +14,10 @@ from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
 from trialid.identification.fit import Fit
 
+NONE_STANDS_OUT: Final = "no effect stands out"
+NONE_HOLDS: Final = "no effect that stands out stands every check"
+"""How a verdict begins that names none: what the table calls `stands out` is not denied."""
+
 MANY: Final = 8
 """Others that do as well from which on a name is the first of a list, and said so: a terminal cuts
 the list. Half of it says so of families that are told whole, twice lets 15 stand behind one."""
@@ -99,19 +103,14 @@ def explains_little(named: Refit, share: float, parts: Split) -> str:
     )
 
 
-def no_split(parts: Split) -> str:
+def no_split(parts: Split, none: str) -> str:
     """Noise and model error cannot be told apart."""
-    return (
-        "no effect stands out, but noise and model error cannot be separated on this record: "
-        + parts.why
-    )
+    return f"{none}, but noise and model error cannot be separated on this record: " + parts.why
 
 
-def small_rest(left: float) -> str:
+def small_rest(left: float, none: str) -> str:
     """All of the error is little, and what it is made of is nothing to ask."""
-    return (
-        f"no effect stands out, and all that is left is {left:.1%}, noise and model error together"
-    )
+    return f"{none}, and all that is left is {left:.1%}, noise and model error together"
 
 
 def one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:

@@ -270,3 +270,17 @@ def test_the_motion_itself_and_what_it_does_not_do_keep_their_names(monkeypatch)
     nothing = Verdict("nothing missing", None, (), "")
     for said in (alone, itself, nothing):
         assert judged(monkeypatch, said, NOT_ARRIVED) is said
+
+
+@pytest.mark.parametrize(
+    ("ratio", "said"),
+    [(0.7, "no effect that stands out stands every check, but noise"), (0.99, "no effect stands")],
+)
+def test_what_the_table_calls_standing_out_is_not_denied(ratio, said):
+    """Its refit left as much as before, so that it has no name."""
+    seen = refit("a", ratio, 0.10, check=0.2)
+    found = decide(fit(0.10, 0.1), (seen.candidate,), [], NO_ROUTE, None, 0.05)
+    assert found.sentence.startswith(said)
+    assert found.kind == "cannot tell"
+    little = decide(fit(0.004, 0.004), (seen.candidate,), [], NO_ROUTE, None, 0.05)
+    assert little.sentence.startswith(said.partition(", but")[0])
