@@ -14,7 +14,7 @@ the last twentieth takes two of them, twice of it no fourth."""
 
 
 def at_the_end(unknowns: Sequence[Unknown], theta: Vector) -> dict[str, float]:
-    """Values of the nuisances with a prior that are at an end, by name; the end itself where past.
+    """Values of the nuisances with a prior that are at an end of what is possible, by name.
 
     Parameters
     ----------
