@@ -49,6 +49,8 @@ SAME: Final = 0.001
 GM_WRONG: Final = 1.5
 LATEST: Final = 2.9  # s; bounds of delays are at 3
 ZERO_OFF: Final = np.deg2rad(4.6)
+FAR_OFF: Final = 1.5  # times the true one, which is far off in one ship of ten
+BELIEVED: Final = 0.5  # standard error over the value
 ROLLING: Final = 0.1  # rad/s at the start of a run on a straight course, beyond what she ever does
 
 
@@ -63,6 +65,7 @@ class Ended:
     held_out: float
     absurd: tuple[str, ...]
     GM: float
+    GM_error: float
     rivals: tuple[float, ...]
     seconds: float
     starts: int
@@ -79,8 +82,13 @@ class Ended:
 
     @property
     def misleads(self) -> bool:
-        """A wrong GM stated as known by a fit that calls itself sound."""
-        return self.GM_is_wrong and not self.rivals and not self.reason
+        """A wrong GM stated as known by a fit that calls itself sound.
+
+        Not where the page says that it may be off by more than half of its value: of two ships
+        whose rolling follows the turn at once GM stood with four and one and a half times its own.
+        """
+        known = not self.rivals and self.GM_error < BELIEVED * self.GM
+        return self.GM_is_wrong and known and not self.reason
 
 
 def begun(drawn: Drawn) -> ShipModel:
@@ -113,7 +121,8 @@ def examine(seed: int) -> Ended:
     found = why_no_fit(fit)
     return Ended(
         drawn, greater(fit, other) <= SAME, found.reason if found else "",
-        fit.eps_rmsn, fit.eps_check or np.nan, absurd(drawn, fit), fit.value("GM"),
+        fit.eps_rmsn, fit.eps_check or np.nan, absurd(drawn, fit),
+        fit.value("GM"), standard_error(fit, "GM"),
         tuple(values["GM"] for values in fit.rivals),
         seconds, fit.agreeing[1],
     )  # fmt: skip
@@ -128,13 +137,22 @@ def greater(fit: Fit, other: Fit) -> float:
     return float(np.sqrt(fit.V / other.V) * np.exp(0.5 * pulls / rows)) - 1.0
 
 
+def standard_error(fit: Fit, name: str) -> float:
+    """Of an unknown, were its noise white: it is at least as much."""
+    gram = fit.psi.T @ fit.psi / np.mean(fit.residual**2)
+    known = [1.0 / x.prior[1] ** 2 if x.prior else 0.0 for x in fit.problem.unknowns]
+    place = [x.name for x in fit.problem.unknowns].index(name)
+    return float(np.sqrt(np.linalg.pinv(gram + np.diag(known))[place, place]))
+
+
 def absurd(drawn: Drawn, fit: Fit) -> tuple[str, ...]:
-    """Nuisances that no one would believe."""
+    """Nuisances that no one would believe; a rudder's zero may be where it is in truth."""
+    zero = abs(float(drawn.trials[0].signals["delta"][0]))  # at rest when the logs begin
     limits = {
         "p(0)": max(ROLLING * min(1.0, np.sqrt(30.0 / drawn.length)), 2.0 * drawn.rolling),
         "tau_r": LATEST,
         "tau_phi": LATEST,
-        "delta_0": ZERO_OFF,
+        "delta_0": max(ZERO_OFF, FAR_OFF * zero),
     }
     ended = zip(fit.problem.unknowns, fit.theta, strict=True)
     return tuple(x.name for x, a in ended if abs(a) > limits.get(x.column, np.inf))

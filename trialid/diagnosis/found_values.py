@@ -24,6 +24,11 @@ def of_the_ship(effect: Effect) -> bool:
     return bool({Force, Rate, Mass} & {*effect.forms})
 
 
+def is_force(effect: Effect) -> bool:
+    """Whether it is a force or a mass of hull, rudder or screw; no gear, sensor or clock is."""
+    return bool({Force, Mass} & {*effect.forms})
+
+
 def by_heading(effect: Effect) -> bool:
     """Whether it is of surroundings that nobody recorded: no force of her own knows the north.
 

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.found_values import is_force
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.completeness import Completeness
@@ -158,7 +159,7 @@ def _judged(
     others = rivals(named, ranking, refits)
     if fall(fit, named) < MOST and _open(named, others, ranking, level):
         either = (named.candidate.effect.name, *others)
-        return Verdict("cannot tell", None, either, one_of(fit, named, others))
+        return Verdict("cannot tell", None, either, one_of(fit, named, others, level))
     return _missing(fit, named, others, level)
 
 
@@ -265,8 +266,14 @@ def _missing(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> V
 def _open(
     named: Refit, others: tuple[str, ...], ranking: Sequence[Candidate], level: float
 ) -> bool:
-    """Whether effects unlike in trace may be meant, and none stands out against the noise."""
+    """Whether effects unlike in trace may be meant, and nothing says that it is this one.
+
+    None stands out against the noise; or the named one is no force: a sensor, a clock or a gear
+    that is late mends any hull a little, so that it stands out says that something is missing, and
+    not that it is no force that does as well.
+    """
     meant = {named.candidate.effect.name, *others}
-    return not meant <= {*named.candidate.family} and all(
-        c.p_value >= level for c in ranking if c.effect.name in meant
-    )
+    unlike = [c.effect for c in ranking if c.effect.name in meant - {*named.candidate.family}]
+    if all(c.p_value >= level for c in ranking if c.effect.name in meant):
+        return bool(unlike)
+    return not is_force(named.candidate.effect) and any(map(is_force, unlike))

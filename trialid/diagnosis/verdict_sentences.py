@@ -113,14 +113,19 @@ def small_rest(left: float, none: str) -> str:
     return f"{none}, and all that is left is {left:.1%}, noise and model error together"
 
 
-def one_of(fit: Fit, named: Refit, others: tuple[str, ...]) -> str:
-    """Something is missing by the blocks alone, and effects unlike each other mend it."""
+def one_of(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> str:
+    """Something is missing, and effects unlike each other mend it."""
+    name, p = named.candidate.effect.name, named.candidate.p_value
     freed = " freed" if named.candidate.effect.held is not None else ""
+    why = "against the noise none stands out"
+    if p < level:
+        why = (
+            f"{name} stands out against the noise, but it is no force, and mends any hull a little"
+        )
     return (
-        f"something is missing, but this record cannot tell what: with "
-        f"{named.candidate.effect.name}{freed} {falls_by(fit, named.fit)}, and as well it may be "
-        f"{', '.join(others)}; against the noise none stands out "
-        f"(p = {named.candidate.p_value:.2g} over the catalogue)"
+        f"something is missing, but this record cannot tell what: with {name}{freed} "
+        f"{falls_by(fit, named.fit)}, and as well it may be {', '.join(others)}; {why} "
+        f"(p = {p:.2g} over the catalogue)"
     )
 
 

@@ -11,6 +11,7 @@ from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.verdict import decide
 from trialid.diagnosis.verdict_sentences import contradiction, significant_and_small
 from trialid.progress import silent
+from trialid.ship.effect import Delayed, Force, Lagged, Mass, Rate
 
 
 def decided(fall, *, p_value, alike=()):
@@ -56,6 +57,39 @@ def test_the_sentence_says_no_chance_that_was_not_shown():
     said = decided(0.98, p_value=1.0).sentence
     assert "p = " not in said
     assert "no test against the noise shows it" in said
+
+
+@pytest.mark.parametrize(
+    ("forms", "kind"),
+    [
+        ((Rate, Force), "cannot tell"),  # a gear with play, and a hull's force
+        ((Delayed, Mass), "cannot tell"),
+        ((Delayed, Lagged), "missing"),  # sensors both: which of them the family says
+        ((Force, Force), "missing"),
+        ((Force, Delayed), "missing"),
+    ],
+)
+def test_what_is_no_force_has_no_name_where_a_force_does_as_well(forms, kind):
+    """A gear's play was named for a model on a pond whose rudder is an order, in calm of no log."""
+    eps = 0.10 * np.sqrt(0.9)
+    first, second = refit("a", 0.90, eps), refit("b", 0.92, 1.001 * eps, wobble=0.1)
+    for one, form in zip((first, second), forms, strict=True):
+        one.candidate.effect.forms = (form,)
+    ranking = (first.candidate, second.candidate)
+    found = decide(fit(0.10), ranking, [first, second], NO_ROUTE, None, 0.05)
+    assert (found.kind, found.family) == (kind, ("a", "b"))
+    if kind == "cannot tell":
+        assert "a stands out against the noise, but it is no force" in found.sentence
+        assert "as well it may be b" in found.sentence
+
+
+def test_what_is_no_force_keeps_its_name_beside_a_force_alike_in_trace():
+    """Twins are one family, whatever they are."""
+    first = refit("a", 0.90, 0.095, family=("b",))
+    second = refit("b", 0.92, 0.0951, wobble=0.1)
+    first.candidate.effect.forms, second.candidate.effect.forms = (Delayed,), (Force,)
+    ranking = (first.candidate, second.candidate)
+    assert decide(fit(0.10), ranking, [first, second], NO_ROUTE, None, 0.05).effect == "a"
 
 
 def test_those_alike_in_trace_are_one_family_whatever_they_explain():

@@ -46,6 +46,15 @@ def test_two_that_are_missing_at_once_are_added_by_the_loop(result):
     assert_known(both_at_once.command)
 
 
+def test_where_one_of_several_is_missing_each_may_be_tried(result):
+    one_of = verdict("cannot tell", family=["rudder_backlash", "yaw_drag", "sway_drag", "heel"])
+    tried = [e.command for e in advised(result, verdict=one_of) if " add " in e.command]
+    names = ["rudder_backlash", "yaw_drag", "sway_drag"]
+    assert tried == [f"trialid add container_ship.toml {name}" for name in names]
+    for command in tried:
+        assert_known(command)
+
+
 def assert_known(command):
     """The words are those that the command line takes."""
     name, verb, *words = shlex.split(command)

@@ -159,6 +159,11 @@ def _unclear(run: Result) -> Iterable[Advice]:
             command(run, "run", "--auto"),
         )
         return
+    for name in run.verdict.family[: 1 + RIVALS]:
+        yield Advice(
+            f"It may be {name}. To see what it does, on trials that were not fitted, too:",
+            command(run, "add", name),
+        )
     if run.split.noise is not None:
         yield Advice(
             "The record itself leaves it open. What settles it is a trial in which the effect does "
