@@ -11,7 +11,7 @@ from trialid.alignment.clocks import Grid
 from trialid.errors import AlignmentError
 
 T = np.arange(0, 200, 0.1)
-UNITS = {"u": "m/s", "r": "rad/s", "p": "rad/s", "V_aw": "m/s", "n": "rad/s"}
+UNITS = {"u": "m/s", "v": "m/s", "r": "rad/s", "p": "rad/s", "V_aw": "m/s", "n": "rad/s"}
 
 
 def swing(t):
@@ -145,17 +145,20 @@ def test_one_long_flat_top_is_a_limit_where_noise_never_stands_still():
     assert not faulty(aligned({"r": digits}))
 
 
-def test_a_sensor_that_freezes_while_the_ship_turns():
-    phi, r = noisy(5), noisy(6)
-    frozen = phi.copy()
-    frozen[600:900] = frozen[600]
-    (words,) = faulty(aligned({"phi": frozen, "r": r}))
+@pytest.mark.parametrize(("frozen", "beside"), [("phi", "r"), ("r", "v")])
+def test_a_sensor_that_freezes_while_the_ship_turns(frozen, beside):
+    """Of a gyro her sway tells it, too: 115 % of r was left where the heading had been left out."""
+    kept, other = noisy(5), noisy(6)
+    held = kept.copy()
+    held[600:900] = held[600]
+    (words,) = faulty(aligned({frozen: held, beside: other}))
     assert words == (
-        "phi: 299 values did not change while the ship moved, at 60.1, 60.2, 60.3, ... s; masked"
+        f"{frozen}: 299 values did not change while the ship moved, "
+        "at 60.1, 60.2, 60.3, ... s; masked"
     )
-    moored = np.where((T > 55) & (T < 95), 1e-4, 1.0) * r
-    assert not faulty(aligned({"phi": frozen, "r": moored}))
-    assert not faulty(aligned({"phi": phi, "delta": 0.1 + 0 * T, "r": r}))
+    moored = np.where((T > 55) & (T < 95), 1e-4, 1.0) * other
+    assert not faulty(aligned({frozen: held, beside: moored}))
+    assert not faulty(aligned({frozen: kept, "delta": 0.1 + 0 * T, beside: other}))
 
 
 def test_a_resolution_that_matters_is_told():

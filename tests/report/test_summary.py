@@ -199,11 +199,12 @@ def test_what_a_person_has_to_judge_in_a_record_is_told_whatever_the_verdict(res
         "r: 1 value out of line, at 30.0 s; masked",
         "psi: 1 value jumped by up to 13 deg, at 41.5 s; left as it is",
         "heels inward in turns: correlation of phi with r u 1.00",
+        "r: does not change from 46.7 to 76.7 s; stuck?",
     ]
     for kind in ("missing", "no fit"):
         run["verdict"]["kind"] = kind
         said = " ".join(" ".join(lines(run, lines=60)).split())
         name = run["trials"][0]["name"]
         assert f"To check, in {name}: psi: 1 value jumped by up to 13 deg" in said
-        assert "(1 more on the page)" in said
+        assert "(2 more on the page)" in said
         assert "masked" not in said

@@ -50,7 +50,8 @@ its values are held, while others show that the ship moves. A coarse one often h
 ALIVE = 0.25
 """The ship moves when another motion spreads by this share of its spread over the trial."""
 GO_TOGETHER = {
-    "psi": ("r",), "r": ("psi", "phi"), "phi": ("p", "r"), "p": ("phi", "r"), "v": ("r", "psi"),
+    "psi": ("r",), "r": ("psi", "phi", "v"), "phi": ("p", "r"), "p": ("phi", "r"),
+    "v": ("r", "psi"),
 }  # fmt: skip
 """Motions that cannot rest while the other moves, the surest one first."""
 

@@ -268,12 +268,14 @@ def _open(
 ) -> bool:
     """Whether effects unlike in trace may be meant, and nothing says that it is this one.
 
-    None stands out against the noise; or the named one is no force: a sensor, a clock or a gear
-    that is late mends any hull a little, so that it stands out says that something is missing, and
-    not that it is no force that does as well.
+    None stands out against the noise; or the named one is no force, and a force leaves less where
+    it was not fitted: a sensor, a clock or a gear that is late mends any hull a little, so that it
+    stands out says that something is missing, and not which.
     """
     meant = {named.candidate.effect.name, *others}
-    unlike = [c.effect for c in ranking if c.effect.name in meant - {*named.candidate.family}]
+    unlike = [c for c in ranking if c.effect.name in meant - {*named.candidate.family}]
     if all(c.p_value >= level for c in ranking if c.effect.name in meant):
         return bool(unlike)
-    return not is_force(named.candidate.effect) and any(map(is_force, unlike))
+    return not is_force(named.candidate.effect) and any(
+        is_force(c.effect) and c.price < named.candidate.price for c in unlike
+    )

@@ -151,14 +151,14 @@ def subject(fit: Fit, named: Refit, others: int = 0) -> str:
     With so many others that do as well it is no more than the first of them.
     """
     name, held = named.candidate.effect.name, named.candidate.effect.held
-    if placed := fit.model.displaced_by(named.candidate.effect):
-        return f"{name} belongs in the place of {', '.join(placed)}: with it"
+    many = f"one of {others + 1} is missing, first of them {name}" if others >= MANY else ""
+    if placed := ", ".join(fit.model.displaced_by(named.candidate.effect)):
+        belongs = f"{many} in the place" if many else f"{name} belongs in the place"
+        return f"{belongs} of {placed}: with it"
     if held is None:
-        missing = f"{name} is missing"
-        if others >= MANY:
-            missing = f"one of {others + 1} is missing, first of them {name}"
-        return f"{missing}: with it"
-    return f"{name} is held at {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
+        return f"{many or f'{name} is missing'}: with it"
+    stands = f"{many}, held at" if many else f"{name} is held at"
+    return f"{stands} {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
 
 
 def falls_by(before: Fit, after: Fit) -> str:

@@ -60,23 +60,27 @@ def test_the_sentence_says_no_chance_that_was_not_shown():
 
 
 @pytest.mark.parametrize(
-    ("forms", "kind"),
+    ("forms", "left", "kind"),
     [
-        ((Rate, Force), "cannot tell"),  # a gear with play, and a hull's force
-        ((Delayed, Mass), "cannot tell"),
-        ((Delayed, Lagged), "missing"),  # sensors both: which of them the family says
-        ((Force, Force), "missing"),
-        ((Force, Delayed), "missing"),
+        ((Rate, Force), 0.88, "cannot tell"),  # a gear with play, and a hull's force
+        ((Delayed, Mass), 0.88, "cannot tell"),
+        ((Rate, Force), 0.92, "missing"),  # the force leaves more where it was not fitted
+        ((Delayed, Lagged), 0.88, "missing"),  # sensors both: which of them the family says
+        ((Force, Force), 0.88, "missing"),
+        ((Force, Delayed), 0.88, "missing"),
     ],
 )
-def test_what_is_no_force_has_no_name_where_a_force_does_as_well(forms, kind):
-    """A gear's play was named for a model on a pond whose rudder is an order, in calm of no log."""
-    eps = 0.10 * np.sqrt(0.9)
-    first, second = refit("a", 0.90, eps), refit("b", 0.92, 1.001 * eps, wobble=0.1)
+def test_what_is_no_force_has_no_name_where_a_force_carries_over_better(forms, left, kind):
+    """A gear's play was named for a model on a pond, whose rudder is an order, in wind of no log.
+
+    A third power of sway left 0.89 on blocks, the play 0.93; but against the noise it alone stood
+    out, as it does of a gear that has it, and there it leaves less than every force.
+    """
+    first, second = refit("a", 0.90, 0.095), refit("b", left, 0.0951, wobble=0.1)
     for one, form in zip((first, second), forms, strict=True):
         one.candidate.effect.forms = (form,)
     ranking = (first.candidate, second.candidate)
-    found = decide(fit(0.10), ranking, [first, second], NO_ROUTE, None, 0.05)
+    found = decide(fit(0.10), ranking, [first], NO_ROUTE, None, 0.05)
     assert (found.kind, found.family) == (kind, ("a", "b"))
     if kind == "cannot tell":
         assert "a stands out against the noise, but it is no force" in found.sentence
@@ -86,10 +90,10 @@ def test_what_is_no_force_has_no_name_where_a_force_does_as_well(forms, kind):
 def test_what_is_no_force_keeps_its_name_beside_a_force_alike_in_trace():
     """Twins are one family, whatever they are."""
     first = refit("a", 0.90, 0.095, family=("b",))
-    second = refit("b", 0.92, 0.0951, wobble=0.1)
+    second = refit("b", 0.88, 0.0951, wobble=0.1)
     first.candidate.effect.forms, second.candidate.effect.forms = (Delayed,), (Force,)
     ranking = (first.candidate, second.candidate)
-    assert decide(fit(0.10), ranking, [first, second], NO_ROUTE, None, 0.05).effect == "a"
+    assert decide(fit(0.10), ranking, [first], NO_ROUTE, None, 0.05).effect == "a"
 
 
 def test_those_alike_in_trace_are_one_family_whatever_they_explain():

@@ -43,7 +43,7 @@ class Rows:
 
 
 TO_CHECK: Final = re.compile(
-    r"; left as (it is|they are)\b|: only \[.*\] s is used|\bheels inward in turns\b"
+    r"; left as (it is|they are)\b|: only \[.*\] s is used|\bstuck\?|\bheels inward in turns\b"
 )
 """What a remark says of values that a person has to judge: a jump, a record that is used in part, a
 roll that may be positive to port."""
@@ -114,11 +114,10 @@ def _next(run: Result, file: str) -> "Iterable[RenderableType]":
             "missing force, to be edited",
             2,
         )
-    if verdict.kind == "nothing missing" or (
-        verdict.kind == "cannot tell" and not verdict.together
-    ):
-        first = advice.first_step(run)
-        yield from (Words(f"Next: {plain(each.words)}", 2) for each in (first,) if each is not None)
+    open_still = verdict.kind == "cannot tell" and not verdict.together
+    first = advice.first_step(run) if open_still or verdict.kind == "nothing missing" else None
+    if first is not None:
+        yield Words(f"Next: {plain(f'{first.words} {first.command}'.rstrip())}", 3)
     if run.before_after is not None and verdict.kind != "missing":
         yield Words(_change(run.before_after), 2)
     if verdict.next_trial and verdict.next_trial.sentence:
