@@ -107,16 +107,18 @@ def _quantities(one: Actuator) -> Iterable[Quantity]:
         is_angle = signal == one.angle
         unit = "rad" if is_angle else COMMANDS[one.command]
         what = f"{'angle' if is_angle else one.command} of the {one.kind} {one.name}"
-        side = _positive(one, is_angle=is_angle)
+        told = f"{what}, positive {_positive(one, is_angle=is_angle)}"
+        others = () if is_angle else tuple(COMMANDS.items())
         for name, word in ((signal, ""), (f"{signal}_order", "ordered ")):
             yield Quantity(
                 name,
                 name,
                 unit,
                 SHOWN[unit],
-                f"{word}{what}, positive {side}",
+                f"{word}{told}",
                 mirror=-1 if is_angle else 1,
                 steers=one.kind == "rudder",
+                commands=others,
             )
     if one.kind == "waterjet":
         words = f"bucket of the waterjet {one.name}, 0 open, 1 all of the jet turned back"
@@ -247,8 +249,7 @@ def _one_of(given: Any, known: Sequence[str], where: str) -> Any:
 
 
 def _is_number(given: Any) -> bool:
-    number = isinstance(given, int | float) and not isinstance(given, bool)
-    return number and math.isfinite(given)
+    return isinstance(given, int | float) and type(given) is not bool and math.isfinite(given)
 
 
 def _check_names(made: Sequence[Actuator], where: str) -> None:

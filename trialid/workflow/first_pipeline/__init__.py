@@ -19,8 +19,8 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
     actuator_lines,
     boat_actuators,
     choose,
-    driving,
     is_boat,
+    main_drives,
     named_by_ship,
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
@@ -124,7 +124,7 @@ def starter(
     L = own.particulars["L"]
     if not decays:
         trials = with_rudder_units([size_unit(one, L, u0) for one in trials], L, u0)
-        trials = with_orders(trials, L / u0, driving(own))
+        trials = with_orders(trials, L / u0, main_drives(own))
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))

@@ -8,7 +8,7 @@ from typing import Final
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.name_words import words
-from trialid.inspection.relations import side
+from trialid.inspection.relations import Side, side
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator
 from trialid.ship.particulars import Ship
@@ -24,6 +24,9 @@ THRUST: Final = frozenset(words("thr thrust thruster thrusters strahl strahlrude
 NO_THRUST: Final = frozenset(
     words("temperature temp voltage current oil hours status enable angle")
 )
+
+TURNS: Final = ("r", "psi")
+"""Of which every steered trial has one, the rate before the heading."""
 
 SOUGHT: Final = "the run seeks what it does"
 BY_HAND: Final = "write an [[actuator]] for it in her file, see `trialid guide actuators`"
@@ -120,20 +123,25 @@ def _pushes_to(trials: Sequence[Chosen], name: str) -> float:
     """Where a positive one pushes her [rad], as all trials have it that show it; 0: none does."""
     shown = set[str]()
     for trial in trials:
-        by_name = {one.quantity: one for one in trial.signals}
-        turn = by_name.get("r") or by_name["psi"]
-        towards = turn.positive or "starboard" if turn.quantity == "r" else None
-        steers = [
-            one.source
-            for one in trial.signals
-            if one.quantity in RUDDERS or one.quantity not in (*SIGNALS, *PLACES)
-        ]
-        found = side(by_name[name].source, turn.source, towards, steers)
+        found = _side(trial, name)
         shown |= {found.side} if found else set()
     if len(shown) != 1:
         return 0.0
     ahead = PLACES[name] > 0.0  # aft a push to starboard turns her to port
     return math.radians(90.0 if (shown == {"starboard"}) == ahead else -90.0)
+
+
+def _side(trial: Chosen, name: str) -> Side | None:
+    """To which side a positive one turns her, with what else steers her taken out."""
+    ours = next(one for one in trial.signals if one.quantity == name)
+    turn = next(one for one in trial.signals if one.quantity in TURNS)
+    steers = [
+        one.source
+        for one in trial.signals
+        if one.quantity in RUDDERS or one.quantity not in (*SIGNALS, *PLACES)
+    ]
+    towards = turn.positive or "starboard" if turn.quantity == "r" else None
+    return side(ours.source, turn.source, towards, steers)
 
 
 def _with_unused(trial: Chosen) -> Chosen:

@@ -271,6 +271,6 @@ def named_by_ship(signals: tuple[Signal, ...], ship: Ship) -> tuple[Signal, ...]
     )
 
 
-def driving(ship: Ship) -> frozenset[str]:
+def main_drives(ship: Ship) -> frozenset[str]:
     """Signals of what drives her, as fed back; a tunnel pushes her aside and no boat on."""
     return frozenset(one.drive for one in ship.actuators if one.drive and one.kind != "tunnel")

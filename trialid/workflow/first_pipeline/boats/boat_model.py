@@ -5,7 +5,7 @@ from typing import Final
 
 from trialid.effects.actuators.pushes import push_effects
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import at_rest, driving
+from trialid.workflow.first_pipeline.boats.boat_choice import at_rest, main_drives
 from trialid.workflow.first_pipeline.choice import Chosen
 from trialid.workflow.first_pipeline.held_out import held_out
 
@@ -49,7 +49,7 @@ def _goes_astern(trials: Sequence[Chosen], ship: Ship) -> bool:
     """Whether any thruster of any trial that is fitted does: the gain is one of all of them."""
     held = held_out(trials)
     fitted = [trial for place, trial in enumerate(trials) if place != held]
-    names = {n for drive in driving(ship) for n in (drive, f"{drive}_order")}
+    names = {n for drive in main_drives(ship) for n in (drive, f"{drive}_order")}
     drives = [one.source for trial in fitted for one in trial.signals if one.quantity in names]
     return any(
         one.low - rest < -ASTERN * (one.high - rest) for one in drives for rest in [at_rest(one)]
