@@ -6,11 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.held_out_rise import worse_held_out
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.completeness import Completeness
-from trialid.diagnosis.search.falls import fall
+from trialid.diagnosis.search.falls import fall, worse_held_out
 from trialid.diagnosis.search.refit import (
     AS_A_GEAR,
     AS_SLOW,

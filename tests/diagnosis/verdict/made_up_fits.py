@@ -16,7 +16,6 @@ def fit(eps, check=None, converged=True):
     return SimpleNamespace(
         eps_rmsn=eps,
         eps_check=check,
-        scores=(),
         converged=converged,
         eps_by_output={"r": eps},
         at_bounds={},

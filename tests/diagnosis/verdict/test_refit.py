@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from made_up_fits import BEFORE, fit
 
-from trialid.diagnosis.held_out_rise import worse_held_out
 from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.falls import worse_held_out
 from trialid.diagnosis.search.refit import (
     AS_A_GEAR,
     AS_SLOW,

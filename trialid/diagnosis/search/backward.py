@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trialid.diagnosis.held_out_rise import worse_held_out
 from trialid.diagnosis.search.carried import SHAPE, Carried, Errors
 from trialid.diagnosis.search.carry_over import carried_between, left_out, levels, own_errors
+from trialid.diagnosis.search.falls import worse_held_out
 from trialid.diagnosis.verdict import NAMED
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify

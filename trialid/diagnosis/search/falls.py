@@ -16,6 +16,14 @@ class Refitted(Protocol):
         """The fit of the larger model."""
 
 
+def worse_held_out(before: Fit, after: Fit) -> bool:
+    """Whether held-out trials, where there are any, become worse or are lost."""
+    old, new = before.eps_check, after.eps_check
+    if old is None or new is None:
+        return False
+    return not np.isfinite(new) or new > old
+
+
 def fall(fit: Fit, refit: Refitted) -> float:
     """Share of the squared error that goes with an effect."""
     return float(1.0 - (refit.fit.eps_rmsn / fit.eps_rmsn) ** 2)

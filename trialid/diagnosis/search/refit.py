@@ -16,7 +16,6 @@ from trialid.diagnosis.found_values import (
     sweeps_away,
     turns_round,
 )
-from trialid.diagnosis.held_out_rise import worse_held_out
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.plain_damping import is_plain_damping
 from trialid.diagnosis.rudder_jumps import jump_in
@@ -31,7 +30,7 @@ from trialid.diagnosis.search.carried import (
     is_far,
 )
 from trialid.diagnosis.search.carry_over import carried_between
-from trialid.diagnosis.search.falls import Refitted, fall, fall_of_all, own_fall
+from trialid.diagnosis.search.falls import Refitted, fall, fall_of_all, own_fall, worse_held_out
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
