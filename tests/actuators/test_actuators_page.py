@@ -63,6 +63,7 @@ def test_its_pipeline_is_a_model_of_its_ship(folder: Path) -> None:
     [
         ("left_order ", "lift_order ", "lift_order: unknown quantity; did you mean 'left_order'?"),
         ('"rpm_left", unit = "rpm"', '"l", unit = "N"', "left_order.unit: unit 'N' cannot become"),
+        ('"rpm_left", unit = "rpm"', '"l", unit = "%"', r'or say .* command = "share"$'),
         ('"rpm_left",', '"rpm_left", positive = "port",', "'left_order' has no port or starboard"),
     ],
 )

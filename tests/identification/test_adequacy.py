@@ -7,13 +7,13 @@ import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
 from trialid.identification.adequacy import (
-    RUDDER_RANGE,
     SLOWEST_TIMES,
     UNEXPLAINED,
     why_no_fit,
 )
 from trialid.identification.file_of_ship import steers_backwards
 from trialid.identification.fit import identify
+from trialid.identification.no_manoeuvre import RUDDER_RANGE
 from trialid.identification.problem import Settings
 from trialid.identification.remarks import remarks
 from trialid.identification.time_scales import slowest_motion

@@ -103,7 +103,7 @@ def _same(stated: str, logged: str, quantity: Quantity, where: str) -> bool:
 
 def _factor(unit: str, quantity: Quantity, where: str) -> float:
     try:
-        return units.factor(unit, quantity.unit)
+        return units.factor_of(unit, quantity)
     except UnitError as error:
         raise UnitError(f"{where}: {error}") from error
 

@@ -27,8 +27,9 @@ from trialid.diagnosis.search.together import Together, two_at_once
 from trialid.diagnosis.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_two
 from trialid.diagnosis.where.misfit import where
-from trialid.identification.adequacy import Inadequate, why_no_fit
+from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit
+from trialid.identification.inadequate import Inadequate
 from trialid.progress import Progress, silent
 from trialid.ship.effect import Effect
 from trialid.threads import one_thread

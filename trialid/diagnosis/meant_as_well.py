@@ -55,7 +55,9 @@ def also_from(found: Verdict, two: Together | None, held: Sequence[str]) -> Verd
         others.append(f"what is held, off by what its source allows, {' and '.join(held)} most")
     begin = "nor" if len(found.family) > 1 else "this record cannot tell it"
     words = "".join(f"; {'nor' if i else begin} from {x}" for i, x in enumerate(others))
-    return replace(found, sentence=found.sentence + words)
+    pair = two.names if two else ()
+    sentence = found.sentence + words
+    return replace(found, sentence=sentence, pair_as_well=pair, held_as_well=tuple(held))
 
 
 def two_instead(

@@ -80,8 +80,20 @@ HARDLY: Final = 0.01
 the same of them, with twice nothing is missing while the damping is."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class AsWell:
+    """What a name is not told from beside single effects.
+
+    Two others at once, that do as well as it; numbers that are held and do, off by what their
+    source allows, those moved most.
+    """
+
+    pair_as_well: tuple[str, ...] = ()
+    held_as_well: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(AsWell):
     """What the record says is missing, in one of four kinds, with the sentence a person reads.
 
     `family` are the effect and what it is not told from; without an effect those of which one is

@@ -5,7 +5,7 @@ a number in it, which the unit must give. Nothing else is as sharp, so nothing e
 """
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -88,13 +88,17 @@ class Side:
 
 
 def side(
-    rudder: ChannelInspection, rate: ChannelInspection, if_to: str | None = None
+    rudder: ChannelInspection,
+    rate: ChannelInspection,
+    if_to: str | None = None,
+    beside: Sequence[ChannelInspection] = (),
 ) -> Side | None:
     """The side of a rudder against a rate of turn, or a heading; None where it is not clear.
 
     The rate is positive to `if_to`; None: by its format's convention, starboard where it has none.
+    What else turns her stands `beside`.
     """
-    found = _turning(rudder, rate)
+    found = _turning(rudder, rate, beside)
     if found is None or not found.sign:
         return None
     towards = if_to or (rate.guess.positive if rate.guess else None) or "starboard"
@@ -103,16 +107,18 @@ def side(
     return Side(to if found.sign > 0 else other, found.correlation, to, found.words)
 
 
-def _turning(rudder: ChannelInspection, turning: ChannelInspection) -> signs.Turning | None:
+def _turning(
+    rudder: ChannelInspection, turning: ChannelInspection, beside: Sequence[ChannelInspection]
+) -> signs.Turning | None:
     """How the ship answers a rudder; None where the two have too little in common."""
-    common = on_one_clock(rudder.sketch, turning.sketch)
+    common = on_one_clock(rudder.sketch, turning.sketch, *(one.sketch for one in beside))
     if common is None:
         return None
-    period, (delta, r), whole = common
+    period, (delta, r, *others), whole = common
     if turning.guess is not None and turning.guess.quantity == "psi":
         r = np.gradient(r)
-    found = signs.answer_of(delta, r, whole, period)
-    return found if found.sign else first_turn(delta, r, whole)
+    found = signs.answer_of(delta, r, whole, period, others)
+    return found if found.sign or others else first_turn(delta, r, whole)
 
 
 def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | None:

@@ -11,7 +11,8 @@ class Quantity:
     `mirror` is the sign the quantity takes when port and starboard are exchanged: +1 for what the
     mirror leaves alone (surge speed), -1 for what it reverses (rudder angle). `shown` is the unit
     in reports, `length` and `speed` the powers of L and U in its prime scale; `steers` that it is
-    an angle of a rudder, whose side no convention settles.
+    an angle of a rudder, whose side no convention settles. `commands` are the kinds of order that
+    the ship file may say it is instead, each with its unit.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Quantity:
     angle: bool = False
     aliases: frozenset[str] = frozenset()
     steers: bool = False
+    commands: tuple[tuple[str, str], ...] = ()
 
 
 def _table(rows: Iterable[Quantity]) -> dict[str, Quantity]:

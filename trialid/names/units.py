@@ -79,6 +79,25 @@ def factor(unit: str, si: str) -> float:
     return usual[1] if usual is not None and usual[0] == si else _looked_up(unit, text, si)
 
 
+def factor_of(unit: str, quantity: Quantity) -> float:
+    """The same for a quantity; of a drive the refusal tells the command that has this unit."""
+    try:
+        return factor(unit, quantity.unit)
+    except UnitError as error:
+        others = [name for name, si in quantity.commands if _becomes(unit, si)]
+        if not others:
+            raise
+        told = f'at this [[actuator]], command = "{others[0]}"'
+        raise UnitError(f"{error}; or say in the ship file, {told}") from error
+
+
+def _becomes(unit: str, si: str) -> bool:
+    try:
+        return factor(unit, si) > 0.0
+    except UnitError:
+        return False
+
+
 def _looked_up(unit: str, text: str, si: str) -> float:
     """The factor by the library of units; `text` is the unit in words that it knows."""
     import pint

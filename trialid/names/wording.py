@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Sequence
+from typing import Final
 
 DASH = "\N{EN DASH}"
 MINUS = "\N{MINUS SIGN}"
@@ -34,14 +35,20 @@ def number(value: float | None, digits: int = 4) -> str:
     return mantissa + _TIMES + str(power).translate(_RAISED)
 
 
+MOST: Final = 1000.0
+"""[%] From which on a person reads no digits: ten times its own size is not known at all. Half of
+it still prints the error of a boat begun with a gain 25 times too large, 231 %, as twice does."""
+
+
 def percent(fraction: float | None, digits: int = 3) -> str:
-    """A fraction as a percentage: 0.12345 is `12.3 %`."""
+    """A fraction as a percentage: 0.12345 is `12.3 %`, and 3e14 is `> 1000 %`."""
     if fraction is None or not math.isfinite(fraction):
         return DASH
     value = 100.0 * fraction
-    if not math.isfinite(value):
-        return DASH
-    if abs(value) < 0.001 or abs(value) >= 1e7:
+    if abs(value) > MOST:
+        beyond = ">" if value > 0.0 else "below"
+        return f"{beyond}{THIN}{_fixed(math.copysign(MOST, value), 0)}{THIN}%"
+    if abs(value) < 0.001:
         return number(value, min(digits, 2)) + THIN + "%"
     return _fixed(value, min(digits - 1 - _power(value, digits), 4)) + THIN + "%"
 

@@ -152,7 +152,7 @@ def _side_trouble(quantity: Quantity, positive: str | None) -> str:
 
 def _unit_trouble(quantity: Quantity, unit: str | None) -> str:
     try:
-        units.factor(unit or quantity.unit, quantity.unit)
+        units.factor_of(unit or quantity.unit, quantity)
     except UnitError as error:
         return str(error)
     return ""

@@ -154,12 +154,16 @@ class VerdictPart:
     """What is missing, in one word and in one sentence; `no fit` says why nothing can be said.
 
     `family` are the effect and what it is not told from; without an effect those of which one is
-    missing. `together` are two effects that do at once what none does alone.
+    missing. `together` are two effects that do at once what none does alone. Of a name that two
+    others do as well as, both at once, these are `pair_as_well`; numbers that are held and do as
+    well, off by what their source allows, are `held_as_well`, those moved most.
     """
 
     kind: str | None = None
     effect: str | None = None
     family: tuple[str, ...] = ()
     together: tuple[str, ...] = ()
+    pair_as_well: tuple[str, ...] = ()
+    held_as_well: tuple[str, ...] = ()
     sentence: str | None = None
     next_trial: NextTrialPart | None = None

@@ -117,6 +117,8 @@ def verdict_part(v: Verdict, proposal: Separation | None) -> VerdictPart:
         effect=v.effect,
         family=tuple(v.family),
         together=v.together,
+        pair_as_well=v.pair_as_well,
+        held_as_well=v.held_as_well,
         sentence=v.sentence,
         next_trial=None if proposal is None else _next_trial(proposal),
     )

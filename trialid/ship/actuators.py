@@ -18,6 +18,7 @@ TURNED: Final = ("azimuth", "waterjet")
 """Kinds that have an angle beside what drives them."""
 COMMANDS: Final = {"revolutions": "rad/s", "share": "1", "thrust": "N"}
 """What drives an actuator, and its unit."""
+ORDERS: Final = tuple(COMMANDS.items())
 SHOWN: Final = {"rad": "deg", "rad/s": "rpm", "1": "1", "N": "N"}
 NAME: Final = re.compile(r"[a-z][a-z0-9_]*")
 ENDINGS: Final = ("_order", "_angle", "_bucket")
@@ -107,16 +108,17 @@ def _quantities(one: Actuator) -> Iterable[Quantity]:
         is_angle = signal == one.angle
         unit = "rad" if is_angle else COMMANDS[one.command]
         what = f"{'angle' if is_angle else one.command} of the {one.kind} {one.name}"
-        side = _positive(one, is_angle=is_angle)
+        told = f"{what}, positive {_positive(one, is_angle=is_angle)}"
         for name, word in ((signal, ""), (f"{signal}_order", "ordered ")):
             yield Quantity(
                 name,
                 name,
                 unit,
                 SHOWN[unit],
-                f"{word}{what}, positive {side}",
+                f"{word}{told}",
                 mirror=-1 if is_angle else 1,
                 steers=one.kind == "rudder",
+                commands=() if is_angle else ORDERS,
             )
     if one.kind == "waterjet":
         words = f"bucket of the waterjet {one.name}, 0 open, 1 all of the jet turned back"
@@ -194,9 +196,8 @@ def _check_row(row: Mapping[str, Any], full: Mapping[str, Any], where: str) -> N
     if not isinstance(at, list) or len(at) != 2 or not all(map(_is_number, at)):
         raise ShipError(f"{where}: at = {at!r}; write [metres ahead, metres to starboard]")
     if not _is_number(full["direction"]):
-        raise ShipError(
-            f"{where}: direction = {full['direction']!r}; write degrees from ahead, clockwise"
-        )
+        told = f"direction = {full['direction']!r}"
+        raise ShipError(f"{where}: {told}; write degrees from ahead, clockwise")
     for key in ("limit", "rate"):
         _check_size(row, key, where)
 
@@ -247,8 +248,7 @@ def _one_of(given: Any, known: Sequence[str], where: str) -> Any:
 
 
 def _is_number(given: Any) -> bool:
-    number = isinstance(given, int | float) and not isinstance(given, bool)
-    return number and math.isfinite(given)
+    return isinstance(given, int | float) and type(given) is not bool and math.isfinite(given)
 
 
 def _check_names(made: Sequence[Actuator], where: str) -> None:

@@ -14,8 +14,9 @@ from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.noise import thinning
 from trialid.diagnosis.search.falls import fall, fall_of_check
-from trialid.identification.adequacy import Inadequate, why_no_fit
+from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import identify
+from trialid.identification.inadequate import Inadequate
 from trialid.identification.problem import Settings
 
 LINEAR = MODEL - "yaw_drag_rar"

@@ -1,6 +1,7 @@
 """What a name is not told from beside single effects: two others at once, and what is held."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from trialid.diagnosis.search.score import rank
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
+from trialid.result.missing_rows import verdict_part
 
 FREE = ("Nv", "Nr", "Ndelta", "Yv")
 TWO = ("yaw_drag_rar", "heel_yaw")
@@ -100,6 +102,13 @@ def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
 def test_it_is_said_after_what_is_said(family, held, said):
     found = also_from(Verdict("missing", "a", family, "a is missing"), None, held)
     assert found.sentence.split(", off by")[0] == said
+    assert verdict_part(found, None).held_as_well == held
+
+
+def test_two_at_once_stand_in_the_result_too():
+    two = SimpleNamespace(names=("b", "c"))
+    row = verdict_part(also_from(Verdict("missing", "a", ("a",), "a is missing"), two, ()), None)
+    assert (row.pair_as_well, row.held_as_well, row.family) == (("b", "c"), (), ("a",))
 
 
 def test_what_is_held_of_the_roll_is_freed_where_no_roll_is_compared(without_two):

@@ -11,7 +11,7 @@ left of its change; then the rate of turn is held against the rudder directly. A
 every swing would show the opposite sign there, but after the ship and not before her.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,11 +111,16 @@ def answer(trial: Trial, rudder: str, turning: tuple[Vector, Mask]) -> Turning:
     return answer_of(trial.signals[rudder], rate, valid & trial.valid[rudder], trial.period)
 
 
-def answer_of(rudder: Vector, rate: Vector, both: Mask, period: float) -> Turning:
-    """The same of a rudder and a rate of turn on one clock, `period` [s], where both are valid."""
+def answer_of(
+    rudder: Vector, rate: Vector, both: Mask, period: float, beside: Sequence[Vector] = ()
+) -> Turning:
+    """The same of a rudder and a rate of turn on one clock, `period` [s], where both are valid.
+
+    What else turns her, `beside`, is taken out as her damping is.
+    """
     if _stands(rudder[both]):
         return Turning(0.0, 0.0, "dr/dt")
-    whole, parts = agreement(rudder, rate, both, damping=rate)
+    whole, parts = agreement(rudder, rate, both, (rate, *beside))
     for side in (1.0, -1.0):
         if contradicts((-side * whole, [-side * part for part in parts])):
             return Turning(side, whole, "dr/dt")
@@ -169,14 +174,15 @@ def contradicts(found: tuple[float, list[float]]) -> bool:
 
 
 def agreement(
-    cause: Vector, effect: Vector, valid: Mask, damping: Vector | None = None
+    cause: Vector, effect: Vector, valid: Mask, others: Sequence[Vector] = ()
 ) -> tuple[float, list[float]]:
     """Correlation of the mean of `cause` with the change of `effect` over stretches of time.
 
-    The mean of `damping` is taken out of both first. Second result: the same in each part of the
+    The means of `others`, as of damping, are taken out of both first. Second result: the same in
+    each part of the
     record. Zero, and no parts, where nothing moves or the record is too short.
     """
-    tables = list(_doubled(cause, effect, damping, valid))
+    tables = list(_doubled(cause, effect, others, valid))
     strengths = [_correlation(table) for table in tables]
     if not strengths:
         return 0.0, []
@@ -198,30 +204,29 @@ def _moves(part: Vector, least: float) -> bool:
 
 
 def _doubled(
-    cause: Vector, effect: Vector, damping: Vector | None, valid: Mask
+    cause: Vector, effect: Vector, others: Sequence[Vector], valid: Mask
 ) -> Iterator[Vector]:
-    """Mean cause, change of the effect, mean damping of every wholly valid stretch; (n, 3).
+    """Mean cause, change of the effect, means of others of every wholly valid stretch; (n, 2 + k).
 
     Of one period, then of twice as many, each from the two halves of a stretch, the ends counting
     half: a day takes a second, where each sum made anew would take a minute.
     """
     missing = np.concatenate([[0], np.cumsum(~valid)])
-    means = [(y[1:] + y[:-1]) / 2 for y in (cause, damping) if y is not None]
+    means = [(y[1:] + y[:-1]) / 2 for y in (cause, *others)]
     length = 1
     while length <= len(cause) // FEWEST_STRETCHES:
         whole = missing[length + 1 :] == missing[: -length - 1]
         change = effect[length:] - effect[:-length]
-        taken = means[1] if damping is not None else np.zeros_like(change)
-        yield np.column_stack([means[0], change, taken])[whole]
+        yield np.column_stack([means[0], change, *means[1:]])[whole]
         means = [(y[length:] + y[:-length]) / 2 for y in means]
         length *= 2
 
 
 def _correlation(table: Vector) -> float:
-    """Correlation of the first two columns without what the third explains; 0 if nothing moves."""
+    """Correlation of the first two columns without what the others explain; 0 if nothing moves."""
     if len(table) < FEWEST_STRETCHES:
         return 0.0
-    explained, _ = np.linalg.qr(np.column_stack([np.ones(len(table)), table[:, 2]]))
+    explained, _ = np.linalg.qr(np.column_stack([np.ones(len(table)), table[:, 2:]]))
     centred = table[:, :2] - table[:, :2].mean(axis=0)
     left = centred - explained @ (explained.T @ centred)
     if np.any(np.std(left, axis=0) <= DEPENDENT * np.std(centred, axis=0)):

@@ -7,7 +7,6 @@ from typing import Final
 
 from trialid.errors import LogError
 from trialid.inspection import Inspection
-from trialid.ship.actuators import Actuator
 from trialid.ship.estimate import Given, estimate
 from trialid.ship.estimate.ship_text import ship_text
 from trialid.ship.particulars import Ship, read_ship
@@ -21,6 +20,7 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
     boat_actuators,
     choose,
     is_boat,
+    main_drives,
     named_by_ship,
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
@@ -32,6 +32,7 @@ from trialid.workflow.first_pipeline.roll_decay import decays_among
 from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track
+from trialid.workflow.first_pipeline.tunnel_thrusters import tunnels_of, with_tunnels
 from trialid.workflow.first_pipeline.twin_rudders import (
     RUDDERS,
     has_twins,
@@ -121,10 +122,9 @@ def starter(
     elif is_boat(shared_signals(trials)):
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
-    drives = frozenset(one.drive for one in own.actuators if one.drive)
     if not decays:
         trials = with_rudder_units([size_unit(one, L, u0) for one in trials], L, u0)
-        trials = with_orders(trials, L / u0, drives)
+        trials = with_orders(trials, L / u0, main_drives(own))
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
@@ -139,6 +139,7 @@ def _steered(
     """What to take from each log of a ship that is steered; LogError where they hold too little."""
     chosen = _with_speeds([choose(one, speed) for one in known], speed)
     trials = with_revolutions(without_small_roll(with_sides(with_twins(chosen, own))))
+    trials = with_tunnels(trials, own)
     trials = [
         with_velocities_beside(held_against_track(one), survey)
         for one, survey in zip(trials, surveys, strict=True)
@@ -158,11 +159,11 @@ def _begun(pipeline: Path, given: Given, trials: Sequence[Chosen]) -> tuple[Ship
     told = (one.speed_words for one in trials if one.speed == given.speed)
     words = next(told, "as stated")
     made = estimate(given, f"ship of {pipeline.stem}")
-    ones: tuple[Actuator, ...] = ()
+    ones = tunnels_of(trials, made.ship)
     if is_boat(shared_signals(trials)):
-        ones = boat_actuators(trials[0].signals, made.ship)
+        ones = (*boat_actuators(trials[0].signals, made.ship), *ones)
     elif has_twins(trials[0].signals):
-        ones = twin_actuators(made.ship)
+        ones = (*twin_actuators(made.ship), *ones)
     text = ship_text(made, comment(words)) + "\n".join(actuator_lines(ones))
     return replace(made.ship, actuators=ones), text
 

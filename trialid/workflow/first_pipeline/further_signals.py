@@ -46,14 +46,18 @@ moved at random; with half of it that one is told too, with twice none is."""
 def with_further(trial: Chosen, live: Live) -> Chosen:
     """The trial with what else its log holds: wind, a sway speed, what is left to the user."""
     trial = with_heading(trial, live)
-    wind = [plain_signal(name, live, why) for name, why in WIND.items() if live.get(name)]
-    whole = len(wind) == len(WIND) and not any(one.open for one in wind)
-    found = dataclasses.replace(
-        trial,
-        signals=(*trial.signals, *(wind if whole else ())),
-        beside=(*_left(trial, live), *(() if whole else ((one, WHOLE_WIND) for one in wind))),
-    )
+    trial = dataclasses.replace(trial, beside=(*trial.beside, *_left(trial, live)))
+    found = with_wind(trial, live)
     return _with_sway(found, plain_signal("v", live, "")) if live.get("v") else found
+
+
+def with_wind(trial: Chosen, live: Live) -> Chosen:
+    """The trial with the wind that its log holds, or with it beside."""
+    wind = [plain_signal(name, live, why) for name, why in WIND.items() if live.get(name)]
+    if len(wind) == len(WIND) and not any(one.open for one in wind):
+        return dataclasses.replace(trial, signals=(*trial.signals, *wind))
+    beside = ((one, WHOLE_WIND) for one in wind)
+    return dataclasses.replace(trial, beside=(*trial.beside, *beside))
 
 
 def with_heading(trial: Chosen, live: Live) -> Chosen:

@@ -13,6 +13,7 @@ from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
 from trialid.toml_text import array, quote
+from trialid.workflow.first_pipeline.boats.boat_choice import main_drives
 from trialid.workflow.first_pipeline.boats.boat_model import boat_model
 from trialid.workflow.first_pipeline.choice import OPEN, RUDDERS, Chosen, Signal
 from trialid.workflow.first_pipeline.free_lines import free_lines
@@ -188,7 +189,7 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     if is_of_decays(trials):
         yield from decay_model(trials, ship)
         return
-    if known & {n for one in ship.actuators if (d := one.drive) for n in (d, f"{d}_order")}:
+    if known & {n for d in main_drives(ship) for n in (d, f"{d}_order")}:
         yield from boat_model(trials, ship)
         return
     several = bool(known & rudder_signals(ship.actuators))

@@ -3,6 +3,7 @@
 import dataclasses
 import shlex
 from collections.abc import Iterator
+from itertools import groupby
 from typing import Final
 
 import numpy as np
@@ -31,7 +32,7 @@ from trialid.workflow.first_pipeline.choice import (
     rate_signal,
     through_water,
 )
-from trialid.workflow.first_pipeline.further_signals import with_further, with_heading
+from trialid.workflow.first_pipeline.further_signals import with_further, with_heading, with_wind
 from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
@@ -62,6 +63,10 @@ ASSUMED: Final = {
     "azimuth": (
         "# ASSUMED: where the pods stand. Measure it: the moment goes with it, and what is",
         "# found of the inertia in yaw too.",
+    ),
+    "tunnel": (
+        "# ASSUMED: where the tunnel stands; which way it pushes the turn shows. Measure it: the",
+        "# moment goes with it.",
     ),
     "rudder": (
         "# ASSUMED: where the rudders stand. Only `rudders_drag` and `rudders_race` ask for it; a",
@@ -106,7 +111,7 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
         told = f"median length of {speed.source.name}"
     signals = (*angle_signals(survey, drives, turn), *drives, turn, speed)
     boat = Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
-    return with_course(with_heading(boat, live))
+    return with_wind(with_course(with_heading(boat, live)), live)
 
 
 def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
@@ -121,7 +126,7 @@ def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
 
 def _drive(name: str, source: ChannelInspection, says: tuple[bool, str]) -> Signal:
     fits, side_words = says
-    unit, of_unit = _unit(source)
+    unit, of_unit = unit_of_drive(source)
     if not fits:
         unit = OPEN
     if "without sign" in source.description:
@@ -132,7 +137,7 @@ def _drive(name: str, source: ChannelInspection, says: tuple[bool, str]) -> Sign
     return Signal(name, source, unit, None, f"{told}{of_unit}; {side_words}", ())
 
 
-def _unit(source: ChannelInspection) -> tuple[str, str]:
+def unit_of_drive(source: ChannelInspection) -> tuple[str, str]:
     """The unit to write, and why."""
     if source.unit is not None:
         return source.unit, ""
@@ -221,13 +226,14 @@ def boat_actuators(signals: tuple[Signal, ...], ship: Ship) -> tuple[Actuator, .
             kind="azimuth" if turned else "thruster",
             x=round(AFT * length, 2),
             y=round(sign * (ARM_OF_PODS if turned else ARM) * length, 2),
-            command=_command(units[name]),
+            command=command_of(units[name]),
         )
         for name, sign in ((PORT, -1.0), (STARBOARD, 1.0))
     )
 
 
-def _command(unit: str) -> Command:
+def command_of(unit: str) -> Command:
+    """What a drive with this unit is told: revolutions, a share of full, or a thrust."""
     if unit in ("1", "%", "percent"):
         return "share"
     return "thrust" if unit in ("N", "kN", OPEN) else "revolutions"
@@ -235,10 +241,10 @@ def _command(unit: str) -> Command:
 
 def actuator_lines(actuators: tuple[Actuator, ...]) -> Iterator[str]:
     """Tables for a ship file, with what was assumed; nothing where there is none."""
-    if actuators:
+    for kind, ones in groupby(actuators, lambda one: one.kind):
         yield ""
-        yield from ASSUMED[actuators[0].kind]
-    yield from actuator_tables(actuators)
+        yield from ASSUMED[kind]
+        yield from actuator_tables(ones)
 
 
 def named_by_ship(signals: tuple[Signal, ...], ship: Ship) -> tuple[Signal, ...]:
@@ -265,8 +271,6 @@ def named_by_ship(signals: tuple[Signal, ...], ship: Ship) -> tuple[Signal, ...]
     )
 
 
-def thrusters_among(signals: tuple[Signal, ...]) -> tuple[Signal, ...]:
-    """Those that no dictionary has: what drives her, and not to where."""
-    return tuple(
-        one for one in signals if one.quantity not in SIGNALS and not one.quantity.endswith(ANGLE)
-    )
+def main_drives(ship: Ship) -> frozenset[str]:
+    """Signals of what drives her, as fed back; a tunnel pushes her aside and no boat on."""
+    return frozenset(one.drive for one in ship.actuators if one.drive and one.kind != "tunnel")

@@ -5,7 +5,7 @@ from typing import Final
 
 from trialid.effects.actuators.pushes import push_effects
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import at_rest, thrusters_among
+from trialid.workflow.first_pipeline.boats.boat_choice import at_rest, main_drives
 from trialid.workflow.first_pipeline.choice import Chosen
 from trialid.workflow.first_pipeline.held_out import held_out
 
@@ -17,7 +17,7 @@ def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     """Lines of `[model]` and `[identify]`."""
     kind = "azimuths" if any(one.kind == "azimuth" for one in ship.actuators) else "thrusters"
     gains = next(one for one in push_effects(ship) if one.name == kind).parameters
-    astern = _goes_astern(trials)
+    astern = _goes_astern(trials, ship)
     free = [name for name in gains if astern or "ahead" in name]
     held = ", ".join(f"{n} = {p.start:.4g}" for n, p in gains.items() if n not in free)
     yield "[model]"
@@ -45,11 +45,12 @@ def _rate(trials: Sequence[Chosen]) -> bool:
     return all("r" in trial.quantities for trial in trials)
 
 
-def _goes_astern(trials: Sequence[Chosen]) -> bool:
+def _goes_astern(trials: Sequence[Chosen], ship: Ship) -> bool:
     """Whether any thruster of any trial that is fitted does: the gain is one of all of them."""
     held = held_out(trials)
     fitted = [trial for place, trial in enumerate(trials) if place != held]
-    drives = [one.source for trial in fitted for one in thrusters_among(trial.signals)]
+    names = {n for drive in main_drives(ship) for n in (drive, f"{drive}_order")}
+    drives = [one.source for trial in fitted for one in trial.signals if one.quantity in names]
     return any(
         one.low - rest < -ASTERN * (one.high - rest) for one in drives for rest in [at_rest(one)]
     )
