@@ -45,6 +45,7 @@ def examine_with_ranking(
     """
     progress("looking for what is missing", 0.65)
     augmented = augment(fit, tried_effects(fit, asked))
+    _ = augmented.evidence if augmented.traces else None  # once, for both
     (before, ranking), whole = both(
         lambda: (
             examine_fit(fit, asked, progress, augmented)[0],
