@@ -36,15 +36,15 @@ def side_by_side(work: Callable[[int], T], count: int, numbers: int) -> Iterator
         How many are worked out in all. With few it is done one after the other, as they are asked
         for.
     """
-    cores = min(_cores(), count) if numbers >= LONG else 1
-    if cores < 2:
+    many = min(cores(), count) if numbers >= LONG else 1
+    if many < 2:
         yield from map(work, range(count))
         return
-    with ThreadPoolExecutor(cores) as pool:
+    with ThreadPoolExecutor(many) as pool:
         yield from pool.map(work, range(count))
 
 
-def _cores() -> int:
+def cores() -> int:
     """As many as this process may use; OMP_NUM_THREADS, which says so to all others, holds here."""
     stated = os.environ.get("OMP_NUM_THREADS", "")
     if stated.isdigit() and int(stated):

@@ -7,8 +7,8 @@ import pytest
 import s175q
 from scipy.signal import lfilter
 
-from trialid.diagnosis.diagnose import examine_fit
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import examine_fit
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import BESIDE, Refit, objection, outputs_beside
 from trialid.diagnosis.search.score import Candidate

@@ -13,8 +13,8 @@ from pond import ESSO, PIPELINE, SHIP
 
 from trialid.cli.main import commands
 from trialid.design.following import standard_measures
-from trialid.diagnosis.diagnose import examine_fit
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import examine_fit
 from trialid.pipeline_file import load
 from trialid.result.json_file import read
 from trialid.workflow.build_model import available

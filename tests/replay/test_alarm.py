@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from trialid import pipeline_file
-from trialid.diagnosis.diagnose import examine_fit
+from trialid.diagnosis.examine import examine_fit
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.replay.alarm import Band, Monitor, bands
 from trialid.replay.playback import Playback

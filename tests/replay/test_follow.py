@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from trialid import pipeline_file
-from trialid.diagnosis.diagnose import examine_fit
+from trialid.diagnosis.examine import examine_fit
 from trialid.errors import TrialidError
 from trialid.identification.trial_score import of_trial
 from trialid.replay.alarm import bands

@@ -7,8 +7,8 @@ import pytest
 from s175q import MODEL, SETTINGS, zigzag
 
 from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
-from trialid.diagnosis.diagnose import examine_fit
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import examine_fit
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.identification.fit import identify
 from trialid.identification.problem import replace

@@ -10,6 +10,10 @@ from typing import Any, Final, TextIO
 import click
 
 from trialid.errors import TrialidError, harmless
+from trialid.second_process import tick_beside
+
+TICK: Final = 0.1
+"""Seconds between two pictures of a progress bar."""
 
 NARROWEST: Final = 40
 """Letters of a line that tables are still set in, whatever `COLUMNS` says."""
@@ -34,7 +38,8 @@ def progress_bar(*, shown: bool) -> Iterator[Progress]:
 
     sentence = TextColumn("{task.description}", markup=False)
     columns = (SpinnerColumn(), TimeElapsedColumn(), BarColumn(bar_width=20), sentence)
-    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
+    made = Bars(*columns, console=Console(stderr=True), transient=True, auto_refresh=False)
+    with made as bars, tick_beside(TICK, bars.refresh):  # by a thread that lets work be shared
         task = bars.add_task("reading", total=None)
 
         def show(sentence: str, fraction: float | None) -> None:

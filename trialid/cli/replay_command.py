@@ -172,7 +172,7 @@ def _ready(
     progress: Callable[[str, float | None], None],
 ) -> "Playback":  # fmt: skip
     """The trial, the fitted model and the noise bands, before the first sample."""
-    from trialid.diagnosis.diagnose import examine_fit
+    from trialid.diagnosis.examine import examine_fit
     from trialid.replay.alarm import bands
     from trialid.replay.playback import Playback
     from trialid.threads import one_thread

@@ -5,23 +5,26 @@ from dataclasses import replace
 from functools import partial
 
 from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, Diagnosis
+from trialid.diagnosis.examine import (
+    examine_alone,
+    examine_fit,
+    examine_with_ranking,
+    leaves_noise,
+    tried_effects,
+)
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
 from trialid.diagnosis.heel_side import leans_inward, settle_side
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
-from trialid.diagnosis.may_be_off import doubts
 from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
 from trialid.diagnosis.noise.noise_bound import held_against
-from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.plain_damping import dampings
-from trialid.diagnosis.search.augment import Augmented, augment
-from trialid.diagnosis.search.completeness import Completeness, completeness
-from trialid.diagnosis.search.freed import candidates_to_free
+from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
 from trialid.diagnosis.search.rivals import to_fit
-from trialid.diagnosis.search.score import Candidate, ranking_of
+from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, look_beside
 from trialid.diagnosis.search.together import Together, two_at_once
 from trialid.diagnosis.unrecorded import name_records
@@ -31,7 +34,7 @@ from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit
 from trialid.identification.inadequate import Inadequate
 from trialid.progress import Progress, silent
-from trialid.ship.effect import Effect
+from trialid.second_process import meanwhile
 from trialid.threads import one_thread
 
 
@@ -49,38 +52,42 @@ def diagnose(
     With `force` the missing force is sought whatever the verdict, beside a named effect; `grown`
     says that effects were added to the model before.
     """
-    asked = settings or DiagnoseSettings()
-    fit = with_means(fit)
-    before, augmented = examine_fit(fit, asked, progress)
-    ranking = ranking_of(fit, augmented, asked.family_cos, asked.level)
-    if faults := gross_faults(fit, asked.candidates, progress, partial(_leaves_noise, asked=asked)):
-        return _gross(fit, before, augmented.left_out, faults, asked)
+    asked, fit = settings or DiagnoseSettings(), with_means(fit)
+    if faults := gross_faults(fit, asked.candidates, progress, partial(leaves_noise, asked=asked)):
+        return _gross(fit, *examine_alone(fit, asked, progress), faults, asked)
     failed = why_no_fit(fit)
     if failed is not None and not failed.may_lack:
-        return _no_fit(fit, before, augmented.left_out, failed)
-    whole, left_out = _any_shape(augmented), augmented.left_out
-    del augmented  # columns of the whole catalogue, before there are those of the next model
+        return _no_fit(fit, *examine_alone(fit, asked, progress), failed)
+    before, left_out, ranking, whole = examine_with_ranking(fit, asked, progress)
     tried = refits_of(fit, ranking, asked, lambda words: progress(words, 0.7), grown)
     if faults := _whole(fit, ranking, tried.refits, asked, progress):
         return _gross(fit, before, left_out, faults, asked)
-    before = _bounded(before, tried.refits, whole)
-    verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
-    after = _after(verdict, tried, asked, progress)
-    if failed is not None and (after is None or why_no_fit(after.fit)):
-        return _no_fit(fit, before, left_out, failed)
-    verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
-    wanted = force or verdict.kind == "not in catalogue"
+    with meanwhile(partial(_after, tried.best, tried, asked, progress), _of(tried.best)) as best:
+        before = _bounded(before, tried.refits, whole)
+        verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
+        named = _named(verdict, tried.refits)
+        if failed is not None and (named is None or why_no_fit(named.fit)):
+            return _no_fit(fit, before, left_out, failed)
+        verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
+        wanted = force or verdict.kind == "not in catalogue"
+        missing = _force(wanted, named.fit if named else fit, asked.level, progress)
+        said, there = _beside_others(fit, verdict, tried.refits, asked, progress), where(fit)
+        after = best() if named is tried.best else _after(named, tried, asked, progress)
     return Diagnosis(
         before=before.beside(verdict.effect, after),
         ranking=ranking,
         left_out=left_out,
         refits=tried.refits,
-        verdict=_beside_others(fit, verdict, tried.refits, asked, progress),
-        where=where(fit),
+        verdict=said,
+        where=there,
         after=after,
-        force=_force(after.fit if after else fit, asked.level, progress) if wanted else None,
+        force=missing,
         together=together,
     )
+
+
+def _of(refit: Refit | None) -> tuple[Fit, ...]:
+    return () if refit is None else (refit.fit,)
 
 
 def _verdict(
@@ -116,7 +123,7 @@ def _beside_others(
     def said(words: str) -> None:
         progress(words, 0.85)
 
-    tried = _catalogue(fit, asked)
+    tried = tried_effects(fit, asked)
     two = two_instead(fit, named, verdict.family, tried, asked.refit, said)
     return also_from(verdict, two, held_instead(fit, named, said) if asked.coefficients else ())
 
@@ -143,14 +150,15 @@ def _named(verdict: Verdict, refits: Sequence[Refit]) -> Refit | None:
 
 
 def _after(
-    verdict: Verdict, tried: Tried, asked: DiagnoseSettings, progress: Progress
+    named: Refit | None, tried: Tried, asked: DiagnoseSettings, progress: Progress
 ) -> Diagnosed | None:
-    """The model with what is named, examined; None where nothing is."""
-    named = _named(verdict, tried.refits)
+    """The model with what is named, examined, with its accuracy; None where nothing is."""
     if named is None:
         return None
     known = tried.augmented if named is tried.best else None
-    return _bounded(examine_fit(named.fit, asked, progress, known)[0], tried.refits)
+    done = _bounded(examine_fit(named.fit, asked, progress, known)[0], tried.refits)
+    _ = done.accuracy  # all that follows asks for it
+    return done
 
 
 def _whole(
@@ -161,20 +169,15 @@ def _whole(
     progress: Progress,
 ) -> tuple[Refit, ...]:
     """Faults of actuators that explain what no refit does; mostly none."""
-    by_noise = partial(_leaves_noise, asked=asked)
+    by_noise = partial(leaves_noise, asked=asked)
     return whole_faults(
         fit, asked.candidates, ranking, others=refits, progress=progress, leaves_noise=by_noise
     )
 
 
-def _any_shape(augmented: Augmented) -> Completeness | None:
-    """Whether forces of any simple shape explain more; among sensors alone no force is missing."""
-    return completeness(augmented) if augmented.fit.model.states else Completeness(0.0, 0.0)
-
-
-def _force(fit: Fit, level: float, progress: Progress) -> MissingForce | None:
-    """The missing force of a fit, None where nothing is simulated that it could push."""
-    if not fit.model.states:
+def _force(wanted: bool, fit: Fit, level: float, progress: Progress) -> MissingForce | None:
+    """The missing force, None where nobody asks or nothing is simulated that it could push."""
+    if not wanted or not fit.model.states:
         return None
     progress("looking for the missing force", 0.9)
     return missing_force(fit, level)
@@ -211,25 +214,6 @@ def _gross(
     )
 
 
-def examine_fit(
-    fit: Fit, asked: DiagnoseSettings, progress: Progress, known: Augmented | None = None
-) -> tuple[Diagnosed, Augmented]:
-    """The split, the accuracy that follows from it, and the traces that both rest on.
-
-    `known` are the traces, where they are.
-    """
-    progress("looking for what is missing", 0.65)
-    augmented = known or augment(fit, _catalogue(fit, asked))
-    best, routes = split(fit, augmented, asked.noise, asked.quiet)
-    return Diagnosed(fit, best, routes, doubts(augmented)), augmented
-
-
-def _leaves_noise(fit: Fit, asked: DiagnoseSettings) -> bool:
-    """Whether noise is told from model error in what a fit leaves, and may be all of it."""
-    inside = examine_fit(fit, asked, silent)[0].split.undermodelling_interval
-    return inside is not None and inside[0] == 0.0
-
-
 def _bounded(
     done: Diagnosed, refits: Sequence[Refit], whole: Completeness | None = None
 ) -> Diagnosed:
@@ -263,7 +247,7 @@ def refits_of(
         fit,
         ranking,
         (*best, *refit(fit, others, progress)),
-        partial(_catalogue, asked=asked),
+        partial(tried_effects, asked=asked),
         most=asked.refit,
         level=asked.level,
         grown=grown,
@@ -286,8 +270,3 @@ def _surer(
     fitted = {r.candidate.effect.name for r in done}
     shown = (c for c in ranking if c.shown(asked.level) and c.p_value < sure)
     return [c for c in shown if c.effect.name not in fitted]
-
-
-def _catalogue(fit: Fit, asked: DiagnoseSettings) -> dict[str, Effect]:
-    """What is tried: effects, and coefficients that are held."""
-    return {**asked.candidates, **(candidates_to_free(fit) if asked.coefficients else {})}

@@ -62,16 +62,22 @@ class Diagnosed:
         """The same beside the model with the effect that is missing, where one has a name."""
         if effect is None or named is None:
             return self
-        return replace(self, named=(effect, named))
+        beside = replace(self, named=(effect, named))
+        vars(beside)["own_accuracy"] = self.own_accuracy  # of the same fit and split
+        return beside
+
+    @cached_property
+    def own_accuracy(self) -> Accuracy:
+        """Eq. 8 to 14 and likely ranges of every unknown, of this model alone."""
+        return accuracy_of(self.fit, self.split, self.doubts.averaged)
 
     @cached_property
     def accuracy(self) -> Accuracy:
-        """Eq. 8 to 14 and likely ranges of every unknown."""
-        own = accuracy_of(self.fit, self.split, self.doubts.averaged)
+        """The same, as wide as the model with the effect that is missing says."""
         if self.named is None:
-            return own
+            return self.own_accuracy
         effect, other = self.named
-        return embrace(own, other.accuracy, effect)
+        return embrace(self.own_accuracy, other.accuracy, effect)
 
     @cached_property
     def band(self) -> dict[str, float]:

@@ -2,9 +2,12 @@
 
 import inspect
 import math
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from pathlib import Path
+from pickle import PicklingError
 from traceback import extract_tb
 from typing import Any, Literal
 
@@ -96,6 +99,15 @@ class Effect:
     stands_for: str = ""
     within: Mapping[str, float] = field(default_factory=dict)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """By the effect in its function's module under its name, which hides the function."""
+        module, name = self.function.__module__, self.function.__name__
+        standing = getattr(sys.modules.get(module), name, None)
+        if not isinstance(standing, Effect) or standing.function is not self.function:
+            raise PicklingError(f"effect {self.name!r} stands in no module")
+        own = {n: x for n, x in vars(self).items() if x is not getattr(standing, n)}
+        return _standing, (module, name, own)
+
     @property
     def equation(self) -> str:
         """The first line of the docstring, which is the equation."""
@@ -174,6 +186,11 @@ class Effect:
         except EffectError as error:
             raise EffectError(f"{self._line(error)}: {error}") from error
         return (result,) if isinstance(result, FORMS) else tuple(result)
+
+
+def _standing(module: str, name: str, own: Mapping[str, Any]) -> Effect:
+    found: Effect = getattr(import_module(module), name)
+    return replace(found, **own) if own else found
 
 
 def effect(

@@ -82,6 +82,12 @@ class Simulator:
     outputs: tuple[str, ...]
     substeps: int
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """By what it is made ready from: machine code is of one process."""
+        engine = "compiled" if isinstance(self.engine, Kernel) else "numpy"
+        made_of = (self.model, self.equations.free, self.outputs, engine, self.substeps)
+        return prepare, made_of
+
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of the sensitivity columns, in the order of `Response.S`."""

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
 from trialid.design.prediction.seen_range import seen_ranges
-from trialid.diagnosis.diagnose import examine_fit
+from trialid.diagnosis.examine import examine_fit
 from trialid.errors import PipelineError, nearest
 from trialid.names.model_kinds import KINDS
 from trialid.progress import silent

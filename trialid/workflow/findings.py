@@ -25,6 +25,7 @@ from trialid.identification.fit import Fit
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
 from trialid.result.build import Findings
+from trialid.second_process import both
 from trialid.ship.effect import Effect
 from trialid.workflow.build_model import candidates, declared_quiet, stated_noise
 
@@ -64,14 +65,18 @@ def find_out(
     )
     ship = _ship(found.before.fit)
     progress("looking for the trial to sail next", 0.95)
+    (narrowing, imo), proposed = both(
+        lambda: (narrowing_trial(found, catalogue), _imo(pipeline, found, ship)),
+        lambda: proposal(found.before.fit.examined, found.verdict, catalogue),
+    )
     return Findings(
         **vars(found),
         name=pipeline.name,
         pipeline=pipeline.path.name,
-        proposal=proposal(found.before.fit.examined, found.verdict, catalogue),
-        narrowing=narrowing_trial(found, catalogue),
+        proposal=proposed,
+        narrowing=narrowing,
         ship=ship,
-        **_imo(pipeline, found, ship),
+        **imo,
     )
 
 

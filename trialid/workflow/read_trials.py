@@ -18,6 +18,7 @@ from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.pipeline_file.form import ClockSection
 from trialid.progress import Progress
+from trialid.second_process import each
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
 from trialid.workflow.build_model import available
@@ -31,10 +32,13 @@ SHARED: Final = 0.1
 
 def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
     """Logs of every trial, read and brought onto one clock."""
-    done, known = [], quantities_of(pipeline)
-    for i, trial in enumerate(pipeline.trials):
-        progress(f"reading {trial.name}", 0.3 * i / len(pipeline.trials))
-        done.append(align_trial(pipeline, trial, known))
+    known = quantities_of(pipeline)
+
+    def aligned(trial: TrialSection) -> Trial:
+        progress(f"reading {trial.name}", 0.3 * pipeline.trials.index(trial) / len(pipeline.trials))
+        return align_trial(pipeline, trial, known)
+
+    done = each(aligned, pipeline.trials)
     return _with_jumps(pipeline, stretches_to_fit(pipeline, done))
 
 

@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import tempfile
+from functools import partial
 from pathlib import Path
 
 from trialid import own_files
@@ -14,6 +15,7 @@ from trialid.result.force_series import force_series, write_force_csv
 from trialid.result.json_file import text_of
 from trialid.result.series import write_csv
 from trialid.result.track_series import write_track_csv
+from trialid.second_process import both
 from trialid.workflow.outcome import Outcome, Run
 from trialid.workflow.run_folder import FILES, ORIGIN
 from trialid.workflow.use import kept_standing
@@ -46,13 +48,20 @@ def run_files(done: Run | Outcome, folder: Path) -> dict[str, bytes]:
 
 
 def _write_files(done: Run | Outcome, folder: Path) -> None:
+    both(
+        partial(_write_pages, done, folder),
+        partial(write_mcap, folder / "predicted.mcap", done.result, done.series),
+    )
+
+
+def _write_pages(done: Run | Outcome, folder: Path) -> None:
+    """All but the recording, which takes as long."""
     result = text_of(done.result).encode()
     (folder / "result.json").write_bytes(result)
     write_csv(folder / "series.csv", done.series)
     tracks = [one.track for one in done.series if one.track is not None]
     if tracks:
         write_track_csv(folder / track_series.FILE, tracks)
-    write_mcap(folder / "predicted.mcap", done.result, done.series)
     forces = force_series(done.force) if done.force is not None else ()
     if forces:
         write_force_csv(folder / "missing_force.csv", forces)

@@ -33,8 +33,9 @@ from at_commit import commit_of  # noqa: E402
 from noise_records import CASES, fitted, recorded, scenario_of  # noqa: E402
 from noise_rows import Row, page, with_said  # noqa: E402
 
-from trialid.diagnosis.diagnose import examine_fit, refits_of  # noqa: E402
+from trialid.diagnosis.diagnose import refits_of  # noqa: E402
 from trialid.diagnosis.diagnosed import DiagnoseSettings  # noqa: E402
+from trialid.diagnosis.examine import examine_fit  # noqa: E402
 from trialid.diagnosis.noise import error_parts  # noqa: E402
 from trialid.diagnosis.noise.error_parts import Split  # noqa: E402
 from trialid.diagnosis.noise.noise_bound import held_against  # noqa: E402

@@ -27,8 +27,8 @@ from hidden_scenarios import SCENARIOS, guessed
 from hidden_truth import NOISES, record
 from spread import add_options, spread
 
-from trialid.diagnosis.diagnose import examine_fit
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import examine_fit
 from trialid.diagnosis.left_by_check import left_by_check
 from trialid.identification.fit import identify
 from trialid.progress import silent

@@ -7,8 +7,8 @@ import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
 from trialid.diagnosis.another_value import follow_with_another_value
-from trialid.diagnosis.diagnose import examine_fit
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import examine_fit
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
 from trialid.progress import silent

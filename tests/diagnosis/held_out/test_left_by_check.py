@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from s175q import GYRO, INCLINOMETER, MODEL, SETTINGS, waves, white, with_noise, zigzag
 
-from trialid.diagnosis.diagnose import diagnose, examine_fit
+from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import examine_fit
 from trialid.diagnosis.left_by_check import left_by_check, with_held_out
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import identify

@@ -36,6 +36,7 @@ from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import known_of_ship
+from trialid.second_process import each
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 
@@ -89,19 +90,21 @@ Progress = Callable[[str], None]
 
 def refit(fit: Fit, candidates: Sequence[Candidate], progress: Progress) -> list[Refit]:
     """Each candidate added and fitted from its expected value; those that fail are left out."""
-    done = []
     if not candidates:
         return []
-    fit = with_means(fit)
-    for candidate in candidates:
+    seen = with_means(fit)
+
+    def tried(candidate: Candidate) -> Refit | None:
         progress(f"trying {candidate.effect.name}")
         try:
-            found = _fitted(fit.examined, candidate)
+            found = _fitted(seen.examined, candidate)
         except TrialidError:  # it cannot be fitted on this record: it is not the missing one
-            continue
-        carried = carried_between(fit.examined, found, candidate.carried.seen)
-        done.append(Refit(candidate, on_every_sample(fit, found), carried))
-    return done
+            return None
+        carried = carried_between(seen.examined, found, candidate.carried.seen)
+        return Refit(candidate, on_every_sample(seen, found), carried)
+
+    known = (*seen.trials, *seen.examined.trials, *candidates)
+    return [done for done in each(tried, candidates, known) if done is not None]
 
 
 def _fitted(fit: Fit, candidate: Candidate) -> Fit:

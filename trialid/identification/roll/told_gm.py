@@ -15,6 +15,7 @@ from trialid.identification.roll.own_roll import goes_on, only_follows
 from trialid.identification.roll.roll_range import FACTOR, GM_OVER_L
 from trialid.identification.weighing import CONTRADICTS, Weighing, deviations
 from trialid.linear_algebra import triangle
+from trialid.second_process import each
 
 Vector = NDArray[np.float64]
 
@@ -161,7 +162,7 @@ def _on_time(problem: Problem, best: End) -> list[Vector]:
         assert prior is not None
         theta[place] = prior[0]
     middle = _scaled(problem, theta, GM_OVER_L * roll.length / theta[roll.GM])
-    ends = [_with_held(problem, start, [*late], best.colour) for start in (theta, middle)]
+    ends = each(lambda start: _with_held(problem, start, [*late], best.colour), (theta, middle))
     able = sorted((e for e in ends if e is not None), key=lambda end: end.cost(best.colour))
     # a sensor may be slow, but none is early: then what was found may be no roll of hers at all
     return [end.minimum.theta for end in able[: 2 if min(late.values()) < 0.0 else 1]]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from trialid.design.prediction.seen_range import SeenRange, seen_ranges
-from trialid.diagnosis.diagnose import examine_fit
+from trialid.diagnosis.examine import examine_fit
 from trialid.errors import NotIdentifiable, PipelineError, TrialidError
 from trialid.identification.fit import Fit, revive
 from trialid.names.quantities import SIGNALS, Quantity
