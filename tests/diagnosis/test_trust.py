@@ -61,7 +61,7 @@ def test_noise_falls_with_the_samples_and_the_model_part_is_the_most_it_may_be()
     assert row.noise_error == pytest.approx(0.1 * 2.0 / row.S_imin / np.sqrt(row.n_effective))
     assert row.noise_error == pytest.approx(0.1 / np.sqrt(N), rel=0.3)
     assert row.likely == pytest.approx(
-        (2.0 - 1.96 * row.standard_error, 2.0 + 1.96 * row.standard_error)
+        (2.0 - 1.96 * row.standard_error, 2.0 + 1.96 * row.standard_error), rel=1e-5
     )
 
 

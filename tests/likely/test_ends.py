@@ -47,3 +47,16 @@ def test_nor_does_one_about_another_gm(accuracy):
     only = replace(accuracy, parameters=(wide,))
     [found] = with_rivals(only, [{"GM": 0.2 * row.value}]).parameters
     assert found.likely[0] == 0.0
+
+
+def test_a_range_goes_as_far_out_as_slopes_that_grow_with_the_parameter(accuracy):
+    """Off by 30 % of the fit is off by 35 % outward, and by 30 % inward."""
+    count = len(accuracy.parameters)
+    sizes = np.array([abs(p.value) for p in accuracy.parameters])
+    errors = np.array([p.standard_error for p in accuracy.parameters])
+    variances = np.maximum((0.3 * sizes / 1.96) ** 2 - errors**2, 0.0)
+    off = Averaged(np.zeros((2, count)), np.tile(variances, (2, 1)), ("",) * count)
+    row = by_name(with_ranges(accuracy, off))["Ndelta"]
+    inward, outward = sorted(np.array(row.likely) / row.value - 1.0)
+    assert inward == pytest.approx(-0.30, abs=0.003)
+    assert outward == pytest.approx(0.35, abs=0.004)

@@ -12,7 +12,7 @@ well they stand: Hoeting et al. (1999), Bayesian model averaging: a tutorial, St
 14. Numbers that were held fixed are part of every model, each uncertain by what its source says.
 
 All of that is linear and knows no ends, as a normal distribution does; a parameter has them. Its
-range ends where the search did: a GM of 0.012 m was likely from -0.012 m.
+range ends where the search did: a GM of 0.012 m was likely from -0.012 m (`ranges`).
 """
 
 from collections.abc import Sequence
@@ -38,44 +38,6 @@ by kind of record; with 1 and 4 a point or two fewer; with 2 and 8 as many, a te
 
 CONFIDENCE: Final = 0.975
 """Student's level of either end of a range."""
-
-
-Range = tuple[float, float]
-ANYWHERE: Final[Range] = (-float("inf"), float("inf"))
-
-
-def cut_to_ends(likely: Range | None, ends: Range) -> Range | None:
-    """A likely range as far as the ends go between which a parameter may lie.
-
-    >>> cut_to_ends((-0.5, 2.0), (0.0, float("inf"))), cut_to_ends((-3.0, -2.0), (0.0, 1.0))
-    ((0.0, 2.0), (0.0, 0.0))
-    """
-    if likely is None:
-        return None
-    low, high = (min(max(end, ends[0]), ends[1]) for end in likely)
-    return low, high
-
-
-def wider(own: Range | None, there: Range | None) -> Range | None:
-    """A range that holds another one too; its own where either is not known.
-
-    >>> wider((0.0, 2.0), (-4.0, -3.0)), wider(None, (0.5, 1.0)), wider((0.0, 2.0), None)
-    ((-4.0, 2.0), None, (0.0, 2.0))
-    """
-    if own is None or there is None:
-        return own
-    return min(own[0], there[0]), max(own[1], there[1])
-
-
-def share_off(value: float | None, likely: tuple[float, float] | None) -> float | None:
-    """How far a likely range goes from its value, as a share of it; None where unknown.
-
-    >>> share_off(-2.0, (-3.0, -1.5)), share_off(0.0, (-1.0, 1.0))
-    (0.5, None)
-    """
-    if likely is None or not value:
-        return None
-    return max(abs(end - value) for end in likely) / abs(value)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,7 +22,8 @@ from trialid.accuracy.equations import (
     sensitivity_range,
 )
 from trialid.accuracy.felt import Draw
-from trialid.accuracy.likely import ANYWHERE, Averaged, Range, cut_to_ends, share_off, wider
+from trialid.accuracy.likely import Averaged
+from trialid.accuracy.ranges import ANYWHERE, Range, by_share, cut_to_ends, share_off, wider
 from trialid.accuracy.weak import Weakness, weak_directions, without_nuisance
 from trialid.arrays import Vector
 from trialid.linear_algebra import triangle
@@ -244,6 +245,7 @@ def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> Param
     if row.kind != "physical":
         return row
     likely = averaged.range(place, row.value, row.standard_error, row.freedom)
+    likely = by_share(row.value, likely)
     return replace(row, likely=cut_to_ends(likely, row.ends), widened_by=averaged.widest[place])
 
 

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.accuracy.likely import wider
+from trialid.accuracy.ranges import wider
 from trialid.arrays import Vector
 from trialid.design import manoeuvres
 from trialid.design.helm import Instructions, Passage, Vessel, carry_out, vessel

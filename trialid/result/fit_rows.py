@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Final, Literal
 
-from trialid.accuracy.likely import share_off, student
+from trialid.accuracy.likely import student
+from trialid.accuracy.ranges import share_off
 
 Interval = tuple[float, float]
 

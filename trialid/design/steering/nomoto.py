@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.accuracy.likely import wider
+from trialid.accuracy.ranges import wider
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.measure_slopes import tried_ship, with_columns
