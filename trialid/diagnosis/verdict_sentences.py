@@ -119,9 +119,7 @@ def one_of(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> str
     freed = " freed" if named.candidate.effect.held is not None else ""
     why = "against the noise none stands out"
     if p < level:
-        why = (
-            f"{name} stands out against the noise, but it is no force, and mends any hull a little"
-        )
+        why = f"{name}, which is no force, stands out, but forces leave less where not fitted"
     return (
         f"something is missing, but this record cannot tell what: with {name}{freed} "
         f"{falls_by(fit, named.fit)}, and as well it may be {', '.join(others)}; {why} "

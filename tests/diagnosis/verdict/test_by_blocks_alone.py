@@ -83,7 +83,7 @@ def test_what_is_no_force_has_no_name_where_a_force_carries_over_better(forms, l
     found = decide(fit(0.10), ranking, [first], NO_ROUTE, None, 0.05)
     assert (found.kind, found.family) == (kind, ("a", "b"))
     if kind == "cannot tell":
-        assert "a stands out against the noise, but it is no force" in found.sentence
+        assert "a, which is no force, stands out, but forces leave less" in found.sentence
         assert "as well it may be b" in found.sentence
 
 
