@@ -26,6 +26,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from multiprocessing import parent_process
 from pathlib import Path
 from typing import Any, BinaryIO, Final, TypeVar
 
@@ -122,8 +123,10 @@ class Ticker(threading.Thread):
 
 
 def _can_copy() -> bool:
-    """Whether a copy is safe and has a core and memory of its own."""
+    """Whether a copy is safe and has a core and memory of its own; one of many workers has not."""
     if sys.platform != "linux" or getattr(_taken, "by", None) or cores() < 2:
+        return False
+    if parent_process() is not None:
         return False
     tickers = sum(isinstance(one, Ticker) for one in threading.enumerate())
     return len(sys._current_frames()) == 1 + tickers and _has_room()

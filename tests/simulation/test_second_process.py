@@ -49,6 +49,17 @@ def test_only_where_nobody_else_runs_python() -> None:
     assert said(ticked) == "(True, False)"
 
 
+def test_a_worker_of_several_makes_none() -> None:
+    """Its neighbours have the other cores: two workers with a copy each shared two."""
+    code = (
+        "import multiprocessing\n"
+        "def one(_): return len({*both(os.getpid, os.getpid)})\n"
+        "with multiprocessing.get_context('fork').Pool(1) as pool: print(pool.map(one, [0]))\n"
+        "print(one(0))"
+    )
+    assert said(code) == "[1]\n2"
+
+
 def test_a_copy_makes_none_and_neither_does_who_has_one() -> None:
     assert said("print(both(lambda: both(here, here), lambda: 0)[0])") == "(True, True)"
     once = "def pair(): return both(os.getpid, os.getpid)\n"
