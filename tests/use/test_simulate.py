@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from trialid import ingest
 from trialid.design.following import vessel_of
 from trialid.design.prediction import predicted_motion
 from trialid.design.prediction.predicted_motion import sail_manoeuvre, sail_orders
+from trialid.design.prediction.ranged_motion import _possible
 from trialid.errors import TrialidError
 from trialid.progress import silent
 from trialid.trial import Trial
@@ -123,6 +125,16 @@ def test_the_wider_of_the_two_counts(model: FinishedModel) -> None:
         low, high = found.ranges[name]
         assert (low <= found.motion[name] - wide + 1e-12).all()
         assert (high >= found.motion[name] + wide - 1e-12).all()
+
+
+def test_a_range_ends_where_what_it_is_of_does(model: FinishedModel) -> None:
+    """A speed was said to lie from -0.26 m/s on; and no heel is beyond a capsize."""
+    told = replace(model.result, fit=replace(model.result.fit, band={"phi": 3.0, "U": 99.0}))
+    asked = named_manoeuvre(["zigzag", "10", "10"])
+    found = predict_manoeuvre(replace(model, result=told), asked).motion
+    low, high = found.ranges["phi"]
+    assert (low.min(), high.max()) == (-np.pi / 2, np.pi / 2)
+    assert _possible("U", np.array([-0.26, 1.0]), np.array([2.0, 99.0]))[0].tolist() == [0.0, 1.0]
 
 
 def test_a_rudder_that_is_ordered_takes_its_time(model: FinishedModel, tmp_path: Path) -> None:

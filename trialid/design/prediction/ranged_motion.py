@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.alignment.signal_limits import LIMITS
 from trialid.arrays import Vector
 from trialid.design.helm import OVER_GROUND, Vessel, track
 from trialid.design.imo.measure_slopes import SMALL
@@ -85,7 +86,7 @@ def with_ranges(
             np.interp(np.arange(n), places, ends[:, c, i] - values[places, c]) for i in (0, 1)
         )
         lower, upper = np.minimum(low, -wide), np.maximum(high, wide)
-        ranges[name] = signals[name] + lower, signals[name] + upper
+        ranges[name] = _possible(name, signals[name] + lower, signals[name] + upper)
     named = {*SIGNALS, *actuator_quantities(ship.model.ship.actuators)}
     given = [n for n in trial.signals if n in named and n not in (*names, *OVER_GROUND)]
     return PredictedMotion(
@@ -95,6 +96,13 @@ def with_ranges(
         ranges=ranges,
         quantities={n: quantity_of(ship.model, n) for n in (*given, *outputs)},
     )
+
+
+def _possible(name: str, lower: Vector, upper: Vector) -> tuple[Vector, Vector]:
+    """A range as far as a number of this kind can be at all: no speed is below zero."""
+    if (limit := LIMITS.get(name)) is None:
+        return lower, upper
+    return np.maximum(lower, limit.low), np.minimum(upper, limit.high)
 
 
 def _as_sailed(ship: Vessel, name: str, signals: Mapping[str, Vector]) -> Vector:
