@@ -65,6 +65,7 @@ def test_the_sentence_says_no_chance_that_was_not_shown():
         ((Rate, Force), 0.88, "cannot tell"),  # a gear with play, and a hull's force
         ((Delayed, Mass), 0.88, "cannot tell"),
         ((Rate, Force), 0.92, "missing"),  # the force leaves more where it was not fitted
+        ((Rate, Force), 0.895, "missing"),  # or hardly less
         ((Delayed, Lagged), 0.88, "missing"),  # sensors both: which of them the family says
         ((Force, Force), 0.88, "missing"),
         ((Force, Delayed), 0.88, "missing"),
