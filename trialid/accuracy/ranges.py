@@ -56,5 +56,7 @@ def by_share(value: float, likely: Range | None) -> Range | None:
         return likely
     low, high = likely
     out = ((high if value > 0.0 else low) - value) / value
+    if out <= 0.0:
+        return likely
     end = value * (1.0 + max(out, math.expm1(min(out, 1.0))))
     return (low, end) if value > 0.0 else (end, high)

@@ -155,8 +155,7 @@ def subject(fit: Fit, named: Refit, others: int = 0) -> str:
         return f"{belongs} of {placed}: with it"
     if held is None:
         return f"{many or f'{name} is missing'}: with it"
-    stands = f"{many}, held at" if many else f"{name} is held at"
-    return f"{stands} {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
+    return f"{name} is held at {held:.3g}; freed, it is {named.fit.estimates[name]:.3g} and"
 
 
 def falls_by(before: Fit, after: Fit) -> str:

@@ -159,11 +159,7 @@ def _unclear(run: Result) -> Iterable[Advice]:
             command(run, "run", "--auto"),
         )
         return
-    for name in run.verdict.family[: 1 + RIVALS]:
-        yield Advice(
-            f"It may be {name}. To see what it does, on trials that were not fitted, too:",
-            command(run, "add", name),
-        )
+    yield from _one_of(run)
     if run.split.noise is not None:
         yield Advice(
             "The record itself leaves it open. What settles it is a trial in which the effect does "
@@ -183,6 +179,15 @@ def _unclear(run: Result) -> Iterable[Advice]:
             f"Noise and model error cannot be told apart. {EACH[len(ways) > 1]} opens a way: "
             + "; ".join(ways) + "."
         )  # fmt: skip
+
+
+def _one_of(run: Result) -> Iterable[Advice]:
+    """Those of which one is missing: each may be tried."""
+    for name in run.verdict.family[: 1 + RIVALS]:
+        yield Advice(
+            f"It may be {name}. To see what it does, on trials that were not fitted, too:",
+            command(run, "add", name),
+        )
 
 
 def _unchecked(run: Result) -> Iterable[Advice]:
