@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trialid.accuracy.likely import Averaged
+from trialid.accuracy.likely import Averaged, student
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.trust import accuracy_of
 
@@ -60,9 +60,8 @@ def test_noise_falls_with_the_samples_and_the_model_part_is_the_most_it_may_be()
     assert row.undermodelling_error == pytest.approx(0.05 * 2.0 / row.S_imin)
     assert row.noise_error == pytest.approx(0.1 * 2.0 / row.S_imin / np.sqrt(row.n_effective))
     assert row.noise_error == pytest.approx(0.1 / np.sqrt(N), rel=0.3)
-    assert row.likely == pytest.approx(
-        (2.0 - 1.96 * row.standard_error, 2.0 + 1.96 * row.standard_error), rel=1e-5
-    )
+    off = student(row.freedom) * row.standard_error / 2.0  # outward as where slopes grow with it
+    assert row.likely == pytest.approx((2.0 * (1.0 - off), 2.0 * np.exp(off)))
 
 
 def test_a_parameter_near_zero_is_held_against_its_typical_size():

@@ -179,8 +179,7 @@ def agreement(
     """Correlation of the mean of `cause` with the change of `effect` over stretches of time.
 
     The means of `others`, as of damping, are taken out of both first. Second result: the same in
-    each part of the
-    record. Zero, and no parts, where nothing moves or the record is too short.
+    each part of the record. Zero, and no parts, where nothing moves or the record is too short.
     """
     tables = list(_doubled(cause, effect, others, valid))
     strengths = [_correlation(table) for table in tables]

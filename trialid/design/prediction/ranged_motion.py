@@ -86,7 +86,7 @@ def with_ranges(
             np.interp(np.arange(n), places, ends[:, c, i] - values[places, c]) for i in (0, 1)
         )
         lower, upper = np.minimum(low, -wide), np.maximum(high, wide)
-        ranges[name] = _possible(name, signals[name] + lower, signals[name] + upper)
+        ranges[name] = _possible(name, signals[name], (lower, upper))
     named = {*SIGNALS, *actuator_quantities(ship.model.ship.actuators)}
     given = [n for n in trial.signals if n in named and n not in (*names, *OVER_GROUND)]
     return PredictedMotion(
@@ -98,11 +98,15 @@ def with_ranges(
     )
 
 
-def _possible(name: str, lower: Vector, upper: Vector) -> tuple[Vector, Vector]:
-    """A range as far as a number of this kind can be at all: no speed is below zero."""
+def _possible(name: str, motion: Vector, off: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
+    """A range as far as a number of this kind can be at all, the motion always in it."""
+    lower, upper = (motion + end for end in off)
     if (limit := LIMITS.get(name)) is None:
         return lower, upper
-    return np.maximum(lower, limit.low), np.minimum(upper, limit.high)
+    return (
+        np.maximum(lower, np.minimum(motion, limit.low)),
+        np.minimum(upper, np.maximum(motion, limit.high)),
+    )
 
 
 def _as_sailed(ship: Vessel, name: str, signals: Mapping[str, Vector]) -> Vector:

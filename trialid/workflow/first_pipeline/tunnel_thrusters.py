@@ -48,7 +48,7 @@ def with_tunnels(trials: Sequence[Chosen], ship: Ship | None) -> list[Chosen]:
     """
     told = list(trials)
     for name in PLACES:
-        told = _with(told, name, ship)
+        told = _with_one(told, name, ship)
     return [_with_unused(one) for one in told]
 
 
@@ -68,7 +68,7 @@ def tunnels_of(trials: Sequence[Chosen], ship: Ship) -> tuple[Actuator, ...]:
     )
 
 
-def _with(trials: Sequence[Chosen], name: str, ship: Ship | None) -> list[Chosen]:
+def _with_one(trials: Sequence[Chosen], name: str, ship: Ship | None) -> list[Chosen]:
     found = [_source(one, name) for one in trials]
     called = name if ship is None else _hers(ship, name)
     read = [
