@@ -14,7 +14,7 @@ from trialid.accuracy.equations import (
 )
 from trialid.accuracy.likely import student
 from trialid.accuracy.parameter_table import Subject, assess
-from trialid.accuracy.weak import coefficient_label, weak_directions, without_nuisance
+from trialid.accuracy.weak import SHARE, coefficient_label, weak_directions, without_nuisance
 from trialid.trial_rows import Stretch
 
 rng = np.random.default_rng(5)
@@ -65,6 +65,20 @@ def test_moves_along_a_weak_direction_change_the_output_by_the_noise_alone():
     assert np.linalg.norm(moves) == pytest.approx(weak.relative_error)
     assert moves[0] * moves[1] > 0.0
     assert np.linalg.norm(near @ (moves * [1.0, -1.0])) > 0.1
+
+
+def test_a_direction_of_many_small_shares_names_the_two_that_have_most():
+    """Of 16 parameters as alike none has a third of the direction; no sentence was an error."""
+    shares = 0.22 + 0.004 * np.arange(16)
+    shares /= np.linalg.norm(shares)
+    assert shares.max() < SHARE
+    columns, _ = np.linalg.qr(np.random.default_rng(4).standard_normal((400, 16)))
+    columns -= np.outer(columns @ shares, shares) * (1.0 - 1e-3)
+    columns /= np.linalg.norm(columns, axis=0)
+    names = [f"a{i}" for i in range(16)]
+    [weak] = weak_directions(columns, names, 0.01)
+    assert set(weak.parameters) == {"a14", "a15"}
+    assert "a15 and a14 cannot be told apart" in weak.sentence
 
 
 def test_a_parameter_without_trace_is_named():

@@ -127,7 +127,7 @@ def test_a_boat_without_a_rudder_in_use(tmp_path, monkeypatch) -> None:
     for kind in ("pid", "nomoto"):
         refused = trialid_("export", run, "--as", kind, "--out", "none.json")
         assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
-        assert "one to starboard; this model is steered by left_order, right_o" in refused.stderr
+        assert "one to starboard; this model has the inputs left_order, right_o" in refused.stderr
     assert trialid_("export", run, "--as", "modelica", "--out", "boat.mo").exit_code == 0
     text = (tmp_path / "boat.mo").read_text(encoding="utf-8")
     assert 'input Real thruster_port(unit="rad/s", start=' in text

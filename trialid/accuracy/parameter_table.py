@@ -32,6 +32,9 @@ from trialid.trial_rows import Kind, Stretch
 ANOTHER_GM: Final = "another GM"
 """What widens a range where the record does not tell the metacentric height."""
 
+USUAL_FORCES: Final = "the usual forces at once"
+"""What widens a range where all forces that a hull usually has move it further than any alone."""
+
 
 @dataclass(frozen=True)
 class ParameterAccuracy:
@@ -251,6 +254,8 @@ def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> Param
 
 def embrace(accuracy: Accuracy, named: Accuracy, effect: str) -> Accuracy:
     """The same with ranges that hold what the model with a named effect says of each parameter.
+
+    Or with several: `effect` is what widens a range by them.
 
     By slopes a fit far off foretells half of the way that its parameters go when it is added.
     """

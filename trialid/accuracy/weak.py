@@ -44,7 +44,8 @@ WELL_KNOWN: Final = 0.1
 
 
 SHARE: Final = 0.3
-"""A parameter with at least this share of a direction is named in it."""
+"""A parameter with at least this share of a direction is named in it; where none has as much, the
+two that have most."""
 
 
 def weak_directions(A: Vector, names: Sequence[str], error: float) -> tuple[Weakness, ...]:
@@ -71,7 +72,7 @@ def weak_directions(A: Vector, names: Sequence[str], error: float) -> tuple[Weak
             break
         shares = np.abs(direction)
         leading = np.argsort(-shares)
-        parts = tuple(kept[i] for i in leading if shares[i] >= SHARE)
+        parts = tuple(kept[i] for i in leading if shares[i] >= min(SHARE, shares[leading[1]]))
         along = direction / norms[alive]
         deviation = error / value if value > 0.0 else float("inf")
         relative = deviation * float(np.linalg.norm(along))

@@ -104,7 +104,7 @@ def _verdict(
     found = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     found = with_motion(fit, found, ranking, refits, asked.level)
     named = None if grown else _named(found, refits)
-    found = with_held_out(fit, found, lambda: before.accuracy.covariance, asked.level, named)
+    found = with_held_out(fit, found, lambda: before.own_accuracy.covariance, asked.level, named)
     return settle_side(fit, name_records(fit, found, asked.candidates.values()))
 
 
@@ -157,7 +157,7 @@ def _after(
         return None
     known = tried.augmented if named is tried.best else None
     done = _bounded(examine_fit(named.fit, asked, progress, known)[0], tried.refits)
-    _ = done.accuracy  # all that follows asks for it
+    _ = done.own_accuracy  # all that follows asks for it
     return done
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from trialid.accuracy.parameter_table import Accuracy, embrace
+from trialid.accuracy.parameter_table import USUAL_FORCES, Accuracy, embrace
 from trialid.diagnosis.force.missing_force import MissingForce
 from trialid.diagnosis.may_be_off import Doubts
 from trialid.diagnosis.noise.error_parts import Split
@@ -13,6 +13,7 @@ from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.trust import accuracy_of
+from trialid.diagnosis.usual_forces import beside_usual_forces
 from trialid.diagnosis.verdict import Verdict
 from trialid.diagnosis.where.misfit import Where
 from trialid.effects import CATALOGUE
@@ -73,11 +74,17 @@ class Diagnosed:
 
     @cached_property
     def accuracy(self) -> Accuracy:
-        """The same, as wide as the model with the effect that is missing says."""
-        if self.named is None:
-            return self.own_accuracy
-        effect, other = self.named
-        return embrace(self.own_accuracy, other.accuracy, effect)
+        """The same, as wide as the model with the effect that is missing says.
+
+        Where none has a name, as wide as the model with all usual forces does.
+        """
+        if self.named is not None:
+            effect, other = self.named
+            return embrace(self.own_accuracy, other.accuracy, effect)
+        made = self.own_accuracy
+        for there in beside_usual_forces(self.fit):
+            made = embrace(made, there, USUAL_FORCES)
+        return made
 
     @cached_property
     def band(self) -> dict[str, float]:

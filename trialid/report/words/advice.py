@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.accuracy.parameter_table import ANOTHER_GM
+from trialid.accuracy.parameter_table import ANOTHER_GM, USUAL_FORCES
 from trialid.names import wording
 from trialid.names.quantities import RUDDERS
 from trialid.report.words import doubt
@@ -254,6 +254,8 @@ def widest(parameters: Sequence[ParameterRow]) -> str:
     why = "by the numbers held fixed (how sure those are: [uncertainty] in the ship file)"
     if row.widened_by == ANOTHER_GM:
         why = "as the record does not tell GM"
+    elif row.widened_by == USUAL_FORCES:
+        why = "as all forces that a hull usually has, each small, may be there at once"
     elif row.widened_by:
         why = f"as {row.widened_by} may be missing"
     return f"Least known: {row.name}, {why}."

@@ -1,0 +1,110 @@
+"""The model with all forces at once that hulls usually have, each about what her file says of it.
+
+A hull's forces beyond the linear come together: what brakes her sway turns and heels her, too. One
+or two of them in a model stand in for all, and the linear coefficients with them: of ships that
+have them all, Nv and Nr came out a half too small, in one direction. No slope at such a fit reaches
+as far as a fit with all of them does, held by what her file says of each.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trialid.accuracy.parameter_table import Accuracy
+from trialid.diagnosis.may_be_off import may_be_off
+from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.noise.thinning import with_means
+from trialid.diagnosis.search.augment import augment
+from trialid.diagnosis.search.candidates import why_unusable
+from trialid.diagnosis.search.refit import begun_at, settings_with
+from trialid.diagnosis.trust import accuracy_of
+from trialid.effects import CATALOGUE
+from trialid.effects.usual_structures import HULLS, IN_THE_RACE, RACE
+from trialid.errors import TrialidError
+from trialid.identification.fit import Fit, identify
+from trialid.identification.ship_priors import known_of_ship
+from trialid.second_process import each
+from trialid.ship.effect import Effect
+from trialid.ship.model import ShipModel
+from trialid.threads import one_thread
+from trialid.trial import Trial
+
+AT_ONCE: Final = ("modulus", "cubic")
+"""Hulls whose terms are told apart by hardly any trial: the ship may have either."""
+
+ANY_HULL: Final = ("heel_sway", "heel_yaw", "roll_rate_yaw", "rudder_cubic")
+"""What joins whatever the hull: what heel and rolling do, and lift that falls off at large angles.
+Heel's own moment is GM's by another name."""
+
+AS_HELD: Final = ("linear_hull", "linear_rudder")
+"""Effects whose coefficients join what is estimated, as sure as her file says."""
+
+
+@one_thread
+def beside_usual_forces(fit: Fit) -> tuple[Accuracy, ...]:
+    """How sure the model with all usual forces is of each parameter, by each usual hull.
+
+    Where the pipeline's priors are her file's: nothing else holds so many. What shapes the forces
+    is in it, so that of all it may lack only the numbers count that it holds. Nothing by a hull
+    whose search does not arrive, or that the record cannot carry.
+    """
+    if not fit.settings.priors_of_ship:
+        return ()
+    seen = with_means(fit).examined
+
+    def by(hull: str) -> Accuracy | None:
+        found = with_hull(seen, hull)
+        return None if found is None else _accuracy(found)
+
+    done = each(by, AT_ONCE, (*fit.trials, *seen.trials))
+    return tuple(known for known in done if known is not None)
+
+
+def _accuracy(fit: Fit) -> Accuracy:
+    augmented = augment(fit, {})
+    return accuracy_of(fit, split(fit, augmented, {})[0], may_be_off(augmented))
+
+
+def with_hull(fit: Fit, hull: str) -> Fit | None:
+    """The fitted model with all forces of a usual hull; None where no search arrives."""
+    effects = joining(fit.model, [t for t in fit.trials if t.use == "fit"], hull)
+    try:
+        found = _fitted(fit, effects) if effects else None
+    except TrialidError:  # this record does not carry as many
+        return None
+    return found if found is not None and found.converged else None
+
+
+def joining(model: ShipModel, trials: Sequence[Trial], hull: str) -> tuple[Effect, ...]:
+    """Effects of a usual hull, of those that act on what is simulated and are not there yet."""
+    present = {e.name for e in model.effects}
+    acting = [n for state in model.states for n in HULLS[hull].get(state, ())]
+    known = "u" in model.states or any(np.ptp(t.signals.get("u", 0.0)) > 0.0 for t in trials)
+    race = (RACE,) if known and not present & {*IN_THE_RACE} else ()
+    wanted = dict.fromkeys(n for n in (*acting, *race, *ANY_HULL) if n not in present)
+    return tuple(
+        CATALOGUE[n]
+        for n in wanted
+        if not any(why_unusable(model, t, CATALOGUE[n]) for t in trials)
+    )
+
+
+def _fitted(fit: Fit, effects: Sequence[Effect]) -> Fit:
+    """Begun where they are absent, with what is held of the linear forces as sure as it is."""
+    absent = {n: x for effect in effects for n, x in effect.nulls.items()}
+    model, start = begun_at(fit.model, effects, absent)
+    settings = settings_with(fit, effects)
+    held = _held(fit)
+    free = tuple(dict.fromkeys((*settings.free, *held)))
+    settings = replace(settings, free=free, priors={**settings.priors, **held})
+    return identify(fit.trials, model, settings, near=fit.estimates | start, smaller=fit)
+
+
+def _held(fit: Fit) -> Mapping[str, tuple[float, float]]:
+    """Linear coefficients that are held, and that her file states with their scatter."""
+    there = (e for e in fit.model.effects if e.name in AS_HELD)
+    names = [n for e in there for n in e.parameters if n not in fit.settings.free]
+    sure = fit.model.ship.uncertainty
+    return known_of_ship(fit.model, [n for n in names if sure.get(n, sure.get("default"))])
