@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy, embrace
+from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
+from trialid.accuracy.widened import embrace
 from trialid.design.imo.measures import Criterion
 from trialid.design.standard import Measure
 from trialid.diagnosis import diagnosed

@@ -7,7 +7,7 @@ import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
 from trialid.accuracy.likely import Averaged
-from trialid.accuracy.parameter_table import with_ranges, with_rivals
+from trialid.accuracy.widened import with_ranges, with_rivals
 from trialid.diagnosis.diagnose import diagnose
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from s175q import MODEL, OUTPUTS, SHIP, white, zigzag
 
-from trialid.accuracy.parameter_table import USUAL_FORCES
-from trialid.diagnosis import usual_forces
+from trialid.accuracy.ranges import USUAL_FORCES
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import examine_fit
+from trialid.diagnosis.force import usual_forces
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -122,14 +122,14 @@ def test_nothing_holds_as_many_without_her_file():
 )
 def test_what_joins_has_a_place_there(more, given, race):
     """No second race, none of a speed that nobody logged, and nothing that is there."""
-    trials = sailed(drawn(27), 27)[:1]
-    trials = [replace(t, signals={n: x for n, x in t.signals.items() if n in given | {"delta"}})
-              for t in trials]  # fmt: skip
+    [whole, _] = sailed(drawn(27), 27)
+    kept = {n: x for n, x in whole.signals.items() if n in given | {"delta"}}
+    trials = [replace(whole, signals=kept)]
     model = ShipModel(SHIP, ("v", "p", "r", "phi"), tuple(CATALOGUE[e] for e in (*LINEAR, *more)))
-    joining = usual_forces.joining(model, trials, "cubic")
+    joining = usual_forces.usual_effects(model, trials, "cubic")
     names = [effect.name for effect in joining]
     assert ("rudder_slipstream" in names) == race
     assert {"sway_cubic_vvv", "yaw_cubic_rrr", "roll_cubic", "rudder_cubic"} <= {*names}
     assert not {*names} & {*LINEAR}
     yaw = replace(model, states=("v", "r"), effects=model.effects[:2])
-    assert "roll_cubic" not in [e.name for e in usual_forces.joining(yaw, trials, "cubic")]
+    assert "roll_cubic" not in [e.name for e in usual_forces.usual_effects(yaw, trials, "cubic")]

@@ -1,8 +1,7 @@
 """Every parameter of a fit with its sensitivities and errors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
@@ -22,18 +21,11 @@ from trialid.accuracy.equations import (
     sensitivity_range,
 )
 from trialid.accuracy.felt import Draw
-from trialid.accuracy.likely import Averaged
-from trialid.accuracy.ranges import ANYWHERE, Range, by_share, cut_to_ends, share_off, wider
+from trialid.accuracy.ranges import ANYWHERE, Range, share_off
 from trialid.accuracy.weak import Weakness, weak_directions, without_nuisance
 from trialid.arrays import Vector
 from trialid.linear_algebra import triangle
 from trialid.trial_rows import Kind, Stretch
-
-ANOTHER_GM: Final = "another GM"
-"""What widens a range where the record does not tell the metacentric height."""
-
-USUAL_FORCES: Final = "the usual forces at once"
-"""What widens a range where all forces that a hull usually has move it further than any alone."""
 
 
 @dataclass(frozen=True)
@@ -235,69 +227,6 @@ def _with_shares(
         replace(row, prior_share=min(float(share), 1.0)) if share > 0.0 else row
         for row, share in zip(rows, shares, strict=True)
     )
-
-
-def with_ranges(accuracy: Accuracy, averaged: Averaged) -> Accuracy:
-    """The same with the likely range of every parameter, from what may be missing."""
-    rows = tuple(_with_range(row, i, averaged) for i, row in enumerate(accuracy.parameters))
-    return replace(accuracy, parameters=rows)
-
-
-def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> ParameterAccuracy:
-    """The row with its likely range; what belongs to a trial or a sensor has none."""
-    if row.kind != "physical":
-        return row
-    likely = averaged.range(place, row.value, row.standard_error, row.freedom)
-    likely = by_share(row.value, likely)
-    return replace(row, likely=cut_to_ends(likely, row.ends), widened_by=averaged.widest[place])
-
-
-def embrace(accuracy: Accuracy, named: Accuracy, effect: str) -> Accuracy:
-    """The same with ranges that hold what the model with a named effect says of each parameter.
-
-    Or with several: `effect` is what widens a range by them.
-
-    By slopes a fit far off foretells half of the way that its parameters go when it is added.
-    """
-    there = {row.name: row.likely for row in named.parameters}
-    rows = tuple(_embraced(row, there.get(row.name), effect) for row in accuracy.parameters)
-    return replace(accuracy, parameters=rows)
-
-
-def _embraced(
-    row: ParameterAccuracy, there: tuple[float, float] | None, effect: str
-) -> ParameterAccuracy:
-    both = wider(row.likely, there)
-    return row if both == row.likely else replace(row, likely=both, widened_by=effect)
-
-
-def with_rivals(accuracy: Accuracy, rivals: Sequence[Mapping[str, float]]) -> Accuracy:
-    """The same with ranges that reach about each rival by the share they reach about the fit.
-
-    Parameters
-    ----------
-    rivals
-        Values of the unknowns by name that fit as well or hardly worse.
-    """
-    rows = tuple(
-        _with_rivals(row, [values[row.name] for values in rivals if row.name in values])
-        for row in accuracy.parameters
-    )
-    return replace(accuracy, parameters=rows)
-
-
-def _with_rivals(row: ParameterAccuracy, rivals: Sequence[float]) -> ParameterAccuracy:
-    if row.likely is None or not rivals or not row.value:
-        return row
-    low, high = row.likely
-    reached = [(low, high)]
-    for rival in rivals:
-        share = max(1.0, abs(rival / row.value))
-        reached.append((rival - share * (row.value - low), rival + share * (high - row.value)))
-    whole = (min(x for x, _ in reached), max(x for _, x in reached))
-    much = whole[1] - whole[0] > 2.0 * (high - low)
-    widened_by = ANOTHER_GM if much else row.widened_by
-    return replace(row, likely=cut_to_ends(whole, row.ends), widened_by=widened_by)
 
 
 def _scaled(known: float | None, relative: float, reference: float) -> float | None:

@@ -6,6 +6,12 @@ from typing import Final
 Range = tuple[float, float]
 ANYWHERE: Final[Range] = (-float("inf"), float("inf"))
 
+ANOTHER_GM: Final = "another GM"
+"""What widens a range where the record does not tell the metacentric height."""
+
+USUAL_FORCES: Final = "the usual forces at once"
+"""What widens a range where all forces that a hull usually has move it further than any alone."""
+
 
 def cut_to_ends(likely: Range | None, ends: Range) -> Range | None:
     """A likely range as far as the ends go between which a parameter may lie.

@@ -4,8 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from trialid.accuracy.parameter_table import USUAL_FORCES, Accuracy, embrace
+from trialid.accuracy.parameter_table import Accuracy
+from trialid.accuracy.ranges import USUAL_FORCES
+from trialid.accuracy.widened import embrace
 from trialid.diagnosis.force.missing_force import MissingForce
+from trialid.diagnosis.force.usual_forces import beside_usual_forces
 from trialid.diagnosis.may_be_off import Doubts
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.prediction_band import prediction_band
@@ -13,7 +16,6 @@ from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.trust import accuracy_of
-from trialid.diagnosis.usual_forces import beside_usual_forces
 from trialid.diagnosis.verdict import Verdict
 from trialid.diagnosis.where.misfit import Where
 from trialid.effects import CATALOGUE

@@ -3,7 +3,8 @@
 from typing import Final
 
 from trialid.accuracy.likely import Averaged
-from trialid.accuracy.parameter_table import Accuracy, Subject, assess, with_ranges, with_rivals
+from trialid.accuracy.parameter_table import Accuracy, Subject, assess
+from trialid.accuracy.widened import with_ranges, with_rivals
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.recorded_inputs import felt_noise
 from trialid.identification.fit import Fit

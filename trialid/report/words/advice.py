@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.accuracy.parameter_table import ANOTHER_GM, USUAL_FORCES
+from trialid.accuracy.ranges import ANOTHER_GM, USUAL_FORCES
 from trialid.names import wording
 from trialid.names.quantities import RUDDERS
 from trialid.report.words import doubt

@@ -69,7 +69,7 @@ def _accuracy(fit: Fit) -> Accuracy:
 
 def with_hull(fit: Fit, hull: str) -> Fit | None:
     """The fitted model with all forces of a usual hull; None where no search arrives."""
-    effects = joining(fit.model, [t for t in fit.trials if t.use == "fit"], hull)
+    effects = usual_effects(fit.model, [t for t in fit.trials if t.use == "fit"], hull)
     try:
         found = _fitted(fit, effects) if effects else None
     except TrialidError:  # this record does not carry as many
@@ -77,7 +77,7 @@ def with_hull(fit: Fit, hull: str) -> Fit | None:
     return found if found is not None and found.converged else None
 
 
-def joining(model: ShipModel, trials: Sequence[Trial], hull: str) -> tuple[Effect, ...]:
+def usual_effects(model: ShipModel, trials: Sequence[Trial], hull: str) -> tuple[Effect, ...]:
     """Effects of a usual hull, of those that act on what is simulated and are not there yet."""
     present = {e.name for e in model.effects}
     acting = [n for state in model.states for n in HULLS[hull].get(state, ())]
