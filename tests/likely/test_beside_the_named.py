@@ -53,11 +53,15 @@ def test_a_range_embraces_what_the_model_with_the_effect_says(own, there, both):
 
 def test_a_diagnosis_beside_the_model_with_its_effect(monkeypatch):
     tables = {"without": table(row("Nv", (0.0, 2.0))), "with": table(row("Nv", (1.5, 3.0)))}
+    tables["all"] = table(row("Nv", (-1.0, 1.0)))
     monkeypatch.setattr(diagnosed, "accuracy_of", lambda fit, split, averaged: tables[fit])
+    monkeypatch.setattr(diagnosed, "beside_usual_forces", lambda fit: usual[fit])
+    usual = {"without": (tables["all"],), "with": ()}
     doubts = SimpleNamespace(averaged=None)
-    before, after = (diagnosed.Diagnosed(fit, None, (), doubts) for fit in tables)
+    before, after = (diagnosed.Diagnosed(fit, None, (), doubts) for fit in usual)
     assert before.beside("cross_flow_drag", after).accuracy.parameters[0].likely == (0.0, 3.0)
-    assert before.beside(None, after).accuracy.parameters[0].likely == (0.0, 2.0)
+    assert before.beside(None, after).accuracy.parameters[0].likely == (-1.0, 2.0)
+    assert before.own_accuracy.parameters[0].likely == (0.0, 2.0)
 
 
 def test_a_parameter_that_the_other_model_has_not_stays():
