@@ -1,8 +1,12 @@
 """The usual structures of a manoeuvring model: how hull forces grow, the race, the speed lost."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from itertools import product
 from typing import Final, Literal
+
+import numpy as np
+
+from trialid.trial import Trial
 
 HULLS: Final[Mapping[str, Mapping[str, tuple[str, ...]]]] = {
     "linear": {},
@@ -33,6 +37,14 @@ TELLING: Final = frozenset(
 
 Speed = Literal["simulated", "recorded", "stated"]
 """Where the speed u of a record comes from."""
+
+
+def speed_of(states: Collection[str], trials: Sequence[Trial]) -> Speed:
+    """Where u comes from; it is recorded where it changes in any trial."""
+    if "u" in states:
+        return "simulated"
+    recorded = any(np.ptp(t.signals["u"]) > 0.0 for t in trials if "u" in t.signals)
+    return "recorded" if recorded else "stated"
 
 
 def usual_structures(

@@ -10,24 +10,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-import numpy as np
-
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.search.candidates import why_unusable
-from trialid.diagnosis.search.refit import begun_at, settings_with
+from trialid.diagnosis.search.candidates import candidates_for
+from trialid.diagnosis.search.refit import settings_with
+from trialid.diagnosis.search.together import fit_together
 from trialid.diagnosis.trust import accuracy_of
 from trialid.effects import CATALOGUE
-from trialid.effects.usual_structures import HULLS, IN_THE_RACE, RACE
+from trialid.effects.usual_structures import speed_of, usual_structures
 from trialid.errors import TrialidError
-from trialid.identification.fit import Fit, identify
+from trialid.identification.fit import Fit
+from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import known_of_ship
 from trialid.second_process import each
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import shared_record
 from trialid.threads import one_thread
 from trialid.trial import Trial
 
@@ -71,40 +72,30 @@ def with_hull(fit: Fit, hull: str) -> Fit | None:
     """The fitted model with all forces of a usual hull; None where no search arrives."""
     effects = usual_effects(fit.model, [t for t in fit.trials if t.use == "fit"], hull)
     try:
-        found = _fitted(fit, effects) if effects else None
-    except TrialidError:  # this record does not carry as many
+        found = fit_together(fit, effects, _settings(fit, effects))
+    except TrialidError:  # this record does not carry as many, or her file calls one exact
         return None
-    return found if found is not None and found.converged else None
+    return found if found.converged else None
 
 
 def usual_effects(model: ShipModel, trials: Sequence[Trial], hull: str) -> tuple[Effect, ...]:
     """Effects of a usual hull, of those that act on what is simulated and are not there yet."""
-    present = {e.name for e in model.effects}
-    acting = [n for state in model.states for n in HULLS[hull].get(state, ())]
-    known = "u" in model.states or any(np.ptp(t.signals.get("u", 0.0)) > 0.0 for t in trials)
-    race = (RACE,) if known and not present & {*IN_THE_RACE} else ()
-    wanted = dict.fromkeys(n for n in (*acting, *race, *ANY_HULL) if n not in present)
-    return tuple(
-        CATALOGUE[n]
-        for n in wanted
-        if not any(why_unusable(model, t, CATALOGUE[n]) for t in trials)
-    )
+    present = [e.name for e in model.effects]
+    usual, _ = usual_structures(model.states, present, speed_of(model.states, trials))
+    wanted = (*usual.get(f"{hull}, race", usual.get(hull, ())), *ANY_HULL)
+    able, _ = candidates_for(model, shared_record(trials), {n: CATALOGUE[n] for n in wanted})
+    return tuple(able.values())
 
 
-def _fitted(fit: Fit, effects: Sequence[Effect]) -> Fit:
-    """Begun where they are absent, with what is held of the linear forces as sure as it is."""
-    absent = {n: x for effect in effects for n, x in effect.nulls.items()}
-    model, start = begun_at(fit.model, effects, absent)
-    settings = settings_with(fit, effects)
-    held = _held(fit)
-    free = tuple(dict.fromkeys((*settings.free, *held)))
-    settings = replace(settings, free=free, priors={**settings.priors, **held})
-    return identify(fit.trials, model, settings, near=fit.estimates | start, smaller=fit)
+def _settings(fit: Fit, effects: Sequence[Effect]) -> Settings:
+    """Free with them is what is held of the linear forces, as sure as her file is."""
+    held, asked = _held(fit), settings_with(fit, effects)
+    free = tuple(dict.fromkeys((*asked.free, *held)))
+    return replace(asked, free=free, priors={**asked.priors, **held})
 
 
 def _held(fit: Fit) -> Mapping[str, tuple[float, float]]:
     """Linear coefficients that are held, and that her file states with their scatter."""
     there = (e for e in fit.model.effects if e.name in AS_HELD)
     names = [n for e in there for n in e.parameters if n not in fit.settings.free]
-    sure = fit.model.ship.uncertainty
-    return known_of_ship(fit.model, [n for n in names if sure.get(n, sure.get("default"))])
+    return known_of_ship(fit.model, [n for n in names if fit.model.ship.share_off(n)])

@@ -22,6 +22,7 @@ from trialid.diagnosis.search.falls import fall, fall_of_check
 from trialid.diagnosis.search.refit import begun_at, outputs_beside, settings_with
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
+from trialid.identification.problem import Settings
 from trialid.ship.effect import Effect
 
 Pair = tuple[Trace, Trace]
@@ -91,7 +92,7 @@ def fit_pairs(
         effects = tuple(trace.effect for trace in pair)
         progress(f"trying {' and '.join(e.name for e in effects)}")
         try:
-            found = _fitted(fit.examined, effects)
+            found = fit_together(fit.examined, effects, settings_with(fit.examined, effects))
         except TrialidError:  # these two cannot be fitted on this record
             continue
         carried = carried_between(fit.examined, found)
@@ -156,9 +157,9 @@ def _unlike(pairs: Sequence[Pair], most: int) -> Iterator[Pair]:
             return
 
 
-def _fitted(fit: Fit, effects: Sequence[Effect]) -> Fit:
+def fit_together(fit: Fit, effects: Sequence[Effect], settings: Settings) -> Fit:
     """The model with these effects, begun where they are absent."""
     absent = {n: x for effect in effects for n, x in effect.nulls.items()}
     model, start = begun_at(fit.model, effects, absent)
     near = fit.estimates | start
-    return identify(fit.trials, model, settings_with(fit, effects), near=near, smaller=fit)
+    return identify(fit.trials, model, settings, near=near, smaller=fit)

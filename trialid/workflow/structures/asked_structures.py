@@ -3,10 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from trialid.diagnosis.search.candidates import why_unusable
-from trialid.effects.usual_structures import TELLING, Speed, usual_structures
+from trialid.effects.usual_structures import TELLING, speed_of, usual_structures
 from trialid.errors import PipelineError, TrialidError, nearest
 from trialid.identification.problem import Settings
 from trialid.pipeline_file import Pipeline, where
@@ -96,20 +94,14 @@ def _lists(
     own = pipeline.model.effects
     if given := written_structures(pipeline, catalogue):
         return given, {}
-    usual, left_out = usual_structures(pipeline.model.states, own, _speed(pipeline, trials))
+    usual, left_out = usual_structures(
+        pipeline.model.states, own, speed_of(pipeline.model.states, trials)
+    )
     base = tuple(n for n in own if n not in TELLING)
     lists = {name: (*base, *effects) for name, effects in usual.items()}
     if {*own} not in map(set, lists.values()):
         lists[AS_WRITTEN] = own
     return lists, left_out
-
-
-def _speed(pipeline: Pipeline, trials: Sequence[Trial]) -> Speed:
-    """Where u comes from; it is recorded where any trial has it."""
-    if "u" in pipeline.model.states:
-        return "simulated"
-    recorded = any(np.ptp(y) > 0.0 for t in trials for n, y in t.signals.items() if n == "u")
-    return "recorded" if recorded else "stated"
 
 
 def _check_usable(
