@@ -7,7 +7,7 @@ from waters import NOISE, SPEED, D
 
 from trialid.accuracy.parameter_table import Subject, assess
 from trialid.design import following
-from trialid.design.helm import carry_out, ramp
+from trialid.design.helm import carry_out
 from trialid.design.imo import observed
 from trialid.design.manoeuvres import zigzag as ordered
 from trialid.design.standard import predict
@@ -40,20 +40,6 @@ def examined(fit, catalogue):
     covariance = accuracy_of(fit, parts, off.averaged).covariance
     found = following.standard_measures(fit, covariance, off.standing, off.held, off.missing)
     return {m.criterion.name: m for m in found}, covariance
-
-
-def test_a_rudder_is_clocked_over_its_moves_not_from_sample_to_sample():
-    """Its feedback noisy, logged fast, with a wild value; one that is moved slowly has no gear."""
-    rng = np.random.default_rng(4)
-    orders = 10 * D * np.sign(np.sin(0.05 * np.arange(12000) * 0.1))
-    delta = ramp(orders, 2.5 * D * 0.1)
-    assert following.rudder_rate(delta, 0.1) == pytest.approx(2.5 * D)
-    noisy = delta + 0.05 * D * rng.standard_normal(len(delta))
-    noisy[777] += 25 * D
-    by_samples = np.quantile(np.abs(np.diff(noisy)), 0.99) / 0.1
-    assert by_samples > 1.4 * 2.5 * D
-    assert following.rudder_rate(noisy, 0.1) == pytest.approx(2.5 * D, rel=0.07)
-    assert following.rudder_rate(np.zeros(50), 0.1) == 0.0
 
 
 def width(measure):

@@ -46,7 +46,7 @@ def found(model, seed, current):
     return diagnose(identify(trials, model, SETTINGS))
 
 
-@pytest.mark.parametrize("seed", [31, 32])
+@pytest.mark.parametrize("seed", [31, pytest.param(32, marks=pytest.mark.study(turn="each"))])
 def test_in_still_water_drift_is_read_out_of_it(seed):
     """Read as the speed ahead her drift counts twice, and her coefficients take it up."""
     plain, read = (found(model, seed, 0.0) for model in (PLAIN, READ))
@@ -58,7 +58,7 @@ def test_in_still_water_drift_is_read_out_of_it(seed):
         assert abs(right) < 0.4 * abs(twice)
 
 
-@pytest.mark.parametrize("seed", [41, 42])
+@pytest.mark.parametrize("seed", [41, pytest.param(42, marks=pytest.mark.study(turn="each"))])
 def test_a_current_has_its_name(seed):
     assert found(READ, seed, 0.8).verdict.effect == "current_in_speed_record"
 

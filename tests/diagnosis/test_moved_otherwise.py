@@ -64,6 +64,7 @@ def test_an_effect_of_the_yaw_has_a_name_where_the_roll_is_explained(size, besid
         assert "of phi is left as before: something else moves that" in said.sentence
 
 
+@pytest.mark.study(turn="each")
 def test_what_makes_the_output_has_a_part_in_it() -> None:
     """A list that is most of the heel, which the model lacks: with it nothing is left."""
     listed = (s175q.MODEL + CATALOGUE["static_list"]).with_values({"a_0": 0.05})

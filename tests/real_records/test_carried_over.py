@@ -62,6 +62,7 @@ def test_a_force_is_named_whatever_is_held_out(basin, part):
     assert all(name and moves_the_ship(name) for name in first), first
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("held", [("Z_20_05", "Z_20_10_S"), ("Z_15_05", "Z_20_10_S")])
 def test_two_at_once_join_though_one_of_them_failed_or_the_file_starts_far_off(basin, held):
     """Of one choice the race alone fails; of the other the file must begin where both ended."""

@@ -208,6 +208,7 @@ def test_two_trials_are_compared_and_said_to_be_few(copy) -> None:
     assert any("2 trials are few" in s and "71%" in s for s in found.sentences)
 
 
+@pytest.mark.study(turn="each")
 def test_a_trial_that_the_others_foretell_worse_than_none_is_told(copy, done) -> None:
     """A rudder recorded four times as large: the choice of the rest says nothing about it."""
     other = copy.parent / "steps-10.csv"

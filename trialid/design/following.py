@@ -21,6 +21,7 @@ from trialid.design.prediction.engine_orders import at_her_speed
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.rating import Goal, Noise, goal
+from trialid.design.rudder_rate import gear_rate
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import ENOUGH, Likeness, Separation, likeness_of, rivals
 from trialid.design.standard import Measure, in_calm, measures_of
@@ -35,13 +36,6 @@ from trialid.simulation.integrate import inputs
 from trialid.trial import Trial
 
 STEERED: Final = frozenset({"delta", "delta_order"})
-GEAR: Final = float(np.deg2rad(2.5))
-"""rad/s of rudder, where the record shows none faster: what a ship's gear does at least."""
-MOVED: Final = 0.25
-"""Share of the rudder's range that it is clocked over: 5 of the 20 deg of a zig-zag 10/10."""
-SPIKE: Final = 3
-"""Moves as quick that there have to be: a wild sample makes two."""
-
 APART: Final = 0.05
 """Share by which approach speeds differ that are two."""
 WORTH_SAILING: Final = 0.9
@@ -73,7 +67,9 @@ def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
     sailed = model or fit.model
     if not STEERED & {*sailed.recorded}:
         raise DesignError("she has no rudder to steer by; `stop` and orders of your own need none")
-    ship = vessel(sailed, fit.problem.trials[0].period, steady_inputs(fit), _rate(fit))
+    ship = vessel(
+        sailed, fit.problem.trials[0].period, steady_inputs(fit), gear_rate(fit.problem.trials)
+    )
     return at_her_speed(ship, in_calm(ship))
 
 
@@ -86,31 +82,6 @@ def steady_inputs(fit: Fit) -> dict[str, float]:
     logged = {n: float(np.median(x)) for n, x in trial.signals.items() if n not in STATES}
     constants = {n: x for n, x in (logged | steady).items() if n not in STEERED and n != "t"}
     return constants | {"u": fit.model.ship.particulars["U0"]}  # not what a turn leaves of it
-
-
-def _rate(fit: Fit) -> float:
-    """How fast the rudder was seen to move [rad/s]."""
-    logged = [t for t in fit.problem.trials if "delta" in t.signals]
-    return max([GEAR, *(rudder_rate(t.signals["delta"], t.period) for t in logged)])
-
-
-def rudder_rate(delta: Vector, period: float) -> float:
-    """How fast a recorded rudder goes over [rad/s]: its quickest move by a part of its range.
-
-    From one sample to the next noise moves it too, and the faster the log the more.
-
-    >>> noisy = np.tile([0.0, 0.003], 50) + np.repeat([0.0, 0.2], 50).cumsum() / 50
-    >>> round(rudder_rate(noisy, 0.1), 2)
-    0.04
-    """
-    far = MOVED * float(np.ptp(delta))
-    if far == 0.0:
-        return 0.0
-    for apart in range(1, len(delta)):
-        quickest = np.sort(np.abs(delta[apart:] - delta[:-apart]))[-SPIKE:]
-        if len(quickest) == SPIKE and quickest[0] >= far:
-            return float(quickest[0]) / (apart * period)
-    return 0.0
 
 
 def next_trial(

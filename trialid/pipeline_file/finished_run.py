@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from trialid import user_files
-from trialid.design.following import GEAR
+from trialid.design.rudder_rate import GEAR
 from trialid.errors import PipelineError
 from trialid.pipeline_file.design_file import DesignFile
 

@@ -123,6 +123,7 @@ def named(folder: Path, seed: int) -> list[Verdict]:
     return said
 
 
+@pytest.mark.study(turn="each")
 def test_the_sway_is_named_where_a_term_of_the_yaw_stood_for_it(tmp_path: Path) -> None:
     """Yaw damping that changes with the Froude number was, and left twice the noise."""
     assert [v.effect for v in named(tmp_path, 701)][:2] == ["still_water_surge", "sway_in_turns"]

@@ -45,6 +45,7 @@ def test_the_side_comes_first_and_nothing_is_named(wrong):
     assert 'write positive = "port" for phi' in found.verdict.sentence
 
 
+@pytest.mark.study(turn="each")
 def test_both_readings_are_named_where_the_side_of_her_turns_is_nobodys_word(wrong):
     """With z up all but the roll count to port, and the mirror of a ship sails as well."""
     said = diagnose(wrong).verdict.sentence

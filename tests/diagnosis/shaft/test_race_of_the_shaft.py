@@ -60,6 +60,7 @@ def test_it_is_not_where_the_rudder_stands_in_free_flow(seed):
     assert found(MODEL, seed).verdict.kind == "nothing missing"
 
 
+@pytest.mark.study(turn="each")
 def test_what_no_propeller_can_be_has_no_name():
     """Without the race slopes put the thrust deduction first; freed it was -22, 32.6 to 22.0 %."""
     others = {name: e for name, e in CATALOGUE.items() if name != "rudder_race_shaft"}

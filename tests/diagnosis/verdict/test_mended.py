@@ -50,6 +50,7 @@ def test_a_sensor_at_its_bound_stands_for_what_the_model_lacks(unstable):
     assert found.after.fit.eps_check < 0.7 * unstable.eps_check
 
 
+@pytest.mark.study(turn="each")
 def test_what_also_fails_for_another_reason_is_mended_by_nothing():
     """The ship is lost in the trial held out, which no name may excuse."""
     lost = sailed(-1.0, 4.0)

@@ -8,13 +8,14 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.following import GEAR, STEERED, sailed_ship, steady_inputs
+from trialid.design.following import STEERED, sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.speed_loss import logged_loss, loses_speed
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre, sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.seen_range import beyond_words
+from trialid.design.rudder_rate import GEAR
 from trialid.errors import DesignError, TrialidError, list_names
 from trialid.identification.fit import Fit
 from trialid.names import labels

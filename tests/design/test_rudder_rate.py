@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+from waters import D
+
+from trialid.design.helm import ramp
+from trialid.design.rudder_rate import GEAR, gear_rate, rudder_rate
+from trialid.trial import Trial
+
+PERIOD = 0.5
+
+
+def steered(rate, angle=20.0, period=PERIOD):
+    """Twenty minutes of a rudder that is ordered over each minute, and goes so fast [deg/s]."""
+    t = np.arange(0.0, 1200.0, period)
+    orders = angle * D * np.sign(np.sin(np.pi * t / 60.0 + 0.01))
+    return Trial("zz", "fit", period, {"delta": ramp(orders, rate * D * period)}, {})
+
+
+def test_a_rudder_is_clocked_over_its_moves_not_from_sample_to_sample():
+    """Its feedback noisy, logged fast, with a wild value; one that is moved slowly has no gear."""
+    rng = np.random.default_rng(4)
+    orders = 10 * D * np.sign(np.sin(0.05 * np.arange(12000) * 0.1))
+    delta = ramp(orders, 2.5 * D * 0.1)
+    assert rudder_rate(delta, 0.1) == pytest.approx(2.5 * D)
+    noisy = delta + 0.05 * D * rng.standard_normal(len(delta))
+    noisy[777] += 25 * D
+    by_samples = np.quantile(np.abs(np.diff(noisy)), 0.99) / 0.1
+    assert by_samples > 1.4 * 2.5 * D
+    assert rudder_rate(noisy, 0.1) == pytest.approx(2.5 * D, rel=0.07)
+    assert rudder_rate(np.zeros(50), 0.1) == 0.0
+
+
+@pytest.mark.parametrize("rate", [0.8, 1.6, 2.4, 5.0])
+def test_a_gear_goes_as_fast_as_it_went(rate):
+    """A rudder that was ordered over, went slowly and was held there has a slow gear."""
+    assert gear_rate([steered(rate)]) == pytest.approx(rate * D, rel=0.01)
+    assert gear_rate([steered(rate, angle=10.0), steered(rate)]) == pytest.approx(
+        rate * D, rel=0.01
+    )
+
+
+def test_a_rudder_worked_little_by_little_shows_no_gear():
+    t = np.arange(0.0, 1200.0, PERIOD)
+    waved = Trial("wave", "fit", PERIOD, {"delta": 10.0 * D * np.sin(0.05 * t)}, {})
+    assert rudder_rate(waved.signals["delta"], PERIOD) < 0.6 * D
+    assert gear_rate([waved]) == GEAR
+    assert gear_rate([waved, steered(1.6)]) == pytest.approx(1.6 * D, rel=0.01)
+    assert gear_rate([]) == GEAR
+
+
+def test_a_rudder_that_is_over_from_one_sample_to_the_next_shows_no_gear():
+    """A log each 20 s of a 5/5 zig-zag would have her gear go 0.5 deg/s at most."""
+    rare = steered(2.5, angle=5.0, period=20.0)
+    assert rudder_rate(rare.signals["delta"], 20.0) < 0.6 * D
+    assert gear_rate([rare]) == GEAR

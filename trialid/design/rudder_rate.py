@@ -1,0 +1,71 @@
+"""How fast a ship's rudder goes over, from how it went over in her trials."""
+
+from collections.abc import Iterable
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.trial import Trial
+
+GEAR: Final = float(np.deg2rad(2.5))
+"""rad/s of rudder, where no record shows it: what a ship's gear does at least."""
+MOVED: Final = 0.25
+"""Share of the rudder's range that it is clocked over: 5 of the 20 deg of a zig-zag 10/10."""
+OVER: Final = 0.9
+"""Share of the range that a rudder goes over in one move, ordered from one angle to another."""
+EVENLY: Final = 0.1
+"""Share by which it may be slower over that: a ramp is by noise alone, a sine by 0.2. With half of
+it a zig-zag 10/10 counts up to 0.1 deg of noise on the rudder's angle, with this up to 0.2."""
+SPIKE: Final = 3
+"""Moves as quick that there have to be: a wild sample makes two."""
+
+
+def gear_rate(trials: Iterable[Trial]) -> float:
+    """How fast a rudder goes over [rad/s]: as fast as in the trials, `GEAR` where none shows it.
+
+    One that goes from angle to angle at one rate goes as fast as it can, however slow that is. One
+    that is worked little by little, or is over from one sample to the next, may go faster.
+    """
+    logged = [t for t in trials if "delta" in t.signals]
+    shown = any(_goes_evenly(t) for t in logged)
+    paces = [rudder_rate(t.signals["delta"], t.period) for t in logged]
+    return max([0.0 if shown else GEAR, *paces])
+
+
+def _goes_evenly(trial: Trial) -> bool:
+    """Whether the rudder goes from angle to angle at one rate, more than a sample long."""
+    delta = trial.signals["delta"]
+    quick, whole = _quickest(delta, MOVED), _quickest(delta, OVER)
+    return quick.samples > 1 and whole.moved >= (1.0 - EVENLY) * quick.moved
+
+
+def rudder_rate(delta: Vector, period: float) -> float:
+    """How fast a recorded rudder goes over [rad/s]: its quickest move by a part of its range.
+
+    From one sample to the next noise moves it too, and the faster the log the more.
+
+    >>> noisy = np.tile([0.0, 0.003], 50) + np.repeat([0.0, 0.2], 50).cumsum() / 50
+    >>> round(rudder_rate(noisy, 0.1), 2)
+    0.04
+    """
+    return _quickest(delta, MOVED).moved / period
+
+
+class Move(NamedTuple):
+    """The samples that a rudder's quickest move took, and by how much it moved in one [rad]."""
+
+    samples: int
+    moved: float
+
+
+def _quickest(delta: Vector, share: float) -> Move:
+    """The quickest move of a rudder by a share of its range."""
+    far = share * float(np.ptp(delta))
+    if far == 0.0:
+        return Move(0, 0.0)
+    for apart in range(1, len(delta)):
+        quickest = np.sort(np.abs(delta[apart:] - delta[:-apart]))[-SPIKE:]
+        if len(quickest) == SPIKE and quickest[0] >= far:
+            return Move(apart, float(quickest[0]) / apart)
+    return Move(0, 0.0)
