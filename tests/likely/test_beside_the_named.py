@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
+from trialid.accuracy.ranges import USUAL_FORCES
 from trialid.accuracy.widened import embrace
 from trialid.design.imo.measures import Criterion
 from trialid.design.standard import Measure
@@ -46,7 +47,9 @@ def table(*rows):
     ],
 )
 def test_a_range_embraces_what_the_model_with_the_effect_says(own, there, both):
-    [found] = embrace(table(row("Nv", own)), table(row("Nv", there)), "cross_flow_drag").parameters
+    [found] = embrace(
+        table(row("Nv", own)), [("cross_flow_drag", table(row("Nv", there)))]
+    ).parameters
     assert found.likely == both
     assert found.widened_by == ("another" if both == own else "cross_flow_drag")
 
@@ -55,17 +58,35 @@ def test_a_diagnosis_beside_the_model_with_its_effect(monkeypatch):
     tables = {"without": table(row("Nv", (0.0, 2.0))), "with": table(row("Nv", (1.5, 3.0)))}
     tables["all"] = table(row("Nv", (-1.0, 1.0)))
     monkeypatch.setattr(diagnosed, "accuracy_of", lambda fit, split, averaged: tables[fit])
-    monkeypatch.setattr(diagnosed, "beside_usual_forces", lambda fit: usual[fit])
-    usual = {"without": (tables["all"],), "with": ()}
     doubts = SimpleNamespace(averaged=None)
-    before, after = (diagnosed.Diagnosed(fit, None, (), doubts) for fit in usual)
+    before, after, usual = (diagnosed.Diagnosed(fit, None, (), doubts) for fit in tables)
+    beside = {"without": (usual,), "with": ()}
+    monkeypatch.setattr(diagnosed, "beside_usual_forces", lambda fit, examine: beside[fit])
     assert before.beside("cross_flow_drag", after).accuracy.parameters[0].likely == (0.0, 3.0)
     assert before.beside(None, after).accuracy.parameters[0].likely == (-1.0, 2.0)
     assert before.own_accuracy.parameters[0].likely == (0.0, 2.0)
+    assert before.others == ((USUAL_FORCES, usual),)
+    beside["with"] = (usual,)
+    named = before.beside("cross_flow_drag", diagnosed.Diagnosed("with", None, (), doubts))
+    assert [what for what, _ in named.others] == ["cross_flow_drag", USUAL_FORCES]
+    assert named.accuracy.parameters[0].likely == (-1.0, 3.0)
+
+
+def test_a_range_is_widened_by_the_model_that_reaches_furthest():
+    others = [
+        (name, table(row("Nv", ends))) for name, ends in (("a", (0.0, 4.0)), ("b", (-1.0, 3.0)))
+    ]
+    for said in (others, others[::-1]):
+        [found] = embrace(table(row("Nv", (0.0, 2.0))), said).parameters
+        assert (found.likely, found.widened_by) == ((-1.0, 4.0), "a")
+    [same] = embrace(table(row("Nv", (0.0, 4.0))), others[1:]).parameters
+    assert (same.likely, same.widened_by) == ((-1.0, 4.0), "another")
 
 
 def test_a_parameter_that_the_other_model_has_not_stays():
-    [found] = embrace(table(row("Nv", (0.0, 2.0))), table(row("Nr", (5.0, 6.0))), "x").parameters
+    [found] = embrace(
+        table(row("Nv", (0.0, 2.0))), [("x", table(row("Nr", (5.0, 6.0))))]
+    ).parameters
     assert found == replace(row("Nv", (0.0, 2.0)))
 
 
@@ -90,7 +111,10 @@ def test_standard_measures_embrace_what_the_model_with_the_effect_says(monkeypat
     monkeypatch.setattr(findings.observed, "overshoots", lambda fit: ())
     accuracy = SimpleNamespace(parameters=(), covariance=None)
     doubts = SimpleNamespace(standing=None, held=(), missing=())
-    before, after = (SimpleNamespace(fit=f, accuracy=accuracy, doubts=doubts) for f in ranges)
-    found = SimpleNamespace(before=before, after=after, verdict=SimpleNamespace(effect=effect))
+    kept = {"accuracy": accuracy, "doubts": doubts}
+    after = SimpleNamespace(fit="with", **kept)
+    others = () if effect is None else ((effect, after),)
+    before = SimpleNamespace(fit="without", others=others, **kept)
+    found = SimpleNamespace(before=before)
     [measure] = findings._imo(SimpleNamespace(imo=True), found, None)["measures"]
     assert measure.interval == (low, 5.0)

@@ -113,7 +113,7 @@ def test_with_all_forces_a_parameter_is_hers():
 
 
 def test_nothing_holds_as_many_without_her_file():
-    assert usual_forces.beside_usual_forces(begun(sailed(drawn(27), 27), by_ship=False)) == ()
+    assert usual_forces.beside_usual_forces(begun(sailed(drawn(27), 27), by_ship=False), id) == ()
 
 
 def test_a_hull_that_her_file_calls_exact_is_left_out():

@@ -5,7 +5,14 @@ from dataclasses import replace
 
 from trialid.accuracy.likely import Averaged
 from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
-from trialid.accuracy.ranges import ANOTHER_GM, by_share, cut_to_ends, wider
+from trialid.accuracy.ranges import (
+    ANOTHER_GM,
+    Range,
+    by_share,
+    cut_to_ends,
+    share_off,
+    wider,
+)
 
 
 def with_ranges(accuracy: Accuracy, averaged: Averaged) -> Accuracy:
@@ -23,23 +30,35 @@ def _with_range(row: ParameterAccuracy, place: int, averaged: Averaged) -> Param
     return replace(row, likely=cut_to_ends(likely, row.ends), widened_by=averaged.widest[place])
 
 
-def embrace(accuracy: Accuracy, named: Accuracy, effect: str) -> Accuracy:
-    """The same with ranges that hold what the model with a named effect says of each parameter.
+def embrace(accuracy: Accuracy, others: Sequence[tuple[str, Accuracy]]) -> Accuracy:
+    """The same with ranges that hold what other models of the ship say of each parameter.
 
-    Or with several: `effect` is what widens a range by them.
+    By slopes a fit far off foretells half of the way that its parameters go when what is missing is
+    added.
 
-    By slopes a fit far off foretells half of the way that its parameters go when it is added.
+    Parameters
+    ----------
+    others
+        What each has besides, which widens a range that it reaches furthest of, and its table.
     """
-    there = {row.name: row.likely for row in named.parameters}
-    rows = tuple(_embraced(row, there.get(row.name), effect) for row in accuracy.parameters)
-    return replace(accuracy, parameters=rows)
+    said = [(what, {row.name: row.likely for row in there.parameters}) for what, there in others]
+    rows = (
+        _embraced(row, [(what, there.get(row.name)) for what, there in said])
+        for row in accuracy.parameters
+    )
+    return replace(accuracy, parameters=tuple(rows))
 
 
 def _embraced(
-    row: ParameterAccuracy, there: tuple[float, float] | None, effect: str
+    row: ParameterAccuracy, others: Sequence[tuple[str, Range | None]]
 ) -> ParameterAccuracy:
-    both = wider(row.likely, there)
-    return row if both == row.likely else replace(row, likely=both, widened_by=effect)
+    likely, widened_by = row.likely, row.widened_by
+    for what, there in others:
+        further = wider(likely, there)
+        if (share_off(row.value, further) or 0.0) > (share_off(row.value, likely) or 0.0):
+            widened_by = what
+        likely = further
+    return replace(row, likely=likely, widened_by=widened_by)
 
 
 def with_rivals(accuracy: Accuracy, rivals: Sequence[Mapping[str, float]]) -> Accuracy:

@@ -9,9 +9,11 @@ from trialid.accuracy.ranges import USUAL_FORCES
 from trialid.accuracy.widened import embrace
 from trialid.diagnosis.force.missing_force import MissingForce
 from trialid.diagnosis.force.usual_forces import beside_usual_forces
-from trialid.diagnosis.may_be_off import Doubts
+from trialid.diagnosis.may_be_off import Doubts, doubts
 from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.prediction_band import prediction_band
+from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
@@ -75,23 +77,33 @@ class Diagnosed:
         return accuracy_of(self.fit, self.split, self.doubts.averaged)
 
     @cached_property
-    def accuracy(self) -> Accuracy:
-        """The same, as wide as the model with the effect that is missing says.
+    def others(self) -> "tuple[tuple[str, Diagnosed], ...]":
+        """Models that the ranges of whatever follows from this one hold, with what each has.
 
-        Where none has a name, as wide as the model with all usual forces does.
+        The model with the effect that is missing, and what belongs beside that; where none has a
+        name, those with all usual forces.
         """
         if self.named is not None:
-            effect, other = self.named
-            return embrace(self.own_accuracy, other.accuracy, effect)
-        made = self.own_accuracy
-        for there in beside_usual_forces(self.fit):
-            made = embrace(made, there, USUAL_FORCES)
-        return made
+            return (self.named, *self.named[1].others)
+        usual = beside_usual_forces(self.fit, lambda fit: examination(augment(fit, {})))
+        return tuple((USUAL_FORCES, one) for one in usual)
+
+    @cached_property
+    def accuracy(self) -> Accuracy:
+        """Eq. 8 to 14 and likely ranges of every unknown, as wide as the other models say."""
+        return embrace(self.own_accuracy, [(n, one.own_accuracy) for n, one in self.others])
 
     @cached_property
     def band(self) -> dict[str, float]:
         """Half-width of the 95 % band of a trial that was not fitted, by output [SI]."""
         return prediction_band(self.fit)
+
+
+def examination(augmented: Augmented, asked: DiagnoseSettings | None = None) -> Diagnosed:
+    """A fit with what its error is made of, from the traces of what may be missing."""
+    known = asked or DiagnoseSettings()
+    best, routes = split(augmented.fit, augmented, known.noise, known.quiet)
+    return Diagnosed(augmented.fit, best, routes, doubts(augmented))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,9 +2,7 @@
 
 from collections.abc import Mapping
 
-from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings
-from trialid.diagnosis.may_be_off import doubts
-from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, examination
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.completeness import Completeness, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
@@ -24,8 +22,7 @@ def examine_fit(
     """
     progress("looking for what is missing", 0.65)
     augmented = known or augment(fit, tried_effects(fit, asked))
-    best, routes = split(fit, augmented, asked.noise, asked.quiet)
-    return Diagnosed(fit, best, routes, doubts(augmented)), augmented
+    return examination(augmented, asked), augmented
 
 
 def examine_alone(

@@ -124,7 +124,7 @@ def _ship(fit: Fit) -> Vessel | None:
 def _imo(pipeline: Pipeline, found: Diagnosis, ship: Vessel | None) -> dict[str, Any]:
     """IMO's measures of the fitted ship and of the trials, where the pipeline asks for them.
 
-    Where an effect has a name the ranges hold what the model with it says, as parameters' do.
+    Their ranges hold what other models say beside which the parameters are, too.
     """
     if not pipeline.imo:
         return {}
@@ -136,8 +136,8 @@ def _imo(pipeline: Pipeline, found: Diagnosis, ship: Vessel | None) -> dict[str,
     by_heading = {one.trial for one in sailed.numbers if one.kind == "zig-zag"}
     integrals = (one for one in observed.overshoots(fit) if one.trial not in by_heading)
     measures, steering = following.measures_within(fit, spread), _steering(ship, spread)
-    if found.after is not None and found.verdict.effect is not None:
-        measures, steering = _beside(measures, steering, found.after)
+    for _, other in done.others:
+        measures, steering = _beside(measures, steering, other)
     return {
         "measures": measures,
         "overshoots": tuple(integrals),
@@ -155,13 +155,13 @@ def _spread(done: Diagnosed) -> LikelySpread:
 
 
 def _beside(
-    measures: tuple[Measure, ...], steering: Nomoto | None, named: Diagnosed
+    measures: tuple[Measure, ...], steering: Nomoto | None, other: Diagnosed
 ) -> tuple[tuple[Measure, ...], Nomoto | None]:
-    """The same with ranges that hold those of the model with the effect that has a name.
+    """The same with ranges that hold those of another model of the ship.
 
     What an effect makes of her that cannot be sailed, as an order that comes late, widens none.
     """
-    spread, fit = _spread(named), named.fit
+    spread, fit = _spread(other), other.fit
     with suppress(DesignError):
         measures = embrace(measures, following.measures_within(fit, spread))
     there = None if steering is None else _steering(_ship(fit), spread)

@@ -7,11 +7,11 @@ one as much; which side its race pushes the stern to, nobody knows without a tri
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import reduce
 from typing import Final
 
-import numpy as np
-
 from trialid.design.helm import Vessel, vessel
+from trialid.design.prediction.embrace import embrace
 from trialid.design.prediction.likely_spread import Range
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.effects.propulsion import propeller_astern
@@ -45,17 +45,10 @@ def _less(model: ShipModel, share: float) -> dict[str, float]:
 
 def all_of(made: Sequence[PredictedMotion]) -> PredictedMotion:
     """The first of several predictions, with ranges that embrace those of all."""
-    first = made[0]
-    ranges = {
-        n: (
-            np.min([one.ranges[n][0] for one in made], axis=0),
-            np.max([one.ranges[n][1] for one in made], axis=0),
-        )
-        for n in first.ranges
-    }
+    first = reduce(embrace, made)
     kept = {n: x for n, (x, _) in first.numbers.items() if n != SIDEWAYS}
     numbers = {n: (x, _embracing([one.numbers for one in made], n)) for n, x in kept.items()}
-    return replace(first, ranges=ranges, numbers=numbers, remark=REMARK)
+    return replace(first, numbers=numbers, remark=REMARK)
 
 
 def _embracing(

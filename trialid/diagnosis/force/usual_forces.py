@@ -6,19 +6,14 @@ have them all, Nv and Nr came out a half too small, in one direction. No slope a
 as far as a fit with all of them does, held by what her file says of each.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Final, TypeVar
 
-from trialid.accuracy.parameter_table import Accuracy
-from trialid.diagnosis.may_be_off import may_be_off
-from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.noise.thinning import with_means
-from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.search.refit import settings_with
 from trialid.diagnosis.search.together import fit_together
-from trialid.diagnosis.trust import accuracy_of
 from trialid.effects import CATALOGUE
 from trialid.effects.usual_structures import speed_of, usual_structures
 from trialid.errors import TrialidError
@@ -32,6 +27,8 @@ from trialid.simulation.integrate import shared_record
 from trialid.threads import one_thread
 from trialid.trial import Trial
 
+T = TypeVar("T")
+
 AT_ONCE: Final = ("modulus", "cubic")
 """Hulls whose terms are told apart by hardly any trial: the ship may have either."""
 
@@ -44,28 +41,22 @@ AS_HELD: Final = ("linear_hull", "linear_rudder")
 
 
 @one_thread
-def beside_usual_forces(fit: Fit) -> tuple[Accuracy, ...]:
-    """How sure the model with all usual forces is of each parameter, by each usual hull.
+def beside_usual_forces(fit: Fit, examine: Callable[[Fit], T]) -> tuple[T, ...]:
+    """What is found of the model with all usual forces, by each usual hull.
 
-    Where the pipeline's priors are her file's: nothing else holds so many. What shapes the forces
-    is in it, so that of all it may lack only the numbers count that it holds. Nothing by a hull
-    whose search does not arrive, or that the record cannot carry.
+    Where the pipeline's priors are her file's: nothing else holds so many. Nothing by a hull whose
+    search does not arrive, or that the record cannot carry.
     """
     if not fit.settings.priors_of_ship:
         return ()
     seen = with_means(fit).examined
 
-    def by(hull: str) -> Accuracy | None:
+    def by(hull: str) -> T | None:
         found = with_hull(seen, hull)
-        return None if found is None else _accuracy(found)
+        return None if found is None else examine(found)
 
     done = each(by, AT_ONCE, (*fit.trials, *seen.trials))
     return tuple(known for known in done if known is not None)
-
-
-def _accuracy(fit: Fit) -> Accuracy:
-    augmented = augment(fit, {})
-    return accuracy_of(fit, split(fit, augmented, {})[0], may_be_off(augmented))
 
 
 def with_hull(fit: Fit, hull: str) -> Fit | None:

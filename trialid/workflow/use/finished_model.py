@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from trialid.design.prediction.seen_range import SeenRange, seen_ranges
-from trialid.diagnosis.examine import examine_fit
+from trialid.diagnosis.diagnose import diagnose
 from trialid.errors import NotIdentifiable, PipelineError, TrialidError
 from trialid.identification.fit import Fit, revive
 from trialid.names.quantities import SIGNALS, Quantity
@@ -22,7 +22,8 @@ from trialid.workflow.build_model import available, build_model, settings_of
 from trialid.workflow.findings import diagnose_settings
 from trialid.workflow.read_trials import align_trials
 from trialid.workflow.repeat import Earlier, earlier
-from trialid.workflow.use.kept_standing import Known, standing_of
+from trialid.workflow.use.kept_models import Known
+from trialid.workflow.use.kept_standing import standing_of
 
 NO_FIT: Final = "no fit"
 """The verdict of a fit that nothing may be built on."""
@@ -49,6 +50,11 @@ class FinishedModel:
     def fit(self) -> Fit:
         """The fit, its search over."""
         return self.done.fit
+
+    @property
+    def others(self) -> "tuple[FinishedModel, ...]":
+        """Models whose ranges this one's hold, each as if it were the run's."""
+        return tuple(replace(self, done=other) for _, other in self.done.others)
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -102,11 +108,14 @@ def _known(run: Earlier, progress: Progress) -> Known:
     catalogue = available(run.pipeline)
     kept = standing_of(run.folder, catalogue)
     if kept is not None:
-        return kept.of(revived_fit(run.pipeline, kept.trials, run.result, str(run.folder)))
+        return kept.of(
+            revived_fit(run.pipeline, kept.trials, run.result, str(run.folder)), catalogue
+        )
     progress("reading", 0.1)
     trials = align_trials(run.pipeline, progress)
     fit = revived_fit(run.pipeline, trials, run.result, str(run.folder))
-    return examine_fit(fit, diagnose_settings(run.pipeline, catalogue), progress)[0]
+    asked, grown = diagnose_settings(run.pipeline, catalogue), bool(run.result.grown)
+    return diagnose(fit, asked, progress, grown=grown).before
 
 
 def check_verdict(result: Result, where: str, *, anyway: bool) -> None:

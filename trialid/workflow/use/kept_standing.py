@@ -1,120 +1,54 @@
 """What a run has worked out of its fit, kept in its folder: taking the run up again is quick.
 
 It holds the trials on their clock, the covariance, and how all that may be missing or held wrong
-stands. It is of one `result.json`, whose logs are held against their hashes whenever the run is
-taken up, and of the very sources of this package: with anything else it counts for nothing, and
-everything is worked out again. With effects of other packages or of the user's own, which may read
-what nobody watches, there is none.
+stands; the same of each other model whose ranges a prediction holds. It is of one `result.json`,
+whose logs are held against their hashes whenever the run is taken up, and of the very sources of
+this package: with anything else it counts for nothing, and everything is worked out again. With
+effects of other packages or of the user's own, which may read what nobody watches, there is none.
 """
 
 import hashlib
 import io
 import json
 import zipfile
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Final, Literal, Protocol
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from trialid import plugins
-from trialid.accuracy.likely import Standing
-from trialid.accuracy.one_missing import Reduced, Rival
 from trialid.arrays import Vector
 from trialid.cache import source_digest
-from trialid.diagnosis.may_be_off import Doubts
-from trialid.diagnosis.search.augment import Trace
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
 from trialid.trial import LogSource, Trial
+from trialid.workflow.use.kept_models import (
+    AboutModel,
+    KeptFit,
+    KeptModel,
+    Known,
+    about_model,
+    arrays_of,
+    kept_model,
+)
 
 FILE: Final = "standing.npz"
-COVARIANCE: Final = "covariance"
-ARRAYS: Final = ("gram", "moves", "deviations")
-
-
-class Named(Protocol):
-    """Anything with a name."""
-
-    @property
-    def name(self) -> str:
-        """The name."""
-
-
-class Trusted(Protocol):
-    """How sure a fit is by noise: its unknowns and their covariance."""
-
-    @property
-    def parameters(self) -> Sequence[Named]:
-        """The unknowns."""
-
-    @property
-    def covariance(self) -> Vector:
-        """Of the unknowns; (n, n)."""
-
-
-class Known(Protocol):
-    """A fit with how sure it is and what may be missing in it."""
-
-    @property
-    def fit(self) -> Fit:
-        """The fit."""
-
-    @property
-    def accuracy(self) -> Trusted:
-        """How sure it is."""
-
-    @property
-    def doubts(self) -> Doubts:
-        """What may be missing or held wrong."""
-
-
-@dataclass(frozen=True)
-class Unknown:
-    """The name of something that was fitted."""
-
-    name: str
-
-
-@dataclass(frozen=True)
-class KeptAccuracy:
-    """Unknowns and their covariance by noise."""
-
-    parameters: tuple[Unknown, ...]
-    covariance: Vector
-
-
-@dataclass(frozen=True)
-class KeptFit:
-    """A fit with what was kept of it."""
-
-    fit: Fit
-    accuracy: KeptAccuracy
-    doubts: Doubts
 
 
 @dataclass(frozen=True)
 class KeptStanding:
-    """What a run's folder keeps: trials on their clock, and how sure the fit to them is."""
+    """What a run's folder keeps: trials on their clock, the fit to them, and other models."""
 
     trials: tuple[Trial, ...]
-    accuracy: KeptAccuracy
-    doubts: Doubts
+    model: KeptModel
+    others: tuple[KeptModel, ...]
 
-    def of(self, fit: Fit) -> KeptFit:
+    def of(self, fit: Fit, catalogue: Mapping[str, Effect]) -> KeptFit:
         """The fit to these trials with it."""
-        return KeptFit(fit, self.accuracy, self.doubts)
-
-
-@dataclass(frozen=True, kw_only=True)
-class TraceRow:
-    """A way in which an effect may be missing, the effect by its name."""
-
-    effect: str
-    columns: tuple[int, ...]
-    parameters: tuple[str, ...]
-    tried: Mapping[str, float]
+        others = ((one.about.has, one.beside(fit, catalogue)) for one in self.others)
+        return replace(self.model.of(fit), others=tuple(others))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,15 +68,10 @@ class KeptTrial:
 
 @dataclass(frozen=True, kw_only=True)
 class About:
-    """All of the file that is no array."""
+    """All of the file that is no array; the first model is the run's."""
 
     key: str
-    unknowns: tuple[str, ...]
-    variance: float
-    independent: float
-    rivals: tuple[Rival, ...]
-    held: tuple[str, ...]
-    missing: tuple[TraceRow, ...]
+    models: tuple[AboutModel, ...]
     trials: tuple[KeptTrial, ...]
 
 
@@ -150,25 +79,15 @@ def standing_bytes(done: Known, result: bytes) -> bytes | None:
     """The file for a run of this `result.json`; None where it could be stale unseen."""
     if plugins.packages():  # their sources are not ours to watch
         return None
-    trials, doubts = [score.trial for score in done.fit.scores], done.doubts
-    reduced = doubts.standing.known
+    trials, models = [score.trial for score in done.fit.scores], [("", done), *done.others]
     about = About(
         key=_key(result),
-        unknowns=tuple(p.name for p in done.accuracy.parameters),
-        variance=reduced.variance,
-        independent=reduced.independent,
-        rivals=doubts.standing.rivals,
-        held=doubts.held,
-        missing=tuple(
-            TraceRow(
-                effect=t.effect.name, columns=t.columns, parameters=t.parameters, tried=t.tried
-            )
-            for t in doubts.missing
-        ),
+        models=tuple(about_model(*one) for one in models),
         trials=tuple(map(_without_arrays, trials)),
     )
-    arrays = {name: getattr(reduced, name) for name in ARRAYS}
-    arrays |= {COVARIANCE: done.accuracy.covariance}
+    arrays = dict[str, Any]()
+    for i, (_, model) in enumerate(models):
+        arrays |= {f"model {i} {name}": x for name, x in arrays_of(model).items()}
     for i, trial in enumerate(trials):
         arrays |= {f"{i} signal {name}": x for name, x in trial.signals.items()}
         arrays |= {f"{i} valid {name}": x for name, x in trial.valid.items()}
@@ -211,19 +130,16 @@ def standing_of(folder: Path, catalogue: Mapping[str, Effect]) -> KeptStanding |
 def _read(
     about: About, arrays: Mapping[str, Vector], catalogue: Mapping[str, Effect]
 ) -> KeptStanding:
-    reduced = Reduced(
-        variance=about.variance,
-        independent=about.independent,
-        **{name: arrays[name] for name in ARRAYS},
+    own, *others = (
+        kept_model(row, _under(f"model {i} ", arrays), catalogue)
+        for i, row in enumerate(about.models)
     )
-    missing = tuple(
-        Trace(catalogue[t.effect], t.columns, t.parameters, t.tried) for t in about.missing
-    )
-    return KeptStanding(
-        trials=tuple(_trial(i, row, arrays) for i, row in enumerate(about.trials)),
-        accuracy=KeptAccuracy(tuple(map(Unknown, about.unknowns)), arrays[COVARIANCE]),
-        doubts=Doubts(Standing(reduced, about.rivals), about.held, missing),
-    )
+    trials = tuple(_trial(i, row, arrays) for i, row in enumerate(about.trials))
+    return KeptStanding(trials, own, tuple(others))
+
+
+def _under(prefix: str, arrays: Mapping[str, Vector]) -> dict[str, Vector]:
+    return {n.removeprefix(prefix): x for n, x in arrays.items() if n.startswith(prefix)}
 
 
 def _trial(place: int, row: KeptTrial, arrays: Mapping[str, Vector]) -> Trial:

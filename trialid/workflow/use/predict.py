@@ -1,7 +1,9 @@
 """A finished run's model under orders: series, ranges, numbers, and what to know of them."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
+from itertools import chain
 from types import MappingProxyType
 from typing import Final
 
@@ -11,6 +13,7 @@ from trialid.arrays import Vector
 from trialid.design.following import STEERED, sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.speed_loss import logged_loss, loses_speed
+from trialid.design.prediction.embrace import embrace
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre, sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
@@ -21,6 +24,7 @@ from trialid.identification.fit import Fit
 from trialid.names import labels
 from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file.contradictions import nearest_signal
+from trialid.second_process import each
 from trialid.ship.effect import Steered
 from trialid.threads import one_thread
 from trialid.trial import Trial
@@ -60,10 +64,13 @@ def predict_manoeuvre(
     DesignError
         The model cannot be steered by a rudder.
     """
-    ship = changed_ship(sailed_ship(model.fit), what_if)
-    spread = known_changes(spread_of(model), what_if)
-    made = sail_manoeuvre(ship, asked, spread, model.result.fit.band)
-    return with_words(model, asked.name, made, what_if)
+
+    def sail(one: FinishedModel) -> PredictedMotion:
+        ship = changed_ship(sailed_ship(one.fit), what_if)
+        spread = known_changes(spread_of(one), what_if)
+        return sail_manoeuvre(ship, asked, spread, model.result.fit.band)
+
+    return with_words(model, asked.name, as_wide_as_others(model, sail), what_if)
 
 
 @one_thread
@@ -77,10 +84,34 @@ def predict_orders(
     TrialidError
         None of them is an input of the model, or there are too many.
     """
-    ship, orders, more = ready_orders(model, table, name, what_if)
-    spread = known_changes(spread_of(model), what_if)
-    made = sail_orders(ship, orders, spread, model.result.fit.band, more.every)
+
+    def sail(one: FinishedModel) -> PredictedMotion:
+        ship, orders, more = ready_orders(one, table, name, what_if)
+        spread = known_changes(spread_of(one), what_if)
+        return sail_orders(ship, orders, spread, model.result.fit.band, more.every)
+
+    made = as_wide_as_others(model, sail)
+    more = ready_orders(model, table, name, what_if)[-1]
     return with_words(model, name, made, what_if, more)
+
+
+def as_wide_as_others(
+    model: FinishedModel, sail: Callable[[FinishedModel], PredictedMotion]
+) -> PredictedMotion:
+    """What a model does, its ranges as wide as other models say beside which its fit stands.
+
+    One that cannot do it, as it lacks what is changed, or has no rudder, widens none.
+    """
+
+    def sailed(one: FinishedModel) -> list[PredictedMotion]:
+        try:
+            return [sail(one)]
+        except TrialidError:
+            if one is model:
+                raise
+            return []
+
+    return reduce(embrace, chain.from_iterable(each(sailed, [model, *model.others])))
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
-from waters import D
 
 from trialid.design.helm import ramp
 from trialid.design.rudder_rate import GEAR, gear_rate, rudder_rate
 from trialid.trial import Trial
 
+D = float(np.deg2rad(1.0))
 PERIOD = 0.5
 
 
