@@ -53,15 +53,16 @@ def test_no_fit_says_nothing_of_the_ship(result):
     assert trust(result_of(run)) == ""
 
 
-def test_margins_within_the_noise_tell_no_stability(result):
+def test_she_is_stable_or_not_as_far_as_the_record_tells(result):
     run = copy.deepcopy(result)
-    for row in run["accuracy"]["parameters"]:
-        row["likely"] = [0.9 * row["value"], 1.1 * row["value"]]
+    levers = run["accuracy"]["stability"]
+    levers |= {"stable": True, "likely": [0.0312, 0.21]}
     assert "Stable." in words_of(run)
-    for row in run["accuracy"]["parameters"]:
-        row["likely"] = [-2.0 * row["value"], 4.0 * row["value"]]
-    assert "Stable as fitted, by " in words_of(run)
-    run["accuracy"]["stability"]["stable"] = None
+    assert "likely 0.031 to 0.21" in words_of(run)
+    levers["stable"] = False
+    assert "Unstable." in words_of(run)
+    levers |= {"stable": None, "likely": None}
+    assert "to 0.21" not in words_of(run)
     assert "Stable or not: this record does not tell" in words_of(run)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, zigzag
 
+from trialid.accuracy.likely import Averaged
 from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import examine_fit
@@ -37,22 +38,30 @@ GM = ParameterAccuracy(
 
 
 def part(model, *rows):
-    """The accuracy part of a fit of this model, which knows its parameters exactly."""
+    """The accuracy part of a fit of this model, which knows its parameters exactly.
+
+    Nothing may be missing from it.
+    """
     problem = SimpleNamespace(weights=np.ones(2), outputs=("r", "phi"), unknowns=())
     fit = SimpleNamespace(model=model, problem=problem, settings=SimpleNamespace(norm="mean"))
     size = len(rows)
-    return accuracy_part(
-        fit,
-        Accuracy(
-            parameters=rows,
-            S_min=1.0,
-            S_max=2.0,
-            R=2.0,
-            n_effective=100.0,
-            weak=(),
-            covariance=np.zeros((size, size)),
-        ),
+    accuracy = Accuracy(
+        parameters=rows,
+        S_min=1.0,
+        S_max=2.0,
+        R=2.0,
+        n_effective=100.0,
+        weak=(),
+        covariance=np.zeros((size, size)),
     )
+    nothing = Averaged(np.zeros((1, 1)), np.zeros((1, 1)), ("",))
+    reduced = SimpleNamespace(moves=np.zeros((size, 1)))
+    standing = SimpleNamespace(known=reduced, average=lambda slopes: nothing)
+    doubts = SimpleNamespace(standing=standing, held=())
+    done = SimpleNamespace(
+        fit=fit, accuracy=accuracy, own_accuracy=accuracy, doubts=doubts, others=()
+    )
+    return accuracy_part(done)
 
 
 def test_both_parts_of_eq_14_are_shares_and_other_errors_in_the_unit():
@@ -87,6 +96,8 @@ def test_levers_are_those_of_the_equations_of_motion():
     found = part(MODEL).stability
     assert found.L_v == pytest.approx(F[2, 0] / F[0, 0] / L, rel=1e-5)
     assert found.L_r == pytest.approx(F[2, 1] / F[0, 1] / L, rel=1e-5)
+    assert found.stable
+    assert found.likely == pytest.approx((found.margin, found.margin))
     # in a slow turn she leans until the heel moment is gone
     heel = -F[1, :2] / F[1, 2]
     G = F[:, :2] + np.outer(F[:, 2], heel)

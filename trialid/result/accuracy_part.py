@@ -1,25 +1,17 @@
 """The accuracy of a fit as rows of a result."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from trialid.accuracy.parameter_table import Accuracy, ParameterAccuracy
-from trialid.errors import EffectError
+from trialid.accuracy.parameter_table import ParameterAccuracy
+from trialid.diagnosis.diagnosed import Diagnosed
 from trialid.identification.fit import Fit
-from trialid.result.fit_rows import (
-    AccuracyPart,
-    LeversPart,
-    ParameterRow,
-    StabilityPart,
-    WeakRow,
-)
-from trialid.ship.model import ShipModel
-from trialid.ship.stability import PARTS, Stability, stability
+from trialid.result.fit_rows import AccuracyPart, ParameterRow, WeakRow
+from trialid.result.stability_part import stability_part
 
 
-def accuracy_part(fit: Fit, accuracy: Accuracy) -> AccuracyPart:
+def accuracy_part(done: Diagnosed) -> AccuracyPart:
     """Sensitivities, errors and stability of a fit, with what weights and scales them in words."""
+    fit, accuracy = done.fit, done.accuracy
     known = {x.name: x.prior for x in fit.problem.unknowns}
     return AccuracyPart(
         S_min=accuracy.S_min,
@@ -42,7 +34,7 @@ def accuracy_part(fit: Fit, accuracy: Accuracy) -> AccuracyPart:
             )
             for w in accuracy.weak
         ),
-        stability=_stability(fit.model, accuracy),
+        stability=stability_part(done),
     )
 
 
@@ -70,48 +62,6 @@ def _parameter(p: ParameterAccuracy, prior: tuple[float, float] | None) -> Param
         kind=p.kind,
         prior=prior,
         prior_share=p.prior_share,
-    )
-
-
-def _stability(model: ShipModel, accuracy: Accuracy) -> StabilityPart | None:
-    turning = tuple(n for n in ("Yurm", "Kurm") if n in model.parameters)
-    values = _values(model, (*PARTS, "m", "x_G", *turning))
-    if values is None or values["Yv"] == 0.0:
-        return None
-    names = tuple(p.name for p in accuracy.parameters)
-    plain_form = stability(values, names, accuracy.covariance)
-    coupled_values = _values(model, (*PARTS, "m", "x_G", "z_G", "Kv", "Kr", "GM", *turning))
-    coupled = None
-    if coupled_values is not None and model.ship.particulars["U0"] > 0.0:
-        full = coupled_values | _heel(model)
-        coupled = _levers(stability(full, names, accuracy.covariance, coupled=True))
-    return StabilityPart(**vars(_levers(plain_form)), roll_coupled=coupled)
-
-
-def _values(model: ShipModel, names: Sequence[str]) -> dict[str, float] | None:
-    if any(n not in model.parameters for n in names):
-        return None
-    try:
-        return {n: model.value(n) for n in names}
-    except EffectError:
-        return None
-
-
-def _heel(model: ShipModel) -> dict[str, float]:
-    """Heel derivatives (zero where no effect has them) and the stiffness G_phi; primed."""
-    known = {n: model.value(n) if n in model.parameters else 0.0 for n in ("Yphi", "Nphi", "Kphi")}
-    p = model.ship.particulars
-    stiffness = 2.0 * p["g"] * p["nabla"] * model.value("GM") / (p["L"] ** 3 * p["U0"] ** 2)
-    return {"Yphi": known["Yphi"], "Nphi": known["Nphi"], "G_phi": stiffness - known["Kphi"]}
-
-
-def _levers(s: Stability) -> LeversPart:
-    return LeversPart(
-        L_r=s.L_r,
-        L_v=s.L_v,
-        margin=s.margin,
-        standard_error=s.standard_error,
-        stable=s.stable,
     )
 
 

@@ -81,7 +81,7 @@ def result_from(found: Findings, **beside: Any) -> Result:
             fit=_fit(found.before, missing=found.verdict.kind == "missing"),
             split=_split(found.before.split, found.before.routes),
             accuracy=replace(
-                accuracy_part(fit, found.before.accuracy),
+                accuracy_part(found.before),
                 narrowed_by=found.narrowing.sentence if found.narrowing else None,
             ),
             where=tuple(_finding(f) for f in found.where.findings),

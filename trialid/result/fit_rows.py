@@ -248,12 +248,13 @@ class WeakRow:
 
 @dataclass(frozen=True, kw_only=True)
 class LeversPart:
-    """Eq. 15 and 16, primed."""
+    """Eq. 15 and 16, primed; the error by noise alone, likely is the margin whatever is missing."""
 
     L_r: float | None = None
     L_v: float | None = None
     margin: float | None = None
     standard_error: float | None = None
+    likely: Interval | None = None
     stable: bool | None = None
 
 

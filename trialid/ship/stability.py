@@ -1,12 +1,13 @@
 """Directional stability of the fitted ship: levers of the yaw and sway forces."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.accuracy.ranges import Range
 from trialid.maths import Number
 
 PARTS = ("Yv", "Yr", "Nv", "Nr")
@@ -33,25 +34,40 @@ def levers(c: Mapping[str, Number]) -> tuple[Number, Number]:
 
 @dataclass(frozen=True)
 class Stability:
-    """Levers over L, their margin, and the margin's standard error (None: not estimated)."""
+    """Levers over L, their margin, and how sure that is.
+
+    Attributes
+    ----------
+    standard_error
+        Of the margin, by noise alone; None where it is not estimated.
+    likely
+        Where the margin is likely to lie, whatever is missing; None where nobody knows.
+    """
 
     L_r: float
     L_v: float
     margin: float
     standard_error: float | None
+    likely: Range | None = None
 
     @property
     def stable(self) -> bool | None:
-        """Eq. 16: directionally stable when L_r - L_v > 0; None where noise alone may have made it.
+        """Eq. 16: directionally stable when L_r - L_v > 0; None where both may be so.
 
         >>> Stability(0.32, 0.37, -0.05, 0.33).stable is None
         True
         >>> Stability(0.54, 0.35, 0.18, 0.02).stable
         True
+        >>> Stability(0.54, 0.35, 0.18, 0.02, likely=(-0.1, 0.3)).stable is None
+        True
         """
-        if self.standard_error is not None and not abs(self.margin) > SURE * self.standard_error:
-            return None
-        return self.margin > 0.0
+        low, high = self.likely or self._by_noise
+        return (low > 0.0) if low * high > 0.0 else None
+
+    @property
+    def _by_noise(self) -> Range:
+        wide = SURE * (self.standard_error or 0.0)
+        return self.margin - wide, self.margin + wide
 
 
 def couple_roll(c: Mapping[str, Number]) -> dict[str, Number]:
@@ -86,9 +102,16 @@ def stability(
     L_r, L_v = _levers(values, coupled)
     error = None
     if covariance is not None:
-        slope = np.array([_slope(values, name, coupled) for name in names])
+        slope = margin_slopes(values, names, coupled)
         error = float(np.sqrt(slope @ covariance @ slope))
     return Stability(float(L_r.real), float(L_v.real), float((L_r - L_v).real), error)
+
+
+def margin_slopes(
+    values: Mapping[str, float], names: Sequence[str], coupled: bool = False
+) -> NDArray[np.float64]:
+    """Derivatives of the margin by coefficients, zero by all else; (n,)."""
+    return np.array([_slope(values, name, coupled) for name in names])
 
 
 def _levers(values: Mapping[str, Number], coupled: bool) -> tuple[complex, complex]:

@@ -102,16 +102,23 @@ def _levers(run: Result) -> Table:
     found: list[tuple[str, LeversPart]] = [("plain", levers)] if levers else []
     if levers and levers.roll_coupled:
         found.append(("with heel", levers.roll_coupled))
-    rows = tuple(
-        (
-            form, Figure(each.L_r), Figure(each.L_v),
-            by_error(each.margin, each.standard_error), Figure(each.standard_error, 2),
-            _said(each.stable, "yes", "no", "not known"),
-        )
-        for form, each in found
-    )  # fmt: skip
-    return Table("stability", "Directional stability (Eq. 15 and 16), primed",
-                 ("form", "L_r", "L_v", "L_r - L_v", "standard error", "stable"), rows)  # fmt: skip
+    rows = tuple((form, *_levers_row(each)) for form, each in found)
+    heads = ["form", "L_r", "L_v", "L_r - L_v", "standard error", "likely from", "to", "stable"]
+    title = "Directional stability (Eq. 15 and 16), primed"
+    return Table("stability", title, tuple(heads), rows)
+
+
+def _levers_row(levers: LeversPart) -> tuple[Cell, ...]:
+    low, high = levers.likely or (None, None)
+    return (
+        Figure(levers.L_r),
+        Figure(levers.L_v),
+        by_error(levers.margin, levers.standard_error),
+        Figure(levers.standard_error, 2),
+        Figure(low, 2),
+        Figure(high, 2),
+        _said(levers.stable, "yes", "no", "not known"),
+    )
 
 
 def _said(known: bool | None, yes: str, no: str, unknown: str) -> str:

@@ -6,7 +6,6 @@ from typing import Final
 
 from trialid.result.finding_rows import VerdictPart
 from trialid.result.fit_rows import LeversPart, ParameterRow
-from trialid.ship.stability import PARTS
 
 HALF: Final = 0.5
 """A parameter that may be off by more than this share of its value is not to be believed."""
@@ -54,21 +53,15 @@ def missing_words(verdict: VerdictPart) -> str:
     return f"The run says that {what} is missing; this is the model without it."
 
 
-def stability_words(levers: LeversPart, parameters: Sequence[ParameterRow]) -> str:
-    """Whether she is stable on her course, and what that rests on where it may be believed less.
+def stability_words(levers: LeversPart) -> str:
+    """Whether she is stable on her course, as far as the record tells it.
 
-    >>> stability_words(LeversPart(stable=True), [ParameterRow(name="Nv", value=-1.0,
-    ...                                                        likely=(-2.0, 0.1))])
-    'Stable as fitted, by Nv, which may be off by more than half.'
+    >>> stability_words(LeversPart(stable=True)), stability_words(LeversPart())
+    ('Stable.', 'Stable or not: this record does not tell.')
     """
     if levers.stable is None:
         return "Stable or not: this record does not tell."
-    word = "Stable" if levers.stable else "Unstable"
-    rows = [row for row in parameters if row.name in PARTS and not is_idle(row)]
-    doubted = [row.name for row in rows if not _share(row) <= HALF]
-    if not doubted:
-        return f"{word}."
-    return f"{word} as fitted, by {' and '.join(doubted)}, which may be off by more than half."
+    return "Stable." if levers.stable else "Unstable."
 
 
 def is_idle(row: ParameterRow) -> bool:
