@@ -37,11 +37,8 @@ GM = ParameterAccuracy(
 )
 
 
-def part(model, *rows):
-    """The accuracy part of a fit of this model, which knows its parameters exactly.
-
-    Nothing may be missing from it.
-    """
+def done_with(model, *rows, variance=0.0, others=()):
+    """A fit of this model, which knows its parameters exactly; what follows from them not."""
     problem = SimpleNamespace(weights=np.ones(2), outputs=("r", "phi"), unknowns=())
     fit = SimpleNamespace(model=model, problem=problem, settings=SimpleNamespace(norm="mean"))
     size = len(rows)
@@ -54,14 +51,17 @@ def part(model, *rows):
         weak=(),
         covariance=np.zeros((size, size)),
     )
-    nothing = Averaged(np.zeros((1, 1)), np.zeros((1, 1)), ("",))
+    known = Averaged(np.zeros((1, 1)), np.array([[variance]]), ("",))
     reduced = SimpleNamespace(moves=np.zeros((size, 1)))
-    standing = SimpleNamespace(known=reduced, average=lambda slopes: nothing)
+    standing = SimpleNamespace(known=reduced, average=lambda slopes: known)
     doubts = SimpleNamespace(standing=standing, held=())
-    done = SimpleNamespace(
-        fit=fit, accuracy=accuracy, own_accuracy=accuracy, doubts=doubts, others=()
-    )
-    return accuracy_part(done)
+    kept = {"accuracy": accuracy, "own_accuracy": accuracy, "doubts": doubts}
+    return SimpleNamespace(fit=fit, others=others, **kept)
+
+
+def part(model, *rows):
+    """The accuracy part of such a fit, nothing missing from it."""
+    return accuracy_part(done_with(model, *rows))
 
 
 def test_both_parts_of_eq_14_are_shares_and_other_errors_in_the_unit():
@@ -106,6 +106,17 @@ def test_levers_are_those_of_the_equations_of_motion():
     assert found.roll_coupled.margin == pytest.approx(
         found.roll_coupled.L_r - found.roll_coupled.L_v
     )
+
+
+def test_a_margin_is_likely_where_other_models_say_that_it_may_be():
+    unsure = done_with(MODEL, variance=0.2**2)
+    without_hull = done_with(MODEL - "linear_hull")
+    said = accuracy_part(done_with(MODEL, others=(("x", unsure), ("y", without_hull)))).stability
+    margin = part(MODEL).stability.margin
+    assert said.margin == margin
+    assert said.likely == pytest.approx((margin - 1.96 * 0.2, margin + 1.96 * 0.2), rel=1e-3)
+    assert said.stable is None
+    assert said.roll_coupled.stable is None
 
 
 def test_noise_stays_noise_output_by_output():
