@@ -1,5 +1,6 @@
 """What a fitted ship is said to do holds what she does with all usual forces at once, too."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -15,9 +16,11 @@ from trialid.design.helm import vessel
 from trialid.design.standard import predict
 from trialid.progress import silent
 from trialid.workflow.use.finished_model import finished_model
+from trialid.workflow.use.hand_over import UNTOLD, WRITERS
 from trialid.workflow.use.kept_standing import FILE
 from trialid.workflow.use.orders import named_manoeuvre, read_orders
 from trialid.workflow.use.predict import predict_manoeuvre, predict_orders
+from trialid.workflow.use.steering import Wishes
 
 SEED = 21
 """Of a ship of which both usual hulls arrive."""
@@ -121,6 +124,27 @@ def test_one_number_has_one_range(model):
     for one in predict([truth]):
         low, high = asked[one.criterion.name].interval
         assert low <= one.value <= high
+
+
+def test_nomoto_s_numbers_hold_for_both_and_say_where_she_may_be_unstable(model):
+    def written(one, form):
+        return json.loads(WRITERS[form](one, "x", Wishes())[".json"])
+
+    def numbers(one):
+        return {n: x["likely"] for n, x in written(one, "nomoto")["at"][0]["numbers"].items()}
+
+    known = numbers(model)
+    for other in map(numbers, model.others):
+        for name, (low, high) in other.items():
+            assert known[name][0] <= low <= high <= known[name][1], name
+    loops = [written(one, "pid")["words"] for one in (model, *model.others)]
+    assert all(any("overshoots by" in w for w in words) for words in loops)
+    levers = model.result.accuracy.stability
+    unsure = replace(model.result.accuracy, stability=replace(levers, stable=None))
+    doubted = replace(model, result=replace(model.result, accuracy=unsure))
+    for form in ("nomoto", "pid"):
+        assert written(doubted, form)["words"][0] == UNTOLD
+        assert UNTOLD not in written(model, form)["words"]
 
 
 def test_orders_hold_what_both_do(model, tmp_path):

@@ -144,6 +144,26 @@ def test_a_doubtful_ship_has_wider_promises_and_a_wild_one_none(
         heading_gains(ship(MODEL), CERTAIN, float("nan"))
 
 
+def test_a_promise_holds_for_other_models_of_the_ship(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ends of each, as if it had been alone with the fitted one; none where one swings."""
+    monkeypatch.setattr("trialid.design.steering.gains.NUMBER", 60)
+    error = abs(MODEL.value("Ndelta"))
+    unlike = MODEL.with_values({"Nr": 1.3 * MODEL.value("Nr")})
+    known, other = known_by("Ndelta", 0.02 * error), known_by("Ndelta", 0.1 * error)
+    alone = rate_gains(ship(MODEL), known)
+    both = rate_gains(ship(MODEL), known, others=[(ship(unlike), other)])
+    assert both.values == alone.values
+    assert both.promise.fitted == alone.promise.fitted
+    for name, (low, high) in alone.promise.ranges.items():
+        wide = both.promise.ranges[name]
+        assert wide[0] <= low <= high <= wide[1]
+    assert np.ptp(both.promise.ranges["delay_margin"]) > 2.0 * (
+        np.ptp(alone.promise.ranges["delay_margin"])
+    )
+    with pytest.raises(DesignError, match="would swing"):
+        rate_gains(ship(MODEL), known, others=[(ship(unlike), known_by("Ndelta", 3.0 * error))])
+
+
 def test_ardupilot_s_file_is_the_gains_at_full_rudder(run_folder: Path, tmp_path: Path) -> None:
     """Output of one is full rudder, scaled down by 1 m/s over the ship's speed; else refused."""
     out = tmp_path / "ferry.param"

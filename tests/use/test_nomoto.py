@@ -104,6 +104,23 @@ def test_numbers_of_the_prime_system_hold_at_other_speeds():
     assert fast.values["T3"] == pytest.approx(0.5 * plain.values["T3"], rel=0.02)
 
 
+def test_matrices_hold_another_model_s_ranges_where_it_has_the_same_states():
+    known = known_by("Nr", 0.1 * abs(MODEL.value("Nr")))
+    own, other = (
+        nomoto(ship(MODEL.with_values({"Nr": x * MODEL.value("Nr")})), known) for x in (1.0, 1.5)
+    )
+
+    both = own.embracing(other)
+    assert both.A_likely[..., 0] == pytest.approx(np.minimum(own.A_likely, other.A_likely)[..., 0])
+    assert both.A_likely[..., 1] == pytest.approx(np.maximum(own.A_likely, other.A_likely)[..., 1])
+    assert (both.A_likely != own.A_likely).any()
+    assert both.ranges["T"][0] < own.ranges["T"][0]
+    flat = nomoto(ship(MODEL - "heel_yaw"), known)
+    assert own.embracing(flat).B_likely.shape == own.B_likely.shape
+    unknown = replace(own, A_likely=np.full_like(own.A_likely, np.nan))
+    assert np.isnan(unknown.embracing(other).A_likely).all()
+
+
 def test_speeds_are_those_of_the_trials(run_folder: Path):
     """The file's own, and another where a trial was approached at it."""
     fit = finished_model(run_folder, silent).fit

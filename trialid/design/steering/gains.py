@@ -45,13 +45,16 @@ ENDS: Final = (2.5, 97.5)
 FIELDS: Final = ("overshoot", "settling", "phase_margin", "delay_margin")
 
 Made = Callable[[LinearShip], Controller]
+Uncertain = tuple[Vessel, LikelySpread]
+"""A ship, and all that what she does is uncertain by."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Promise:
     """What gains do to the fitted ship, and to 95 of 100 ships that the record leaves open.
 
-    `ranges` are by the name of a field of `Answer`; `stable` is the share of ships that are.
+    `ranges` are by the name of a field of `Answer`; `stable` is the share of ships that are, the
+    least of several models.
     """
 
     fitted: Answer
@@ -69,8 +72,15 @@ class Gains:
     promise: Promise
 
 
-def rate_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = None) -> Gains:
+def rate_gains(
+    ship: Vessel,
+    spread: LikelySpread,
+    bandwidth: float | None = None,
+    others: Sequence[Uncertain] = (),
+) -> Gains:
     """FF and P [s], I [1]: order by turn rate, for a bandwidth or twice that of the ship.
+
+    What they promise holds for `others`, too: other models of the ship.
 
     Raises
     ------
@@ -85,12 +95,20 @@ def rate_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = Non
             f"a bandwidth of {wanted:.3g} rad/s is slower than the ship by herself, {1 / T:.3g}; "
             "ask for more"
         )
+    models = [(ship, spread), *others]
     values = {"FF": 1.0 / K, "P": (wanted * T - 1.0) / K, "I": wanted**2 * T / SLOWER / K}
-    return _tried(ship, spread, linear, values, wanted, lambda one: hold_rate(one, **values))
+    return _tried(models, linear, values, wanted, lambda one: hold_rate(one, **values))
 
 
-def heading_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = None) -> Gains:
+def heading_gains(
+    ship: Vessel,
+    spread: LikelySpread,
+    bandwidth: float | None = None,
+    others: Sequence[Uncertain] = (),
+) -> Gains:
     """Kp [1], Ki [1/s] and Kd [s]: order by heading, for a bandwidth or that of the ship.
+
+    What they promise holds for `others`, too: other models of the ship.
 
     Raises
     ------
@@ -103,8 +121,9 @@ def heading_gains(ship: Vessel, spread: LikelySpread, bandwidth: float | None = 
     natural = wanted / np.sqrt(1.0 - 2.0 * z2 + np.sqrt(4.0 * z2 * z2 - 4.0 * z2 + 2.0))
     Kp = natural**2 * T / K
     Kd = max(2.0 * DAMPING * natural * T - 1.0, 0.0) / K
+    models = [(ship, spread), *others]
     values = {"Kp": float(Kp), "Ki": float(natural * Kp / 10.0), "Kd": float(Kd)}
-    return _tried(ship, spread, linear, values, wanted, lambda one: hold_heading(one, **values))
+    return _tried(models, linear, values, wanted, lambda one: hold_heading(one, **values))
 
 
 def _known(ship: Vessel) -> tuple[LinearShip, float, float]:
@@ -129,8 +148,7 @@ def _asked(bandwidth: float | None, usual: float) -> float:
 
 
 def _tried(
-    ship: Vessel,
-    spread: LikelySpread,
+    models: Sequence[Uncertain],
     linear: LinearShip,
     values: Mapping[str, float],
     bandwidth: float,
@@ -144,9 +162,10 @@ def _tried(
         Too many of the ships that the record leaves open swing, or hold no speed.
     """
     drawn = [
-        SWINGS if one is None else answer(made(one), bandwidth) for one in _drawn(ship, spread)
+        [SWINGS if one is None else answer(made(one), bandwidth) for one in _drawn(*model)]
+        for model in models
     ]
-    stable = float(np.mean([one.stable for one in drawn]))
+    stable = min(float(np.mean([one.stable for one in some])) for some in drawn)
     unheld = ", or hold no speed," if linear.steered_by.thrusters else ""
     if stable < ENDS[1] / 100.0:
         raise DesignError(
@@ -160,12 +179,12 @@ def _tried(
     return Gains(values=values, bandwidth=bandwidth, ship=linear, promise=promise)
 
 
-def _range(name: str, fitted: Answer, drawn: Sequence[Answer]) -> tuple[float, float]:
-    """Where 95 of 100 ships lie, and the one as it was fitted."""
-    values = [float(getattr(one, name)) for one in drawn if one.stable]
-    low, high = np.percentile(values, ENDS, method="nearest")
+def _range(name: str, fitted: Answer, drawn: Sequence[Sequence[Answer]]) -> tuple[float, float]:
+    """Where 95 of 100 ships of each model lie, and the one as it was fitted."""
+    every = [[float(getattr(one, name)) for one in some if one.stable] for some in drawn]
+    ends = np.array([np.percentile(values, ENDS, method="nearest") for values in every])
     own = float(getattr(fitted, name))
-    return min(float(low), own), max(float(high), own)
+    return min(float(ends[:, 0].min()), own), max(float(ends[:, 1].max()), own)
 
 
 def _drawn(ship: Vessel, spread: LikelySpread) -> Iterator[LinearShip | None]:

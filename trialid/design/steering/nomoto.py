@@ -63,7 +63,20 @@ class Nomoto:
     def embracing(self, there: "Nomoto") -> "Nomoto":
         """The same with ranges that hold those of another model of the ship."""
         ranges = {n: wider(own, there.ranges.get(n)) for n, own in self.ranges.items()}
-        return replace(self, ranges=ranges)
+        made = replace(self, ranges=ranges)
+        if there.ship.states != self.ship.states:
+            return made
+        A, B = (
+            _wider(own, other)
+            for own, other in ((self.A_likely, there.A_likely), (self.B_likely, there.B_likely))
+        )
+        return replace(made, A_likely=A, B_likely=B)
+
+
+def _wider(own: Vector, there: Vector) -> Vector:
+    """Ends (..., 2) that hold others, too; NaN where nobody knows them."""
+    low, high = np.fmin(own, there)[..., 0], np.fmax(own, there)[..., 1]
+    return np.where(np.isnan(own), own, np.stack([low, high], axis=-1))
 
 
 def nomoto(ship: Vessel, spread: LikelySpread) -> Nomoto:

@@ -19,8 +19,8 @@ UNITS_OF_THRUSTERS: Final[Mapping[str, Mapping[str, str]]] = {
     "thrust": {"K": "1/(N s)", "K_prime": "1/N", "T_prime": "1"},
 }
 UNSTABLE: Final = (
-    "The ship is not directionally stable: K and T are negative, and a small order leads to no "
-    "steady turn."
+    "As fitted the ship is not directionally stable: K and T are negative, and a small order leads "
+    "to no steady turn."
 )
 
 Row = tuple[float | None, ...]

@@ -2,12 +2,15 @@
 
 import zipfile
 from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import replace
 from io import BytesIO
 from typing import Final
 
 from trialid.design.following import approach_speeds
-from trialid.design.steering.gains import heading_gains, rate_gains
+from trialid.design.steering.gains import Uncertain, heading_gains, rate_gains
 from trialid.design.steering.nomoto import at_speeds
+from trialid.errors import DesignError, TrialidError
 from trialid.export.model.c_text import c_texts
 from trialid.export.model.fitted_model import FittedModel, fitted_model
 from trialid.export.model.fitted_ship import fitted_ship, fitted_ship_text
@@ -24,6 +27,10 @@ from trialid.workflow.use.finished_model import FinishedModel
 from trialid.workflow.use.predict import spread_of
 from trialid.workflow.use.steering import Wishes, check_full, full_order, steered_ship
 
+UNTOLD: Final = (
+    "Whether she is directionally stable this record does not tell; K and T are those of the model "
+    "as it was fitted."
+)
 Files = Mapping[str, str | bytes]
 """By the suffix that follows the name of what is written."""
 
@@ -34,6 +41,23 @@ def taken_up(model: FinishedModel) -> FittedModel:
     unknowns = [p.name for p in done.accuracy.parameters]
     covariance = done.accuracy.covariance
     return fitted_model(model.fit, unknowns, covariance, model.result, model.seen, model.doubts)
+
+
+def _others(model: FinishedModel) -> list[Uncertain]:
+    """Other models of the ship that can be steered as she is, beside which her fit stands."""
+    found = list[Uncertain]()
+    for other in model.others:
+        with suppress(TrialidError):
+            found.append((steered_ship(other), spread_of(other)))
+    return found
+
+
+def _steered(model: FinishedModel) -> FittedModel:
+    """The same where K and T are made use of: what is said of a ship that may be unstable."""
+    made, part = taken_up(model), model.result.accuracy.stability
+    if part is None or part.stable is not None:
+        return made
+    return replace(made, words=(UNTOLD, *made.words))
 
 
 def _ship(model: FinishedModel, name: str, wishes: Wishes) -> Files:
@@ -74,26 +98,31 @@ def _modelica(model: FinishedModel, name: str, wishes: Wishes) -> Files:
 
 def _nomoto(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name, wishes
-    found = at_speeds(steered_ship(model), spread_of(model), approach_speeds(model.fit))
-    return {".json": text_of(nomoto_file(taken_up(model), found))}
+    speeds = approach_speeds(model.fit)
+    found = at_speeds(steered_ship(model), spread_of(model), speeds)
+    for other in _others(model):
+        with suppress(DesignError):
+            pairs = zip(found, at_speeds(*other, speeds), strict=True)
+            found = tuple(one.embracing(there) for one, there in pairs)
+    return {".json": text_of(nomoto_file(_steered(model), found))}
 
 
 def _ardupilot(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name
     ship = steered_ship(model)
     full = full_order(model, ship, wishes, of_autopilot=True)
-    gains = rate_gains(ship, spread_of(model), wishes.bandwidth)
+    gains = rate_gains(ship, spread_of(model), wishes.bandwidth, _others(model))
     check_full(gains.ship, full)
-    return {".param": ardupilot_text(taken_up(model), gains, full)}
+    return {".param": ardupilot_text(_steered(model), gains, full)}
 
 
 def _pid(model: FinishedModel, name: str, wishes: Wishes) -> Files:
     del name
     ship = steered_ship(model)
     full = full_order(model, ship, wishes)
-    gains = heading_gains(ship, spread_of(model), wishes.bandwidth)
+    gains = heading_gains(ship, spread_of(model), wishes.bandwidth, _others(model))
     check_full(gains.ship, full)
-    return {".json": text_of(pid_file(taken_up(model), gains, full))}
+    return {".json": text_of(pid_file(_steered(model), gains, full))}
 
 
 def _gazebo(model: FinishedModel, name: str, wishes: Wishes) -> Files:
