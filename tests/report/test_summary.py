@@ -170,7 +170,7 @@ def test_the_band_is_said_with_what_it_held(result):
         trial["inside"] = {"r": share, "phi": share} if trial["use"] == "check" else {"r": 0.1}
     said = next(line for line in lines(run) if line.startswith("95 % band"))
     assert said.startswith(
-        "95 % band of a trial not fitted: r +-0.0573 deg/s, φ +-1.15 deg; of the"
+        "95 % band of a trial like these: r +-0.0573 deg/s, φ +-1.15 deg; of the"
     )
     assert "96 %" in "\n".join(lines(run))
     assert "10 %" not in said  # how fitted trials keep to it says nothing
@@ -181,7 +181,7 @@ def test_a_heading_that_may_be_any_has_no_band_of_three_turns(result):
     for half, said in ((18.0, "ψ anywhere"), (0.02, "ψ +-1.15 deg")):
         run["fit"]["band"] = {"psi": half}
         text = "\n".join(lines(run))
-        assert f"95 % band of a trial not fitted: {said}" in text
+        assert f"95 % band of a trial like these: {said}" in text
 
 
 def test_two_at_once_are_said_with_the_command_that_adds_them(result):

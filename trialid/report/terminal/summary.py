@@ -167,7 +167,7 @@ def _band(run: Result) -> "Iterable[RenderableType]":
     if not run.fit.band:
         return
     halves = ", ".join(_half(name, x) for name, x in run.fit.band.items())
-    said = f"95 % band of a trial not fitted: {halves}"
+    said = f"95 % band of a trial like these: {halves}"
     checks = [t for t in run.trials if t.use == "check"]
     shares = [x for t in checks for x in t.inside.values() if x is not None]
     if shares:
