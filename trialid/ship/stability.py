@@ -7,8 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.accuracy.ranges import Range
 from trialid.maths import Number
+
+Range = tuple[float, float]
 
 PARTS = ("Yv", "Yr", "Nv", "Nr")
 ROLL_PARTS = ("Yphi", "Nphi", "Kv", "Kr")
