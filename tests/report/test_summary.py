@@ -187,7 +187,7 @@ def test_a_heading_that_may_be_any_has_no_band_of_three_turns(result):
 def test_two_at_once_are_said_with_the_command_that_adds_them(result):
     run = copy.deepcopy(result)
     run["verdict"] |= {"kind": "cannot tell", "effect": None, "together": ["a", "b"]}
-    assert "Next: trialid run container_ship.toml --auto  # adds both, goes on" in lines(
+    assert "Next: trialid run container_ship.toml --auto  # adds them, goes on" in lines(
         run, file="container_ship.toml"
     )
 

@@ -36,6 +36,7 @@ def test_one_button_adds_both(before: Shown) -> None:
     assert 'data-do="add"' in button
     assert f'data-effect="{TRIED[0]} {TRIED[1]}"' in button
     assert "Add both" in button
+    assert "Add all 3" in with_both(before, *TRIED[:3])
     assert "<button" not in with_both(before, TRIED[0], before.pipeline.model.effects[0])
     assert "<button" not in screen.parts(before)["verdict"]
 

@@ -13,6 +13,7 @@ from trialid.diagnosis.examine import (
     tried_effects,
 )
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
+from trialid.diagnosis.force.usual_forces import hull_at_once
 from trialid.diagnosis.heel_side import leans_inward, settle_side
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
@@ -28,7 +29,7 @@ from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, look_beside
 from trialid.diagnosis.search.together import Together, two_at_once
 from trialid.diagnosis.unrecorded import name_records
-from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_two
+from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_several
 from trialid.diagnosis.where.misfit import where
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit
@@ -68,7 +69,7 @@ def diagnose(
         named = _named(verdict, tried.refits)
         if failed is not None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
-        verdict, together = _or_of_two(fit, verdict, whole, asked, progress)
+        verdict, together = _or_of_several(fit, verdict, whole, asked, progress)
         wanted = force or verdict.kind == "not in catalogue"
         missing = _force(wanted, named.fit if named else fit, asked.level, progress)
         said, there = _beside_others(fit, verdict, tried.refits, asked, progress), where(fit)
@@ -128,20 +129,24 @@ def _beside_others(
     return also_from(verdict, two, held_instead(fit, named, said) if asked.coefficients else ())
 
 
-def _or_of_two(
+def _or_of_several(
     fit: Fit,
     verdict: Verdict,
     whole: Completeness | None,
     asked: DiagnoseSettings,
     progress: Progress,
 ) -> tuple[Verdict, Together | None]:
-    """The verdict, and two effects at once, where none has a name and the catalogue may hold it."""
+    """The verdict, and effects at once, where none has a name and the catalogue may hold it.
+
+    Two of them, or where no two do it all that a hull usually has.
+    """
     if verdict.kind not in ("cannot tell", "not in catalogue") or (whole and whole.gap):
         return verdict, None
     if verdict.family or leans_inward(fit):  # one alone does it, or a sensor is in doubt
         return verdict, None
     found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
-    return (verdict if found is None else verdict_on_two(fit, found)), found
+    found = found or hull_at_once(fit, asked.candidates)
+    return (verdict if found is None else verdict_on_several(fit, found)), found
 
 
 def _named(verdict: Verdict, refits: Sequence[Refit]) -> Refit | None:

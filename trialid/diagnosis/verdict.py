@@ -44,10 +44,10 @@ from trialid.diagnosis.verdict_sentences import (
     no_split,
     one_of,
     outdone_by_a_shape,
+    several_together,
     significant_and_small,
     small_rest,
     subject,
-    two_together,
     unfinished_lead,
 )
 from trialid.identification.fit import Fit
@@ -97,7 +97,7 @@ class Verdict(AsWell):
     """What the record says is missing, in one of four kinds, with the sentence a person reads.
 
     `family` are the effect and what it is not told from; without an effect those of which one is
-    missing. `together` are two effects that do at once what none does alone.
+    missing. `together` are effects that do at once what none does alone.
     """
 
     kind: str
@@ -187,9 +187,9 @@ def gross_verdict(fit: Fit, faults: Sequence[Refit]) -> Verdict:
     return Verdict("missing", names[0], names, said)
 
 
-def verdict_on_two(fit: Fit, found: Together) -> Verdict:
-    """Two effects without which the model fails, neither of which has a name alone."""
-    return Verdict("cannot tell", None, (), two_together(fit, found), found.names)
+def verdict_on_several(fit: Fit, found: Together) -> Verdict:
+    """Effects without which the model fails, none of which has a name alone."""
+    return Verdict("cannot tell", None, (), several_together(fit, found), found.names)
 
 
 def _unnamed(

@@ -13,6 +13,7 @@ from trialid.diagnosis.search.refit import AS_SLOW, Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
 from trialid.identification.fit import Fit
+from trialid.names.wording import named_together
 
 NONE_STANDS_OUT: Final = "no effect stands out"
 NONE_HOLDS: Final = "no effect that stands out stands every check"
@@ -127,12 +128,12 @@ def one_of(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> str
     )
 
 
-def two_together(fit: Fit, found: Together) -> str:
-    """Two effects do what neither does alone."""
-    alike = "".join(f"; {' and '.join(names)} do as much" for names in found.alike[:1])
+def several_together(fit: Fit, found: Together) -> str:
+    """Effects do what none of them does alone."""
+    alike = "".join(f"; {named_together(names)} do as much" for names in found.alike[:1])
     return (
         f"more than one thing is missing: no effect alone stands every check, but with "
-        f"{' and '.join(found.names)} together {falls_by(fit, found.fit)}{alike}"
+        f"{named_together(found.names)} together {falls_by(fit, found.fit)}{alike}"
     )
 
 

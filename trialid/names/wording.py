@@ -93,6 +93,15 @@ def count_of(count: int, one: str, many: str = "") -> str:
     return f"{count} {one if count == 1 else many or one + 's'}"
 
 
+def named_together(names: Sequence[str]) -> str:
+    """Names of things that do something together.
+
+    >>> named_together(["a", "b"]), named_together(["a", "b", "c"])
+    ('a and b', 'a, b and c')
+    """
+    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
 def sign_text(value: float | None) -> str:
     """A move with its sign, one place.
 

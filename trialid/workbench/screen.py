@@ -131,7 +131,7 @@ def _context(shown: Shown) -> Plain:
         "steps": step_rows.steps(shown, run),
         "heading": report.heading(run),
         "advised": _advised(run),
-        "both": ()
+        "several": ()
         if {*run.verdict.together} & {*shown.pipeline.model.effects}
         else run.verdict.together,
         "ranked": ranking.ranking(run),

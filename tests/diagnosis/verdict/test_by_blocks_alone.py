@@ -1,6 +1,7 @@
 """What no test against the noise shows: who explains most of the error is named, others are not."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -40,15 +41,33 @@ def test_of_effects_unlike_each_other_one_that_explains_most_is_named(fall, p_va
 
 def test_of_several_of_which_one_is_missing_no_two_are_tried_at_once(monkeypatch):
     found = decided(0.45, p_value=1.0)
-    tried = []
+    tried, hulls = [], []
     monkeypatch.setattr(diagnose, "two_at_once", lambda *given: tried.append(given))
+    monkeypatch.setattr(diagnose, "hull_at_once", lambda *given: hulls.append(given))
     monkeypatch.setattr(diagnose, "leans_inward", lambda fit: ())
     asked = DiagnoseSettings(candidates={})
-    assert diagnose._or_of_two(fit(0.10), found, None, asked, silent) == (found, None)
+    assert diagnose._or_of_several(fit(0.10), found, None, asked, silent) == (found, None)
     assert not tried
+    assert not hulls
     none = replace(found, family=())
-    diagnose._or_of_two(fit(0.10), none, None, asked, silent)
-    assert len(tried) == 1
+    diagnose._or_of_several(fit(0.10), none, None, asked, silent)
+    assert len(tried) == len(hulls) == 1
+
+
+def test_two_come_before_all_that_a_hull_has(monkeypatch):
+    """And where no two do it, all at once are told with their names."""
+    several = SimpleNamespace(names=("a", "b", "c"), fit=fit(0.02), alike=())
+    pair = SimpleNamespace(**{**vars(several), "names": ("a", "b")})
+    found = replace(decided(0.45, p_value=1.0), family=())
+    monkeypatch.setattr(diagnose, "leans_inward", lambda fit: ())
+    monkeypatch.setattr(diagnose, "hull_at_once", lambda *given: several)
+    asked = DiagnoseSettings(candidates={})
+    for two, together in ((pair, pair), (None, several)):
+        monkeypatch.setattr(diagnose, "two_at_once", lambda *given, two=two: two)
+        said, there = diagnose._or_of_several(fit(0.10), found, None, asked, silent)
+        assert (said.kind, said.effect, said.together) == ("cannot tell", None, together.names)
+        assert there is together
+        assert ("a, b and c together" in said.sentence) == (two is None)
 
 
 def test_the_sentence_says_no_chance_that_was_not_shown():

@@ -10,10 +10,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final, TypeVar
 
-from trialid.diagnosis.noise.thinning import with_means
+from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.candidates import candidates_for
+from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.refit import settings_with
-from trialid.diagnosis.search.together import fit_together
+from trialid.diagnosis.search.together import Together, fit_together, stands
 from trialid.effects import CATALOGUE
 from trialid.effects.usual_structures import speed_of, usual_structures
 from trialid.errors import TrialidError
@@ -59,14 +60,53 @@ def beside_usual_forces(fit: Fit, examine: Callable[[Fit], T]) -> tuple[T, ...]:
     return tuple(known for known in done if known is not None)
 
 
+def hull_at_once(fit: Fit, tried: Mapping[str, Effect]) -> Together | None:
+    """All forces of a usual hull that are among the tried, where they stand every check together.
+
+    A force that ends at the end of its range is left out, for it is not known there.
+    """
+    if not fit.settings.priors_of_ship:
+        return None
+    seen = with_means(fit).examined
+
+    def by(hull: str) -> Together | None:
+        effects = usual_effects(seen.model, _fitted(seen), hull)
+        return _within_ends(seen, [e for e in effects if e.name in tried])
+
+    done = [one for one in each(by, AT_ONCE, (*fit.trials, *seen.trials)) if one is not None]
+    found = [replace(one, fit=on_every_sample(fit, one.fit)) for one in done]
+    able = [one for one in found if stands(fit, one)]
+    return min(able, key=lambda one: one.cost, default=None)
+
+
+def _within_ends(fit: Fit, effects: Sequence[Effect]) -> Together | None:
+    """The model with those of the effects that are known in it; None where no search arrives."""
+    kept = tuple(effects)
+    while kept:
+        try:
+            found = fit_together(fit, kept, settings_with(fit, kept))
+        except TrialidError:  # this record does not carry as many
+            return None
+        ended = {*found.at_bounds}
+        within = tuple(e for e in kept if not ended & {*e.parameters})
+        if within == kept:
+            return Together(kept, found, carried_between(fit, found))
+        kept = within
+    return None
+
+
 def with_hull(fit: Fit, hull: str) -> Fit | None:
     """The fitted model with all forces of a usual hull; None where no search arrives."""
-    effects = usual_effects(fit.model, [t for t in fit.trials if t.use == "fit"], hull)
+    effects = usual_effects(fit.model, _fitted(fit), hull)
     try:
         found = fit_together(fit, effects, _settings(fit, effects))
     except TrialidError:  # this record does not carry as many, or her file calls one exact
         return None
     return found if found.converged else None
+
+
+def _fitted(fit: Fit) -> list[Trial]:
+    return [trial for trial in fit.trials if trial.use == "fit"]
 
 
 def usual_effects(model: ShipModel, trials: Sequence[Trial], hull: str) -> tuple[Effect, ...]:

@@ -107,7 +107,7 @@ def _next(run: Result, file: str) -> "Iterable[RenderableType]":
     if file and verdict.kind == "missing" and verdict.effect:
         yield Words(f"Next: {advice.command_on(file, 'add', verdict.effect)}", 2)
     if file and verdict.together:
-        yield Words(f"Next: {advice.command_on(file, 'run', '--auto')}  # adds both, goes on", 2)
+        yield Words(f"Next: {advice.command_on(file, 'run', '--auto')}  # adds them, goes on", 2)
     if file and verdict.kind == "not in catalogue":
         yield Words(
             f"Next: {advice.command_on(file, 'run', '--draft', 'my_effect.py')}  # writes the "

@@ -153,9 +153,9 @@ def _outside(run: Result) -> Iterable[Advice]:
 
 def _unclear(run: Result) -> Iterable[Advice]:
     if run.verdict.together:
-        both = " and ".join(run.verdict.together)
+        several = wording.named_together(run.verdict.together)
         yield Advice(
-            f"Let it add {both} at once, and what follows; the file stays as it is:",
+            f"Let it add {several} at once, and what follows; the file stays as it is:",
             command(run, "run", "--auto"),
         )
         return

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
+from trialid.names.wording import named_together
 from trialid.result.finding_rows import VerdictPart
 from trialid.result.fit_rows import LeversPart, ParameterRow
 
@@ -44,8 +45,8 @@ def missing_words(verdict: VerdictPart) -> str:
     'The run says that more is missing, as a and b together; this is the model without them.'
     """
     if verdict.together:
-        both = " and ".join(verdict.together)
-        said = f"The run says that more is missing, as {both} together"
+        several = named_together(verdict.together)
+        said = f"The run says that more is missing, as {several} together"
         return f"{said}; this is the model without them."
     if verdict.kind not in ("missing", "not in catalogue"):
         return ""
