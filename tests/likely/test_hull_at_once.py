@@ -1,6 +1,10 @@
 """All forces that a hull usually has, at once, where no effect and no two of them stand alone."""
 
+import re
+from dataclasses import replace
+
 import pytest
+from s175q import SHIP
 from test_usual_forces import begun, drawn, sailed
 
 from trialid.diagnosis.force.usual_forces import hull_at_once
@@ -8,6 +12,8 @@ from trialid.diagnosis.search.together import stands
 from trialid.effects import CATALOGUE
 
 SEED = 27
+BEYOND = re.compile("[YN](phi|p)|Kphi|[YNK][vr]a[vr]")
+"""Coefficients of what a linear model has not."""
 
 
 @pytest.fixture(scope="module")
@@ -31,6 +37,13 @@ def test_only_what_is_tried_is_in_it(fit):
     found = hull_at_once(fit, few)
     assert found is None or {*found.names} <= {*few}
     assert hull_at_once(fit, {}) is None
+
+
+def test_a_ship_without_them_has_none():
+    """Fitted to the noise without, all of them take no tenth of the squared error off."""
+    none = dict.fromkeys((n for n in SHIP.coefficients if BEYOND.fullmatch(n)), 0.0)
+    plain = begun(sailed(replace(SHIP, coefficients=SHIP.coefficients | none), SEED))
+    assert hull_at_once(plain, CATALOGUE) is None
 
 
 def test_nothing_holds_so_many_without_her_file():
