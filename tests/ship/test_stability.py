@@ -53,6 +53,15 @@ def test_a_margin_within_the_noise_tells_nothing(error: float, told: bool | None
     assert Stability(0.25, 1.0, -0.75, error).stable is (None if told is None else False)
 
 
+def test_what_moves_nothing_has_no_part_in_its_error() -> None:
+    """An arm to the roll axis where no roll is fitted has no covariance that anybody knows."""
+    known, unknown = np.diag([1e-8]), np.array([[1e-8, np.nan], [np.nan, np.nan]])
+    alone = stability(HULL, ("Nv",), known).standard_error
+    assert alone is not None
+    assert stability(HULL, ("Nv", "z_slip"), unknown).standard_error == alone
+    assert np.isnan(stability(HULL, ("Nv", "Nr"), unknown).standard_error or 0.0)
+
+
 @pytest.mark.parametrize(("ship", "printed"), [(RUDDER, 0.162), (HULL, 0.055)])
 def test_the_s175_with_and_without_its_rudder(ship: dict[str, float], printed: float) -> None:
     assert stability(with_surge_mass(ship)).margin == pytest.approx(printed, abs=0.0006)

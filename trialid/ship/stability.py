@@ -104,6 +104,8 @@ def stability(
     error = None
     if covariance is not None:
         slope = margin_slopes(values, names, coupled)
+        own = slope != 0.0  # of what moves nothing that is fitted nobody knows the covariance
+        slope, covariance = slope[own], covariance[np.ix_(own, own)]
         error = float(np.sqrt(slope @ covariance @ slope))
     return Stability(float(L_r.real), float(L_v.real), float((L_r - L_v).real), error)
 
