@@ -85,7 +85,7 @@ class Diagnosed:
         """
         if self.named is not None:
             return (self.named, *self.named[1].others)
-        usual = beside_usual_forces(self.fit, lambda fit: examination(augment(fit, {})))
+        usual = beside_usual_forces(self.fit, lambda fit: examination(fit, augment(fit, {})))
         return tuple((USUAL_FORCES, one) for one in usual)
 
     @cached_property
@@ -99,11 +99,11 @@ class Diagnosed:
         return prediction_band(self.fit)
 
 
-def examination(augmented: Augmented, asked: DiagnoseSettings | None = None) -> Diagnosed:
+def examination(fit: Fit, augmented: Augmented, asked: DiagnoseSettings | None = None) -> Diagnosed:
     """A fit with what its error is made of, from the traces of what may be missing."""
     known = asked or DiagnoseSettings()
-    best, routes = split(augmented.fit, augmented, known.noise, known.quiet)
-    return Diagnosed(augmented.fit, best, routes, doubts(augmented))
+    best, routes = split(fit, augmented, known.noise, known.quiet)
+    return Diagnosed(fit, best, routes, doubts(augmented))
 
 
 @dataclass(frozen=True, kw_only=True)

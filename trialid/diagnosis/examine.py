@@ -22,7 +22,7 @@ def examine_fit(
     """
     progress("looking for what is missing", 0.65)
     augmented = known or augment(fit, tried_effects(fit, asked))
-    return examination(augmented, asked), augmented
+    return examination(fit, augmented, asked), augmented
 
 
 def examine_alone(
