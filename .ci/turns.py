@@ -1,4 +1,4 @@
-"""Whose turn it is: what takes long is tried at every sixteenth commit, and all in sixteen.
+"""Whose turn it is: what takes long is tried at every twenty-fourth commit, and all in as many.
 
 `pytest -m study` runs all studies; with `TRIALID_STUDIES=turn` the long ones only where it is their
 turn by the number of commits. `python .ci/turns.py` prints that turn, for the benchmarks.
@@ -14,7 +14,7 @@ from typing import Final
 
 import pytest
 
-TURNS: Final = 16
+TURNS: Final = 24
 VARIABLE: Final = "TRIALID_STUDIES"
 
 

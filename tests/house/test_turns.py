@@ -1,4 +1,4 @@
-"""Studies in turn: all of them within sixteen commits, none by another word."""
+"""Studies in turn: all of them within twenty-four commits, none by another word."""
 
 import os
 import subprocess
@@ -57,7 +57,7 @@ def test_the_long_studies_run_when_it_is_their_turn_and_the_rest_each_time(tmp_p
     cases = [f"test_case[{k}-{-k}]" for k in range(20)]
     first, every = zlib.crc32(b"test_case"), range(turns.TURNS)  # where the cases of it begin
     at = [{cases[k] for k in range(20) if (k + first) % turns.TURNS == turn} for turn in every]
-    assert sorted(map(len, at)) == [1] * 12 + [2] * 4
+    assert sorted(map(len, at)) == [0] * 4 + [1] * 20
     each_time = {"test_plain", "test_short"}
     assert ran(tmp_path, "") == each_time | {"test_first", "test_fourth", *cases}
     assert ran(tmp_path, "0") == each_time | {"test_first"} | at[0]
@@ -71,17 +71,17 @@ def test_these_tests_are_drawn_so(pytestconfig: pytest.Config) -> None:
     assert turns.pytest_collection_modifyitems in [each.function for each in hooks]
 
 
-def test_each_study_comes_up_within_sixteen_commits() -> None:
+def test_each_study_comes_up_within_as_many_commits() -> None:
     for own in (None, *range(turns.TURNS)):
-        times = sum(turns.comes_up(own, commit % turns.TURNS) for commit in range(355, 371))
+        times = sum(turns.comes_up(own, commit % turns.TURNS) for commit in range(355, 379))
         assert times == (turns.TURNS if own is None else 1)
 
 
 def test_the_turn_is_the_number_of_commits() -> None:
-    assert [turns.asked("turn", lambda n=n: n) for n in range(352, 369)] == [*range(16), 0]
+    assert [turns.asked("turn", lambda n=n: n) for n in range(360, 385)] == [*range(24), 0]
     assert turns.asked("", lambda: pytest.fail("not asked for")) is None
     assert turns.asked("3", lambda: pytest.fail("not asked for")) == 3
-    for word in ("16", "-1", "all", "Turn"):
+    for word in ("24", "-1", "all", "Turn"):
         with pytest.raises(pytest.UsageError, match=word):
             turns.asked(word, lambda: 0)
 
@@ -91,6 +91,6 @@ def test_a_turn_that_never_comes_is_refused() -> None:
     assert turns.of_study(pytest.mark.study.mark) is None
     assert turns.of_study(pytest.mark.study(turn=4).mark) == 4
     each = pytest.mark.study(turn="each").mark
-    assert [turns.of_study(each, k) for k in (0, 15, 16)] == [0, 15, 0]
-    with pytest.raises(pytest.UsageError, match="turn=16"):
-        turns.of_study(pytest.mark.study(turn=16).mark)
+    assert [turns.of_study(each, k) for k in (0, 23, 24)] == [0, 23, 0]
+    with pytest.raises(pytest.UsageError, match="turn=24"):
+        turns.of_study(pytest.mark.study(turn=24).mark)
