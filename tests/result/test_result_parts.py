@@ -119,6 +119,13 @@ def test_a_margin_is_likely_where_other_models_say_that_it_may_be():
     assert said.roll_coupled.stable is None
 
 
+def test_where_nobody_knows_how_far_a_margin_is_off_noise_tells_no_stability():
+    said = accuracy_part(done_with(MODEL, variance=np.inf)).stability
+    assert said.likely is None
+    assert said.standard_error == 0.0
+    assert said.stable is None
+
+
 def test_noise_stays_noise_output_by_output():
     split = Split(
         "quiet stretch",

@@ -88,5 +88,5 @@ def _levers(s: Stability) -> LeversPart:
         margin=s.margin,
         standard_error=s.standard_error,
         likely=s.likely,
-        stable=s.stable,
+        stable=None if s.likely is None else s.stable,  # where nobody knows, noise decides nothing
     )
