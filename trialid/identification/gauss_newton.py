@@ -7,7 +7,7 @@ too long, not a crash. The normal matrix is never formed: the step comes from QR
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -216,8 +216,7 @@ class _Search:
         if self.left < self.tolerance:
             return "orthogonal"
         while self.damping < HOPELESS:
-            step = np.zeros(len(self.theta))
-            step[moving] = directions.step(self.damping) / weights[moving]
+            step = self._within(directions, moving, weights)
             length = self._relative(step)
             if length <= LONGEST and self._try(step, loss):
                 return None
@@ -235,6 +234,25 @@ class _Search:
         held_high = (self.theta >= self.high) & (descent > 0.0)
         moving: NDArray[np.bool_] = ~(held_low | held_high)
         return moving
+
+    def _within(
+        self, directions: "_Directions", moving: NDArray[np.bool_], weights: Vector
+    ) -> Vector:
+        """The damped step within all bounds: what would pass one goes to it, and the rest follows.
+
+        A step that is only cut short there goes, in a narrow valley, up its side.
+        """
+        step, free = np.zeros(len(self.theta)), moving
+        while True:
+            step[free] = directions.step(self.damping) / weights[free]
+            there = np.clip(self.theta + step, self.low, self.high) - self.theta
+            passed = free & (np.abs(step) > np.abs(there))
+            free = free & ~passed
+            step[passed] = there[passed]
+            if not passed.any() or not free.any():
+                return step
+            left = self.fold.q - self.fold.R[:, ~free] @ step[~free]
+            directions = _Directions(replace(self.fold, q=left), free, weights)
 
     def _relative(self, step: Vector) -> float:
         return float(np.max(np.abs(step) / np.maximum(np.abs(self.theta), self.size)))
