@@ -191,18 +191,19 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
 def test_nothing_is_missing_only_where_most_of_the_error_is_known_to_be_noise(unseen, kind):
     """An error of 10 %: beside 6.5 % most of it is noise, beside 8 % that is not known."""
     parts = Split("dependence on the input", "", 0.06, 0.08, (0.0, 0.1), (0.0, unseen))
-    found = decide(SimpleNamespace(eps_rmsn=0.1), (), (), parts, None, 0.05)
+    found = decide(SimpleNamespace(eps_of_own=0.1), (), (), parts, None, 0.05)
     assert found.kind == kind
     tenth = Split("dependence on the input", "", 0.006, 0.008, (0.0, 0.01), (0.0, 0.1 * unseen))
-    little = decide(SimpleNamespace(eps_rmsn=0.01), (), (), tenth, None, 0.05)
+    little = decide(SimpleNamespace(eps_of_own=0.01), (), (), tenth, None, 0.05)
     assert little.kind == ("nothing missing" if unseen < 0.1 else "cannot tell")
     assert f"{unseen:.1%} would not be seen" in found.sentence
 
 
 @pytest.mark.parametrize(("left", "kind"), [(0.005, "nothing missing"), (0.02, "cannot tell")])
-def test_where_no_noise_is_told_hardly_anything_may_be_left(left, kind):
+def test_where_no_noise_is_told_hardly_anything_may_be_left_of_any_trial(left, kind):
     parts = Split("not separable", "no route")
-    found = decide(SimpleNamespace(eps_rmsn=left), (), (), parts, None, 0.05)
+    fit = SimpleNamespace(eps_of_own=left, eps_rmsn=0.001)
+    found = decide(fit, (), (), parts, None, 0.05)
     assert found.kind == kind
 
 

@@ -75,9 +75,9 @@ side by side all that is left is less. Half of it and twice say the same of both
 
 
 HARDLY: Final = 0.01
-"""All of an error that is little where nobody knows what of it is noise. Of a real roll decay 3.0,
-1.6 and 0.3 % are left by the linear model, with the arm and with the damping too: half of it says
-the same of them, with twice nothing is missing while the damping is."""
+"""All of any trial's error that is little where nobody knows what of it is noise. Of a real roll
+decay 3.0, 1.6 and 0.3 % are left by the linear model, with the arm and with the damping too: half
+of it says the same of them, with twice nothing is missing while the damping is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,7 +134,7 @@ def decide(
         return _judged(fit, named, ranking, refits, parts, level=level, grown=grown)
     if (denied := _denied(fit, refits, level, grown=grown)) is not None:
         return Verdict("cannot tell", None, (), denied)
-    return _unnamed(parts, whole, [c for c in ranking if c.shown(level)], fit.eps_rmsn)
+    return _unnamed(parts, whole, [c for c in ranking if c.shown(level)], fit.eps_of_own)
 
 
 def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> str | None:
@@ -195,7 +195,7 @@ def verdict_on_several(fit: Fit, found: Together) -> Verdict:
 def _unnamed(
     parts: Split, whole: Completeness | None, shown: Sequence[Candidate], left: float
 ) -> Verdict:
-    """What to say where no effect is worth a name; `left` is all of the error."""
+    """What to say where no effect is worth a name; `left` is all of the trial worst followed."""
     small = [c for c in shown if not c.carried.falls]
     none = NONE_STANDS_OUT if len(small) == len(shown) else NONE_HOLDS
     said = _unnamed_plainly(parts, whole, none)

@@ -111,7 +111,7 @@ def no_split(parts: Split, none: str) -> str:
 
 def small_rest(left: float, none: str) -> str:
     """All of the error is little, and what it is made of is nothing to ask."""
-    return f"{none}, and all that is left is {left:.1%}, noise and model error together"
+    return f"{none}, and of no trial is more left than {left:.1%}, noise and model error together"
 
 
 def one_of(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> str:

@@ -22,7 +22,7 @@ from trialid.identification.output_error import (
 )
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.smaller import point_of_smaller
-from trialid.identification.trial_score import Score, pool_errors, score_trial
+from trialid.identification.trial_score import Score, of_own_motion, pool_errors, score_trial
 from trialid.identification.weighing import contradictions, level_of
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure
@@ -113,6 +113,12 @@ class Fit:
     def eps_rmsn(self) -> float:
         """Error of all outputs over all trials to fit, each output normed."""
         return float(np.sqrt(np.mean(np.square(list(self.eps_by_output.values())))))
+
+    @property
+    def eps_of_own(self) -> float:
+        """The largest error of a trial to fit as a share of its own motion."""
+        fitted = [s for s in self.scores if s.trial.use == "fit"]
+        return max(of_own_motion(score, self.problem) for score in fitted)
 
     @property
     def eps_by_output(self) -> dict[str, float]:

@@ -12,10 +12,12 @@ from trialid.identification.check.own_start import own_start
 from trialid.identification.check.own_taken_out import OwnTakenOut, own_taken_out
 from trialid.identification.check.start_error import StartError, start_error
 from trialid.identification.output_error import (
+    Problem,
     compared_mask,
     output_error,
     output_matrix,
 )
+from trialid.names.quantities import POSITION
 from trialid.simulation.integrate import Response, initial, respond, starts_of
 from trialid.trial import Trial
 
@@ -42,6 +44,19 @@ def pool_errors(scored: Sequence[Score]) -> dict[str, float]:
             squares[c] = squares.get(c, 0.0) + eps**2 * max(score.counts[c], 1)
             counts[c] = counts.get(c, 0) + max(score.counts[c], 1)
     return {c: float(np.sqrt(squares[c] / counts[c])) for c in squares}
+
+
+def of_own_motion(score: Score, problem: Problem) -> float:
+    """Error of one trial as a share of what moved in it alone, all outputs together.
+
+    The heading of a long turn makes what is wrong with a zig-zag look small.
+    """
+    shares = []
+    for c, eps in score.eps_rmsn.items():
+        i = problem.outputs.index(c)
+        moved = float(np.std(score.trial.signals[c][score.compared[:, i]])) / problem.y_rms[i]
+        shares.append(eps if c in POSITION else eps / moved if moved > 0.0 else np.inf)
+    return float(np.sqrt(np.mean(np.square(shares)))) if shares else 0.0
 
 
 def of_trial(
