@@ -163,8 +163,11 @@ def test_what_is_held_at_a_bound_leaves_the_others_their_best(low, high):
 
 
 def test_a_valley_that_leaves_the_bounds_is_followed_along_them():
-    """Of eight columns the last moves 16 000 times less than the first. A step cut short at each
-    bound goes up the valley's side: 183 steps at most, and half of the searches take 14."""
+    """Of eight columns the last moves 16 000 times less than the first.
+
+    A step cut short at each bound goes up the valley's side: 183 steps at most, and half of the
+    searches take 14.
+    """
     counts = []
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -173,7 +176,8 @@ def test_a_valley_that_leaves_the_bounds_is_followed_along_them():
         y = A @ (2.0 * rng.standard_normal(8)) + 0.01 * rng.standard_normal(40)
         ends = (-np.ones(8), np.ones(8))
         found = minimise(lambda x, A=A, y=y: (y - A @ x, A), np.zeros(8), np.ones(8), *ends)
-        assert found.V == pytest.approx(lsq_linear(A, y, ends, method="bvls").cost, rel=1e-9)
+        least = lsq_linear(A, y, ends, method="bvls").cost
+        assert pytest.approx(least, rel=1e-9) == found.V
         counts.append(len(found.iterations))
     assert max(counts) <= 20
     assert np.median(counts) <= 8

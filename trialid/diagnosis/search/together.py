@@ -21,6 +21,7 @@ from trialid.diagnosis.search.carry_over import LeftOut, carried_between, left_o
 from trialid.diagnosis.search.falls import fall, fall_of_check
 from trialid.diagnosis.search.refit import begun_at, outputs_beside, settings_with
 from trialid.errors import TrialidError
+from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
 from trialid.ship.effect import Effect
@@ -104,7 +105,8 @@ def stands(fit: Fit, one: Together) -> bool:
     """Whether nothing speaks against two effects once they are fitted.
 
     A tenth of the squared error must go: off what they were fitted to, off blocks left out, one
-    like the other, and off trials held out; and of an output of which much is left, too.
+    like the other, and off trials held out; and of an output of which much is left, too. What is
+    no fit says nothing.
     """
     held = fit.eps_check is None or fall_of_check(fit, one) > 1.0 - LARGE
     return (
@@ -113,6 +115,7 @@ def stands(fit: Fit, one: Together) -> bool:
         and not outputs_beside(fit, one)
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large
+        and why_no_fit(one.fit) is None
     )
 
 
