@@ -1,5 +1,6 @@
 """The triangle of a tall matrix, all that least squares needs of it."""
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -34,3 +35,23 @@ def triangle(A: Vector, beside: Vector | None = None) -> Vector:
             block[:, width] = beside[rows]
         R = dtpqrt(0, min(PANEL, n), R, block, overwrite_a=1, overwrite_b=1)[0]
     return np.asarray(R)
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A linearisation |r - A d|^2 folded into |q - R d|^2 + rest^2, with n rows instead of M."""
+
+    R: Vector
+    q: Vector
+    rest: float
+
+    @classmethod
+    def of(cls, residual: Vector, jacobian: Vector) -> "Fold":
+        """The residual rides along as a last column, so that Q itself is never needed."""
+        table = triangle(jacobian, residual)
+        return cls(table[:-1, :-1], table[:-1, -1], float(table[-1, -1]))
+
+    def loss(self, step: Vector) -> float:
+        """Half the sum of squares that is foreseen after a step."""
+        left = self.q - self.R @ step
+        return 0.5 * (float(left @ left) + self.rest**2)

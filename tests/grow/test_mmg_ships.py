@@ -10,10 +10,12 @@ from begun import begun
 
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.found_values import of_the_ship
+from trialid.diagnosis.search import together
 from trialid.diagnosis.search.backward import worth_naming
 from trialid.diagnosis.search.refit import objection
 from trialid.diagnosis.search.together import stands, two_at_once
 from trialid.effects import CATALOGUE
+from trialid.identification.inadequate import Inadequate
 from trialid.progress import silent
 from trialid.workflow.build_model import available
 from trialid.workflow.findings import diagnose_settings
@@ -77,6 +79,15 @@ def test_each_check_can_deny_two_effects(found):
 def test_of_effects_that_hold_only_one_of_them_no_two_stand(found):
     few = {n: CATALOGUE[n] for n in ("rudder_slipstream", "rudder_cubic", "bias_r", "delay_r")}
     assert two_at_once(found.before.fit, few, 4, lambda words: None) is None
+
+
+def test_two_are_not_told_from_a_fit_that_carries_no_verdict(found, monkeypatch):
+    fit, both = found.before.fit, found.together
+    assert [one.names for one in together.able(fit, [both])] == [both.names]
+    ended = Inadequate("a rudder's zero is at its end", "look at its sign")
+    monkeypatch.setattr(together, "why_no_fit", lambda fit: ended)
+    assert stands(fit, both)
+    assert not together.able(fit, [both])
 
 
 @pytest.mark.study(turn="each")

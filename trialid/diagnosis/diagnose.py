@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from operator import attrgetter
 
 from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, Diagnosis
 from trialid.diagnosis.examine import (
@@ -139,18 +138,17 @@ def _or_of_several(
 ) -> tuple[Verdict, Together | None]:
     """The verdict, and effects at once, where none has a name and the catalogue may hold it.
 
-    Two of them, or all that a hull usually has, whichever is worth more. Where nothing else shows
-    that anything is missing, all of these may: each is small.
+    Two of them, or where no two do it all that a hull usually has; where nothing else shows that
+    anything is missing, these alone may: each is small.
     """
     if verdict.effect or (whole and whole.gap):
         return verdict, None
     if verdict.family or leans_inward(fit):  # one alone does it, or a sensor is in doubt
         return verdict, None
-    catalogue = asked.candidates
-    able = [hull_at_once(fit, catalogue)]
+    found = None
     if verdict.kind != "nothing missing":
-        able.append(two_at_once(fit, catalogue, asked.refit, lambda words: progress(words, 0.8)))
-    found = min((one for one in able if one), key=attrgetter("cost"), default=None)
+        found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
+    found = found or hull_at_once(fit, asked.candidates)
     return (verdict if found is None else verdict_on_several(fit, found)), found
 
 

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.linear_algebra import triangle
+from trialid.linear_algebra import Fold
 
 Vector = NDArray[np.float64]
 Linearised = tuple[Vector, Vector]
@@ -274,26 +274,6 @@ class _Search:
         self.path.append(Iteration(self._of_record(point), self._relative(taken), self.damping))
         self.theta, self.here, self.fold = there, self._kept(point), Fold.of(*point)
         return True
-
-
-@dataclass(frozen=True)
-class Fold:
-    """A linearisation |r - A d|^2 folded into |q - R d|^2 + rest^2, with n rows instead of M."""
-
-    R: Vector
-    q: Vector
-    rest: float
-
-    @classmethod
-    def of(cls, residual: Vector, jacobian: Vector) -> "Fold":
-        """The residual rides along as a last column, so that Q itself is never needed."""
-        table = triangle(jacobian, residual)
-        return cls(table[:-1, :-1], table[:-1, -1], float(table[-1, -1]))
-
-    def loss(self, step: Vector) -> float:
-        """Half the sum of squares that is foreseen after a step."""
-        left = self.q - self.R @ step
-        return 0.5 * (float(left @ left) + self.rest**2)
 
 
 class _Directions:

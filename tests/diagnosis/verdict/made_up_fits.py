@@ -15,6 +15,7 @@ NO_ROUTE = Split("not separable", "no route")
 def fit(eps, check=None, converged=True):
     return SimpleNamespace(
         eps_rmsn=eps,
+        eps_of_own=eps,
         eps_check=check,
         converged=converged,
         eps_by_output={"r": eps},

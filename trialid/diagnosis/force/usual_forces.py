@@ -14,7 +14,7 @@ from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.refit import settings_with
-from trialid.diagnosis.search.together import Together, fit_together, stands
+from trialid.diagnosis.search.together import Together, able, fit_together
 from trialid.effects import CATALOGUE
 from trialid.effects.usual_structures import speed_of, usual_structures
 from trialid.errors import TrialidError
@@ -75,8 +75,7 @@ def hull_at_once(fit: Fit, tried: Mapping[str, Effect]) -> Together | None:
 
     done = [one for one in each(by, AT_ONCE, (*fit.trials, *seen.trials)) if one is not None]
     found = [replace(one, fit=on_every_sample(fit, one.fit)) for one in done]
-    able = [one for one in found if stands(fit, one)]
-    return min(able, key=lambda one: one.cost, default=None)
+    return min(able(fit, found), key=lambda one: one.cost, default=None)
 
 
 def _within_ends(fit: Fit, effects: Sequence[Effect]) -> Together | None:

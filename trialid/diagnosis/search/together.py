@@ -7,7 +7,7 @@ together leave 0.27 of its square. So all pairs are held against blocks left out
 and those that foretell most are fitted.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -68,12 +68,11 @@ def two_at_once(
     most
         How many pairs are fitted.
     """
-    done = fit_pairs(fit, catalogue, most, progress)
-    able = [one for one in done if stands(fit, one)]
-    best = min(able, key=lambda one: one.cost, default=None)
+    found = able(fit, fit_pairs(fit, catalogue, most, progress))
+    best = min(found, key=lambda one: one.cost, default=None)
     if best is None:
         return None
-    others = (one for one in able if one is not best)
+    others = (one for one in found if one is not best)
     alike = (one.names for one in others if as_good(best.carried.after, one.carried.after))
     return replace(best, alike=tuple(alike))
 
@@ -105,8 +104,7 @@ def stands(fit: Fit, one: Together) -> bool:
     """Whether nothing speaks against two effects once they are fitted.
 
     A tenth of the squared error must go: off what they were fitted to, off blocks left out, one
-    like the other, and off trials held out; and of an output of which much is left, too. What is
-    no fit says nothing.
+    like the other, and off trials held out; and of an output of which much is left, too.
     """
     held = fit.eps_check is None or fall_of_check(fit, one) > 1.0 - LARGE
     return (
@@ -115,8 +113,12 @@ def stands(fit: Fit, one: Together) -> bool:
         and not outputs_beside(fit, one)
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large
-        and why_no_fit(one.fit) is None
     )
+
+
+def able(fit: Fit, done: Iterable[Together]) -> list[Together]:
+    """Those against which nothing speaks, and whose fits can carry a verdict at all."""
+    return [one for one in done if stands(fit, one) and why_no_fit(one.fit) is None]
 
 
 def _worth_a_fit(augmented: Augmented) -> list[Pair]:
