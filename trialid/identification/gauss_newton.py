@@ -8,6 +8,7 @@ too long, not a crash. The normal matrix is never formed: the step comes from QR
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -232,8 +233,7 @@ class _Search:
         """Parameters not held at a bound by the way down."""
         held_low = (self.theta <= self.low) & (descent < 0.0)
         held_high = (self.theta >= self.high) & (descent > 0.0)
-        moving: NDArray[np.bool_] = ~(held_low | held_high)
-        return moving
+        return np.asarray(~(held_low | held_high))
 
     def _within(
         self, directions: "_Directions", moving: NDArray[np.bool_], weights: Vector
@@ -280,18 +280,21 @@ class _Directions:
     """Damped steps of one linearisation, from one small SVD."""
 
     def __init__(self, fold: Fold, moving: NDArray[np.bool_], weights: Vector) -> None:
-        R = fold.R[:, moving] / weights[moving]
-        U, self.s, self.Vt = np.linalg.svd(R, full_matrices=False)
+        self.fold, self.R = fold, fold.R[:, moving] / weights[moving]
+        U, self.s, self.Vt = np.linalg.svd(self.R, full_matrices=False)
         self.along = U.T @ fold.q
+
+    @cached_property
+    def orthogonality(self) -> float:
+        """Share of the residual that lies along the sensitivities."""
         # columns of unit length, so that what is left of rank is rounding and not scale
-        lengths = np.linalg.norm(R, axis=0)
-        U, s, _ = np.linalg.svd(R / np.where(lengths > 0.0, lengths, 1.0), full_matrices=False)
-        within = (U.T @ fold.q)[s > RANK * s[0]]
-        whole = np.hypot(np.linalg.norm(fold.q), fold.rest)
-        self.orthogonality = float(np.linalg.norm(within) / whole)
+        lengths = np.linalg.norm(self.R, axis=0)
+        U, s, _ = np.linalg.svd(self.R / np.where(lengths > 0.0, lengths, 1.0), full_matrices=False)
+        within = (U.T @ self.fold.q)[s > RANK * s[0]]
+        whole = np.hypot(np.linalg.norm(self.fold.q), self.fold.rest)
+        return float(np.linalg.norm(within) / whole)
 
     def step(self, damping: float) -> Vector:
         """The step that minimises |r - A d|^2 + damping |d|^2."""
         ratio = self.s / (self.s**2 + damping)
-        step: Vector = self.Vt.T @ (ratio * self.along)
-        return step
+        return np.asarray(self.Vt.T @ (ratio * self.along))
