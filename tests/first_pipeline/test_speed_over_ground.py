@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from geared_rudder import geared
 
+from trialid.errors import LogError
 from trialid.inspection import inspect_log
 from trialid.inspection.channel_names import unit_in_name
 from trialid.inspection.relations import unit_of_speed
@@ -109,3 +110,23 @@ def test_a_turning_circle_that_comes_first_is_not_how_fast_she_comes(tmp_path: P
         speeds.append(float(line.split()[2]))
     assert speeds[0] == pytest.approx(speeds[1])
     assert speeds[0] == pytest.approx(APPROACH, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("head", "value", "knots"), [("STW [m/s]", 8.0, 15.55), ("STW kn", 12, 12)]
+)
+def test_a_speed_that_is_one_number_throughout_is_offered_as_the_stated_one(
+    tmp_path: Path, head: str, value: float, knots: float
+) -> None:
+    """A log that never moves measures nothing; without it the approach speed is asked for."""
+    path = log(tmp_path / "z.csv", ZIGZAG, 0.9, 1.0)
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    table[:, 3] = value
+    heads = f"Time,HDG,Rudder [deg],{head},RPM"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.5g")
+    with pytest.raises(LogError, match=rf"throughout.*add --speed {knots:.4g} \(knots\)"):
+        starter([inspect_log(path)], tmp_path / "p.toml", None, Given(length=150.0))
+    table[:, 3] = 0.0
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.5g")
+    with pytest.raises(LogError, match="add --speed KNOTS"):
+        starter([inspect_log(path)], tmp_path / "p.toml", None, Given(length=150.0))

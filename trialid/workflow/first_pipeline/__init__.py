@@ -25,6 +25,7 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
 )
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
 from trialid.workflow.first_pipeline.long_log import Windows
+from trialid.workflow.first_pipeline.no_speed import no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_revolutions
@@ -47,7 +48,6 @@ __all__ = ["Starter", "begun_ship", "starter"]
 STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
 
 
-NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
 NO_SERVICE_SPEED: Final = (
     "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "
     "--speed KNOTS"
@@ -114,7 +114,7 @@ def starter(
     if u0 is None:
         unknown = any("CAREFUL" in one.speed_words for one in decays)
         of_decays = NO_WAY if unknown else NO_SERVICE_SPEED
-        raise LogError(f"{pipeline}: {of_decays if decays else NO_SPEED}")
+        raise LogError(f"{pipeline}: {of_decays if decays else no_speed(surveys)}")
     files: dict[Path, str] = {}
     if ship is None or own is None:
         ship = begun_ship(pipeline)
