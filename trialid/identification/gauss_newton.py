@@ -245,10 +245,10 @@ class _Search:
         step, free = np.zeros(len(self.theta)), moving
         while True:
             step[free] = directions.step(self.damping) / weights[free]
-            there = np.clip(self.theta + step, self.low, self.high) - self.theta
-            passed = free & (np.abs(step) > np.abs(there))
+            there = self.theta + step
+            passed = free & ((there < self.low) | (there > self.high))
             free = free & ~passed
-            step[passed] = there[passed]
+            step[passed] = (np.clip(there, self.low, self.high) - self.theta)[passed]
             if not passed.any() or not free.any():
                 return step
             left = self.fold.q - self.fold.R[:, ~free] @ step[~free]
