@@ -126,7 +126,7 @@ def test_integration_errors_fall_by_far_more_than_the_step():
 
 
 def test_a_large_motion_does_not_make_what_is_left_of_a_small_one_little():
-    """Noise of one trial in four that turn more: a fifth of what moved in it."""
+    """Four trials, and a fifth in which noise is a fifth of the little that moved."""
     trials = [replace(zigzag(20), name=f"zigzag-20-{k}") for k in range(4)]
     small = zigzag(2)
     moved = float(np.std(small.signals["r"]))

@@ -259,7 +259,7 @@ class _Search:
 
     def _try(self, step: Vector, loss: float) -> bool:
         """Go there if the error falls; set the damping by how well the fall was foreseen."""
-        there = np.clip(self.theta + step, self.low, self.high)
+        there = np.clip(self.theta + step, self.low, self.high)  # at a bound to the last bit
         taken = there - self.theta
         self.count += 1
         point = _finite_at(self.evaluate, there)

@@ -6,8 +6,7 @@ from typing import Final
 from trialid.inspection import Inspection
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.usual_units import to_si
-
-KNOT: Final = 1852.0 / 3600.0
+from trialid.ship.estimate.particulars_given import KNOT
 
 NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
 
@@ -16,11 +15,11 @@ def no_speed(surveys: Sequence[Inspection]) -> str:
     """That no log tells the speed; or that one holds a single value, and how to take it."""
     for survey in surveys:
         for one in survey.sources("u"):
-            if one.constant and (held := _held(one)):
+            if one.constant and (held := _held(one)) > 0.0:
                 unit = one.unit or one.unit_in_name
                 return (
-                    f"{one.name!r} is {float(one.sketch.y[0]):g} {unit} throughout, which no log "
-                    "measures; if that is the approach speed, add "
+                    f"{one.name!r} is {float(one.sketch.y[0]):g} {unit} throughout, as no log "
+                    "under way is; if that is the approach speed, add "
                     f"--speed {held / KNOT:.4g} (knots)"
                 )
     return NO_SPEED
