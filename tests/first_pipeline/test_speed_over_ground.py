@@ -72,6 +72,24 @@ def test_drift_and_current_are_read_out_of_a_speed_over_ground(tmp_path: Path) -
         assert 'outputs = ["r"]' in text
 
 
+def test_a_heading_without_a_unit_that_passes_north_is_read_as_one_that_does_not(
+    tmp_path: Path,
+) -> None:
+    """Only its numbers tell that it is in degrees; its jumps by 360 are no turns."""
+    path = log(tmp_path / "t.csv", TURN, 0.9, 1.0)
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    rate = np.gradient(np.unwrap(table[:, 1], period=360.0))
+    for first in (0.0, 5.0):
+        heading = (first - table[:, 1]) % 360.0
+        assert np.abs(np.diff(heading)).max() > 350.0
+        turned = np.column_stack([T, heading, -table[:, 2], table[:, 3], -rate])
+        heads = "Time,HDG,Rudder,SOG,ROT[deg/s]"
+        np.savetxt(path, turned, delimiter=",", header=heads, comments="", fmt="%.5g")
+        given = (tmp_path / "p.toml", None, Given(length=150.0), APPROACH)
+        text = starter([inspect_log(path)], *given).files[tmp_path / "p.toml"]
+        assert '\npsi   = { channel = "HDG", unit = "deg" }' in text
+
+
 def test_a_stated_speed_that_fits_no_unit_stays_the_speed(tmp_path: Path) -> None:
     text = begun(tmp_path, 1.0, 3.0).files[tmp_path / "p.toml"]
     assert "SOG" not in text

@@ -15,7 +15,7 @@ from trialid.inspection.inspected import ChannelInspection, Gaps, Guess
 from trialid.inspection.name_words import words as words_of
 from trialid.inspection.sketch import join_sketches, sketch
 from trialid.inspection.stamps import Health, health
-from trialid.inspection.usual_units import to_si
+from trialid.inspection.usual_units import of_angle, to_si
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
 
@@ -67,7 +67,6 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
     unit = channel.unit or channel_names.unit_in_name(channel.name)
     guess = _guess(channel, unit, defines)
     angle = guess is not None and SIGNALS[guess.quantity].angle
-    size = to_si(unit or "", "rad")
     return ChannelInspection(
         name=channel.name,
         start=stamps.start,
@@ -83,8 +82,14 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
         unit_in_name=None if channel.unit else channel_names.unit_in_name(channel.name),
         description=channel.description,
         guess=guess,
-        sketch=sketch(t, y, 2.0 * np.pi / size if angle and size else None),
+        sketch=sketch(t, y, _whole_turn(unit, max(-low, high)) if angle else None),
     )
+
+
+def _whole_turn(unit: str | None, largest: float) -> float | None:
+    """A whole turn of an angle in its unit; by its size where no unit is stated."""
+    size = to_si(unit or of_angle(largest) or "", "rad")
+    return 2.0 * np.pi / size if size else None
 
 
 def _guess(channel: Channel, unit: str | None, defines: bool) -> Guess | None:

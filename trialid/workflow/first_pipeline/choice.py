@@ -16,6 +16,7 @@ from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.inspection.speed_letters import of_either
+from trialid.inspection.usual_units import of_angle
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.long_log import Window
@@ -204,10 +205,8 @@ def choose_speed(survey: Inspection, live: Live, known: float | None, told: str)
 def through_water(live: Live, known: float | None, told: str) -> Signal:
     """The speed through the water; where the log states no unit, a known speed settles it."""
     plain = plain_signal("u", live, "")
-    if plain.unit != OPEN or known is None:
-        return plain
-    unit = unit_of_speed(plain.source, known)
-    if unit is None:
+    unit = unit_of_speed(plain.source, known) if known and plain.unit == OPEN else None
+    if known is None or unit is None:
         return plain
     words = f"by its name; {_by_speed(known, told)}"
     return Signal("u", plain.source, unit, None, words, plain.others)
@@ -290,7 +289,7 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
     if quantity in RUDDERS and largest <= 1.6:
         share = OF_FULL in source.description
         return (OPEN, f"; {ASK_FULL}") if share else ("rad", f"; {AS_RADIANS}")
-    if quantity in RUDDERS or (quantity in ("psi", "phi") and largest > 6.5):
+    if quantity in RUDDERS or (quantity in ("psi", "phi") and of_angle(largest)):
         return "deg", f"; {BY_SIZE} {largest:.3g} can only be deg"
     return OPEN, f"; {ASK_UNIT}"
 
