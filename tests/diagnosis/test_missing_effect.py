@@ -14,6 +14,7 @@ from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.completeness import completeness
 from trialid.diagnosis.search.refit import likeliest_refit, refit
 from trialid.diagnosis.search.score import VISIBLE, Candidate, rank
+from trialid.diagnosis.search.simple_forces import probes
 from trialid.diagnosis.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict, decide, replace
 from trialid.effects import CATALOGUE
@@ -134,6 +135,19 @@ def with_signals(trial, more):
     return replace(
         trial, signals={**trial.signals, **{n: x[: trial.samples] for n, x in more.items()}}
     )
+
+
+@pytest.mark.parametrize("given", [(0,), (2,), (0, 2)])
+def test_forces_of_any_shape_are_of_what_every_trial_records(given):
+    """One heading among three trials is none; that of all fitted ones is one more shape."""
+    trials = record(MODEL, 3)  # the second is held out
+    heading = {"psi": 0.01 * trials[-1].t}
+    some = [with_signals(t, heading if i in given else {}) for i, t in enumerate(trials)]
+    plain, beside = (probes(identify(t, MODEL, FIT)) for t in (trials, some))
+    more = beside.columns.shape[1] - plain.columns.shape[1]
+    assert (more > 0) is ({0, 2} <= {*given})
+    if not more:
+        np.testing.assert_array_equal(plain.columns, beside.columns)
 
 
 def test_an_effect_of_a_speed_record_wants_one_and_its_stand_in_does_not():

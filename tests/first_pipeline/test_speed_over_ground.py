@@ -90,6 +90,18 @@ def test_a_heading_without_a_unit_that_passes_north_is_read_as_one_that_does_not
         assert '\npsi   = { channel = "HDG", unit = "deg" }' in text
 
 
+def test_a_stated_speed_beside_one_in_the_log_leaves_the_log_s(tmp_path: Path) -> None:
+    """In a turn she keeps a third of what was stated, and only the log says so."""
+    path = log(tmp_path / "t.csv", TURN, 0.3, 1.0)
+    for head in ("SOG [m/s]", "speed [m/s]"):
+        told = path.read_text(encoding="utf-8").replace("SOG", head)
+        (tmp_path / "s.csv").write_text(told, encoding="utf-8")
+        given = (tmp_path / "p.toml", None, Given(length=150.0), APPROACH)
+        text = starter([inspect_log(tmp_path / "s.csv")], *given).files[tmp_path / "p.toml"]
+        assert f'channel = "{head.split()[0]}", unit = "m/s"' in text
+        assert "speed = 8" not in text
+
+
 def test_a_stated_speed_that_fits_no_unit_stays_the_speed(tmp_path: Path) -> None:
     text = begun(tmp_path, 1.0, 3.0).files[tmp_path / "p.toml"]
     assert "SOG" not in text

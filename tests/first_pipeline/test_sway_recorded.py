@@ -133,8 +133,11 @@ def test_wind_and_shaft_are_read_and_the_heading_stands_there_commented_out(tmp_
     assert {"n", "psi", "V_aw", "gamma_aw"} <= {*signals}
 
 
-def test_a_wind_without_a_unit_is_left_to_the_user(tmp_path: Path) -> None:
-    text = with_more(tmp_path, ("wind speed relative [m/s]", "wind dir relative"), (8.0, 40.0))
+def test_a_wind_angle_without_a_unit_is_read_where_only_degrees_go_so_far(tmp_path: Path) -> None:
+    heads = ("wind speed relative [m/s]", "wind dir relative")
+    text = with_more(tmp_path, heads, (8.0, 40.0))
+    assert re.search(r'(?m)^gamma_aw +=.*"wind dir relative", unit = "deg"', text)
+    text = with_more(tmp_path, heads, (8.0, 0.5))
     assert "# left to you: V_aw; the wind's speed and its angle are read together" in text
     assert "# left to you: gamma_aw; the wind's speed" in text
 

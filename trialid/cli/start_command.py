@@ -95,12 +95,21 @@ def _told(begun: "Starter") -> Iterator[str]:
     yield f"{wording.count_of(len(names), 'trial')}: {_few(names)}{held}."
     for signal in begun.trials[0].signals:
         yield f"{signal.quantity}: {signal.source.key}, {signal.why}{_left_out(signal)}."
-    if beside := begun.trials[0].beside:
-        left = ", ".join(f"{signal.quantity} ({signal.source.key})" for signal, _ in beside)
-        yield f"In the log too, commented out in the pipeline with why: {left}."
+    if left := [*_left_to_user(begun)]:
+        yield f"In the log too, commented out in the pipeline with why: {', '.join(left)}."
     yield f"Written, each choice with its reason: {' and '.join(map(str, begun.files))}."
     for words in begun.to_fill:
         yield f"To fill in: {words}"
+
+
+def _left_to_user(begun: "Starter") -> Iterator[str]:
+    """Signals that the logs hold and that are left to the user, of some trials with which."""
+    found: dict[str, list[str]] = {}
+    for one in begun.trials:
+        for signal, _ in one.beside:
+            found.setdefault(f"{signal.quantity} ({signal.source.key})", []).append(one.name)
+    for words, names in found.items():
+        yield words if len(names) == len(begun.trials) else f"{words} of {_few(names)}"
 
 
 def _left_out(signal: "Signal") -> str:

@@ -67,6 +67,9 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
     unit = channel.unit or channel_names.unit_in_name(channel.name)
     guess = _guess(channel, unit, defines)
     angle = guess is not None and SIGNALS[guess.quantity].angle
+    able = unit is None and guess is not None and (angle or guess.quantity == "phi")
+    by_size = of_angle(y) if able else None
+    size = to_si(unit or by_size or "", "rad") if angle else None
     return ChannelInspection(
         name=channel.name,
         start=stamps.start,
@@ -80,16 +83,11 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
         clock=own.clock,
         unit=channel.unit,
         unit_in_name=None if channel.unit else channel_names.unit_in_name(channel.name),
+        unit_by_size=by_size,
         description=channel.description,
         guess=guess,
-        sketch=sketch(t, y, _whole_turn(unit, max(-low, high)) if angle else None),
+        sketch=sketch(t, y, 2.0 * np.pi / size if size else None),
     )
-
-
-def _whole_turn(unit: str | None, largest: float) -> float | None:
-    """A whole turn of an angle in its unit; by its size where no unit is stated."""
-    size = to_si(unit or of_angle(largest) or "", "rad")
-    return 2.0 * np.pi / size if size else None
 
 
 def _guess(channel: Channel, unit: str | None, defines: bool) -> Guess | None:

@@ -98,6 +98,8 @@ class ChannelInspection:
         As the log states them.
     unit_in_name
         The unit that the channel's name ends with, where the log states none: `heading_deg`.
+    unit_by_size
+        The one unit that its numbers leave, where neither says: a heading up to 359.
     guess
         Which quantity it looks like; None where that cannot be told.
     sketch
@@ -116,6 +118,7 @@ class ChannelInspection:
     clock: Clock
     unit: str | None = None
     unit_in_name: str | None = None
+    unit_by_size: str | None = None
     description: str = ""
     angle: Literal["roll", "yaw", "speed", "course"] | None = None
     guess: Guess | None = None

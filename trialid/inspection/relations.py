@@ -124,7 +124,7 @@ def _turning(
 def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | None:
     """The unit of a rate that its angle, whose unit is known, leaves open; None where none fits."""
     common = on_one_clock(rate.sketch, angle.sketch)
-    size = to_si(angle.unit or angle.unit_in_name or "", "rad")
+    size = to_si(angle.unit or angle.unit_in_name or angle.unit_by_size or "", "rad")
     if common is None or size is None:
         return None
     period, (y, x), whole = common

@@ -2,6 +2,9 @@
 
 from typing import Final
 
+import numpy as np
+
+from trialid.arrays import Vector
 from trialid.errors import UnitError
 from trialid.names import unit_words, units
 
@@ -9,13 +12,15 @@ NO_RADIANS: Final = 6.5
 """Largest number of a heading or roll in radians, a whole turn and noise; beyond it is degrees."""
 
 
-def of_angle(largest: float) -> str | None:
-    """The unit of a heading or roll whose numbers go so far, where none is stated.
+def of_angle(y: Vector) -> str | None:
+    """The unit of a heading or roll by its numbers, where none is stated; None where both may be.
 
-    >>> of_angle(359.7), of_angle(3.1)
-    ('deg', None)
+    >>> of_angle(np.array([0.5, 359.7])), of_angle(np.array([3.1, -3.1])), of_angle(np.ones(2))
+    ('deg', 'rad', None)
     """
-    return "deg" if largest > NO_RADIANS else None
+    if np.abs(y).max(initial=0.0) > NO_RADIANS:
+        return "deg"
+    return "rad" if np.abs(np.diff(y)).max(initial=0.0) > np.pi else None
 
 
 def to_si(unit: str, si: str) -> float | None:

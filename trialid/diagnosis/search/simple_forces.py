@@ -76,6 +76,7 @@ def probes(fit: Fit) -> Probes:
     ranges = {
         s: (min(float(m[s].min()) for m in moves), max(float(m[s].max()) for m in moves))
         for s in moves[0]
+        if all(s in m for m in moves)  # not every trial need record a heading
     }
     shapes = tuple(_shapes([s for s, (low, high) in ranges.items() if high > low]))
     rows = [r for r in paths[0].rows if r in EQUATIONS]

@@ -23,6 +23,7 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
     main_drives,
     named_by_ship,
 )
+from trialid.workflow.first_pipeline.by_other_logs import with_sides, with_units
 from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
 from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.no_speed import no_speed
@@ -30,7 +31,6 @@ from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_revolutions
 from trialid.workflow.first_pipeline.roll_decay import decays_among
-from trialid.workflow.first_pipeline.sides_of_others import with_sides
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track
 from trialid.workflow.first_pipeline.tunnel_thrusters import tunnels_of, with_tunnels
@@ -100,7 +100,7 @@ def starter(
         The logs hold too little, or not the same, to begin with, or the ship is not known.
     """
     own = read_ship(ship) if ship is not None else None
-    known = without_axes_of_earth(surveys)
+    known = without_axes_of_earth(with_units(surveys))
     decays = decays_among(known, speed, given.length, own)
     trials = decays or _steered(known, surveys, own, speed)
     if ship is None and given.length is None:

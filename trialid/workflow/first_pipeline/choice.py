@@ -16,7 +16,7 @@ from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.inspection.speed_letters import of_either
-from trialid.inspection.usual_units import of_angle
+from trialid.inspection.usual_units import NO_RADIANS
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.long_log import Window
@@ -28,6 +28,7 @@ RUDDERS: Final = ("delta", "delta_order")
 SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
 ASK_UNIT, BY_SIZE = "FILL IN the unit, the log states none", "no unit is stated, but up to"
+BY_OTHERS: Final = "no unit is stated, but its jumps or its size, here or in another log, leave"
 AS_RADIANS: Final = (
     "CAREFUL: no unit is stated: so small a rudder is read in radians; a share of full, with unit "
     '= "deg" and gain = the degrees at full, looks the same'
@@ -122,7 +123,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     signals += [plain_signal("phi", live, "")] if live["phi"] else []
     known, words = approach_speed(survey, live, speed)
     ahead = choose_speed(survey, live, known, words)
-    if ahead and (live.get("u") or speed is None or not _stated(ahead.source)):
+    if ahead:
         signals.append(ahead)
     return Chosen(
         survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words
@@ -208,8 +209,7 @@ def through_water(live: Live, known: float | None, told: str) -> Signal:
     unit = unit_of_speed(plain.source, known) if known and plain.unit == OPEN else None
     if known is None or unit is None:
         return plain
-    words = f"by its name; {_by_speed(known, told)}"
-    return Signal("u", plain.source, unit, None, words, plain.others)
+    return dataclasses.replace(plain, unit=unit, why=f"by its name; {_by_speed(known, told)}")
 
 
 def _by_speed(known: float, told: str) -> str:
@@ -289,9 +289,10 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
     if quantity in RUDDERS and largest <= 1.6:
         share = OF_FULL in source.description
         return (OPEN, f"; {ASK_FULL}") if share else ("rad", f"; {AS_RADIANS}")
-    if quantity in RUDDERS or (quantity in ("psi", "phi") and of_angle(largest)):
+    if quantity in RUDDERS or (source.unit_by_size == "deg" and largest > NO_RADIANS):
         return "deg", f"; {BY_SIZE} {largest:.3g} can only be deg"
-    return OPEN, f"; {ASK_UNIT}"
+    unit = source.unit_by_size
+    return (unit, f"; {BY_OTHERS} {unit}") if unit is not None else (OPEN, f"; {ASK_UNIT}")
 
 
 def shared_signals(trials: Sequence[Chosen]) -> frozenset[str]:

@@ -45,6 +45,42 @@ def test_a_turn_takes_the_side_of_the_zigzags_beside_it(
     assert "side as in z0.csv, of the same name" in text
 
 
+def in_radians(path: Path, orders: np.ndarray, first: float) -> Path:
+    """A log of no units at all, as simulations are saved, whose heading goes round at pi."""
+    table = np.loadtxt(log(path, orders, 0.05), delimiter=",", skiprows=1)
+    table[:, 1:4] = np.deg2rad(table[:, 1:4])
+    table[:, 3] = (table[:, 3] + first + np.pi) % (2.0 * np.pi) - np.pi
+    np.savetxt(path, table, delimiter=",", header="t,delta,r,psi,u", comments="", fmt="%.6g")
+    return path
+
+
+def test_a_heading_in_radians_that_never_goes_round_is_told_by_one_that_does(
+    tmp_path: Path,
+) -> None:
+    """Alone it asks for its unit; beside a turn it does not, nor do the rates."""
+    still = in_radians(tmp_path / "z.csv", ZIGZAG, 0.1)
+    round_about = in_radians(tmp_path / "turn.csv", TURN, 0.1)
+    alone = begun(tmp_path, still).files[tmp_path / "p.toml"]
+    assert '# psi = { channel = "psi", unit = "?" }' in alone
+    text = begun(tmp_path, still, round_about).files[tmp_path / "p.toml"]
+    assert text.count('\npsi   = { channel = "psi", unit = "rad" }') == 2
+    assert text.count('\nr     = { channel = "r", unit = "rad/s" }') == 2
+    assert text.count("unit by the slope of psi") == 2
+
+
+def test_two_logs_that_disagree_settle_no_third(tmp_path: Path) -> None:
+    """A recorder that was set to degrees once keeps what each log's own numbers say."""
+    still = in_radians(tmp_path / "z.csv", ZIGZAG, 0.1)
+    round_about = in_radians(tmp_path / "turn.csv", TURN, 0.1)
+    degrees = tmp_path / "degrees.csv"
+    table = np.loadtxt(round_about, delimiter=",", skiprows=1)
+    table[:, 1:4] = np.rad2deg(table[:, 1:4])
+    np.savetxt(degrees, table, delimiter=",", header="t,delta,r,psi,u", comments="", fmt="%.6g")
+    text = begun(tmp_path, still, round_about, degrees).files[tmp_path / "p.toml"]
+    units = [line.split('unit = "')[1][:3] for line in text.splitlines() if '"psi", unit' in line]
+    assert units == ['?" ', "rad", "deg"]
+
+
 def bridge_log(path: Path, orders: np.ndarray, side: float) -> Path:
     """NMEA 0183 sentences of a ship whose rudder sensor counts so to starboard."""
     table = np.loadtxt(log(path.with_suffix(".csv"), orders, 0.05), delimiter=",", skiprows=1)

@@ -1,12 +1,14 @@
-"""The side of a channel that one trial does not show, as another trial of the recorder shows it.
+"""What one trial does not show of a channel, as another trial of the recorder shows it.
 
-A turn with the rudder put over once does not tell which side it counts as positive; the zig-zags
+A heading in radians that never goes round may be in degrees; one that does, beside it, is not. A
+turn with the rudder put over once does not tell which side it counts as positive; the zig-zags
 beside it, whose channel has the same name, do; whatever a format says of the side it should be.
 """
 
 import dataclasses
 from collections.abc import Mapping, Sequence
 
+from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.workflow.first_pipeline.choice import (
     ASK_SIDE,
     CONVENTION,
@@ -18,6 +20,30 @@ from trialid.workflow.first_pipeline.choice import (
 
 Side = tuple[str, str]
 """Starboard or port, and the log that shows it."""
+
+
+def with_units(surveys: Sequence[Inspection]) -> list[Inspection]:
+    """The logs, angles in the unit that only the numbers of others of them leave.
+
+    Where these disagree, each keeps what its own say.
+    """
+    found: dict[str, set[str]] = {}
+    for one in (c for survey in surveys for c in survey.channels.values()):
+        if one.unit_by_size is not None:
+            found.setdefault(one.name, set()).add(one.unit_by_size)
+    known = {name: units.pop() for name, units in found.items() if len(units) == 1}
+    return [
+        dataclasses.replace(
+            survey, channels={key: _sized(c, known) for key, c in survey.channels.items()}
+        )
+        for survey in surveys
+    ]
+
+
+def _sized(one: ChannelInspection, known: Mapping[str, str]) -> ChannelInspection:
+    if one.name not in known or one.unit is not None or one.unit_in_name is not None:
+        return one
+    return dataclasses.replace(one, unit_by_size=known[one.name])
 
 
 def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
