@@ -99,7 +99,8 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
     held = at_the_end(fit.problem.unknowns, fit.theta)
     if not held:
         return None
-    bounds = ", ".join(f"{n} = {value:.3g}" for n, value in held.items())
+    units = {x.name: x.unit for x in fit.problem.unknowns}
+    bounds = ", ".join(f"{n} = {wording.with_unit(x, units[n])}" for n, x in held.items())
     return Inadequate(
         f"what no sensor does had to be assumed: {bounds}, the end of what is possible",
         "look at that signal's clock, sign and unit, and whether the model is one of this ship; "

@@ -7,7 +7,7 @@ import numpy as np
 from trialid.identification.fit import Fit
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.told_gm import late_roll
-from trialid.names.wording import shown_unit
+from trialid.names.wording import with_unit
 
 OFF_AMIDSHIPS: Final = np.deg2rad(0.5)
 """[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm; and a list
@@ -38,8 +38,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
     units = {x.name: x.unit for x in fit.problem.unknowns}
 
     def said(name: str, value: float) -> str:
-        unit, factor = shown_unit(units[name])
-        return f"{value * factor:.4g} {unit if unit != '1' else ''}".rstrip()
+        return with_unit(value, units[name])
 
     bounds = [
         f"{n} ended at its bound {said(n, x)}: that is the bound's value, not the record's"

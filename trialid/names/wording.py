@@ -136,6 +136,16 @@ def shown_unit(unit: str | None) -> tuple[str, float]:
     return _SHOWN.get(unit or "", (unit or "", 1.0))
 
 
+def with_unit(value: float, unit: str) -> str:
+    """A parameter's SI value in words, four digits and the unit it is shown in.
+
+    >>> with_unit(-0.1, "rad"), with_unit(0.25, "1")
+    ('-5.73 deg', '0.25')
+    """
+    shown, factor = shown_unit(unit)
+    return f"{value * factor:.4g} {shown if shown != '1' else ''}".rstrip()
+
+
 def short_hash(digest: str | None) -> str:
     """Enough of a hash to recognise a file by."""
     return digest[:12] if digest else DASH
