@@ -10,20 +10,28 @@ from test_recognise import STILL, found, without_order
 from trialid.design.helm import Passage
 from trialid.design.imo import measures
 from trialid.design.imo.measured import heading_numbers, zigzag_reader
+from trialid.design.imo.sailed_trial import sail_plainly
 from trialid.design.imo.track_numbers import Around
 from trialid.design.imo.trial_measures import measure_trials
 from trialid.design.imo.trial_numbers import ManoeuvreNumber
 from trialid.identification.fit import Fit, identify
 from trialid.trial import Trial
 
+OFF = ("rudder_offset", 3.0)
+"""A rudder that pushes to one side amidships as one 1.7 deg over would."""
+NUISANCE = {None: SETTINGS.nuisance, OFF: (*SETTINGS.nuisance, "rudder_offset")}
 
-def fitted(seed: int) -> Fit:
-    trial = without_order(noisy(sailed("zigzag", STILL), np.random.default_rng([3, seed])))
-    return identify([trial], SHIP, replace(SETTINGS, weights={"x": 12.0, "y": 12.0, "psi": 12.0}))
+
+def fitted(seed: int, hidden: tuple[str, float] | None = None) -> Fit:
+    true = sailed("zigzag", STILL, hidden=hidden)
+    trial = without_order(noisy(true, np.random.default_rng([3, seed])))
+    weights = {"x": 12.0, "y": 12.0, "psi": 12.0}
+    settings = replace(SETTINGS, weights=weights, nuisance=NUISANCE[hidden])
+    return identify([trial], SHIP, settings)
 
 
-def true_overshoots(period: float = PERIOD) -> list[float]:
-    trial = sailed("zigzag", STILL, period=period)
+def true_overshoots(period: float = PERIOD, hidden: tuple[str, float] | None = None) -> list[float]:
+    trial = sailed("zigzag", STILL, period=period, hidden=hidden)
     return measures.overshoots(Passage(trial, trial.signals["x"], trial.signals["y"], None))
 
 
@@ -44,6 +52,20 @@ def test_overshoots_with_intervals_of_record_and_model() -> None:
         assert all(check(row, truth))
         assert row.measured == pytest.approx(truth, abs=np.deg2rad(0.6))
         assert row.interval[1] - row.interval[0] < np.deg2rad(2.5)
+
+
+def test_a_trial_s_own_rudder_s_zero_is_in_what_the_model_foretells_of_it() -> None:
+    """Without it she turned to the side where the rudder was reversed late, 2 deg and more."""
+    fit = fitted(0, OFF)
+    truth = true_overshoots(hidden=OFF)
+    rows = measure_trials(fit, {}, spread(fit)).numbers
+    assert max(truth[1:]) - min(truth[1:]) > np.deg2rad(1.0)  # to one side further than the other
+    for row, x in zip(rows, truth, strict=True):
+        assert all(check(row, x))
+        assert row.predicted == pytest.approx(x, abs=np.deg2rad(0.6))
+    plain, true = sail_plainly(fit, fit.trials[0]), sailed("zigzag", STILL, hidden=OFF)
+    assert plain is not None
+    assert np.std(plain["psi"] - true.signals["psi"]) < np.deg2rad(0.6)
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0, 2.0])
@@ -77,11 +99,12 @@ def test_every_overshoot_of_a_long_zigzag_is_measured() -> None:
 
 
 @pytest.mark.study(turn=8)
-def test_intervals_of_overshoots_hold_the_truth() -> None:
-    truth = true_overshoots()
+@pytest.mark.parametrize("hidden", [None, OFF])
+def test_intervals_of_overshoots_hold_the_truth(hidden: tuple[str, float] | None) -> None:
+    truth = true_overshoots(hidden=hidden)
     inside = []
     for seed in range(60):
-        fit = fitted(seed)
+        fit = fitted(seed, hidden)
         rows = measure_trials(fit, {}, spread(fit)).numbers
         inside += [check(row, x) for row, x in zip(rows, truth, strict=True)]
     record, model = np.mean(inside, axis=0)
