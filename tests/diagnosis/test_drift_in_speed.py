@@ -10,6 +10,7 @@ from s175q import MODEL, white, zigzag
 from trialid.diagnosis.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
+from trialid.errors import NotIdentifiable
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
 from trialid.simulation.integrate import prepare, respond
@@ -63,6 +64,45 @@ def test_a_current_has_its_name(seed):
     assert found(READ, seed, 0.8).verdict.effect == "current_in_speed_record"
 
 
+WATER = replace(SETTINGS, nuisance=("initial_state", "current"))
+
+
+@pytest.mark.parametrize("seed", [61, pytest.param(62, marks=pytest.mark.study(turn="each"))])
+@pytest.mark.parametrize("current", [0.0, 0.8])
+def test_a_current_that_is_looked_for_is_found_and_leaves_the_ship_alone(seed, current):
+    """It is none of hers and has no name, and her coefficients are what they are."""
+    trials = [over_ground(a, seed + a, current) for a in (5, 10, 20)]
+    trials.append(over_ground(10, seed, current, "check"))
+    fit = identify(trials, READ, WATER)
+    north, east = (fit.estimates[n] for n in ("Uc_N", "Uc_E"))
+    assert (north, east) == pytest.approx((current, 0.0), abs=0.08)
+    assert "current_in_speed_record" not in {e.name for e in fit.model.effects}
+    for name in ("Nv", "Nr", "Ndelta"):
+        assert fit.value(name) == pytest.approx(MODEL.value(name), rel=0.04)
+    done = diagnose(fit)
+    assert done.verdict.effect != "current_in_speed_record"
+    assert "current_in_speed_record" not in {*done.ranking["effect"]}
+    assert {"Uc_N", "Uc_E"}.isdisjoint(row.name for row in done.result.physical)
+
+
+def test_a_current_that_no_record_shows_is_refused():
+    with pytest.raises(NotIdentifiable, match="read a speed over ground by the effect"):
+        identify([over_ground(10, 51)], PLAIN, WATER)
+
+
+def test_a_current_is_held_by_what_water_does():
+    """A zig-zag of 5 deg tells it to a few tenths; the rest is drawn to still water."""
+    for seed in (51, 71, 72):
+        held, loose = (
+            identify([over_ground(5, seed)], READ, replace(WATER, hold_nuisance=held))
+            for held in (True, False)
+        )
+        off = [np.hypot(fit.estimates["Uc_N"], fit.estimates["Uc_E"]) for fit in (held, loose)]
+        assert off[0] < off[1] < 0.5
+        priors = {x.name: x.prior for x in held.problem.unknowns}
+        assert priors["Uc_N"] == priors["Uc_E"] == (0.0, 1.0)
+
+
 def test_a_record_that_begins_at_rest_is_fitted():
     """Of no speed there is no drift, and the slopes are numbers."""
     trial = over_ground(10, 51)
@@ -77,11 +117,10 @@ def test_a_wind_that_nobody_recorded_may_be_the_current_in_a_speed_over_ground()
     named = Verdict("missing", "steady_wind", ("steady_wind",), "steady_wind is missing")
     current = CATALOGUE["current_in_speed_record"]
     for model, said in ((READ, True), (PLAIN, False), (READ + current, False)):
-        fit = SimpleNamespace(
-            model=model, trials=(zigzag(10),), problem=SimpleNamespace(trials=(zigzag(10),))
-        )
+        problem = SimpleNamespace(trials=(zigzag(10),), simulator=SimpleNamespace(model=model))
+        fit = SimpleNamespace(model=model, trials=problem.trials, problem=problem)
         sentence = name_records(fit, named, [CATALOGUE["steady_wind"], current]).sentence
         assert ("the speed is over ground, and a current in it" in sentence) is said
     other = replace(named, effect="yaw_drag_rar")
-    fit.model = READ
+    fit.model = problem.simulator.model = READ
     assert "over ground" not in name_records(fit, other, [CATALOGUE["yaw_drag_rar"]]).sentence

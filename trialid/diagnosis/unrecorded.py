@@ -13,6 +13,7 @@ from trialid.diagnosis.found_values import by_heading, of_the_ship
 from trialid.diagnosis.rudder_jumps import jump_in, said_of
 from trialid.diagnosis.search.candidates import missing_signals
 from trialid.diagnosis.verdict import Verdict
+from trialid.effects.track import current_in_speed
 from trialid.identification.fit import Fit
 from trialid.names.quantities import SIGNALS
 from trialid.ship.effect import Effect
@@ -23,7 +24,8 @@ UNANSWERED: Final = ("not in catalogue", "cannot tell", "nothing missing")
 """Verdicts with which something is or may be missing that has no name: nothing of what was tried is
 missing of a ship in 14 m/s of wind, whose heading and wind nobody gave."""
 
-READ_OVER_GROUND, CURRENT = "drift_in_speed_record", "current_in_speed_record"
+READ_OVER_GROUND: Final = "drift_in_speed_record"
+CURRENTS: Final = {"current_in_speed_record", current_in_speed.name}
 """Effects of a model whose speed is one over ground, and of the current in it."""
 
 SHOWN: Final = 5
@@ -53,8 +55,8 @@ def _or_current(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> str:
     Of three of four ships in a current, of another hull than the model's, wind was named last.
     """
     wind = any(e.name == verdict.effect and by_heading(e) and of_the_ship(e) for e in effects)
-    present = {e.name for e in fit.model.effects}
-    if not wind or READ_OVER_GROUND not in present or CURRENT in present:
+    present = {e.name for e in fit.problem.simulator.model.effects}
+    if not wind or READ_OVER_GROUND not in present or present & CURRENTS:
         return ""
     return "the speed is over ground, and a current in it, unrecorded too, may look like that"
 

@@ -271,7 +271,8 @@ def _finish(
         raise SimulationError(f"the model cannot be simulated with these values: {residual}")
     level = level_of(problem, residual)
     ended = zip(problem.unknowns, theta, strict=True)
-    shared = {x.column: float(a) for x, a in ended if x.trial is None}
+    own = model.parameters  # a current is none of hers
+    shared = {x.column: float(a) for x, a in ended if x.trial is None and x.column in own}
     fit = Fit(
         model=model.with_values(shared),
         settings=settings,

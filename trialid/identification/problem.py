@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.nuisance.of_each_trial import Nuisance, nuisances, with_nuisance
-from trialid.identification.nuisance.priors import fastest
+from trialid.identification.nuisance.priors import fastest, water_prior
 from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask
 from trialid.identification.roll.roll_range import RollRange, roll_range
 from trialid.names.quantities import MASS_PARAMETERS, POSITION
@@ -97,8 +97,8 @@ def ready(
     model: ShipModel, settings: Settings
 ) -> tuple[Simulator, tuple[str, ...], tuple[str, ...]]:
     """A simulator of what is free; the free names trials share, and those each has for itself."""
-    full, per_trial = with_nuisance(model, settings)
-    shared = tuple(n for n in settings.free if n not in per_trial)
+    full, per_trial, of_all = with_nuisance(model, settings)
+    shared = (*(n for n in settings.free if n not in (*per_trial, *of_all)), *of_all)
     free = (*shared, *per_trial)
     started = with_starts(full, free, settings)
     simulator = prepare(started, free, settings.outputs, settings.engine, settings.substeps)
@@ -216,7 +216,7 @@ def _shared(simulator: Simulator, name: str, settings: Settings, step: float) ->
     of_a_drive = any(e.of_a_drive for e in simulator.model.effects if name in e.parameters)
     beside = simulator.model.states and is_sensor(simulator.model, name) and not of_a_drive
     kind: Kind = "nuisance" if beside else "physical"  # where nothing moves, sensors are the matter
-    prior = settings.priors.get(name)
+    prior = settings.priors.get(name, water_prior(name) if settings.hold_nuisance else None)
     return Unknown(
         name=name,
         column=name,

@@ -16,7 +16,6 @@ from trialid.arrays import Vector
 from trialid.design.imo.measure_slopes import Shows
 from trialid.design.imo.speed_loss import logged_loss, speed_loss
 from trialid.design.prediction.likely_spread import LikelySpread
-from trialid.design.prediction.rudders_zero import ZERO, with_zero_at
 from trialid.design.standard import AT_SEA
 from trialid.effects.environment import steady_wind
 from trialid.effects.track import current
@@ -180,13 +179,15 @@ def sail_plainly(fit: Fit, trial: Trial) -> Track | None:
 def with_track(fit: Fit, trial: Trial) -> ShipModel:
     """The fitted model with a track of its own, through the water; losing speed where none is.
 
-    Her rudder stands off its record as it does in this trial: else who was steered by a rudder
-    reversed in time turns to the side where it was reversed late.
+    Her rudder stands off its record as it does in this trial, and its speed has the current in it:
+    else who was steered by a rudder reversed in time turns to the side where it was reversed late.
     """
     states = tuple(s for s in STATES if s in {*fit.model.states, *PLACE})
-    model = replace(fit.model, states=states)
-    zero = of_trial(fit, trial)[0].get(ZERO)
-    model = model if zero is None else with_zero_at(model, zero)
+    model, present = replace(fit.model, states=states), {e.name for e in fit.model.effects}
+    values, _ = of_trial(fit, trial)
+    for effect in fit.problem.simulator.model.effects:
+        if effect.name not in present and moves_her(effect):
+            model = (model + effect).with_values({n: values[n] for n in effect.parameters})
     if current.name in {e.name for e in model.effects}:
         model = model - current.name
     logged = "u" in trial.signals and float(np.ptp(trial.signals["u"])) > 0.0

@@ -21,7 +21,7 @@ from trialid.design.imo.turns import NEEDED, Turn, find_turns, is_seen, turn_rea
 from trialid.design.imo.williamson_numbers import williamson_reader
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.unexplained_motion import unexplained_motion
-from trialid.effects.track import CURRENT
+from trialid.effects.track import CURRENT, current_in_speed
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
 from trialid.identification.trial_score import of_trial, own_start_error
@@ -34,6 +34,7 @@ KNOWN: Final = 0.1
 of 1 m 7 m/s is known so after 3 samples of 2 s, or 22 of 0.1 s; by half of it after 5 and 34, by
 twice after 3 and 14."""
 NORMAL: Final = 1.96
+IN_SPEED: Final = tuple(current_in_speed.parameters)
 ON_TRACK: Final = ("turning circle", "Williamson turn", "stop")
 
 
@@ -161,12 +162,13 @@ def _around(
 def water_of(
     fit: Fit, trial: Trial, errors: Mapping[str, float], spread: LikelySpread | None
 ) -> Water | None:
-    """The current of a trial; None where the fit looks for none."""
+    """The current of a trial, or that in the speed of all; None where the fit looks for none."""
     values, _ = of_trial(fit, trial)
-    if not {*CURRENT} <= {*values}:
+    names = next((each for each in (CURRENT, IN_SPEED) if {*each} <= {*values}), None)
+    if names is None:
         return None
-    north, east = (values[n] for n in CURRENT)
-    own = [errors.get(f"{n} [{trial.name}]") for n in CURRENT]
+    north, east = (values[n] for n in names)
+    own = [errors.get(f"{n} [{trial.name}]", errors.get(n)) for n in names]
     known = None if own[0] is None or own[1] is None else (own[0], own[1])
     return Water((north, east), known or _found_error(fit, trial, spread))
 

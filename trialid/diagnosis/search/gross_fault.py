@@ -185,8 +185,10 @@ def _is_a_gain(fit: Fit, effect: Effect) -> bool:
 
 def _as_begun(fit: Fit) -> ShipModel:
     """The model where its own search began: far from a fault it may have ended anywhere."""
-    shared = {x.column: x.start for x in fit.problem.unknowns if x.trial is None}
-    return fit.model.with_values(shared)
+    own = fit.model.parameters
+    return fit.model.with_values(
+        {x.column: x.start for x in fit.problem.unknowns if x.column in own}
+    )
 
 
 def _arrived(fit: Fit, model: ShipModel, effect: Effect) -> Fit | None:

@@ -6,7 +6,8 @@ from typing import Final, Literal, Protocol
 import numpy as np
 
 from trialid.effects import CATALOGUE
-from trialid.effects.track import current
+from trialid.effects.environment import drift_in_speed_record
+from trialid.effects.track import current, current_in_speed
 from trialid.errors import NotIdentifiable
 from trialid.identification.nuisance.priors import limits, nuisance_prior
 from trialid.identification.output_error import Unknown
@@ -41,8 +42,14 @@ class Asked(Protocol):
         """Whether they are weakly held."""
 
 
-def with_nuisance(model: ShipModel, asked: Asked) -> tuple[ShipModel, tuple[str, ...]]:
-    """The model with the effects that nuisance parameters act through, and their names."""
+def with_nuisance(
+    model: ShipModel, asked: Asked
+) -> tuple[ShipModel, tuple[str, ...], tuple[str, ...]]:
+    """The model with the effects that nuisance parameters act through.
+
+    And their names: those of each trial, and those of all, which is the current in a speed over
+    ground. A trial's own, which a speed hardly tells, would take up what the hull does there.
+    """
     wanted: list[Effect] = []
     if "bias" in asked.nuisance:
         wanted += [CATALOGUE[f"bias_{c}"] for c in asked.outputs if f"bias_{c}" in CATALOGUE]
@@ -50,23 +57,28 @@ def with_nuisance(model: ShipModel, asked: Asked) -> tuple[ShipModel, tuple[str,
         wanted += [CATALOGUE[f"delay_{c}"] for c in asked.outputs if f"delay_{c}" in CATALOGUE]
     if "rudder_offset" in asked.nuisance:
         wanted += [CATALOGUE["rudder_offset"]]
-    if "current" in asked.nuisance:
-        _check_track(asked)
-        wanted += [current]
     present = {e.name for e in model.effects}
+    if "current" in asked.nuisance:
+        wanted += _currents(present, asked)
     added = [e for e in wanted if e.name not in present]
     for effect in added:
         model = model + effect
-    return model, tuple(p for e in added for p in e.parameters)
+    own = tuple(p for e in added if e is not current_in_speed for p in e.parameters)
+    shared = tuple(p for e in added if e is current_in_speed for p in e.parameters)
+    return model, own, shared
 
 
-def _check_track(asked: Asked) -> None:
-    """Refuse a current that nothing shows."""
-    if not {*OVER_GROUND} & {*asked.outputs}:
+def _currents(present: set[str], asked: Asked) -> list[Effect]:
+    """What a current shows in; NotIdentifiable where that is nothing."""
+    shown = [current] if {*OVER_GROUND} & {*asked.outputs} else []
+    read = [current_in_speed] if drift_in_speed_record.name in present else []
+    if not shown and not read:
         raise NotIdentifiable(
             'nuisance "current" shows only over the ground: simulate x and y and put them among '
-            "[identify] outputs, or take it out"
+            "[identify] outputs, read a speed over ground by the effect drift_in_speed_record, or "
+            "take it out"
         )
+    return [*shown, *read]
 
 
 def nuisances(

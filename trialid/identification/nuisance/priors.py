@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.effects.track import CURRENT as WATER
+from trialid.effects.track import current_in_speed
 from trialid.identification.nuisance.gyro_offset import ANGLES, gyro_offset
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import guess
@@ -75,6 +76,11 @@ def nuisance_prior(
     usual, of = (null, _offset(model, trial, column, size)), column.removeprefix("b_")
     seen = gyro_offset(trial, of, OFFSETS[f"b_{ANGLES[of]}"]) if of in ANGLES else None
     return min(usual, seen or usual, key=lambda known: known[1])
+
+
+def water_prior(column: str) -> Known | None:
+    """Of the current in a speed over ground; None of anything else."""
+    return (0.0, CURRENT) if column in current_in_speed.parameters else None
 
 
 def limits(known: Known) -> tuple[float, float]:
