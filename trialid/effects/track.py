@@ -27,9 +27,13 @@ def current(
 
 @effect(source="kinematics: U^2 = (u + c_x)^2 + (v + c_y)^2, c the current along and across her")
 def current_in_speed(
-    u, v, psi, *,
-    Uc_N=Parameter(0.3, "m/s", low=-5.0, high=5.0), Uc_E=Parameter(0.3, "m/s", low=-5.0, high=5.0),
-):  # fmt: skip
+    u,
+    v,
+    psi,
+    *,
+    Uc_N=Parameter(0.3, "m/s", low=-5.0, high=5.0),
+    Uc_E=Parameter(0.3, "m/s", low=-5.0, high=5.0),
+):
     """u = sqrt(U^2 - (v + c_y)^2) - c_x, with `drift_in_speed_record`: U, an input, is recorded."""
     across = Uc_E * cos(psi) - Uc_N * sin(psi)
     drift, over_ground = (clip(u * x / (u * u + AT_REST), MOST_DRIFT) for x in (v, v + across))
