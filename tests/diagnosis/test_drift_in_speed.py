@@ -1,5 +1,6 @@
 """A speed over ground read as one: drift and current in it are no forces of the ship."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,6 +14,7 @@ from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
+from trialid.identification.remarks import remarks
 from trialid.simulation.integrate import prepare, respond
 from trialid.workflow.notebook.front import diagnose
 
@@ -77,6 +79,8 @@ def test_a_current_that_is_looked_for_is_found_and_leaves_the_ship_alone(seed, c
     north, east = (fit.estimates[n] for n in ("Uc_N", "Uc_E"))
     assert (north, east) == pytest.approx((current, 0.0), abs=0.08)
     assert "current_in_speed_record" not in {e.name for e in fit.model.effects}
+    words = re.compile(r"the speed over ground has a current of 0\.[78]\d* m/s to (00|35)\d deg")
+    assert any(words.match(said) for said in remarks(fit)) is (current > 0.0)
     for name in ("Nv", "Nr", "Ndelta"):
         assert fit.value(name) == pytest.approx(MODEL.value(name), rel=0.04)
     done = diagnose(fit)

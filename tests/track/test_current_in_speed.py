@@ -44,7 +44,11 @@ def test_a_circle_in_still_water_is_told_by_a_speed_over_ground(seed: int) -> No
     for name, there in zip(("Uc_N", "Uc_E"), WATER, strict=True):
         assert fit.estimates[name] == pytest.approx(there, abs=3.0 * errors[name])
         assert errors[name] < 0.1
-    found = {m.name: m for m in measure_trials(fit, errors).turns}
+    done = measure_trials(fit, errors)
+    for one in done.manoeuvres:
+        assert one.speed_by == "log less the current"
+        assert one.speed == pytest.approx(SHIP.ship.particulars["U0"], abs=0.15)
+    found = {m.name: m for m in done.turns}
     still = truth(STILL)
     diameter = found["tactical diameter"]
     assert not diameter.interval[0] < still["tactical diameter"] < diameter.interval[1]

@@ -1,9 +1,11 @@
 """What to read beside the parameters of a fit, sound or not."""
 
+import math
 from typing import Final
 
 import numpy as np
 
+from trialid.effects.track import current_in_speed
 from trialid.identification.fit import Fit
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.told_gm import late_roll
@@ -12,6 +14,10 @@ from trialid.names.wording import with_unit
 OFF_AMIDSHIPS: Final = np.deg2rad(0.5)
 """[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm; and a list
 that is seen, where sensors are mounted to that."""
+
+SLIGHT: Final = 0.01
+"""Share of her speed below which a current is worth no word: a diameter is 2 % off by it. Half of
+it is as far as two circles and two zig-zags told one, twice is 0.15 m/s at 15 kn."""
 
 STANDS_OFF: Final = {
     "delta_0": "the rudder's zero is {} deg in all trials, a screw's side push or a feedback's "
@@ -63,8 +69,19 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *against,
         *driven,
         *_one_sided(fit),
+        *_current(fit),
         *(weak if fit.weakly_identified else []),
     )
+
+
+def _current(fit: Fit) -> list[str]:
+    """The current in a speed over ground, where it is a part of her speed worth a word."""
+    water = [fit.estimates[n] for n in current_in_speed.parameters if n in fit.estimates]
+    drift, speed = math.hypot(*water), fit.model.ship.particulars["U0"]
+    if not water or drift < SLIGHT * speed:
+        return []
+    to = round(float(np.rad2deg(np.arctan2(water[1], water[0])))) % 360
+    return [f"the speed over ground has a current of {drift:.2g} m/s to {to:03d} deg in it"]
 
 
 def _one_sided(fit: Fit) -> list[str]:

@@ -10,17 +10,21 @@ from trialid.names import unit_words, units
 
 NO_RADIANS: Final = 6.5
 """Largest number of a heading or roll in radians, a whole turn and noise; beyond it is degrees."""
+ROUND: Final = 0.9 * 2.0 * np.pi
+"""A jump of so much, of numbers no larger than that, is a turn in radians gone round: in degrees a
+ship swings by half of it from sample to sample, and a dropout to 0 is as large only from there on;
+twice is no jump of such numbers."""
 
 
 def of_angle(y: Vector) -> str | None:
     """The unit of a heading or roll by its numbers, where none is stated; None where both may be.
 
-    >>> of_angle(np.array([0.5, 359.7])), of_angle(np.array([3.1, -3.1])), of_angle(np.ones(2))
-    ('deg', 'rad', None)
+    >>> [of_angle(np.array(y)) for y in ([0.5, 359.7], [3.1, -3.1], [5.2, 0.0, 5.1], [1.0])]
+    ['deg', 'rad', None, None]
     """
     if np.abs(y).max(initial=0.0) > NO_RADIANS:
         return "deg"
-    return "rad" if np.abs(np.diff(y)).max(initial=0.0) > np.pi else None
+    return "rad" if np.abs(np.diff(y)).max(initial=0.0) > ROUND else None
 
 
 def to_si(unit: str, si: str) -> float | None:

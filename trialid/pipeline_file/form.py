@@ -174,8 +174,8 @@ class IdentifySection(Section):
     outputs: SomeNames
     """Signals the simulation is held against."""
     nuisance: tuple[Nuisance, ...] = ("initial_state",)
-    """What is estimated for each trial apart and is not the ship; a current that only a speed over
-    ground shows (`drift_in_speed_record` in the model) for all trials together."""
+    """What is estimated for each trial apart and is not the ship; the current in a speed over
+    ground (with `drift_in_speed_record` in the model) for all trials together."""
     weights: Mapping[str, Positive] = {}
     """Weight of an output in the error, by its name; 1 where not given."""
     loss: Literal["squares", "huber"] = "squares"

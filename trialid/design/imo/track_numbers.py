@@ -59,10 +59,14 @@ class TrackReader:
 
 @dataclass(frozen=True)
 class Water:
-    """The current of a trial, north and east, and its standard errors [m/s]; None: unknown."""
+    """The current of a trial, north and east, and its standard errors [m/s]; None: unknown.
+
+    `in_log`: the speed that was logged is over the ground, and has it too.
+    """
 
     speed: tuple[float, float]
     error: tuple[float, float] | None
+    in_log: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -108,8 +108,11 @@ def approach_speed(trial: Trial, span: slice, water: Water | None) -> tuple[floa
     """Speed [m/s] in a span and what tells it; None where neither a log nor positions tell it."""
     log, t = _seen(trial, ("u",), span), trial.t
     if len(log) >= FEWEST:
-        u = trial.signals["u"][log]
-        return _known(float(np.mean(u)), float(np.std(u, ddof=1) / np.sqrt(len(u))), "log")
+        u, words = trial.signals["u"][log], "log"
+        if water is not None and water.in_log:
+            psi, words = trial.signals["psi"][log], "log less the current"
+            u = u - water.speed[0] * np.cos(psi) - water.speed[1] * np.sin(psi)
+        return _known(float(np.mean(u)), float(np.std(u, ddof=1) / np.sqrt(len(u))), words)
     there = _seen(trial, ("x", "y"), span)
     if len(there) < FEWEST:
         return None, ""
@@ -170,7 +173,7 @@ def water_of(
     north, east = (values[n] for n in names)
     own = [errors.get(f"{n} [{trial.name}]", errors.get(n)) for n in names]
     known = None if own[0] is None or own[1] is None else (own[0], own[1])
-    return Water((north, east), known or _found_error(fit, trial, spread))
+    return Water((north, east), known or _found_error(fit, trial, spread), names is IN_SPEED)
 
 
 def _found_error(fit: Fit, trial: Trial, spread: LikelySpread | None) -> tuple[float, float] | None:

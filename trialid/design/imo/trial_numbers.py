@@ -18,7 +18,7 @@ class Manoeuvre:
     course, speed
         Heading [rad] and speed [m/s] over the length before the order; None where not recorded.
     speed_by
-        What tells the speed: its log, or the track over the ground, or less the current.
+        What tells the speed: its log, or the track over the ground, or either less the current.
     """
 
     trial: str
