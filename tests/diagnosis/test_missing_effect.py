@@ -170,7 +170,8 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
     sailed = zigzag(10)
     trial = replace(sailed, signals={n: sailed.signals[n] for n in ("delta", "r")})
     model = ShipModel(MODEL.ship, ("v", "r"), (CATALOGUE["linear_hull"],))
-    fit = SimpleNamespace(model=model, trials=(trial,), problem=SimpleNamespace(trials=(trial,)))
+    problem = SimpleNamespace(trials=(trial,), simulator=SimpleNamespace(model=model))
+    fit = SimpleNamespace(model=model, trials=(trial,), problem=problem)
     none = Verdict("not in catalogue", None, (), "something is missing")
     wind = [CATALOGUE[n] for n in ("apparent_wind", "shallow_water_sway", "heel_yaw")]
     said = name_records(fit, none, wind).sentence

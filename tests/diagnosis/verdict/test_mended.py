@@ -41,7 +41,7 @@ def unstable():
 def test_a_sensor_at_its_bound_stands_for_what_the_model_lacks(unstable):
     """With a damping no zero is at its bound, and the trial held out gains, too."""
     failed = why_no_fit(unstable)
-    assert "delta_0 [zigzag-5] = 0.1" in failed.reason
+    assert "delta_0 [zigzag-5] = 5.73 deg" in failed.reason
     assert failed.may_lack
     found = diagnose(unstable, ASKED)
     assert found.verdict.kind == "missing"
@@ -55,7 +55,7 @@ def test_what_also_fails_for_another_reason_is_mended_by_nothing():
     """The ship is lost in the trial held out, which no name may excuse."""
     lost = sailed(-1.0, 4.0)
     failed = why_no_fit(lost)
-    assert "delta_0 [zigzag-20] = 0.1" in failed.reason
+    assert "delta_0 [zigzag-20] = 5.73 deg" in failed.reason
     assert not failed.may_lack
     assert not np.isfinite(lost.eps_check)
     found = diagnose(lost, ASKED)
