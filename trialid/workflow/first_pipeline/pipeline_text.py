@@ -220,8 +220,7 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     yield from free_lines(free, ship)
     yield f"outputs = {array(outputs)}"
     offset = [] if several else ["rudder_offset"]  # of one rudder; of several `NAME_misaligned`
-    water = ["current"] if over_ground and "psi" in known else []  # in the speed
-    nuisance = ["initial_state", "bias", *offset, "delay", *water]
+    nuisance = ["initial_state", "bias", *offset, "delay"]
     yield f"nuisance = {array(nuisance)}  # of each trial, estimated too"
 
 
