@@ -79,7 +79,7 @@ def test_a_current_that_is_looked_for_is_found_and_leaves_the_ship_alone(seed, c
     north, east = (fit.estimates[n] for n in ("Uc_N", "Uc_E"))
     assert (north, east) == pytest.approx((current, 0.0), abs=0.08)
     assert "current_in_speed_record" not in {e.name for e in fit.model.effects}
-    words = re.compile(r"the speed over ground has a current of 0\.[78]\d* m/s to (00|35)\d deg")
+    words = re.compile(r"the fit reads a current of 0\.[78]\d* m/s to (00|35)\d deg out of")
     assert any(words.match(said) for said in remarks(fit)) is (current > 0.0)
     for name in ("Nv", "Nr", "Ndelta"):
         assert fit.value(name) == pytest.approx(MODEL.value(name), rel=0.04)

@@ -58,5 +58,5 @@ def test_a_circle_in_still_water_is_told_by_a_speed_over_ground(seed: int) -> No
         assert row.corrected is not None
         assert row.corrected_interval is not None
         low, high = row.corrected_interval
-        reach = 1.5 * (high - low) / 2.0
+        reach = 1.5 * (high - low) / 2.0  # three standard errors
         assert row.corrected == pytest.approx(still[name], abs=reach)
