@@ -118,6 +118,40 @@ def sail(ship, angle, check=None, lengths=30.0):
     return np.array(rows).T
 
 
+def slopes(ship):
+    """Her linear coefficients about the straight course, as a model without surge has them.
+
+    The added mass ahead, which turns with her, is part of what turning does; primed by length.
+    """
+    q, L, U, step = 0.5 * RHO * ship.L**2, ship.L, ship.U0, 1e-5
+    scale = {"v": U, "r": U / L, "delta": 1.0}
+    found = {}
+    for name, unit in scale.items():
+        ends = []
+        for side in (step, -step):
+            at = {n: side * unit if n == name else 0.0 for n in scale}
+            ends.append(forces(ship, U, at["v"], at["r"], at["delta"]))
+        by = np.subtract(*ends) / (2.0 * step)
+        found[f"Y{name}"], found[f"N{name}"] = by[1] / (q * U**2), by[2] / (q * L * U**2)
+    found["Yr"] -= ship.c["mx"] * ship.d / L
+    return found | {"Y_race": found["Ydelta"], "N_race": found["Ndelta"]}
+
+
+def file_of(ship):
+    """The ship file that her own model tests would give: masses, and the slopes of above."""
+    m, thin, c = ship.mass / (0.5 * RHO * ship.L**3), ship.d / ship.L, ship.c
+    mass = {"m": m, "I_zz": m / 16.0, "Xudot": -c["mx"], "Yvdot": -c["my"], "Nrdot": -c["Jz"]}
+    mass |= {n: thin * x for n, x in mass.items() if n.endswith("dot")}
+    size = {"L": ship.L, "B": ship.B, "T": ship.d, "nabla": ship.mass / RHO, "U0": ship.U0}
+    linear = {n: x for n, x in slopes(ship).items() if "race" not in n}
+    tables = {"particulars": size | {"rho": RHO, "g": 9.81}, "mass": mass, "coefficients": linear}
+    lines = ['name = "drawn"', 'source = "her own tests"', 'system = "prime"']
+    lines.append('rudder_positive = "starboard"')
+    for name, table in tables.items():
+        lines += ["", f"[{name}]", *(f"{key} = {value:.6g}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
 def noise_of(ship):
     """Standard deviations of a simple recorder's sensors [SI]; the gyro's is 0.05 deg/s at 60 m."""
     return {

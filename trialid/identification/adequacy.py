@@ -123,12 +123,12 @@ def _little_explained(fit: Fit) -> Inadequate | None:
 
 
 def _another_ship(fit: Fit) -> Inadequate | None:
-    """Most coefficients are clearly others than the ship's file gives, and the file's do not do."""
+    """She answers her rudder as the ship of her file does not, and none near the file does."""
     if (left := file_of_ship.left_by_file(fit)) is None:
         return None
     return Inadequate(
-        f"the ship as fitted is not the one of her file: {file_of_ship.most_are_unlike(fit)}, "
-        f"and none between leave less than {left:.2g} times the error",
+        f"the ship as fitted is not the one of her file: {file_of_ship.unlike_words(fit)}, "
+        f"and none within half and twice the file's leave less than {left:.2g} times the error",
         "name her own file, check speed and units, begin with `trialid inspect --init --length`, "
         "or, where the file is hers, compare whole models by `trialid structures`",
     )

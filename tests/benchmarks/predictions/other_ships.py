@@ -57,9 +57,6 @@ TRIALS: Final[Mapping[str, tuple[float, ...]]] = {
     "turn20": (20.0,),
 }
 WANTED: Final = 0.9
-STEP: Final = 1e-5
-"""Of drift, turning and rudder, for the slopes about the straight course."""
-
 Range = tuple[float, float]
 
 
@@ -119,7 +116,7 @@ def _of_run(stage: str, run: Run, ship: mmg.Ship) -> Iterator[Said]:
 
 
 def _coefficients(stage: str, run: Run, ship: mmg.Ship) -> Iterator[Said]:
-    done, truth = run.findings.before, slopes(ship)
+    done, truth = run.findings.before, mmg.slopes(ship)
     pairs = zip(done.accuracy.physical, done.own_accuracy.physical, strict=True)
     for row, own in pairs:
         if row.name in truth and row.likely is not None and own.likely is not None:
@@ -150,25 +147,6 @@ def _numbers(stage: str, run: Run, ship: mmg.Ship) -> Iterator[Said]:
             kind, ends = name.partition(" [")[0], narrow[name][1]
             if kind in truth and likely is not None and ends is not None:
                 yield Said(stage=stage, kind=words, true=truth[kind], likely=likely, alone=ends)
-
-
-def slopes(ship: mmg.Ship) -> dict[str, float]:
-    """Her linear coefficients about the straight course, as a model without surge has them.
-
-    The added mass ahead, which turns with her, is part of what turning does; primed by length.
-    """
-    q, L, U = 0.5 * mmg.RHO * ship.L**2, ship.L, ship.U0
-    scale = {"v": U, "r": U / L, "delta": 1.0}
-    found = {}
-    for name, unit in scale.items():
-        ends = []
-        for side in (STEP, -STEP):
-            at = {n: side * unit if n == name else 0.0 for n in scale}
-            ends.append(mmg.forces(ship, U, at["v"], at["r"], at["delta"]))
-        by = np.subtract(*ends) / (2.0 * STEP)
-        found[f"Y{name}"], found[f"N{name}"] = by[1] / (q * U**2), by[2] / (q * L * U**2)
-    found["Yr"] -= ship.c["mx"] * ship.d / L
-    return found | {"Y_race": found["Ydelta"], "N_race": found["Ndelta"]}
 
 
 def sailed(ship: mmg.Ship) -> dict[str, dict[str, float]]:
