@@ -67,7 +67,8 @@ def test_drift_and_current_are_read_out_of_a_speed_over_ground(tmp_path: Path) -
         text = starter([inspect_log(path)], *given).files[tmp_path / "p.toml"]
         assert ('"drift_in_speed_record"]' in text) is over
         assert '\npsi   = { channel = "HDG"' in text
-        assert ("the run seeks the current in it" in text) is over
+        assert ("the current in it is estimated" in text) is over
+        assert (', "current"]  # of each trial' in text) is over
         assert ("tells the offset of the rate" in text) is not over
         assert 'outputs = ["r"]' in text
 
@@ -88,6 +89,18 @@ def test_a_heading_without_a_unit_that_passes_north_is_read_as_one_that_does_not
         given = (tmp_path / "p.toml", None, Given(length=150.0), APPROACH)
         text = starter([inspect_log(path)], *given).files[tmp_path / "p.toml"]
         assert '\npsi   = { channel = "HDG", unit = "deg" }' in text
+
+
+def test_a_stated_speed_beside_one_in_the_log_leaves_the_log_s(tmp_path: Path) -> None:
+    """In a turn she keeps a third of what was stated, and only the log says so."""
+    path = log(tmp_path / "t.csv", TURN, 0.3, 1.0)
+    for head in ("SOG [m/s]", "speed [m/s]"):
+        told = path.read_text(encoding="utf-8").replace("SOG", head)
+        (tmp_path / "s.csv").write_text(told, encoding="utf-8")
+        given = (tmp_path / "p.toml", None, Given(length=150.0), APPROACH)
+        text = starter([inspect_log(tmp_path / "s.csv")], *given).files[tmp_path / "p.toml"]
+        assert f'channel = "{head.split()[0]}", unit = "m/s"' in text
+        assert "speed = 8" not in text
 
 
 def test_a_stated_speed_that_fits_no_unit_stays_the_speed(tmp_path: Path) -> None:

@@ -123,7 +123,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     signals += [plain_signal("phi", live, "")] if live["phi"] else []
     known, words = approach_speed(survey, live, speed)
     ahead = choose_speed(survey, live, known, words)
-    if ahead and (live.get("u") or speed is None or not _stated(ahead.source)):
+    if ahead:
         signals.append(ahead)
     return Chosen(
         survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words

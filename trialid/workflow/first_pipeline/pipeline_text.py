@@ -220,7 +220,8 @@ def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[st
     yield from free_lines(free, ship)
     yield f"outputs = {array(outputs)}"
     offset = [] if several else ["rudder_offset"]  # of one rudder; of several `NAME_misaligned`
-    nuisance = ["initial_state", "bias", *offset, "delay"]
+    water = ["current"] if over_ground and "psi" in known else []  # in the speed
+    nuisance = ["initial_state", "bias", *offset, "delay", *water]
     yield f"nuisance = {array(nuisance)}  # of each trial, estimated too"
 
 
