@@ -20,6 +20,7 @@ from trialid.identification.one_search import search
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.record_starts import of_roll, record_starts
 from trialid.identification.remarks import remarks
+from trialid.identification.roll import told_gm
 from trialid.workflow.notebook.front import diagnose
 
 FREE = ("Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
@@ -163,6 +164,23 @@ def test_a_clock_that_is_off_hides_no_gm_of_a_ship_that_rolls():
     assert "tau_phi [zigzag-10]" in fit.contradicted
     assert fit.value("GM") == pytest.approx(MODEL.value("GM"), rel=0.05)
     assert fit.rivals == ()
+
+
+def test_a_walk_along_gm_passes_over_one_ridge_and_no_more(arrived, monkeypatch):
+    """The record objects to one GM and not to the next: two that it does not choose between."""
+    problem = arrived.problem
+    best = search(problem, SETTINGS, arrived.theta)
+    objects = iter([True, False, True, True, False])
+    monkeypatch.setattr(told_gm, "_with_held", lambda problem, theta, *more: at(best, theta))
+    monkeypatch.setattr(told_gm, "_objects", lambda *ends: next(objects))
+    found = told_gm._hardly_worse(problem, best, told_gm.FAR)
+    GM = best.minimum.theta[problem.roll.GM]
+    assert [end.minimum.theta[problem.roll.GM] / GM for end in found] == pytest.approx([1.5**2])
+    assert next(objects) is False
+
+
+def at(end, theta):
+    return replace(end, minimum=replace(end.minimum, theta=theta))
 
 
 def test_a_gm_that_the_record_tells_has_no_rivals():

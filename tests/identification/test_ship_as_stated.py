@@ -10,7 +10,7 @@ from trialid.effects import CATALOGUE
 from trialid.identification.arrive import _by_ship
 from trialid.identification.one_search import cost_at, search
 from trialid.identification.problem import Settings, pose_problem
-from trialid.identification.record_starts import with_own_starts
+from trialid.identification.record_starts import MANY, SHORTEST, in_pieces, with_own_starts
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 
@@ -60,3 +60,15 @@ def test_a_search_that_left_the_stated_ship_for_worse_begins_there_again(problem
 def test_a_search_that_arrived_does_not(problem):
     arrived = search(problem, SETTINGS, problem.start)
     assert _by_ship(problem, SETTINGS, [arrived], lambda iteration: None) == ([], [])
+
+
+def test_pieces_hold_more_than_a_delay_may_spoil():
+    """At 20 Hz a delay within 3 s spoils 63 samples at either end, and no piece had any left."""
+    blank = replace(zigzag(20), period=0.05)
+    signals = {"delta": blank.signals["delta"], "r": np.sin(0.1 * blank.t)}
+    trial = replace(blank, signals=signals, valid={n: blank.valid[n] for n in signals})
+    asked = replace(SETTINGS, nuisance=("initial_state", "delay"))
+    whole = pose_problem([trial], unstable(), asked)
+    cut = in_pieces(whole, asked, MANY, {})
+    assert len(cut.trials) > 4
+    assert min(int(one.sum()) for one in cut.compared) >= SHORTEST

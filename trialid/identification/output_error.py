@@ -264,14 +264,14 @@ def compared_mask(trial: Trial, simulator: Simulator) -> Mask:
     columns = []
     for c in simulator.outputs:
         mask = inputs & trial.valid[c]
-        edge = _edge(simulator, c, trial.period)
+        edge = spoilt_by_delay(simulator, c, trial.period)
         if edge:
             mask[:edge] = mask[-edge:] = False
         columns.append(mask)
     return np.column_stack(columns)
 
 
-def _edge(simulator: Simulator, output: str, period: float) -> int:
+def spoilt_by_delay(simulator: Simulator, output: str, period: float) -> int:
     """Samples to leave out at each end because the output's delay is free or not zero."""
     for effect in simulator.model.effects:
         for name, parameter in effect.parameters.items():

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from trialid.identification.gauss_newton import minimise
 from trialid.identification.one_search import search
-from trialid.identification.output_error import Problem, ranges
+from trialid.identification.output_error import Problem, ranges, spoilt_by_delay
 from trialid.identification.problem import Settings, question
 from trialid.identification.weighing import Weighing
 from trialid.trial import Trial
@@ -61,7 +61,7 @@ PIECES_STEPS: Final = 20
 """Of a search in pieces: it is a start, and need not have arrived."""
 
 SHORTEST: Final = 30
-"""Samples of a piece: fewer say little beside where it starts."""
+"""Samples of a piece that are compared: fewer say little beside where it starts."""
 
 
 def record_starts(problem: Problem, settings: Settings) -> list[Vector]:
@@ -118,15 +118,16 @@ def in_pieces(
     shared = [x.name for x in problem.unknowns if x.trial is None]
     own = dict.fromkeys(x.column for x in problem.unknowns if x.trial is not None)
     kept = [n for n in own if not n.endswith("(0)")]
-    pieces = [piece for trial in problem.trials for piece in _cut(trial, number)]
+    pieces = [piece for trial in problem.trials for piece in _cut(problem, trial, number)]
     asked = replace(settings, nuisance=("initial_state",))
     cut = question(problem.simulator, pieces, asked, shared, kept, near)
     return replace(cut, y_rms=problem.y_rms)
 
 
-def _cut(trial: Trial, number: int) -> list[Trial]:
+def _cut(problem: Problem, trial: Trial, number: int) -> list[Trial]:
     """Pieces of about the same length; the first has the trial's name."""
-    most = int(np.clip(trial.samples // SHORTEST, 1, number))
+    spoilt = (spoilt_by_delay(problem.simulator, c, trial.period) for c in problem.outputs)
+    most = int(np.clip(trial.samples // (SHORTEST + 2 * max(spoilt)), 1, number))
     ends = np.linspace(0, trial.samples, most + 1).round().astype(int)
     return [
         replace(

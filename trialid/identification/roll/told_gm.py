@@ -199,23 +199,35 @@ def _scaled(problem: Problem, theta: Vector, factor: float) -> Vector:
 
 
 def _hardly_worse(problem: Problem, best: End, step: float) -> list[End]:
-    """Ends with GM ever further off by a factor, as far as all else makes good for it."""
+    """Ends with GM ever further off by a factor, as far as all else makes good for it.
+
+    One that it does not make good for may be a ridge: a few rolls are followed by a resonance that
+    is once more or once less in phase with the turn, and by none between. So one is passed over.
+    """
     assert problem.roll is not None
-    rows, place = rows_of(problem, ("phi", "p")), problem.roll.GM
-    unknown, found = problem.unknowns[place], list[End]()
+    place = problem.roll.GM
+    unknown, found, last, over = problem.unknowns[place], list[End](), best, False
     for _ in range(STEPS):
-        start = _scaled(problem, (found[-1] if found else best).minimum.theta, step)
+        start = _scaled(problem, last.minimum.theta, step)
         if not unknown.low < start[place] < unknown.high:
             break
         there = _with_held(problem, start, [place], best.colour)
         if there is None:
             break
-        lost = there.cost(best.colour) - best.cost(best.colour)
-        grown = np.sum(there.residual[rows] ** 2) / np.sum(best.residual[rows] ** 2) - 1.0
-        if lost >= TOLD_BY and grown >= GROWS:
+        objects = _objects(problem, there, best)
+        if objects and over:
             break
-        found.append(there)
+        found += [] if objects else [there]
+        last, over = there, objects
     return found
+
+
+def _objects(problem: Problem, end: End, best: End) -> bool:
+    """Whether the record objects to an end with another GM: by its likelihood, and by its roll."""
+    rows = rows_of(problem, ("phi", "p"))
+    lost = end.cost(best.colour) - best.cost(best.colour)
+    grown = np.sum(end.residual[rows] ** 2) / np.sum(best.residual[rows] ** 2) - 1.0
+    return bool(lost >= TOLD_BY and grown >= GROWS)
 
 
 def _with_held(problem: Problem, theta: Vector, places: Sequence[int], colour: float) -> End | None:
