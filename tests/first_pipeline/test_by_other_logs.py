@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from geared_rudder import geared
 
-from trialid.inspection import inspect_log
+from trialid.inspection import Inspection, inspect_log
 from trialid.ship.estimate import Given
 from trialid.workflow.first_pipeline import Starter, starter
+from trialid.workflow.first_pipeline.by_other_logs import with_units
 
 T = np.arange(0.0, 600.0, 0.5)
 ZIGZAG = 10.0 * np.sign(np.sin(0.05 * T) + 0.3 * np.sin(0.013 * T))
@@ -57,15 +58,19 @@ def in_radians(path: Path, orders: np.ndarray, first: float) -> Path:
 def test_a_heading_in_radians_that_never_goes_round_is_told_by_one_that_does(
     tmp_path: Path,
 ) -> None:
-    """Alone it asks for its unit; beside a turn it does not, nor do the rates."""
+    """Alone its numbers may be degrees; beside a turn they are not, nor is the rate."""
     still = in_radians(tmp_path / "z.csv", ZIGZAG, 0.1)
     round_about = in_radians(tmp_path / "turn.csv", TURN, 0.1)
-    alone = begun(tmp_path, still).files[tmp_path / "p.toml"]
-    assert '# psi = { channel = "psi", unit = "?" }' in alone
+    surveys = [inspect_log(one) for one in (still, round_about)]
+    assert [units_of(some) for some in ([surveys[0]], surveys)] == [[None], ["rad", "rad"]]
     text = begun(tmp_path, still, round_about).files[tmp_path / "p.toml"]
     assert text.count('\npsi   = { channel = "psi", unit = "rad" }') == 2
     assert text.count('\nr     = { channel = "r", unit = "rad/s" }') == 2
     assert text.count("unit by the slope of psi") == 2
+
+
+def units_of(surveys: list[Inspection]) -> list[str | None]:
+    return [one.channels["psi"].unit_by_size for one in with_units(surveys)]
 
 
 def test_two_logs_that_disagree_settle_no_third(tmp_path: Path) -> None:
@@ -76,9 +81,27 @@ def test_two_logs_that_disagree_settle_no_third(tmp_path: Path) -> None:
     table = np.loadtxt(round_about, delimiter=",", skiprows=1)
     table[:, 1:4] = np.rad2deg(table[:, 1:4])
     np.savetxt(degrees, table, delimiter=",", header="t,delta,r,psi,u", comments="", fmt="%.6g")
+    surveys = [inspect_log(one) for one in (still, round_about, degrees)]
+    assert units_of(surveys) == [None, "rad", "deg"]
     text = begun(tmp_path, still, round_about, degrees).files[tmp_path / "p.toml"]
     units = [line.split('unit = "')[1][:3] for line in text.splitlines() if '"psi", unit' in line]
-    assert units == ['?" ', "rad", "deg"]
+    assert units == ["rad", "rad", "deg"]  # the third by how fast she turns
+
+
+@pytest.mark.parametrize("unit", ["rad", "deg"])
+def test_a_heading_that_goes_on_is_told_by_how_fast_she_turns(tmp_path: Path, unit: str) -> None:
+    """A simulation's begins at zero and passes 2 pi, or 20, without a jump."""
+    for orders in (ZIGZAG, TURN):
+        path = in_radians(tmp_path / "s.csv", orders, 0.0)
+        table = np.loadtxt(path, delimiter=",", skiprows=1)
+        table[:, 3] = np.unwrap(table[:, 3])
+        table[:, 1:4] *= 1.0 if unit == "rad" else np.rad2deg(1.0)
+        np.savetxt(path, table, delimiter=",", header="t,delta,r,psi,u", comments="", fmt="%.6g")
+        assert inspect_log(path).channels["psi"].unit_by_size is None
+        text = begun(tmp_path, path).files[tmp_path / "p.toml"]
+        assert f'psi   = {{ channel = "psi", unit = "{unit}" }}' in text
+        assert f'r     = {{ channel = "r", unit = "{unit}/s" }}' in text
+        assert f'delta = {{ channel = "delta", unit = "{unit}"' in text
 
 
 def bridge_log(path: Path, orders: np.ndarray, side: float) -> Path:

@@ -68,7 +68,7 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
     guess = _guess(channel, unit, defines)
     angle = guess is not None and SIGNALS[guess.quantity].angle
     able = unit is None and guess is not None and (angle or guess.quantity == "phi")
-    by_size = of_angle(y) if able else None
+    by_size = of_angle(y, goes_round=angle) if able else None
     size = to_si(unit or by_size or "", "rad") if angle else None
     return ChannelInspection(
         name=channel.name,

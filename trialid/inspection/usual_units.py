@@ -16,15 +16,20 @@ ship swings by half of it from sample to sample, and a dropout to 0 is as large 
 twice is no jump of such numbers."""
 
 
-def of_angle(y: Vector) -> str | None:
+def of_angle(y: Vector, goes_round: bool) -> str | None:
     """The unit of a heading or roll by its numbers, where none is stated; None where both may be.
 
-    >>> [of_angle(np.array(y)) for y in ([0.5, 359.7], [3.1, -3.1], [5.2, 0.0, 5.1], [1.0])]
-    ['deg', 'rad', None, None]
+    A simulation's heading in radians `goes_round` without a jump, from where it begins.
+
+    >>> heading = ([10.5, 359.7], [3.1, -3.1], [5.2, 0.0, 5.1], [1.0], [5.2, 7.9, 10.4])
+    >>> [of_angle(np.array(y), True) for y in heading], of_angle(np.array([5.2, 7.9, 10.4]), False)
+    (['deg', 'rad', None, None, None], 'deg')
     """
+    jump = np.abs(np.diff(y)).max(initial=0.0)
     if np.abs(y).max(initial=0.0) > NO_RADIANS:
-        return "deg"
-    return "rad" if np.abs(np.diff(y)).max(initial=0.0) > ROUND else None
+        unwound = goes_round and abs(y[0]) <= NO_RADIANS and jump < np.pi
+        return None if unwound else "deg"
+    return "rad" if jump > ROUND else None
 
 
 def to_si(unit: str, si: str) -> float | None:

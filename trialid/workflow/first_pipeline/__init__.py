@@ -24,7 +24,12 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
     named_by_ship,
 )
 from trialid.workflow.first_pipeline.by_other_logs import with_sides, with_units
-from trialid.workflow.first_pipeline.choice import Chosen, shared_signals
+from trialid.workflow.first_pipeline.choice import (
+    Chosen,
+    approach_speed,
+    live_sources,
+    shared_signals,
+)
 from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.no_speed import no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
@@ -40,7 +45,11 @@ from trialid.workflow.first_pipeline.twin_rudders import (
     twin_actuators,
     with_twins,
 )
-from trialid.workflow.first_pipeline.unit_by_turning import size_unit, with_rudder_units
+from trialid.workflow.first_pipeline.unit_by_turning import (
+    size_unit,
+    with_headings,
+    with_rudder_units,
+)
 
 __all__ = ["Starter", "begun_ship", "starter"]
 
@@ -100,7 +109,8 @@ def starter(
         The logs hold too little, or not the same, to begin with, or the ship is not known.
     """
     own = read_ship(ship) if ship is not None else None
-    known = without_axes_of_earth(with_units(surveys))
+    length = given.length if own is None else own.particulars.get("L")
+    known = without_axes_of_earth(_with_units(surveys, length, speed))
     decays = decays_among(known, speed, given.length, own)
     trials = decays or _steered(known, surveys, own, speed)
     if ship is None and given.length is None:
@@ -128,6 +138,16 @@ def starter(
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials))
+
+
+def _with_units(
+    surveys: Sequence[Inspection], length: float | None, stated: float | None
+) -> list[Inspection]:
+    """The logs, headings in the unit that others of them or how fast she turns leave."""
+    speeds = [approach_speed(s, {"u": live_sources(s, "u")}, stated)[0] for s in surveys]
+    fastest = max((u for u in speeds if u), default=None)
+    seconds = length / fastest if length and fastest else None
+    return with_units(with_headings(with_units(surveys), seconds))
 
 
 def _steered(

@@ -16,7 +16,6 @@ from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.inspection.speed_letters import of_either
-from trialid.inspection.usual_units import NO_RADIANS
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.long_log import Window
@@ -28,7 +27,7 @@ RUDDERS: Final = ("delta", "delta_order")
 SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
 ASK_UNIT, BY_SIZE = "FILL IN the unit, the log states none", "no unit is stated, but up to"
-BY_OTHERS: Final = "no unit is stated, but its jumps or its size, here or in another log, leave"
+BY_OTHERS: Final = "no unit is stated, but its size, jumps or turns, here or elsewhere, leave"
 AS_RADIANS: Final = (
     "CAREFUL: no unit is stated: so small a rudder is read in radians; a share of full, with unit "
     '= "deg" and gain = the degrees at full, looks the same'
@@ -289,7 +288,7 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
     if quantity in RUDDERS and largest <= 1.6:
         share = OF_FULL in source.description
         return (OPEN, f"; {ASK_FULL}") if share else ("rad", f"; {AS_RADIANS}")
-    if quantity in RUDDERS or (source.unit_by_size == "deg" and largest > NO_RADIANS):
+    if quantity in RUDDERS:
         return "deg", f"; {BY_SIZE} {largest:.3g} can only be deg"
     unit = source.unit_by_size
     return (unit, f"; {BY_OTHERS} {unit}") if unit is not None else (OPEN, f"; {ASK_UNIT}")

@@ -1,4 +1,4 @@
-"""Units of a yaw rate and of a small rudder that no log states, by how fast a ship can turn."""
+"""Units of headings, yaw rates and small rudders that no log states, by how fast a ship turns."""
 
 import dataclasses
 from collections.abc import Mapping, Sequence
@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
 from trialid.inspection.relations import RATES
 from trialid.names import units
@@ -22,11 +23,44 @@ TURNING: Final = (0.05, 2.5)
 """Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
 further apart than this range is wide."""
 
+DEGREE: Final = np.pi / 180.0
 TURNED: Final = 0.1
 """Rate of turn, in her own lengths and speed, over the rudder in radians: ships, boats and models
 have 0.3 to 3 once they turn, in a fast zig-zag less. Degrees taken for radians give 0.005 to 0.05.
 At half of it a ferry that is hardly steered is read in degrees still (0.02), as a cargo ship in a
 sea is (0.04), and at twice; a fast zig-zag (0.2 and more) at twice no longer in radians."""
+
+
+def with_headings(surveys: Sequence[Inspection], seconds: float | None) -> list[Inspection]:
+    """The logs, headings that may be in degrees or radians in the unit in which she can turn so.
+
+    `seconds` is the time in which she goes her own length, where it is known.
+    """
+    if seconds is None:
+        return [*surveys]
+    return [
+        dataclasses.replace(
+            survey, channels={key: _turned(c, seconds) for key, c in survey.channels.items()}
+        )
+        for survey in surveys
+    ]
+
+
+def _turned(one: ChannelInspection, seconds: float) -> ChannelInspection:
+    stated = one.unit or one.unit_in_name or one.unit_by_size or one.angle
+    if stated or one.guess is None or one.guess.quantity != "psi" or len(one.sketch.t) < 2:
+        return one
+    t = (one.sketch.t - one.sketch.t[0]) / 1e9
+    before = t <= t[-1] - seconds
+    turned = np.interp(t[before] + seconds, t, one.sketch.y) - one.sketch.y[before]
+    most = float(np.quantile(np.abs(turned), 0.99)) if len(turned) else 0.0
+    return dataclasses.replace(one, unit_by_size=_one_fitting(most, {"rad": 1.0, "deg": DEGREE}))
+
+
+def _one_fitting(most: float, sizes: Mapping[str, float]) -> str | None:
+    """The one unit in which the ship turns as fast as ships do, with r L / U in it over in 1."""
+    fitting = [unit for unit, size in sizes.items() if TURNING[0] < most * size < TURNING[1]]
+    return fitting[0] if len(fitting) == 1 else None
 
 
 def size_unit(trial: Chosen, length: float, speed: float) -> Chosen:
@@ -44,13 +78,12 @@ def _sized(signal: Signal, seconds: float) -> Signal:
         return signal
     largest = float(np.quantile(np.abs(signal.source.sketch.y), 0.99))
     sizes = {u: largest * units.factor(u, "rad/s") * seconds for u in RATES}
-    fitting = [u for u, size in sizes.items() if TURNING[0] < size < TURNING[1]]
-    if len(fitting) != 1:
+    if (unit := _one_fitting(1.0, sizes)) is None:
         return signal
     told = ", ".join(f"{size:.2g} in {u}" for u, size in sizes.items())
     words = f"unit by its size: r L / U would be {told}"
     why = signal.why.replace(ASK_UNIT, words)
-    return dataclasses.replace(signal, unit=fitting[0], why=why)
+    return dataclasses.replace(signal, unit=unit, why=why)
 
 
 def _turns(signal: Signal) -> bool:
