@@ -4,14 +4,20 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from geared_rudder import geared
 
+from trialid import pipeline_file
+from trialid.errors import TrialidError
 from trialid.inspection import Inspection, inspect_log
+from trialid.progress import silent
 from trialid.ship.estimate import Given
+from trialid.trial import Trial
 from trialid.workflow.first_pipeline import Starter, starter
+from trialid.workflow.read_trials import align_trials
 
 
-def log(path: Path, angle: float, factor: float = 1.0) -> Path:
+def log(path: Path, angle: float, factor: float = 1.0, name: str = "rudder") -> Path:
     """Zig-zags of a ship of 95 m at 8 m/s, rudder in degrees, or as many times `factor`."""
     t = np.arange(0.0, 900.0, 0.5)
     delta, r = geared(angle * np.sign(np.sin(0.04 * t)), 0.5), np.zeros(len(t))
@@ -19,7 +25,7 @@ def log(path: Path, angle: float, factor: float = 1.0) -> Path:
         r[k + 1] = r[k] + 0.5 * (0.06 * delta[k] - r[k]) / 15.0
     psi = np.cumsum(0.5 * r) % 360.0
     table = np.column_stack([t, np.full(len(t), 8.0) + 0.01 * np.sin(t), r, psi, factor * delta])
-    heads = "time,u_mps,yaw_rate_dps,heading_deg,rudder"
+    heads = f"time,u_mps,yaw_rate_dps,heading_deg,{name}"
     np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.9f")
     return path
 
@@ -64,3 +70,74 @@ def test_a_share_of_full_is_no_angle(tmp_path: Path) -> None:
     text, made = begun(tmp_path, survey)
     assert all('unit = "?"' in line for line in rudders(text))
     assert "gain = the degrees at full" in made.to_fill[0]
+
+
+def rewritten(path: Path, rows: list[str]) -> Path:
+    """The same log with other rows below its header."""
+    head = path.read_text(encoding="utf-8").splitlines()[0]
+    path.write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+def ran(path: Path) -> Trial:
+    pipeline = pipeline_file.load(path)
+    return align_trials(pipeline, silent)[0]
+
+
+def test_a_rudder_in_percent_needs_its_degrees_at_full_and_then_runs(tmp_path: Path) -> None:
+    """Of 25 deg at full; no rudder was recognised, and `%` contradicted the pipeline's `deg`."""
+    survey = inspect_log(log(tmp_path / "a.csv", 20.0, 4.0, "rudder [%]"))
+    text, made = begun(tmp_path, survey)
+    assert all('unit = "?"' in line for line in rudders(text))
+    assert "the degrees at full / 100" in made.to_fill[0]
+    for path, words in made.files.items():
+        told = words.replace('"rudder", unit = "?"', '"rudder", unit = "deg", gain = 0.25')
+        path.write_text(told, encoding="utf-8")
+    assert np.rad2deg(np.abs(ran(tmp_path / "p.toml").signals["delta"]).max()) == pytest.approx(
+        20.0
+    )
+    (tmp_path / "p.toml").write_text(text.replace('"?"', '"deg"'), encoding="utf-8")
+    with pytest.raises(TrialidError, match="the log states '%'"):
+        ran(tmp_path / "p.toml")
+
+
+def test_a_rudder_counted_from_0_to_360_is_to_either_side(tmp_path: Path) -> None:
+    """It was read as an order, which jumps, and nine tenths of it were beyond 90 deg."""
+    path = log(tmp_path / "a.csv", 20.0, name="rudder_deg")
+    rows = [line.rsplit(",", 1) for line in path.read_text(encoding="utf-8").splitlines()[1:]]
+    survey = inspect_log(rewritten(path, [f"{a},{float(b) % 360.0:.9f}" for a, b in rows]))
+    rudder = survey.channels["rudder_deg"]
+    assert (rudder.low, rudder.high) == (pytest.approx(-20.0), pytest.approx(20.0))
+    text, made = begun(tmp_path, survey)
+    assert 'channel = "rudder_deg", unit = "deg", positive = "starboard"' in text
+    assert rudders(text)[0].startswith("delta ")
+    for one, words in made.files.items():
+        one.write_text(words, encoding="utf-8")
+    trial = ran(tmp_path / "p.toml")
+    assert np.rad2deg(
+        [trial.signals["delta"].min(), trial.signals["delta"].max()]
+    ) == pytest.approx([-20.0, 20.0])
+    assert "delta: counted from 0 to 360, negative above 180" in trial.remarks
+
+
+def test_a_side_beside_the_number_is_read(tmp_path: Path) -> None:
+    """As a bridge prints it; the column was left out as text, or was of a southern latitude."""
+    path = log(tmp_path / "a.csv", 20.0)
+    rows = [line.rsplit(",", 1) for line in path.read_text(encoding="utf-8").splitlines()[1:]]
+    sided = [f"{a},{abs(float(b)):.1f} {'PS'[float(b) >= 0.0]}" for a, b in rows]
+    survey = inspect_log(rewritten(path, sided))
+    assert survey.channels["rudder"].low == pytest.approx(-20.0)
+    text, _ = begun(tmp_path, survey)
+    assert 'channel = "rudder", unit = "deg", positive = "starboard"' in text
+    survey = inspect_log(rewritten(path, [f"{a},{abs(float(b)):.1f} S" for a, b in rows]))
+    assert survey.channels["rudder"].high == pytest.approx(20.0)
+    assert survey.channels["rudder"].low == pytest.approx(0.0)
+
+
+def test_stamps_cut_to_the_second_hide_no_relation(tmp_path: Path) -> None:
+    """At 2 Hz; the heading was left to the user, as the rate seemed not to go by it."""
+    path = log(tmp_path / "a.csv", 20.0, name="rudder_deg")
+    rows = [line.split(",", 1) for line in path.read_text(encoding="utf-8").splitlines()[1:]]
+    survey = inspect_log(rewritten(path, [f"{int(float(a))},{b}" for a, b in rows]))
+    text, _ = begun(tmp_path, survey)
+    assert '\npsi   = { channel = "heading_deg"' in text

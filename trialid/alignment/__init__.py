@@ -165,6 +165,7 @@ def _of_logs(recordings: Sequence[Recording], sources: Sequence[SignalSource]) -
             yield f"{recording.path.name}: {remark}"
     for source in sources:
         yield from seams(source.channel, recordings)
+        yield from frames.counted_round(source, recordings)
 
 
 def _of_signals(

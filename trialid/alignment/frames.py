@@ -1,6 +1,6 @@
 """From a channel as logged to a quantity in SI, positive in our own direction."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,9 +29,11 @@ def series(source: SignalSource, recordings: Sequence[Recording], where: str) ->
     taken = _velocity if source.as_ in ("speed", "course") else _angle
     channel = taken(source, recordings, where) if source.as_ else None
     channel = channel or find(source.channel, recordings, where)
-    factor = _side(source) * _factor(_unit(source, channel, quantity, where), quantity, where)
-    t = channel.t - round(source.delay * 1e9)
-    value = _read(source, sensor_values(channel.y)) * factor
+    size = _factor(_unit(source, channel, quantity, where), quantity, where)
+    t, y = channel.t - round(source.delay * 1e9), sensor_values(channel.y)
+    if _may_go_round(source, quantity):
+        y = about_amidships(y, 2.0 * np.pi / size)
+    value = _read(source, y) * _side(source) * size
     return Series(quantity, t, value, channel.clock, channel.received)
 
 
@@ -46,6 +48,35 @@ def _read(source: SignalSource, y: Vector) -> Vector:
 def sensor_values(y: Vector) -> Vector:
     """The values that a sensor may have sent; NaN for codes of `not available` and damage."""
     return np.where(np.abs(y) < MARKER, y, np.nan)
+
+
+def _may_go_round(source: SignalSource, quantity: Quantity) -> bool:
+    return quantity.steers and quantity.unit == "rad" and source.curve is None
+
+
+def counted_round(source: SignalSource, recordings: Sequence[Recording]) -> Iterator[str]:
+    """A remark on a rudder whose angles are counted from 0 to a whole turn."""
+    quantity = _quantity(source, "")
+    if not _may_go_round(source, quantity):
+        return
+    channel = find(source.channel, recordings, "")
+    turn = 2.0 * np.pi / _factor(_unit(source, channel, quantity, ""), quantity, "")
+    if np.nanmin(about_amidships(channel.y, turn) - channel.y, initial=0.0) < 0.0:
+        yield f"{quantity.name}: counted from 0 to {turn:.4g}, negative above {turn / 2:.4g}"
+
+
+def about_amidships(y: Vector, turn: float) -> Vector:
+    """Angles of a rudder, of those counted from 0 to a whole `turn` the last quarter as negative.
+
+    At 355 deg it is 5 deg to the other side. None is between a quarter of a turn and three.
+
+    >>> [about_amidships(np.array(y), 360.0).tolist() for y in ([5.0, 355.0], [5.0, 95.0, 355.0])]
+    [[5.0, -5.0], [5.0, 95.0, 355.0]]
+    """
+    there = y[np.isfinite(y)]
+    within = bool(np.all((there >= 0.0) & (there <= turn)))
+    aside = np.abs(there - 0.5 * turn) > 0.25 * turn
+    return np.where(y > 0.5 * turn, y - turn, y) if within and bool(np.all(aside)) else y
 
 
 def _quantity(source: SignalSource, where: str) -> Quantity:
@@ -75,8 +106,13 @@ def _side(source: SignalSource) -> float:
 
 
 def _unit(source: SignalSource, channel: Channel, quantity: Quantity, where: str) -> str:
-    """The one unit that pipeline and log agree on; a curve's is the pipeline's alone."""
+    """The one unit that pipeline and log agree on; a curve's is the pipeline's alone.
+
+    So is that of a gain, where the log's unit is of something else: percent of the full rudder.
+    """
     logged = channel.unit if source.curve is None else None
+    if source.gain != 1.0 and source.unit and logged and not units.becomes(logged, quantity.unit):
+        logged = None
     stated = source.unit or logged
     if stated is None:
         raise AlignmentError(

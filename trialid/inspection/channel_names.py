@@ -23,7 +23,7 @@ PHRASES: Final = {
     "delta": "rudder, rud, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
     "ruderwinkel, rorvinkel, roerhoek, roderutslag, angle de barre, angle barre, angolo timone, "
     "angulo timon, ángulo timón, steering angle, outboard angle, motor angle, drive angle, "
-    "nozzle angle, tiller angle, azimuth angle, pod angle, jet angle",
+    "nozzle angle, tiller angle, azimuth angle, pod angle, jet angle, rsa, rudder sensor angle",
     "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
     "wendegeschw, drehgeschw, "
@@ -253,4 +253,5 @@ def _holds(told: Sequence[str], phrase: Sequence[str]) -> bool:
 
 
 def _fits(name: str, unit: str | None) -> bool:
-    return unit is None or to_si(unit, SIGNALS[name].unit) is not None
+    share = unit == "%" and SIGNALS[name].steers  # of its full deflection, which the user knows
+    return unit is None or share or to_si(unit, SIGNALS[name].unit) is not None

@@ -9,6 +9,7 @@ import numpy as np
 
 from trialid.alignment import frames
 from trialid.alignment.sources import SignalSource
+from trialid.arrays import Vector
 from trialid.errors import TrialidError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Gaps, Guess
@@ -16,7 +17,7 @@ from trialid.inspection.name_words import words as words_of
 from trialid.inspection.sketch import join_sketches, sketch
 from trialid.inspection.stamps import Health, health
 from trialid.inspection.usual_units import of_angle, to_si
-from trialid.names.quantities import SIGNALS
+from trialid.names.quantities import RUDDERS, SIGNALS
 from trialid.recording import Channel, Recording
 
 ANGLES_OF_A_QUATERNION: Final[tuple[tuple[Literal["roll", "yaw"], str], ...]] = (
@@ -70,6 +71,9 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
     able = unit is None and guess is not None and (angle or guess.quantity == "phi")
     by_size = of_angle(y, goes_round=angle) if able else None
     size = to_si(unit or by_size or "", "rad") if angle else None
+    if guess is not None and guess.quantity in RUDDERS and len(y):
+        y = _about_amidships(y, to_si(unit or "deg", "rad"))
+        low, high = y.min(), y.max()
     return ChannelInspection(
         name=channel.name,
         start=stamps.start,
@@ -88,6 +92,10 @@ def _channel(channel: Channel, stamps: Health, *, defines: bool) -> ChannelInspe
         guess=guess,
         sketch=sketch(t, y, 2.0 * np.pi / size if size else None),
     )
+
+
+def _about_amidships(y: Vector, size: float | None) -> Vector:
+    return frames.about_amidships(y, 2.0 * np.pi / size) if size else y
 
 
 def _guess(channel: Channel, unit: str | None, defines: bool) -> Guess | None:

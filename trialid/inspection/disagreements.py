@@ -41,7 +41,7 @@ def _live(survey: Inspection, quantity: str) -> dict[str, Series]:
 
 def _series(channel: ChannelInspection) -> Series | None:
     """The sketch in SI and in our positive direction; None where no unit is known."""
-    unit = channel.unit or channel.unit_in_name
+    unit = channel.stated_unit
     if unit is None or channel.guess is None:
         return None
     quantity = SIGNALS[channel.guess.quantity]

@@ -60,7 +60,7 @@ def drives_among(survey: Inspection) -> list[str]:
 
 def _force(one: ChannelInspection) -> bool:
     """Whether it is what a drive is measured to push with, and no order to it."""
-    return to_si(one.unit or one.unit_in_name or "", "N") is not None
+    return to_si(one.stated_unit or "", "N") is not None
 
 
 def has_side(drive: ChannelInspection) -> bool:
@@ -84,7 +84,7 @@ def _numbered(survey: Inspection) -> tuple[ChannelInspection, ...]:
 def _drives(one: ChannelInspection) -> bool:
     """Whether a channel that moves drives a boat: by its words, or a shaft's letter and unit."""
     told = {*words(one.name)}
-    turns = to_si(one.unit or one.unit_in_name or "", SIGNALS["n"].unit) is not None
+    turns = to_si(one.stated_unit or "", SIGNALS["n"].unit) is not None
     shaft = "n" in told and turns
     told_of = bool(DRIVES & told or shaft) and not NO_DRIVE & told
     return told_of and not one.constant and one.mostly_there

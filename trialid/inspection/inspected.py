@@ -125,6 +125,11 @@ class ChannelInspection:
     sketch: Sketch = field(default=EMPTY, repr=False, compare=False)
 
     @property
+    def stated_unit(self) -> str | None:
+        """The unit that the log states, or else the channel's name."""
+        return self.unit or self.unit_in_name
+
+    @property
     def mostly_there(self) -> bool:
         """Whether half of its samples are, or come evenly: some rows are of other clocks."""
         return self.missing < 0.5 or (self.rate > 0.0 and not self.gaps.count)

@@ -158,7 +158,7 @@ def _track(found: Mapping[str, ChannelInspection]) -> Track | None:
     globe = "lat" in found
     usual, si = ("deg", "rad") if globe else ("m", "m")
     pair = [found[name] for name in (("lat", "lon") if globe else ("x", "y")) if name in found]
-    sizes = [to_si(one.unit or one.unit_in_name or usual, si) for one in pair]
+    sizes = [to_si(one.stated_unit or usual, si) for one in pair]
     common = on_one_clock(*(one.sketch for one in pair)) if pair else None
     if common is None or None in sizes:
         return None

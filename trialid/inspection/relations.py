@@ -56,7 +56,7 @@ def recognise(channels: Mapping[str, ChannelInspection]) -> dict[str, ChannelIns
 
 
 def _unnamed(channel: ChannelInspection) -> bool:
-    able = (channel.unit or channel.unit_in_name or RATES[0]) in RATES
+    able = (channel.stated_unit or RATES[0]) in RATES
     return able and channel.guess is None and not channel.constant and len(channel.sketch.t) > 40
 
 
@@ -124,14 +124,14 @@ def _turning(
 def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | None:
     """The unit of a rate that its angle, whose unit is known, leaves open; None where none fits."""
     common = on_one_clock(rate.sketch, angle.sketch)
-    size = to_si(angle.unit or angle.unit_in_name or angle.unit_by_size or "", "rad")
+    size = to_si(angle.stated_unit or angle.unit_by_size or "", "rad")
     if common is None or size is None:
         return None
     period, (y, x), whole = common
     factor = abs(_factor(y, x * size, period, whole))
     able = (*RATES, "rps")  # a name that ends so may mean either
     fitting = [unit for unit in able if 0.8 < factor / units.factor(unit, "rad/s") < 1.25]
-    stated = rate.unit or rate.unit_in_name
+    stated = rate.stated_unit
     return next((unit for unit in fitting if stated in (None, unit)), None)
 
 

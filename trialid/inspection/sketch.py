@@ -33,6 +33,7 @@ def sketch(t: NDArray[np.int64], y: Vector, turn: float | None = None) -> Sketch
     """
     if turn is not None and np.abs(np.diff(y)).max(initial=0.0) >= turn / 2:
         y = np.unwrap(y, period=turn)
+    t = _spread(t)
     size = -(-len(t) // POINTS)
     if size <= 1:
         return Sketch(t.copy(), y.copy())
@@ -40,6 +41,22 @@ def sketch(t: NDArray[np.int64], y: Vector, turn: float | None = None) -> Sketch
     mean = y[:whole].reshape(-1, size).mean(axis=1)
     middle = t[:whole].reshape(-1, size)
     return Sketch(middle[:, 0] + (middle[:, -1] - middle[:, 0]) // 2, mean)
+
+
+def _spread(t: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Stamps cut to the second, say, which many samples share, evenly up to the next one.
+
+    >>> _spread(np.array([0, 0, 10, 10])).tolist(), _spread(np.array([0, 10, 20])).tolist()
+    ([0, 5, 10, 15], [0, 10, 20])
+    """
+    first = np.flatnonzero(np.diff(t, prepend=t[:1] - 1))
+    if len(first) == len(t) or len(first) < 2:
+        return t
+    steps = np.diff(t[first])
+    count = np.diff(first, append=len(t))
+    places = np.arange(len(t)) - np.repeat(first, count)
+    step = np.append(steps, steps[-1])
+    return np.asarray(t + np.repeat(step, count) * places // np.repeat(count, count))
 
 
 def join_sketches(parts: list[Sketch]) -> Sketch:

@@ -84,12 +84,8 @@ def _letter(one: ChannelInspection) -> str | None:
     return told[0] if len(told) == 1 and is_column(one.name) else None
 
 
-def _stated(one: ChannelInspection) -> str | None:
-    return one.unit or one.unit_in_name
-
-
 def _size(one: ChannelInspection) -> float | None:
-    return to_si(_stated(one) or "", "m/s")
+    return to_si(one.stated_unit or "", "m/s")
 
 
 def _small_beside(sway: ChannelInspection, along: ChannelInspection) -> bool:
@@ -109,7 +105,7 @@ Pair = tuple[ChannelInspection, ChannelInspection, ChannelInspection | None]
 
 def _pair(channels: Channels) -> Pair | None:
     """Columns VX and VY, speeds, and the heading beside them."""
-    able = [one for one in channels.values() if not _stated(one) or _size(one) is not None]
+    able = [one for one in channels.values() if not one.stated_unit or _size(one) is not None]
     by_letter = {_letter(one): one for one in able if not one.constant}
     if not {"vx", "vy"} <= by_letter.keys():
         return None
@@ -122,7 +118,7 @@ def _of_ship(x: ChannelInspection, y: ChannelInspection, heading: ChannelInspect
     if heading is None:
         return False
     common = on_one_clock(x.sketch, y.sketch, heading.sketch)
-    size = to_si(_stated(heading) or "", "rad")
+    size = to_si(heading.stated_unit or "", "rad")
     if common is None or size is None:
         return False
     _, (u, v, psi), whole = common

@@ -84,14 +84,15 @@ def factor_of(unit: str, quantity: Quantity) -> float:
     try:
         return factor(unit, quantity.unit)
     except UnitError as error:
-        others = [name for name, si in quantity.commands if _becomes(unit, si)]
+        others = [name for name, si in quantity.commands if becomes(unit, si)]
         if not others:
             raise
         told = f'at this [[actuator]], command = "{others[0]}"'
         raise UnitError(f"{error}; or say in the ship file, {told}") from error
 
 
-def _becomes(unit: str, si: str) -> bool:
+def becomes(unit: str, si: str) -> bool:
+    """Whether a number in it can become one in the SI unit."""
     try:
         return factor(unit, si) > 0.0
     except UnitError:

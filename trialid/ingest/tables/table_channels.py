@@ -18,7 +18,8 @@ from trialid.ingest.tables.long_table import (
 )
 from trialid.ingest.tables.table import Head, Table, check_width, numbers
 from trialid.ingest.tables.templates.template import Template
-from trialid.ingest.tables.written_angles import written_angles
+from trialid.ingest.tables.written.written_angles import written_angles
+from trialid.ingest.tables.written.written_sides import written_sides
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.recording import Channel, Recording
@@ -78,8 +79,13 @@ def _channel(table: Table, place: int, clock: Clock) -> Channel | None:
     one, y = table.heads[place], numbers(table, place)
     if y is not None:
         return Channel(one.name, clock.t, y, one.unit, clock.words)
-    angles = written_angles(table.columns[place].tolist())
-    if angles is None:
+    cells = table.columns[place].tolist()
+    if (sided := written_sides(cells, _has_side(one))) is not None:
+        words = "numbers with their side as text, positive to starboard"
+        return Channel(
+            one.name, clock.t, sided, one.unit, clock.words, description=words, positive="starboard"
+        )
+    if (angles := written_angles(cells)) is None:
         return None
     words = f"{angles[1]}, its degrees and minutes as text"
     return Channel(one.name, clock.t, angles[0], "deg", clock.words, description=words)
@@ -136,6 +142,10 @@ def _quantity(one: Head) -> Iterator[str]:
         known = bare == name or alias in quantity.aliases
         if name != "t" and known and _fits(one.unit, quantity.unit, surely=len(bare) == 1):
             yield name
+
+
+def _has_side(one: Head) -> bool:
+    return any(SIGNALS[name].mirror < 0 for name in _quantity(one))
 
 
 def _fits(unit: str | None, si: str, surely: bool) -> bool:

@@ -165,12 +165,12 @@ def _range(one: ChannelInspection) -> tuple[str, str]:
 
 def _in_degrees(one: ChannelInspection) -> str | None:
     """The unit that an angle or a turning of the ship is shown in, instead of radians."""
-    return DEGREES.get(one.unit or one.unit_in_name or "") if one.guess is not None else None
+    return DEGREES.get(one.stated_unit or "") if one.guess is not None else None
 
 
 def _unit(one: ChannelInspection) -> str:
     if degrees := _in_degrees(one):
-        return f"{degrees}\nlog {one.unit or one.unit_in_name}"
+        return f"{degrees}\nlog {one.stated_unit}"
     if one.unit:
         return printable(one.unit)
     return f"{one.unit_in_name} (name)" if one.unit_in_name else "not stated"

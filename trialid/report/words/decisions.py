@@ -91,7 +91,7 @@ def _unitless(known: Mapping[str, Sequence[ChannelInspection]]) -> Iterator[str]
         one.key
         for sources in known.values()
         for one in sources
-        if not one.constant and not (one.unit or one.unit_in_name)
+        if not one.constant and not one.stated_unit
     ]
     if bare:
         more = f" and {len(bare) - MOST_SOURCES} more" if len(bare) > MOST_SOURCES else ""

@@ -34,6 +34,7 @@ AS_RADIANS: Final = (
 )
 OF_FULL: Final = "share of the full deflection"  # as a format says it
 ASK_FULL: Final = 'FILL IN unit = "deg" and gain = the degrees at full, of which it is a share'
+ASK_PERCENT: Final = 'FILL IN unit = "deg" and gain = the degrees at full / 100, for it is in %'
 ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
 MEASURED: Final = "side measured"
 CONVENTION: Final = "CAREFUL: side by the format's convention, the motion does not confirm it"
@@ -121,8 +122,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     signals += [r] if r else [plain_signal("psi", live, "no yaw rate is logged")]
     signals += [plain_signal("phi", live, "")] if live["phi"] else []
     known, words = approach_speed(survey, live, speed)
-    ahead = choose_speed(survey, live, known, words)
-    if ahead:
+    if ahead := choose_speed(survey, live, known, words):
         signals.append(ahead)
     return Chosen(
         survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words
@@ -226,17 +226,13 @@ def other_speed(survey: Inspection, known: float | None, told: str) -> Signal | 
             why = (
                 f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
             )
-            unit = _stated(source)
+            unit = source.stated_unit
             if unit is None and known is not None:
                 unit = unit_of_speed(source, known)
                 why += f"; {_by_speed(known, told)}"
             if unit is not None:
                 return Signal("u", source, unit, None, why, (), over_ground=words == GROUND)
     return None
-
-
-def _stated(source: ChannelInspection) -> str | None:
-    return source.unit or source.unit_in_name
 
 
 def approach_speed(
@@ -252,7 +248,7 @@ def approach_speed(
     ground = [(c, "speed over ground") for c in _over_ground(survey)]
     unsaid = [(c, "a speed, through water or over ground unsaid") for c in _some_speed(survey)]
     for source, words in (*through, *ground, *unsaid):
-        if (unit := _stated(source)) is not None:
+        if (unit := source.stated_unit) is not None:
             fast = float(np.quantile(np.abs(source.sketch.y), FASTEST))
             said = f"what {source.key} seldom exceeds, {words}"
             return fast * units.factor(unit, "m/s"), said
@@ -263,7 +259,7 @@ def approach_speed(
 
 def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
-        unit = _stated(one) or "m/s"  # the name tells, where there is no unit
+        unit = one.stated_unit or "m/s"  # the name tells, where there is no unit
         told = (one.name, one.description)  # a format knows what its `Spd` is
         if not one.constant and any(channel_names.over_ground(w, unit) for w in told):
             yield one
@@ -271,7 +267,7 @@ def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
 
 def _some_speed(survey: Inspection) -> Iterator[ChannelInspection]:
     for one in survey.channels.values():
-        unit = _stated(one) or "m/s"
+        unit = one.stated_unit or "m/s"
         if not one.constant and (of_either(one) or channel_names.of_some_speed(one.name, unit)):
             yield one
 
@@ -280,10 +276,11 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
     """The unit to write, and words of doubt; None for an angle of a quaternion."""
     if source.angle is not None:
         return None, ""
-    if source.unit is not None:
-        return source.unit, ""
-    if source.unit_in_name is not None:
-        return source.unit_in_name, "; unit by its name"
+    stated = source.stated_unit
+    if stated == "%" and quantity in RUDDERS:
+        return OPEN, f"; {ASK_PERCENT}"
+    if stated is not None:
+        return stated, "" if source.unit else "; unit by its name"
     largest = max(abs(source.low), abs(source.high))
     if quantity in RUDDERS and largest <= 1.6:
         share = OF_FULL in source.description

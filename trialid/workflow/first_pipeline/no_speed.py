@@ -16,7 +16,7 @@ def no_speed(surveys: Sequence[Inspection]) -> str:
     for survey in surveys:
         for one in survey.sources("u"):
             if one.constant and (held := _held(one)) > 0.0:
-                unit = one.unit or one.unit_in_name
+                unit = one.stated_unit
                 return (
                     f"{one.name!r} is {float(one.sketch.y[0]):g} {unit} throughout, as no log "
                     "under way is; if that is the approach speed, add "
@@ -27,6 +27,6 @@ def no_speed(surveys: Sequence[Inspection]) -> str:
 
 def _held(one: ChannelInspection) -> float:
     """The one value of a channel [m/s], 0 where its unit is not stated."""
-    size = to_si(one.unit or one.unit_in_name or "", "m/s")
+    size = to_si(one.stated_unit or "", "m/s")
     y = one.sketch.y
     return float(y[0]) * size if size is not None and len(y) else 0.0

@@ -171,7 +171,7 @@ def _written(keys: Mapping[str, str | float | None]) -> str:
 def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | float | None]:
     """The keys of one signal; of another source than the chosen one, its own unit."""
     own = one is signal.source
-    unit = signal.unit if own else one.unit or one.unit_in_name or signal.unit
+    unit = signal.unit if own else one.stated_unit or signal.unit
     positive = signal.positive if own else (one.guess and one.guess.positive) or signal.positive
     if signal.quantity in SIGNALS and signal.quantity not in RUDDERS and positive == "starboard":
         positive = None  # as the dictionary has it

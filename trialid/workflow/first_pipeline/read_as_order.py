@@ -12,7 +12,7 @@ from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.name_words import words
 from trialid.names import units
 from trialid.workflow.first_pipeline.boats.boat_choice import at_rest
-from trialid.workflow.first_pipeline.choice import OPEN, Chosen, Signal
+from trialid.workflow.first_pipeline.choice import ASK_PERCENT, OPEN, Chosen, Signal
 
 ORDER_WORDS: Final = ORDERED | {"pwm", "throttle", "servo"}
 """Words of a drive that is an order: what is sent to a motor, never what it makes of it."""
@@ -79,8 +79,10 @@ def _course(signal: Signal) -> Course:
     """Angles [rad]; of a drive the share of its largest."""
     seen = signal.source.sketch
     if signal.quantity == "delta":
-        unit = "rad" if signal.unit in (None, OPEN) else signal.unit  # a share of full is as large
-        return seen.t / 1e9, seen.y * units.factor(unit, "rad")
+        if signal.unit in (None, OPEN):  # a share of full is as large as its radians
+            of_full = 0.01 if ASK_PERCENT in signal.why else 1.0
+            return seen.t / 1e9, seen.y * of_full
+        return seen.t / 1e9, seen.y * units.factor(signal.unit, "rad")
     y = seen.y - at_rest(signal.source)
     return seen.t / 1e9, y / (np.abs(y).max(initial=0.0) or 1.0)
 

@@ -75,7 +75,7 @@ def _courses(trial: Chosen, speed: ChannelInspection) -> Iterator[Signal]:
             yield Signal("cog", source, None, positive, "the direction of that velocity", ())
         return
     for one in channels.values():
-        unit = one.unit or one.unit_in_name
+        unit = one.stated_unit
         if not one.constant and is_course(one.name, one.description, unit):
             yield Signal("cog", one, unit or "deg", None, "by its name", ())
             return

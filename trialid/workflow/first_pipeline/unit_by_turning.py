@@ -47,7 +47,7 @@ def with_headings(surveys: Sequence[Inspection], seconds: float | None) -> list[
 
 
 def _turned(one: ChannelInspection, seconds: float) -> ChannelInspection:
-    stated = one.unit or one.unit_in_name or one.unit_by_size or one.angle
+    stated = one.stated_unit or one.unit_by_size or one.angle
     if stated or one.guess is None or one.guess.quantity != "psi" or len(one.sketch.t) < 2:
         return one
     t = (one.sketch.t - one.sketch.t[0]) / 1e9

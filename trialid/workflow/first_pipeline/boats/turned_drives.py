@@ -58,7 +58,7 @@ def _whose(one: ChannelInspection) -> set[str]:
 
 
 def _is_angle(one: ChannelInspection) -> bool:
-    unit = one.unit or one.unit_in_name
+    unit = one.stated_unit
     return to_si(unit or "deg", "rad") is not None and not one.constant and one.mostly_there
 
 
@@ -67,7 +67,7 @@ def _signal(drive: Signal, source: ChannelInspection, turn: Signal) -> Signal:
     found = side(source, turn.source, towards)
     told = "" if found is None else f" (correlation with {found.by} {found.strength:+.2f})"
     sense = UNSEEN if found is None else CLOCKWISE if found.side == "port" else TO_PORT
-    unit = source.unit or source.unit_in_name or OPEN
+    unit = source.stated_unit or OPEN
     asked = "; FILL IN the unit, the log states none" if unit == OPEN else ""
     positive = "port" if sense is TO_PORT else None
     why = f"by its name; {sense}{told}{asked}"
