@@ -82,14 +82,30 @@ def test_a_time_that_stands_still_is_no_clock(tmp_path):
 def test_dates_with_slashes_are_read_where_a_day_above_12_tells_the_order(tmp_path):
     sure = log(tmp_path, "time,u\n03/12/2026 09:00:00,1\n03/13/2026 09:00:00,2\n")
     assert np.diff(stamps(sure)).tolist() == [86_400 * 10**9]
-    for date in ("03/12/2026", "03-12-2026", "03.12.26"):
-        why = "one way only" if "." in date else f"'{date}' may be day 3 of month 12 or day 12 of"
-        for rows in ("time,u\n{} 09:00:00,1\n{} 09:00:01,2\n", "date,time,u\n{},09:00:00,1\n"):
-            if "." in date and rows.startswith("date"):
-                continue  # told as two columns that are none together
-            unsure = log(tmp_path, rows.format(date, date))
-            with pytest.raises(LogError, match=why):
-                read(unsure)
+    unsure = log(tmp_path, "time,u\n03.12.26 09:00:00,1\n03.12.26 09:00:01,2\n")
+    with pytest.raises(LogError, match="one way only"):
+        read(unsure)
+    for date, later in (("03/12/2026", "04/12/2026"), ("03-12-2026", "04-12-2026")):
+        rows = f"time,u\n{date} 23:59:59,1\n{later} 00:00:00,2\n"
+        with pytest.raises(LogError, match=f"'{date}' may be day 3 of month 12 or day 12 of"):
+            read(log(tmp_path, rows))
+
+
+def test_a_date_that_may_be_two_is_left_out_where_all_is_of_one_day(tmp_path):
+    """How the day is written matters to no trial; a log of the first twelve days was refused."""
+    for date in ("03/12/2026", "03-12-2026"):
+        for rows in (
+            "time,u\n{0} 01:00:00 PM,1\n{0} 01:00:01 PM,2\n",
+            "time,u\n{0} 13:00:00,1\n{0} 13:00:01,2\n",
+            "date,time,u\n{0},13:00:00,1\n{0},13:00:01,2\n",
+        ):
+            path = log(tmp_path, rows.format(date))
+            assert list(stamps(path)) == [13 * 3600 * 10**9, (13 * 3600 + 1) * 10**9]
+            found = read(path)
+            assert "time of day without a date" in found.channels["u"].clock
+            assert f"'{date}' may be day 3 of month 12 or day 12 of month 3: read without" in str(
+                found.remarks
+            )
 
 
 def test_a_date_that_is_the_same_in_either_order_is_read(tmp_path):

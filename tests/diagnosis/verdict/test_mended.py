@@ -7,8 +7,13 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
+from trialid.diagnosis import diagnose as module
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.search.carry_over import carried_between
+from trialid.diagnosis.search.refit import settings_with
+from trialid.diagnosis.search.stand_in import Tried
+from trialid.diagnosis.search.together import Together, fit_together
 from trialid.effects import CATALOGUE
 from trialid.identification import adequacy
 from trialid.identification.adequacy import why_no_fit
@@ -48,6 +53,22 @@ def test_a_sensor_at_its_bound_stands_for_what_the_model_lacks(unstable):
     assert found.verdict.effect in TRIED[:3]
     assert why_no_fit(found.after.fit) is None
     assert found.after.fit.eps_check < 0.7 * unstable.eps_check
+
+
+def test_where_no_effect_alone_mends_it_a_whole_hull_may(unstable, monkeypatch):
+    """And no two: they would be chosen by the slopes of a fit that stands nowhere."""
+    damping = [CATALOGUE["yaw_drag_rar"]]
+    damped = fit_together(unstable, damping, settings_with(unstable, damping))
+    both = (CATALOGUE["yaw_drag_rar"], CATALOGUE["sway_drag_rar"])
+    whole = Together(both, damped, carried_between(unstable, damped))
+    monkeypatch.setattr(module, "refits_of", lambda *more: Tried(()))
+    monkeypatch.setattr(module, "two_at_once", lambda *more: pytest.fail("two were tried"))
+    monkeypatch.setattr(module, "hull_at_once", lambda *more: None)
+    assert diagnose(unstable, ASKED).verdict.kind == "no fit"
+    monkeypatch.setattr(module, "hull_at_once", lambda *more: whole)
+    found = diagnose(unstable, ASKED)
+    assert found.verdict.together == ("yaw_drag_rar", "sway_drag_rar")
+    assert found.together is whole
 
 
 @pytest.mark.study(turn="each")

@@ -26,3 +26,15 @@ def test_seconds_that_a_template_states_are_seconds_however_far_apart(tmp_path):
     assert "# QUESTION: its numbers step by 10: seconds, or is a unit to be stated" in drafted
     heave = read(log, None, Aids(template=aid)).channels["heave"]
     assert np.diff(heave.t).tolist() == [10 * 10**9] * 3
+
+
+def test_dates_with_a_half_of_the_day_and_letters_between_numbers_are_drafted(tmp_path):
+    """Split at its blanks it had no header, and 09:12 PM was no %H:%M."""
+    log, aid = tmp_path / "log.csv", tmp_path / "template.toml"
+    rows = [f"04/05/2026 09:55:0{i} PM,5700.0004,N,00329.9994,W,{y}\n" for i, y in enumerate("579")]
+    log.write_text("UTC,Latitude,N/S,Longitude,E/W,Rudder\n" + "".join(rows))
+    drafted = draft_template(log).replace("reviewed = false", "reviewed = true")
+    aid.write_text(drafted)
+    rudder = read(log, None, Aids(template=aid)).channels["delta"]
+    assert rudder.y.tolist() == [5.0, 7.0, 9.0]
+    assert str(rudder.t.astype("datetime64[ns]")[0]) == "2026-05-04T21:55:00.000000000"

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from trialid.ingest import read
@@ -93,3 +94,26 @@ def test_a_position_is_told_where_both_of_it_are(
     file = table(tmp_path / "log.csv", heads, [f"{x:.6f}" for x in LAT], [f"{x:.6f}" for x in LON])
     said = position_words(inspect_log(file).channels.values())
     assert (said == []) if found is None else (f"({found})" in said[0])
+
+
+def degrees_and_minutes(angle: float) -> str:
+    whole = int(abs(angle))
+    return f"{whole}{60.0 * (abs(angle) - whole):08.5f}"
+
+
+@pytest.mark.parametrize("write", [degrees_and_minutes, lambda angle: f"{abs(angle):.7f}"])
+@pytest.mark.parametrize(("count", "wanted"), [(40, None), (20_000, ["Latitude", "Longitude"])])
+def test_a_side_in_the_next_column_is_the_sign(tmp_path, write, count, wanted) -> None:
+    """South and west were north and east, 1230.25 no latitude; a long log is read in parts."""
+    t = np.arange(float(count))
+    south, west = -12.5 + 1e-5 * t, -7.2 - 2e-5 * t
+    rows = [f"{t},{write(a)},S,{write(b)},W" for t, a, b in zip(t, south, west, strict=True)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(["t [s],Latitude,N/S,Longitude,E/W", *rows]) + "\n")
+    found = read(path, wanted).channels
+    assert [found[n].unit for n in ("Latitude", "Longitude")] == ["deg", "deg"]
+    np.testing.assert_allclose(found["Latitude"].y, south, atol=1e-6)
+    np.testing.assert_allclose(found["Longitude"].y, west, atol=1e-6)
+    pd.read_csv(path).to_parquet(tmp_path / "log.parquet")
+    again = read(tmp_path / "log.parquet", wanted).channels
+    np.testing.assert_allclose(again["Longitude"].y, west, atol=1e-6)

@@ -17,6 +17,7 @@ from trialid.ingest.tables.table import Table, blank_out, check_width, head
 from trialid.ingest.tables.table_channels import recording
 from trialid.ingest.tables.templates import template
 from trialid.ingest.tables.templates.template import Template
+from trialid.ingest.tables.written.hemispheres import beside_position
 from trialid.recording import Recording
 
 if TYPE_CHECKING:
@@ -73,10 +74,15 @@ def _table(path: Path, file: Any, wanted: Wanted, told: Template | None) -> Tabl
     else:
         needed = {*table_clock.columns_of_time(heads), *key_columns(heads)}
         timed = {heads[i].text for i in needed}
+    sides = {i for i in beside_position(heads) if is_wanted(heads[i - 1].name, wanted)}
     remarks, chosen = [], []
     for i, (one, kind) in enumerate(zip(heads, schema.types, strict=True)):
         renamed = told.columns[one.text].rename if told and one.text in told.columns else None
-        if one.text in timed or (is_wanted(renamed or one.name, wanted) and _numeric(kind)):
+        if (
+            one.text in timed
+            or i in sides
+            or (is_wanted(renamed or one.name, wanted) and _numeric(kind))
+        ):
             chosen.append(i)
         elif is_wanted(renamed or one.name, wanted):
             remarks.append(f"column {one.name!r} holds {str(kind)[:40]}, left out")

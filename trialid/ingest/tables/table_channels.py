@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from trialid.arrays import Vector
 from trialid.errors import LogError, UnitError
 from trialid.ingest.adapter import Aids, Wanted, is_wanted, sha256
 from trialid.ingest.tables.clock import table_clock
@@ -18,6 +19,7 @@ from trialid.ingest.tables.long_table import (
 )
 from trialid.ingest.tables.table import Head, Table, check_width, numbers
 from trialid.ingest.tables.templates.template import Template
+from trialid.ingest.tables.written.hemispheres import beside_position, hemispheres
 from trialid.ingest.tables.written.written_angles import written_angles
 from trialid.ingest.tables.written.written_sides import written_sides
 from trialid.names import units
@@ -41,12 +43,16 @@ def recording(
         return _by_name(table, found, clock, adapter, wanted)
     channels: dict[str, Channel] = {}
     named = _quantities(renamed.heads)
-    for i, one in enumerate(renamed.heads):
-        if i in clock.columns or not is_wanted(one.name, wanted):
+    data = [i for i in range(len(renamed.heads)) if i not in clock.columns]
+    sided = hemispheres(renamed, data)
+    for i in data:
+        one = renamed.heads[i]
+        if not is_wanted(one.name, wanted):
             continue
-        channel = _channel(renamed, i, clock)
+        channel = _of_earth(one, clock, *sided[i]) if i in sided else _channel(renamed, i, clock)
         if channel is None:
-            remarks.append(f"column {one.name!r} holds text, left out")
+            told = () if i - 1 in sided else (f"column {one.name!r} holds text, left out",)
+            remarks.extend(told)
             continue
         if channel.description:
             remarks.append(f"column {one.name!r}: {channel.description}")
@@ -91,6 +97,11 @@ def _channel(table: Table, place: int, clock: Clock) -> Channel | None:
     return Channel(one.name, clock.t, angles[0], "deg", clock.words, description=words)
 
 
+def _of_earth(one: Head, clock: Clock, angles: Vector, axis: str) -> Channel:
+    words = f"{axis}, its side in the next column"
+    return Channel(one.name, clock.t, angles, "deg", clock.words, description=words)
+
+
 def columns_to_read(heads: Sequence[Head], wanted: Wanted, template: Template | None) -> set[int]:
     """The columns whose values are looked at: those wanted, and any that may tell the time."""
     if template is None:
@@ -101,7 +112,9 @@ def columns_to_read(heads: Sequence[Head], wanted: Wanted, template: Template | 
     else:
         named = [_as_told(one, template) for one in heads]
         timed = {i for i, one in enumerate(heads) if one.text in template.time.columns}
-    return timed | {i for i, one in enumerate(named) if is_wanted(one.name, wanted)}
+    asked = {i for i, one in enumerate(named) if is_wanted(one.name, wanted)}
+    sides = {i for i in beside_position(named) if i - 1 in asked}
+    return timed | asked | sides
 
 
 def _by_template(table: Table, template: Template) -> Table:

@@ -117,6 +117,8 @@ def _apart(table: Table, dates: Sequence[int], clock_at: int, zone: str | None) 
     columns = (dates[0], clock_at)
     if len(dates) == 1 and _is_dated(table, columns):
         return date_clock(table, columns, _spec(table, columns), zone)
+    if len(dates) == 1 and (found := _of_one_day(table, columns, zone)) is not None:
+        return found
     if len(dates) == 1 and (either := table_stamps.day_or_month(str(table.columns[dates[0]][0]))):
         raise LogError(f"{table.path}: {either}; write ISO-8601 dates, {TOLD}")
     raise LogError(
@@ -136,6 +138,22 @@ def _is_dated(table: Table, columns: Sequence[int]) -> bool:
         return False
     found = table_stamps.as_iso(texts)
     return found is not None and any(len(text) > len("2026-06-03") for text in found)
+
+
+def _of_one_day(table: Table, columns: tuple[int, ...], zone: str | None) -> Clock | None:
+    """Times of one day, whatever its date is: what may be read in two ways is left out."""
+    if any(table.columns[i].dtype.kind not in "OM" for i in columns):
+        return None
+    texts = join_columns(table, columns, None)
+    of_day_alone = table_stamps.of_one_day(texts)
+    if of_day_alone is None:
+        return None
+    no_zone(table, zone)
+    at = columns[-1]
+    held = (*table.columns[:at], np.array(of_day_alone, object), *table.columns[at + 1 :])
+    found = of_day(dataclasses.replace(table, columns=held), at, _spec(table, [at]))
+    said = f"{table_stamps.day_or_month(texts[0])}: read without its date, {TOLD}"
+    return dataclasses.replace(found, columns=columns, remarks=(*found.remarks, said))
 
 
 def _same_time(table: Table, columns: Sequence[int], zone: str | None) -> Clock | None:
@@ -170,6 +188,8 @@ def _plain(table: Table, column: int, zone: str | None) -> Clock:
     shown = str(values[0]).strip()
     if values.dtype.kind == "M" or re.match(r"\d{4}-\d\d", shown) or _is_dated(table, [column]):
         return date_clock(table, (column,), _spec(table, [column]), zone)
+    if (of_one := _of_one_day(table, (column,), zone)) is not None:
+        return of_one
     no_zone(table, zone)
     if values.dtype.kind == "O" and _is_clock(values[0]):
         return of_day(table, column, _spec(table, [column]))

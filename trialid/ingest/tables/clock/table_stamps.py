@@ -110,13 +110,32 @@ def _iso(one: re.Match[str], order: str) -> str:
     date = f"{place['y']}-{int(month):02d}-{int(place['d']):02d}"
     if one["hour"] is None:
         return date
+    zone = one["zone"] or ""
+    return f"{date}T{_of_day(one)}{'Z' if zone in ('UTC', 'GMT') else zone}"
+
+
+def _of_day(one: re.Match[str]) -> str:
     hour = int(one["hour"])
     if one["half"]:
         hour = hour % 12 + 12 * (one["half"].lower() == "pm")
     part = f".{one['part']}" if one["part"] else ""
-    zone = one["zone"] or ""
-    clock = f"{hour:02d}:{one['minute']}:{one['second_of'] or '00'}{part}"
-    return f"{date}T{clock}{'Z' if zone in ('UTC', 'GMT') else zone}"
+    return f"{hour:02d}:{one['minute']}:{one['second_of'] or '00'}{part}"
+
+
+def of_one_day(texts: Sequence[str]) -> list[str] | None:
+    """The times of day of dates of one day that may be read in two ways; None of others.
+
+    >>> of_one_day(["03/04/2025 10:00:00 AM", "03/04/2025 10:00:01 AM"])
+    ['10:00:00', '10:00:01']
+    >>> of_one_day(["03/04/2025 10:00:00", "04/04/2025 10:00:01"]), of_one_day(["03/03/2025 10:00"])
+    (None, None)
+    """
+    found = [DATED.fullmatch(text) for text in texts]
+    dated = [one for one in found if one is not None and one["hour"] is not None]
+    days = {one.group("first", "second", "third") for one in dated}
+    if len(dated) < len(texts) or len(days) != 1 or not day_or_month(texts[0]):
+        return None
+    return [_of_day(one) for one in dated]
 
 
 def stamps(texts: list[str], form: str | None) -> Stamps | None:

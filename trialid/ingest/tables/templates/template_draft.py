@@ -187,13 +187,15 @@ def _format(shown: str) -> Iterator[str]:
     if found is None:
         return
     mark, year = found[2], "%Y" if len(found[4]) == 4 else "%y"
-    clock = re.search(r"(.)\d{1,2}:\d\d(:\d\d([.,]\d+)?)?", shown)
-    of_day = "" if clock is None else f"{clock[1]}%H:%M" + ("" if clock[2] is None else ":%S")
+    clock = re.search(r"(.)\d{1,2}:\d\d(:\d\d([.,]\d+)?)?(\s*[AaPp][Mm])?", shown)
+    half = "" if clock is None or clock[4] is None else clock[4][:-2] + "%p"
+    hour = "%I" if half else "%H"
+    of_day = "" if clock is None else f"{clock[1]}{hour}:%M" + ("" if clock[2] is None else ":%S")
     fraction = ".%f" if clock is not None and clock[3] else ""
     order = f"%m{mark}%d" if int(found[3]) > 12 else f"%d{mark}%m"
     if int(found[1]) <= 12 and int(found[3]) <= 12:
         yield f"# QUESTION: {found[0]} may begin with the day (%d) or the month (%m); which?"
-    yield f"format = {quote(f'{order}{mark}{year}{of_day}{fraction}')}"
+    yield f"format = {quote(f'{order}{mark}{year}{of_day}{fraction}{half}')}"
 
 
 def _text(
