@@ -8,7 +8,7 @@ import pytest
 from geared_rudder import geared
 
 from trialid import pipeline_file
-from trialid.errors import TrialidError
+from trialid.errors import LogError, TrialidError
 from trialid.inspection import Inspection, inspect_log
 from trialid.progress import silent
 from trialid.ship.estimate import Given
@@ -141,3 +141,15 @@ def test_stamps_cut_to_the_second_hide_no_relation(tmp_path: Path) -> None:
     survey = inspect_log(rewritten(path, [f"{int(float(a))},{b}" for a, b in rows]))
     text, _ = begun(tmp_path, survey)
     assert '\npsi   = { channel = "heading_deg"' in text
+
+
+def test_a_rudder_logged_as_it_changes_is_told_from_none(tmp_path: Path) -> None:
+    """Nobody fills it up unasked: whether it holds its value between only the user knows."""
+    path = log(tmp_path / "a.csv", 5.0, name="rudder_deg")
+    rows = [line.rsplit(",", 1) for line in path.read_text(encoding="utf-8").splitlines()[1:]]
+    kept = zip(rows, [("", ""), *rows], strict=False)
+    sparse = [f"{a},{b if b != before[1] else ''}" for (a, b), before in kept]
+    with pytest.raises(LogError, match=r"'rudder_deg' has a value in 1\d% of its rows"):
+        begun(tmp_path, inspect_log(rewritten(path, sparse)))
+    with pytest.raises(LogError, match="'rudder_deg' does not move"):
+        begun(tmp_path, inspect_log(rewritten(path, [f"{a},0.0" for a, _ in rows])))

@@ -210,3 +210,11 @@ def test_a_table_as_text_is_the_same_as_one_in_memory(tmp_path):
     text = "t,u\n" + "".join(f"{k},{k / 7}\n" for k in range(50)) + ",\n" * 5
     frame = pd.read_csv(io.StringIO(text)).dropna()
     np.testing.assert_array_equal(read(log(tmp_path, text)).channels["u"].y, frame["u"])
+
+
+def test_a_row_of_units_may_say_how_the_time_is_written(tmp_path):
+    """Below titles, as a spreadsheet of a trial has it; the header had no row of data under it."""
+    rows = "Sea trial,\nDate:,14.05.2026\nTime,Heading\nhh:mm:ss,deg\n09:55:00,1.5\n09:55:01,2.5\n"
+    heading = read(log(tmp_path, rows)).channels["Heading"]
+    assert (heading.unit, heading.y.tolist()) == ("deg", [1.5, 2.5])
+    assert np.diff(heading.t).tolist() == [10**9]

@@ -18,6 +18,8 @@ from trialid.names import units
 
 DEEPEST = 60
 """Lines above a header; titles of a trial take a few."""
+OF_CLOCK = re.compile(r"(?=.*h.*m)[dmyhst:./ -]+", re.IGNORECASE)
+"""How a time is written, where a unit might stand: `hh:mm:ss`, `DD.MM.YYYY hh:mm`."""
 NAME = re.compile(r"[%/]?[^\W\d]")
 """Topics begin with a slash, and what `rostopic` prints with `%time`."""
 
@@ -64,8 +66,13 @@ def row_of(rows: Sequence[Sequence[Any]]) -> tuple[int, bool] | None:
         values = below[1:2] if stated else below[:1]
         if any(len(one) >= width and is_data(one) for one in values):
             above = _texts(rows[at - 1]) if at else []
-            return (at, stated) if 2 * sum(map(bool, above)) < width else None
+            return (at, stated) if 2 * sum(map(_may_be_a_name, above)) < width else None
     return None
+
+
+def _may_be_a_name(text: str) -> bool:
+    """Of a header's first line, and no label of a title with its value: `Date:`, `14.05.2026`."""
+    return bool(text) and not text.endswith(":") and not _is_value(text)
 
 
 def _texts(row: Sequence[Any]) -> list[str]:
@@ -79,6 +86,8 @@ def are_units(names: Sequence[str], fields: Sequence[str]) -> bool:
     True
     >>> are_units(["t", "roll", "mode"], ["s", "deg", "-"])
     True
+    >>> are_units(["Time", "roll"], ["hh:mm:ss", "deg"])
+    True
     >>> are_units(["t", "roll", "mode"], ["0.0", "", "AUTO"])
     False
     """
@@ -89,9 +98,8 @@ def are_units(names: Sequence[str], fields: Sequence[str]) -> bool:
     if all(re.fullmatch(r"\[\D*\]|\(\D*\)|\[\w[^/]*/.*\]", field) for field in told):
         return True
     times = [i for i, name in enumerate(names) if is_time(name.strip(' "'))]
-    return any(_counts_time(stated[i]) for i in times) and all(
-        units.TEXT.fullmatch(field) for field in told
-    )
+    clocks = [stated[i] for i in times if _counts_time(stated[i]) or OF_CLOCK.fullmatch(stated[i])]
+    return bool(clocks) and all(units.TEXT.fullmatch(one) for one in told if one not in clocks)
 
 
 def _counts_time(text: str) -> bool:

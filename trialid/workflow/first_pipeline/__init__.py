@@ -31,7 +31,7 @@ from trialid.workflow.first_pipeline.choice import (
     shared_signals,
 )
 from trialid.workflow.first_pipeline.long_log import Windows
-from trialid.workflow.first_pipeline.no_speed import no_speed
+from trialid.workflow.first_pipeline.not_begun import no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_revolutions

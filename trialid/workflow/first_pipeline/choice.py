@@ -1,7 +1,6 @@
 """Which channel a starter pipeline takes for each signal, how it is read, and why."""
 
 import dataclasses
-import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,6 @@ import numpy as np
 
 from trialid.errors import LogError
 from trialid.inspection import channel_names
-from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
@@ -19,6 +17,7 @@ from trialid.inspection.speed_letters import of_either
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.long_log import Window
+from trialid.workflow.first_pipeline.not_begun import no_signal
 
 OPEN: Final = "?"
 """Stands where only the user knows; the pipeline does not run until it is replaced."""
@@ -112,11 +111,8 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     rudder = next((name for name in RUDDERS if live[name]), None)
     motions = [name for name in ("r", "psi", "phi") if live[name]]
     if rudder is None or not {"r", "psi"} & {*motions}:
-        missing = "rudder or rudder order" if rudder is None else "yaw rate or heading"
-        raise LogError(
-            f"{survey.path}: no moving {missing} is recognised among its {len(survey.channels)} "
-            f"channels, so no pipeline can be begun; {_what_then(survey)}"
-        )
+        missing = RUDDERS if rudder is None else ("r", "psi")
+        raise LogError(f"{survey.path}: {no_signal(survey, missing)}")
     r = rate_signal(live) if live["r"] else None
     signals = [rudder_signal(rudder, live, r)]
     signals += [r] if r else [plain_signal("psi", live, "no yaw rate is logged")]
@@ -127,18 +123,6 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     return Chosen(
         survey=survey, path=survey.path, signals=tuple(signals), speed=known, speed_words=words
     )
-
-
-def _what_then(survey: Inspection) -> str:
-    """What to do where no rudder or no motion is recognised."""
-    drives = drives_among(survey)
-    if drives:
-        return (
-            f"she seems to steer by thrusters ({', '.join(drives[:4])}): two are begun with, "
-            "called left and right or 1 and 2, beside heading or yaw rate; map others by hand, "
-            "see `trialid guide actuators`"
-        )
-    return f"see `trialid inspect --all {shlex.quote(str(survey.path))}`, and map them by hand"
 
 
 Live = dict[str, tuple[ChannelInspection, ...]]

@@ -18,7 +18,7 @@ COMMENTS = ("#", "%", "//", "!")
 NUMBER = re.compile(
     r"[-+]?(\d{1,3}([., '\u00a0\u202f]\d{3})+[.,]\d*|\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?"
 )
-CLOCK = r"\d{1,2}:\d\d(:\d\d([.,:]\d+)?)?\s*([ap]m)?\s*(z|utc|gmt|[+-]\d\d:?\d\d)?"
+CLOCK = r"\d{1,2}:\d\d(:\d\d([.,:]\d+)?)?\s*([ap]m)?\s*([a-z]{1,5}|[+-]\d\d:?\d\d)?"
 DATE = re.compile(
     rf"(\d{{4}}[./-]\d\d[./-]\d\d|\d{{1,2}}[./-]\d{{1,2}}[./-]\d{{2,4}})([t,_\s]\s*{CLOCK})?|{CLOCK}",
     re.IGNORECASE,

@@ -1,0 +1,72 @@
+"""What to say where logs hold too little to begin with: no rudder, no motion, no speed."""
+
+import shlex
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from trialid.inspection import Inspection
+from trialid.inspection.drives import drives_among
+from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.usual_units import to_si
+from trialid.ship.estimate.particulars_given import KNOT
+
+NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
+
+
+def no_signal(survey: Inspection, quantities: Sequence[str]) -> str:
+    """That a log has no rudder or no motion that moves, which of its channels seemed to be, why."""
+    called = "rudder or rudder order" if "delta" in quantities else "yaw rate or heading"
+    unlike = (words for q in quantities for one in survey.sources(q) for words in _useless(one))
+    return "; ".join(
+        (
+            f"no moving {called} is recognised among its {len(survey.channels)} channels, so no "
+            "pipeline can be begun",
+            *unlike,
+            _what_then(survey),
+        )
+    )
+
+
+def _useless(one: ChannelInspection) -> Iterator[str]:
+    """Why a channel that is called so is none to begin with."""
+    if one.constant:
+        yield f"{one.key!r} does not move"
+    elif not one.mostly_there:
+        yield (
+            f"{one.key!r} has a value in {1.0 - one.missing:.0%} of its rows, the longest time "
+            f"without one {one.gaps.longest:.4g} s: where it is logged as it changes and holds "
+            "between, fill it up, with the value before"
+        )
+
+
+def _what_then(survey: Inspection) -> str:
+    """What to do where no rudder or no motion is recognised."""
+    drives = drives_among(survey)
+    if drives:
+        return (
+            f"she seems to steer by thrusters ({', '.join(drives[:4])}): two are begun with, "
+            "called left and right or 1 and 2, beside heading or yaw rate; map others by hand, "
+            "see `trialid guide actuators`"
+        )
+    return f"see `trialid inspect --all {shlex.quote(str(survey.path))}`, and map them by hand"
+
+
+def no_speed(surveys: Sequence[Inspection]) -> str:
+    """That no log tells the speed; or that one holds a single value, and how to take it."""
+    for survey in surveys:
+        for one in survey.sources("u"):
+            if one.constant and (held := _held(one)) > 0.0:
+                unit = one.stated_unit
+                return (
+                    f"{one.name!r} is {float(one.sketch.y[0]):g} {unit} throughout, as no log "
+                    "under way is; if that is the approach speed, add "
+                    f"--speed {held / KNOT:.4g} (knots)"
+                )
+    return NO_SPEED
+
+
+def _held(one: ChannelInspection) -> float:
+    """The one value of a channel [m/s], 0 where its unit is not stated."""
+    size = to_si(one.stated_unit or "", "m/s")
+    y = one.sketch.y
+    return float(y[0]) * size if size is not None and len(y) else 0.0
