@@ -67,7 +67,7 @@ def test_drift_and_current_are_read_out_of_a_speed_over_ground(tmp_path: Path) -
         text = starter([inspect_log(path)], *given).files[tmp_path / "p.toml"]
         assert ('"drift_in_speed_record"]' in text) is over
         assert '\npsi   = { channel = "HDG"' in text
-        assert ("the current in it is estimated" in text) is over
+        assert ("it tells the current in that" in text) is over
         assert (', "current"]  # of each trial' in text) is over
         assert ("tells the offset of the rate" in text) is not over
         assert 'outputs = ["r"]' in text

@@ -67,7 +67,7 @@ def diagnose(
         before = _bounded(before, tried.refits, whole)
         verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
         named = _named(verdict, tried.refits)
-        verdict, together = _or_of_several(fit, verdict, whole, asked, progress, failed is None)
+        verdict, together = _or_of_several(fit, verdict, whole, asked, progress, failed)
         if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
         wanted = force or verdict.kind == "not in catalogue"
@@ -135,20 +135,20 @@ def _or_of_several(
     whole: Completeness | None,
     asked: DiagnoseSettings,
     progress: Progress,
-    sound: bool,
+    failed: Inadequate | None = None,
 ) -> tuple[Verdict, Together | None]:
     """The verdict, and effects at once, where none has a name and the catalogue may hold it.
 
     Two of them, or where no two do it all that a hull usually has; where nothing else shows that
-    anything is missing, these alone may: each is small. Where the fit carries no verdict (is not
-    `sound`) they alone may as well: two would be chosen by the slopes of a fit that stands nowhere.
+    anything is missing, these alone may: each is small. Where the fit has `failed` they alone may
+    as well: two would be chosen by the slopes of a fit that stands nowhere.
     """
     if verdict.effect or (whole and whole.gap):
         return verdict, None
     if verdict.family or leans_inward(fit):  # one alone does it, or a sensor is in doubt
         return verdict, None
     found = None
-    if sound and verdict.kind != "nothing missing":
+    if failed is None and verdict.kind != "nothing missing":
         found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
     found = found or hull_at_once(fit, asked.candidates)
     return (verdict if found is None else verdict_on_several(fit, found)), found

@@ -123,7 +123,7 @@ def _little_explained(fit: Fit) -> Inadequate | None:
 
 
 def _another_ship(fit: Fit) -> Inadequate | None:
-    """She answers her rudder as the ship of her file does not, and none near the file does."""
+    """Her rudder, or most of her, is not as her file says, and none near the file does as well."""
     if (left := file_of_ship.left_by_file(fit)) is None:
         return None
     return Inadequate(

@@ -38,7 +38,8 @@ class SignalSource(Section):
     """Which channel of the logs is a quantity.
 
     The signal is `gain` times the logged number, plus `offset`, in the channel's unit: a servo's
-    share of full deflection, a rudder indicator that reads two degrees at midships.
+    share of full deflection, a rudder indicator that reads two degrees at midships. Where that is
+    no unit of the quantity (percent of full) a gain other than 1 makes it `unit`.
     """
 
     channel: str | None = None

@@ -19,7 +19,7 @@ LEFT: Final[Mapping[str, str]] = {
 }
 """Inputs that no first model asks for, and what for."""
 
-IN_SPEED: Final = "with a speed over ground the current in it is estimated"
+IN_SPEED: Final = "with a speed over ground it tells the current in that"
 BESIDE_RATE: Final = "tells the offset of the rate; with it the run seeks a steady wind, too"
 """What the heading is read for, beside a speed over ground and beside another."""
 
