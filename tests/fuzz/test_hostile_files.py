@@ -17,7 +17,7 @@ from limits import bounded
 from trialid.cli import main
 from trialid.ingest import Aids, read
 from trialid.ingest.adapter import NO_AIDS
-from trialid.ingest.tables import excel_log
+from trialid.ingest.tables.excel import excel_log
 
 MB = 1_000_000
 HEADS = {
@@ -138,7 +138,7 @@ def test_a_table_of_a_million_columns(tmp_path):
 LINES = {
     "csv": b"t,u\n0,1\n", "candump": b"(1.0) can0 09F10D0B#00FFFFFFFFFFFFFF\n",
     "nmea": b"$GPROT,1.0,A*29\r\n" * 3, "signalk": b"1700000000000;N;$GPROT,1.0,A*29\n" * 3,
-    "trc": b";$FILEVERSION=1.1\n",
+    "json": b'{"t":0,"u":1}\n{"t":1,"u":[', "trc": b";$FILEVERSION=1.1\n",
     "asc": b"date Mon Jan 1 00:00:00 2024\nbase hex timestamps absolute\n",
 }  # fmt: skip
 

@@ -40,18 +40,17 @@ def test_sensors_do_not_make_up_for_another_hull(tmp_path):
 
 
 @pytest.mark.study(turn="each")
-@pytest.mark.parametrize("first", [2060, 2065, 2070, 2075])
-def test_files_of_ships_of_another_length_are_noticed(tmp_path, first):
-    """Of five ships, by two recorders; at least twice or half as long is another length.
+def test_files_of_ships_of_another_length_are_noticed(tmp_path):
+    """Of twenty ships, by two recorders; at least twice or half as long is another length.
 
-    Ours: 6 of 8, 5 of 6, 4 of 6, 6 of 6.
+    Ours: 21 of 26, and none by her own file.
     """
     noticed, far = 0, 0
-    for seed in range(first, first + 5):
+    for seed in range(2060, 2080):
         lengths = mmg.drawn(seed).L / mmg.drawn(seed + 1).L
         for heading in (False, True):
             assert left_by_file(fitted(tmp_path, seed, heading, seed)) is None, seed
             if not 0.5 < lengths < 2.0:
                 far += 1
                 noticed += left_by_file(fitted(tmp_path, seed, heading, seed + 1)) is not None
-    assert noticed >= 0.6 * far, (noticed, far)
+    assert noticed >= 0.75 * far, (noticed, far)

@@ -1,10 +1,11 @@
 """Tables of every kind with one trial in them, written by the libraries that users write them with.
 
 Text by Python's csv and `str`, Excel by openpyxl, Parquet by pyarrow, MATLAB v5 by scipy, v7.3 by
-h5py in the manner of MATLAB (arrays transposed, a class beside each).
+h5py in the manner of MATLAB (arrays transposed, a class beside each), JSON by Python's json.
 """
 
 import csv
+import json
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -163,6 +164,20 @@ def matlab_73(path: Path, series: Mapping[str, Series]) -> Written:
     return Written(named, written.resolution, written.clock_resolution)
 
 
+def json_lines(path: Path, series: Mapping[str, Series]) -> Written:
+    """A record a line, each value in an object of its own."""
+    t, table = columns(series)
+    with path.open("w", encoding="utf-8") as file:
+        for i, stamp in enumerate(t):
+            values = {name: {"value": float(y[i])} for name, y in table.items()}
+            file.write(json.dumps({"t": (int(stamp) - START_NS) / 1e9, **values}) + "\n")
+    written = _written(series, None, 1e-6)
+    named = tuple(
+        SignalSource(s.quantity, f"{s.channel}.value", s.unit, s.positive) for s in written.sources
+    )
+    return Written(named, written.resolution, written.clock_resolution)
+
+
 FORMATS: tuple[Format, ...] = (
     Format("csv", plain_csv),
     Format("german_csv", german_csv),
@@ -170,4 +185,5 @@ FORMATS: tuple[Format, ...] = (
     Format("parquet", parquet),
     Format("mat5", matlab_5),
     Format("mat73", matlab_73),
+    Format("jsonl", json_lines),
 )

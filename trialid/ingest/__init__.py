@@ -13,7 +13,8 @@ from trialid.ingest.mavlink import dataflash_log, tlog_log
 from trialid.ingest.mcap import mcap_log
 from trialid.ingest.nmea0183 import nmea0183_log
 from trialid.ingest.ros import bag_log, db3_log
-from trialid.ingest.tables import csv_log, excel_log, mat_log, parquet_log
+from trialid.ingest.tables import csv_log, json_log, mat_log, parquet_log
+from trialid.ingest.tables.excel import excel_log
 from trialid.ingest.tables.templates import template_draft
 from trialid.plugins import plugins
 from trialid.recording import Recording
@@ -43,13 +44,14 @@ ADAPTERS: tuple[Adapter, ...] = (
     excel_log.ADAPTER,
     parquet_log.ADAPTER,
     mat_log.ADAPTER,
+    json_log.ADAPTER,
     csv_log.ADAPTER,
     *plugins("trialid.adapters").values(),
 )
 
 FORMATS = (
     "MCAP, MAVLink, ROS bags, ULog, CAN and NMEA 2000, NMEA 0183, Signal K, CSV, Excel, "
-    "Parquet, MATLAB"
+    "Parquet, MATLAB, JSON"
 )
 """What messages call all of them."""
 HEAD = 4096

@@ -44,7 +44,7 @@ SIGNALS = _table(
             "u",
             "m/s",
             "m/s",
-            "surge speed through the water, positive forward",
+            "surge speed, through the water, positive forward",
             speed=1,
             aliases=_aliases("stw speed_through_water"),
         ),

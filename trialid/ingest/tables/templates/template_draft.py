@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from trialid.errors import LogError, printable
-from trialid.ingest.tables import excel_log, mat_log, parquet_log
+from trialid.ingest.tables import json_log, mat_log, parquet_log
 from trialid.ingest.tables.clock.table_time import DAYS
+from trialid.ingest.tables.excel import excel_log
 from trialid.ingest.tables.table import head
 from trialid.ingest.tables.table_header import is_data
 from trialid.ingest.tables.table_layout import SPACES
@@ -43,6 +44,9 @@ def draft(path: Path) -> str:
         return _text(path, [], header, _times(header, (tuple(kinds.values()),)))
     if mat_log.recognises(start):
         return _of_mat(path)
+    if json_log.may_be_one(start):
+        header, rows = json_log.top(path)
+        return _text(path, [], header, _times(header, rows), rows)
     found = guess(path)
     if found is None:
         raise LogError(f"{path}: no lines of numbers side by side in it; it is no table")

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from trialid.errors import LogError, reason_of
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
 from trialid.ingest.packages import require
-from trialid.ingest.tables import excel_guard, excel_sheets, table_header
-from trialid.ingest.tables.excel_sheets import Found
+from trialid.ingest.tables import table_header
+from trialid.ingest.tables.excel import excel_guard, excel_sheets
+from trialid.ingest.tables.excel.excel_sheets import Found
 from trialid.ingest.tables.table import Head, Table, blank_out, head, reader_of_numbers
 from trialid.ingest.tables.table_channels import recording
 from trialid.ingest.tables.table_names import is_time
