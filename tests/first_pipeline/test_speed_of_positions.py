@@ -65,8 +65,26 @@ def survey(tmp_path_factory: pytest.TempPathFactory) -> Inspection:
 def test_positions_tell_the_unit_of_a_speed(tmp_path: Path, survey: Inspection) -> None:
     text = begun(tmp_path, survey)
     assert 'u     = { channel = "speed", unit = "kn" }' in text
-    assert "over ground, by her positions" in text
+    assert "but her positions or approach speed, here or elsewhere, leave kn" in text
     assert "a current adds to it" in text
+
+
+def test_a_circle_in_which_most_of_the_speed_is_lost_has_its_unit(tmp_path: Path) -> None:
+    """A tanker's fast ways are too short there; with a constant speed for it nothing was fitted."""
+    t = np.arange(0.0, 1200.0, 1.0)
+    speed = 8.0 * (1.0 - 0.65 * (1.0 - np.exp(-np.maximum(t - 20.0, 0.0) / 25.0)))
+    delta, r = np.where(t > 20.0, 30.0, 0.0), np.where(t > 20.0, 0.5, 0.0)
+    psi = np.cumsum(r) + 0.3 * np.sin(0.05 * t)
+    way = np.cumsum(speed * np.exp(1j * np.deg2rad(psi))) / RADIUS
+    lat, lon = 57.0 + np.rad2deg(way.real), 10.0 + np.rad2deg(way.imag / np.cos(np.deg2rad(57.0)))
+    table = np.column_stack([t, lat, lon, speed / KNOT, psi % 360.0, delta + 0.1 * np.sin(t)])
+    heads = "time,lat,lon,SOG,heading,rudder"
+    path = tmp_path / "turn.csv"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.9f")
+    made = starter([inspect_log(path)], tmp_path / "p.toml", None, Given(length=300.0))
+    text = made.files[tmp_path / "p.toml"]
+    assert 'channel = "SOG", unit = "kn"' in text
+    assert "\nspeed = " not in text
 
 
 @pytest.mark.parametrize(("times", "told"), [(1.0, False), (0.8, False), (0.5, True), (2.0, True)])

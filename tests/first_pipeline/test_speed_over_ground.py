@@ -50,8 +50,20 @@ def test_a_stated_speed_tells_the_unit_of_the_one_over_ground(
     text = made.files[tmp_path / "p.toml"]
     assert text.count(f'channel = "SOG", unit = "{unit}"') == 2
     assert "CAREFUL: a speed over ground" in text
-    assert "unit by a speed of 8 m/s, as stated" in text
+    assert f"but her positions or approach speed, here or elsewhere, leave {unit}" in text
     assert "speed = 8" not in text
+
+
+def test_a_circle_that_begins_slow_has_the_unit_of_the_zigzag_beside_it(tmp_path: Path) -> None:
+    """Its log begins when much of the speed is lost, and alone leaves the unit open."""
+    out = np.where(T[-1] - 20.0 < T, 0.0, TURN)  # amidships at the end: she steers
+    paths = [log(tmp_path / "t.csv", out, 0.3, 1.0), log(tmp_path / "z.csv", ZIGZAG, 0.9, 1.0)]
+    head, *rows = paths[0].read_text(encoding="utf-8").splitlines()
+    paths[0].write_text("\n".join([head, *rows[250:]]) + "\n", encoding="utf-8")
+    for logs, count in ((paths[:1], 0), (paths, 2)):
+        given = (tmp_path / "p.toml", None, Given(length=150.0), APPROACH)
+        text = starter([inspect_log(one) for one in logs], *given).files[tmp_path / "p.toml"]
+        assert text.count('channel = "SOG", unit = "m/s"') == count
 
 
 def test_drift_and_current_are_read_out_of_a_speed_over_ground(tmp_path: Path) -> None:

@@ -137,11 +137,21 @@ def unit_of_rate(rate: ChannelInspection, angle: ChannelInspection) -> str | Non
 
 def unit_of_speed(speed: ChannelInspection, stated: float) -> str | None:
     """The one unit in which she approaches as fast as stated [m/s]; None where it is not one."""
+    return _one_unit(speed, FASTEST, stated)
+
+
+def unit_by_way(speed: ChannelInspection, sailed: float) -> str | None:
+    """The one unit in which it is usually as fast as her positions are sailed [m/s]; else None."""
+    return _one_unit(speed, 0.5, sailed)
+
+
+def _one_unit(speed: ChannelInspection, share: float, known: float) -> str | None:
+    """The unit in which this share of the record is no faster than a known speed [m/s]."""
     if not len(speed.sketch.y):
         return None
-    fastest = float(np.quantile(speed.sketch.y, FASTEST))
-    sizes = {unit: fastest * (to_si(unit, "m/s") or 0.0) for unit in SPEEDS}
-    fitting = [unit for unit, size in sizes.items() if abs(size - stated) <= NEAR * stated]
+    told = float(np.quantile(np.abs(speed.sketch.y), share))
+    sizes = {unit: told * (to_si(unit, "m/s") or 0.0) for unit in SPEEDS}
+    fitting = [unit for unit, size in sizes.items() if abs(size - known) <= NEAR * known]
     return fitting[0] if len(fitting) == 1 else None
 
 

@@ -37,7 +37,7 @@ from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_revolutions
 from trialid.workflow.first_pipeline.roll_decay import decays_among
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
-from trialid.workflow.first_pipeline.speed_by_track import held_against_track
+from trialid.workflow.first_pipeline.speed_by_track import held_against_track, with_speed_units
 from trialid.workflow.first_pipeline.tunnel_thrusters import tunnels_of, with_tunnels
 from trialid.workflow.first_pipeline.twin_rudders import (
     RUDDERS,
@@ -143,11 +143,12 @@ def starter(
 def _with_units(
     surveys: Sequence[Inspection], length: float | None, stated: float | None
 ) -> list[Inspection]:
-    """The logs, headings in the unit that others of them or how fast she turns leave."""
-    speeds = [approach_speed(s, {"u": live_sources(s, "u")}, stated)[0] for s in surveys]
+    """The logs, speeds and headings in the unit that others of them, her way or turning leave."""
+    sized = with_units(with_speed_units(surveys, stated))
+    speeds = [approach_speed(s, {"u": live_sources(s, "u")}, stated)[0] for s in sized]
     fastest = max((u for u in speeds if u), default=None)
     seconds = length / fastest if length and fastest else None
-    return with_units(with_headings(with_units(surveys), seconds))
+    return with_units(with_headings(sized, seconds))
 
 
 def _steered(

@@ -27,6 +27,7 @@ SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
 ASK_UNIT, BY_SIZE = "FILL IN the unit, the log states none", "no unit is stated, but up to"
 BY_OTHERS: Final = "no unit is stated, but its size, jumps or turns, here or elsewhere, leave"
+BY_SPEED: Final = "no unit is stated, but her positions or approach speed, here or elsewhere, leave"
 AS_RADIANS: Final = (
     "CAREFUL: no unit is stated: so small a rudder is read in radians; a share of full, with unit "
     '= "deg" and gain = the degrees at full, looks the same'
@@ -211,7 +212,9 @@ def other_speed(survey: Inspection, known: float | None, told: str) -> Signal | 
                 f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
             )
             unit = source.stated_unit
-            if unit is None and known is not None:
+            if unit is None and (unit := source.unit_by_size) is not None:
+                why += f"; {BY_SPEED} {unit}"
+            elif unit is None and known is not None:
                 unit = unit_of_speed(source, known)
                 why += f"; {_by_speed(known, told)}"
             if unit is not None:
@@ -232,13 +235,20 @@ def approach_speed(
     ground = [(c, "speed over ground") for c in _over_ground(survey)]
     unsaid = [(c, "a speed, through water or over ground unsaid") for c in _some_speed(survey)]
     for source, words in (*through, *ground, *unsaid):
-        if (unit := source.stated_unit) is not None:
+        if (unit := source.stated_unit or source.unit_by_size) is not None:
             fast = float(np.quantile(np.abs(source.sketch.y), FASTEST))
             said = f"what {source.key} seldom exceeds, {words}"
             return fast * units.factor(unit, "m/s"), said
     if (sailed := approach_by_positions(survey.channels.values())) is not None:
         return sailed, "over ground, by her positions"
     return None, ""
+
+
+def speeds_of(survey: Inspection) -> Iterator[ChannelInspection]:
+    """All that may be her speed: through the water, over ground, or unsaid."""
+    yield from live_sources(survey, "u")
+    yield from _over_ground(survey)
+    yield from _some_speed(survey)
 
 
 def _over_ground(survey: Inspection) -> Iterator[ChannelInspection]:
@@ -272,7 +282,8 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
     if quantity in RUDDERS:
         return "deg", f"; {BY_SIZE} {largest:.3g} can only be deg"
     unit = source.unit_by_size
-    return (unit, f"; {BY_OTHERS} {unit}") if unit is not None else (OPEN, f"; {ASK_UNIT}")
+    by = BY_SPEED if quantity == "u" else BY_OTHERS
+    return (unit, f"; {by} {unit}") if unit is not None else (OPEN, f"; {ASK_UNIT}")
 
 
 def shared_signals(trials: Sequence[Chosen]) -> frozenset[str]:

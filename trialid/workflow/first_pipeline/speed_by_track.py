@@ -1,13 +1,35 @@
 """A logged speed held against the positions of the same log."""
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
 from trialid.alignment.track.antenna import speeds_apart
+from trialid.inspection.inspected import Inspection
 from trialid.inspection.positions import usual_speed
+from trialid.inspection.relations import unit_by_way, unit_of_speed
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import Chosen, Signal
+from trialid.workflow.first_pipeline.choice import Chosen, Signal, speeds_of
+
+
+def with_speed_units(surveys: Sequence[Inspection], stated: float | None) -> list[Inspection]:
+    """The logs, speeds without a unit in the one by which she goes as her positions do.
+
+    Where no position tells it, in the one of the approach speed that is `stated` [m/s].
+    """
+    return [_sized(survey, stated) for survey in surveys]
+
+
+def _sized(survey: Inspection, stated: float | None) -> Inspection:
+    sailed = usual_speed(survey.channels.values())
+    found = dict(survey.channels)
+    for one in speeds_of(survey):
+        if one.stated_unit is None:
+            unit = unit_by_way(one, sailed) if sailed else None
+            unit = unit or (unit_of_speed(one, stated) if stated else None)
+            found[one.key] = dataclasses.replace(one, unit_by_size=unit)
+    return dataclasses.replace(survey, channels=found)
 
 
 def held_against_track(trial: Chosen) -> Chosen:
