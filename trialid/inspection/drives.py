@@ -3,7 +3,7 @@
 from typing import Final
 
 from trialid.inspection.inspected import ChannelInspection, Inspection
-from trialid.inspection.name_words import sides, words
+from trialid.inspection.name_words import LETTERS, SIDES, sides, words
 from trialid.inspection.usual_units import to_si
 from trialid.names.quantities import SIGNALS
 
@@ -82,10 +82,14 @@ def _numbered(survey: Inspection) -> tuple[ChannelInspection, ...]:
 
 
 def _drives(one: ChannelInspection) -> bool:
-    """Whether a channel that moves drives a boat: by its words, or a shaft's letter and unit."""
+    """Whether a channel that moves drives a boat: by its words, or by the letter of a shaft.
+
+    That needs a unit, or no more beside it than a side or a number: `n_left`, `n1`.
+    """
     told = {*words(one.name)}
     turns = to_si(one.stated_unit or "", SIGNALS["n"].unit) is not None
-    shaft = "n" in told and turns
+    plain = one.stated_unit is None and told - {"n"} <= {*SIDES, *LETTERS, *NUMBERS}
+    shaft = "n" in told and (turns or plain)
     told_of = bool(DRIVES & told or shaft) and not NO_DRIVE & told
     return told_of and not one.constant and one.mostly_there
 

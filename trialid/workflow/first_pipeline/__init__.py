@@ -1,5 +1,6 @@
 """A pipeline to begin with, written from what logs hold: every choice stated, none hidden."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,7 +24,12 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
     main_drives,
     named_by_ship,
 )
-from trialid.workflow.first_pipeline.by_other_logs import with_sides, with_units
+from trialid.workflow.first_pipeline.boats.numbered_drives import with_ports
+from trialid.workflow.first_pipeline.by_other_logs import (
+    with_sides,
+    with_sways,
+    with_units,
+)
 from trialid.workflow.first_pipeline.choice import (
     Chosen,
     approach_speed,
@@ -46,8 +52,8 @@ from trialid.workflow.first_pipeline.twin_rudders import (
     with_twins,
 )
 from trialid.workflow.first_pipeline.unit_by_turning import (
-    size_unit,
     with_headings,
+    with_rate_units,
     with_rudder_units,
 )
 
@@ -57,6 +63,7 @@ __all__ = ["Starter", "begun_ship", "starter"]
 STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
 
 
+NUMBER: Final = re.compile(r"\d[\d.e+-]*+")
 NO_SERVICE_SPEED: Final = (
     "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "
     "--speed KNOTS"
@@ -133,7 +140,7 @@ def starter(
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
     if not decays:
-        trials = with_rudder_units([size_unit(one, L, u0) for one in trials], L, u0)
+        trials = with_rudder_units(with_rate_units(trials, L, u0), L, u0)
         trials = with_orders(trials, L / u0, main_drives(own))
     trials = _cut(trials, windows) if windows else trials
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
@@ -158,7 +165,7 @@ def _steered(
     speed: float | None,
 ) -> list[Chosen]:
     """What to take from each log of a ship that is steered; LogError where they hold too little."""
-    chosen = _with_speeds([choose(one, speed) for one in known], speed)
+    chosen = with_sways(with_ports(_with_speeds([choose(one, speed) for one in known], speed)))
     trials = with_revolutions(without_small_roll(with_sides(with_twins(chosen, own))))
     trials = with_tunnels(trials, own)
     trials = [
@@ -217,9 +224,17 @@ def _check_shared(trials: Sequence[Chosen]) -> None:
 
 
 def _to_fill(trials: Sequence[Chosen]) -> list[str]:
+    """What stays open, each question once, with the log where it stands first and how many have it.
+
+    Of the same channel in several logs the numbers in a question differ, and nothing else.
+    """
+    asked: dict[tuple[str, str, str], list[str]] = {}
+    for one in trials:
+        for s in (s for s in one.signals if s.open):
+            question = NUMBER.sub("", s.why.partition("FILL IN")[2].partition(";")[0])
+            same = asked.setdefault((s.quantity, s.source.name, question), [])
+            same += (one.path.name, f": {s.quantity}, {comment(s.why)}")
     return [
-        f"{one.path.name}: {signal.quantity}, {comment(signal.why)}"
-        for one in trials
-        for signal in one.signals
-        if signal.open
+        first + (f" and {len(more) // 2} more" if more else "") + words
+        for first, words, *more in asked.values()
     ]

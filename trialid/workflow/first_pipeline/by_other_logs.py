@@ -17,6 +17,7 @@ from trialid.workflow.first_pipeline.choice import (
     Chosen,
     Signal,
 )
+from trialid.workflow.first_pipeline.further_signals import INWARDS, UNSHOWN
 
 Side = tuple[str, str]
 """Starboard or port, and the log that shows it."""
@@ -53,6 +54,31 @@ def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
         dataclasses.replace(one, signals=tuple(_told(s, known) for s in one.signals))
         for one in trials
     ]
+
+
+def with_sways(trials: Sequence[Chosen]) -> list[Chosen]:
+    """The trials, a sway that goes outwards in the turns of others of them and inwards in none."""
+    against = {s.source.name for one in trials for s, why in one.beside if INWARDS in why}
+    shown = {
+        s.source.name: one.path.name
+        for one in trials
+        for s in one.signals
+        if s.quantity == "v" and s.source.name not in against
+    }
+    return [_with_sway(one, shown) for one in trials]
+
+
+def _with_sway(trial: Chosen, shown: Mapping[str, str]) -> Chosen:
+    def elsewhere(s: Signal, why: str) -> bool:
+        return s.quantity == "v" and UNSHOWN in why and s.source.name in shown
+
+    found = [
+        dataclasses.replace(s, why=f"{s.why}; outwards in {shown[s.source.name]}, of the same name")
+        for s, why in trial.beside
+        if elsewhere(s, why)
+    ]
+    beside = tuple((s, why) for s, why in trial.beside if not elsewhere(s, why))
+    return dataclasses.replace(trial, signals=(*trial.signals, *found), beside=beside)
 
 
 def _shown(trials: Sequence[Chosen]) -> Mapping[str, Side]:

@@ -282,7 +282,7 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
     if quantity in RUDDERS:
         return "deg", f"; {BY_SIZE} {largest:.3g} can only be deg"
     unit = source.unit_by_size
-    by = BY_SPEED if quantity == "u" else BY_OTHERS
+    by = BY_SPEED if quantity in ("u", "v") else BY_OTHERS
     return (unit, f"; {by} {unit}") if unit is not None else (OPEN, f"; {ASK_UNIT}")
 
 

@@ -42,13 +42,15 @@ OUTWARDS: Final = 0.5
 them a model of 3 m had -0.77 to -0.94 in twelve trials of eleven minutes and -0.44 under a rudder
 moved at random; with half of it that one is told too, with twice none is."""
 
+UNSHOWN: Final = "whether it goes outwards in turns does not show"
+INWARDS: Final = "it goes inwards in turns"
+
 
 def with_further(trial: Chosen, live: Live) -> Chosen:
     """The trial with what else its log holds: wind, a sway speed, what is left to the user."""
     trial = with_heading(trial, live)
     trial = dataclasses.replace(trial, beside=(*trial.beside, *_left(trial, live)))
-    found = with_wind(trial, live)
-    return _with_sway(found, plain_signal("v", live, "")) if live.get("v") else found
+    return with_sway(with_wind(trial, live), live)
 
 
 def with_wind(trial: Chosen, live: Live) -> Chosen:
@@ -85,12 +87,15 @@ def _left(trial: Chosen, live: Live) -> Iterator[tuple[Signal, str]]:
             yield plain_signal(name, live, ""), why
 
 
-def _with_sway(trial: Chosen, plain: Signal) -> Chosen:
-    """The trial with her sway speed as a signal, or left to the user with why.
+def with_sway(trial: Chosen, live: Live) -> Chosen:
+    """The trial with her sway speed, where one is logged, as a signal or left to the user with why.
 
     A hull goes outwards in her turns. Inwards it may be positive to port, or that of her bow, and
     nobody can tell.
     """
+    if not live.get("v"):
+        return trial
+    plain = plain_signal("v", live, "")
     by_format = plain.source.guess.positive if plain.source.guess else None
     sway = dataclasses.replace(plain, positive="port" if by_format == "port" else None)
     rate = next((one for one in trial.signals if one.quantity == "r"), None)
@@ -103,9 +108,9 @@ def _with_sway(trial: Chosen, plain: Signal) -> Chosen:
         sure = dataclasses.replace(sway, why=f"{sway.why}; outwards in turns ({told})")
         return dataclasses.replace(trial, signals=(*trial.signals, sure))
     elif found >= OUTWARDS:
-        why = f"it goes inwards in turns ({told}): positive to port, or measured at her bow?"
+        why = f"{INWARDS} ({told}): positive to port, or measured at her bow?"
     else:
-        why = f"whether it goes outwards in turns does not show ({told})"
+        why = f"{UNSHOWN} ({told})"
     return dataclasses.replace(trial, beside=(*trial.beside, (sway, why)))
 
 

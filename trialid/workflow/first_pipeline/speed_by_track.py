@@ -29,6 +29,11 @@ def _sized(survey: Inspection, stated: float | None) -> Inspection:
             unit = unit_by_way(one, sailed) if sailed else None
             unit = unit or (unit_of_speed(one, stated) if stated else None)
             found[one.key] = dataclasses.replace(one, unit_by_size=unit)
+    for sway in survey.sources("v"):
+        ahead = (c for c in survey.sources("u") if c.message == sway.message)
+        unit = next((found[c.key].unit_by_size for c in ahead), None)
+        if sway.stated_unit is None and unit is not None:  # as the speed ahead beside it
+            found[sway.key] = dataclasses.replace(sway, unit_by_size=unit)
     return dataclasses.replace(survey, channels=found)
 
 

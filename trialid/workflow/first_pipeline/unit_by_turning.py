@@ -23,7 +23,6 @@ TURNING: Final = (0.05, 2.5)
 """Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
 further apart than this range is wide."""
 
-DEGREE: Final = np.pi / 180.0
 TURNED: Final = 0.1
 """Rate of turn, in her own lengths and speed, over the rudder in radians: ships, boats and models
 have 0.3 to 3 once they turn, in a fast zig-zag less. Degrees taken for radians give 0.005 to 0.05.
@@ -54,7 +53,9 @@ def _turned(one: ChannelInspection, seconds: float) -> ChannelInspection:
     before = t <= t[-1] - seconds
     turned = np.interp(t[before] + seconds, t, one.sketch.y) - one.sketch.y[before]
     most = float(np.quantile(np.abs(turned), 0.99)) if len(turned) else 0.0
-    return dataclasses.replace(one, unit_by_size=_one_fitting(most, {"rad": 1.0, "deg": DEGREE}))
+    return dataclasses.replace(
+        one, unit_by_size=_one_fitting(most, {u: units.factor(u, "rad") for u in ("rad", "deg")})
+    )
 
 
 def _one_fitting(most: float, sizes: Mapping[str, float]) -> str | None:
@@ -63,27 +64,53 @@ def _one_fitting(most: float, sizes: Mapping[str, float]) -> str | None:
     return fitting[0] if len(fitting) == 1 else None
 
 
-def size_unit(trial: Chosen, length: float, speed: float) -> Chosen:
-    """The same with the unit of a yaw rate by its size, where nothing else tells it.
+def with_rate_units(trials: Sequence[Chosen], length: float, speed: float) -> list[Chosen]:
+    """The trials, yaw rates in the unit that the heading of another log measures, or their size.
 
     A ship in a manoeuvre turns with r L / U between 0.05 and 2.5, her own length [m] and speed
-    [m/s]: faster she would spin about herself, slower is no manoeuvre. Units lie further apart.
+    [m/s]: faster she would spin about herself, slower is no manoeuvre. Units lie further apart. A
+    log in which she goes straight on has the unit of those of the recorder in which she turns.
     """
-    signals = tuple(_sized(one, length / speed) for one in trial.signals)
-    return dataclasses.replace(trial, signals=signals)
+    rates = [(s, one.path.name) for one in trials for s in one.signals if s.quantity == "r"]
+    known, most = dict[str, dict[str, str]](), dict[str, float]()
+    for rate, log in rates:
+        name = rate.source.name
+        largest = float(np.quantile(np.abs(rate.source.sketch.y), 0.99))
+        most[name] = max(most.get(name, 0.0), largest)
+        if rate.unit not in (None, OPEN):
+            known.setdefault(name, {}).setdefault(str(rate.unit), log)
+    seconds = length / speed
+    return [
+        dataclasses.replace(
+            one, signals=tuple(_with_unit(s, known, most, seconds) for s in one.signals)
+        )
+        for one in trials
+    ]
 
 
-def _sized(signal: Signal, seconds: float) -> Signal:
-    if signal.quantity != "r" or signal.unit != OPEN or _turns(signal):
+def _with_unit(
+    signal: Signal,
+    known: Mapping[str, Mapping[str, str]],
+    most: Mapping[str, float],
+    seconds: float,
+) -> Signal:
+    """A rate as measured elsewhere, or by the largest that a log of it has."""
+    if signal.quantity != "r" or signal.unit != OPEN:
         return signal
-    largest = float(np.quantile(np.abs(signal.source.sketch.y), 0.99))
-    sizes = {u: largest * units.factor(u, "rad/s") * seconds for u in RATES}
-    if (unit := _one_fitting(1.0, sizes)) is None:
+    measured = known.get(signal.source.name, {})
+    if len(measured) == 1:
+        [(elsewhere, log)] = measured.items()
+        return _answered(signal, elsewhere, f"unit as in {log}, of the same name")
+    sizes = {u: most[signal.source.name] * units.factor(u, "rad/s") * seconds for u in RATES}
+    unit = _one_fitting(1.0, sizes)
+    if measured or unit is None or _turns(signal):
         return signal
     told = ", ".join(f"{size:.2g} in {u}" for u, size in sizes.items())
-    words = f"unit by its size: r L / U would be {told}"
-    why = signal.why.replace(ASK_UNIT, words)
-    return dataclasses.replace(signal, unit=unit, why=why)
+    return _answered(signal, unit, f"unit by its size: r L / U would be {told}")
+
+
+def _answered(signal: Signal, unit: str, words: str) -> Signal:
+    return dataclasses.replace(signal, unit=unit, why=signal.why.replace(ASK_UNIT, words))
 
 
 def _turns(signal: Signal) -> bool:

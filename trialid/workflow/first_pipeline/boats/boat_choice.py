@@ -32,10 +32,17 @@ from trialid.workflow.first_pipeline.choice import (
     rate_signal,
     through_water,
 )
-from trialid.workflow.first_pipeline.further_signals import with_further, with_heading, with_wind
+from trialid.workflow.first_pipeline.further_signals import (
+    with_further,
+    with_heading,
+    with_sway,
+    with_wind,
+)
 from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
+CONFIRMED: Final = "side confirmed by the turn"
+ASK_PORT: Final = "FILL IN the unit after settling which is to port: the motion does not tell"
 SHARE: Final = 1.05
 """No share of full is larger; a stated thrust of a boat that moves is."""
 FULL: Final = 100.0
@@ -111,7 +118,7 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
         told = f"median length of {speed.source.name}"
     signals = (*angle_signals(survey, drives, turn), *drives, turn, speed)
     boat = Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
-    return with_wind(with_course(with_heading(boat, live)), live)
+    return with_sway(with_wind(with_course(with_heading(boat, live)), live), live)
 
 
 def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
@@ -185,10 +192,10 @@ def _agreement(
     if found is None:
         if has_side(port):
             return True, "side by its name, the motion does not confirm it"
-        return False, "FILL IN the unit after settling which is to port: the motion does not tell"
+        return False, ASK_PORT
     told = f"correlation of port less starboard with {found.by} {found.strength:+.2f}"
     if found.side == "starboard":
-        return True, f"side confirmed by the turn: {told}"
+        return True, f"{CONFIRMED}: {told}"
     return False, (
         f"FILL IN the unit after settling this: she turns towards the stronger one ({told}): port "
         f"and starboard are exchanged, or the side of {turn.quantity} is wrong"

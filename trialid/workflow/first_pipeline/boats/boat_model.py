@@ -20,29 +20,35 @@ def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     astern = _goes_astern(trials, ship)
     free = [name for name in gains if astern or "ahead" in name]
     held = ", ".join(f"{n} = {p.start:.4g}" for n, p in gains.items() if n not in free)
+    sway = _all_have("v", trials)
+    turn = "r" if _all_have("r", trials) else "psi"  # then the heading is fitted
+    outputs = ["u", *(["v"] if sway else []), turn]
+    states = [*outputs[:-1], "r", *(["psi"] if turn == "psi" else [])]
+    damping = ["still_water_sway"] if sway else []
+    effects = [kind, "surge_resistance", *damping, "still_water_yaw", "still_water_yaw_quadratic"]
+    unlogged = "" if sway else "  # not every log has sway; the run says if it shows"
     yield "[model]"
-    turn, states = ("r", '"u", "r"') if _rate(trials) else ("psi", '"u", "r", "psi"')
-    yield f"states = [{states}]  # no log of such a boat has sway; the run says if it shows"
+    yield f"states = [{_quoted(states)}]{unlogged}"
     yield "# thrust k n |n| (k T where thrust is logged) at the places the ship file states"
-    yield (
-        f'effects = ["{kind}", "surge_resistance", "still_water_yaw", "still_water_yaw_quadratic"]'
-    )
+    yield f"effects = [{_quoted(effects)}]"
     if not astern:
         yield f"values = {{ {held} }}  # no fitted trial goes astern: nothing tells it"
     yield ""
     yield "[identify]"
     yield "# A record of motions gives accelerations, never forces: with the mass held, gains and"
     yield "# damping are relative to it, and the inertia in yaw to the arm of the thrusters."
-    names = ", ".join(f'"{name}"' for name in (*free, "Xuu", "I_zz", "Nr0", "Nrar0"))
-    yield f"free = [{names}]"
+    yield f"free = [{_quoted([*free, 'Xuu', *(['Yv0'] if sway else []), 'I_zz', 'Nr0', 'Nrar0'])}]"
     yield "bounds = { I_zz = [0.0, inf] }"
-    yield f'outputs = ["u", "{turn}"]'
+    yield f"outputs = [{_quoted(outputs)}]"
     yield 'nuisance = ["initial_state"]  # of each trial, estimated too'
 
 
-def _rate(trials: Sequence[Chosen]) -> bool:
-    """Whether every log has the yaw rate; else the heading is fitted."""
-    return all("r" in trial.quantities for trial in trials)
+def _quoted(names: Sequence[str]) -> str:
+    return ", ".join(f'"{name}"' for name in names)
+
+
+def _all_have(quantity: str, trials: Sequence[Chosen]) -> bool:
+    return all(quantity in trial.quantities for trial in trials)
 
 
 def _goes_astern(trials: Sequence[Chosen], ship: Ship) -> bool:
