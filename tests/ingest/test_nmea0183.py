@@ -201,7 +201,7 @@ def test_units_sides_and_words(tmp_path):
 def test_every_unit_can_be_converted():
     from trialid.ingest.nmea0183.nmea0183_instruments import INSTRUMENTS
     from trialid.ingest.nmea0183.nmea0183_transducers import TRANSDUCER_UNITS
-    from trialid.ingest.signalk_log import PATHS
+    from trialid.ingest.signalk.signalk_deltas import PATHS
     from trialid.names import quantities, units
 
     fields = [f for layouts in INSTRUMENTS.values() for layout in layouts for f in layout.fields]

@@ -131,10 +131,11 @@ def of_sentences(name: str, around: Around, head: str = "") -> Format:
     return Format(name, write)
 
 
-def delta(name: str, y: float) -> str:
+def delta(name: str, y: float, t: int | None = None) -> str:
     value = {"roll": y, "pitch": None, "yaw": None} if name == "phi" else y
-    update = {"$source": "can.11", "values": [{"path": PATHS[name], "value": value}]}
-    return f"I;{json.dumps({'context': 'vessels.self', 'updates': [update]})}"
+    stamp = {} if t is None else {"timestamp": f"{iso(t - t % 1_000_000)[:-1]}{t % 1_000_000:06d}Z"}
+    update = {"$source": "can.11", **stamp, "values": [{"path": PATHS[name], "value": value}]}
+    return json.dumps({"context": "vessels.self", "updates": [update]})
 
 
 def group(name: str, y: float, t: int) -> str:
@@ -146,14 +147,16 @@ def group(name: str, y: float, t: int) -> str:
     return f"A;{iso(t)},2,{pgn},11,255,8,{data}"
 
 
-def signal_k(name: str, line: Callable[[str, float, int], str], channels, resolution) -> Format:
+def signal_k(
+    name: str, line: Callable[[str, float, int], str], channels, resolution, stamped=True
+) -> Format:
     def write(path: Path, series: Mapping[str, Series]) -> Written:
         lines = sorted(
             (milliseconds(t), line(quantity, float(y), int(t)))
             for quantity, (stamps, values) in series.items()
             for t, y in zip(stamps.tolist(), values, strict=True)
         )
-        path.write_text("".join(f"{t};{text}\n" for t, text in lines))
+        path.write_text("".join(f"{t};{text}\n" if stamped else f"{text}\n" for t, text in lines))
         sources = tuple(
             SignalSource(
                 quantity, channels[quantity], None, "starboard" if quantity == "delta" else None
@@ -165,6 +168,10 @@ def signal_k(name: str, line: Callable[[str, float, int], str], channels, resolu
     return Format(name, write)
 
 
+OF_DELTAS = {
+    name: f"{path}/can.11:{'roll' if name == 'phi' else 'value'}" for name, path in PATHS.items()
+}
+
 FORMATS: tuple[Format, ...] = (
     of_sentences("NMEA 0183, ISO stamps", with_iso),
     of_sentences("NMEA 0183, tag blocks", with_tag_block),
@@ -173,13 +180,11 @@ FORMATS: tuple[Format, ...] = (
     of_sentences("Signal K, sentences", with_signal_k),
     signal_k(
         "Signal K, deltas",
-        lambda name, y, t: delta(name, y),
-        {
-            name: f"{path}/can.11:{'roll' if name == 'phi' else 'value'}"
-            for name, path in PATHS.items()
-        },
+        lambda name, y, t: f"I;{delta(name, y)}",
+        OF_DELTAS,
         lambda name: 1e-12,
     ),
+    signal_k("Signal K, deltas alone", delta, OF_DELTAS, lambda name: 1e-12, stamped=False),
     signal_k(
         "Signal K, NMEA 2000",
         group,

@@ -155,6 +155,18 @@ def test_two_sources_stay_two_and_the_format_goes_before_the_name(recorded):
     assert last.constant
 
 
+@pytest.mark.parametrize("speed", ["log:speed", "compass:speed"])
+def test_a_true_heading_goes_before_a_magnetic_one(recorded, speed):
+    """Whatever else its message has: by a magnetic one wind and current come from elsewhere."""
+    t = np.arange(0, 300, 0.1)
+    found = recorded(
+        channel("compass:magnetic_heading", t, np.sin(t), unit="rad", quantity="psi"),
+        channel("gyro:heading", t, np.sin(t), unit="rad", quantity="psi"),
+        channel(speed, t, 8.0 + 0.1 * np.sin(t), unit="m/s", quantity="u"),
+    )
+    assert found.sources("psi")[0].name == "gyro:heading"
+
+
 def test_sources_in_two_units_are_compared_in_one(recorded):
     t = np.arange(0, 300, 0.1)
     found = recorded(

@@ -11,7 +11,7 @@ from trialid.ingest import read
 from trialid.ingest.mavlink.mavlink_meanings import DATAFLASH, MAVLINK
 from trialid.ingest.mcap.mcap_meaning import field_meaning
 from trialid.ingest.mcap.mcap_names import Source
-from trialid.ingest.signalk_log import PATHS
+from trialid.ingest.signalk.signalk_deltas import PATHS
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
 

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trialid.errors import LogError
-from trialid.ingest import fix_quality, gzipped, signalk_log, ulog_log
+from trialid.ingest import fix_quality, gzipped, ulog_log
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted
 from trialid.ingest.can import can_log, canboat_log
 from trialid.ingest.mavlink import dataflash_log, tlog_log
 from trialid.ingest.mcap import mcap_log
 from trialid.ingest.nmea0183 import nmea0183_log
 from trialid.ingest.ros import bag_log, db3_log
+from trialid.ingest.signalk import signalk_deltas, signalk_log
 from trialid.ingest.tables import csv_log, json_log, mat_log, parquet_log
 from trialid.ingest.tables.excel import excel_log
 from trialid.ingest.tables.templates import template_draft
@@ -40,6 +41,7 @@ ADAPTERS: tuple[Adapter, ...] = (
     *canboat_log.ADAPTERS,
     nmea0183_log.ADAPTER,
     signalk_log.ADAPTER,
+    signalk_deltas.ADAPTER,
     ulog_log.ADAPTER,
     excel_log.ADAPTER,
     parquet_log.ADAPTER,

@@ -215,8 +215,8 @@ class Inspection:
         """Channels that look like a quantity, the likeliest to serve first.
 
         Those that move come first; of these those the format defines before those found by name or
-        relation; then those with more values over more time, the fastest, and those whose message
-        gives the most other quantities, which then share a clock.
+        relation; then those with more values over more time, the fastest, those that do not count
+        from magnetic north, and those whose message gives the most others, which share its clock.
         """
         known = [c for c in self.channels.values() if c.guess]
         beside = Counter(c.message for c in known)
@@ -227,7 +227,7 @@ class Inspection:
 _TRUST = {"format": 0, "exact name": 0, "name": 1, "relation": 2}
 
 
-def _worth(one: ChannelInspection) -> tuple[bool, int, float, float]:
+def _worth(one: ChannelInspection) -> tuple[bool, int, float, float, bool]:
     """Sorts the better source of a quantity first."""
     assert one.guess is not None
     covered = max(one.end - one.start, 1) / 1e9 - one.gaps.total
@@ -236,4 +236,5 @@ def _worth(one: ChannelInspection) -> tuple[bool, int, float, float]:
         _TRUST[one.guess.how],
         -round(covered * (1 - one.missing), -1),
         -float(f"{one.rate:.2g}"),
+        "magnetic" in one.name.lower(),
     )

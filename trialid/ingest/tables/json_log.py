@@ -42,8 +42,10 @@ MOST_BYTES: Final = 50_000_000
 MOST_VALUES: Final = 50_000_000
 """Numbers of one log; a record may name any fields, and all others lack them."""
 FAILURES: Final = (ValueError, RecursionError)
-CANBOAT: Final = frozenset(("pgn", "src", "fields"))
-"""What canboat's analyzer writes: messages of all kinds, and units by its own options."""
+DELTA: Final = re.compile(rb'[^\n]*"updates"\s*+:')
+"""The first line of Signal K's deltas, which are no table."""
+CANBOAT: Final = re.compile(rb'[^\n]*"pgn"\s*+:')
+"""And of what canboat's analyzer writes: messages of all kinds, with units by its own options."""
 
 
 def recognises(start: bytes) -> bool:
@@ -52,7 +54,9 @@ def recognises(start: bytes) -> bool:
 
 
 def nearly(start: bytes) -> str | None:
-    """What JSON without a time lacks."""
+    """What JSON lacks that is no log to be read."""
+    if CANBOAT.match(start):
+        return "it is what canboat's analyzer made of a log, in units not stated; give that log"
     if not may_be_one(start) or _times(start):
         return None
     return "it is JSON, but none of its fields is called a time; a template says which is"
@@ -61,7 +65,7 @@ def nearly(start: bytes) -> str | None:
 def may_be_one(start: bytes) -> bool:
     """Whether it begins as a log does, and not as one object that says something of a log."""
     text = start.removeprefix(UTF_8).lstrip()
-    if BEGINS.match(text) is None:
+    if BEGINS.match(text) is None or DELTA.match(text) or CANBOAT.match(text):
         return False
     first, ended, more = text.partition(b"\n")
     if first.startswith(b"[") or COLUMNS.match(text):
@@ -191,12 +195,7 @@ def _turned(path: Path, found: Record) -> list[Record]:
 
 
 def _flat(path: Path, record: Record) -> Record:
-    """Its plain values by name; LogError for a nest without end, and for what has no units."""
-    if record.keys() >= CANBOAT:
-        raise LogError(
-            f"{path}: is what canboat's analyzer made of a log, without saying in which units; "
-            "give the log that it read"
-        )
+    """Its plain values by name; LogError for a nest without end."""
     try:
         return dict(_fields(record))
     except RecursionError:

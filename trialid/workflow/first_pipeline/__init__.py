@@ -63,7 +63,7 @@ __all__ = ["Starter", "begun_ship", "starter"]
 STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
 
 
-NUMBER: Final = re.compile(r"\d[\d.e+-]*+")
+FIGURES: Final = re.compile(r"\d[\d.e+-]*+")
 NO_SERVICE_SPEED: Final = (
     "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "
     "--speed KNOTS"
@@ -231,7 +231,7 @@ def _to_fill(trials: Sequence[Chosen]) -> list[str]:
     asked: dict[tuple[str, str, str], list[str]] = {}
     for one in trials:
         for s in (s for s in one.signals if s.open):
-            question = NUMBER.sub("", s.why.partition("FILL IN")[2].partition(";")[0])
+            question = FIGURES.sub("", s.why.partition("FILL IN")[2].partition(";")[0])
             same = asked.setdefault((s.quantity, s.source.name, question), [])
             same += (one.path.name, f": {s.quantity}, {comment(s.why)}")
     return [
