@@ -36,7 +36,8 @@ def logs(
         told = drives + 0.2 * rng.standard_normal(drives.shape)
         columns = {f"{n} {unit}".strip(): y for n, y in zip(names, told.T, strict=True)}
         columns["yaw_rate"] = np.rad2deg(seen["r"]) + 0.4 * rng.standard_normal(len(T))
-        columns["heading"] = (np.rad2deg(seen["psi"]) + 355.0) % 360.0
+        heading = np.rad2deg(seen["psi"]) + 0.2 * rng.standard_normal(len(T))
+        columns["heading"] = (heading + 355.0) % 360.0
         columns["stw [m/s]"] = seen["u"]
         if sway is not None:
             columns["v [m/s]"] = -sway * seen["r"] + 0.02 * rng.standard_normal(len(T))
@@ -67,12 +68,18 @@ def test_a_rate_of_a_log_straight_on_has_the_unit_of_one_that_turns(tmp_path: Pa
     paths = logs(tmp_path, ("motor_left", "motor_right"), TURNS, STRAIGHT)
     made = begun(tmp_path, *paths)
     assert {signals_of(made, p.name)["r"] for p in paths} == {("yaw_rate", "deg/s")}
+    assert {signals_of(made, p.name)["psi"][0] for p in paths} == {"heading"}
+
+
+def test_a_heading_that_no_turn_shows_is_left_out(tmp_path: Path) -> None:
+    paths = logs(tmp_path, ("motor_left", "motor_right"), STRAIGHT)
+    assert "psi" not in signals_of(begun(tmp_path, *paths), "straight.csv")
 
 
 def test_a_sway_that_is_logged_is_simulated(tmp_path: Path) -> None:
     paths = logs(tmp_path, ("motor_left", "motor_right"), TURNS, STRAIGHT, sway=0.4)
     text = begun(tmp_path, *paths).files[tmp_path / "p.toml"]
-    assert "outwards in turns.csv, of the same name" in text
+    assert text.count("as in turns.csv, of the same name") == 3  # rate, heading, sway
     model = pipeline_file.load(tmp_path / "p.toml")
     assert model.model.states == ("u", "v", "r")
     assert "still_water_sway" in model.model.effects

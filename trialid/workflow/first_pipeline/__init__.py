@@ -27,8 +27,8 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
 from trialid.workflow.first_pipeline.boats.numbered_drives import with_ports
 from trialid.workflow.first_pipeline.by_other_logs import (
     with_sides,
-    with_sways,
     with_units,
+    with_unshown,
 )
 from trialid.workflow.first_pipeline.choice import (
     Chosen,
@@ -165,7 +165,7 @@ def _steered(
     speed: float | None,
 ) -> list[Chosen]:
     """What to take from each log of a ship that is steered; LogError where they hold too little."""
-    chosen = with_sways(with_ports(_with_speeds([choose(one, speed) for one in known], speed)))
+    chosen = with_unshown(with_ports(_with_speeds([choose(one, speed) for one in known], speed)))
     trials = with_revolutions(without_small_roll(with_sides(with_twins(chosen, own))))
     trials = with_tunnels(trials, own)
     trials = [

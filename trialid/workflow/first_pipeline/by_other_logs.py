@@ -56,29 +56,28 @@ def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
     ]
 
 
-def with_sways(trials: Sequence[Chosen]) -> list[Chosen]:
-    """The trials, a sway that goes outwards in the turns of others of them and inwards in none."""
+def with_unshown(trials: Sequence[Chosen]) -> list[Chosen]:
+    """The trials, a sway or a heading that the turns of others show, and those of none deny."""
     against = {s.source.name for one in trials for s, why in one.beside if INWARDS in why}
     shown = {
-        s.source.name: one.path.name
+        s.source.name: (s.positive, one.path.name)
         for one in trials
         for s in one.signals
-        if s.quantity == "v" and s.source.name not in against
+        if s.quantity in ("v", "psi") and s.source.name not in against
     }
-    return [_with_sway(one, shown) for one in trials]
+    return [_with_unshown(one, shown) for one in trials]
 
 
-def _with_sway(trial: Chosen, shown: Mapping[str, str]) -> Chosen:
-    def elsewhere(s: Signal, why: str) -> bool:
-        return s.quantity == "v" and UNSHOWN in why and s.source.name in shown
-
-    found = [
-        dataclasses.replace(s, why=f"{s.why}; outwards in {shown[s.source.name]}, of the same name")
-        for s, why in trial.beside
-        if elsewhere(s, why)
-    ]
-    beside = tuple((s, why) for s, why in trial.beside if not elsewhere(s, why))
-    return dataclasses.replace(trial, signals=(*trial.signals, *found), beside=beside)
+def _with_unshown(trial: Chosen, shown: Mapping[str, tuple[str | None, str]]) -> Chosen:
+    signals, beside = [*trial.signals], list[tuple[Signal, str]]()
+    for s, why in trial.beside:
+        if not any(words in why for words in UNSHOWN) or s.source.name not in shown:
+            beside.append((s, why))
+            continue
+        positive, log = shown[s.source.name]
+        words = f"{s.why}; as in {log}, of the same name; the motion here does not show it"
+        signals.append(dataclasses.replace(s, positive=positive, why=words))
+    return dataclasses.replace(trial, signals=tuple(signals), beside=tuple(beside))
 
 
 def _shown(trials: Sequence[Chosen]) -> Mapping[str, Side]:

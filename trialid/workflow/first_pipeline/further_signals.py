@@ -9,6 +9,7 @@ import numpy as np
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.relations import slope_agreement
 from trialid.inspection.sketch import on_one_clock
+from trialid.names import units
 from trialid.workflow.first_pipeline.choice import OPEN, SURE, Chosen, Live, Signal, plain_signal
 
 LEFT: Final[Mapping[str, str]] = {
@@ -42,8 +43,13 @@ OUTWARDS: Final = 0.5
 them a model of 3 m had -0.77 to -0.94 in twelve trials of eleven minutes and -0.44 under a rudder
 moved at random; with half of it that one is told too, with twice none is."""
 
-UNSHOWN: Final = "whether it goes outwards in turns does not show"
+SIDEWAYS: Final = "whether it goes outwards in turns does not show"
+STRAIGHT: Final = "she goes straight on, and whether the rate goes by it does not show"
+UNSHOWN: Final = (SIDEWAYS, STRAIGHT)
 INWARDS: Final = "it goes inwards in turns"
+TURNED: Final = 10.0
+"""Degrees within which the heading of a log straight on stays. A rate that stood still in a turn is
+not left beside it for that; at half of it and at twice the same logs are straight on."""
 
 
 def with_further(trial: Chosen, live: Live) -> Chosen:
@@ -73,17 +79,27 @@ def with_heading(trial: Chosen, live: Live) -> Chosen:
         return trial
     heading = plain_signal("psi", live, IN_SPEED if trial.over_ground else BESIDE_RATE)
     found = slope_agreement(rate.source, heading.source)
-    if heading.open or abs(found) <= SURE:
+    if heading.open:
         return trial
+    if abs(found) <= SURE:
+        straight = ((heading, STRAIGHT),) if _straight_on(heading) else ()
+        return dataclasses.replace(trial, beside=(*trial.beside, *straight))
     if (found < 0.0) != (rate.positive == "port"):
         why = f"{heading.why}{COUNTED if heading.source.angle else ''}"
         heading = dataclasses.replace(heading, positive="port", why=why)
     return dataclasses.replace(trial, signals=(*trial.signals, heading))
 
 
+def _straight_on(heading: Signal) -> bool:
+    """Whether a heading stays where it is; that of a quaternion is in radians."""
+    size = units.factor(heading.unit or "rad", "rad")
+    return float(np.ptp(np.unwrap(heading.source.sketch.y * size))) < np.deg2rad(TURNED)
+
+
 def _left(trial: Chosen, live: Live) -> Iterator[tuple[Signal, str]]:
+    there = trial.quantities | {one.quantity for one, _ in trial.beside}
     for name, why in LEFT.items():
-        if live.get(name) and name not in trial.quantities:
+        if live.get(name) and name not in there:
             yield plain_signal(name, live, ""), why
 
 
@@ -110,7 +126,7 @@ def with_sway(trial: Chosen, live: Live) -> Chosen:
     elif found >= OUTWARDS:
         why = f"{INWARDS} ({told}): positive to port, or measured at her bow?"
     else:
-        why = f"{UNSHOWN} ({told})"
+        why = f"{SIDEWAYS} ({told})"
     return dataclasses.replace(trial, beside=(*trial.beside, (sway, why)))
 
 

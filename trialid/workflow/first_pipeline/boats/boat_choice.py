@@ -12,6 +12,7 @@ from trialid.errors import LogError
 from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
+from trialid.inspection.positions import positions
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
@@ -108,9 +109,11 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     speed = through_water(live, known, told) if live.get("u") else velocity_speed(survey)
     speed = speed or other_speed(survey, known, told)
     if speed is None:
+        there = positions(survey.channels.values())
+        beside = "her positions tell it, see `trialid guide track`; or " if there else ""
         raise LogError(
             f"{survey.path}: she steers by two thrusters, and no speed is recognised, which is "
-            "half of what they do; map one by hand, see `trialid inspect --all "
+            f"half of what they do; {beside}map one by hand, see `trialid inspect --all "
             f"{shlex.quote(str(survey.path))}`"
         )
     if known is None and speed.source.angle == "speed":
