@@ -223,6 +223,8 @@ def _begin(
     begun = begin_pipeline(surveys, pipeline, ship, speed, given)
     for path in begun.files:
         note(f"Written: {path}")
+    for words in begun.left_out:
+        note(f"Left out: {words}")
     for words in begun.to_fill:
         note(f"To fill in: {words}")
     if not begun.to_fill:
@@ -249,7 +251,7 @@ def begin_pipeline(
     write_new(begun.files)
     if begun.to_fill:
         return begun
-    windows = manoeuvre_windows(load(pipeline), [one.duration for one in surveys])
+    windows = manoeuvre_windows(load(pipeline), [one.survey.duration for one in begun.trials])
     if not any(windows):
         return begun
     cut = starter(surveys, pipeline, ship, given, stated, windows)

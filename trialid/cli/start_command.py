@@ -98,6 +98,8 @@ def _told(begun: "Starter") -> Iterator[str]:
     if left := [*_left_to_user(begun)]:
         yield f"In the log too, commented out in the pipeline with why: {', '.join(left)}."
     yield f"Written, each choice with its reason: {' and '.join(map(str, begun.files))}."
+    for words in begun.left_out:
+        yield f"Left out: {words}."
     for words in begun.to_fill:
         yield f"To fill in: {words}"
 

@@ -37,7 +37,7 @@ from trialid.workflow.first_pipeline.choice import (
     shared_signals,
 )
 from trialid.workflow.first_pipeline.long_log import Windows
-from trialid.workflow.first_pipeline.not_begun import no_speed
+from trialid.workflow.first_pipeline.not_begun import TooLittle, no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_revolutions
@@ -78,11 +78,15 @@ NO_WAY: Final = (
 
 @dataclass(frozen=True)
 class Starter:
-    """Files to write, text by path, what was chosen, and what the user must still fill in."""
+    """Files to write, text by path, what was chosen, and what the user must still fill in.
+
+    `left_out` says which of several logs are no trial, and why.
+    """
 
     files: dict[Path, str]
     to_fill: tuple[str, ...]
     trials: tuple[Chosen, ...]
+    left_out: tuple[str, ...] = ()
 
 
 def starter(
@@ -119,7 +123,7 @@ def starter(
     length = given.length if own is None else own.particulars.get("L")
     known = without_axes_of_earth(_with_units(surveys, length, speed))
     decays = decays_among(known, speed, given.length, own)
-    trials = decays or _steered(known, surveys, own, speed)
+    trials, left_out = (decays, []) if decays else _steered(known, surveys, own, speed)
     if ship is None and given.length is None:
         raise LogError(
             f"{pipeline}: no log knows the ship; add --ship SHIP.toml, or --length METRES, and "
@@ -143,8 +147,8 @@ def starter(
         trials = with_rudder_units(with_rate_units(trials, L, u0), L, u0)
         trials = with_orders(trials, L / u0, main_drives(own))
     trials = _cut(trials, windows) if windows else trials
-    files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials)
-    return Starter(files, tuple(_to_fill(trials)), tuple(trials))
+    files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials, left_out=left_out)
+    return Starter(files, tuple(_to_fill(trials)), tuple(trials), tuple(left_out))
 
 
 def _with_units(
@@ -163,17 +167,33 @@ def _steered(
     surveys: Sequence[Inspection],
     own: Ship | None,
     speed: float | None,
-) -> list[Chosen]:
-    """What to take from each log of a ship that is steered; LogError where they hold too little."""
-    chosen = with_unshown(with_ports(_with_speeds([choose(one, speed) for one in known], speed)))
+) -> tuple[list[Chosen], list[str]]:
+    """What to take from each log of a ship that is steered, and why from some nothing is taken.
+
+    LogError where none holds enough, or where they do not hold the same.
+    """
+    tried = [_tried(one, speed) for one in known]
+    too_little = [one for one in tried if isinstance(one, TooLittle)]
+    able = [one for one in tried if isinstance(one, Chosen)]
+    if not able:
+        raise too_little[0]
+    chosen = with_unshown(with_ports(_with_speeds(able, speed)))
     trials = with_revolutions(without_small_roll(with_sides(with_twins(chosen, own))))
     trials = with_tunnels(trials, own)
+    as_read = [one for one, found in zip(surveys, tried, strict=True) if isinstance(found, Chosen)]
     trials = [
         with_velocities_beside(held_against_track(one), survey)
-        for one, survey in zip(trials, surveys, strict=True)
+        for one, survey in zip(trials, as_read, strict=True)
     ]
     _check_shared(trials)
-    return trials
+    return trials, [one.reason for one in too_little]
+
+
+def _tried(survey: Inspection, speed: float | None) -> Chosen | TooLittle:
+    try:
+        return choose(survey, speed)
+    except TooLittle as error:
+        return error
 
 
 def _cut(trials: Sequence[Chosen], windows: Windows) -> list[Chosen]:

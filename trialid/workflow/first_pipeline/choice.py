@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 
-from trialid.errors import LogError
 from trialid.inspection import channel_names
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import FASTEST, approach_by_positions
@@ -105,7 +104,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
 
     Raises
     ------
-    LogError
+    TooLittle
         It holds no rudder, or no motion; the message names the channels to map by hand.
     """
     live = {name: live_sources(survey, name) for name in SIGNALS}
@@ -113,7 +112,7 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     motions = [name for name in ("r", "psi", "phi") if live[name]]
     if rudder is None or not {"r", "psi"} & {*motions}:
         missing = RUDDERS if rudder is None else ("r", "psi")
-        raise LogError(f"{survey.path}: {no_signal(survey, missing)}")
+        raise no_signal(survey, missing)
     r = rate_signal(live) if live["r"] else None
     signals = [rudder_signal(rudder, live, r)]
     signals += [r] if r else [plain_signal("psi", live, "no yaw rate is logged")]

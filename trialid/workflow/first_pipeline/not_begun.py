@@ -4,26 +4,44 @@ import shlex
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from trialid.errors import LogError
 from trialid.inspection import Inspection
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.positions import positions
 from trialid.inspection.usual_units import to_si
 from trialid.ship.estimate.particulars_given import KNOT
 
 NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
 
 
-def no_signal(survey: Inspection, quantities: Sequence[str]) -> str:
+class TooLittle(LogError):
+    """One log holds too little to begin with: `reason` why, and beside others it is left out."""
+
+    def __init__(self, survey: Inspection, reason: str, then: str) -> None:
+        self.reason = f"{survey.path.name}: {reason}"
+        super().__init__(f"{survey.path}: {reason}, so no pipeline can be begun; {then}")
+
+
+def no_signal(survey: Inspection, quantities: Sequence[str]) -> TooLittle:
     """That a log has no rudder or no motion that moves, which of its channels seemed to be, why."""
     called = "rudder or rudder order" if "delta" in quantities else "yaw rate or heading"
-    unlike = (words for q in quantities for one in survey.sources(q) for words in _useless(one))
-    return "; ".join(
-        (
-            f"no moving {called} is recognised among its {len(survey.channels)} channels, so no "
-            "pipeline can be begun",
-            *unlike,
-            _what_then(survey),
-        )
+    sources = [one for q in quantities for one in survey.sources(q)]
+    unlike = [words for one in sources for words in _useless(one)]
+    among = f"among its {len(survey.channels)} channels"
+    why = f" ({'; '.join(unlike)})" if unlike else ""
+    reason = f"no moving {called} is recognised {among}{why}"
+    return TooLittle(survey, reason, _what_then(survey, bool(sources)))
+
+
+def no_speed_of_boat(survey: Inspection) -> TooLittle:
+    """That a boat with two thrusters has no speed, and what may tell it."""
+    there = positions(survey.channels.values())
+    beside = "her positions tell it, see `trialid guide track`; or " if there else ""
+    return TooLittle(
+        survey,
+        "she steers by two thrusters, and no speed is recognised, which is half of what they do",
+        f"{beside}map one by hand, see `trialid inspect --all {shlex.quote(str(survey.path))}`",
     )
 
 
@@ -39,9 +57,9 @@ def _useless(one: ChannelInspection) -> Iterator[str]:
         )
 
 
-def _what_then(survey: Inspection) -> str:
-    """What to do where no rudder or no motion is recognised."""
-    drives = drives_among(survey)
+def _what_then(survey: Inspection, called: bool) -> str:
+    """What to do where no rudder or no motion is recognised, or one is that is `called` so."""
+    drives = [] if called else drives_among(survey)
     if drives:
         return (
             f"she seems to steer by thrusters ({', '.join(drives[:4])}): two are begun with, "

@@ -45,14 +45,25 @@ ship of 160 m at 15 knots is 1 s."""
 
 
 def pipeline_text(
-    path: Path, ship_path: Path, ship: Ship, length: float, speed: float, trials: Sequence[Chosen]
+    path: Path,
+    ship_path: Path,
+    ship: Ship,
+    length: float,
+    speed: float,
+    trials: Sequence[Chosen],
+    *,
+    left_out: Sequence[str] = (),
 ) -> str:
-    """The pipeline that is to stand at `path`, for a ship of this length [m] and speed [m/s]."""
+    """The pipeline that is to stand at `path`, for a ship of this length [m] and speed [m/s].
+
+    `left_out` says which logs are no trial of it, and why.
+    """
     several = len(trials) > 1
     head = HEAD.format(s="s" if several else "", not_s="" if several else "s", name=path.name)
     lines = [
         head + f"name = {quote(path.stem)}",
         f"ship = {quote(_relative(ship_path, path))}",
+        *(f"# left out: {comment(words)}" for words in left_out),
     ]
     names, held = _names(trials), held_out(trials)
     for place, (name, trial) in enumerate(zip(names, trials, strict=True)):

@@ -1,7 +1,6 @@
 """A boat that steers by two thrusters: which channels drive her, and which of them is to port."""
 
 import dataclasses
-import shlex
 from collections.abc import Iterator
 from itertools import groupby
 from typing import Final
@@ -12,7 +11,6 @@ from trialid.errors import LogError
 from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
-from trialid.inspection.positions import positions
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
@@ -39,6 +37,7 @@ from trialid.workflow.first_pipeline.further_signals import (
     with_sway,
     with_wind,
 )
+from trialid.workflow.first_pipeline.not_begun import no_speed_of_boat
 from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
@@ -90,7 +89,7 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
 
     Raises
     ------
-    LogError
+    TooLittle
         It holds neither, or no motion.
     """
     live = {name: live_sources(survey, name) for name in SIGNALS}
@@ -109,13 +108,7 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     speed = through_water(live, known, told) if live.get("u") else velocity_speed(survey)
     speed = speed or other_speed(survey, known, told)
     if speed is None:
-        there = positions(survey.channels.values())
-        beside = "her positions tell it, see `trialid guide track`; or " if there else ""
-        raise LogError(
-            f"{survey.path}: she steers by two thrusters, and no speed is recognised, which is "
-            f"half of what they do; {beside}map one by hand, see `trialid inspect --all "
-            f"{shlex.quote(str(survey.path))}`"
-        )
+        raise no_speed_of_boat(survey)
     if known is None and speed.source.angle == "speed":
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"

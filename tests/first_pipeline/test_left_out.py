@@ -1,0 +1,68 @@
+"""Logs that hold too little to begin with, beside others that do."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from geared_rudder import geared
+
+from trialid import pipeline_file
+from trialid.cli import main
+from trialid.errors import LogError
+from trialid.inspection import inspect_log
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import Starter, starter
+
+T = np.arange(0.0, 600.0, 1.0)
+ZIGZAG = 10.0 * np.sign(np.sin(0.03 * T))
+
+
+def log(path: Path, orders: np.ndarray) -> Path:
+    """Heading, rudder, shaft and speed of a ship of 150 m."""
+    delta, r = geared(orders, 1.0), np.zeros(len(T))
+    for k in range(len(T) - 1):
+        r[k + 1] = r[k] + (0.03 * delta[k] - r[k]) / 20.0
+    rng = np.random.default_rng(len(path.stem))
+    psi = np.cumsum(r) + 0.1 * rng.standard_normal(len(T))
+    speed = 14.0 + 0.05 * rng.standard_normal(len(T))
+    table = np.column_stack([T, psi % 360.0, delta, speed, 80.0 + r])
+    heads = "Time,HDG [deg],Rudder [deg],STW [kn],RPM"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.5g")
+    return path
+
+
+def begun(folder: Path, *logs: Path) -> Starter:
+    given = (folder / "p.toml", None, Given(length=150.0))
+    made = starter([inspect_log(one) for one in logs], *given)
+    for path, text in made.files.items():
+        path.write_text(text, encoding="utf-8")
+    return made
+
+
+def test_a_log_whose_rudder_stays_is_left_out_beside_one_that_steers(tmp_path: Path) -> None:
+    still = log(tmp_path / "a_speed_run.csv", 0.0 * T)
+    made = begun(tmp_path, still, log(tmp_path / "zz.csv", ZIGZAG))
+    [words] = made.left_out
+    assert words.startswith("a_speed_run.csv: no moving rudder or rudder order is recognised")
+    assert "('Rudder' does not move)" in words
+    assert [one.path.name for one in made.trials] == ["zz.csv"]
+    assert f"# left out: {words}" in (tmp_path / "p.toml").read_text(encoding="utf-8")
+    assert [one.name for one in pipeline_file.load(tmp_path / "p.toml").trials] == ["zz"]
+
+
+def test_a_rudder_that_stays_is_no_thruster(tmp_path: Path) -> None:
+    """Her shaft was said to steer her: it is called as what drives a boat is."""
+    with pytest.raises(LogError) as error:
+        begun(tmp_path, log(tmp_path / "a.csv", 0.0 * T))
+    assert "'Rudder' does not move), so no pipeline can be begun; see" in str(error.value)
+    assert "thrusters" not in str(error.value)
+
+
+def test_start_says_what_is_left_out(tmp_path: Path) -> None:
+    log(tmp_path / "still.csv", 0.0 * T)
+    log(tmp_path / "zz.csv", ZIGZAG)
+    to = ["--pipeline", str(tmp_path / "p.toml"), "--length", "150"]
+    done = CliRunner().invoke(main.commands, ["start", str(tmp_path), *to])
+    assert done.exit_code == 0, done.output
+    assert "Left out: still.csv: no moving rudder" in " ".join(done.output.split())
