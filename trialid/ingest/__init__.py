@@ -129,8 +129,8 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
         none = f"is none of the formats that are read ({FORMATS})"
         verdict = "; ".join([none, *_nearly(head)])
     raise LogError(
-        f"{path}: {verdict}; it begins {head[:16]!r}; give the log as its recorder wrote it, or "
-        "export it as CSV with a header row and a time column; a table of another layout needs a "
+        f"{path}: {verdict}; it begins {head[:16]!r}; give the log as recorded, or "
+        "export it as CSV with a header and a time column; a table of another layout needs a "
         "template (trialid inspect LOG --template FILE)"
     )
 
