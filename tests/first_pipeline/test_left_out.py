@@ -10,7 +10,7 @@ from geared_rudder import geared
 from trialid import pipeline_file
 from trialid.cli import main
 from trialid.errors import LogError
-from trialid.inspection import inspect_log
+from trialid.inspection import inspect_log, inspect_trials
 from trialid.ship.estimate import Given
 from trialid.workflow.first_pipeline import Starter, starter
 
@@ -66,3 +66,28 @@ def test_start_says_what_is_left_out(tmp_path: Path) -> None:
     done = CliRunner().invoke(main.commands, ["start", str(tmp_path), *to])
     assert done.exit_code == 0, done.output
     assert "Left out: still.csv: no moving rudder" in " ".join(done.output.split())
+
+
+def test_a_log_in_which_she_does_not_go_her_own_length_is_left_out(tmp_path: Path) -> None:
+    whole, short = (log(tmp_path / f"{name}.csv", ZIGZAG) for name in ("zz", "a_test"))
+    lines = short.read_text(encoding="utf-8").splitlines(keepends=True)
+    for rows, count in ((15, 1), (25, 2)):  # she takes 20 s for it
+        short.write_text("".join(lines[: rows + 1]), encoding="utf-8")
+        made = begun(tmp_path, short, whole)
+        assert len(made.trials) == count
+        assert len(made.left_out) == 2 - count
+    short.write_text("".join(lines[:16]), encoding="utf-8")
+    assert len(begun(tmp_path, short).trials) == 1  # what that is worth the fit says
+
+
+def test_what_is_no_log_in_a_folder_of_logs_stops_none(tmp_path: Path) -> None:
+    log(tmp_path / "zz.csv", ZIGZAG)
+    (tmp_path / "remarks.csv").write_text("trial,wind\nzz,3\n", encoding="utf-8")
+    said: list[str] = []
+    [one] = inspect_trials(tmp_path, say=said.append)
+    assert [file.path.name for file in one.files] == ["zz.csv"]
+    [words] = said
+    assert "remarks.csv: no time column among trial, wind" in words
+    (tmp_path / "zz.csv").unlink()
+    with pytest.raises(LogError, match="no time column"):
+        inspect_trials(tmp_path)

@@ -145,9 +145,12 @@ def look_into(
     aids = Aids(template, dbc, zone)
     with progress_bar(shown=sys.stderr.isatty()) as progress:
         found: list[Inspection] = []
+        left_out: list[str] = []
         for place, path in enumerate(logs):
             progress(f"reading {path.name}", place / len(logs))
-            found += inspect_trials(path, aids)
+            found += inspect_trials(path, aids, left_out.append)
+    for words in left_out:
+        note(f"Left out: {words}")
     return found
 
 

@@ -3,7 +3,7 @@
 `inspect_log` reads logs of any size, in parts that fit into memory, and keeps no samples.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from trialid.alignment import frames
@@ -34,18 +34,37 @@ def inspect_log(path: Path, aids: Aids = NO_AIDS) -> Inspection:
     return _together(path, _read(path, aids), aids)
 
 
-def inspect_trials(path: Path, aids: Aids = NO_AIDS) -> tuple[Inspection, ...]:
+def inspect_trials(
+    path: Path, aids: Aids = NO_AIDS, say: Callable[[str], None] = lambda words: None
+) -> tuple[Inspection, ...]:
     """The same, of a folder that holds recordings of their own each of its files by itself.
+
+    Files of a folder that cannot be read, beside others that can, are left out; `say` is told why.
 
     Raises
     ------
     LogError
         As `inspect_log`.
     """
-    files = _read(path, aids)
+    files = _readable(path, aids, say) if path.is_dir() else _read(path, aids)
     if follow_one_another([found for found, _ in files]):
         return (_together(path, files, aids),)
     return tuple(_together(log.path, [(found, log)], aids) for found, log in files if found)
+
+
+def _readable(path: Path, aids: Aids, say: Callable[[str], None]) -> "list[File]":
+    """Files of a folder: a table of remarks beside logs, or one log that is damaged, stops none."""
+    files, errors = list[File](), list[LogError]()
+    for one in files_of(LogFile(path, aids)):
+        try:
+            files.append(_file(one, aids))
+        except LogError as error:
+            errors.append(error)
+    if not files:
+        raise errors[0]
+    for left in errors:
+        say(str(left))
+    return files
 
 
 File = tuple[list[ChannelInspection], LogFileInspection]
