@@ -90,6 +90,14 @@ def test_five_trials_are_blocks_themselves_and_fewer_are_cut(trials, blocks):
     assert blocks >= BLOCKS or trials == WHOLE
 
 
+def test_a_trial_of_which_nothing_is_compared_is_no_block():
+    """Four trials of a tanker and one of 4 s were five blocks, none of them cut."""
+    *rest, parts = made(2, trials=4)
+    none = Stretch(4, 0, slice(ROWS, ROWS), np.zeros(3, dtype=bool))
+    whole = left_out(*rest, parts).errors().whole
+    assert left_out(*rest, (*parts, none)).errors().whole == whole
+
+
 @pytest.mark.parametrize("seed", [3, 13, 23])
 def test_an_effect_that_is_there_carries_over(seed):
     true, *wrong = [left_out(*made(seed, hidden=0.4)).carried([i]) for i in range(EFFECTS)]

@@ -131,6 +131,7 @@ def left_out(
     free = [i for i, x in enumerate(fit.problem.unknowns) if x.name not in stays]
     shared = [i for i in free if fit.problem.unknowns[i].trial is None]
     priors, grams, owns = prior_rows(fit), [], []
+    parts = [p for p in parts if p.compared.any()]  # nothing of a trial too short for its delays
     pieces = _pieces(len({p.trial for p in parts}))
     for trial in dict.fromkeys(p.trial for p in parts):
         mine = [p for p in parts if p.trial == trial]
