@@ -39,6 +39,8 @@ RECORDERS = {
     "motor_angle_deg": "delta",
     "Steering_deg": "delta",
     "surge_mps": "u",
+    "u_ms": "u",
+    "v_ms": "v",
     "rot_deg_min": "r",
     "rot_dpm": "r",
     "engine_rpm": "n",
@@ -153,3 +155,27 @@ def test_a_course_over_ground():
         assert channel_names.is_course(name, "", "deg") is told
     assert channel_names.is_course("GPS:GCrs", "GPS, course over ground", "deg")
     assert not channel_names.is_course("course_setpoint", "", "deg")
+
+
+UNITS = {
+    "u_ms": "m/s",
+    "sog_ms": "m/s",
+    "gps_speed_ms": "m/s",
+    "Fahrt_ms": "m/s",
+    "t_ms": None,
+    "time_boot_ms": None,
+    "delay_ms": None,
+    "roll_ms": None,
+    "r_ms": None,
+}
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_only_of_a_speed_ms_is_no_millisecond(name):
+    assert channel_names.unit_in_name(name) == UNITS[name]
+
+
+@pytest.mark.parametrize("name", ["Ship speed", "vessel_speed_kn", "own ship speed"])
+def test_a_ships_speed_says_no_more_than_a_speed(name):
+    assert channel_names.of_some_speed(name, "kn")
+    assert not channel_names.of_some_speed(name.replace("speed", "wind speed"), "kn")

@@ -13,6 +13,7 @@ from trialid.errors import LogError
 from trialid.ingest import LogFile, adapter_of, files_of
 from trialid.ingest.adapter import NO_AIDS, Aids
 from trialid.inspection import channels, relations
+from trialid.inspection.capital_letters import with_capitals
 from trialid.inspection.channel_names import quantity
 from trialid.inspection.inspected import ChannelInspection, Inspection, LogFileInspection
 from trialid.inspection.speed_letters import axes_words, with_speed_letters
@@ -85,7 +86,7 @@ def _together(path: Path, read: Sequence[File], aids: Aids) -> Inspection:
         remarks = "; ".join(remark for file in files for remark in file.remarks)
         raise LogError(f"{path}: holds no channel of numbers; {remarks or 'take another log'}")
     together = {key: channels.merge_channels(pieces) for key, pieces in parts.items()}
-    known = with_speed_letters(relations.recognise(together))
+    known = with_speed_letters(relations.recognise(with_capitals(together)))
     return Inspection(path, files, known, tuple(_warnings(list(known.values()))), aids)
 
 

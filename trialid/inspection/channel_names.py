@@ -96,6 +96,8 @@ SPEEDS: Final = frozenset(
     ("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad", "boatspeed", "bsp")
 )
 """Names of a speed that leave open whether through the water or over ground."""
+HERS: Final = frozenset(("ship", "ships", "vessel", "boat", "own"))
+"""Words before it that say no more."""
 GROUND: Final = frozenset(("ground", "grund", "cog"))
 
 ORDERED: Final = frozenset(
@@ -172,7 +174,7 @@ def is_column(name: str) -> bool:
 
 def of_some_speed(name: str, unit: str) -> bool:
     """Whether a channel is a speed of which the name does not say relative to what: `Fahrt`."""
-    told = tuple(word for word in words(name) if word not in UNITS_IN_NAMES)
+    told = [word for word in without_unit(words(name)) if word not in HERS]
     return len(told) == 1 and told[0] in SPEEDS and _fits("u", unit)
 
 
@@ -206,8 +208,16 @@ def unit_in_name(name: str) -> str | None:
     for count in (2, 1):
         if len(field) > count and (unit := UNITS_IN_NAMES.get(" ".join(field[-count:]))):
             rate = unit == "rps" and _longest(field) in ("r", "p")
-            return None if rate else unit  # of a gyro it is rad/s to robots
+            late = field[-1] == "ms" and not _is_speed(field[:-1])  # milliseconds
+            return None if rate or late else unit  # of a gyro it is rad/s to robots
     return None
+
+
+def _is_speed(told: Sequence[str]) -> bool:
+    """Whether words, without those of a unit, are those of a speed."""
+    called = tuple(told) in OVER_GROUND or _longest(told) in ("u", "v")
+    letter = len(told) == 1 and LETTERS.get(told[0]) in ("u", "v")
+    return called or letter or of_some_speed(" ".join(told), "m/s")
 
 
 def _called(name: str) -> str | None:

@@ -20,6 +20,7 @@ UNITS_IN_NAMES: Final = {
     "kts": "kn",
     "knots": "kn",
     "mps": "m/s",
+    "ms": "m/s",
     "rpm": "rpm",
     "rps": "rps",
     "pct": "%",

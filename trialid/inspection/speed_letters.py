@@ -91,13 +91,17 @@ def _size(one: ChannelInspection) -> float | None:
 def _small_beside(sway: ChannelInspection, along: ChannelInspection) -> bool:
     """Whether a speed is as small beside the forward one as a sway is."""
     sizes = _size(sway), _size(along)
-    if None in sizes:
+    if sizes == (None, None) and not (sway.stated_unit or along.stated_unit):
+        return smaller_beside(sway, along)  # of one recorder: the same
+    if sizes[0] is None or sizes[1] is None:
         return False
-    v, u = (
-        float(np.median(np.abs(one.sketch.y))) * (size or 0.0)
-        for one, size in zip((sway, along), sizes, strict=True)
-    )
-    return v < SMALLER * u
+    return smaller_beside(sway, along, sizes[0] / sizes[1])
+
+
+def smaller_beside(sway: ChannelInspection, along: ChannelInspection, size: float = 1.0) -> bool:
+    """The same of two in units of which one is `size` times the other."""
+    v, u = (float(np.median(np.abs(one.sketch.y))) for one in (sway, along))
+    return v * size < SMALLER * u
 
 
 Pair = tuple[ChannelInspection, ChannelInspection, ChannelInspection | None]
