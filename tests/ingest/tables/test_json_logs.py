@@ -59,6 +59,13 @@ def test_many_records_are_read_in_parts(tmp_path, monkeypatch):
         np.testing.assert_array_equal(parts[name].y, one.y)
 
 
+def test_seconds_and_nanoseconds_are_one_time(tmp_path):
+    """As ROS messages that are saved as JSON have it."""
+    rows = [{"stamp": {"sec": i // 2, "nanosec": 5 * 10**8 * (i % 2)}, "r": i} for i in range(6)]
+    found = read(saved(tmp_path, lines(rows))).channels["r"]
+    assert np.diff(found.t).tolist() == [500_000_000] * 5
+
+
 def test_one_value_a_row(tmp_path):
     rows = [{"ts": i // 2, "topic": ("rudder", "rot")[i % 2], "value": i} for i in range(8)]
     found = read(saved(tmp_path, lines(rows))).channels

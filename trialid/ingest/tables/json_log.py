@@ -1,7 +1,7 @@
 """JSON logs: a record a line, a list of records, or an object with a list a column.
 
 What is nested in a record is a column with both names: `{"t": 0.1, "imu": {"rate": [0.2]}}` has the
-columns `t` and `imu.rate[0]`. A field that a record lacks, or that is null, was not measured then.
+columns `t` and `imu.rate.0`. A field that a record lacks, or that is null, was not measured then.
 """
 
 import json
@@ -75,7 +75,7 @@ def may_be_one(start: bytes) -> bool:
 
 
 def _times(start: bytes) -> list[str]:
-    keys = [found.decode("utf-8", "replace") for found in KEY.findall(start)]
+    keys = list(dict.fromkeys(one.decode("utf-8", "replace") for one in KEY.findall(start)))
     both = two_parts(keys)
     return [key for key in keys if is_time(key)] + [keys[i] for i in both or ()]
 
