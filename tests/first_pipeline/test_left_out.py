@@ -59,6 +59,16 @@ def test_a_rudder_that_stays_is_no_thruster(tmp_path: Path) -> None:
     assert "thrusters" not in str(error.value)
 
 
+def test_a_course_over_ground_is_no_heading_and_what_to_do_is_said(tmp_path: Path) -> None:
+    path = log(tmp_path / "gps.csv", ZIGZAG)
+    text = path.read_text(encoding="utf-8").replace("HDG [deg]", "cog [deg]").replace("STW", "SOG")
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(LogError) as error:
+        begun(tmp_path, path)
+    assert "'cog' is no heading, for drift and current are in it" in str(error.value)
+    assert "`trialid guide track`" in str(error.value)
+
+
 def test_start_says_what_is_left_out(tmp_path: Path) -> None:
     log(tmp_path / "still.csv", 0.0 * T)
     log(tmp_path / "zz.csv", ZIGZAG)

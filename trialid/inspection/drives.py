@@ -88,7 +88,7 @@ def _drives(one: ChannelInspection) -> bool:
     """
     told = {*words(one.name)}
     turns = to_si(one.stated_unit or "", SIGNALS["n"].unit) is not None
-    plain = one.stated_unit is None and told - {"n"} <= {*SIDES, *LETTERS, *NUMBERS}
+    plain = one.stated_unit is None and set() < told - {"n"} <= {*SIDES, *LETTERS, *NUMBERS}
     shaft = "n" in told and (turns or plain)
     told_of = bool(DRIVES & told or shaft) and not NO_DRIVE & told
     return told_of and not one.constant and one.mostly_there

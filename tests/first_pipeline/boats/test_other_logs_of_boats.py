@@ -7,6 +7,8 @@ import pytest
 from made_boat import T, begun, late, pushes, sailed, table
 
 from trialid import pipeline_file
+from trialid.inspection import inspect_log
+from trialid.inspection.drives import drives_among
 from trialid.workflow.first_pipeline import Starter
 
 TURNS, STRAIGHT = ("turns.csv", 2, False), ("straight.csv", 3, True)
@@ -103,3 +105,9 @@ def test_a_question_is_asked_once(tmp_path: Path) -> None:
     asked = begun(tmp_path, *paths).to_fill
     assert len(asked) == 2
     assert asked[0].startswith("turns.csv and 1 more: thruster_port, ")
+
+
+def test_a_letter_alone_is_no_drive(tmp_path: Path) -> None:
+    """`N` is metres to the north as often."""
+    path = table(tmp_path / "a.csv", {"N": np.sin(T), "n1": np.cos(T), "n2": np.sin(T + 1.0)})
+    assert drives_among(inspect_log(path)) == ["n1", "n2"]

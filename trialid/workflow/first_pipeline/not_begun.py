@@ -6,6 +6,7 @@ from typing import Final
 
 from trialid.errors import LogError
 from trialid.inspection import Inspection
+from trialid.inspection.channel_names import is_course
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.positions import positions
@@ -28,6 +29,7 @@ def no_signal(survey: Inspection, quantities: Sequence[str]) -> TooLittle:
     called = "rudder or rudder order" if "delta" in quantities else "yaw rate or heading"
     sources = [one for q in quantities for one in survey.sources(q)]
     unlike = [words for one in sources for words in _useless(one)]
+    unlike += [] if "delta" in quantities else _courses(survey)
     among = f"among its {len(survey.channels)} channels"
     why = f" ({'; '.join(unlike)})" if unlike else ""
     reason = f"no moving {called} is recognised {among}{why}"
@@ -55,6 +57,17 @@ def _useless(one: ChannelInspection) -> Iterator[str]:
             f"without one {one.gaps.longest:.4g} s: where it is logged as it changes and holds "
             "between, fill it up, with the value before"
         )
+
+
+def _courses(survey: Inspection) -> list[str]:
+    """That a course over ground is no heading, and what can be done with one."""
+    named = [
+        one.key
+        for one in survey.channels.values()
+        if is_course(one.name, one.description, one.stated_unit) and not one.constant
+    ]
+    words = "is no heading, for drift and current are in it: `trialid guide track` compares it"
+    return [f"{named[0]!r} {words}"] if named else []
 
 
 def _what_then(survey: Inspection, called: bool) -> str:
