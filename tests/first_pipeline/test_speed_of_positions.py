@@ -69,6 +69,12 @@ def test_positions_tell_the_unit_of_a_speed(tmp_path: Path, survey: Inspection) 
     assert "a current adds to it" in text
 
 
+def test_a_stated_speed_goes_before_her_positions(tmp_path: Path, survey: Inspection) -> None:
+    """With a current they are sailed faster or slower than she goes through the water."""
+    made = starter([survey], tmp_path / "p.toml", None, Given(length=4.0), SPEED / KNOT)
+    assert 'channel = "speed", unit = "m/s"' in made.files[tmp_path / "p.toml"]
+
+
 def test_a_circle_in_which_most_of_the_speed_is_lost_has_its_unit(tmp_path: Path) -> None:
     """A tanker's fast ways are too short there; with a constant speed for it nothing was fitted."""
     t = np.arange(0.0, 1200.0, 1.0)

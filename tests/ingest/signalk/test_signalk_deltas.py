@@ -33,6 +33,13 @@ def test_updates_have_the_stamps_of_their_sources(tmp_path):
     np.testing.assert_array_equal(rate.y, [0.1 * i for i in range(5)])
 
 
+def test_a_line_that_is_longer_than_any_delta_is_left_out(tmp_path):
+    long = delta(0.7, STAMPS[0]).rstrip()[:-1] + f', "more": "{"x" * 2_000_000}"}}\n'
+    found = read(saved(tmp_path, *(delta(0.1, t) for t in STAMPS), long))
+    assert len(found.channels["navigation.rateOfTurn/imu:value"].y) == 5
+    assert found.remarks[0].startswith("1 deltas or updates cannot be read")
+
+
 @pytest.mark.parametrize("stamp", [None, "10:00:01", "2026-05-04T10:00:01+02:00", "2026-13-04T"])
 def test_an_update_without_a_stamp_in_utc_is_left_out(tmp_path, stamp):
     lines = [*(delta(0.1, t) for t in STAMPS), delta(0.7, stamp), "{damaged\n"]

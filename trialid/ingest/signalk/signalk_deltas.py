@@ -20,6 +20,8 @@ from trialid.recording import Channel, Recording
 UPDATES = re.compile(rb'"updates"\s*+:\s*+\[')
 STAMP = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?:\.\d{1,9})?Z")
 STAMPS = "stamps of the deltas' sources"
+LONGEST = 2_000_000
+"""Bytes of a line that is still a delta."""
 UNSAFE = re.compile(r"[^\w.+#-]+")
 
 Side = Literal["starboard", "port"]
@@ -70,10 +72,11 @@ class Deltas:
 def take(payload: bytes, wanted: Wanted, deltas: Deltas, t: int | None = None) -> None:
     """One delta: updates of a source, each of several values, with their own stamp but for `t`."""
     try:
-        delta = json.loads(payload)
+        delta = json.loads(payload) if len(payload) < LONGEST else None
     except (ValueError, RecursionError):
         deltas.damaged += 1
         return
+    deltas.damaged += delta is None
     for update in _listed(delta, "updates"):
         stamp = _stamp(update) if t is None else t
         if stamp is None:

@@ -126,14 +126,12 @@ def _blocks(path: Path, remarks: list[str]) -> Iterator[list[Record]]:
         file.seek(0)
         number = 1
         while lines := file.readlines(BLOCK):
-            yield [one for one in _of_lines(path, number, lines, remarks) if one is not None]
+            yield list(_of_lines(path, number, lines, remarks))
             number += len(lines)
 
 
-def _of_lines(
-    path: Path, number: int, lines: list[bytes], remarks: list[str]
-) -> Iterator[Record | None]:
-    """The record of each line, the first of them `number` in its file; None of an empty one."""
+def _of_lines(path: Path, number: int, lines: list[bytes], remarks: list[str]) -> Iterator[Record]:
+    """The records of lines, the first of them `number` in its file."""
     for place, line in enumerate(lines, number):
         text = line.removeprefix(UTF_8).strip()
         record = _parsed(text) if len(line) < LONGEST else None

@@ -64,6 +64,7 @@ STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
 
 
 FIGURES: Final = re.compile(r"\d[\d.e+-]*+")
+"""Numbers in a question, which differ from log to log."""
 NO_SERVICE_SPEED: Final = (
     "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "
     "--speed KNOTS"

@@ -14,9 +14,9 @@ from trialid.workflow.first_pipeline.choice import Chosen, Signal, speeds_of
 
 
 def with_speed_units(surveys: Sequence[Inspection], stated: float | None) -> list[Inspection]:
-    """The logs, speeds without a unit in the one by which she goes as her positions do.
+    """The logs, speeds without a unit in the one of the approach speed that is `stated` [m/s].
 
-    Where no position tells it, in the one of the approach speed that is `stated` [m/s].
+    Where nobody states one, or it fits no unit, in the one by which she goes as her positions do.
     """
     return [_sized(survey, stated) for survey in surveys]
 
@@ -26,8 +26,8 @@ def _sized(survey: Inspection, stated: float | None) -> Inspection:
     found = dict(survey.channels)
     for one in speeds_of(survey):
         if one.stated_unit is None:
-            unit = unit_by_way(one, sailed) if sailed else None
-            unit = unit or (unit_of_speed(one, stated) if stated else None)
+            unit = unit_of_speed(one, stated) if stated else None
+            unit = unit or (unit_by_way(one, sailed) if sailed else None)
             found[one.key] = dataclasses.replace(one, unit_by_size=unit)
     for sway in survey.sources("v"):
         ahead = (c for c in survey.sources("u") if c.message == sway.message)

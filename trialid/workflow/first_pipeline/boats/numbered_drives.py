@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Mapping, Sequence
 
+from trialid.inspection.drives import NUMBERS
 from trialid.workflow.first_pipeline.boats.boat_choice import (
     ASK_PORT,
     CONFIRMED,
@@ -40,7 +41,7 @@ def _shown(trials: Sequence[Chosen]) -> Mapping[str, Place]:
 
 def _placed(signals: tuple[Signal, ...], known: Mapping[str, Place]) -> tuple[Signal, ...]:
     asked = [s for s in signals if ASK_PORT in s.why and s.source.name in known]
-    if len({known[s.source.name][0] for s in asked}) != len(asked):
+    if len({known[s.source.name][0] for s in asked}) != len(NUMBERS):
         return signals
     told = sorted((_told(s, *known[s.source.name]) for s in asked), key=lambda s: s.quantity)
     return (*told, *(s for s in signals if s not in asked))
