@@ -135,6 +135,14 @@ def test_a_row_label_that_is_no_time_is_not_taken_for_one(tmp_path):
     assert recording.channels["column 1"].y.tolist() == [7.5, 3.5]
 
 
+def test_a_name_may_begin_with_a_sign_or_a_count(tmp_path):
+    recording = read(log(tmp_path, "time,-rudder,#gyro,1_rpm\n0,1,2,3\n1,2,3,4\n"))
+    assert list(recording.channels) == ["-rudder", "#gyro", "1_rpm"]
+    for values in ("-1.5", "12 kn", "2026-04-11", "3"):  # a row of values names nothing
+        with pytest.raises(LogError, match="none of the formats"):
+            read(log(tmp_path, f"1,{values},7 deg\n2,{values},8 deg\n"))
+
+
 def test_two_columns_that_tell_the_same_time_are_one_clock(tmp_path):
     rows = [(f"2025-04-11 12:08:2{k}", f"{3.0 + k}", k) for k in range(5)]
     text = "time_utc,t_s,u\n" + "".join(f"{a},{b},{c}\n" for a, b, c in rows)

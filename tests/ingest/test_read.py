@@ -88,7 +88,9 @@ def test_a_folder_of_logs_is_read_as_its_files(tmp_path):
 
 def test_a_folder_without_a_log(tmp_path):
     (tmp_path / "notes.bin").write_bytes(bytes(9))
-    with pytest.raises(LogError, match=r"no file in this folder is a log; it holds: notes\.bin"):
+    with pytest.raises(
+        LogError, match=r"no file in this folder is a log; it holds: notes\.bin; a table of"
+    ):
         read_together([LogFile(tmp_path)])
 
 

@@ -71,6 +71,23 @@ def test_a_unit_behind_the_name_is_its_unit(name, quantity):
     assert channel_names.quantity(name, channel_names.unit_in_name(name)) == quantity
 
 
+NUMBERED = {
+    "rudder_angle_deg_1": ("delta", "deg"),
+    "rudder_order_deg_2": ("delta_order", "deg"),
+    "positioningsystem_rot_degpm_1": ("r", "deg/min"),
+    "positioningsystem_stw_kn_1": ("u", "kn"),
+    "positioningsystem_accx_mps2_1": (None, None),
+    "speed_mps2": (None, None),
+    "rudder_1": ("delta", None),
+}
+
+
+@pytest.mark.parametrize(("name", "told"), NUMBERED.items())
+def test_a_number_behind_a_unit_is_of_one_of_several(name, told):
+    unit = channel_names.unit_in_name(name)
+    assert (channel_names.quantity(name, unit), unit) == told
+
+
 @pytest.mark.parametrize(("name", "unit"), CAPITALS)
 def test_a_capital_means_what_its_unit_allows(name, unit):
     assert channel_names.quantity(name, unit) == CAPITALS[name, unit]

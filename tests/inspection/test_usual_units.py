@@ -3,10 +3,11 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from trialid.errors import UnitError
-from trialid.inspection.usual_units import to_si
+from trialid.inspection.usual_units import of_angle, to_si
 from trialid.names import units
 
 SI = ("rad", "rad/s", "m/s", "m", "N")
@@ -19,6 +20,14 @@ def test_the_usual_units_are_what_the_library_of_units_says(unit, si, monkeypatc
     monkeypatch.setattr(units, "USUAL", {})
     expected = _factor(unit, si)
     assert said == {"inspected": expected, "read": expected}  # to the last digit
+
+
+def test_a_roll_beyond_her_side_is_in_degrees_and_a_spike_is_no_roll():
+    swing = 2.0 * np.sin(np.arange(0.0, 50.0, 0.1))
+    assert of_angle(swing, goes_round=False) == "deg"
+    assert of_angle(0.6 * swing, goes_round=False) is None
+    assert of_angle(np.append(0.6 * swing, 3.0), goes_round=False) is None
+    assert of_angle(swing, goes_round=True) is None  # a heading
 
 
 def _factor(unit, si):

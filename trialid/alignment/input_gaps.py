@@ -34,7 +34,7 @@ def without_input_gaps(trial: Trial, inputs: Collection[str], longest: float) ->
         n: _long_gaps(trial.valid[n], longest / trial.period) for n in trial.valid if n in inputs
     }
     known = ~np.any([np.zeros(trial.samples, np.bool_), *gaps.values()], axis=0)
-    ends = [(i, j + 1) for i, j in joined_runs(known[1:] & known[:-1]) if known[i]]
+    ends = _stretches(known)
     if known.all() or not ends:
         return trial
     begin, end = max(ends, key=lambda one: one[1] - one[0])
@@ -46,6 +46,19 @@ def without_input_gaps(trial: Trial, inputs: Collection[str], longest: float) ->
     advice = f"; for a trial of their own: window = {' or '.join(others)}" if others else ""
     remark = f"{said}: only {_window(trial, (begin, end))} s is used{advice}"
     return trial.part(begin, end, remark)
+
+
+def recorded_parts(trial: Trial, longest: float) -> list[tuple[int, int]]:
+    """The stretches between pauses of the recorder: longer than that [s] it measured nothing.
+
+    Each from its first sample to one past its last; a speed that is stated is no record.
+    """
+    measured = np.any([known for name, known in trial.valid.items() if name != "u"], axis=0)
+    return _stretches(~_long_gaps(measured, longest / trial.period))
+
+
+def _stretches(known: Mask) -> list[tuple[int, int]]:
+    return [(i, j + 1) for i, j in joined_runs(known[1:] & known[:-1]) if known[i]]
 
 
 def _long_gaps(valid: Mask, longest: float) -> Mask:

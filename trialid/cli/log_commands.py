@@ -254,7 +254,7 @@ def begin_pipeline(
     write_new(begun.files)
     if begun.to_fill:
         return begun
-    windows = manoeuvre_windows(load(pipeline), [one.survey.duration for one in begun.trials])
+    windows = manoeuvre_windows(load(pipeline), [one.survey for one in begun.trials])
     if not any(windows):
         return begun
     cut = starter(surveys, pipeline, ship, given, stated, windows)

@@ -121,7 +121,8 @@ def _left_out(signal: "Signal") -> str:
     if signal.quantity not in RUDDERS or not signal.others:
         return ""
     names = _few([one.key for one in signal.others])
-    return f"; CAREFUL: {names}, another of them, left out: commented out in the pipeline"
+    what = "another of them" if len(signal.others) == 1 else "others of them"
+    return f"; CAREFUL: {names}, {what}, left out: commented out in the pipeline"
 
 
 def _few(names: Sequence[str]) -> str:

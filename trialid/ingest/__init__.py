@@ -56,6 +56,9 @@ FORMATS = (
     "Parquet, MATLAB, JSON"
 )
 """What messages call all of them."""
+OF_ANOTHER_LAYOUT = (
+    "a table of another layout needs a template (trialid inspect LOG --template FILE)"
+)
 HEAD = 4096
 """Bytes an adapter may look at to recognise a file."""
 
@@ -108,7 +111,9 @@ def files_of(log: LogFile) -> tuple[Path, ...]:
     )
     if not logs:
         names = _some([child.name for child in files])
-        raise LogError(f"{log.path}: no file in this folder is a log; it holds: {names}")
+        raise LogError(
+            f"{log.path}: no file in this folder is a log; it holds: {names}; {OF_ANOTHER_LAYOUT}"
+        )
     return logs
 
 
@@ -130,8 +135,7 @@ def adapter_of(path: Path, aids: Aids = NO_AIDS) -> Adapter:
         verdict = "; ".join([none, *_nearly(head)])
     raise LogError(
         f"{path}: {verdict}; it begins {head[:16]!r}; give the log as recorded, or "
-        "export it as CSV with a header and a time column; a table of another layout needs a "
-        "template (trialid inspect LOG --template FILE)"
+        f"export it as CSV with a header and a time column; {OF_ANOTHER_LAYOUT}"
     )
 
 

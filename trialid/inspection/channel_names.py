@@ -11,6 +11,8 @@ from typing import Final
 from trialid.inspection.name_words import (
     SIDES,
     UNITS_IN_NAMES,
+    bare_words,
+    drop_number,
     sides,
     without_side,
     without_unit,
@@ -31,7 +33,7 @@ PHRASES: Final = {
     "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, gyro z",
     "p": "roll rate, rollrate, rollgeschwindigkeit, roll speed, rollspeed, roll velocity, "
     "angular velocity x, gyro x",
-    "phi": "roll, roll angle, heel, heel angle, rollwinkel, kraengung, krängung, "
+    "phi": "roll, roll angle, rolling, heel, heel angle, rollwinkel, kraengung, krängung, "
     "kraengungswinkel, krängungswinkel, krengning, slagside",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
     "kompasskurs, kreiselkurs",
@@ -134,7 +136,7 @@ def quantity(name: str, unit: str | None) -> str | None:
     if (letter := ALONE.get(name)) is not None:
         return letter if _fits(letter, unit) else None
     told = words(name)
-    about = {*without_unit(words(name.rpartition(":")[2]))}
+    about = {*bare_words(name.rpartition(":")[2])}
     if any(_holds(told, phrase) for phrase in ENGINES):
         about -= {"engine"}
     if NO_MEASUREMENT & about:
@@ -174,13 +176,13 @@ def is_column(name: str) -> bool:
 
 def of_some_speed(name: str, unit: str) -> bool:
     """Whether a channel is a speed of which the name does not say relative to what: `Fahrt`."""
-    told = [word for word in without_unit(words(name)) if word not in HERS]
+    told = [word for word in bare_words(name) if word not in HERS]
     return len(told) == 1 and told[0] in SPEEDS and _fits("u", unit)
 
 
 def over_ground(name: str, unit: str | None) -> bool:
     """Whether a channel is the speed over ground, which no model knows but which is a start."""
-    field = without_unit(words(name.rpartition(":")[2]))
+    field = bare_words(name.rpartition(":")[2])
     if NO_MEASUREMENT.intersection(field) or not _fits("u", unit):
         return False
     return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
@@ -188,7 +190,7 @@ def over_ground(name: str, unit: str | None) -> bool:
 
 def is_course(name: str, description: str, unit: str | None) -> bool:
     """Whether a channel is the course over ground, by its name or what the format says of it."""
-    field = without_unit(words(name.rpartition(":")[2]))
+    field = bare_words(name.rpartition(":")[2])
     if (NO_MEASUREMENT | ORDERED).intersection(field) or not _fits("psi", unit):
         return False
     return tuple(field) in COURSES or description.endswith("course over ground")
@@ -200,7 +202,7 @@ def unit_in_name(name: str) -> str | None:
     >>> unit_in_name("yaw_rate_radps"), unit_in_name("rudder")
     ('rad/s', None)
     """
-    field = words(name.rpartition(":")[2])
+    field = words(drop_number(name.rpartition(":")[2]))
     if field[:2] == ("angular", "velocity"):
         return "rad/s"  # as ROS messages have it, which state no unit
     if field in (("rpm",), ("rps",)):  # of a shaft, and of nothing else

@@ -10,7 +10,7 @@ from trialid.names.quantities import SIGNALS
 DRIVES: Final = frozenset(
     words(
         "thr thrust thruster thrusters throttle pwm cmd motor motors engine engines prop props "
-        "propeller propellers rpm esc outboard"
+        "propeller propellers rpm esc outboard azimuththruster"
     )
 )
 """Words of a channel that drives a boat, ..."""

@@ -66,6 +66,26 @@ def words(name: str) -> tuple[str, ...]:
     return tuple(word.lower() for word in _WORD.findall(name))
 
 
+def drop_number(name: str) -> str:
+    """A name without the number of one of several behind its unit.
+
+    >>> drop_number("rudder_angle_deg_1"), drop_number("rudder_1"), drop_number("acc_mps2")
+    ('rudder_angle_deg', 'rudder_1', 'acc_mps2')
+    """
+    bare, _, number = name.rpartition("_")
+    numbered = number.isdecimal() and words(bare)[-1:] and words(bare)[-1] in UNITS_IN_NAMES
+    return bare if numbered else name
+
+
+def bare_words(name: str) -> Sequence[str]:
+    """The words of a name before those of its unit.
+
+    >>> bare_words("rudder_angle_deg_1"), bare_words("ROT")
+    (('rudder', 'angle'), ('rot',))
+    """
+    return without_unit(words(drop_number(name)))
+
+
 def without_unit(field: Sequence[str]) -> Sequence[str]:
     """The words of a field before those of its unit: `min` of `rot_deg_min` is no smallest."""
     for count in (2, 1):
@@ -80,7 +100,7 @@ def sides(name: str) -> set[str]:
     >>> sides("rud_sb_deg"), sides("DELTA_P"), sides("rudder")
     ({'n_s'}, {'n_p'}, set())
     """
-    told = without_unit(words(name))
+    told = bare_words(name)
     named = {SIDES[word] for word in told if word in SIDES}
     behind = len(told) > 1 and told[-2] in HAVE_SIDES
     return named or ({LETTERS[told[-1]]} if behind and told[-1] in LETTERS else set())

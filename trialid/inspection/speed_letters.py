@@ -12,7 +12,7 @@ import numpy as np
 
 from trialid.inspection.channel_names import is_column
 from trialid.inspection.inspected import ChannelInspection, Guess
-from trialid.inspection.name_words import without_unit, words
+from trialid.inspection.name_words import bare_words
 from trialid.inspection.sketch import on_one_clock
 from trialid.inspection.usual_units import to_si
 
@@ -80,7 +80,7 @@ def _of(one: ChannelInspection, quantity: str) -> bool:
 
 def _letter(one: ChannelInspection) -> str | None:
     """A column's name where that is one word and its unit."""
-    told = without_unit(words(one.name))
+    told = bare_words(one.name)
     return told[0] if len(told) == 1 and is_column(one.name) else None
 
 

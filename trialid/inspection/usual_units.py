@@ -14,6 +14,12 @@ ROUND: Final = 0.9 * 2.0 * np.pi
 """A jump of so much, of numbers no larger than that, is a turn in radians gone round: in degrees a
 ship swings by half of it from sample to sample, and a dropout to 0 is as large only from there on;
 twice is no jump of such numbers."""
+HEELED: Final = 0.5 * np.pi
+"""Roll in radians beyond which a ship lies on her side: what is there for more than `SPIKES` is in
+degrees. Half of it would take a boat that heels 46 deg for one in degrees, with twice a roll of 2
+deg has to be asked for."""
+SPIKES: Final = 0.01
+"""Share of the samples of a roll that are no measurement."""
 
 
 def of_angle(y: Vector, goes_round: bool) -> str | None:
@@ -24,7 +30,11 @@ def of_angle(y: Vector, goes_round: bool) -> str | None:
     >>> heading = ([10.5, 359.7], [3.1, -3.1], [5.2, 0.0, 5.1], [1.0], [5.2, 7.9, 10.4])
     >>> [of_angle(np.array(y), True) for y in heading], of_angle(np.array([5.2, 7.9, 10.4]), False)
     (['deg', 'rad', None, None, None], 'deg')
+    >>> of_angle(np.array([2.9, -2.5, 1.0]), False), of_angle(np.array([0.5, -0.4]), False)
+    ('deg', None)
     """
+    if not goes_round and len(y) and np.quantile(np.abs(y), 1.0 - SPIKES) > HEELED:
+        return "deg"
     jump = np.abs(np.diff(y)).max(initial=0.0)
     if np.abs(y).max(initial=0.0) > NO_RADIANS:
         unwound = goes_round and abs(y[0]) <= NO_RADIANS and jump < np.pi

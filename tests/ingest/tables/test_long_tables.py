@@ -57,3 +57,10 @@ def test_a_column_of_modes_beside_a_channel_makes_no_channels(tmp_path):
 def test_a_channel_is_read_alone(tmp_path):
     rows().to_csv(tmp_path / "log.csv", index=False)
     assert list(read(tmp_path / "log.csv", ["rot"]).channels) == ["rot"]
+
+
+@pytest.mark.parametrize("names", ["parameter_id", "TagName", "signal name"])
+def test_a_column_of_names_may_say_that_it_is_one(tmp_path, names):
+    table = rows(vessel_id="name_FRAM").rename(columns={"tag": names})
+    table.to_csv(tmp_path / "a.csv", index=False)
+    assert list(read(tmp_path / "a.csv").channels) == ["rudder_deg", "rot"]

@@ -20,8 +20,9 @@ DEEPEST = 60
 """Lines above a header; titles of a trial take a few."""
 OF_CLOCK = re.compile(r"(?=.*h.*m)[dmyhst:./ -]+", re.IGNORECASE)
 """How a time is written, where a unit might stand: `hh:mm:ss`, `DD.MM.YYYY hh:mm`."""
-NAME = re.compile(r"[%/]?[^\W\d]")
-"""Topics begin with a slash, and what `rostopic` prints with `%time`."""
+NAME = re.compile(r"([^\w\s(\[]{1,2}|\d{1,3}_)?[^\W\d]")
+"""Topics begin with a slash, what `rostopic` prints with `%time`; a column may be `-rudder`, `#row`
+or `1_rpm`. A number with its unit, `5 kn`, is none."""
 
 
 def names(fields: Sequence[Any]) -> int:

@@ -1,21 +1,24 @@
 """Manoeuvres in a long log: each a trial of its own, so that harbour and passage are not fitted.
 
 A log as long that holds no two of them, a passage under an autopilot, is begun with the stretches
-in which she is steered most: the rest of it would say the same again.
+in which she is steered most: the rest of it would say the same again. A log in which the recorder
+paused between its manoeuvres is as many trials as it has parts.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from trialid.alignment.held_roll import held_roll, released_at
+from trialid.alignment.input_gaps import LENGTHS, recorded_parts
 from trialid.arrays import Vector
 from trialid.design.imo.excursions import rudder_of
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.recognition import Recognised
 from trialid.errors import TrialidError
+from trialid.inspection.inspected import Inspection
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
@@ -44,6 +47,12 @@ has 6800, of which the fit then reads 720; with half of it 360, with twice 1440.
 UNDER_WAY: Final = 0.5
 """Share of the approach speed that a ship makes all through such a stretch: less is harbour."""
 
+PAUSE: Final = LENGTHS
+"""Ship lengths without any record that part a log in two: as long as what steers her may be unknown
+within a trial."""
+
+PAUSED: Final = "recorded without a pause"
+
 KNOWN: Final = 0.9
 """Share of a stretch in which every signal was measured."""
 
@@ -56,8 +65,8 @@ class Window:
     """A stretch of a log [s] in which she was put through something, and how far she was steered.
 
     `travel` and `variation` [rad] are of the rudder: its greatest angle and its mean, and its
-    standard deviation; of the roll, where no rudder is. `released` says that she was held before;
-    then `kind` is empty.
+    standard deviation; of the roll, where no rudder is. `why` says what else it is than a
+    manoeuvre: that she was held before, with an empty `kind`, or that the recorder paused.
     """
 
     kind: str
@@ -65,11 +74,11 @@ class Window:
     end: float
     travel: float
     variation: float
-    released: str = ""
+    why: str = ""
 
 
 def window_over(
-    moved: Vector, begin: float, end: float, *, kind: str = "", released: str = ""
+    moved: Vector, begin: float, end: float, *, kind: str = "", why: str = ""
 ) -> Window:
     """The window [s] over which the rudder, or the roll where none is, `moved` so [rad]; (n,)."""
     return Window(
@@ -78,7 +87,7 @@ def window_over(
         end=end,
         travel=float(np.max(np.abs(moved)) + np.abs(np.mean(moved))),
         variation=float(np.std(moved)),
-        released=released,
+        why=why,
     )
 
 
@@ -86,18 +95,19 @@ Windows = tuple[tuple[Window, ...], ...]
 """Of each log; empty where it is a trial as it is."""
 
 
-def manoeuvre_windows(pipeline: Pipeline, durations: Sequence[float]) -> Windows:
+def manoeuvre_windows(pipeline: Pipeline, surveys: Sequence[Inspection]) -> Windows:
     """The manoeuvres in each log of a pipeline that has just been begun, or its swing when let go.
 
-    Logs of `durations` [s] that are short are not read where they hold no roll; one that cannot be
+    Logs that are short and without a pause are not read where they hold no roll; one that cannot be
     has none, and the run says why.
     """
     assert pipeline.ship is not None  # a pipeline is begun with a ship
     particulars = read_ship(pipeline.ship).particulars
     length, speed = (particulars[n] for n in ("L", "U0"))
 
-    def of_log(section: TrialSection, duration: float) -> tuple[Window, ...]:
-        if duration < LONG * length / speed and "phi" not in section.signals:
+    def of_log(section: TrialSection, survey: Inspection) -> tuple[Window, ...]:
+        paused = _paused(survey, PAUSE * length / speed)
+        if not paused and survey.duration < LONG * length / speed and "phi" not in section.signals:
             return ()
         try:
             trial = align_trial(pipeline, section)
@@ -105,14 +115,21 @@ def manoeuvre_windows(pipeline: Pipeline, durations: Sequence[float]) -> Windows
         except TrialidError:
             return ()
 
-    return tuple(map(of_log, pipeline.trials, durations))
+    return tuple(map(of_log, pipeline.trials, surveys))
+
+
+def _paused(survey: Inspection, longest: float) -> bool:
+    """Whether nothing that moves was recorded without a hole of more than that [s]."""
+    moving = [one for one in survey.channels.values() if not one.constant]
+    return bool(moving) and all(one.gaps.longest > longest for one in moving)
 
 
 def windows_of(trial: Trial, length: float, speed: float) -> tuple[Window, ...]:
     """The manoeuvres of a long trial in the order of time, those that are whole.
 
-    None where it is short or mostly theirs. Where there is but one nothing could be held out: then
-    the stretches in which she is steered most, none where they would be most of the trial.
+    Where it is short or mostly theirs its parts between pauses, none where there is no pause. Where
+    there is but one manoeuvre nothing could be held out: then the parts, or the stretches in which
+    she is steered most, none where they would be most of the trial.
 
     Parameters
     ----------
@@ -120,18 +137,34 @@ def windows_of(trial: Trial, length: float, speed: float) -> tuple[Window, ...]:
         Of the ship [m] and of her approach [m/s]: her own clock.
     """
     rudder = rudder_of(trial)
-    if rudder is None or trial.duration < LONG * length / speed:
+    if rudder is None:
         return ()
+    parts = _between_pauses(trial, rudder, length / speed)
+    if trial.duration < LONG * length / speed:
+        return parts
     found = recognise(trial, length, speed)
     steered = [m for m in found if m.kind != "stop"]
     every = _apart(steered, length / speed / trial.period, trial.samples)
     spans = [span for span in every if any(not m.remark for m in span.parts)]
     taken = sum(span.end - span.begin for span in spans)
     if taken > MOSTLY * trial.samples:
-        return ()
+        return parts
     if len(spans) < 2:
-        return _steered_most(trial, rudder, round(STRETCH * length / speed / trial.period), speed)
+        stretch = round(STRETCH * length / speed / trial.period)
+        return parts or _steered_most(trial, rudder, stretch, speed)
     return tuple(_manoeuvre(trial, rudder, span) for span in _first_of_each(spans))
+
+
+def _between_pauses(trial: Trial, rudder: Vector, clock: float) -> tuple[Window, ...]:
+    """The parts of a log in which the recorder paused, of each at least her own length.
+
+    At most `FEW`, those in which the rudder varies most; none where there is but one.
+    """
+    parts = recorded_parts(trial, PAUSE * clock)
+    able = [(begin, end) for begin, end in parts if (end - begin) * trial.period >= clock]
+    most = sorted(able, key=lambda ends: -float(np.std(rudder[slice(*ends)])))[:FEW]
+    found = (_window(trial, rudder, ends, "part") for ends in sorted(most))
+    return tuple(replace(one, why=PAUSED) for one in found) if len(able) > 1 else ()
 
 
 def _let_go(trial: Trial) -> tuple[Window, ...]:
@@ -142,7 +175,7 @@ def _let_go(trial: Trial) -> tuple[Window, ...]:
     moved = trial.signals.get("phi", np.zeros(1)) if steered is None else steered
     begin, end = released_at(trial, held), trial.opening + trial.duration
     why = f"from where she is let go: {held.stands(trial)}"
-    return (window_over(moved[held.release :], begin, end, released=why),)
+    return (window_over(moved[held.release :], begin, end, why=why),)
 
 
 @dataclass(frozen=True)

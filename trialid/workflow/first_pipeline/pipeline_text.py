@@ -8,6 +8,7 @@ from typing import Final
 from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.positions import positions
+from trialid.inspection.read_alike import unit_and_side
 from trialid.names import wording
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
@@ -112,7 +113,7 @@ def _window(trial: Chosen) -> str:
     """The manoeuvre alone: as it was found in a log, else for the user to say."""
     if (found := trial.window) is None:
         return f"# window = [0.0, {trial.survey.duration:.0f}.0]  # s, the manoeuvre alone"
-    why = found.released or f"{found.kind} deg, as the rudder went"
+    why = found.why or f"{found.kind} deg, as the rudder went"
     return f"window = [{found.begin:.1f}, {found.end:.1f}]  # s, {why}"
 
 
@@ -181,9 +182,7 @@ def _written(keys: Mapping[str, str | float | None]) -> str:
 
 def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | float | None]:
     """The keys of one signal; of another source than the chosen one, its own unit."""
-    own = one is signal.source
-    unit = signal.unit if own else one.stated_unit or signal.unit
-    positive = signal.positive if own else (one.guess and one.guess.positive) or signal.positive
+    unit, positive = (signal.unit, signal.positive) if one is signal.source else _as(signal, one)
     if signal.quantity in SIGNALS and signal.quantity not in RUDDERS and positive == "starboard":
         positive = None  # as the dictionary has it
     return {
@@ -193,6 +192,20 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | float | 
         "positive": positive,
         "offset": FROM_EAST if from_east(one, positive) else None,
     }
+
+
+def _as(signal: Signal, one: ChannelInspection) -> tuple[str | None, str | None]:
+    """Unit and side of another source: its own, else by how it moves beside the chosen."""
+    by_format = (one.guess and one.guess.positive) or signal.positive
+    stated = one.stated_unit or one.unit_by_size
+    if signal.quantity not in SIGNALS:
+        return stated or signal.unit, by_format
+    measured, mirrored = unit_and_side(one, signal.source, signal.unit, signal.quantity)
+    unit = stated or measured or (signal.unit and OPEN)
+    sided = SIGNALS[signal.quantity].mirror < 0 and signal.positive != OPEN
+    if mirrored is None or not sided:
+        return unit, by_format
+    return unit, "port" if mirrored != (signal.positive == "port") else "starboard"
 
 
 def _model(trials: Sequence[Chosen], ship: Ship, own_time: float) -> Iterator[str]:

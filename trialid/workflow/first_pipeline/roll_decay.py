@@ -176,7 +176,7 @@ def _rolled_by_hand(trial: Chosen) -> Window | None:
         return None
     begin, end = (float(seen.t[at] - seen.t[0]) / 1e9 for at in (decay.begin, -1))
     why = "her greatest swing; before it she is at rest, or rolled by hand"
-    return window_over(size * seen.y[decay.begin :], begin, end, released=why)
+    return window_over(size * seen.y[decay.begin :], begin, end, why=why)
 
 
 def _choose(survey: Inspection, stated: float | None, rest: float) -> Chosen:

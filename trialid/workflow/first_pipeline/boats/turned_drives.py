@@ -9,7 +9,7 @@ from trialid.inspection.relations import side
 from trialid.inspection.usual_units import to_si
 from trialid.workflow.first_pipeline.choice import OPEN, Signal
 
-PODS: Final = frozenset(words("azimuth azimut azi pod asd"))
+PODS: Final = frozenset(words("azimuth azimut azi pod asd azimuththruster"))
 THRUSTERS: Final = frozenset(words("thr thruster thrusters"))
 """Words of the angle that a drive is turned to, of the second ones beside `angle`, ..."""
 NO_ANGLE: Final = frozenset(words("rudder pitch blade trim tilt wind heading roll bow"))
