@@ -51,6 +51,21 @@ RECORDERS = {
     "nozzle_deg": "delta",
     "azimuth_deg": "delta",
     "gyro_z_rps": "r",
+    "RUD_ORD": "delta_order",
+    "CommandedRudderAngle": "delta_order",
+    "delta_cmd": "delta_order",
+    "delta_act": "delta",
+    "helm_order": "delta_order",
+    "psi_dot": "r",
+    "yawDot": "r",
+    "phi_dot": "p",
+    "r_dot": None,
+    "psi_ref": None,
+    "longSpeed": "u",
+    "lateral_velocity": "v",
+    "forward_speed_over_ground": None,
+    "transverse speed over ground": None,
+    "longitudinal water speed": "u",
     "heading_min": None,
     "mag/compass_x": None,
     "heading_deg_min": None,
@@ -135,6 +150,8 @@ def test_speed_over_ground_is_no_speed_through_the_water():
     assert channel_names.quantity("RMC/GP:speed_over_ground", "kn") is None
     assert channel_names.over_ground("gps_speed_kn", "kn")
     assert not channel_names.over_ground("speed_through_water", "kn")
+    assert channel_names.over_ground("forward speed over ground", "kn")
+    assert not channel_names.over_ground("transverse speed over ground", "kn")
 
 
 def test_every_phrase_leads_to_its_quantity():

@@ -25,26 +25,31 @@ PHRASES: Final = {
     "delta": "rudder, rud, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "
     "ruderwinkel, rorvinkel, roerhoek, roderutslag, angle de barre, angle barre, angolo timone, "
     "angulo timon, ángulo timón, steering angle, outboard angle, motor angle, drive angle, "
-    "nozzle angle, tiller angle, azimuth angle, pod angle, jet angle, rsa, rudder sensor angle",
-    "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando",
+    "nozzle angle, tiller angle, azimuth angle, pod angle, jet angle, rsa, rudder sensor angle, "
+    "helm angle, roder, rodervinkel, timon, timón, timone, leme",
+    "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando, "
+    "helm order",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
-    "wendegeschw, drehgeschw, "
+    "yaw dot, psi dot, psidot, heading rate, heading dot, girhastighet, velocidad de giro, "
+    "angular rate z, ang vel z, omega z, wendegeschw, drehgeschw, "
     "drehrate, wendegeschwindigkeit, drehgeschwindigkeit, gierrate, "
     "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, gyro z",
     "p": "roll rate, rollrate, rollgeschwindigkeit, roll speed, rollspeed, roll velocity, "
-    "angular velocity x, gyro x",
+    "roll dot, phi dot, phidot, angular rate x, ang vel x, omega x, angular velocity x, gyro x",
     "phi": "roll, roll angle, rolling, heel, heel angle, rollwinkel, kraengung, krängung, "
-    "kraengungswinkel, krängungswinkel, krengning, slagside",
+    "kraengungswinkel, krängungswinkel, krengning, slagside, list angle, bank angle",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
-    "kompasskurs, kreiselkurs",
+    "kompasskurs, kreiselkurs, cap vrai, cap compas, prua",
     "u": "stw, speed through water, speed water, water speed, speed log, log speed, "
-    "doppler log, em log, surge speed, surge velocity, "
+    "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
+    "forward velocity, longitudinal speed, longitudinal velocity, long speed, vitesse surface, "
     "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w",
-    "v": "sway speed, sway velocity",
+    "v": "sway speed, sway velocity, sway vel, vel sway, lateral speed, lateral velocity, "
+    "lat speed, transverse speed, transverse velocity",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
     "drehzahl, wellendrehzahl, propellerdrehzahl, engine rpm, engine speed, motordrehzahl, "
     "jet rpm, impeller rpm, revolutions, rate of revolutions, shaft revolutions, "
-    "propeller revolutions, revolution rate",
+    "propeller revolutions, propeller revolution, revolution rate",
     "V_aw": "aws, apparent wind speed, wind speed apparent, relative wind speed, "
     "wind speed relative, wind velocity relative, wind velo relative, relative wind velocity, "
     "rel wind speed, wind speed rel",
@@ -63,11 +68,19 @@ ALONE: Final = {
 }  # fmt: skip
 """Words that mean a quantity only where they are the whole name of a column."""
 
+ORDERED: Final = frozenset(
+    (
+        "order", "ordered", "command", "commanded", "cmd", "demand", "demanded", "desired",
+        "setpoint", "target", "set", "ord", "ref", "reference",
+    )
+)  # fmt: skip
+"""Words that make a rudder its order, and any other quantity a wish instead of a motion."""
+
 QUALIFIERS: Final = frozenset(
     (
         "hat", "est", "estimated", "meas", "measured", "obs", "observed", "filt", "filtered",
         "velo", "vel", "velocity", "angvelo", "angvel", "mid", "gyro", "imu", "prop", "propeller",
-        "shaft",
+        "shaft", "act", "actual", *ORDERED,
     )
 )  # fmt: skip
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
@@ -92,6 +105,8 @@ OVER_GROUND: Final = frozenset(
         ("speed", "gps"), ("speed", "gnss"),
     }
 )  # fmt: skip
+RUDDERS: Final = ("delta", "delta_order")
+SIDEWAYS: Final = frozenset(("sway", "lateral", "transverse", "transversal", "east", "north"))
 COURSES: Final = (("cog",), ("course", "over", "ground"), ("kurs", "über", "grund"), ("course",))
 """Names of the course over ground; a `Kurs` alone is a heading."""
 SPEEDS: Final = frozenset(
@@ -101,14 +116,6 @@ SPEEDS: Final = frozenset(
 HERS: Final = frozenset(("ship", "ships", "vessel", "boat", "own"))
 """Words before it that say no more."""
 GROUND: Final = frozenset(("ground", "grund", "cog"))
-
-ORDERED: Final = frozenset(
-    (
-        "order", "ordered", "command", "commanded", "cmd", "demand", "demanded", "desired",
-        "setpoint", "target", "set",
-    )
-)  # fmt: skip
-"""Words that make a rudder its order, and any other quantity a wish instead of a motion."""
 
 NO_MEASUREMENT: Final = frozenset(
     (
@@ -144,13 +151,20 @@ def quantity(name: str, unit: str | None) -> str | None:
     found = _qualified(name, unit) or _called(name)
     if found is not None and "min" in told and not _fits(found, unit_in_name(name)):
         return None  # a smallest angle, no rate per minute
-    if found == "psi" and GROUND.intersection(told):
-        return None  # a course over ground
+    if _of_ground(found, told):
+        return None
     if ORDERED.intersection(told):
-        found = "delta_order" if found in ("delta", "delta_order") else None
+        found = "delta_order" if found in RUDDERS or _best(told) == {*RUDDERS} else None
     if found == "n":
         found = next(iter(sorted(sides(name))), "n")
     return found if found is not None and _fits(found, unit) else None
+
+
+def _of_ground(found: str | None, told: Sequence[str]) -> bool:
+    """Whether a heading is a course over ground by its name, or a speed one over ground."""
+    if found == "psi":
+        return bool(GROUND.intersection(told))
+    return found in ("u", "v") and any(_holds(told, phrase) for phrase in OVER_GROUND)
 
 
 def _qualified(name: str, unit: str | None) -> str | None:
@@ -183,7 +197,7 @@ def of_some_speed(name: str, unit: str) -> bool:
 def over_ground(name: str, unit: str | None) -> bool:
     """Whether a channel is the speed over ground, which no model knows but which is a start."""
     field = bare_words(name.rpartition(":")[2])
-    if NO_MEASUREMENT.intersection(field) or not _fits("u", unit):
+    if (NO_MEASUREMENT | SIDEWAYS).intersection(field) or not _fits("u", unit):
         return False
     return any(_holds(words(name), phrase) for phrase in OVER_GROUND)
 
