@@ -15,8 +15,22 @@ def turned(seed: int) -> np.ndarray:
     return np.repeat(steps, 100)
 
 
-def pods(path: Path, names: tuple[str, str], seed: int = 3, sign: float = 1.0) -> Path:
-    """A log of a ship of 20 m that pods turn: to port where they push to starboard."""
+SIDES = ("Azimuth port rpm", "Azimuth stbd rpm")
+
+
+def pods(
+    path: Path,
+    names: tuple[str, ...],
+    seed: int = 3,
+    sign: float = 1.0,
+    *,
+    turns: tuple[str, ...] = SIDES,
+    less: float = 0.0,
+) -> Path:
+    """A log of a ship of 20 m that pods turn: to port where they push to starboard.
+
+    The second is turned and driven `less` than the first, as a share.
+    """
     a = turned(seed)
     u, r, psi = (np.zeros(len(T)) for _ in range(3))
     u[0] = 4.0
@@ -26,8 +40,8 @@ def pods(path: Path, names: tuple[str, str], seed: int = 3, sign: float = 1.0) -
         psi[k + 1] = psi[k] + 0.1 * r[k]
     rng = np.random.default_rng(seed)
     rpm = 120.0 + rng.standard_normal(len(T))
-    columns = {f"Azimuth {side} rpm": rpm for side in ("port", "stbd")}
-    columns |= {name: sign * np.rad2deg(a) for name in names}
+    columns = {name: (1.0 - less * k) * rpm for k, name in enumerate(turns)}
+    columns |= {n: sign * (1.0 - less * k) * np.rad2deg(a) for k, n in enumerate(names)}
     columns["yaw_rate_dps"] = np.rad2deg(r) + 0.02 * rng.standard_normal(len(T))
     columns["stw_mps"] = u + 0.01 * rng.standard_normal(len(T))
     return table(path, columns)
@@ -65,3 +79,27 @@ def test_one_angle_alone_turns_no_pods(tmp_path: Path) -> None:
     text = begun(tmp_path, pods(tmp_path / "a.csv", NAMES[:1])).files[tmp_path / "p.toml"]
     assert 'effects = ["thrusters", ' in text
     assert "_angle" not in text
+
+
+NUMBERED = ("azimuththruster_speed_rpm_1", "azimuththruster_speed_rpm_2")
+OF_NUMBER = ("azimuththruster_angle_deg_1", "azimuththruster_angle_deg_2")
+
+
+def test_two_that_always_do_the_same_are_placed_by_their_numbers(tmp_path: Path) -> None:
+    log = pods(tmp_path / "a.csv", OF_NUMBER, turns=NUMBERED)
+    made = begun(tmp_path, log)
+    text, ship = made.files[tmp_path / "p.toml"], made.files[tmp_path / "p_ship.toml"]
+    assert not made.to_fill
+    assert 'thruster_port            = { channel = "azimuththruster_speed_rpm_1"' in text
+    assert 'thruster_port_angle      = { channel = "azimuththruster_angle_deg_1"' in text
+    assert text.count("CAREFUL: which is to port does not show") == 2
+    assert ship.count('command = "revolutions"') == 2
+
+
+def test_two_that_do_not_are_asked_for_and_run_when_that_is_filled_in(tmp_path: Path) -> None:
+    made = begun(tmp_path, pods(tmp_path / "a.csv", OF_NUMBER, turns=NUMBERED, less=0.2))
+    assert len(made.to_fill) == 2
+    for path, text in made.files.items():
+        path.write_text(text.replace('unit = "?"', 'unit = "rpm"'), encoding="utf-8")
+    done = run(pipeline_file.load(tmp_path / "p.toml"))
+    assert done.result.fit.eps_rmsn_by_output["r"] < 0.3  # the second as logged is not as sailed

@@ -16,7 +16,12 @@ from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator, Command, actuator_tables
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE, angle_signals, angles_of
+from trialid.workflow.first_pipeline.boats.turned_drives import (
+    ANGLE,
+    angle_signals,
+    angles_of,
+    do_the_same,
+)
 from trialid.workflow.first_pipeline.choice import (
     OPEN,
     RUDDERS,
@@ -43,6 +48,9 @@ from trialid.workflow.first_pipeline.signed_speed import with_course
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
 CONFIRMED: Final = "side confirmed by the turn"
 ASK_PORT: Final = "FILL IN the unit after settling which is to port: the motion does not tell"
+BOTH_ALIKE: Final = (
+    "CAREFUL: which is to port does not show; both always do the same, so that little hangs on it"
+)
 SHARE: Final = 1.05
 """No share of full is larger; a stated thrust of a boat that moves is."""
 FULL: Final = 100.0
@@ -122,8 +130,10 @@ def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
     port, starboard = drives_of(survey)
     says = _agreement(port, starboard, turn)
     if not (has_side(port) or says[0]):
-        port, starboard = starboard, port
-        says = _agreement(port, starboard, turn)
+        says = _agreement(starboard, port, turn)
+        port, starboard = (starboard, port) if says[0] else (port, starboard)
+    if says[1] == ASK_PORT and do_the_same(survey, (port, starboard)):
+        says = True, BOTH_ALIKE
     return [_drive(PORT, port, says), _drive(STARBOARD, starboard, says)]
 
 
@@ -221,7 +231,7 @@ def is_boat(signals: frozenset[str]) -> bool:
 def boat_actuators(signals: tuple[Signal, ...], ship: Ship) -> tuple[Actuator, ...]:
     """Both thrusters of a boat, where nobody says where they stand."""
     length = ship.particulars.get("L", 0.0)
-    units = {one.quantity: one.unit or "1" for one in signals}
+    units = {one.quantity: _unit_once_filled(one) for one in signals}
     turned = f"{PORT}{ANGLE}" in units
     return tuple(
         Actuator(
@@ -233,6 +243,12 @@ def boat_actuators(signals: tuple[Signal, ...], ship: Ship) -> tuple[Actuator, .
         )
         for name, sign in ((PORT, -1.0), (STARBOARD, 1.0))
     )
+
+
+def _unit_once_filled(signal: Signal) -> str:
+    """The unit of a drive; of one that is open for its side the one that will be filled in."""
+    unit = signal.unit or "1"
+    return unit_of_drive(signal.source)[0] if unit == OPEN else unit
 
 
 def command_of(unit: str) -> Command:

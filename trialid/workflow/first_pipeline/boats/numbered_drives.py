@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from trialid.inspection.drives import NUMBERS
 from trialid.workflow.first_pipeline.boats.boat_choice import (
     ASK_PORT,
+    BOTH_ALIKE,
     CONFIRMED,
     unit_of_drive,
 )
@@ -40,16 +41,19 @@ def _shown(trials: Sequence[Chosen]) -> Mapping[str, Place]:
 
 
 def _placed(signals: tuple[Signal, ...], known: Mapping[str, Place]) -> tuple[Signal, ...]:
-    asked = [s for s in signals if ASK_PORT in s.why and s.source.name in known]
+    asked = [s for s in signals if _asks(s) and s.source.name in known]
     if len({known[s.source.name][0] for s in asked}) != len(NUMBERS):
         return signals
     told = sorted((_told(s, *known[s.source.name]) for s in asked), key=lambda s: s.quantity)
     return (*told, *(s for s in signals if s not in asked))
 
 
+def _asks(signal: Signal) -> bool:
+    return any(words in signal.why for words in (ASK_PORT, BOTH_ALIKE))
+
+
 def _told(signal: Signal, quantity: str, log: str) -> Signal:
     unit, _ = unit_of_drive(signal.source)
     words = f"side as in {log}, of the same name; the motion here does not show it"
-    return dataclasses.replace(
-        signal, quantity=quantity, unit=unit, why=signal.why.replace(ASK_PORT, words)
-    )
+    why = signal.why.replace(ASK_PORT, words).replace(BOTH_ALIKE, words)
+    return dataclasses.replace(signal, quantity=quantity, unit=unit, why=why)

@@ -3,9 +3,12 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+import numpy as np
+
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import sides, words
 from trialid.inspection.relations import side
+from trialid.inspection.sketch import on_one_clock
 from trialid.inspection.usual_units import to_si
 from trialid.workflow.first_pipeline.choice import OPEN, Signal
 
@@ -24,6 +27,13 @@ UNSEEN: Final = (
     "way it counts"
 )
 
+SAME: Final = 0.05
+"""Share of its largest by which one drive of two that do the same differs from the other, or one
+angle, ..."""
+MOSTLY: Final = 0.95
+"""... for so much of the time. Two pods of a made ferry differ by 0.02; of two thrusters that steer
+one does twice what the other does."""
+
 
 def angle_signals(survey: Inspection, drives: Sequence[Signal], turn: Signal) -> list[Signal]:
     """The angle of each of two drives, its sense by the turn; none where not each has one.
@@ -40,6 +50,20 @@ def angles_of(
     """The angle that each of these drives is turned to; nothing where not each has one."""
     found = [[*_angles(survey, one)] for one in drives]
     return tuple(ones[0] for ones in found) if all(len(ones) == 1 for ones in found) else ()
+
+
+def do_the_same(survey: Inspection, drives: Sequence[ChannelInspection]) -> bool:
+    """Whether two drives that are turned, and their angles, hardly differ."""
+    angles = angles_of(survey, drives)
+    return bool(angles) and all(_hardly_differ(*pair) for pair in (drives, angles))
+
+
+def _hardly_differ(one: ChannelInspection, other: ChannelInspection) -> bool:
+    common = on_one_clock(one.sketch, other.sketch)
+    if common is None:
+        return False
+    _, (x, y), _ = common
+    return bool(np.quantile(np.abs(x - y), MOSTLY) <= SAME * np.abs(x).max())
 
 
 def _angles(survey: Inspection, drive: ChannelInspection) -> Iterator[ChannelInspection]:
