@@ -41,6 +41,14 @@ def stamps(path, channel="u"):
         ("Time", "4/11/2025 12:08:20 PM", "4/13/2025 12:08:20 PM", START),
         ("", "2025-04-11_12:08:20:000000", "2025-04-11_12:08:20:500000", START),
         ("Uhrzeit", "12:08:20,5", "12:08:21,5", 43_700_500_000_000),
+        ("Time", "12:08:20:500", "12:08:21:500", 43_700_500_000_000),
+        ("Time", "0.5 sec", "1.5 sec", 500_000_000),
+        ("time", "0 days 00:00:00.500000", "0 days 00:00:01.500000", 500_000_000),
+        ("time", "00:00.5", "00:01.5", 500_000_000),
+        ("time", "20250411T120820Z", "20250411T120821Z", START),
+        ("Timestamp", "11 April 2025 12:08:20", "11 April 2025 12:08:21", START),
+        ("Timestamp", "Apr 11, 2025 12:08:20", "Apr 11, 2025 12:08:21", START),
+        ("Timestamp", "Fri Apr 11 12:08:20 2025", "Fri Apr 11 12:08:21 2025", START),
     ],
 )
 def test_time_columns_as_they_are_called_and_written(tmp_path, head, first, second, ns):
@@ -49,6 +57,12 @@ def test_time_columns_as_they_are_called_and_written(tmp_path, head, first, seco
     assert found[0] == ns
     assert found[1] > found[0]
     assert list(read(path).channels) == ["u"]
+
+
+@pytest.mark.parametrize("cell", ["01:30", "3 kn", "Foo 11, 2025 12:08:20", "20250411120820"])
+def test_what_may_be_no_time_or_two_is_refused(tmp_path, cell):
+    with pytest.raises(LogError, match="no time"):
+        read(log(tmp_path, f"time;u\n{cell};1\n{cell};2\n"))
 
 
 def test_nine_digits_of_a_second_are_kept(tmp_path):

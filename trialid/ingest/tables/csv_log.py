@@ -1,20 +1,20 @@
 """CSV logs: a header row, a time column, one column a channel; any other text by a template.
 
 A column is `name`, `name[unit]` or `name (unit)`, or a second row gives the units; titles may stand
-above the header. Separator: comma, semicolon or tab, or blanks where each row has as many numbers
-as the header has words; but with the first the decimals may stand behind a comma. The time column
-is called `t`, `time_utc`, `elapsed_s`, `Uhrzeit` or the like and holds seconds from any origin,
-another stated unit of time, dates, or times of day. Whatever could be read in two ways is refused:
-a template says which.
+above the header, and this behind a comment sign or in Tecplot's `VARIABLES`. Separator: comma,
+semicolon or tab, or blanks where each row has as many numbers as the header has words; but with the
+first the decimals may stand behind a comma. The time column is called `t`, `time_utc`, `elapsed_s`,
+`Uhrzeit` or the like and holds seconds from any origin, another stated unit of time, dates, or
+times of day. Whatever could be read in two ways is refused: a template says which.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
 from trialid.ingest.bytes.encoded_text import UTF_16
-from trialid.ingest.tables import table_blanks, table_header, table_text
+from trialid.ingest.tables import stated_names, table_blanks, table_header, table_text
 from trialid.ingest.tables.table import Head
 from trialid.ingest.tables.table import head as head_of
 from trialid.ingest.tables.table_channels import columns_to_read, recording
@@ -35,7 +35,8 @@ def recognises(head: bytes) -> bool:
     lines = _text(head).splitlines(keepends=True)
     if not lines:
         return False
-    if _header(lines) is not None or table_blanks.header_of(_whole(lines)) is not None:
+    whole = _whole(lines)
+    if any(found is not None for found in (_header(lines), *_without_doubt(whole))):
         return True
     first = _fields(lines[0], _separator(lines[0]))
     if not lines[0].endswith(("\n", "\r")) and len(first) > 2:
@@ -46,6 +47,12 @@ def recognises(head: bytes) -> bool:
     told = [line for line in lines[1:] if line.strip()]
     timed = any(is_time(head_of(text).name) for text in first)
     return timed or any(_is_row(line, lines[0]) for line in told[:2])
+
+
+def _without_doubt(lines: Sequence[str]) -> Iterator[object]:
+    """What is known of a table with blanks between its columns, or with its names above them."""
+    yield table_blanks.header_of(lines)
+    yield stated_names.layout_of(lines)
 
 
 def nearly(head: bytes) -> str | None:
@@ -120,6 +127,8 @@ def _layout(path: Path) -> Layout:
     if found is not None:
         separator, skip, units_row = found
         return Layout(separator, skip=skip, units_row=units_row)
+    if (stated := stated_names.layout_of(lines)) is not None:
+        return stated
     separator = _separator(lines[0]) if lines else ","
     units_row = len(lines) > 1 and table_header.are_units(
         lines[0].split(separator), lines[1].split(separator)

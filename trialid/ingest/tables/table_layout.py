@@ -22,10 +22,10 @@ SPACES = " "
 
 @dataclass(frozen=True)
 class Layout:
-    """How a text is laid out; the names as in a template. `decimal` None: as the text shows.
+    """How a text is laid out; what is called as in a template means the same.
 
-    `texts` are the columns to be left as texts, `dated` those that may hold whole dates, `form`
-    how these are written.
+    `decimal` None: as the text shows. `names` are of columns that no row names, `texts` the columns
+    to be left as texts, `dated` those that may hold whole dates, `form` how these are written.
     """
 
     separator: str
@@ -34,6 +34,7 @@ class Layout:
     encoding: str | None = None
     skip: int = 0
     header_rows: int = 1
+    names: tuple[str, ...] = ()
     units_row: bool = False
     skip_after: int = 0
     comment: str | None = None
@@ -54,6 +55,7 @@ def of_template(template: Template) -> Layout:
         encoding=template.encoding,
         skip=template.skip,
         header_rows=template.header_rows,
+        names=() if template.header_rows else tuple(template.header),
         units_row=template.units_row,
         skip_after=template.skip_after,
         comment=template.comment,

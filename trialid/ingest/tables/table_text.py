@@ -135,7 +135,7 @@ def _top(path: Path, raw: bytes, layout: Layout, template: Template | None) -> T
             next(reader, [])
     except csv.Error as error:
         raise LogError(f"{path}, the header: {error}; look for a stray quote") from error
-    texts = _header(rows) if layout.header_rows else list(template.header if template else ())
+    texts = _header(rows) if layout.header_rows else list(layout.names)
     texts = list(distinct(texts)) if template is not None else texts
     if template is not None:
         check_header(path, texts, template)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from trialid.errors import LogError, list_names
-from trialid.ingest.tables.clock import table_stamps
+from trialid.ingest.tables.clock import durations, table_stamps
 from trialid.ingest.tables.clock.table_dates import date_clock, join_columns
 from trialid.ingest.tables.clock.table_time import (
     TIME_NAMES,
@@ -193,7 +193,18 @@ def _plain(table: Table, column: int, zone: str | None) -> Clock:
     no_zone(table, zone)
     if values.dtype.kind == "O" and _is_clock(values[0]):
         return of_day(table, column, _spec(table, [column]))
+    if (written := _durations(table, column)) is not None:
+        return written
     return in_seconds(table, column, None)
+
+
+def _durations(table: Table, column: int) -> Clock | None:
+    """The clock of a column of durations that are written in words or with colons."""
+    values = table.columns[column]
+    if values.dtype.kind != "O" or (found := durations.in_seconds([*map(str, values)])) is None:
+        return None
+    t = np.rint(np.array(found) * SECOND_NS).astype(np.int64)
+    return Clock(t, (column,), f"column {table.heads[column].name}, as written")
 
 
 def _is_clock(value: Any) -> bool:

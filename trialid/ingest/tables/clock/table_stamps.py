@@ -29,13 +29,37 @@ MONTHS = {
 }
 LOOKS_DATED = re.compile(r"\d{4}[./-]\d{1,2}[./-]\d|\d{1,2}[./-](\d{1,2}|[A-Za-z]{3})[./-]\d{4}")
 EITHER = re.compile(r"(?P<first>\d{1,2})[/-](?P<second>\d{1,2})[/-]\d{4}")
+WRITTEN = (
+    (re.compile(r"(\d{4})(\d\d)(\d\d)T(\d\d)(\d\d)(\d\d)"), r"\1-\2-\3T\4:\5:\6"),
+    (re.compile(r"(\d{1,2}) ([A-Za-z]{3})[a-z]*+,? (\d{4})"), r"\1-\2-\3"),
+    (re.compile(r"([A-Za-z]{3})[a-z]*+\.? {1,2}(\d{1,2}),? (\d{4})"), r"\2-\1-\3"),
+    (re.compile(r"[A-Za-z]{3} ([A-Za-z]{3}) {1,2}(\d{1,2}) ([\d:.]+) (\d{4})"), r"\2-\1-\4 \3"),
+)
+"""Dates without marks: `20260603T091200`, `3 June 2026`, `Jun 3, 2026`, `Wed Jun  3 09:12:00 2026`.
+"""
 CLOCK = re.compile(r"\d{1,2}:\d\d:\d\d([.,]\d+)?")
 """A time of day that can be none of minutes and seconds."""
 
 
 def has_a_date(text: str) -> bool:
     """Whether a text begins like a date with a year of four digits."""
-    return LOOKS_DATED.match(text) is not None
+    return LOOKS_DATED.match(write_marks(text)) is not None
+
+
+def write_marks(text: str) -> str:
+    """A date that is written without marks with them; any other text as it is.
+
+    >>> write_marks("20260603T091200Z"), write_marks("Wed Jun  3 09:12:00 2026")
+    ('2026-06-03T09:12:00Z', '3-Jun-2026 09:12:00')
+    >>> write_marks("3 June 2026 09:12"), write_marks("2026-06-03")
+    ('3-Jun-2026 09:12', '2026-06-03')
+    """
+    if text[:1].isdigit() and not (text[4:5].isdigit() or " " in text[1:3]):
+        return text
+    for form, rewritten in WRITTEN:
+        if form.match(text):
+            return form.sub(rewritten, text, count=1)
+    return text
 
 
 def as_iso(texts: Sequence[str]) -> list[str] | None:
@@ -50,7 +74,7 @@ def as_iso(texts: Sequence[str]) -> list[str] | None:
     >>> as_iso(["03/06/2026 09:12:00", "03/13/2026 09:12:00"])
     ['2026-03-06T09:12:00', '2026-03-13T09:12:00']
     """
-    found = [DATED.fullmatch(text) for text in texts]
+    found = [DATED.fullmatch(write_marks(text)) for text in texts]
     dates = [one for one in found if one is not None]
     if len(dates) < len(texts) or not dates:
         return None
@@ -164,7 +188,7 @@ def stamps_of_block(texts: Sequence[str], form: str | None) -> Stamps | None:
     """
     plain: list[str] | None = [write_point(text.strip(), form) for text in texts]
     if form is None and plain and not ISO.match(plain[0]):
-        first = DATED.fullmatch(plain[0])
+        first = DATED.fullmatch(write_marks(plain[0]))
         plain = as_iso(plain) if first and _order_as_written(first) else None
     if not plain or (form is None and len(plain[0]) <= len("2026-06-03")):
         return None
