@@ -13,8 +13,9 @@ SLOPE: Final = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 BLOCK: Final = 64
 """Samples of a recursion that one product of matrices steps through."""
 
-TOGETHER: Final = 1024
-"""Samples that are delayed at a time: with the sensitivities of a large model half a megabyte."""
+TOGETHER: Final = 1 << 14
+"""Numbers that are delayed at a time, 128 kB: of 7500 samples by 40 columns they take 0.9 ms, with
+half as many 1.0, with twice 0.8; of 12 columns 0.30, 0.33 and 0.48."""
 
 REACH: Final = 3
 """Samples on either side that an interpolated value looks at."""
@@ -103,13 +104,14 @@ def _all_alike(y: Vector, places: Whole, weights: Vector) -> Vector:
     """Six slices of one longer record, by rows that the cache holds until they are summed."""
     n = len(places) - 5
     total = np.empty((n, *y.shape[1:]))
-    for at in range(0, n, TOGETHER):
-        rows = min(TOGETHER, n - at)
+    most = max(TOGETHER // (total[:1].size or 1), 1)
+    beside = np.empty_like(total[:most])
+    for at in range(0, n, most):
+        rows = min(most, n - at)
         near = y[places[at : at + rows + 5]]
-        part = weights[0] * near[:rows]
+        part = np.multiply(near[:rows], weights[0], out=total[at : at + rows])
         for i in range(1, 6):
-            part += weights[i] * near[i : i + rows]
-        total[at : at + rows] = part
+            part += np.multiply(near[i : i + rows], weights[i], out=beside[:rows])
     return total
 
 

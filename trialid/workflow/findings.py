@@ -130,8 +130,10 @@ def _imo(pipeline: Pipeline, found: Diagnosis, ship: Vessel | None) -> dict[str,
         return {}
     done, fit = found.before, found.before.fit
     spread = _spread(done)
-    wider = {p.name: float(student(p.freedom) / student(np.inf)) for p in done.accuracy.parameters}
-    errors = {p.name: wider[p.name] * p.standard_error for p in done.accuracy.parameters}
+    wider = {
+        p.name: float(student(p.freedom) / student(np.inf)) for p in done.own_accuracy.parameters
+    }
+    errors = {p.name: wider[p.name] * p.standard_error for p in done.own_accuracy.parameters}
     sailed = measure_trials(fit, errors, spread)
     by_heading = {one.trial for one in sailed.numbers if one.kind == "zig-zag"}
     integrals = (one for one in observed.overshoots(fit) if one.trial not in by_heading)
@@ -151,7 +153,9 @@ def _imo(pipeline: Pipeline, found: Diagnosis, ship: Vessel | None) -> dict[str,
 def _spread(done: Diagnosed) -> LikelySpread:
     """All that predictions by a fit are uncertain by."""
     off = done.doubts
-    return likely_spread(done.fit, done.accuracy.covariance, off.standing, off.held, off.missing)
+    return likely_spread(
+        done.fit, done.own_accuracy.covariance, off.standing, off.held, off.missing
+    )
 
 
 def _beside(

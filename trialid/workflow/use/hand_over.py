@@ -38,8 +38,8 @@ Files = Mapping[str, str | bytes]
 def taken_up(model: FinishedModel) -> FittedModel:
     """The model with all that its files say of it."""
     done = model.done
-    unknowns = [p.name for p in done.accuracy.parameters]
-    covariance = done.accuracy.covariance
+    unknowns = [p.name for p in done.own_accuracy.parameters]
+    covariance = done.own_accuracy.covariance
     return fitted_model(model.fit, unknowns, covariance, model.result, model.seen, model.doubts)
 
 

@@ -44,8 +44,8 @@ class Known(Protocol):
         """The fit."""
 
     @property
-    def accuracy(self) -> Trusted:
-        """How sure it is."""
+    def own_accuracy(self) -> Trusted:
+        """How sure it is, by itself."""
 
     @property
     def doubts(self) -> Doubts:
@@ -110,7 +110,7 @@ class KeptFit:
     """A fit with what was kept of it."""
 
     fit: Fit
-    accuracy: KeptAccuracy
+    own_accuracy: KeptAccuracy
     doubts: Doubts
     others: "tuple[tuple[str, KeptFit], ...]" = ()
 
@@ -149,7 +149,7 @@ def about_model(has: str, done: Known) -> AboutModel:
         effects=tuple(e.name for e in model.effects),
         free=done.fit.settings.free,
         estimates=dict(done.fit.estimates),
-        unknowns=tuple(p.name for p in done.accuracy.parameters),
+        unknowns=tuple(p.name for p in done.own_accuracy.parameters),
         variance=reduced.variance,
         independent=reduced.independent,
         rivals=doubts.standing.rivals,
@@ -166,7 +166,7 @@ def about_model(has: str, done: Known) -> AboutModel:
 def arrays_of(done: Known) -> dict[str, Vector]:
     """The arrays of a fit by name."""
     reduced = done.doubts.standing.known
-    return {COVARIANCE: done.accuracy.covariance, **{n: getattr(reduced, n) for n in ARRAYS}}
+    return {COVARIANCE: done.own_accuracy.covariance, **{n: getattr(reduced, n) for n in ARRAYS}}
 
 
 def kept_model(

@@ -168,7 +168,7 @@ def _as_recorded(fit: Fit, table: OrderTable) -> OrderTable:
 def spread_of(model: FinishedModel) -> LikelySpread:
     """All that a prediction of a finished run is uncertain by."""
     off = model.done.doubts
-    covariance = model.done.accuracy.covariance
+    covariance = model.done.own_accuracy.covariance
     return likely_spread(model.fit, covariance, off.standing, off.held, off.missing)
 
 
