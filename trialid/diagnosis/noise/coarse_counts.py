@@ -16,6 +16,9 @@ much, and nothing at twice, where sensors whose rounding is no trouble would be 
 
 GRAIN: Final = 1e-6
 """Share of the range below which two values are one that was converted twice."""
+WHOLE: Final = 0.15
+"""Rms by which steps of values that are counted may differ from whole counts: half of what steps of
+any size do. Values that are rounded once more to a third of a count differ by 0.13."""
 
 
 def coarse_counts(fit: Fit) -> str:
@@ -34,7 +37,14 @@ def coarse_counts(fit: Fit) -> str:
 
 
 def count_of(y: Vector) -> float:
-    """Least difference between two values; (N,)."""
+    """Least difference between two values, where all differ by whole counts of it, else 0; (N,).
+
+    A ship that goes on has no two positions near each other, however fine they are.
+    """
     steps = np.diff(np.unique(y))
     steps = steps[steps > GRAIN * np.sum(steps)]
-    return float(steps.min()) if len(steps) else 0.0
+    if not len(steps):
+        return 0.0
+    count = float(steps.min())
+    beside = steps / count - np.rint(steps / count)
+    return count if np.sqrt(np.mean(beside**2)) < WHOLE else 0.0
