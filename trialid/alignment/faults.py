@@ -23,6 +23,7 @@ from trialid.alignment.jumps import jumps
 from trialid.alignment.signal_limits import LIMITS
 from trialid.alignment.sources import SignalSource
 from trialid.alignment.spikes import WIDEST_SPIKE, dropouts, spikes
+from trialid.alignment.wrapped_means import wrapped_means
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
 from trialid.names import units
@@ -223,7 +224,7 @@ def _abrupt(s: Samples, run: tuple[int, int], usual: float, levels: float) -> bo
     return min(abs(step) for step in outer) > max(ABRUPT * usual, 3 * levels)
 
 
-FINDS = (_range, dropouts, long_dropouts, spikes, long_spikes, _saturation, jumps)
+FINDS = (_range, wrapped_means, dropouts, long_dropouts, spikes, long_spikes, _saturation, jumps)
 """In this order: what one finds is hidden from the next."""
 
 

@@ -6,6 +6,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.alignment.wrapped_means import on_the_long_way
+
 Vector = NDArray[np.float64]
 
 POINTS: Final = 4000
@@ -28,9 +30,14 @@ EMPTY: Final = Sketch(np.empty(0, np.int64), np.empty(0))
 def sketch(t: NDArray[np.int64], y: Vector, turn: float | None = None) -> Sketch:
     """The sketch of finite values whose stamps [ns] increase; `turn` is a whole turn of an angle.
 
+    What an interpolation made of both ends of the circle is left out.
+
     >>> sketch(np.array([0, 10, 20]), np.array([1.0, 2.0, 4.0])).y.tolist()
     [1.0, 2.0, 4.0]
     """
+    if turn is not None and len(y):
+        kept = ~on_the_long_way(y * (2.0 * np.pi / turn))
+        t, y = t[kept], y[kept]
     if turn is not None and np.abs(np.diff(y)).max(initial=0.0) >= turn / 2:
         y = np.unwrap(y, period=turn)
     t = _spread(t)
