@@ -26,7 +26,8 @@ FASTER: Final = 3.0
 courses of 0.3 to 8 deg/s gave on four clocks 62 are missed: 46 with half, 1717 with twice."""
 SLOW: Final = np.pi / 4.0
 """[rad] What she turns meanwhile at that pace, at most: else a whole turn may be hers. 2013 are
-missed with half of it, 46 with twice; none of 2.2 million values of a heading as logged is taken."""
+missed with half of it, 46 with twice; of 2.2 million values of a heading as logged none is taken.
+"""
 EVEN: Final = 0.1
 """Share of a step by which those between the first and the last differ."""
 
