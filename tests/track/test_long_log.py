@@ -133,31 +133,36 @@ def test_a_shorter_passage_is_one_trial_and_so_is_one_that_is_never_steered() ->
     assert not windows_of(still, LENGTH, SPEED)
 
 
-def with_pauses(pauses: list[tuple[int, int]], *, alone: str = "") -> Trial:
-    """Of 40 lengths at the rudder without a break; in a pause nothing is measured, or `alone`."""
-    samples = round(40.0 * LENGTH / SPEED / PERIOD)
+def with_pauses(pauses: list[tuple[float, float]], *, alone: str = "") -> Trial:
+    """Of 100 lengths at the rudder; in pauses [lengths] nothing is measured, or `alone` is not."""
+    length = LENGTH / SPEED / PERIOD
+    samples = round(100.0 * length)
     t = PERIOD * np.arange(samples)
     signals = {"delta": 0.3 * np.sign(np.sin(t / 40.0)), "r": 0.01 * np.sin(t / 40.0)}
     signals["u"] = np.full(samples, SPEED)
     valid = {n: np.ones(samples, np.bool_) for n in signals}
     for begin, end in pauses:
         for name in [alone] if alone else ["delta", "r"]:  # the speed is stated, not measured
-            valid[name][begin:end] = False
+            valid[name][round(begin * length) : round(end * length)] = False
     return Trial("log", "fit", PERIOD, signals, valid)
 
 
 def test_a_log_in_which_the_recorder_paused_is_as_many_trials_as_it_has_parts() -> None:
-    found = windows_of(with_pauses([(300, 400), (700, 800)]), LENGTH, SPEED)
-    assert [(one.begin, one.end) for one in found] == [(0.0, 150.0), (200.0, 350.0), (400.0, 480.0)]
+    found = windows_of(with_pauses([(30.0, 40.0), (70.0, 75.0)]), LENGTH, SPEED)
+    second = LENGTH / SPEED
+    ends = [(one.begin / second, one.end / second) for one in found]
+    assert ends == [(0.0, 30.0), (40.0, 70.0), (75.0, 100.0)]
     assert {one.why for one in found} == {"recorded without a pause"}
 
 
 @pytest.mark.parametrize("alone", ["delta", "r"])
 def test_a_signal_that_is_missing_alone_parts_no_log(alone: str) -> None:
-    assert not windows_of(with_pauses([(300, 400), (700, 800)], alone=alone), LENGTH, SPEED)
+    assert not windows_of(with_pauses([(30.0, 40.0), (70.0, 75.0)], alone=alone), LENGTH, SPEED)
 
 
-def test_neither_a_short_hole_nor_a_part_as_short_makes_a_trial() -> None:
-    assert not windows_of(with_pauses([(300, 311)]), LENGTH, SPEED)  # 0.46 lengths
-    length = round(LENGTH / SPEED / PERIOD)
-    assert not windows_of(with_pauses([(length - 2, 400)]), LENGTH, SPEED)
+def test_neither_a_short_hole_nor_scraps_make_trials() -> None:
+    assert not windows_of(with_pauses([(30.0, 30.4)]), LENGTH, SPEED)
+    assert not windows_of(
+        with_pauses([(10.0 * k, 10.0 * k + 1.0) for k in range(10)]), LENGTH, SPEED
+    )
+    assert not windows_of(with_pauses([(14.0, 20.0)]), LENGTH, SPEED)  # one part alone is whole

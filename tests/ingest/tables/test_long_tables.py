@@ -64,3 +64,10 @@ def test_a_column_of_names_may_say_that_it_is_one(tmp_path, names):
     table = rows(vessel_id="name_FRAM").rename(columns={"tag": names})
     table.to_csv(tmp_path / "a.csv", index=False)
     assert list(read(tmp_path / "a.csv").channels) == ["rudder_deg", "rot"]
+
+
+def test_of_a_number_and_a_name_the_name_is_meant(tmp_path):
+    table = rows().rename(columns={"tag": "sensor_name"})
+    table.insert(0, "sensor_id", [3] * len(table))
+    table.to_csv(tmp_path / "a.csv", index=False)
+    assert list(read(tmp_path / "a.csv").channels) == ["rudder_deg", "rot"]

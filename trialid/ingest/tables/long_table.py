@@ -15,6 +15,8 @@ NAMES: Final = (
     *("msgid", "measurement", "name", "key"),
 )
 """What a column of names is called, the closest to a value first."""
+BEHIND: Final = ("", "name", "id")
+"""What may stand behind it: `TagName`, `parameter_id`; of a name and a number the name is meant."""
 VALUES: Final = frozenset(("value", "val", "data", "reading", "wert", "valeur", "valor", "waarde"))
 UNITS: Final = frozenset(("unit", "units", "uom", "einheit", "unite", "unidad", "eenheid"))
 
@@ -35,23 +37,14 @@ def one_value_a_row(heads: Sequence[Head]) -> LongColumns | None:
     LongColumns(names=1, values=2, units=None)
     >>> one_value_a_row([head("time"), head("mode"), head("rudder")])
     """
-    called = [_called(one.name) for one in heads]
+    called = ["".join(bare_words(one.name)) for one in heads]
     values = [i for i, word in enumerate(called) if word in VALUES]
-    names = [called.index(word) for word in NAMES if word in called]
+    named = [word + behind for word in NAMES for behind in BEHIND]
+    names = [called.index(word) for word in named if word in called]
     units = [i for i, word in enumerate(called) if word in UNITS]
     if len(values) != 1 or not names:
         return None
     return LongColumns(names[0], values[0], units[0] if len(units) == 1 else None)
-
-
-def _called(name: str) -> str:
-    """What a column is called, whether it says that it is a name or not: `parameter_id`, `TagName`.
-
-    >>> _called("parameter_id"), _called("Msg-ID"), _called("name")
-    ('parameter', 'msgid', 'name')
-    """
-    told = "".join(bare_words(name))
-    return next((one for one in NAMES if told in (f"{one}id", f"{one}name")), told)
 
 
 def key_columns(heads: Sequence[Head]) -> set[int]:

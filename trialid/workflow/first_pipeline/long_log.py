@@ -51,6 +51,10 @@ PAUSE: Final = LENGTHS
 """Ship lengths without any record that part a log in two: as long as what steers her may be unknown
 within a trial."""
 
+PART: Final = 15.0
+"""Ship lengths that such a part has at least: a zig-zag 10/10 takes 20. Of a boat of 3 m at 1.3 m/s
+they are 35 s; half of it are two swings of her rudder, twice is a zig-zag and a half.
+"""
 PAUSED: Final = "recorded without a pause"
 
 KNOWN: Final = 0.9
@@ -156,12 +160,13 @@ def windows_of(trial: Trial, length: float, speed: float) -> tuple[Window, ...]:
 
 
 def _between_pauses(trial: Trial, rudder: Vector, clock: float) -> tuple[Window, ...]:
-    """The parts of a log in which the recorder paused, of each at least her own length.
+    """The parts of a log in which the recorder paused, those that are no scraps.
 
     At most `FEW`, those in which the rudder varies most; none where there is but one.
     """
     parts = recorded_parts(trial, PAUSE * clock)
-    able = [(begin, end) for begin, end in parts if (end - begin) * trial.period >= clock]
+    least = PART * clock / trial.period
+    able = [(begin, end) for begin, end in parts if end - begin >= least]
     most = sorted(able, key=lambda ends: -float(np.std(rudder[slice(*ends)])))[:FEW]
     found = (_window(trial, rudder, ends, "part") for ends in sorted(most))
     return tuple(replace(one, why=PAUSED) for one in found) if len(able) > 1 else ()
