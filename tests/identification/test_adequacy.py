@@ -97,6 +97,19 @@ def test_half_of_the_variance_is_the_line(sound, share, refused):
     assert (why_no_fit(fit) is not None) == refused
 
 
+@pytest.mark.parametrize("follows", [0.0, 0.6])
+def test_a_search_that_found_nothing_says_so_and_asks_for_no_better_start(sound, follows):
+    """The failed search's answer is a constant, or goes with the ship in part."""
+    [fitted, _] = sound.scores
+    y = fitted.response.y
+    part = replace(fitted.response, y=follows * y + (1.0 - follows) * np.mean(y, axis=0))
+    failed = replace(sound, scores=(replace(fitted, response=part),))
+    found = why_no_fit(replace(failed, converged=False, reason="iterations"))
+    assert "did not converge" in found.reason
+    assert ("nothing better than a constant" in found.reason) == (follows == 0.0)
+    assert ("start nearer" in found.advice) == (follows > 0.0)
+
+
 def test_a_record_that_ends_before_she_has_settled_is_too_short():
     model = MODEL
     whole = noisy(zigzag(10), 7)

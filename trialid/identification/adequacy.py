@@ -30,6 +30,14 @@ UNEXPLAINED: Final = 0.5
 else, and the largest of it is not one effect beside a good model. Twice lets anything pass; half
 turns away a plain model of a real ship in wind (54 % of the amplitude, 29 % of the variance)."""
 
+NOTHING: Final = 0.9
+"""Share of the variance from which on a search that failed found nothing better than a constant: 95
+% of the amplitude. A course under an autopilot in waves leaves 99."""
+
+SOMETHING_ELSE: Final = (
+    "check the ship's file, the signs and the units, and whether something else moved her"
+)
+
 SLOWEST_TIMES: Final = 4.0
 """Time scales of the slowest motion that one trial must hold: a lag has settled to 2 % by then, an
 oscillation has swung twice. Half of it lets a lag be fitted that was seen to 14 %, twice turns
@@ -87,10 +95,15 @@ def _search_failed(fit: Fit) -> Inadequate | None:
         return None
     steps = wording.count_of(max(len(fit.iterations) - 1, 0), "step")
     bounds = f", {', '.join(fit.at_bounds)} at a bound" if fit.at_bounds else ""
+    left = unexplained_share(fit, of_use(fit, "fit")).values()
+    nothing = fit.model.states and NOTHING < min(left, default=0.0) < 1.0 / NOTHING
+    found = "; it found nothing better than a constant" if nothing else ""
     return Inadequate(
         f"the search did not converge: {REASONS[fit.reason]} ({steps}, error "
-        f"{fit.eps_rmsn:.1%}{bounds})",
-        "free fewer parameters, or start nearer the ship in [model.values] or in her file",
+        f"{fit.eps_rmsn:.1%}{bounds}){found}",
+        SOMETHING_ELSE
+        if nothing
+        else "free fewer parameters, or start nearer the ship in [model.values] or in her file",
     )
 
 
@@ -118,7 +131,7 @@ def _little_explained(fit: Fit) -> Inadequate | None:
     return Inadequate(
         f"the model explains too little: {_listed(kept)} of what moves is left, where "
         "a constant would leave 100 %",
-        "check the ship's file, the signs and the units, and whether something else moved her",
+        SOMETHING_ELSE,
     )
 
 
