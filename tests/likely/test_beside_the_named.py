@@ -111,7 +111,7 @@ def test_standard_measures_embrace_what_the_model_with_the_effect_says(monkeypat
     monkeypatch.setattr(findings.observed, "overshoots", lambda fit: ())
     accuracy = SimpleNamespace(parameters=(), covariance=None)
     doubts = SimpleNamespace(standing=None, held=(), missing=())
-    kept = {"accuracy": accuracy, "doubts": doubts}
+    kept = {"own_accuracy": accuracy, "doubts": doubts}
     after = SimpleNamespace(fit="with", **kept)
     others = () if effect is None else ((effect, after),)
     before = SimpleNamespace(fit="without", others=others, **kept)
