@@ -1,7 +1,8 @@
 """Tables of every kind with one trial in them, written by the libraries that users write them with.
 
 Text by Python's csv and `str`, Excel by openpyxl, Parquet by pyarrow, MATLAB v5 by scipy, v7.3 by
-h5py in the manner of MATLAB (arrays transposed, a class beside each), JSON by Python's json.
+h5py in the manner of MATLAB (arrays transposed, a class beside each), archives by NumPy, JSON by
+Python's json.
 """
 
 import csv
@@ -146,6 +147,14 @@ def matlab_5(path: Path, series: Mapping[str, Series]) -> Written:
     return _written(series, None, 1e-6)
 
 
+def numpy_archive(path: Path, series: Mapping[str, Series]) -> Written:
+    """Vectors by `np.savez`, dates as NumPy has them."""
+    t, table = columns(series)
+    with path.open("wb") as file:
+        np.savez(file, time=t.view("datetime64[ns]"), **table)
+    return _written(series, None, 1e-9)
+
+
 def matlab_73(path: Path, series: Mapping[str, Series]) -> Written:
     """A struct in MATLAB's manner in HDF5."""
     t, table = columns(series)
@@ -185,5 +194,6 @@ FORMATS: tuple[Format, ...] = (
     Format("parquet", parquet),
     Format("mat5", matlab_5),
     Format("mat73", matlab_73),
+    Format("npz", numpy_archive),
     Format("jsonl", json_lines),
 )

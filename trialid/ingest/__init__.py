@@ -45,7 +45,7 @@ ADAPTERS: tuple[Adapter, ...] = (
     ulog_log.ADAPTER,
     excel_log.ADAPTER,
     parquet_log.ADAPTER,
-    mat_log.ADAPTER,
+    *mat_log.ADAPTERS,
     json_log.ADAPTER,
     csv_log.ADAPTER,
     *plugins("trialid.adapters").values(),
@@ -53,7 +53,7 @@ ADAPTERS: tuple[Adapter, ...] = (
 
 FORMATS = (
     "MCAP, MAVLink, ROS bags, ULog, CAN and NMEA 2000, NMEA 0183, Signal K, CSV, Excel, "
-    "Parquet, MATLAB, JSON"
+    "Parquet, MATLAB, NumPy, JSON"
 )
 """What messages call all of them."""
 OF_ANOTHER_LAYOUT = (

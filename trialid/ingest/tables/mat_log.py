@@ -1,4 +1,4 @@
-"""MATLAB and HDF5 logs: vectors of one length beside a time vector, in one struct or group.
+"""MATLAB, HDF5 and NumPy logs: vectors of one length beside a time vector, in a struct or group.
 
 A channel is called by its variable, `roll` or `trial.roll`; a matrix with as many rows gives
 `name[0]`, `name[1]`. MATLAB's own objects (datetime, table, timeseries) are secret even to MATLAB's
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from trialid.errors import LogError
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
+from trialid.ingest.tables import npz_arrays
 from trialid.ingest.tables.mat_arrays import OLD, Arrays, of_hdf5, of_version_5
 from trialid.ingest.tables.table import Head, Table, blank_out
 from trialid.ingest.tables.table_channels import recording
@@ -27,6 +28,8 @@ from trialid.recording import Recording
 HDF5 = b"\x89HDF\r\n\x1a\n"
 PLAIN = "save plain arrays, as in t = seconds(T.Time - T.Time(1)); save('log.mat', 't', 'roll')"
 NAMED_AT_MOST = 5
+LONGEST_NAME = 4096
+"""Bytes in which the first name of an archive ends."""
 
 
 def recognises(start: bytes) -> bool:
@@ -38,14 +41,22 @@ def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
     """Read the wanted vectors; LogError for a damaged file and for what cannot be read."""
     told = None if aids.template is None else template.load(aids.template)
     table = _table(path, arrays(path), told)
-    return recording(table, ADAPTER.name, wanted, aids, told)
+    kind = NUMPY if _is_archive(path) else MATLAB
+    return recording(table, kind.name, wanted, aids, told)
 
 
 def arrays(path: Path) -> Arrays:
     """All arrays of numbers in the file by name; LogError as `read`."""
+    if _is_archive(path):
+        return npz_arrays.of_npz(path)
     with path.open("rb") as file:
         old = file.read(len(OLD)) == OLD
     return of_version_5(path) if old else of_hdf5(path)
+
+
+def _is_archive(path: Path) -> bool:
+    with path.open("rb") as file:
+        return npz_arrays.recognises(file.read(LONGEST_NAME))
 
 
 @dataclass(frozen=True)
@@ -99,6 +110,8 @@ def _table(path: Path, found: Arrays, told: Template | None) -> Table:
 def _missing(y: NDArray[Any], told: Template | None) -> NDArray[Any]:
     """The numbers, NaN for those that are none; a time of 32 bits stays one."""
     y = np.ascontiguousarray(y)
+    if y.dtype.kind == "M":
+        return y
     return blank_out(y if y.dtype == np.float32 else y.astype(np.float64), _texts(told))
 
 
@@ -160,4 +173,7 @@ def _some(names: list[str]) -> str:
     return ", ".join(names[:NAMED_AT_MOST]) + more
 
 
-ADAPTER = Adapter("mat", recognises, read, frozenset({"template", "zone"}), by_template=recognises)
+AIDS = frozenset({"template", "zone"})
+MATLAB = Adapter("mat", recognises, read, AIDS, by_template=recognises)
+NUMPY = Adapter("npz", npz_arrays.recognises, read, AIDS, by_template=npz_arrays.recognises)
+ADAPTERS = (MATLAB, NUMPY)

@@ -42,7 +42,7 @@ def draft(path: Path) -> str:
         kinds = parquet_log.kinds(path)
         header = tuple(kinds)
         return _text(path, [], header, _times(header, (tuple(kinds.values()),)))
-    if mat_log.recognises(start):
+    if any(one.recognises(start) for one in mat_log.ADAPTERS):
         return _of_mat(path)
     if json_log.may_be_one(start):
         header, rows = json_log.top(path)
