@@ -160,9 +160,8 @@ def test_a_template_that_is_not_there(tmp_path):
 
 def test_a_template_is_no_use_for_a_log_of_messages(tmp_path):
     path, aids = given(tmp_path, b"\x89MCAP0\r\n" + bytes(60), PLAIN)
-    assert "is mcap, where template is for excel, parquet, mat, json, csv; leave it out" in refused(
-        path, aids
-    )
+    said = refused(path, aids)
+    assert "is mcap, where template is for excel, parquet, mat, npz, json, csv; leave it" in said
 
 
 CLOCKS = {

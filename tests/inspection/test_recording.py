@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from trialid.ingest import ADAPTERS
+from trialid.inspection.channels import TABLES
 from trialid.recording import Channel, Recording
 
 T = np.arange(5, dtype=np.int64)
@@ -23,3 +25,7 @@ def test_remarks_quote_a_log_without_what_could_steer_a_terminal():
     assert "\x07" not in remark
     assert "\x1b" not in remark
     assert "colour" in remark
+
+
+def test_formats_that_a_template_can_lay_out_define_no_quantity():
+    assert {one.name for one in ADAPTERS if "template" in one.aids} == TABLES

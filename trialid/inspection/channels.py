@@ -26,7 +26,7 @@ ANGLES_OF_A_QUATERNION: Final[tuple[tuple[Literal["roll", "yaw"], str], ...]] = 
 )
 NO_ROS: Final = "px4 ulog"
 """The format whose quaternions are of axes that point down: a turn to starboard is positive."""
-TABLES: Final = frozenset(("csv", "excel", "mat", "parquet"))
+TABLES: Final = frozenset(("csv", "excel", "json", "mat", "npz", "parquet"))
 """Formats that define no quantity: a column is what somebody called it."""
 AXES = ("x", "y", "z", "w")
 REP_103: Final[Mapping[str, Literal["port"]]] = {"r": "port", "psi": "port"}

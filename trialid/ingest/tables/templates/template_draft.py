@@ -5,6 +5,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from trialid.errors import LogError, printable
 from trialid.ingest.tables import json_log, mat_log, parquet_log
 from trialid.ingest.tables.clock.table_time import DAYS
@@ -126,11 +128,15 @@ def _of_mat(path: Path) -> str:
     lengths = [len(one.y) for one in held]
     length = len(timed[0].y) if timed is not held else max(lengths, key=lengths.count)
     header = [one.head.text for one in held if len(one.y) == length]
-    rows = [
-        tuple(f"{one.y[i]:.17g}" for one in held if len(one.y) == length) for i in range(length)[:2]
-    ]
+    whole = [one.y for one in held if len(one.y) == length]
+    rows = [tuple(_shown(y[i]) for y in whole) for i in range(length)[:2]]
     lines = [f"group = {quote(group)}"] if group else []
     return _text(path, lines, header, _times(header, rows), rows)
+
+
+def _shown(value: Any) -> str:
+    """A number with all its digits, a date as it is written."""
+    return str(value) if isinstance(value, np.datetime64) else f"{value:.17g}"
 
 
 def _times(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
