@@ -17,11 +17,11 @@ def test_positions_of_a_ship_that_goes_on_are_counted_in_nothing(seed):
 
 
 @pytest.mark.parametrize("count", [0.1, 0.5, 1.0])
-@pytest.mark.parametrize("decimals", [1.0, 1.0 / 3.0, 1e-3])
-def test_counts_are_found_though_they_are_rounded_again(count, decimals):
-    counted = count * np.rint(SWUNG / count)
-    again = decimals * count * np.rint(counted / (decimals * count) + 0.2)
-    assert count_of(np.deg2rad(again)) == pytest.approx(np.deg2rad(count), rel=0.35)
+@pytest.mark.parametrize("finer", [3.3, 8.7, 1000.0])
+def test_counts_are_found_though_they_are_rounded_again(count, finer):
+    counted, grain = np.deg2rad(count * np.rint(SWUNG / count)), np.deg2rad(count) / finer
+    again = grain * np.rint(counted / grain)
+    assert count_of(again) == pytest.approx(np.deg2rad(count), rel=0.03)
 
 
 def test_one_value_is_no_count():

@@ -17,8 +17,10 @@ much, and nothing at twice, where sensors whose rounding is no trouble would be 
 GRAIN: Final = 1e-6
 """Share of the range below which two values are one that was converted twice."""
 WHOLE: Final = 0.15
-"""Rms by which steps of values that are counted may differ from whole counts: half of what steps of
-any size do. Values that are rounded once more to a third of a count differ by 0.13."""
+"""Rms by which steps of values that are counted may differ from whole counts. Counts rounded once
+more to a third differ by 0.14, to a ninth by 0.06; of 4000 made records without counts none by less
+than 0.22, half of them by 0.29. With half of it counts rounded to a third are missed, with twice
+half of what is no count is one."""
 
 
 def coarse_counts(fit: Fit) -> str:
@@ -45,6 +47,6 @@ def count_of(y: Vector) -> float:
     steps = steps[steps > GRAIN * np.sum(steps)]
     if not len(steps):
         return 0.0
-    count = float(steps.min())
+    count = float(np.mean(steps[steps < 1.5 * steps.min()]))  # single ones, rounded up and down
     beside = steps / count - np.rint(steps / count)
     return count if np.sqrt(np.mean(beside**2)) < WHOLE else 0.0
