@@ -9,7 +9,7 @@ times of day. Whatever could be read in two ways is refused: a template says whi
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted
@@ -35,8 +35,7 @@ def recognises(head: bytes) -> bool:
     lines = _text(head).splitlines(keepends=True)
     if not lines:
         return False
-    whole = _whole(lines)
-    if any(found is not None for found in (_header(lines), *_without_doubt(whole))):
+    if _sure_layout(lines) is not None:
         return True
     first = _fields(lines[0], _separator(lines[0]))
     if not lines[0].endswith(("\n", "\r")) and len(first) > 2:
@@ -47,12 +46,6 @@ def recognises(head: bytes) -> bool:
     told = [line for line in lines[1:] if line.strip()]
     timed = any(is_time(head_of(text).name) for text in first)
     return timed or any(_is_row(line, lines[0]) for line in told[:2])
-
-
-def _without_doubt(lines: Sequence[str]) -> Iterator[object]:
-    """What is known of a table with blanks between its columns, or with its names above them."""
-    yield table_blanks.header_of(lines)
-    yield stated_names.layout_of(lines)
 
 
 def nearly(head: bytes) -> str | None:
@@ -116,19 +109,23 @@ def _header(lines: Sequence[str]) -> tuple[str, int, bool] | None:
     return None
 
 
-def _layout(path: Path) -> Layout:
-    with path.open("rb") as file:
-        lines = _text(file.read(TOP)).splitlines(keepends=True)
+def _sure_layout(lines: Sequence[str]) -> Layout | None:
+    """The layout of a table of which the first lines leave no doubt."""
     spaced = table_blanks.header_of(_whole(lines))
     if spaced is not None:
         return Layout(SPACES, skip=spaced[0], units_row=spaced[1])
-    lines = [line.rstrip("\r\n") for line in lines[: table_header.DEEPEST + 8]]
-    found = _header(lines)
-    if found is not None:
+    top = [line.rstrip("\r\n") for line in lines[: table_header.DEEPEST + 8]]
+    if (found := _header(top)) is not None:
         separator, skip, units_row = found
         return Layout(separator, skip=skip, units_row=units_row)
-    if (stated := stated_names.layout_of(lines)) is not None:
-        return stated
+    return stated_names.layout_of(_whole(lines))
+
+
+def _layout(path: Path) -> Layout:
+    with path.open("rb") as file:
+        lines = _text(file.read(TOP)).splitlines(keepends=True)
+    if (sure := _sure_layout(lines)) is not None:
+        return sure
     separator = _separator(lines[0]) if lines else ","
     units_row = len(lines) > 1 and table_header.are_units(
         lines[0].split(separator), lines[1].split(separator)

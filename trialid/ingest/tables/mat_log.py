@@ -6,7 +6,7 @@ documentation: they are left out, and plain arrays asked for.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,8 +28,6 @@ from trialid.recording import Recording
 HDF5 = b"\x89HDF\r\n\x1a\n"
 PLAIN = "save plain arrays, as in t = seconds(T.Time - T.Time(1)); save('log.mat', 't', 'roll')"
 NAMED_AT_MOST = 5
-LONGEST_NAME = 4096
-"""Bytes in which the first name of an archive ends."""
 
 
 def recognises(start: bytes) -> bool:
@@ -37,26 +35,23 @@ def recognises(start: bytes) -> bool:
     return start.startswith((OLD, HDF5)) or start[512:].startswith(HDF5)
 
 
-def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
-    """Read the wanted vectors; LogError for a damaged file and for what cannot be read."""
-    told = None if aids.template is None else template.load(aids.template)
-    table = _table(path, arrays(path), told)
-    kind = NUMPY if _is_archive(path) else MATLAB
-    return recording(table, kind.name, wanted, aids, told)
+def read_with(
+    name: str, arrays: Callable[[Path], Arrays]
+) -> Callable[[Path, Wanted, Aids], Recording]:
+    """Reading of the wanted vectors; LogError for a damaged file and for what cannot be read."""
+
+    def read(path: Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recording:
+        told = None if aids.template is None else template.load(aids.template)
+        return recording(_table(path, arrays(path), told), name, wanted, aids, told)
+
+    return read
 
 
 def arrays(path: Path) -> Arrays:
-    """All arrays of numbers in the file by name; LogError as `read`."""
-    if _is_archive(path):
-        return npz_arrays.of_npz(path)
+    """All arrays of numbers in a file of MATLAB's or HDF5 by name; LogError as `read_with`."""
     with path.open("rb") as file:
         old = file.read(len(OLD)) == OLD
     return of_version_5(path) if old else of_hdf5(path)
-
-
-def _is_archive(path: Path) -> bool:
-    with path.open("rb") as file:
-        return npz_arrays.recognises(file.read(LONGEST_NAME))
 
 
 @dataclass(frozen=True)
@@ -174,6 +169,12 @@ def _some(names: list[str]) -> str:
 
 
 AIDS = frozenset({"template", "zone"})
-MATLAB = Adapter("mat", recognises, read, AIDS, by_template=recognises)
-NUMPY = Adapter("npz", npz_arrays.recognises, read, AIDS, by_template=npz_arrays.recognises)
+MATLAB = Adapter("mat", recognises, read_with("mat", arrays), AIDS, by_template=recognises)
+NUMPY = Adapter(
+    "npz",
+    npz_arrays.recognises,
+    read_with("npz", npz_arrays.of_npz),
+    AIDS,
+    by_template=npz_arrays.recognises,
+)
 ADAPTERS = (MATLAB, NUMPY)

@@ -52,9 +52,8 @@ PAUSE: Final = LENGTHS
 within a trial."""
 
 PART: Final = 15.0
-"""Ship lengths that such a part has at least: a zig-zag 10/10 takes 20. Of a boat of 3 m at 1.3 m/s
-they are 35 s; half of it are two swings of her rudder, twice is a zig-zag and a half.
-"""
+"""Ship lengths that such a part has at least. By reason, not by count: a sixth of what a standard
+manoeuvre is given, in which a rudder goes over once or twice; of a boat of 3 m at 1.3 m/s 35 s."""
 PAUSED: Final = "recorded without a pause"
 
 KNOWN: Final = 0.9

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from trialid.errors import LogError, printable
-from trialid.ingest.tables import json_log, mat_log, parquet_log
+from trialid.ingest.tables import json_log, mat_log, npz_arrays, parquet_log
 from trialid.ingest.tables.clock.table_time import DAYS
 from trialid.ingest.tables.excel import excel_log
+from trialid.ingest.tables.mat_arrays import Arrays
 from trialid.ingest.tables.table import head
 from trialid.ingest.tables.table_header import is_data
 from trialid.ingest.tables.table_layout import SPACES
@@ -44,8 +45,10 @@ def draft(path: Path) -> str:
         kinds = parquet_log.kinds(path)
         header = tuple(kinds)
         return _text(path, [], header, _times(header, (tuple(kinds.values()),)))
-    if any(one.recognises(start) for one in mat_log.ADAPTERS):
-        return _of_mat(path)
+    if mat_log.recognises(start):
+        return _of_arrays(path, mat_log.arrays(path))
+    if npz_arrays.recognises(start):
+        return _of_arrays(path, npz_arrays.of_npz(path))
     if json_log.may_be_one(start):
         header, rows = json_log.top(path)
         return _text(path, [], header, _times(header, rows), rows)
@@ -114,8 +117,7 @@ def _numbers(row: Sequence[Any]) -> float:
     return sum(is_data([cell]) for cell in told) / len(told) if told else 0.0
 
 
-def _of_mat(path: Path) -> str:
-    found = mat_log.arrays(path)
+def _of_arrays(path: Path, found: Arrays) -> str:
     inside = mat_log.vectors(found, None)
     if not inside:
         raise LogError(f"{path}: holds no vectors of numbers; {mat_log.PLAIN}")

@@ -31,8 +31,8 @@ SAME: Final = 0.05
 """Share of its largest by which one drive of two that do the same differs from the other, or one
 angle, ..."""
 MOSTLY: Final = 0.95
-"""... for so much of the time. Two pods of a made ferry differ by 0.02; of two thrusters that steer
-one does twice what the other does."""
+"""... for so much of the time. Two pods of a made ferry differ by 0.01, their noise alone; half and
+twice say the same of them."""
 
 
 def angle_signals(survey: Inspection, drives: Sequence[Signal], turn: Signal) -> list[Signal]:
