@@ -16,7 +16,7 @@ from trialid.pipeline_file.prior_section import OfTheShip
 from trialid.ship.estimate import Given
 from trialid.ship.particulars import read_ship
 from trialid.workflow.first_pipeline import starter
-from trialid.workflow.first_pipeline.choice import OPEN
+from trialid.workflow.first_pipeline.chosen import OPEN
 from trialid.workflow.run import run as run_pipeline
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"

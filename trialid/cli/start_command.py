@@ -21,7 +21,7 @@ from trialid.names import wording
 
 if TYPE_CHECKING:
     from trialid.workflow.first_pipeline import Starter
-    from trialid.workflow.first_pipeline.choice import Signal
+    from trialid.workflow.first_pipeline.chosen import Signal
 
 FIRST: Final = Path("first_trial.toml")
 

@@ -25,17 +25,14 @@ from trialid.workflow.first_pipeline.boats.boat_choice import (
     named_by_ship,
 )
 from trialid.workflow.first_pipeline.boats.numbered_drives import with_ports
+from trialid.workflow.first_pipeline.boats.tunnel_thrusters import tunnels_of, with_tunnels
 from trialid.workflow.first_pipeline.by_other_logs import (
     with_sides,
     with_units,
     with_unshown,
 )
-from trialid.workflow.first_pipeline.choice import (
-    Chosen,
-    approach_speed,
-    live_sources,
-    shared_signals,
-)
+from trialid.workflow.first_pipeline.choice import approach_speed, live_sources, shared_signals
+from trialid.workflow.first_pipeline.chosen import Chosen
 from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.not_begun import TooLittle, no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
@@ -44,7 +41,6 @@ from trialid.workflow.first_pipeline.revolutions import with_revolutions
 from trialid.workflow.first_pipeline.roll_decay import decays_among
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import held_against_track, with_speed_units
-from trialid.workflow.first_pipeline.tunnel_thrusters import tunnels_of, with_tunnels
 from trialid.workflow.first_pipeline.twin_rudders import (
     RUDDERS,
     has_twins,

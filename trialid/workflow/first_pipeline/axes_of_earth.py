@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 from trialid.inspection.disagreements import findings
 from trialid.inspection.inspected import Inspection
-from trialid.workflow.first_pipeline.choice import Chosen, plain_signal
+from trialid.workflow.first_pipeline.choice import plain_signal
+from trialid.workflow.first_pipeline.chosen import Chosen
 
 WHY = "it goes round with the heading: a velocity to the north or the east, not along the ship"
 

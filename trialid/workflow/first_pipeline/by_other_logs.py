@@ -9,15 +9,7 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 
 from trialid.inspection.inspected import ChannelInspection, Inspection
-from trialid.workflow.first_pipeline.choice import (
-    ASK_SIDE,
-    CONVENTION,
-    MEASURED,
-    OPEN,
-    Chosen,
-    Signal,
-)
-from trialid.workflow.first_pipeline.further_signals import INWARDS, UNSHOWN
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
 
 Side = tuple[str, str]
 """Starboard or port, and the log that shows it."""
@@ -58,7 +50,9 @@ def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
 
 def with_unshown(trials: Sequence[Chosen]) -> list[Chosen]:
     """The trials, a sway or a heading that the turns of others show, and those of none deny."""
-    against = {s.source.name for one in trials for s, why in one.beside if INWARDS in why}
+    against = {
+        s.source.name for one in trials for s, _ in one.beside if s.of_side.rests_on("denied")
+    }
     shown = {
         s.source.name: (s.positive, one.path.name)
         for one in trials
@@ -71,12 +65,11 @@ def with_unshown(trials: Sequence[Chosen]) -> list[Chosen]:
 def _with_unshown(trial: Chosen, shown: Mapping[str, tuple[str | None, str]]) -> Chosen:
     signals, beside = [*trial.signals], list[tuple[Signal, str]]()
     for s, why in trial.beside:
-        if not any(words in why for words in UNSHOWN) or s.source.name not in shown:
+        if not s.of_side.rests_on("unshown") or s.source.name not in shown:
             beside.append((s, why))
             continue
         positive, log = shown[s.source.name]
-        words = f"{s.why}; as in {log}, of the same name; the motion here does not show it"
-        signals.append(dataclasses.replace(s, positive=positive, why=words))
+        signals.append(dataclasses.replace(s, positive=positive, of_side=as_in(log)))
     return dataclasses.replace(trial, signals=tuple(signals), beside=tuple(beside))
 
 
@@ -85,7 +78,7 @@ def _shown(trials: Sequence[Chosen]) -> Mapping[str, Side]:
     found: dict[str, dict[str, str]] = {}
     for one in trials:
         for s in one.signals:
-            if s.positive not in (None, OPEN) and MEASURED in s.why:  # no mere convention
+            if s.positive not in (None, OPEN) and s.of_side.rests_on("measured"):
                 found.setdefault(s.source.name, {}).setdefault(str(s.positive), one.path.name)
     return {
         name: side for name, sides in found.items() if len(sides) == 1 for side in sides.items()
@@ -93,9 +86,13 @@ def _shown(trials: Sequence[Chosen]) -> Mapping[str, Side]:
 
 
 def _told(signal: Signal, known: Mapping[str, Side]) -> Signal:
-    unshown = next((words for words in (ASK_SIDE, CONVENTION) if words in signal.why), None)
-    if unshown is None or signal.source.name not in known:
+    unshown = signal.of_side.rests_on("asked", "convention")
+    if not unshown or signal.source.name not in known:
         return signal
     side, log = known[signal.source.name]
-    words = f"side as in {log}, of the same name; the motion here does not show it"
-    return dataclasses.replace(signal, positive=side, why=signal.why.replace(unshown, words))
+    return dataclasses.replace(signal, positive=side, of_side=as_in(log))
+
+
+def as_in(log: str) -> Reason:
+    """Words for a side that another log shows."""
+    return Reason(f"side as in {log}, of the same name; the motion here does not show it")

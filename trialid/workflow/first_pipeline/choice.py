@@ -2,8 +2,6 @@
 
 import dataclasses
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -15,88 +13,35 @@ from trialid.inspection.relations import side, slope_agreement, unit_of_rate, un
 from trialid.inspection.speed_letters import of_either
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
-from trialid.workflow.first_pipeline.long_log import Window
+from trialid.workflow.first_pipeline.chosen import OPEN, UNSAID, Chosen, Reason, Signal
 from trialid.workflow.first_pipeline.not_begun import no_signal
-
-OPEN: Final = "?"
-"""Stands where only the user knows; the pipeline does not run until it is replaced."""
 
 RUDDERS: Final = ("delta", "delta_order")
 SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
-ASK_UNIT, BY_SIZE = "FILL IN the unit, the log states none", "no unit is stated, but up to"
+ASK_UNIT: Final = Reason("FILL IN the unit, the log states none", "asked")
 BY_OTHERS: Final = "no unit is stated, but its size, jumps or turns, here or elsewhere, leave"
 BY_SPEED: Final = "no unit is stated, but her positions or approach speed, here or elsewhere, leave"
-AS_RADIANS: Final = (
+AS_RADIANS: Final = Reason(
     "CAREFUL: no unit is stated: so small a rudder is read in radians; a share of full, with unit "
-    '= "deg" and gain = the degrees at full, looks the same'
+    '= "deg" and gain = the degrees at full, looks the same',
+    "small",
 )
 OF_FULL: Final = "share of the full deflection"  # as a format says it
-ASK_FULL: Final = 'FILL IN unit = "deg" and gain = the degrees at full, of which it is a share'
-ASK_PERCENT: Final = 'FILL IN unit = "deg" and gain = the degrees at full / 100, for it is in %'
-ASK_SIDE: Final = "FILL IN starboard or port: the side the ship turns to when it is positive"
-MEASURED: Final = "side measured"
-CONVENTION: Final = "CAREFUL: side by the format's convention, the motion does not confirm it"
+ASK_FULL: Final = Reason(
+    'FILL IN unit = "deg" and gain = the degrees at full, of which it is a share', "asked"
+)
+ASK_PERCENT: Final = Reason(
+    'FILL IN unit = "deg" and gain = the degrees at full / 100, for it is in %', "asked"
+)
+ASK_SIDE: Final = Reason(
+    "FILL IN starboard or port: the side the ship turns to when it is positive", "asked"
+)
+CONVENTION: Final = Reason(
+    "CAREFUL: side by the format's convention, the motion does not confirm it", "convention"
+)
+BY_NAME: Final = Reason("unit by its name")
 GROUND: Final = "over ground"
-
-
-@dataclass(frozen=True)
-class Signal:
-    """One line of `[trial.signals]` and its comment; a value may be `OPEN`.
-
-    A speed `over_ground` has drift and current in it.
-    """
-
-    quantity: str
-    source: ChannelInspection
-    unit: str | None
-    positive: str | None
-    why: str
-    others: tuple[ChannelInspection, ...]
-    over_ground: bool = False
-
-    @property
-    def open(self) -> bool:
-        """Whether something is left for the user to fill in."""
-        return OPEN in (self.unit, self.positive)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Chosen:
-    """One trial: its log and signals, and its speed [m/s] with the words for where it is from.
-
-    `beside` are signals that the log holds and that are left to the user, each with why; `window`
-    is the manoeuvre alone, where a log is cut.
-    """
-
-    survey: Inspection
-    path: Path
-    signals: tuple[Signal, ...]
-    speed: float | None
-    speed_words: str
-    beside: tuple[tuple[Signal, str], ...] = ()
-    window: Window | None = None
-
-    @property
-    def quantities(self) -> frozenset[str]:
-        """Quantities that the log holds."""
-        return frozenset(one.quantity for one in self.signals)
-
-    @property
-    def name(self) -> str:
-        """Its file's, and where it is one manoeuvre of it, that one's."""
-        stem = self.path.stem or "trial"
-        return stem if self.window is None else f"{stem} {self.window.kind}".rstrip()
-
-    @property
-    def over_ground(self) -> bool:
-        """Whether the speed is one over ground."""
-        return any(one.over_ground for one in self.signals)
-
-    @property
-    def states_speed(self) -> bool:
-        """Whether no channel is the speed, so that the pipeline must state it."""
-        return "u" not in self.quantities
 
 
 def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
@@ -136,9 +81,16 @@ def live_sources(survey: Inspection, quantity: str) -> tuple[ChannelInspection, 
 def plain_signal(quantity: str, live: Live, why: str) -> Signal:
     """The first source of a quantity as a signal, its unit as stated, or as it must be."""
     source, *others = live[quantity]
-    unit, doubt = _unit(source, quantity)
-    words = ", ".join(word for word in (source.guess.words if source.guess else "", why) if word)
-    return Signal(quantity, source, unit, None, words + doubt, tuple(others))
+    unit, of_unit = _unit(source, quantity)
+    taken = ", ".join(word for word in (source.guess.words if source.guess else "", why) if word)
+    return Signal(
+        quantity=quantity,
+        source=source,
+        unit=unit,
+        taken=taken,
+        of_unit=of_unit,
+        others=tuple(others),
+    )
 
 
 def rate_signal(live: Live) -> Signal:
@@ -146,16 +98,19 @@ def rate_signal(live: Live) -> Signal:
     plain = plain_signal("r", live, "")
     heading = next((h for h in live["psi"] if not h.constant), None)
     found = slope_agreement(plain.source, heading) if heading else 0.0
-    unit, words = plain.unit, plain.why
+    unit, of_unit, of_side = plain.unit, plain.of_unit, UNSAID
     if heading and unit == OPEN and (measured := unit_of_rate(plain.source, heading)):
-        unit, words = measured, f"by its name; unit by the slope of {heading.key}"
+        unit, of_unit = measured, Reason(f"unit by the slope of {heading.key}", "measured")
     by_convention = plain.source.guess.positive if plain.source.guess else None
     positive = "port" if by_convention == "port" else None
     if heading and abs(found) > SURE:
         upside_down = heading.guess is not None and heading.guess.positive == "port"
         positive = "port" if (found < 0) != upside_down else None
-        words += f"; side by the slope of {heading.key} (correlation {found:+.2f})"
-    return Signal("r", plain.source, unit, positive, words, plain.others)
+        told = f"side by the slope of {heading.key} (correlation {found:+.2f})"
+        of_side = Reason(told, "measured")
+    return dataclasses.replace(
+        plain, unit=unit, positive=positive, of_unit=of_unit, of_side=of_side
+    )
 
 
 def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
@@ -166,17 +121,15 @@ def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     found = side(plain.source, witness, towards)
     convention = plain.source.guess.positive if plain.source.guess else None
     if found is not None:
-        words = f"{MEASURED}: correlation with {found.by}, of {witness.key}, {found.strength:+.2f}"
+        by = f"correlation with {found.by}, of {witness.key}, {found.strength:+.2f}"
+        words = f"side measured: {by}"
         if convention is not None and convention != found.side:
             words += f", though the format says {convention}"
-        return _with_side(plain, found.side, words)
+        measured = Reason(words, "measured")
+        return dataclasses.replace(plain, positive=found.side, of_side=measured)
     if convention is not None:
-        return _with_side(plain, convention, CONVENTION)
-    return _with_side(plain, OPEN, ASK_SIDE)
-
-
-def _with_side(plain: Signal, positive: str, words: str) -> Signal:
-    return dataclasses.replace(plain, positive=positive, why=f"{plain.why}; {words}")
+        return dataclasses.replace(plain, positive=convention, of_side=CONVENTION)
+    return dataclasses.replace(plain, positive=OPEN, of_side=ASK_SIDE)
 
 
 def choose_speed(survey: Inspection, live: Live, known: float | None, told: str) -> Signal | None:
@@ -192,11 +145,11 @@ def through_water(live: Live, known: float | None, told: str) -> Signal:
     unit = unit_of_speed(plain.source, known) if known and plain.unit == OPEN else None
     if known is None or unit is None:
         return plain
-    return dataclasses.replace(plain, unit=unit, why=f"by its name; {_by_speed(known, told)}")
+    return dataclasses.replace(plain, unit=unit, of_unit=_by_speed(known, told))
 
 
-def _by_speed(known: float, told: str) -> str:
-    return f"unit by a speed of {known:.3g} m/s, {told}"
+def _by_speed(known: float, told: str) -> Reason:
+    return Reason(f"unit by a speed of {known:.3g} m/s, {told}")
 
 
 def other_speed(survey: Inspection, known: float | None, told: str) -> Signal | None:
@@ -210,14 +163,20 @@ def other_speed(survey: Inspection, known: float | None, told: str) -> Signal | 
             why = (
                 f"CAREFUL: a speed {words}, for want of one through the water; a current adds to it"
             )
-            unit = source.stated_unit
+            unit, of_unit = source.stated_unit, UNSAID
             if unit is None and (unit := source.unit_by_size) is not None:
-                why += f"; {BY_SPEED} {unit}"
+                of_unit = Reason(f"{BY_SPEED} {unit}")
             elif unit is None and known is not None:
-                unit = unit_of_speed(source, known)
-                why += f"; {_by_speed(known, told)}"
+                unit, of_unit = unit_of_speed(source, known), _by_speed(known, told)
             if unit is not None:
-                return Signal("u", source, unit, None, why, (), over_ground=words == GROUND)
+                return Signal(
+                    quantity="u",
+                    source=source,
+                    unit=unit,
+                    taken=why,
+                    of_unit=of_unit,
+                    over_ground=words == GROUND,
+                )
     return None
 
 
@@ -265,24 +224,25 @@ def _some_speed(survey: Inspection) -> Iterator[ChannelInspection]:
             yield one
 
 
-def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, str]:
+def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, Reason]:
     """The unit to write, and words of doubt; None for an angle of a quaternion."""
     if source.angle is not None:
-        return None, ""
+        return None, UNSAID
     stated = source.stated_unit
     if stated == "%" and quantity in RUDDERS:
-        return OPEN, f"; {ASK_PERCENT}"
+        return OPEN, ASK_PERCENT
     if stated is not None:
-        return stated, "" if source.unit else "; unit by its name"
+        return stated, UNSAID if source.unit else BY_NAME
     largest = max(abs(source.low), abs(source.high))
     if quantity in RUDDERS and largest <= 1.6:
         share = OF_FULL in source.description
-        return (OPEN, f"; {ASK_FULL}") if share else ("rad", f"; {AS_RADIANS}")
+        return (OPEN, ASK_FULL) if share else ("rad", AS_RADIANS)
     if quantity in RUDDERS:
-        return "deg", f"; {BY_SIZE} {largest:.3g} can only be deg"
+        words = f"no unit is stated, but up to {largest:.3g} can only be deg"
+        return "deg", Reason(words, "size")
     unit = source.unit_by_size
     by = BY_SPEED if quantity in ("u", "v") else BY_OTHERS
-    return (unit, f"; {by} {unit}") if unit is not None else (OPEN, f"; {ASK_UNIT}")
+    return (unit, Reason(f"{by} {unit}")) if unit is not None else (OPEN, ASK_UNIT)
 
 
 def shared_signals(trials: Sequence[Chosen]) -> frozenset[str]:

@@ -10,7 +10,8 @@ from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.relations import slope_agreement
 from trialid.inspection.sketch import on_one_clock
 from trialid.names import units
-from trialid.workflow.first_pipeline.choice import OPEN, SURE, Chosen, Live, Signal, plain_signal
+from trialid.workflow.first_pipeline.choice import SURE, Live, plain_signal
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
 
 LEFT: Final[Mapping[str, str]] = {
     "n": "with it the run seeks what the screw does",
@@ -25,7 +26,7 @@ BESIDE_RATE: Final = "tells the offset of the rate; with it the run seeks a stea
 """What the heading is read for, beside a speed over ground and beside another."""
 
 COUNTED: Final = (
-    "; CAREFUL: counted from the east, as ROS has it: where the frame's x axis is another, north "
+    "CAREFUL: counted from the east, as ROS has it: where the frame's x axis is another, north "
     "and east of wind and current are not the earth's"
 )
 """Of a quaternion."""
@@ -43,10 +44,9 @@ OUTWARDS: Final = 0.5
 them a model of 3 m had -0.77 to -0.94 in twelve trials of eleven minutes and -0.44 under a rudder
 moved at random; with half of it that one is told too, with twice none is."""
 
-SIDEWAYS: Final = "whether it goes outwards in turns does not show"
-STRAIGHT: Final = "she goes straight on, and whether the rate goes by it does not show"
-UNSHOWN: Final = (SIDEWAYS, STRAIGHT)
-INWARDS: Final = "it goes inwards in turns"
+STRAIGHT: Final = Reason(
+    "she goes straight on, and whether the rate goes by it does not show", "unshown"
+)
 TURNED: Final = 10.0
 """Degrees within which the heading of a log straight on stays. A rate that stood still in a turn is
 not left beside it for that; at half of it and at twice the same logs are straight on."""
@@ -82,11 +82,10 @@ def with_heading(trial: Chosen, live: Live) -> Chosen:
     if heading.open:
         return trial
     if abs(found) <= SURE:
-        straight = ((heading, STRAIGHT),) if _straight_on(heading) else ()
-        return dataclasses.replace(trial, beside=(*trial.beside, *straight))
+        return _beside(trial, heading, STRAIGHT) if _straight_on(heading) else trial
     if (found < 0.0) != (rate.positive == "port"):
-        why = f"{heading.why}{COUNTED if heading.source.angle else ''}"
-        heading = dataclasses.replace(heading, positive="port", why=why)
+        of_side = Reason(COUNTED) if heading.source.angle else heading.of_side
+        heading = dataclasses.replace(heading, positive="port", of_side=of_side)
     return dataclasses.replace(trial, signals=(*trial.signals, heading))
 
 
@@ -119,15 +118,22 @@ def with_sway(trial: Chosen, live: Live) -> Chosen:
     found = -found if rate and (rate.positive == "port") != (by_format == "port") else found
     told = f"correlation with the rate of turn {found:+.2f}"
     if sway.unit == OPEN:
-        why = "the log states no unit"
+        why = Reason("the log states no unit")
     elif found <= -OUTWARDS:
-        sure = dataclasses.replace(sway, why=f"{sway.why}; outwards in turns ({told})")
+        outwards = Reason(f"outwards in turns ({told})", "measured")
+        sure = dataclasses.replace(sway, of_side=outwards)
         return dataclasses.replace(trial, signals=(*trial.signals, sure))
     elif found >= OUTWARDS:
-        why = f"{INWARDS} ({told}): positive to port, or measured at her bow?"
+        words = f"it goes inwards in turns ({told}): positive to port, or measured at her bow?"
+        why = Reason(words, "denied")
     else:
-        why = f"{SIDEWAYS} ({told})"
-    return dataclasses.replace(trial, beside=(*trial.beside, (sway, why)))
+        why = Reason(f"whether it goes outwards in turns does not show ({told})", "unshown")
+    return _beside(trial, sway, why)
+
+
+def _beside(trial: Chosen, signal: Signal, why: Reason) -> Chosen:
+    left = dataclasses.replace(signal, of_side=why)
+    return dataclasses.replace(trial, beside=(*trial.beside, (left, why.words)))
 
 
 def _correlation(rate: ChannelInspection, sway: ChannelInspection) -> float:

@@ -9,7 +9,8 @@ from trialid.alignment.held_roll import STEERED
 from trialid.errors import UnitError
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
-from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+from trialid.workflow.first_pipeline.choice import RUDDERS
+from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 
 ENOUGH: Final = 3
 """Steered trials of which one is held out beside others: two are left to fit, as one of two may be

@@ -16,7 +16,8 @@ from trialid.ship.particulars import Ship
 from trialid.toml_text import array, quote
 from trialid.workflow.first_pipeline.boats.boat_choice import main_drives
 from trialid.workflow.first_pipeline.boats.boat_model import boat_model
-from trialid.workflow.first_pipeline.choice import OPEN, RUDDERS, Chosen, Signal
+from trialid.workflow.first_pipeline.choice import RUDDERS
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 from trialid.workflow.first_pipeline.free_lines import free_lines
 from trialid.workflow.first_pipeline.held_out import held_out, why_held_out
 from trialid.workflow.first_pipeline.roll_decay import decay_model, is_of_decays

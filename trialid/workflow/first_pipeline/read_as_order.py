@@ -11,8 +11,8 @@ from trialid.diagnosis.rudder_jumps import Course, Jump, Steps, jump_of, jump_wh
 from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.name_words import words
 from trialid.names import units
-from trialid.workflow.first_pipeline.boats.boat_choice import at_rest
-from trialid.workflow.first_pipeline.choice import ASK_PERCENT, OPEN, Chosen, Signal
+from trialid.workflow.first_pipeline.boats.unit_of_drive import at_rest
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 
 ORDER_WORDS: Final = ORDERED | {"pwm", "throttle", "servo"}
 """Words of a drive that is an order: what is sent to a motor, never what it makes of it."""
@@ -80,7 +80,7 @@ def _course(signal: Signal) -> Course:
     seen = signal.source.sketch
     if signal.quantity == "delta":
         if signal.unit in (None, OPEN):  # a share of full is as large as its radians
-            of_full = 0.01 if ASK_PERCENT in signal.why else 1.0
+            of_full = 0.01 if signal.source.stated_unit == "%" else 1.0
             return seen.t / 1e9, seen.y * of_full
         return seen.t / 1e9, seen.y * units.factor(signal.unit, "rad")
     y = seen.y - at_rest(signal.source)
@@ -99,5 +99,5 @@ def _read_as(trials: Sequence[Chosen], names: frozenset[str] | set[str], why: st
 
 
 def _order(signal: Signal, why: str) -> Signal:
-    told = f"{signal.why}; CAREFUL: {why}: read as its order"
-    return dataclasses.replace(signal, quantity=f"{signal.quantity}_order", why=told)
+    told = (*signal.further, f"CAREFUL: {why}: read as its order")
+    return dataclasses.replace(signal, quantity=f"{signal.quantity}_order", further=told)

@@ -7,7 +7,8 @@ from typing import Final
 import numpy as np
 
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import OPEN, Chosen, Signal, plain_signal
+from trialid.workflow.first_pipeline.choice import plain_signal
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 
 SHAFTS: Final = (("n",), ("n_p", "n_s"))
 SOUGHT: Final = "the run seeks what the screw does"

@@ -22,14 +22,13 @@ from trialid.ship.particulars import Ship
 from trialid.toml_text import array
 from trialid.workflow.first_pipeline.choice import (
     RUDDERS,
-    Chosen,
     Live,
-    Signal,
     approach_speed,
     choose_speed,
     live_sources,
     plain_signal,
 )
+from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 from trialid.workflow.first_pipeline.free_lines import free_lines
 from trialid.workflow.first_pipeline.long_log import Window, window_over
 

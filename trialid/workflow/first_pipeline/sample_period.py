@@ -5,7 +5,7 @@ from typing import Final
 
 from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection
-from trialid.workflow.first_pipeline.choice import Chosen
+from trialid.workflow.first_pipeline.chosen import Chosen
 from trialid.workflow.first_pipeline.roll_decay import is_of_decays, roll_period
 
 NO_PACE: Final = frozenset(("u", "cog"))

@@ -12,7 +12,7 @@ from trialid.inspection.channel_names import is_course
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.sketch import Sketch, on_one_clock
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import OPEN, Chosen, Signal
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 
 TOLD = "CAREFUL: more than 90 deg off the heading"
 ACROSS = (
@@ -47,15 +47,16 @@ def with_course(trial: Chosen) -> Chosen:
     if not read or (along is None and _of_her_own_axes(speed.source, courses[0])):
         return trial
     if along is None:
-        asked = dataclasses.replace(speed, unit=OPEN, why=f"{speed.why}; {ACROSS}")
+        asked = dataclasses.replace(speed, unit=OPEN, further=(*speed.further, ACROSS))
         return _with(trial, speed, asked)
     course, period, motion = along
     if (back := astern(*motion)) is None:
         return trial
     seconds = float(back.sum()) * period
     why = f"{TOLD} in {seconds:.3g} s: there the run reads u, which has no sign, as astern"
-    told = dataclasses.replace(course, why=f"{course.why}; {why}")
-    signed = dataclasses.replace(speed, why=f"{speed.why}; negative where cog says astern")
+    told = dataclasses.replace(course, further=(why,))
+    words = (*speed.further, "negative where cog says astern")
+    signed = dataclasses.replace(speed, further=words)
     return _with(trial, speed, signed, told)
 
 
@@ -72,12 +73,18 @@ def _courses(trial: Chosen, speed: ChannelInspection) -> Iterator[Signal]:
         seen = Sketch(x.t, np.unwrap(np.arctan2(y.y, x.y)))
         source = dataclasses.replace(speed, angle="course", unit="rad", sketch=seen)
         for positive in ("port", None):  # east and north, or north and east
-            yield Signal("cog", source, None, positive, "the direction of that velocity", ())
+            yield Signal(
+                quantity="cog",
+                source=source,
+                unit=None,
+                positive=positive,
+                taken="the direction of that velocity",
+            )
         return
     for one in channels.values():
         unit = one.stated_unit
         if not one.constant and is_course(one.name, one.description, unit):
-            yield Signal("cog", one, unit or "deg", None, "by its name", ())
+            yield Signal(quantity="cog", source=one, unit=unit or "deg", taken="by its name")
             return
 
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import Chosen, Signal
+from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 
 ROLLS: Final = np.deg2rad(1.0)
 """[rad] From the 5th to the 95th percentile, in the trial where she rolls most. Less is as much as

@@ -10,7 +10,8 @@ from trialid.inspection.inspected import Inspection
 from trialid.inspection.positions import usual_speed
 from trialid.inspection.relations import unit_by_way, unit_of_speed
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import Chosen, Signal, speeds_of
+from trialid.workflow.first_pipeline.choice import speeds_of
+from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 
 
 def with_speed_units(surveys: Sequence[Inspection], stated: float | None) -> list[Inspection]:
@@ -54,4 +55,4 @@ def _warned(speed: Signal, sailed: float) -> Signal:
         return speed
     ratio = sailed / usual
     told = speeds_apart(ratio, f"CAREFUL: her positions are sailed at {ratio:.2f} times its median")
-    return dataclasses.replace(speed, why="; ".join((speed.why, *told)))
+    return dataclasses.replace(speed, further=(*speed.further, *told))

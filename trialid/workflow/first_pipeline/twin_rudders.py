@@ -8,7 +8,8 @@ from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.name_words import sides
 from trialid.ship.actuators import Actuator
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.choice import Chosen, Signal, live_sources, rudder_signal
+from trialid.workflow.first_pipeline.choice import live_sources, rudder_signal
+from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 
 RUDDERS: Final = {"n_p": "rudder_port", "n_s": "rudder_starboard"}
 """Signals, by the side as shafts have it."""
@@ -61,8 +62,8 @@ def _with(trial: Chosen, by_side: dict[str, ChannelInspection], names: dict[str,
         one = by_side[side]
         found = rudder_signal("delta", {"delta": (one,), "psi": psi}, rate)
         told = "by its name" if sides(one.name) else "by its instance, CAREFUL"
-        why = f"{found.why}; to {'port' if side == 'n_p' else 'starboard'} {told}: {UNSEEN}"
-        rudders.append(dataclasses.replace(found, quantity=name, why=why))
+        why = f"to {'port' if side == 'n_p' else 'starboard'} {told}: {UNSEEN}"
+        rudders.append(dataclasses.replace(found, quantity=name, further=(why,)))
     rest = [s for s in trial.signals if s.quantity != "delta"]
     return dataclasses.replace(trial, signals=(*rudders, *rest))
 

@@ -10,14 +10,7 @@ from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
 from trialid.inspection.relations import RATES
 from trialid.names import units
-from trialid.workflow.first_pipeline.choice import (
-    AS_RADIANS,
-    ASK_UNIT,
-    BY_SIZE,
-    OPEN,
-    Chosen,
-    Signal,
-)
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
 
 TURNING: Final = (0.05, 2.5)
 """Rate of turn of a ship in a manoeuvre, in her own lengths and speed; rates in other units lie
@@ -110,7 +103,7 @@ def _with_unit(
 
 
 def _answered(signal: Signal, unit: str, words: str) -> Signal:
-    return dataclasses.replace(signal, unit=unit, why=signal.why.replace(ASK_UNIT, words))
+    return dataclasses.replace(signal, unit=unit, of_unit=Reason(words))
 
 
 def _turns(signal: Signal) -> bool:
@@ -133,7 +126,7 @@ def _by_size(trials: Sequence[Chosen]) -> Mapping[str, str]:
         s.source.name: one.path.name
         for one in trials
         for s in one.signals
-        if s.unit == "deg" and BY_SIZE in s.why
+        if s.unit == "deg" and s.of_unit.rests_on("size")
     }
 
 
@@ -142,7 +135,7 @@ def _told(trial: Chosen, known: Mapping[str, str], seconds: float) -> Chosen:
     rate = next((s for s in trial.signals if s.quantity == "r" and not s.open), None)
     signals = []
     for one in trial.signals:
-        if AS_RADIANS not in one.why:
+        if not one.of_unit.rests_on("small"):
             signals.append(one)
         elif one.source.name in known:
             signals.append(_in_degrees(one, f"deg as in {known[one.source.name]}"))
@@ -162,5 +155,4 @@ def _answer(rudder: Signal, rate: Signal) -> float:
 
 
 def _in_degrees(rudder: Signal, words: str) -> Signal:
-    why = rudder.why.replace(AS_RADIANS, f"no unit is stated: {words}")
-    return dataclasses.replace(rudder, unit="deg", why=why)
+    return dataclasses.replace(rudder, unit="deg", of_unit=Reason(f"no unit is stated: {words}"))

@@ -10,7 +10,6 @@ import numpy as np
 from trialid.errors import LogError
 from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
-from trialid.inspection.name_words import words
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
@@ -22,12 +21,10 @@ from trialid.workflow.first_pipeline.boats.turned_drives import (
     angles_of,
     do_the_same,
 )
+from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
 from trialid.workflow.first_pipeline.choice import (
-    OPEN,
     RUDDERS,
-    Chosen,
     Live,
-    Signal,
     approach_speed,
     choose_signals,
     live_sources,
@@ -36,6 +33,7 @@ from trialid.workflow.first_pipeline.choice import (
     rate_signal,
     through_water,
 )
+from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
 from trialid.workflow.first_pipeline.further_signals import (
     with_further,
     with_heading,
@@ -46,21 +44,14 @@ from trialid.workflow.first_pipeline.not_begun import no_speed_of_boat
 from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
-CONFIRMED: Final = "side confirmed by the turn"
-ASK_PORT: Final = "FILL IN the unit after settling which is to port: the motion does not tell"
-BOTH_ALIKE: Final = (
-    "CAREFUL: which is to port does not show; both always do the same, so that little hangs on it"
+ASK_PORT: Final = Reason(
+    "FILL IN the unit after settling which is to port: the motion does not tell", "asked"
 )
-SHARE: Final = 1.05
-"""No share of full is larger; a stated thrust of a boat that moves is."""
-FULL: Final = 100.0
-"""Nor is a percentage; thrusts in newton of a small boat may be smaller, so that none is taken for
-one up to here: the thrust of a share goes with its square."""
-PULSES: Final = (800.0, 2200.0)
-"""[us] Between which pulses of servos and speed controllers lie: 1000 to 2000, some 900 to 2100.
-Only words depend on it, and whether she goes astern: the unit is asked for either way."""
-REST: Final = 1500.0
-"""[us] The pulse at which speed controllers that go both ways stand still."""
+BOTH_ALIKE: Final = Reason(
+    "CAREFUL: which is to port does not show; both always do the same, so that little hangs on it",
+    "alike",
+)
+UNSIGNED: Final = "CAREFUL: without sign, thrust astern counts as ahead: hold it against the gear"
 ARM: Final = 0.2
 """Thrusters stand so far from the middle, over the length of a boat: 0.2 of the Otter and the
 WAM-V, 0.24 of the BlueBoat."""
@@ -129,67 +120,34 @@ def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
     """Both drives as signals of a pipeline, their sides held against the turn."""
     port, starboard = drives_of(survey)
     says = _agreement(port, starboard, turn)
-    if not (has_side(port) or says[0]):
+    if not (has_side(port) or says.rests_on("measured")):
         says = _agreement(starboard, port, turn)
-        port, starboard = (starboard, port) if says[0] else (port, starboard)
-    if says[1] == ASK_PORT and do_the_same(survey, (port, starboard)):
-        says = True, BOTH_ALIKE
+        if says.rests_on("measured"):
+            port, starboard = starboard, port
+    if says is ASK_PORT and do_the_same(survey, (port, starboard)):
+        says = BOTH_ALIKE
     return [_drive(PORT, port, says), _drive(STARBOARD, starboard, says)]
 
 
-def _drive(name: str, source: ChannelInspection, says: tuple[bool, str]) -> Signal:
-    fits, side_words = says
+def _drive(name: str, source: ChannelInspection, side: Reason) -> Signal:
     unit, of_unit = unit_of_drive(source)
-    if not fits:
+    if side.rests_on("asked", "denied"):
         unit = OPEN
-    if "without sign" in source.description:
-        of_unit += (
-            "; CAREFUL: without sign, thrust astern counts as ahead: hold it against the gear"
-        )
+    unsigned = (UNSIGNED,) if "without sign" in source.description else ()
     told = "by its parameters" if "by its parameters" in source.description else "by its name"
-    return Signal(name, source, unit, None, f"{told}{of_unit}; {side_words}", ())
-
-
-def unit_of_drive(source: ChannelInspection) -> tuple[str, str]:
-    """The unit to write, and why."""
-    if source.unit is not None:
-        return source.unit, ""
-    if source.unit_in_name is not None:
-        return source.unit_in_name, "; unit by its name"
-    turns = [word for word in words(source.name) if word in ("rpm", "rps")]
-    return (turns[0], "; unit by its name") if turns else _unit_by_size(source)
-
-
-def _unit_by_size(source: ChannelInspection) -> tuple[str, str]:
-    largest = max(abs(source.low), abs(source.high))
-    if largest <= SHARE:
-        return "1", f"; no unit is stated, up to {largest:.3g} can only be a share of full"
-    if "thrust" in words(source.name) and largest > FULL:
-        return "N", (
-            f"; CAREFUL: a thrust by its name, and no unit is stated: up to {largest:.3g} is read "
-            "as newton, and the gain is of whatever it is"
-        )
-    if at_rest(source):
-        return OPEN, (
-            f"; FILL IN its unit: {source.low:.4g} to {source.high:.4g} look like pulse widths "
-            "[us], about 1500 at rest; `trialid guide actuators` has the line that makes a share "
-            "of full of them"
-        )
-    return OPEN, (
-        f"; FILL IN its unit: nothing tells what up to {largest:.3g} is; where it is no thrust, "
-        "its command in the ship file too"
+    return Signal(
+        quantity=name,
+        source=source,
+        unit=unit,
+        taken=told,
+        of_unit=of_unit,
+        of_side=side,
+        further=unsigned,
     )
 
 
-def at_rest(drive: ChannelInspection) -> float:
-    """What a drive shows where it does nothing: that of pulses of servos, else 0."""
-    return REST if PULSES[0] < drive.low and drive.high < PULSES[1] else 0.0
-
-
-def _agreement(
-    port: ChannelInspection, starboard: ChannelInspection, turn: Signal
-) -> tuple[bool, str]:
-    """Whether the boat turns away from the stronger one, and words for it."""
+def _agreement(port: ChannelInspection, starboard: ChannelInspection, turn: Signal) -> Reason:
+    """What tells which is to port: that the boat turns away from the stronger one, or not."""
     left, right = port.sketch, starboard.sketch
     other = np.interp(left.t, right.t, right.y) if len(right.t) else np.zeros(len(left.t))
     both = dataclasses.replace(port, sketch=Sketch(left.t, left.y - other))
@@ -197,14 +155,15 @@ def _agreement(
     found = side(both, turn.source, towards)
     if found is None:
         if has_side(port):
-            return True, "side by its name, the motion does not confirm it"
-        return False, ASK_PORT
+            return Reason("side by its name, the motion does not confirm it")
+        return ASK_PORT
     told = f"correlation of port less starboard with {found.by} {found.strength:+.2f}"
     if found.side == "starboard":
-        return True, f"{CONFIRMED}: {told}"
-    return False, (
+        return Reason(f"side confirmed by the turn: {told}", "measured")
+    return Reason(
         f"FILL IN the unit after settling this: she turns towards the stronger one ({told}): port "
-        f"and starboard are exchanged, or the side of {turn.quantity} is wrong"
+        f"and starboard are exchanged, or the side of {turn.quantity} is wrong",
+        "denied",
     )
 
 
@@ -219,7 +178,7 @@ def velocity_speed(survey: Inspection) -> Signal | None:
             course = Sketch(x.sketch.t, np.hypot(x.sketch.y, y.sketch.y))
             taken = dataclasses.replace(x, name=stem, angle="speed", sketch=course)
             why = "CAREFUL: the length of a velocity over ground; a current adds to it"
-            return Signal("u", taken, None, None, why, (), over_ground=True)
+            return Signal(quantity="u", source=taken, unit=None, taken=why, over_ground=True)
     return None
 
 

@@ -5,8 +5,9 @@ from typing import Final
 
 from trialid.effects.actuators.pushes import push_effects
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import at_rest, main_drives
-from trialid.workflow.first_pipeline.choice import Chosen
+from trialid.workflow.first_pipeline.boats.boat_choice import main_drives
+from trialid.workflow.first_pipeline.boats.unit_of_drive import at_rest
+from trialid.workflow.first_pipeline.chosen import Chosen
 from trialid.workflow.first_pipeline.held_out import held_out
 
 ASTERN: Final = 0.1

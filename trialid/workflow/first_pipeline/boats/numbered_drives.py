@@ -4,13 +4,10 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 
 from trialid.inspection.drives import NUMBERS
-from trialid.workflow.first_pipeline.boats.boat_choice import (
-    ASK_PORT,
-    BOTH_ALIKE,
-    CONFIRMED,
-    unit_of_drive,
-)
-from trialid.workflow.first_pipeline.choice import Chosen, Signal
+from trialid.workflow.first_pipeline.boats.boat_choice import PORT, STARBOARD
+from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
+from trialid.workflow.first_pipeline.by_other_logs import as_in
+from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 
 Place = tuple[str, str]
 """The signal of a drive, and the log that shows it."""
@@ -30,7 +27,7 @@ def _shown(trials: Sequence[Chosen]) -> Mapping[str, Place]:
     found: dict[str, dict[str, str]] = {}
     for one in trials:
         for s in one.signals:
-            if CONFIRMED in s.why:
+            if s.quantity in (PORT, STARBOARD) and s.of_side.rests_on("measured"):
                 found.setdefault(s.source.name, {}).setdefault(s.quantity, one.path.name)
     return {
         name: place
@@ -49,11 +46,9 @@ def _placed(signals: tuple[Signal, ...], known: Mapping[str, Place]) -> tuple[Si
 
 
 def _asks(signal: Signal) -> bool:
-    return any(words in signal.why for words in (ASK_PORT, BOTH_ALIKE))
+    return signal.quantity in (PORT, STARBOARD) and signal.of_side.rests_on("asked", "alike")
 
 
 def _told(signal: Signal, quantity: str, log: str) -> Signal:
     unit, _ = unit_of_drive(signal.source)
-    words = f"side as in {log}, of the same name; the motion here does not show it"
-    why = signal.why.replace(ASK_PORT, words).replace(BOTH_ALIKE, words)
-    return dataclasses.replace(signal, quantity=quantity, unit=unit, why=why)
+    return dataclasses.replace(signal, quantity=quantity, unit=unit, of_side=as_in(log))

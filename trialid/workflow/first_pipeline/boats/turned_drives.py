@@ -10,7 +10,8 @@ from trialid.inspection.name_words import sides, words
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import on_one_clock
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import OPEN, Signal
+from trialid.workflow.first_pipeline.choice import ASK_UNIT
+from trialid.workflow.first_pipeline.chosen import OPEN, UNSAID, Reason, Signal
 
 PODS: Final = frozenset(words("azimuth azimut azi pod asd azimuththruster"))
 THRUSTERS: Final = frozenset(words("thr thruster thrusters"))
@@ -92,7 +93,13 @@ def _signal(drive: Signal, source: ChannelInspection, turn: Signal) -> Signal:
     told = "" if found is None else f" (correlation with {found.by} {found.strength:+.2f})"
     sense = UNSEEN if found is None else CLOCKWISE if found.side == "port" else TO_PORT
     unit = source.stated_unit or OPEN
-    asked = "; FILL IN the unit, the log states none" if unit == OPEN else ""
-    positive = "port" if sense is TO_PORT else None
-    why = f"by its name; {sense}{told}{asked}"
-    return Signal(f"{drive.quantity}{ANGLE}", source, unit, positive, why, ())
+    of_unit = ASK_UNIT if unit == OPEN else UNSAID
+    return Signal(
+        quantity=f"{drive.quantity}{ANGLE}",
+        source=source,
+        unit=unit,
+        positive="port" if sense is TO_PORT else None,
+        taken="by its name",
+        of_unit=of_unit,
+        of_side=Reason(f"{sense}{told}"),
+    )

@@ -12,8 +12,10 @@ from trialid.inspection.relations import Side, side
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import command_of, unit_of_drive
-from trialid.workflow.first_pipeline.choice import RUDDERS, Chosen, Signal
+from trialid.workflow.first_pipeline.boats.boat_choice import command_of
+from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
+from trialid.workflow.first_pipeline.choice import RUDDERS
+from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 
 PLACES: Final = {"bow_thruster": 0.4, "stern_thruster": -0.4}
 """Signals, and how far ahead a tunnel stands over the ship's length: 0.35 to 0.45 of ships and
@@ -109,7 +111,14 @@ def _source(trial: Chosen, name: str) -> Signal | None:
     if len(moves) != 1 or moves[0].key in _read(trial):
         return None
     unit, why = unit_of_drive(moves[0])
-    return Signal(name, moves[0], unit, None, f"by its name{why}; {SOUGHT}", ())
+    return Signal(
+        quantity=name,
+        source=moves[0],
+        unit=unit,
+        taken="by its name",
+        of_unit=why,
+        further=(SOUGHT,),
+    )
 
 
 def _is_at(one: ChannelInspection, name: str) -> bool:
@@ -153,7 +162,7 @@ def _with_unused(trial: Chosen) -> Chosen:
         if one.name in drives_among(trial.survey) and one.key not in known
     ]
     told = tuple(
-        (Signal("_".join(words(s.name)), s, unit_of_drive(s)[0], None, "", ()), UNUSED)
+        (Signal(quantity="_".join(words(s.name)), source=s, unit=unit_of_drive(s)[0]), UNUSED)
         for s in left
     )
     return dataclasses.replace(trial, beside=(*trial.beside, *told))

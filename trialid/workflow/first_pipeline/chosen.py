@@ -1,0 +1,102 @@
+"""A signal of a starter pipeline with its reasons, and a trial of such signals."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.workflow.first_pipeline.long_log import Window
+
+OPEN: Final = "?"
+"""Stands where only the user knows; the pipeline does not run until it is replaced."""
+
+Basis = Literal["size", "small", "measured", "convention", "alike", "denied", "unshown", "asked"]
+"""What a unit or a side rests on, where another log may tell more or be told by it.
+
+`size`: only this unit has such numbers; `small`: so small a rudder may be in another; `measured`:
+the motion shows it; `convention`: the format says so, the motion does not; `alike`: little hangs on
+it; `denied`: the motion denies it; `unshown`: nothing shows it; `asked`: only the user knows.
+"""
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Words for a signal's unit or side."""
+
+    words: str
+    basis: Basis | None = None
+
+    def rests_on(self, *those: Basis) -> bool:
+        """Whether it rests on one of those."""
+        return self.basis in those
+
+
+UNSAID: Final = Reason("")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signal:
+    """One line of `[trial.signals]` and its comment; a value may be `OPEN`.
+
+    `taken` says why it is this channel. A speed `over_ground` has drift and current in it.
+    """
+
+    quantity: str
+    source: ChannelInspection
+    unit: str | None
+    positive: str | None = None
+    taken: str = ""
+    of_unit: Reason = UNSAID
+    of_side: Reason = UNSAID
+    further: tuple[str, ...] = ()
+    others: tuple[ChannelInspection, ...] = ()
+    over_ground: bool = False
+
+    @property
+    def open(self) -> bool:
+        """Whether something is left for the user to fill in."""
+        return OPEN in (self.unit, self.positive)
+
+    @property
+    def why(self) -> str:
+        """Its comment."""
+        parts = (self.taken, self.of_unit.words, self.of_side.words, *self.further)
+        return "; ".join(part for part in parts if part)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chosen:
+    """One trial: its log and signals, and its speed [m/s] with the words for where it is from.
+
+    `beside` are signals that the log holds and that are left to the user, each with why; `window`
+    is the manoeuvre alone, where a log is cut.
+    """
+
+    survey: Inspection
+    path: Path
+    signals: tuple[Signal, ...]
+    speed: float | None
+    speed_words: str
+    beside: tuple[tuple[Signal, str], ...] = ()
+    window: Window | None = None
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Quantities that the log holds."""
+        return frozenset(one.quantity for one in self.signals)
+
+    @property
+    def name(self) -> str:
+        """Its file's, and where it is one manoeuvre of it, that one's."""
+        stem = self.path.stem or "trial"
+        return stem if self.window is None else f"{stem} {self.window.kind}".rstrip()
+
+    @property
+    def over_ground(self) -> bool:
+        """Whether the speed is one over ground."""
+        return any(one.over_ground for one in self.signals)
+
+    @property
+    def states_speed(self) -> bool:
+        """Whether no channel is the speed, so that the pipeline must state it."""
+        return "u" not in self.quantities
