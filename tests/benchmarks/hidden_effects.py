@@ -7,11 +7,10 @@ r"""Hide one effect after the other in a simulated ship and count how well the d
         --scenarios yaw_drag_rar,nothing --jobs 2 --out first.md
 
 Every run makes a record of the true ship (`hidden_truth`), fits the model that lacks what is hidden
-(`hidden_scenarios`) and takes the package's own way from fit to verdict. A run depends on its
-scenario, noise, trial set and seed alone, so results do not depend on `--jobs` or `--on` (see
-`fleets/spread.py`), nor on what else was asked for. `--scenarios typical` hides every other effect
-of the catalogue at the size its file calls typical. `--out` takes `.csv` (one row a run) or `.md`
-(the tables, with the rows beside them in a `.csv`). Exit status 1 where a threshold is missed.
+(`hidden_scenarios`) and takes the package's own way to a verdict. A run depends on its scenario,
+noise, trial set and seed alone, not on `--jobs` or `--on` (`fleets/spread.py`). `--scenarios
+typical` hides every other effect at the size its file calls typical. `--out` takes `.csv` (a row a
+run) or `.md` (tables, with such a `.csv` beside). Exit status 1 where a threshold is missed.
 """
 
 import argparse
@@ -45,6 +44,7 @@ from spread import add_options, spread
 from trialid.arrays import Vector
 from trialid.diagnosis.diagnose import refits_of
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import gap_beside_best
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.noise.noise_bound import held_against
@@ -130,18 +130,18 @@ def diagnosed(
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        refits = refits_of(fit, ranking, asked, lambda words: None).refits
+        tried = refits_of(fit, ranking, asked, lambda words: None)
     with watch("decide"):
-        whole = completeness(augmented)
-        parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)
-        verdict = decide(fit, ranking, refits, parts, whole, asked.level)
+        whole = gap_beside_best(completeness(augmented), fit, tried, asked)
+        parts = held_against(parts, routes, fit, [r.fit for r in tried.refits], whole)
+        verdict = decide(fit, ranking, tried.refits, parts, whole, asked.level)
 
         def covariance() -> Vector:
             return accuracy_of(fit, parts, may_be_off(augmented)).covariance
 
         verdict = with_held_out(fit.examined, verdict, covariance, asked.level)
-        named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
-    return Diagnosis(fit, ranking, refits, named, verdict)
+        named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
+    return Diagnosis(fit, ranking, tried.refits, named, verdict)
 
 
 def settings_of(model: ShipModel) -> Settings:

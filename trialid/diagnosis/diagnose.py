@@ -9,6 +9,8 @@ from trialid.diagnosis.examine import (
     examine_alone,
     examine_fit,
     examine_with_ranking,
+    gap_beside_best,
+    gap_with,
     leaves_noise,
     tried_effects,
 )
@@ -56,14 +58,14 @@ def diagnose(
     asked, fit = settings or DiagnoseSettings(), with_means(fit)
     if faults := gross_faults(fit, asked.candidates, progress, partial(leaves_noise, asked=asked)):
         return _gross(fit, *examine_alone(fit, asked, progress), faults, asked)
-    failed = why_no_fit(fit)
-    if failed is not None and not failed.may_lack:
+    if (failed := why_no_fit(fit)) is not None and not failed.may_lack:
         return _no_fit(fit, *examine_alone(fit, asked, progress), failed)
     before, left_out, ranking, whole = examine_with_ranking(fit, asked, progress)
     tried = refits_of(fit, ranking, asked, lambda words: progress(words, 0.7), grown)
     if faults := _whole(fit, ranking, tried.refits, asked, progress):
         return _gross(fit, before, left_out, faults, asked)
     with meanwhile(partial(_after, tried.best, tried, asked, progress), _of(tried.best)) as best:
+        whole = gap_beside_best(whole, fit, tried, asked, grown=grown)
         before = _bounded(before, tried.refits, whole)
         verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
         named = _named(verdict, tried.refits)
@@ -137,20 +139,21 @@ def _or_of_several(
     progress: Progress,
     failed: Inadequate | None = None,
 ) -> tuple[Verdict, Together | None]:
-    """The verdict, and effects at once, where none has a name and the catalogue may hold it.
+    """The verdict, and effects at once, where none has a name.
 
     Two of them, or where no two do it all that a hull usually has; where nothing else shows that
     anything is missing, these alone may: each is small. Where the fit has `failed` they alone may
-    as well: two would be chosen by the slopes of a fit that stands nowhere.
+    as well: two would be chosen by the slopes of a fit that stands nowhere. Where the catalogue
+    seems to miss something, it must not seem so with them.
     """
-    if verdict.effect or (whole and whole.gap):
-        return verdict, None
-    if verdict.family or leans_inward(fit):  # one alone does it, or a sensor is in doubt
+    if verdict.effect or verdict.family or leans_inward(fit):  # one, or a sensor is in doubt
         return verdict, None
     found = None
     if failed is None and verdict.kind != "nothing missing":
         found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
     found = found or hull_at_once(fit, asked.candidates)
+    if found and gap_with(whole, found.fit, asked):
+        found = None
     return (verdict if found is None else verdict_on_several(fit, found)), found
 
 

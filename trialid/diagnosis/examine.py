@@ -4,9 +4,11 @@ from collections.abc import Mapping
 
 from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, examination
 from trialid.diagnosis.search.augment import Augmented, augment
-from trialid.diagnosis.search.completeness import Completeness, completeness
+from trialid.diagnosis.search.completeness import Completeness, close_gap, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
+from trialid.diagnosis.search.refit import likeliest_refit
 from trialid.diagnosis.search.score import Candidate, ranking_of
+from trialid.diagnosis.search.stand_in import Tried
 from trialid.identification.fit import Fit
 from trialid.progress import Progress, silent
 from trialid.second_process import both
@@ -56,6 +58,28 @@ def examine_with_ranking(
 def _any_shape(augmented: Augmented) -> Completeness | None:
     """Whether forces of any simple shape explain more; among sensors alone no force is missing."""
     return completeness(augmented) if augmented.fit.model.states else Completeness(0.0, 0.0)
+
+
+def gap_with(whole: Completeness | None, fit: Fit, asked: DiagnoseSettings) -> bool:
+    """Whether the catalogue misses something that it misses with this fit's effects, too."""
+    if whole is None or not whole.gap:
+        return False
+    return close_gap(whole, augment(fit, tried_effects(fit, asked))).gap
+
+
+def gap_beside_best(
+    whole: Completeness | None,
+    fit: Fit,
+    tried: Tried,
+    asked: DiagnoseSettings,
+    *,
+    grown: bool = False,
+) -> Completeness | None:
+    """What the catalogue explains, a gap held against the model with the best effect in it."""
+    best = likeliest_refit(fit, tried.refits, asked.level, grown)
+    if whole is None or not whole.gap or best is None:
+        return whole
+    return close_gap(whole, tried.augmented or augment(best.fit, tried_effects(best.fit, asked)))
 
 
 def leaves_noise(fit: Fit, asked: DiagnoseSettings) -> bool:

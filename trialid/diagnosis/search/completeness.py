@@ -57,17 +57,19 @@ class Completeness:
     """What the catalogue explains, and what forces of any simple shape would.
 
     Both are gains in twice the log likelihood, with every coefficient and the search at their
-    price. `carried` is what of the best force carries over, where there is a gap.
+    price. `carried` is what of the best force carries over, where there is a gap; `closed` says
+    that there is none once what the catalogue does best is fitted.
     """
 
     catalogue: float
     any_shape: float
     carried: Carried | None = None
+    closed: bool = False
 
     @property
     def gap(self) -> bool:
         """Whether the catalogue misses much of what can be explained."""
-        missed = self.any_shape - self.catalogue
+        missed = 0.0 if self.closed else self.any_shape - self.catalogue
         return missed > max(WORTH, SHARE * self.any_shape)
 
     def outdoes(self, named: Carried) -> bool:
@@ -106,6 +108,17 @@ def completeness(augmented: Augmented) -> Completeness | None:
     forces = [tuple(first + i for i in g) for g in tried.groups]
     found = Completeness(search.gain(effects, []), search.gain(effects, forces))
     return replace(found, carried=_best_force(augmented, tried)) if found.gap else found
+
+
+def close_gap(whole: Completeness, augmented: Augmented) -> Completeness:
+    """What the catalogue explains, by slopes of a model with its best in it too.
+
+    Slopes are those of the model as it was fitted, and where much is missing at once that fit lies
+    so far from the truth that they foretell little of it. A gap that goes with what the catalogue
+    does best in the model was none.
+    """
+    again = completeness(augmented)
+    return whole if again is None or again.gap else replace(whole, closed=True)
 
 
 def _sums(effects: Vector, forces: Vector, residual: Vector) -> tuple[Vector, Vector]:
