@@ -86,3 +86,13 @@ def test_a_heading_that_turns_back_between_two_samples(place):
     at = int(np.ceil(begin))
     [found] = measures.overshoots(Passage(trial, 0 * k, 0 * k, None))
     assert found == pytest.approx(3 * D - psi[at], rel=1e-9)
+
+
+def test_the_last_overshoot_ends_where_the_rudder_is_ordered_amidships():
+    """Then she goes where she is left to: a ship that is carried round overshoots no further."""
+    k = np.arange(200.0)
+    order = np.where(k < 40, 10 * D, np.where(k < 100, -10 * D, 0.0))
+    psi = 3 * D * (1.0 - ((k - 60.0) / 20.0) ** 2)
+    psi[100:] = psi[100] + 2 * D * (k[100:] - 100)
+    trial = Trial("z", "fit", 0.5, {"psi": psi, "delta_order": order}, {})
+    assert measures.overshoots(Passage(trial, 0 * k, 0 * k, None)) == [pytest.approx(3 * D)]

@@ -219,6 +219,8 @@ def unit_in_name(name: str) -> str | None:
     field = words(drop_number(name.rpartition(":")[2]))
     if field[:2] == ("angular", "velocity"):
         return "rad/s"  # as ROS messages have it, which state no unit
+    if field[-3:-1] == ("twist", "linear"):
+        return "m/s"  # as those do
     if field in (("rpm",), ("rps",)):  # of a shaft, and of nothing else
         return field[0]
     for count in (2, 1):

@@ -69,14 +69,16 @@ def initial_turning(passage: Passage, angle: float) -> float:
 def overshoots(passage: Passage, headings: Vector | None = None) -> list[float]:
     """Overshoot angles of a zig-zag [rad], first, second and so on; none without a reversal.
 
-    How far the heading goes on after each reversal of the rudder; the last only when it has come
-    back. `headings` (N,) are those that a reversal is reckoned from, where not the passage's own.
+    How far the heading goes on after each reversal of the rudder, until that is ordered amidships
+    or back; the last only when it has come back. `headings` (N,) are those that a reversal is
+    reckoned from, where not the passage's own.
     """
     psi, order = passage.trial.signals["psi"], passage.trial.signals["delta_order"]
     reckoned = psi if headings is None else headings
-    reversals = reversal_samples(order)
     found = []
-    for k, end in zip(reversals, [*reversals, len(psi)][1:], strict=True):
+    for k in reversal_samples(order):
+        over = np.flatnonzero(order[k:] * order[k] <= 0.0)
+        end = k + int(over[0]) if len(over) else len(psi)
         beyond = np.sign(order[k - 1]) * (psi[k:end] - reckoned[k])
         peak = int(np.argmax(beyond))
         if not 0 < peak < len(beyond) - 1:

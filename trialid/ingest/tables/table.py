@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 
 from trialid.errors import LogError
 
+SIDES = frozenset(("s", "sb", "stb", "stbd", "starboard", "p", "ps", "port"))
+POSITIVE = frozenset(("+", "positive", "pos", "is", "to", "side", "down", "="))
+"""Words of a side behind a unit, and what else stands there: `deg, + stbd`."""
+
 MISSING = frozenset({"", "nan", "na", "n/a", "null"})
 
 MOST_COLUMNS = 10_000
@@ -60,6 +64,18 @@ def check_width(path: Path, columns: int) -> None:
         )
 
 
+def without_side(unit: str) -> str:
+    """A unit without the side that counts as positive, which the motion is asked for.
+
+    >>> [without_side(one) for one in ("deg, S+", "deg, + stbd", "deg; port positive", "m, MSL")]
+    ['deg', 'deg', 'deg', 'm, MSL']
+    """
+    plain, mark, rest = unit.replace(";", ",").partition(",")
+    told = set(rest.lower().replace("+", " + ").split())
+    sided = told & SIDES and told <= SIDES | POSITIVE
+    return plain.strip() if mark and sided else unit
+
+
 def head(text: str, unit: str | None = None) -> Head:
     """Name and unit out of a header's text; `unit` is the one a row of units gives.
 
@@ -72,7 +88,7 @@ def head(text: str, unit: str | None = None) -> Head:
             at = text.find(opening, text.rfind(closing, 0, -1) + 1)
             if at >= 0:
                 own = text[at + 1 : -1].strip()
-                return Head(text, text[:at].strip(), own or unit or None)
+                return Head(text, text[:at].strip(), without_side(own) or unit or None)
     return Head(text, text, unit or None)
 
 

@@ -104,13 +104,25 @@ def rate_signal(live: Live) -> Signal:
     by_convention = plain.source.guess.positive if plain.source.guess else None
     positive = "port" if by_convention == "port" else None
     if heading and abs(found) > SURE:
-        upside_down = heading.guess is not None and heading.guess.positive == "port"
+        upside_down = _side_of(heading, plain.source) == "port"
         positive = "port" if (found < 0) != upside_down else None
         told = f"side by the slope of {heading.key} (correlation {found:+.2f})"
         of_side = Reason(told, "measured")
     return dataclasses.replace(
         plain, unit=unit, positive=positive, of_unit=of_unit, of_side=of_side
     )
+
+
+def _side_of(heading: ChannelInspection, rate: ChannelInspection) -> str | None:
+    """The side that a heading counts to by its name, or as the rate of its message does by its own.
+
+    Of one message of ROS both count to port, though the heading alone says nothing of it.
+    """
+    own = heading.guess.positive if heading.guess else None
+    message = [one.key.rpartition(".")[0].rpartition(".")[0] for one in (heading, rate)]
+    if own is None and rate.guess is not None and message[0] == message[1] != "":
+        return rate.guess.positive
+    return own
 
 
 def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:

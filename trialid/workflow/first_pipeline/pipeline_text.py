@@ -189,7 +189,7 @@ def _keys(signal: Signal, one: ChannelInspection) -> Mapping[str, str | float | 
     return {
         "channel": one.name,
         "as": one.angle,
-        "unit": None if one.angle and unit != OPEN else unit,
+        "unit": None if one.angle not in (None, "speed") and unit != OPEN else unit,
         "positive": positive,
         "offset": FROM_EAST if from_east(one, positive) else None,
     }

@@ -10,6 +10,7 @@ from trialid.alignment.track.astern import ALONG, astern, moves_along
 from trialid.arrays import Mask, Vector
 from trialid.inspection.channel_names import is_course
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.name_words import words
 from trialid.inspection.sketch import Sketch, on_one_clock
 from trialid.inspection.usual_units import to_si
 from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
@@ -27,7 +28,8 @@ FROM_EAST: Final = -1.5708
 
 def from_east(source: ChannelInspection, positive: str | None) -> bool:
     """Whether an angle is one of the axes of ROS, x to the east and y to the north (REP-103)."""
-    return source.angle in ("yaw", "course") and positive == "port"
+    of_ros = source.angle in ("yaw", "course") or "orientation" in words(source.name)
+    return of_ros and positive == "port"
 
 
 def with_course(trial: Chosen) -> Chosen:

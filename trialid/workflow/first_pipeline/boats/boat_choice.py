@@ -8,8 +8,10 @@ from typing import Final
 import numpy as np
 
 from trialid.errors import LogError
+from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.name_words import words
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
@@ -172,13 +174,15 @@ def velocity_speed(survey: Inspection) -> Signal | None:
     for x in survey.channels.values():
         stem = x.name.removesuffix(".x")
         y = survey.channels.get(f"{stem}.y")
-        if stem == x.name or y is None or x.constant or x.unit != "m/s" or y.unit != "m/s":
+        told = y is not None and x.stated_unit == y.stated_unit == "m/s"
+        if stem == x.name or y is None or not told or x.constant or ORDERED & {*words(stem)}:
             continue
         if len(x.sketch.t) == len(y.sketch.t):
             course = Sketch(x.sketch.t, np.hypot(x.sketch.y, y.sketch.y))
             taken = dataclasses.replace(x, name=stem, angle="speed", sketch=course)
             why = "CAREFUL: the length of a velocity over ground; a current adds to it"
-            return Signal(quantity="u", source=taken, unit=None, taken=why, over_ground=True)
+            unit = None if x.unit else x.stated_unit
+            return Signal(quantity="u", source=taken, unit=unit, taken=why, over_ground=True)
     return None
 
 
