@@ -61,8 +61,8 @@ def test_what_is_beyond_the_trials_is_told_in_the_unit_of_its_actuator() -> None
     seen = {"left": SeenRange(0.0, 10.0), "pod": SeenRange(-0.5, 0.5), "u": SeenRange(0.0, 2.0)}
     asked = {"left": np.array([20.0]), "pod": np.array([0.5]), "u": np.array([3.0])}
     said = beyond_words(SHIP, seen, asked)
-    assert "left 191 rpm (seen 0 rpm to 95.49 rpm)" in said
-    assert "3.00 m/s (seen 0 m/s to 2.00 m/s)" in said
+    assert "left 191 rpm (there 0 rpm to 95.49 rpm)" in said
+    assert "3.00 m/s (there 0 m/s to 2.00 m/s)" in said
     assert "pod" not in said
 
 

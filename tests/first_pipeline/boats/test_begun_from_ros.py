@@ -62,3 +62,4 @@ def test_rate_and_yaw_of_one_message_count_alike_and_no_thruster_is_in_doubt(beg
 def test_her_yaw_is_turned_to_the_north(begun):
     text = next(iter(t for p, t in begun.files.items() if p.name == "begun.toml"))
     assert 'positive = "port", offset = -1.5708' in text
+    assert "CAREFUL: counted from the east, as ROS has it" in text

@@ -96,8 +96,9 @@ def beyond_words(ship: Ship, seen: Mapping[str, SeenRange], signals: Mapping[str
             value = known.excess(signals[name])
             if np.isfinite(value):
                 at, low, high = (shown(name, x) for x in (value, known.low, known.high))
-                words.append(f"{labels.label(name)} {at} (seen {low} to {high})")
+                words.append(f"{labels.label(name)} {at} (there {low} to {high})")
     if not words:
         return ""
     listed = ", ".join(words)
-    return f"Beyond what the trials hold, where a model and its ranges are a guess: {listed}."
+    held = "what the trials hold, motions as the model simulates them"
+    return f"Beyond {held}, where a model and its ranges are a guess: {listed}."

@@ -12,6 +12,7 @@ from trialid.inspection.sketch import on_one_clock
 from trialid.names import units
 from trialid.workflow.first_pipeline.choice import SURE, Live, plain_signal
 from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
+from trialid.workflow.first_pipeline.signed_speed import from_east
 
 LEFT: Final[Mapping[str, str]] = {
     "n": "with it the run seeks what the screw does",
@@ -29,7 +30,7 @@ COUNTED: Final = (
     "CAREFUL: counted from the east, as ROS has it: where the frame's x axis is another, north "
     "and east of wind and current are not the earth's"
 )
-"""Of a quaternion."""
+"""Of an orientation of ROS."""
 
 WIND: Final[Mapping[str, str]] = {
     "V_aw": "the run seeks what the wind does",
@@ -84,7 +85,7 @@ def with_heading(trial: Chosen, live: Live) -> Chosen:
     if abs(found) <= SURE:
         return _beside(trial, heading, STRAIGHT) if _straight_on(heading) else trial
     if (found < 0.0) != (rate.positive == "port"):
-        of_side = Reason(COUNTED) if heading.source.angle else heading.of_side
+        of_side = Reason(COUNTED) if from_east(heading.source, "port") else heading.of_side
         heading = dataclasses.replace(heading, positive="port", of_side=of_side)
     return dataclasses.replace(trial, signals=(*trial.signals, heading))
 

@@ -57,8 +57,8 @@ def with_course(trial: Chosen) -> Chosen:
     seconds = float(back.sum()) * period
     why = f"{TOLD} in {seconds:.3g} s: there the run reads u, which has no sign, as astern"
     told = dataclasses.replace(course, further=(why,))
-    words = (*speed.further, "negative where cog says astern")
-    signed = dataclasses.replace(speed, further=words)
+    further = (*speed.further, "negative where cog says astern")
+    signed = dataclasses.replace(speed, further=further)
     return _with(trial, speed, signed, told)
 
 
