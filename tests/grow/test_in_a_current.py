@@ -4,27 +4,34 @@ By the slopes of the first fit no three effects do what forces of any shape do; 
 best in the model they do.
 """
 
+from functools import partial
+
 import mmg
 import numpy as np
 import pytest
+from begun import begun
 
-from trialid import pipeline_file
 from trialid.diagnosis import examine
 from trialid.diagnosis.diagnose import diagnose
-from trialid.inspection import inspect_log
 from trialid.progress import silent
-from trialid.ship.estimate import Given
 from trialid.workflow.build_model import available
 from trialid.workflow.findings import diagnose_settings
-from trialid.workflow.first_pipeline import starter
 from trialid.workflow.fit_model import fit_of
 from trialid.workflow.read_trials import align_trials
 
-SAILED = ((10.0, 10.0), (20.0, 20.0), (-20.0, 20.0), (35.0,), (-35.0,))
+SAILED = {
+    "zz10": (10.0, 10.0),
+    "zz20": (20.0, 20.0),
+    "zz20 to port": (-20.0, 20.0),
+    "turn35": (35.0,),
+    "turn35 to port": (-35.0,),
+}
 CURRENT = 0.1  # of her speed, each way at most
 
 
-def _log(path, ship, rng, current, manoeuvre):
+def in_current(current, path, ship, rng, *manoeuvre, heading):
+    """A log of heading, rate of turn, rudder and speed over ground."""
+    del heading
     t, u, v, r, delta = mmg.sail(ship, *manoeuvre)
     turned = np.concatenate([[0.0], np.cumsum(0.5 * (r[1:] + r[:-1]) * np.diff(t))])
     psi = rng.uniform(0.0, 2.0 * np.pi) + turned
@@ -45,27 +52,20 @@ def _log(path, ship, rng, current, manoeuvre):
 def _fitted(folder, seed):
     ship, rng = mmg.drawn(seed), np.random.default_rng(seed)
     current = CURRENT * ship.U0 * rng.uniform(-1.0, 1.0, 2)
-    logs = [folder / f"{k}.csv" for k in range(len(SAILED))]
-    for path, manoeuvre in zip(logs, SAILED, strict=True):
-        _log(path, ship, rng, current, manoeuvre)
-    given = Given(length=ship.L, beam=ship.B, draught=ship.d, block=ship.block)
-    made = starter([inspect_log(path) for path in logs], folder / "begun.toml", None, given)
-    for path, text in made.files.items():
-        path.write_text(text, encoding="utf-8")
-    asked = pipeline_file.load(folder / "begun.toml")
+    asked = begun(folder, ship, rng, SAILED, write=partial(in_current, current))
     catalogue = available(asked)
     fit = fit_of(asked, align_trials(asked, silent), catalogue, silent)
     return fit, diagnose_settings(asked, catalogue)
 
 
 @pytest.fixture(scope="module", params=(500, 511))
-def begun(request, tmp_path_factory):
+def of_seed(request, tmp_path_factory):
     return request.param, *_fitted(tmp_path_factory.mktemp("current"), request.param)
 
 
-def test_a_gap_that_goes_with_the_best_in_the_model_is_none(begun):
+def test_a_gap_that_goes_with_the_best_in_the_model_is_none(of_seed):
     """Two of twenty ships, 500 to 519, were told that the catalogue does not hold it."""
-    seed, fit, asked = begun
+    seed, fit, asked = of_seed
     found = diagnose(fit, asked)
     grown = found.together or found.after
     better = grown.fit
@@ -75,7 +75,7 @@ def test_a_gap_that_goes_with_the_best_in_the_model_is_none(begun):
     assert better.eps_check < 0.95 * fit.eps_check
 
 
-def test_by_the_slopes_of_the_first_fit_there_is_one(begun, monkeypatch):
-    _, fit, asked = begun
+def test_by_the_slopes_of_the_first_fit_there_is_one(of_seed, monkeypatch):
+    _, fit, asked = of_seed
     monkeypatch.setattr(examine, "close_gap", lambda whole, augmented: whole)
     assert diagnose(fit, asked).verdict.kind == "not in catalogue"

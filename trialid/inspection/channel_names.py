@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from trialid.inspection.name_words import (
-    SIDES,
     UNITS_IN_NAMES,
     bare_words,
     drop_number,
@@ -20,6 +19,7 @@ from trialid.inspection.name_words import (
 )
 from trialid.inspection.usual_units import to_si
 from trialid.names.quantities import SIGNALS
+from trialid.names.side_words import SIDES
 
 PHRASES: Final = {
     "delta": "rudder, rud, rudder angle, rudder position, rudder feedback, ruder, ruderlage, "

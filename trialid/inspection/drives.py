@@ -3,9 +3,10 @@
 from typing import Final
 
 from trialid.inspection.inspected import ChannelInspection, Inspection
-from trialid.inspection.name_words import LETTERS, SIDES, sides, words
+from trialid.inspection.name_words import sides, words
 from trialid.inspection.usual_units import to_si
 from trialid.names.quantities import SIGNALS
+from trialid.names.side_words import LETTERS, SIDES
 
 DRIVES: Final = frozenset(
     words(

@@ -4,6 +4,8 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from trialid.names.side_words import LETTERS, SIDES
+
 UNITS_IN_NAMES: Final = {
     "deg": "deg",
     "degree": "deg",
@@ -32,27 +34,6 @@ UNITS_IN_NAMES: Final = {
 }
 
 _WORD: Final = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
-SIDES: Final = {
-    "port": "n_p",
-    "left": "n_p",
-    "bb": "n_p",
-    "starboard": "n_s",
-    "stbd": "n_s",
-    "stb": "n_s",
-    "right": "n_s",
-    "links": "n_p",
-    "rechts": "n_s",
-    "backbord": "n_p",
-    "steuerbord": "n_s",
-    "ps": "n_p",
-    "sb": "n_s",
-    "bakboord": "n_p",
-    "stuurboord": "n_s",
-    "babord": "n_p",
-    "tribord": "n_s",
-    "styrbord": "n_s",
-}
-LETTERS: Final = {"p": "n_p", "s": "n_s"}
 HAVE_SIDES: Final = frozenset(("delta", "n", "rud", "rudder", "rpm"))
 """Words behind which these letters, the last of a name, are a side: `DELTA_P`, `n_S`."""
 

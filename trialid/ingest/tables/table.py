@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import LogError
+from trialid.names.side_words import LETTERS, SIDES
 
-SIDES = frozenset(("s", "sb", "stb", "stbd", "starboard", "p", "ps", "port"))
 POSITIVE = frozenset(("+", "positive", "pos", "is", "to", "side", "down", "="))
-"""Words of a side behind a unit, and what else stands there: `deg, + stbd`."""
+"""What stands beside a side behind a unit: `deg, + stbd`."""
 
 MISSING = frozenset({"", "nan", "na", "n/a", "null"})
 
@@ -72,8 +72,8 @@ def without_side(unit: str) -> str:
     """
     plain, mark, rest = unit.replace(";", ",").partition(",")
     told = set(rest.lower().replace("+", " + ").split())
-    sided = told & SIDES and told <= SIDES | POSITIVE
-    return plain.strip() if mark and sided else unit
+    sides = told - POSITIVE
+    return plain.strip() if mark and sides and sides <= {*SIDES, *LETTERS} else unit
 
 
 def head(text: str, unit: str | None = None) -> Head:
