@@ -8,11 +8,12 @@ from s175q import MODEL, SETTINGS, waves, with_noise, zigzag
 
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.objections import likeliest_refit
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.completeness import completeness
-from trialid.diagnosis.search.refit import likeliest_refit, refit
+from trialid.diagnosis.search.refit import refit
 from trialid.diagnosis.search.score import VISIBLE, Candidate, rank
 from trialid.diagnosis.search.simple_forces import probes
 from trialid.diagnosis.unrecorded import name_records

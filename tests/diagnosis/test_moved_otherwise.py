@@ -9,8 +9,9 @@ from scipy.signal import lfilter
 
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import examine_fit
+from trialid.diagnosis.objections import BESIDE, objection, outputs_beside
 from trialid.diagnosis.search.carried import Carried
-from trialid.diagnosis.search.refit import BESIDE, Refit, objection, outputs_beside
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.verdict import decide
 from trialid.effects import CATALOGUE

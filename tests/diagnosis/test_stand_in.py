@@ -8,9 +8,9 @@ from s175q import MODEL, OUTPUTS, SHAFT, white, with_noise
 
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.objections import likeliest_refit
 from trialid.diagnosis.search import carried
 from trialid.diagnosis.search.augment import augment
-from trialid.diagnosis.search.refit import likeliest_refit
 from trialid.diagnosis.search.stand_in import _large_beside, look_beside
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify

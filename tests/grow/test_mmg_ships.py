@@ -10,9 +10,9 @@ from begun import begun
 
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.found_values import of_the_ship
+from trialid.diagnosis.objections import objection
 from trialid.diagnosis.search import together
 from trialid.diagnosis.search.backward import worth_naming
-from trialid.diagnosis.search.refit import objection
 from trialid.diagnosis.search.together import stands, two_at_once
 from trialid.effects import CATALOGUE
 from trialid.identification.inadequate import Inadequate
@@ -56,7 +56,7 @@ def test_two_effects_do_what_none_does_alone(found):
     assert all(objection(fit, alone, 0.05) for alone in found.refits)
 
 
-LOOKED_AT = ("eps_rmsn", "eps_by_output", "eps_check", "at_bounds", "converged")
+LOOKED_AT = ("residual", "eps_rmsn", "eps_by_output", "eps_check", "at_bounds", "converged")
 
 
 def test_each_check_can_deny_two_effects(found):

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from trialid.diagnosis.search import refit as refitted
+from trialid.diagnosis.objections import likeliest_refit
 from trialid.diagnosis.search.backward import Worth
 from trialid.diagnosis.search.carried import Carried, Errors
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.together import Together, stands
 from trialid.errors import SimulationError
 from trialid.ship.effect import Force
@@ -82,8 +83,8 @@ def found_in(world: World, fit: Any, grown: bool) -> Any:
         with suppress(SimulationError):
             new = fit_in(world, with_(fit.effects, name))
             found = carried_between(fit, new)
-            refits.append(refitted.Refit(candidate(name), new, found))
-    named = refitted.likeliest_refit(fit, refits, 0.05)
+            refits.append(Refit(candidate(name), new, found))
+    named = likeliest_refit(fit, refits, 0.05)
     pair = next(pairs_in(world, fit), None)
     effect = named.candidate.effect.name if named else None
     kind = "missing" if named else "cannot tell" if pair else "nothing missing"

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import s175q
 
+from trialid.diagnosis import objections
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
-from trialid.diagnosis.rudder_jumps import Course, jump_of, own_time, rudder_jump
-from trialid.diagnosis.search import refit
+from trialid.diagnosis.rudder.rudder_jumps import Course, jump_of, own_time, rudder_jump
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit, identify
 from trialid.simulation.integrate import prepare, respond
@@ -101,7 +101,7 @@ def test_no_sensor_is_late_where_the_rudder_jumps(T: float) -> None:
 
 @pytest.mark.study(turn=0)
 def test_where_nobody_looks_at_the_rudder_a_sensor_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refit, "jump_in", lambda *_: None)
+    monkeypatch.setattr(objections, "jump_in", lambda *_: None)
     assert named(identify(recorded_orders(6.0), s175q.MODEL, s175q.SETTINGS)) == "lag_phi"
 
 

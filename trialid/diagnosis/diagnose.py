@@ -22,10 +22,11 @@ from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.thinning import with_means
+from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
 from trialid.diagnosis.plain_damping import dampings
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
-from trialid.diagnosis.search.refit import Refit, likeliest_refit, refit, refit_best
+from trialid.diagnosis.search.refit import Refit, refit
 from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, look_beside
@@ -69,7 +70,7 @@ def diagnose(
         before = _bounded(before, tried.refits, whole)
         verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
         named = _named(verdict, tried.refits)
-        verdict, together = _or_of_several(fit, verdict, whole, asked, progress, failed)
+        verdict, together = _or_of_several(fit, verdict, whole, tried.refits, asked, progress)
         if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
         wanted = force or verdict.kind == "not in catalogue"
@@ -135,24 +136,26 @@ def _or_of_several(
     fit: Fit,
     verdict: Verdict,
     whole: Completeness | None,
+    refits: Sequence[Refit],
     asked: DiagnoseSettings,
     progress: Progress,
-    failed: Inadequate | None = None,
 ) -> tuple[Verdict, Together | None]:
     """The verdict, and effects at once, where none has a name.
 
     Two of them, or where no two do it all that a hull usually has; where nothing else shows that
-    anything is missing, these alone may: each is small. Where the fit has `failed` they alone may
-    as well: two would be chosen by the slopes of a fit that stands nowhere. Where the catalogue
+    anything is missing, these alone may: each is small. Where the fit carries no verdict they alone
+    may as well: two would be chosen by the slopes of a fit that stands nowhere. Where the catalogue
     seems to miss something, it must not seem so with them.
     """
     if verdict.effect or verdict.family or leans_inward(fit):  # one, or a sensor is in doubt
         return verdict, None
     found = None
-    if failed is None and verdict.kind != "nothing missing":
+    if why_no_fit(fit) is None and verdict.kind != "nothing missing":
         found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
     found = found or hull_at_once(fit, asked.candidates)
-    if found and gap_with(whole, found.fit, asked):
+    if found and (
+        more_on_course(fit, refits, asked.level, found) or gap_with(whole, found.fit, asked)
+    ):
         found = None
     return (verdict if found is None else verdict_on_several(fit, found)), found
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 from trialid.diagnosis.diagnosed import Diagnosed, DiagnoseSettings, examination
+from trialid.diagnosis.objections import likeliest_refit
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.completeness import Completeness, close_gap, completeness
 from trialid.diagnosis.search.freed import candidates_to_free
-from trialid.diagnosis.search.refit import likeliest_refit
 from trialid.diagnosis.search.score import Candidate, ranking_of
 from trialid.diagnosis.search.stand_in import Tried
 from trialid.identification.fit import Fit

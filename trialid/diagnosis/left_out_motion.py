@@ -6,7 +6,8 @@ was taken for yaw damping that changes with the speed.
 
 from collections.abc import Sequence
 
-from trialid.diagnosis.search.refit import Refit, objection, refit
+from trialid.diagnosis.objections import objection
+from trialid.diagnosis.search.refit import Refit, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit

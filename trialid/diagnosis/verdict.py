@@ -8,24 +8,26 @@ import numpy as np
 
 from trialid.diagnosis.found_values import is_force
 from trialid.diagnosis.noise.error_parts import Split
-from trialid.diagnosis.search.carried import FALL, as_good
-from trialid.diagnosis.search.completeness import Completeness
-from trialid.diagnosis.search.falls import fall, worse_held_out
-from trialid.diagnosis.search.refit import (
+from trialid.diagnosis.objections import (
     AS_A_GEAR,
     AS_SLOW,
     BESIDE,
     HELD_OUT,
     MOST,
     NOT_ARRIVED,
+    ON_COURSE,
     SLIGHT,
-    Refit,
     best_of,
-    falls,
     likeliest_refit,
+    more_on_course,
     objection,
     outputs_beside,
+    standing_but,
 )
+from trialid.diagnosis.search.carried import FALL, as_good
+from trialid.diagnosis.search.completeness import Completeness
+from trialid.diagnosis.search.falls import fall, worse_held_out
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.rivals import rivals
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import far_ahead
@@ -33,7 +35,7 @@ from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.verdict_sentences import (
     NONE_HOLDS,
     NONE_STANDS_OUT,
-    as_late,
+    as_else,
     by_chance,
     contradiction,
     correction,
@@ -125,6 +127,8 @@ def decide(
     has `grown` by effects already it must be worth a tenth.
     """
     named = likeliest_refit(fit, refits, level, grown)
+    if (answer := more_on_course(fit, refits, level, named)) is not None:
+        return Verdict("cannot tell", None, (), as_else(fit, answer, ON_COURSE))
     if named and (lead := far_ahead(fit, named, refits, level, grown=grown)):
         why = objection(fit, lead, level, grown)
         return Verdict("cannot tell", None, (), denied_lead(fit, named, lead, why))
@@ -139,14 +143,14 @@ def decide(
 
 def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> str | None:
     """What one check alone denies, where nothing stands them all; None where that is nothing."""
-    if (against := _standing_but(HELD_OUT, fit, refits, level)) is not None:
+    if (against := standing_but(HELD_OUT, fit, refits, level)) is not None:
         return contradiction(fit, against)
-    if (apart := _standing_but(BESIDE, fit, refits, level)) is not None:
+    if (apart := standing_but(BESIDE, fit, refits, level)) is not None:
         return moved_otherwise(fit, apart, outputs_beside(fit, apart))
     for why in (AS_A_GEAR, AS_SLOW) if grown else (AS_A_GEAR,):
-        if (late := _standing_but(why, fit, refits, level)) is not None:
-            return as_late(fit, late, why)
-    if grown and (slight := _standing_but(SLIGHT, fit, refits, level)) is not None:
+        if (other := standing_but(why, fit, refits, level)) is not None:
+            return as_else(fit, other, why)
+    if grown and (slight := standing_but(SLIGHT, fit, refits, level)) is not None:
         return correction(slight)
     return None
 
@@ -232,12 +236,6 @@ def _is_little(unseen: float, total: float) -> bool:
     """Whether a model error that would not be seen is little, of what moved or of the error."""
     most = max(np.sqrt(MOSTLY) * total, LITTLE)
     return unseen < min(ANYTHING, total, most)
-
-
-def _standing_but(why: str, fit: Fit, refits: Sequence[Refit], level: float) -> Refit | None:
-    """The best effect that stands every check but this one, in a model that has grown."""
-    able = [r for r in refits if objection(fit, r, level, True) == why and falls(fit, r)]
-    return best_of(able, level)
 
 
 def _ahead(fit: Fit, named: Refit, refits: Sequence[Refit], level: float) -> Refit | None:

@@ -7,9 +7,10 @@ import numpy as np
 
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.split import INPUT_DRIVEN
+from trialid.diagnosis.objections import AS_SLOW
 from trialid.diagnosis.search.carried import FALL
 from trialid.diagnosis.search.completeness import Completeness
-from trialid.diagnosis.search.refit import AS_SLOW, Refit
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
 from trialid.identification.fit import Fit
@@ -34,8 +35,8 @@ def outdone_by_a_shape(named: Refit | None, whole: Completeness) -> str:
     )
 
 
-def as_late(fit: Fit, found: Refit, why: str) -> str:
-    """A sensor is as late as something else would be, her own memory or her steering gear."""
+def as_else(fit: Fit, found: Refit, why: str) -> str:
+    """What was found may be something else: her own memory, her steering gear or an autopilot."""
     but = f"beside the effects that were added {why}, which does as much" if why == AS_SLOW else why
     return f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but {but}"
 

@@ -7,8 +7,9 @@ elsewhere it is given the refit's, so that the file alone gives the fit again.
 from collections.abc import Iterator
 from dataclasses import replace
 
+from trialid.diagnosis.objections import objection
 from trialid.diagnosis.search.carry_over import carried_between
-from trialid.diagnosis.search.refit import Refit, objection
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.together import Together, stands
 from trialid.errors import TrialidError
 from trialid.identification.file_of_ship import left_by_file

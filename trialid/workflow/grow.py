@@ -12,9 +12,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from trialid.diagnosis.objections import likeliest_refit
 from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
 from trialid.diagnosis.search.falls import worse_held_out
-from trialid.diagnosis.search.refit import Refit, likeliest_refit
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.together import Together
 from trialid.errors import TrialidError
 from trialid.pipeline_file import Pipeline

@@ -45,17 +45,18 @@ def test_of_several_of_which_one_is_missing_no_two_are_tried_at_once(monkeypatch
     monkeypatch.setattr(diagnose, "two_at_once", lambda *given: tried.append(given))
     monkeypatch.setattr(diagnose, "hull_at_once", lambda *given: hulls.append(given))
     monkeypatch.setattr(diagnose, "leans_inward", lambda fit: ())
+    monkeypatch.setattr(diagnose, "why_no_fit", lambda fit: None)
     asked = DiagnoseSettings(candidates={})
-    assert diagnose._or_of_several(fit(0.10), found, None, asked, silent) == (found, None)
+    assert diagnose._or_of_several(fit(0.10), found, None, (), asked, silent) == (found, None)
     assert not tried
     assert not hulls
     none = replace(found, family=())
-    diagnose._or_of_several(fit(0.10), none, None, asked, silent)
+    diagnose._or_of_several(fit(0.10), none, None, (), asked, silent)
     assert len(tried) == len(hulls) == 1
-    diagnose._or_of_several(fit(0.10), replace(none, effect="a"), None, asked, silent)
+    diagnose._or_of_several(fit(0.10), replace(none, effect="a"), None, (), asked, silent)
     assert len(tried) == len(hulls) == 1
     nothing = replace(none, kind="nothing missing")
-    assert diagnose._or_of_several(fit(0.10), nothing, None, asked, silent) == (nothing, None)
+    assert diagnose._or_of_several(fit(0.10), nothing, None, (), asked, silent) == (nothing, None)
     assert (len(tried), len(hulls)) == (1, 2)
 
 
@@ -66,12 +67,13 @@ def test_two_come_before_all_that_a_hull_has(monkeypatch, kind):
     pair = SimpleNamespace(**{**vars(several), "names": ("a", "b")})
     found = replace(decided(0.45, p_value=1.0), family=(), kind=kind)
     monkeypatch.setattr(diagnose, "leans_inward", lambda fit: ())
+    monkeypatch.setattr(diagnose, "why_no_fit", lambda fit: None)
     monkeypatch.setattr(diagnose, "hull_at_once", lambda *given: several)
     asked = DiagnoseSettings(candidates={})
     for two in (pair, None):
         together = several if kind == "nothing missing" else two or several
         monkeypatch.setattr(diagnose, "two_at_once", lambda *given, two=two: two)
-        said, there = diagnose._or_of_several(fit(0.10), found, None, asked, silent)
+        said, there = diagnose._or_of_several(fit(0.10), found, None, (), asked, silent)
         assert (said.kind, said.effect, said.together) == ("cannot tell", None, together.names)
         assert there is together
         assert ("a, b and c together" in said.sentence) == (together is several)

@@ -8,7 +8,7 @@ from s175q import MODEL, zigzag
 from test_refit import ALIKE, LESS, refit
 
 from trialid.diagnosis.found_values import by_heading, sweeps_away
-from trialid.diagnosis.search.refit import likeliest_refit, objection
+from trialid.diagnosis.objections import likeliest_refit, objection
 from trialid.effects import CATALOGUE
 
 

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from made_up_fits import BEFORE, fit
 
-from trialid.diagnosis.search.carried import Carried
-from trialid.diagnosis.search.falls import worse_held_out
-from trialid.diagnosis.search.refit import (
+from trialid.diagnosis.objections import (
     AS_A_GEAR,
     AS_SLOW,
     HELD_OUT,
     SLIGHT,
-    Refit,
     best_of,
     likeliest_refit,
     objection,
 )
+from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.falls import worse_held_out
+from trialid.diagnosis.search.refit import Refit
 from trialid.ship.effect import Force, Lagged
 from trialid.trial import Trial
 

@@ -9,9 +9,10 @@ from made_up_fits import BEFORE, NO_ROUTE, fit, refit, split
 from trialid.diagnosis import left_out_motion
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.objections import NOT_ARRIVED, best_of
 from trialid.diagnosis.search.carried import Carried, as_good
 from trialid.diagnosis.search.completeness import Completeness, _Search
-from trialid.diagnosis.search.refit import NOT_ARRIVED, Refit, best_of
+from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.rivals import rivals, to_fit
 from trialid.diagnosis.verdict import Verdict, decide
 from trialid.ship.effect import Force

@@ -1,36 +1,16 @@
-"""Candidates added to the model and fitted: what carries over, and what speaks against each."""
+"""Candidates added to the model and fitted, and what carries over."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.found_values import (
-    as_slow_as_the_ship,
-    at_a_sensors_end,
-    gives_way,
-    her_own,
-    late_sensor,
-    of_the_ship,
-    sweeps_away,
-    turns_round,
-)
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
-from trialid.diagnosis.plain_damping import is_plain_damping
-from trialid.diagnosis.rudder_jumps import jump_in
 from trialid.diagnosis.search.carried import (
     EACH,
-    FAINT,
-    FALL,
-    SHAPE,
     Carried,
-    as_good,
-    does_as_well,
-    is_far,
 )
 from trialid.diagnosis.search.carry_over import carried_between
-from trialid.diagnosis.search.falls import Refitted, fall, fall_of_all, own_fall, worse_held_out
 from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
@@ -39,31 +19,6 @@ from trialid.identification.ship_priors import known_of_ship
 from trialid.second_process import each
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
-
-HELD_OUT: Final = "the held-out error rises"
-NOT_ARRIVED: Final = "the search does not arrive"
-SLIGHT: Final = "it corrects the shapes of others"
-AS_SLOW: Final = "a sensor as slow as that looks like the ship's own memory"
-AS_A_GEAR: Final = "the recorded rudder jumps as an order does, and a gear is as late"
-BESIDE: Final = "something else moves what the model leaves most of, and this may be what that does"
-"""Objections in their words."""
-
-LEFT: Final = 0.25
-"""Share of an output's mean square left from which on something else moves it. Of ships that roll
-in a swell of their own period 0.29 to 0.35 of the roll is left, and three of eleven had an effect
-of the yaw named that the ship did not have. Half of it is left of a real ship's sway in wind (0.19,
-of which the wind takes half); with twice the three have their names."""
-
-TOUCHED: Final = 0.05
-"""Part of that which an effect must take to have a share in it: those three took 0.003 at most, a
-steady wind 0.93. Half and twice change nothing there."""
-
-MOST: Final = 0.5
-"""Share of the squared error that goes with an effect from which on it has a name although no test
-against the noise shows it: where most that a model leaves is of the effect, the noise looks as
-smooth as that, but it is no more than what is left with it. Of two sets of a cargo ship's trials by
-her heading alone 0.98 and 0.99 went (p = 1), of a boat with a weak thruster 0.95 although its slope
-shows nothing: at half of it they are named too, at twice none is."""
 
 
 @dataclass(frozen=True)
@@ -138,25 +93,6 @@ def begun_at(
     return model.with_values(start), start
 
 
-def refit_best(
-    fit: Fit,
-    candidates: Sequence[Candidate],
-    most: int,
-    level: float,
-    progress: Progress,
-) -> list[Refit]:
-    """The first few candidates fitted; as many of other families where none stands every check.
-
-    Twins stand side by side in the ranking, and what speaks against one speaks against all.
-    """
-    done = refit(fit, candidates[:most], progress)
-    if likeliest_refit(fit, done, level) is None:
-        known = {n for c in candidates[:most] for n in (c.effect.name, *c.family)}
-        others = [c for c in candidates[most:] if c.effect.name not in known]
-        done += refit(fit, others[:most], progress)
-    return done
-
-
 def settings_with(fit: Fit, effects: Sequence[Effect]) -> Settings:
     """Their parameters free, too, with the priors that the pipeline would give them."""
     model, settings = fit.model, fit.settings
@@ -168,131 +104,3 @@ def settings_with(fit: Fit, effects: Sequence[Effect]) -> Settings:
         free = tuple(dict.fromkeys((*free, *new)))
     known = known_of_ship(model, tuple(new)) if settings.priors_of_ship else {}
     return replace(settings, free=free, priors={**settings.priors, **known})
-
-
-def likeliest_refit(
-    fit: Fit, refits: Sequence[Refit], level: float, grown: bool = False
-) -> Refit | None:
-    """Of the refits that stand every check the one whose fall carries over best."""
-    able = [
-        r
-        for r in refits
-        if not objection(fit, r, level, grown)
-        and not _looks_like_the_ship(fit, r, refits, level, grown)
-        and not is_plain_damping(r, [o for o in refits if o.fit.converged], level)
-    ]
-    best = best_of(able, level, grown)
-    if best is None or grown:  # what is added later is held against these trials step by step
-        return best
-    ahead = [r for r in able if _foretells_more(fit, r, best)]
-    return best_of(ahead, level, grown) or best
-
-
-def _foretells_more(fit: Fit, refit: Refit, best: Refit) -> bool:
-    """Whether an effect of the ship as good on blocks takes far more off, held-out trials too."""
-    return (
-        fit.eps_check is not None
-        and of_the_ship(refit.candidate.effect)
-        and as_good(best.carried.after, refit.carried.after)
-        and is_far(fall_of_all(fit, refit), fall_of_all(fit, best))
-    )
-
-
-def _looks_like_the_ship(
-    fit: Fit, refit: Refit, refits: Sequence[Refit], level: float, grown: bool
-) -> bool:
-    """Whether an effect of the ship does as much as a sensor that looks like one.
-
-    Late ones do, of a hull that remembers, and in a model that has grown, whose hull is another,
-    all may. By the blocks: whatever held-out trials say of that effect, the record does not tell
-    them apart. Of a model of 3 m in wind a gyro was named as 3.5 to 5 s late where nobody had told
-    of the wind, and her sway as measured 1 m aft where it was. In a model that has grown whatever
-    would be said to do as well does, also where chance would: of a simulated ship the rudder's
-    clock drifted for 5 %, where a term of sway takes 4 and does not stand out. So in any model may
-    wind or current that nobody recorded: they know the heading, which swings with all that she
-    does. Of 30 ships simulated in calm and logged by heading and speed four had one named.
-    """
-    doubted = gives_way(refit.candidate.effect, grown)
-    ship = [r for r in refits if her_own(r.candidate.effect) and r.fit.converged]
-    if doubted and any(
-        r.candidate.allowed and does_as_well(refit.carried, r.carried) for r in ship
-    ):
-        return True
-    return (doubted or as_slow_as_the_ship(*_found(refit))) and any(
-        objection(fit, r, level) in ("", HELD_OUT) and as_good(refit.carried.after, r.carried.after)
-        for r in ship
-    )
-
-
-def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit | None:
-    """The refit that leaves least on blocks left out, sensors, clocks and forces alike.
-
-    One of which the parameters leave next to nothing gives way to any that is as good. In a model
-    that has `grown` a sensor or a clock gives way to what is of the ship and as good: that the hull
-    is another is then known, and a lag mends any hull a little. What stands out against the noise
-    comes before what only the blocks show.
-    """
-    if not refits:
-        return None
-    least = min(refits, key=lambda r: r.cost)
-    close = [r for r in refits if as_good(least.carried.after, r.carried.after)]
-
-    def standing(r: Refit) -> tuple[bool, bool, float]:
-        return _gives_way(r, grown), not r.candidate.p_value < level, r.cost
-
-    return min([least, *close], key=standing)
-
-
-def _gives_way(refit: Refit, grown: bool) -> bool:
-    """Whether an effect is not named where another is as good."""
-    beside = grown and not of_the_ship(refit.candidate.effect)
-    return beside or refit.carried.seen < FAINT
-
-
-NO_SUCH_VALUE: Final = (turns_round, at_a_sensors_end, sweeps_away)
-"""What a value is that no ship, no sensor and no trial has."""
-
-
-def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
-    """What speaks against an effect once it is fitted, empty where nothing does."""
-    shown = refit.candidate.shown(level) or _takes_most(fit, refit)
-    if not shown or any(no_such(*_found(refit)) for no_such in NO_SUCH_VALUE):
-        return "chance would do it, or no ship and no sensor has such a value"
-    if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
-        return NOT_ARRIVED
-    if worse_held_out(fit, refit.fit):
-        return HELD_OUT
-    if not falls(fit, refit):
-        return "the error hardly falls"
-    if grown and not refit.carried.worth >= SHAPE:
-        return SLIGHT
-    return BESIDE if outputs_beside(fit, refit) else _late(fit, refit, grown)
-
-
-def outputs_beside(fit: Fit, refit: Refitted) -> tuple[str, ...]:
-    """Outputs that the model leaves much of, and of which the effect takes nothing."""
-    before, after = ({n: e**2 for n, e in f.eps_by_output.items()} for f in (fit, refit.fit))
-    much = (name for name, left in before.items() if left > LEFT)
-    return tuple(name for name in much if after[name] > (1.0 - TOUCHED) * before[name])
-
-
-def _takes_most(fit: Fit, refit: Refit) -> bool:
-    """Whether once it is fitted most goes with it, in all blocks, whatever its slope had shown."""
-    return refit.candidate.allowed and refit.carried.large and fall(fit, refit) > MOST
-
-
-def _found(refit: Refit) -> tuple[Effect, Fit]:
-    return refit.candidate.effect, refit.fit
-
-
-def _late(fit: Fit, refit: Refit, grown: bool) -> str:
-    """What speaks against a sensor or a clock that is late: what else is as late."""
-    if late_sensor(refit.candidate.effect) and jump_in(fit) is not None:
-        return AS_A_GEAR
-    return AS_SLOW if grown and as_slow_as_the_ship(*_found(refit)) else ""
-
-
-def falls(fit: Fit, refit: Refit) -> bool:
-    """Whether the error falls by what is worth a name, where it was fitted and where not."""
-    most = max(fall(fit, refit), own_fall(fit, refit))
-    return refit.carried.falls and 1.0 - most < FALL

@@ -14,11 +14,12 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.objections import likeliest_refit, objection
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.carried import is_far
 from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.falls import fall
-from trialid.diagnosis.search.refit import Progress, Refit, likeliest_refit, objection, refit
+from trialid.diagnosis.search.refit import Progress, Refit, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect

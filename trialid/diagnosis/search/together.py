@@ -15,11 +15,13 @@ import numpy as np
 
 from trialid.diagnosis.found_values import her_own
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
+from trialid.diagnosis.objections import outputs_beside
+from trialid.diagnosis.rudder.course_keeping import by_the_rudder, gained_on_course
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
 from trialid.diagnosis.search.carry_over import LeftOut, carried_between, left_out
 from trialid.diagnosis.search.falls import fall, fall_of_check
-from trialid.diagnosis.search.refit import begun_at, outputs_beside, settings_with
+from trialid.diagnosis.search.refit import begun_at, settings_with
 from trialid.errors import TrialidError
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
@@ -113,6 +115,7 @@ def stands(fit: Fit, one: Together) -> bool:
         and not outputs_beside(fit, one)
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large
+        and not (any(map(by_the_rudder, one.effects)) and gained_on_course(fit, one.fit))
     )
 
 
