@@ -25,6 +25,29 @@ class LogSource:
 
 
 @dataclass(frozen=True)
+class Contradiction:
+    """A rate that is not the slope of its angle, measured on the record.
+
+    Parameters
+    ----------
+    rate, angle
+        Signals, as `r` and `psi`.
+    late
+        By how much the rate comes later [s]; less than nothing where the angle does.
+    factor
+        The rate over the slope of the angle; 1 where that is not told.
+    sentence
+        In words, with the line of a pipeline's signal that would mend it, where it is known.
+    """
+
+    rate: str
+    angle: str
+    late: float
+    factor: float
+    sentence: str
+
+
+@dataclass(frozen=True)
 class Trial:
     """Signals of one manoeuvre on one uniform clock.
 
@@ -49,6 +72,8 @@ class Trial:
         Where a window of the logs begins that the trial is [s], as a pipeline states it.
     sided
         Quantities whose positive side was stated: what speaks against it is no doubt of it.
+    contradictions
+        Rates that are not the slopes of their angles.
     """
 
     name: str
@@ -61,6 +86,7 @@ class Trial:
     start: int = 0
     opening: float = 0.0
     sided: frozenset[str] = frozenset()
+    contradictions: tuple[Contradiction, ...] = ()
 
     def __post_init__(self) -> None:
         if self.use not in ("fit", "check"):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from aligned_records import aligned, healthy, with_values
 from made_recordings import channel, recording
 from made_trials import record
 from real_channels import BUSES, DATA, DECAY, HSVA, bus_series, decay_series, hsva_series, series
@@ -10,7 +11,6 @@ from trialid.alignment import SignalSource, align
 from trialid.alignment.agreement import checks, duplicate_channels
 from trialid.errors import AlignmentError
 
-UNITS = {"u": "m/s", "r": "rad/s", "p": "rad/s"}
 DEG = np.rad2deg(1.0)
 FACTORS = {"deg/s read as rad/s": DEG, "rad/s as deg/s": 1 / DEG, "deg/min as deg/s": 60.0}
 real = [
@@ -19,35 +19,12 @@ real = [
 ]
 
 
-def healthy(seed):
-    return {q: series(q, t, y) for q, (t, y) in record(seed).channels.items()}
-
-
-def with_values(signals, quantity, y):
-    one = signals[quantity]
-    return {**signals, quantity: series(quantity, one.t, y)}
-
-
 def errors(found):
     return [one.kind for one in found if one.severity == "error"]
 
 
 def kinds(found):
     return {one.kind for one in found}
-
-
-def aligned(signals, stated=None):
-    """The trial, each signal with its own stamps [ns]; `stated` are units of the pipeline."""
-    log = recording(
-        *(channel(q, one.t / 1e9, one.y, UNITS.get(q, "rad"), epoch=0) for q, one in
-          signals.items())
-    )  # fmt: skip
-    sources = [
-        SignalSource(q, q, (stated or {}).get(q), "starboard" if q == "delta" else None)
-        for q in signals
-    ]
-    period = signals["r"].t[-1] / 1e12
-    return align("t", "fit", [log], sources, period)
 
 
 @pytest.fixture(scope="module")

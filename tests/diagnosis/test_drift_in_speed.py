@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, zigzag
 
-from trialid.diagnosis.unrecorded import name_records
+from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.errors import NotIdentifiable

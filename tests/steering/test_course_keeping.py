@@ -13,12 +13,12 @@ import pytest
 from trialid.diagnosis import objections
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.objections import more_on_course
-from trialid.diagnosis.rudder.course_keeping import (
+from trialid.diagnosis.records.course_keeping import (
     by_the_rudder,
     gained_on_course,
     stretches_on_course,
 )
-from trialid.diagnosis.rudder.rudder_jumps import own_time
+from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.identification.output_error import stretches

@@ -9,7 +9,7 @@ import s175q
 from trialid.diagnosis import objections
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
-from trialid.diagnosis.rudder.rudder_jumps import Course, jump_of, own_time, rudder_jump
+from trialid.diagnosis.records.rudder_jumps import Course, jump_of, own_time, rudder_jump
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit, identify
 from trialid.simulation.integrate import prepare, respond

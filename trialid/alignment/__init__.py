@@ -12,7 +12,13 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Literal
 
 from trialid.alignment import clocks, combine, faults, frames, log_clock, quality, resample
-from trialid.alignment.agreement import channel_finding, checks, duplicate_channels, signs
+from trialid.alignment.agreement import (
+    channel_finding,
+    checks,
+    duplicate_channels,
+    signs,
+    slopes,
+)
 from trialid.alignment.clocks import Grid, Series
 from trialid.alignment.log_clock import LogClock
 from trialid.alignment.sources import SignalSource, log_with, seams
@@ -20,7 +26,7 @@ from trialid.alignment.stamps import clock_health, dejitter
 from trialid.alignment.track import antenna, astern, position
 from trialid.errors import AlignmentError
 from trialid.recording import Recording
-from trialid.trial import LogSource, Trial
+from trialid.trial import Contradiction, LogSource, Trial
 
 __all__ = ["LogClock", "SignalSource", "align"]
 
@@ -75,7 +81,7 @@ def align(
     series, found = _without_faults(series, sources, grid, keep or {}, at)
     signals = _on_grid(series, sources, grid, where)
     trial = astern.with_sign(antenna.with_course(_trial(name, use, recordings, signals, grid)))
-    agreement = _agreement(trial, sources, recordings, where)
+    agreement, apart = _agreement(trial, sources, recordings, where)
     remarks = (
         *_of_logs(recordings, sources),
         *of_clocks,
@@ -87,22 +93,27 @@ def align(
         *agreement,
     )
     stated = frozenset(s.quantity for s in sources if s.positive is not None)
-    opening = window[0] if window else 0.0
-    return dataclasses.replace(trial, remarks=remarks, opening=opening, sided=stated)
+    return dataclasses.replace(
+        trial, remarks=remarks, opening=(window or (0.0,))[0], sided=stated, contradictions=apart
+    )
 
 
 def _agreement(
     trial: Trial, sources: Sequence[SignalSource], recordings: Sequence[Recording], where: str
-) -> tuple[str, ...]:
-    """Whether the signals agree: with each other, with the track, with channels not chosen."""
+) -> tuple[tuple[str, ...], tuple[Contradiction, ...]]:
+    """Whether the signals agree: with each other, with the track, with channels not chosen.
+
+    In words; and where a rate and its angle do not.
+    """
     findings = checks.of_trial(trial, {s.quantity: s.unit for s in sources if s.unit})
     channel_finding.refuse(findings, where)
     twins = duplicate_channels.compare_duplicates(sources, recordings)
-    return (
+    words = (
         *antenna.check_track(trial),
         *signs.check(trial, {source.quantity: source for source in sources}, where),
-        *(finding.sentence for finding in (*findings, *twins)),
+        *(finding.words for finding in (*findings, *twins)),
     )
+    return words, tuple(c for f in findings if (c := slopes.contradiction(f)) is not None)
 
 
 def _without_faults(

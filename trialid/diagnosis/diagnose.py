@@ -16,7 +16,6 @@ from trialid.diagnosis.examine import (
 )
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
 from trialid.diagnosis.force.usual_forces import hull_at_once
-from trialid.diagnosis.heel_side import leans_inward, settle_side
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
@@ -24,6 +23,8 @@ from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
 from trialid.diagnosis.plain_damping import dampings
+from trialid.diagnosis.records.in_doubt import doubts_of, settle
+from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
 from trialid.diagnosis.search.refit import Refit, refit
@@ -31,7 +32,6 @@ from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, look_beside
 from trialid.diagnosis.search.together import Together, two_at_once
-from trialid.diagnosis.unrecorded import name_records
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_several
 from trialid.diagnosis.where.misfit import where
 from trialid.identification.adequacy import why_no_fit
@@ -109,7 +109,8 @@ def _verdict(
     found = with_motion(fit, found, ranking, refits, asked.level)
     named = None if grown else _named(found, refits)
     found = with_held_out(fit, found, lambda: before.own_accuracy.covariance, asked.level, named)
-    return settle_side(fit, name_records(fit, found, asked.candidates.values()))
+    found = name_records(fit, found, asked.candidates.values())
+    return settle(fit, found, asked.candidates.get(found.effect or ""))
 
 
 def _beside_others(
@@ -147,7 +148,7 @@ def _or_of_several(
     may as well: two would be chosen by the slopes of a fit that stands nowhere. Where the catalogue
     seems to miss something, it must not seem so with them.
     """
-    if verdict.effect or verdict.family or leans_inward(fit):  # one, or a sensor is in doubt
+    if verdict.effect or verdict.family or doubts_of(fit):  # one, or a sensor is in doubt
         return verdict, None
     found = None
     if why_no_fit(fit) is None and verdict.kind != "nothing missing":
@@ -206,7 +207,7 @@ def _no_fit(
     return Diagnosis(
         before=before,
         left_out=left_out,
-        verdict=settle_side(fit, Verdict("no fit", None, (), f"no fit: {failed}")),
+        verdict=settle(fit, Verdict("no fit", None, (), f"no fit: {failed}")),
         where=where(fit),
     )
 

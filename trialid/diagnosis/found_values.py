@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.rudder.rudder_jumps import own_time
+from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.identification.fit import Fit
 from trialid.names.quantities import PARTICULARS, RUDDERS
 from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate

@@ -16,8 +16,8 @@ from trialid.diagnosis.found_values import (
     turns_round,
 )
 from trialid.diagnosis.plain_damping import is_plain_damping
-from trialid.diagnosis.rudder.course_keeping import by_the_rudder, gained_on_course
-from trialid.diagnosis.rudder.rudder_jumps import jump_in
+from trialid.diagnosis.records.course_keeping import by_the_rudder, gained_on_course
+from trialid.diagnosis.records.rudder_jumps import jump_in
 from trialid.diagnosis.search.carried import (
     FAINT,
     FALL,

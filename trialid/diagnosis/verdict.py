@@ -84,14 +84,15 @@ of it says the same of them, with twice nothing is missing while the damping is.
 
 @dataclass(frozen=True, kw_only=True)
 class AsWell:
-    """What a name is not told from beside single effects.
+    """What a name is not told from beside single effects, and why there may be none.
 
     Two others at once, that do as well as it; numbers that are held and do, off by what their
-    source allows, those moved most.
+    source allows, those moved most; what the records leave in doubt about themselves.
     """
 
     pair_as_well: tuple[str, ...] = ()
     held_as_well: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

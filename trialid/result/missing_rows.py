@@ -119,6 +119,7 @@ def verdict_part(v: Verdict, proposal: Separation | None) -> VerdictPart:
         together=v.together,
         pair_as_well=v.pair_as_well,
         held_as_well=v.held_as_well,
+        doubts=v.doubts,
         sentence=v.sentence,
         next_trial=None if proposal is None else _next_trial(proposal),
     )

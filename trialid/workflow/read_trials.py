@@ -11,7 +11,7 @@ from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
 from trialid.alignment.held_roll import without_held_roll
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
-from trialid.diagnosis.rudder.rudder_jumps import rudder_jump, said_of
+from trialid.diagnosis.records.rudder_jumps import rudder_jump, said_of
 from trialid.errors import PipelineError
 from trialid.ingest import Aids, LogFile
 from trialid.names.quantities import SIGNALS, Quantity

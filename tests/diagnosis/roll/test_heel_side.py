@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
-from trialid.diagnosis.heel_side import leans_inward, settle_side
+from trialid.diagnosis.records.heel_side import leans_inward
+from trialid.diagnosis.records.in_doubt import settle
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -53,20 +54,20 @@ def test_both_readings_are_named_where_the_side_of_her_turns_is_nobodys_word(wro
     assert "or delta, r all do, as with z up" in said
     assert "else starboard is port in all predictions" in said
     stated = of_trials(wrong, sailed(-1.0, frozenset({"r"})))
-    said = settle_side(stated, Verdict("missing", "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is"))
+    said = settle(stated, Verdict("missing", "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is"))
     assert "phi alone counts to port" in said.sentence
     assert "z up" not in said.sentence
 
 
 def test_a_fit_that_fails_says_it_too(wrong):
-    no_fit = settle_side(wrong, Verdict("no fit", None, (), "no fit: another ship"))
+    no_fit = settle(wrong, Verdict("no fit", None, (), "no fit: another ship"))
     assert no_fit.kind == "no fit"
     assert no_fit.sentence.startswith("no fit: another ship; she heels into her turns in zigzag-")
 
 
 @pytest.mark.parametrize("kind", ["missing", "not in catalogue", "cannot tell"])
 def test_what_would_be_named_is_not(wrong, kind):
-    found = settle_side(wrong, Verdict(kind, "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is"))
+    found = settle(wrong, Verdict(kind, "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is"))
     assert (found.kind, found.effect, found.family) == ("cannot tell", None, ())
     assert found.sentence.startswith("she heels into her turns")
 
@@ -81,7 +82,7 @@ def test_healthy_ships_and_stated_sides_have_their_verdict(wrong):
     ]
     for fit in fits:
         assert leans_inward(fit) == ()
-        assert settle_side(fit, named) is named
+        assert settle(fit, named) is named
 
 
 def test_a_side_is_stated_with_the_signal():

@@ -36,6 +36,18 @@ class Finding:
     evidence: Mapping[str, float] = field(default_factory=dict)
     mend: str | None = None
 
+    def of_slope(self, rate: str) -> bool:
+        """Whether it says that a rate comes at another time than its angle, or is not its slope."""
+        told = self.kind in ("lag", "scale") and self.severity == "remark"
+        return told and self.about[0] == rate
+
+    @property
+    def words(self) -> str:
+        """The sentence with the line that would mend it, where it does not name it already."""
+        if self.mend is None or self.mend in self.sentence:
+            return self.sentence
+        return f"{self.sentence}; {self.mend} in {self.about[0]} would mend it"
+
 
 def refuse(findings: Sequence[Finding], where: str) -> None:
     """AlignmentError for the first finding that is an error."""

@@ -16,7 +16,7 @@ from trialid.alignment.agreement.relation import Relation
 from trialid.errors import UnitError
 from trialid.names import units
 from trialid.names.quantities import MOTIONS, SIGNALS
-from trialid.trial import Trial
+from trialid.trial import Contradiction, Trial
 
 SLOPES = (("r", "psi"), ("p", "phi"))
 """Each is the slope of the other by definition."""
@@ -110,7 +110,8 @@ def _small_faults(
     rate: str, angle: str, found: Relation, evidence: Mapping[str, float]
 ) -> Iterator[Finding]:
     low, high = found.gain
-    if is_clear(found) and found.later and abs(found.lag) > LATE:
+    late = found.later and abs(found.lag) > LATE
+    if is_clear(found) and late:
         words = (
             f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
             f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
@@ -119,7 +120,19 @@ def _small_faults(
         yield Finding("lag", "remark", (rate, angle), words, evidence, mend)
     if is_clear(found) and (low > FAIR or high < 1 / FAIR):
         words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}"
-        yield Finding("scale", "remark", (rate, angle), words, evidence)
+        # over whole turns no compass is wrong by a factor; a sensor that smooths is late, too
+        mend = f"gain = {1 / np.sqrt(low * high):.3g}" if angle == "psi" and not late else None
+        yield Finding("scale", "remark", (rate, angle), words, evidence, mend)
+
+
+def contradiction(found: Finding) -> Contradiction | None:
+    """What a finding says of a rate and its angle; None where it is another."""
+    if not found.of_slope(found.about[0]):
+        return None
+    lag, low, high = (found.evidence[n] for n in ("lag", "gain_low", "gain_high"))
+    late, factor = (lag, 1.0) if found.kind == "lag" else (0.0, float(np.sqrt(low * high)))
+    rate, angle = found.about
+    return Contradiction(rate, angle, late, factor, found.words)
 
 
 def is_clear(found: Relation) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 from trialid.diagnosis.found_values import her_own
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.objections import outputs_beside
-from trialid.diagnosis.rudder.course_keeping import by_the_rudder, gained_on_course
+from trialid.diagnosis.records.course_keeping import by_the_rudder, gained_on_course
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
 from trialid.diagnosis.search.carry_over import LeftOut, carried_between, left_out

@@ -45,7 +45,7 @@ def advice(run: Result) -> tuple[Advice, ...]:
         "cannot tell": _unclear,
         "no fit": _no_fit,
     }
-    found = [*_unfinished(run), *_planned(run)]
+    found = [*_doubted(run), *_unfinished(run), *_planned(run)]
     if kind in by_kind:
         found += by_kind[kind](run)
     return (*found, *_unchecked(run), *_loose(run))
@@ -82,6 +82,12 @@ def _unfinished(run: Result) -> Iterable[Advice]:
             "several places, under [identify]:",
             "starts = 5",
         )
+
+
+def _doubted(run: Result) -> Iterable[Advice]:
+    """What the records contradict comes first: every number rests on it."""
+    if run.verdict.doubts:
+        yield Advice("Settle that in the pipeline file, or ask who was aboard, and run again.")
 
 
 def _no_fit(run: Result) -> Iterable[Advice]:

@@ -66,8 +66,7 @@ def _mends(found: Sequence[Finding]) -> Iterator[str]:
     """What a line of the pipeline would mend; of a rudder's side `_rudder` tells more."""
     for one in found:
         if one.mend is not None and one.kind != "side":
-            named = one.mend in one.sentence
-            yield one.sentence if named else f"{one.sentence}; {one.mend} would mend it"
+            yield one.words
 
 
 def _lacking(

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from trialid.errors import printable
+from trialid.inspection import disagreements
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.positions import positions
 from trialid.inspection.read_alike import unit_and_side
@@ -94,8 +95,10 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
         yield f"# {comment(remark)}"
     yield "[trial.signals]"
     width = max(len(one.quantity) for one in trial.signals)
+    found = disagreements.findings(trial.survey)
     for signal in trial.signals:
         yield f"# {signal.quantity}: {comment(signal.why)}"
+        yield from (f"# {comment(one.words)}" for one in found if one.of_slope(signal.quantity))
         yield f"{signal.quantity:<{width}} = {{ {_source(signal, signal.source)} }}"
         for other in signal.others[:MOST_OTHERS]:
             words = f"# or {signal.quantity} = {{ {_source(signal, other)} }}"

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.diagnosis.rudder.rudder_jumps import Course, Jump, Steps, jump_of, jump_where
+from trialid.diagnosis.records.rudder_jumps import Course, Jump, Steps, jump_of, jump_where
 from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.name_words import words
 from trialid.names import units

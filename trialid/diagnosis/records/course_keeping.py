@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Mask, Vector
-from trialid.diagnosis.rudder.rudder_jumps import own_time
+from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import stretches
 from trialid.ship.effect import Effect

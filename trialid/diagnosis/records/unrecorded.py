@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Final
 
 from trialid.diagnosis.found_values import by_heading, of_the_ship
-from trialid.diagnosis.rudder.rudder_jumps import jump_in, said_of
+from trialid.diagnosis.records.rudder_jumps import jump_in, said_of
 from trialid.diagnosis.search.candidates import missing_signals
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects.track import current_in_speed

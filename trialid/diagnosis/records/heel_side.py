@@ -5,12 +5,10 @@ heels into them, and then what pushes her over in a turn is missing with the wro
 the hull take it up. A planing boat does heel inward, and only who was aboard knows.
 """
 
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.verdict import Verdict
 from trialid.errors import list_names
 from trialid.identification.fit import Fit
 from trialid.names.quantities import SIGNALS
@@ -56,15 +54,10 @@ def _lean(trial: Trial) -> float:
     return float(np.corrcoef(phi, r * speed)[0, 1])
 
 
-def settle_side(fit: Fit, verdict: Verdict) -> Verdict:
-    """The verdict; of a roll that may be of the other side, that and how to settle it."""
+def side_in_doubt(fit: Fit) -> str | None:
+    """What her heel leaves open, and how to settle it; None where it leaves nothing."""
     inward = leans_inward(fit)
-    if not inward or verdict.kind == "nothing missing":
-        return verdict
-    doubt = _doubt(inward, _turned_about(fit, inward))
-    if verdict.kind == "no fit":
-        return replace(verdict, sentence=f"{verdict.sentence}; {doubt}")
-    return Verdict("cannot tell", None, (), f"{doubt}; until then no effect is named")
+    return _doubt(inward, _turned_about(fit, inward)) if inward else None
 
 
 def _turned_about(fit: Fit, inward: tuple[str, ...]) -> tuple[str, ...]:

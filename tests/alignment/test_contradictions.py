@@ -1,0 +1,30 @@
+"""A rate that is not the slope of its angle stays with the trial, with the line that mends it."""
+
+import pytest
+from aligned_records import aligned, healthy, with_values
+from real_channels import series
+
+
+@pytest.fixture(scope="module")
+def zigzag():
+    """A zig-zag in a calm sea with good sensors."""
+    return healthy(155)
+
+
+@pytest.mark.parametrize("delay", [1.0, 3.0, 8.8])
+def test_a_late_rate_of_turn_is_mended_by_a_delay(zigzag, delay):
+    one = zigzag["r"]
+    late = {**zigzag, "r": series("r", one.t + round(delay * 1e9), one.y)}
+    [apart] = aligned(late).contradictions
+    assert (apart.rate, apart.angle, apart.factor) == ("r", "psi", 1.0)
+    assert apart.late == pytest.approx(delay, abs=0.3)
+    assert apart.sentence.endswith(" in r would mend it")
+
+
+def test_a_rate_that_reads_less_than_the_heading_turns_is_mended_by_a_gain(zigzag):
+    """No compass is wrong by a factor over whole turns."""
+    less = with_values(zigzag, "r", 0.8 * zigzag["r"].y)
+    [apart] = aligned(less).contradictions
+    assert (apart.late, apart.factor) == (0.0, pytest.approx(0.8, abs=0.01))
+    assert apart.sentence.endswith("; gain = 1.25 in r would mend it")
+    assert aligned(zigzag).contradictions == ()
