@@ -7,9 +7,10 @@ import numpy as np
 
 from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.identification.fit import Fit
-from trialid.names.quantities import PARTICULARS, RUDDERS
+from trialid.names.quantities import MASS_PARAMETERS, PARTICULARS, RUDDERS
 from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate
 from trialid.ship.model import STATES
+from trialid.ship.motion import masses_of
 
 SLOW: Final = 0.1
 """Share of L/U from which on a sensor's lag or delay may be what the hull remembers, in a model
@@ -75,6 +76,31 @@ def sweeps_away(effect: Effect, fit: Fit) -> bool:
     if not flow or not by_heading(effect):
         return False
     return float(np.hypot.reduce(flow)) * own_time(fit) > fit.model.ship.particulars["L"]
+
+
+ADDED: Final = ("Xudot", "Yvdot", "Kpdot", "Nrdot")
+"""What water adds on the diagonal; it is never a help."""
+
+
+def no_such_mass(effect: Effect, fit: Fit) -> bool:
+    """Whether with it she has a mass that no ship has, or one at the end of what may be sought.
+
+    Water that pushes; more weight than a box of her length, beam and draught displaces; a radius of
+    gyration beyond half her length. Of three strangers' ships such a mass stood in for a hull of
+    another shape: an added mass in sway of the other sign, a block coefficient of 1.10.
+    """
+    if Mass not in effect.forms:
+        return False
+    model, size = fit.model, fit.model.ship.particulars
+    mass = masses_of(model, {n: model.value(n) for n in (*MASS_PARAMETERS, *model.parameters)})
+    box = 2.0 * size["B"] * size["T"] / size["L"] ** 2 if {"B", "T"} <= size.keys() else np.inf
+    return (
+        bool({*effect.parameters} & {*fit.at_bounds})
+        or any(mass[n] > 0.0 for n in ADDED)
+        or not 0.0 < mass["m"] <= box
+        or not 0.0 < mass["I_zz"] <= 0.25 * mass["m"]
+        or not mass["I_xx"] > 0.0
+    )
 
 
 def as_slow_as_the_ship(effect: Effect, fit: Fit) -> bool:

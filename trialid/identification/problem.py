@@ -15,7 +15,7 @@ from trialid.identification.nuisance.priors import fastest, water_prior
 from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask
 from trialid.identification.roll.roll_range import RollRange, roll_range
 from trialid.names.quantities import MASS_PARAMETERS, POSITION
-from trialid.ship.effect import Force, Rate
+from trialid.ship.effect import Force, Mass, Rate
 from trialid.ship.model import ShipModel
 from trialid.ship.motion import check_mass
 from trialid.simulation.at_rest import check_at_rest
@@ -185,15 +185,15 @@ def with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> Sh
             missing[name] = settings.priors[name][0]
         elif model.stated(name) is None:
             parameter = model.parameters[name]
-            absent = parameter.null if is_sensor(model, name) else None
-            missing[name] = parameter.start if absent is None else absent
+            acts = {Force, Rate} & {*(_forms_of(model, name) or (Force,))}
+            missing[name] = parameter.start if acts or parameter.null is None else parameter.null
     return model.with_values(missing) if missing else model
 
 
 def is_sensor(model: ShipModel, name: str) -> bool:
     """Whether a parameter belongs to a sensor or an offset, not to the ship."""
     forms = _forms_of(model, name)
-    return bool(forms) and not {Force, Rate}.intersection(forms)
+    return bool(forms) and not {Force, Rate, Mass}.intersection(forms)
 
 
 def _forms_of(model: ShipModel, name: str) -> tuple[type, ...]:

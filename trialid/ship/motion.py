@@ -140,7 +140,7 @@ def _balance(
 ) -> Balance:
     """The rigid-body balance of the simulated rows; a motion that is not simulated keeps still."""
     L, rho = model.ship.particulars["L"], model.ship.particulars["rho"]
-    mass = {n: x * mass_scale(n, L, rho) for n, x in _masses(model, theta).items()}
+    mass = {n: x * mass_scale(n, L, rho) for n, x in masses_of(model, theta).items()}
     moves = {s: signals.get(s, 0.0) for s in ("u", "v", "p", "r", "phi")}
     full = rigid_body(moves, force, mass)
     rows = [s for s in ROWS if s in model.states]
@@ -150,8 +150,8 @@ def _balance(
     )
 
 
-def _masses(model: ShipModel, theta: Mapping[str, Number]) -> dict[str, Number]:
-    """The mass parameters with what effects add to them, primed."""
+def masses_of(model: ShipModel, theta: Mapping[str, Number]) -> dict[str, Number]:
+    """The mass parameters by name with what effects add to them, primed; `theta` holds all."""
     masses = {n: theta[n] for n in MASS_PARAMETERS}
     particulars = {**model.ship.particulars, "U": model.ship.particulars["U0"]}
     for effect in model.effects:

@@ -51,3 +51,16 @@ def test_wind_that_nobody_recorded_gives_way_to_whatever_of_the_ship_does_as_muc
     weak = refit("force", BEFORE, tuple(0.9 * x for x in BEFORE))[1]
     assert likeliest_refit(old, [wind, weak], 0.05) is wind
     assert likeliest_refit(old, [wind], 0.05) is wind
+
+
+@pytest.mark.parametrize(
+    ("wind", "hers", "named"),
+    [(0.12, 0.22, True), (0.12, 0.19, False), (0.196, 0.22, False)],
+    ids=["denied", "borne out", "the wind hardly helps"],
+)
+def test_held_out_trials_tell_the_wind_from_what_they_deny(wind, hers, named):
+    """By far: with a wind that takes next to nothing off they tell nothing."""
+    old, blowing = refit("unseen wind", BEFORE, ALIKE, check=(0.2, wind))
+    force = refit("force", BEFORE, LESS, check=(0.2, hers))[1]
+    found = likeliest_refit(old, [blowing, force], 0.05)
+    assert (found is blowing) is named
