@@ -190,3 +190,12 @@ def test_an_impossible_mass_matrix(changed: dict[str, float], rows: str, s175q: 
     with pytest.raises(ShipError, match=f"mass matrix of {rows} is not positive") as caught:
         check_mass(model, {n: model.value(n) for n in MASS_PARAMETERS})
     assert "check m, I_xx, I_zz and the added masses" in str(caught.value)
+
+
+def test_masses_are_above_zero_and_what_water_adds_below(s175q: ShipModel) -> None:
+    """As far as the file has them so: what is stated beyond is left to whoever stated it."""
+    assert (s175q.parameters["I_xx"].low, s175q.parameters["I_xx"].high) == (0.0, np.inf)
+    assert (s175q.parameters["Yvdot"].low, s175q.parameters["Yvdot"].high) == (-np.inf, 0.0)
+    assert (s175q.parameters["x_G"].low, s175q.parameters["x_G"].high) == (-np.inf, np.inf)
+    other = replace(s175q.ship, mass={**s175q.ship.mass, "Yvdot": 0.007})
+    assert replace(s175q, ship=other).parameters["Yvdot"].high == np.inf

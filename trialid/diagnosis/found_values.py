@@ -9,7 +9,7 @@ from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.identification.fit import Fit
 from trialid.names.quantities import MASS_PARAMETERS, PARTICULARS, RUDDERS
 from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate
-from trialid.ship.model import STATES
+from trialid.ship.model import ADDED, STATES
 from trialid.ship.motion import masses_of
 
 SLOW: Final = 0.1
@@ -76,10 +76,6 @@ def sweeps_away(effect: Effect, fit: Fit) -> bool:
     if not flow or not by_heading(effect):
         return False
     return float(np.hypot.reduce(flow)) * own_time(fit) > fit.model.ship.particulars["L"]
-
-
-ADDED: Final = ("Xudot", "Yvdot", "Kpdot", "Nrdot")
-"""What water adds on the diagonal; it is never a help."""
 
 
 def no_such_mass(effect: Effect, fit: Fit) -> bool:

@@ -15,18 +15,32 @@ OFF_AMIDSHIPS: Final = np.deg2rad(0.5)
 """[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm; and a list
 that is seen, where sensors are mounted to that."""
 
+OFF_RATE: Final = np.deg2rad(0.05)
+"""[rad/s] Zero of a rate of turn that a course shows: 3 deg in a minute of what is predicted."""
+
 SLIGHT: Final = 0.01
 """Share of her speed below which a current is worth no word: a diameter is 2 % off by it. At 15
 kn it is 0.08 m/s: a zig-zag of 5 deg alone reads 0.1 to 0.35 out of still water, circles 0.01."""
 
 STANDS_OFF: Final = {
-    "delta_0": "the rudder's zero is {} deg in all trials, a screw's side push or a feedback's "
-    "error: what is predicted of her has it there, by the recorded rudder, and is likely from "
-    "where it would be without",
-    "b_phi": "the heel's zero is {} deg in all trials, a list or how the sensor is mounted: what "
-    "is predicted of her has her upright; where she does list, `trialid add` static_list",
+    "b_phi": (
+        OFF_AMIDSHIPS,
+        "the heel's zero is {} deg in all trials, a list or how the sensor is mounted: what is "
+        "predicted of her has her upright; where she does list, `trialid add` static_list",
+    ),
+    "delta_0": (
+        OFF_AMIDSHIPS,
+        "the rudder's zero is {} deg in all trials, a screw's side push, what a list does or a "
+        "feedback's error: what is predicted of her has it there, by the recorded rudder, and is "
+        "likely from where it would be without",
+    ),
+    "b_r": (
+        OFF_RATE,
+        "the rate of turn reads {} deg/s too much in all trials, a gyro's zero: what is predicted "
+        "of her is without it",
+    ),
 }
-"""What to say of a number of each trial that is the same in all of them."""
+"""Least [rad, rad/s] and what to say of a number of each trial that is the same in all of them."""
 
 APART: Final = 3.0
 """Times the scatter over trials from which on a mean is of all of them."""
@@ -89,19 +103,19 @@ def _current(fit: Fit) -> list[str]:
 
 def _one_sided(fit: Fit) -> list[str]:
     """What stands off by the same in all trials: a rudder's zero, in predictions too; a heel's."""
-    found = {column: _in_all(fit, column) for column in STANDS_OFF}
+    found = {column: _in_all(fit, column, least) for column, (least, _) in STANDS_OFF.items()}
     return [
-        STANDS_OFF[column].format(f"{np.rad2deg(off):.2g}")
+        STANDS_OFF[column][1].format(f"{np.rad2deg(off):.2g}")
         for column, off in found.items()
         if off is not None
     ]
 
 
-def _in_all(fit: Fit, column: str) -> float | None:
-    """Mean over the trials of what is far off in all of them [rad], None where it is not."""
+def _in_all(fit: Fit, column: str, least: float) -> float | None:
+    """Mean over the trials of what is far off in all of them, None where it is not."""
     unknowns = zip(fit.problem.unknowns, fit.theta, strict=True)
     each = np.array([a for x, a in unknowns if x.column == column])
-    if len(each) < 2 or abs(each.mean()) < max(OFF_AMIDSHIPS, APART * each.std(ddof=1)):
+    if len(each) < 2 or abs(each.mean()) < max(least, APART * each.std(ddof=1)):
         return None
     return float(each.mean())
 
@@ -118,7 +132,7 @@ def _untold_GM(fit: Fit) -> list[str]:
         ]
     listed = [f"{values['GM']:.3g}" for values in fit.rivals]
     rivals = (
-        " or ".join(listed) if len(listed) < 4 else f"anything from {listed[0]} to {listed[-1]}"
+        " or ".join(listed) if len(listed) < 4 else f"at least all from {listed[0]} to {listed[-1]}"
     )
     late = late_roll(fit.problem, fit.theta)
     place = max(late, key=lambda place: abs(late[place]), default=None)

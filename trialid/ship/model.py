@@ -1,5 +1,6 @@
 """A ship model: a ship, the states that are simulated, and the effects that act on it."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,6 +27,9 @@ KINEMATICS: Final = {"phi": "p", "psi": "r"}  # horizontal axes: the heading rat
 DRIFT: Final = ("u", "v", "psi")
 """Motions that carry the ship along, simulated or recorded where her position is simulated."""
 NEEDED_MASS: Final = {"u": ("m",), "v": ("m",), "p": ("I_xx",), "r": ("I_zz",)}
+WEIGHS: Final = ("m", "I_xx", "I_zz")
+ADDED: Final = ("Xudot", "Yvdot", "Kpdot", "Nrdot")
+"""Masses that are above zero, and what water adds on the diagonal, which is never a help."""
 STANDSTILL: Final = 1e-6
 """[m/s] Added to the speed in squares, so that quadratic terms keep their limit at rest."""
 
@@ -96,7 +100,7 @@ class ShipModel:
     @cached_property
     def parameters(self) -> dict[str, Parameter]:
         """Every parameter, of this ship's size: the masses, then those of the effects in order."""
-        masses = {n: Parameter(_primed_mass(self.ship, n)) for n in MASS_PARAMETERS}
+        masses = {n: _mass_parameter(self.ship, n) for n in MASS_PARAMETERS}
         own = {n: p for e in self.effects for n, p in e.parameters.items()}
         length = self.ship.particulars["L"]
         return masses | {n: p.of_ship(length) for n, p in own.items()}
@@ -176,6 +180,17 @@ def _primed_mass(ship: Ship, name: str) -> float:
     if ship.system == "prime":
         return value
     return value / mass_scale(name, ship.particulars["L"], ship.particulars["rho"])
+
+
+def _mass_parameter(ship: Ship, name: str) -> Parameter:
+    """A mass of the ship, above zero where it is one, and where water adds to one below.
+
+    As far as its file has it so: what is stated beyond is left to whoever stated it.
+    """
+    value = _primed_mass(ship, name)
+    low = 0.0 if name in WEIGHS and value > 0.0 else -math.inf
+    high = 0.0 if name in ADDED and value < 0.0 else math.inf
+    return Parameter(value, low=low, high=high)
 
 
 def takes_place(effect: Effect, other: Effect) -> bool:

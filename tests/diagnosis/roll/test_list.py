@@ -1,4 +1,4 @@
-"""A heel that is there in all trials may be hers: predictions have her upright, and it is said."""
+"""What stands off by the same in all trials is said: a heel, which may be hers, a gyro's zero."""
 
 from dataclasses import replace
 
@@ -24,8 +24,8 @@ def trials(model, *of_each):
     return made
 
 
-def said(made):
-    return [x for x in remarks(identify(made, MODEL, SETTINGS)) if x.startswith("the heel's zero")]
+def said(made, begins="the heel's zero"):
+    return [x for x in remarks(identify(made, MODEL, SETTINGS)) if x.startswith(begins)]
 
 
 @pytest.mark.parametrize("heel", [-1.5, 3.0])
@@ -45,3 +45,21 @@ def test_the_same_trials_without_a_bias_say_nothing():
     made = trials(MODEL, 1.0, 1.0)
     held = replace(SETTINGS, nuisance=("initial_state",))
     assert not any("heel's zero" in x for x in remarks(identify(made, MODEL, held)))
+
+
+def with_gyro(made, *of_each):
+    """The same with what the gyro adds in each [deg/s]."""
+    pairs = zip(made, of_each, strict=True)
+    return [with_noise(t, np.deg2rad(off) + np.zeros(t.samples), 0.0) for t, off in pairs]
+
+
+@pytest.mark.parametrize("off", [-0.15, 0.1])
+def test_a_gyros_zero_is_told(off):
+    [line] = said(with_gyro(trials(MODEL, 0.0, 0.0, 0.0), off, off, off), "the rate of turn reads")
+    assert float(line.split(" deg/s")[0].split()[-1]) == pytest.approx(off, abs=0.03)
+
+
+@pytest.mark.parametrize("of_each", [(0.02, 0.02, 0.02), (0.3, -0.1, 0.05)])
+def test_a_small_one_and_one_that_changes_are_not(of_each):
+    made = with_gyro(trials(MODEL, 0.0, 0.0, 0.0), *of_each)
+    assert said(made, "the rate of turn reads") == []
