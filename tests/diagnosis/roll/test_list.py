@@ -1,4 +1,4 @@
-"""What stands off by the same in all trials is said: a heel, which may be hers, a gyro's zero."""
+"""What stands off by the same in all trials is said: a heel, a gyro's zero, a delay."""
 
 from dataclasses import replace
 
@@ -63,3 +63,17 @@ def test_a_gyros_zero_is_told(off):
 def test_a_small_one_and_one_that_changes_are_not(of_each):
     made = with_gyro(trials(MODEL, 0.0, 0.0, 0.0), *of_each)
     assert said(made, "the rate of turn reads") == []
+
+
+@pytest.mark.parametrize(("of_each", "told"), [((3.0, 3.0, 3.0), True), ((1.0, 1.0, 1.0), False)])
+def test_a_rate_that_is_late_in_all_trials_is_told(of_each, told):
+    """She goes her length in 24 s."""
+    late = []
+    for off, made in zip(of_each, trials(MODEL, 0.0, 0.0, 0.0), strict=True):
+        r = np.roll(made.signals["r"], round(off / made.period))
+        late.append(replace(made, signals={**made.signals, "r": r}))
+    settings = replace(SETTINGS, nuisance=("initial_state", "bias", "delay"))
+    lines = [x for x in remarks(identify(late, MODEL, settings)) if x.startswith("r is taken as")]
+    assert bool(lines) is told
+    for line in lines:
+        assert float(line.split(" s late")[0].split()[-1]) == pytest.approx(3.0, abs=0.4)
