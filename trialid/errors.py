@@ -78,6 +78,10 @@ class SimulationError(TrialidError):
     """A simulation left the domain of the model; the message says when and how."""
 
 
+class StepsTooLong(SimulationError):
+    """It stays in the domain with finer steps."""
+
+
 class NotIdentifiable(TrialidError):
     """The record cannot carry the question: no excitation, too few samples, nothing to compare."""
 

@@ -7,6 +7,7 @@ import pytest
 import s175q
 
 from trialid.effects import CATALOGUE
+from trialid.errors import StepsTooLong
 from trialid.identification.fit import identify
 from trialid.identification.problem import FASTEST, pose_problem
 from trialid.simulation.integrate import prepare, respond
@@ -66,3 +67,16 @@ def test_the_search_for_a_gear_of_limited_rate_arrives_in_a_sea(seed):
     assert fit.converged
     assert fit.V < best.V * (1.0 + 1e-4)
     assert fit.estimates["rate_max"] == pytest.approx(TRUE["rate_max"], rel=0.1)
+
+
+def test_steps_in_which_a_stated_gear_cannot_be_followed_are_made_finer():
+    """Half a second of a gear of 0.05 s: its rudder would be out of all bounds within a sample."""
+    quick = (s175q.MODEL + CATALOGUE["rudder_servo"]).with_values({"T_delta": 0.05})
+    settings = replace(s175q.SETTINGS, free=("Nr", "Ndelta"))
+    trials, told = ordered(2, **TRUE), list[int]()
+    fit = identify(trials, quick, settings, finer=told.append)
+    assert told[:2] == [2, 4]
+    assert fit.converged
+    assert fit.problem.simulator.substeps == told[-1]
+    with pytest.raises(StepsTooLong, match=r"steps of 0\.5 s are too long for this model"):
+        identify(trials, quick, replace(settings, most_substeps=1))

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.errors import NotIdentifiable, SimulationError
+from trialid.errors import NotIdentifiable, SimulationError, StepsTooLong
 from trialid.identification.arrive import arrive
 from trialid.identification.check.common_values import Common, common_values
 from trialid.identification.gauss_newton import REASONS, Iteration
-from trialid.identification.one_search import End, Progress, why_no_start
+from trialid.identification.one_search import End, Progress, no_start
 from trialid.identification.output_error import (
     Problem,
     linearise,
@@ -183,7 +183,8 @@ def identify(
     """Eq. 5: the parameters with the smallest output error over all trials marked `fit`.
 
     Where the stated start does not arrive, others are tried: see `Fit.told`. Where the integration
-    would make up more than `STEP_ERROR` of the error, the search is done again with finer steps.
+    would make up more than `STEP_ERROR` of the error, or leave the domain where a search would
+    begin, the search is done again with finer steps.
 
     Parameters
     ----------
@@ -201,7 +202,15 @@ def identify(
     SimulationError
         No start can be simulated.
     """
-    fit = _searched(trials, model, settings, progress, near or {}, smaller)
+    fit = None
+    while fit is None:
+        try:
+            fit = _searched(trials, model, settings, progress, near or {}, smaller)
+        except StepsTooLong:
+            if settings.substeps >= settings.most_substeps:
+                raise
+            settings = replace(settings, substeps=2 * settings.substeps)
+            finer(settings.substeps)
     while _coarse(fit) and fit.settings.substeps < settings.most_substeps:
         again = replace(fit.settings, substeps=2 * fit.settings.substeps)
         finer(again.substeps)
@@ -230,7 +239,7 @@ def _searched(
         embedded = point_of_smaller(problem, smaller.estimates, smaller.problem.simulator.model)
     arrival = arrive(problem, settings, progress, embedded)
     if not arrival.best.began:
-        raise SimulationError(why_no_start(problem))
+        raise no_start(problem)
     fit = _finish(model, problem, trials, settings, arrival.best, (arrival.same, arrival.tried))
     rivals = arrival.rivals or (() if smaller is None else smaller.rivals)
     return replace(fit, told=arrival.told, rivals=rivals)

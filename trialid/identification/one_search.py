@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.errors import SimulationError, StepsTooLong
 from trialid.identification.gauss_newton import Iteration, Minimum, minimise
 from trialid.identification.output_error import (
     Problem,
@@ -200,18 +201,18 @@ def random_starts(problem: Problem, count: int, spread: float, seed: int) -> lis
     return starts
 
 
-def why_no_start(problem: Problem) -> str:
+def no_start(problem: Problem) -> SimulationError:
     """Why nothing can be simulated where a search would begin, and what to do."""
     departure = linearise(problem, problem.start)
     simulator = problem.simulator
     finer = replace(problem, simulator=replace(simulator, substeps=16 * simulator.substeps))
     if not isinstance(respond_all(finer, problem.start, False), Departure):
         step = problem.trials[0].period / simulator.substeps
-        return (
+        return StepsTooLong(
             f"steps of {step:g} s are too long for this model: {departure}, with finer steps not; "
             "choose a shorter [align] period, or more [identify] substeps"
         )
-    return (
+    return SimulationError(
         f"the model cannot be simulated at its start values: {departure}; give nearer values in "
         "[model.values] or in the ship file, or narrower [identify] bounds"
     )
