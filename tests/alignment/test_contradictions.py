@@ -28,3 +28,14 @@ def test_a_rate_that_reads_less_than_the_heading_turns_is_mended_by_a_gain(zigza
     assert (apart.late, apart.factor) == (0.0, pytest.approx(0.8, abs=0.01))
     assert apart.sentence.endswith("; gain = 1.25 in r would mend it")
     assert aligned(zigzag).contradictions == ()
+
+
+def test_where_the_heading_is_late_the_delay_is_its_own(zigzag):
+    one = zigzag["psi"]
+    late = {**zigzag, "psi": series("psi", one.t + 3 * 10**9, one.y)}
+    [apart] = aligned(late).contradictions
+    assert apart.late == pytest.approx(-3.0, abs=0.3)
+    assert apart.sentence.startswith("r comes ")
+    assert " s earlier than the slope of psi" in apart.sentence
+    assert apart.sentence.endswith(" in psi would mend it")
+    assert "delay = -" not in apart.sentence

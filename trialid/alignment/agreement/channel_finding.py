@@ -26,7 +26,8 @@ class Finding:
     evidence
         Its figures, in SI.
     mend
-        The line of a pipeline's signal that would mend it, where it is known.
+        The line of a pipeline's signal that would mend it, where it is known; of the first that it
+        is about, and of a lag of the later one.
     """
 
     kind: str
@@ -46,7 +47,9 @@ class Finding:
         """The sentence with the line that would mend it, where it does not name it already."""
         if self.mend is None or self.mend in self.sentence:
             return self.sentence
-        return f"{self.sentence}; {self.mend} in {self.about[0]} would mend it"
+        first, *others = self.about
+        later = others[0] if self.kind == "lag" and self.evidence["lag"] < 0.0 else first
+        return f"{self.sentence}; {self.mend} in {later} would mend it"
 
 
 def refuse(findings: Sequence[Finding], where: str) -> None:

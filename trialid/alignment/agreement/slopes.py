@@ -116,10 +116,11 @@ def _small_faults(
             f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
             f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
         )
-        mend = f"delay = {found.lag:.2g}" if found.lag > 0 else None
+        mend = f"delay = {abs(found.lag):.2g}"  # of the later one: no sensor is early
         yield Finding("lag", "remark", (rate, angle), words, evidence, mend)
     if is_clear(found) and (low > FAIR or high < 1 / FAIR):
-        words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}"
+        smooths = ", as of a sensor that smooths (lag_r)" if late and rate == "r" else ""
+        words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}{smooths}"
         # over whole turns no compass is wrong by a factor; a sensor that smooths is late, too
         mend = f"gain = {1 / np.sqrt(low * high):.3g}" if angle == "psi" and not late else None
         yield Finding("scale", "remark", (rate, angle), words, evidence, mend)
