@@ -43,6 +43,13 @@ def test_an_order_jumps(period: float, amplitude: float) -> None:
     assert str(found) == f"jumps by {2 * amplitude:.0f} deg within {period:g} s"
 
 
+def test_so_does_that_of_a_small_boat() -> None:
+    """She goes her length in 1.5 s; her gear takes 12 deg/s."""
+    for rate, jumps in ((np.inf, True), (12.0, False)):
+        found = jump_of([moved(rate, 0.1, amplitude=8.0)], 1.5)
+        assert (found is not None) is jumps
+
+
 @pytest.mark.parametrize("rate", [2.3, 7.0])
 @pytest.mark.parametrize("period", [0.1, 0.5, 2.0, 10.0])
 @pytest.mark.parametrize("noise", [0.0, 0.1, 0.5])
