@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trialid.errors import SimulationError, StepsTooLong
 from trialid.identification.gauss_newton import Iteration, Minimum, minimise
+from trialid.identification.nuisance.priors import fastest
 from trialid.identification.output_error import (
     Problem,
     linearise,
@@ -202,13 +203,20 @@ def random_starts(problem: Problem, count: int, spread: float, seed: int) -> lis
 
 
 def no_start(problem: Problem) -> SimulationError:
-    """Why nothing can be simulated where a search would begin, and what to do."""
+    """Why nothing can be simulated where a search would begin, and what to do.
+
+    Steps are too long where samples come before she has gone her length: her motion is seen, and a
+    gear's need not be. Of a container ship, 24 s, samples of 30 s are no trial however fine the
+    steps between them.
+    """
     departure = linearise(problem, problem.start)
     simulator = problem.simulator
     finer = replace(problem, simulator=replace(simulator, substeps=16 * simulator.substeps))
     if not isinstance(respond_all(finer, problem.start, False), Departure):
-        step = problem.trials[0].period / simulator.substeps
-        return StepsTooLong(
+        model, period = simulator.model, problem.trials[0].period
+        step = period / simulator.substeps
+        seen = period * fastest(model, problem.trials) < model.ship.particulars["L"]
+        return (StepsTooLong if seen else SimulationError)(
             f"steps of {step:g} s are too long for this model: {departure}, with finer steps not; "
             "choose a shorter [align] period, or more [identify] substeps"
         )

@@ -122,8 +122,8 @@ def _small_faults(
         smooths = ", as of a sensor that smooths (lag_r)" if late and rate == "r" else ""
         words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}{smooths}"
         # over whole turns no compass is wrong by a factor; a sensor that smooths is late, too
-        mend = f"gain = {1 / np.sqrt(low * high):.3g}" if angle == "psi" and not late else None
-        yield Finding("scale", "remark", (rate, angle), words, evidence, mend)
+        gain = f"gain = {1 / np.sqrt(low * high):.3g}" if angle == "psi" and not late else None
+        yield Finding("scale", "remark", (rate, angle), words, evidence, gain)
 
 
 def contradiction(found: Finding) -> Contradiction | None:
