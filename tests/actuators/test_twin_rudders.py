@@ -167,12 +167,13 @@ nuisance = ["initial_state", "bias"]
 
 
 def logged(path: Path) -> Path:
-    """A record of both as a table; the rudder to port counts to port."""
+    """A record of both as a table, moved in 5 s; the rudder to port counts to port."""
     trial = record(520, (1.0, 1.0), apart=True)
+    port, starboard = (np.convolve(trial.signals[n], np.ones(5) / 5.0, "same") for n in NAMES)
     columns = {
         "time_s": np.arange(900.0),
-        "rudder_port_deg": -np.rad2deg(trial.signals["port"]),
-        "rudder_stbd_deg": np.rad2deg(trial.signals["stbd"]),
+        "rudder_port_deg": -np.rad2deg(port),
+        "rudder_stbd_deg": np.rad2deg(starboard),
         "yaw_rate_degps": np.rad2deg(trial.signals["r"]),
     }
     rows = (",".join(f"{x:.6f}" for x in row) for row in np.column_stack([*columns.values()]))
