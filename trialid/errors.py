@@ -79,7 +79,7 @@ class SimulationError(TrialidError):
 
 
 class StepsTooLong(SimulationError):
-    """It stays in the domain with finer steps."""
+    """Integration left a domain that it stays in with finer steps."""
 
 
 class NotIdentifiable(TrialidError):

@@ -148,8 +148,7 @@ def test_forces_of_any_shape_are_of_what_every_trial_records(given):
     more = beside.columns.shape[1] - plain.columns.shape[1]
     assert (more > 0) is ({0, 2} <= {*given})
     if not more:
-        size = np.abs(plain.columns).max()
-        np.testing.assert_allclose(beside.columns, plain.columns, rtol=0.0, atol=1e-9 * size)
+        np.testing.assert_array_equal(plain.columns, beside.columns)
 
 
 def test_an_effect_of_a_speed_record_wants_one_and_its_stand_in_does_not():

@@ -23,7 +23,7 @@ from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
 from trialid.diagnosis.plain_damping import dampings
-from trialid.diagnosis.records.in_doubt import doubts_of, settle
+from trialid.diagnosis.records.in_doubt import in_doubt, settle
 from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
@@ -148,7 +148,7 @@ def _or_of_several(
     may as well: two would be chosen by the slopes of a fit that stands nowhere. Where the catalogue
     seems to miss something, it must not seem so with them.
     """
-    if verdict.effect or verdict.family or doubts_of(fit):  # one, or a sensor is in doubt
+    if verdict.effect or verdict.family or in_doubt(fit):  # one, or a sensor is in doubt
         return verdict, None
     found = None
     if why_no_fit(fit) is None and verdict.kind != "nothing missing":

@@ -35,7 +35,6 @@ from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.verdict_sentences import (
     NONE_HOLDS,
     NONE_STANDS_OUT,
-    as_else,
     by_chance,
     contradiction,
     correction,
@@ -45,6 +44,7 @@ from trialid.diagnosis.verdict_sentences import (
     moved_otherwise,
     no_split,
     one_of,
+    other_cause,
     outdone_by_a_shape,
     several_together,
     significant_and_small,
@@ -129,7 +129,7 @@ def decide(
     """
     named = likeliest_refit(fit, refits, level, grown)
     if (answer := more_on_course(fit, refits, level, named)) is not None:
-        return Verdict("cannot tell", None, (), as_else(fit, answer, ON_COURSE))
+        return Verdict("cannot tell", None, (), other_cause(fit, answer, ON_COURSE))
     if named and (lead := far_ahead(fit, named, refits, level, grown=grown)):
         why = objection(fit, lead, level, grown)
         return Verdict("cannot tell", None, (), denied_lead(fit, named, lead, why))
@@ -150,7 +150,7 @@ def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> 
         return moved_otherwise(fit, apart, outputs_beside(fit, apart))
     for why in (AS_A_GEAR, AS_SLOW) if grown else (AS_A_GEAR,):
         if (other := standing_but(why, fit, refits, level)) is not None:
-            return as_else(fit, other, why)
+            return other_cause(fit, other, why)
     if grown and (slight := standing_but(SLIGHT, fit, refits, level)) is not None:
         return correction(slight)
     return None

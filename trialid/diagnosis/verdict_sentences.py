@@ -35,7 +35,7 @@ def outdone_by_a_shape(named: Refit | None, whole: Completeness) -> str:
     )
 
 
-def as_else(fit: Fit, found: Refit, why: str) -> str:
+def other_cause(fit: Fit, found: Refit, why: str) -> str:
     """What was found may be something else: her own memory, her steering gear or an autopilot."""
     but = f"beside the effects that were added {why}, which does as much" if why == AS_SLOW else why
     return f"with {found.candidate.effect.name} {falls_by(fit, found.fit)}, but {but}"

@@ -65,7 +65,7 @@ def usual_structures(
     else:
         further = {"": (), "race": (RACE,)}
         left_out = {"with surge": f"u is {speed}, and with it what she loses in turns"}
-    for rudder in {*IN_THE_RACE} & {*present}:
+    for rudder in (name for name in IN_THE_RACE if name in present):
         left_out["with race"] = f"{rudder} has it already"
         further = {more: own for more, own in further.items() if RACE not in own}
     found = dict[str, tuple[str, ...]]()

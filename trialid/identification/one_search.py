@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from trialid.errors import SimulationError, StepsTooLong
 from trialid.identification.gauss_newton import Iteration, Minimum, minimise
-from trialid.identification.nuisance.priors import fastest
+from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.output_error import (
     Problem,
     linearise,
@@ -213,9 +213,9 @@ def no_start(problem: Problem) -> SimulationError:
     simulator = problem.simulator
     finer = replace(problem, simulator=replace(simulator, substeps=16 * simulator.substeps))
     if not isinstance(respond_all(finer, problem.start, False), Departure):
-        model, period = simulator.model, problem.trials[0].period
+        period = problem.trials[0].period
         step = period / simulator.substeps
-        seen = period * fastest(model, problem.trials) < model.ship.particulars["L"]
+        seen = period < time_per_length(simulator.model, problem.trials)
         return (StepsTooLong if seen else SimulationError)(
             f"steps of {step:g} s are too long for this model: {departure}, with finer steps not; "
             "choose a shorter [align] period, or more [identify] substeps"

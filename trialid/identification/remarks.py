@@ -7,11 +7,10 @@ import numpy as np
 
 from trialid.effects.track import current_in_speed
 from trialid.identification.fit import Fit
-from trialid.identification.nuisance.priors import fastest
+from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import with_unit
-from trialid.ship.model import STANDSTILL
 
 OFF_AMIDSHIPS: Final = np.deg2rad(0.5)
 """[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm; and a list
@@ -47,7 +46,7 @@ STANDS_OFF: Final = {
 LATE: Final = 0.1
 """Share of the time in which she goes her length from which on a delay of all trials is said. Boats
 of 8 m whose rudder acts 0.7 and 1 s after its record have 0.47 and 0.9, five others of their kind
-0.1 at most; half and twice say the same of all seven."""
+0.1 at most, or another in each trial; half and twice say the same of all seven."""
 
 APART: Final = 3.0
 """Times the scatter over trials from which on a mean is of all of them."""
@@ -121,8 +120,7 @@ def _one_sided(fit: Fit) -> list[str]:
 
 def _late(fit: Fit) -> list[str]:
     """What is late by the same in all trials: predictions and gains know of no delay."""
-    speed = fastest(fit.model, fit.problem.trials)
-    least = LATE * fit.model.ship.particulars["L"] / max(speed, STANDSTILL)
+    least = LATE * time_per_length(fit.model, fit.problem.trials)
     found = {c: _in_all(fit, f"tau_{c}", least) for c in fit.problem.outputs}
     return [
         f"{c} is taken as {off:.2g} s late in all trials, by its sensor or as the rudder acts "

@@ -44,7 +44,7 @@ def test_of_several_of_which_one_is_missing_no_two_are_tried_at_once(monkeypatch
     tried, hulls = [], []
     monkeypatch.setattr(diagnose, "two_at_once", lambda *given: tried.append(given))
     monkeypatch.setattr(diagnose, "hull_at_once", lambda *given: hulls.append(given))
-    monkeypatch.setattr(diagnose, "doubts_of", lambda fit: ())
+    monkeypatch.setattr(diagnose, "in_doubt", lambda fit: False)
     monkeypatch.setattr(diagnose, "why_no_fit", lambda fit: None)
     asked = DiagnoseSettings(candidates={})
     assert diagnose._or_of_several(fit(0.10), found, None, (), asked, silent) == (found, None)
@@ -66,7 +66,7 @@ def test_two_come_before_all_that_a_hull_has(monkeypatch, kind):
     several = SimpleNamespace(names=("a", "b", "c"), fit=fit(0.02), alike=())
     pair = SimpleNamespace(**{**vars(several), "names": ("a", "b")})
     found = replace(decided(0.45, p_value=1.0), family=(), kind=kind)
-    monkeypatch.setattr(diagnose, "doubts_of", lambda fit: ())
+    monkeypatch.setattr(diagnose, "in_doubt", lambda fit: False)
     monkeypatch.setattr(diagnose, "why_no_fit", lambda fit: None)
     monkeypatch.setattr(diagnose, "hull_at_once", lambda *given: several)
     asked = DiagnoseSettings(candidates={})

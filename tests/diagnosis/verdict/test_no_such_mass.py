@@ -54,7 +54,7 @@ def test_one_that_a_ship_may_have(name: str, value: float) -> None:
     assert no_such_mass(*with_mass(name, value, at_bounds=True))
 
 
-def test_masses_of_all_effects_count_together() -> None:
+def test_what_is_stated_and_what_is_added_count_together() -> None:
     effect, fit = with_mass("displacement_error", 0.25 * STATED["m"])
     assert not no_such_mass(effect, fit)
     twice = fit.model.with_values({"m": 1.55 * STATED["m"]})

@@ -78,7 +78,7 @@ class UnexplainedMotion:
                 moved = read(other)
             except DesignError:
                 continue  # it would not come so far
-            for name in found.keys() & moved.keys():
+            for name in (n for n in found if n in moved):
                 apart.setdefault(name, []).append(moved[name] - found[name])
         return {n: float(np.mean(np.square(x))) for n, x in apart.items()}
 

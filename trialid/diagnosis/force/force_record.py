@@ -127,8 +127,8 @@ def answers(record: Record, row: str) -> Answers:
 
     A term that moves nothing is left out.
     """
-    known = {n for n in record.paths[0].signals if all(_whole(p, n) for p in record.paths)}
-    terms = dictionary(row, tuple(known))
+    known = tuple(n for n in record.paths[0].signals if all(_whole(p, n) for p in record.paths))
+    terms = dictionary(row, known)
     hats, forces, H, G = [], [], [], []
     for p, knots in zip(record.paths, record.knots, strict=True):
         x = prime_signals(p.signals)

@@ -123,8 +123,8 @@ def _both(motions: Sequence[str]) -> list[tuple[str, ...]]:
 def prime_signals(signals: Mapping[str, Vector]) -> dict[str, Vector]:
     """Signals as an effect in the prime system gets them; (n,) each."""
     L, U = signals["L"], signals["U"]
-    wanted = {*MOTIONS, "u", "U0", "psi"} & set(signals)
-    return {n: prime_signal(n, signals[n], L, U) for n in wanted}
+    wanted = (*MOTIONS, "u", "U0", "psi")  # in their order, not a set's, which each process has
+    return {n: prime_signal(n, signals[n], L, U) for n in wanted if n in signals}
 
 
 def pressure(row: str, signals: Mapping[str, Vector]) -> Vector:

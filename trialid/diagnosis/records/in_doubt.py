@@ -9,20 +9,19 @@ from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
 
 
-def doubts_of(fit: Fit, named: Effect | None = None) -> tuple[str, ...]:
-    """In words, with how to settle each; not of a sensor that an effect is `named` of."""
-    found = (rate_in_doubt(fit, named), side_in_doubt(fit))
-    return tuple(one for one in found if one is not None)
+def in_doubt(fit: Fit) -> bool:
+    """Whether the records leave anything in doubt about themselves."""
+    return rate_in_doubt(fit) is not None or side_in_doubt(fit) is not None
 
 
 def settle(fit: Fit, verdict: Verdict, named: Effect | None = None) -> Verdict:
     """The verdict; of records in doubt, that and how to settle it.
 
-    Where nothing is missing the roll's side takes no part; a rate that is wrong is in every number.
+    Nothing of a sensor that an effect is `named` of. Where nothing is missing the roll's side takes
+    no part; a rate that is wrong is in every number.
     """
-    found = doubts_of(fit, named)
-    if verdict.kind == "nothing missing":
-        found = tuple(one for one in found if one != side_in_doubt(fit))
+    side = None if verdict.kind == "nothing missing" else side_in_doubt(fit)
+    found = tuple(one for one in (rate_in_doubt(fit, named), side) if one is not None)
     if not found:
         return verdict
     doubt = "; ".join(found)

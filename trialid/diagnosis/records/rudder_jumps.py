@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Vector
 from trialid.identification.fit import Fit
-from trialid.identification.nuisance.priors import fastest
+from trialid.identification.nuisance.priors import time_per_length
 from trialid.trial import Trial
 
 FAST: Final = np.deg2rad(200.0)
@@ -105,7 +105,7 @@ def jump_in(fit: Fit) -> Jump | None:
 
 def own_time(fit: Fit) -> float:
     """Time in which the ship goes her own length [s]."""
-    return fit.model.ship.particulars["L"] / fastest(fit.model, fit.problem.trials)
+    return time_per_length(fit.model, fit.problem.trials)
 
 
 def said_of(jump: Jump) -> str:

@@ -6,6 +6,7 @@ the ship's own coefficients with them. Each is therefore held about what a senso
 the first moments of the record, make likely; a record that sees it clearly is not held back.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Final
 
@@ -100,6 +101,12 @@ def speed(model: ShipModel, trial: Trial) -> float:
 def fastest(model: ShipModel, trials: Iterable[Trial]) -> float:
     """How fast she goes in the fastest trial [m/s]; a turning circle takes half of it."""
     return max(speed(model, trial) for trial in trials)
+
+
+def time_per_length(model: ShipModel, trials: Iterable[Trial]) -> float:
+    """Time in which she goes her own length in the fastest trial [s]; without end at rest."""
+    pace = fastest(model, trials)
+    return model.ship.particulars["L"] / pace if pace > 0.0 else math.inf
 
 
 def _offset(model: ShipModel, trial: Trial, column: str, size: float) -> float:

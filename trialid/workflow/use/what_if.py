@@ -82,7 +82,7 @@ def changed_ship(ship: Vessel, asked: WhatIf) -> Vessel:
         elif name in constants and name in model.recorded:
             constants[name] = value
         else:
-            known = [SPEED, *model.parameters, *({*constants} & {*model.recorded})]
+            known = [SPEED, *model.parameters, *(n for n in constants if n in model.recorded)]
             raise TrialidError(
                 f"--what-if {name}: the model has no such parameter or input held; "
                 f"{nearest(name, known)}"

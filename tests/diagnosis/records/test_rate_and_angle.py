@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 import s175q
 
-from trialid.diagnosis.records.in_doubt import doubts_of, settle
+from trialid.diagnosis.records.in_doubt import in_doubt, settle
+from trialid.diagnosis.records.rate_and_angle import rate_in_doubt
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit, identify
@@ -67,15 +68,16 @@ def test_an_angle_that_is_late_counts_where_it_is_fitted(fit: Fit) -> None:
 
 def test_it_has_to_be_seen_in_most_trials(fit: Fit) -> None:
     half = with_contradictions(fit, (LATE,), ())
-    assert doubts_of(half) == ("r comes 6 s later",)
+    assert rate_in_doubt(half) == "r comes 6 s later"
+    assert in_doubt(half)
     three = replace(fit, scores=(*fit.scores, fit.scores[0]))
-    assert doubts_of(with_contradictions(three, (LATE,), (), ())) == ()
+    assert not in_doubt(with_contradictions(three, (LATE,), (), ()))
 
 
 def test_of_several_trials_the_middle_one_is_told(fit: Fit) -> None:
     three = replace(fit, scores=(*fit.scores, fit.scores[0]))
     found = [replace(LATE, late=x, sentence=f"{x:g} s") for x in (9.0, 5.0, 6.0)]
-    assert doubts_of(with_contradictions(three, *((one,) for one in found))) == ("6 s",)
+    assert rate_in_doubt(with_contradictions(three, *((one,) for one in found))) == "6 s"
 
 
 @pytest.mark.parametrize("sensor", ["delay_r", "lag_r"])
@@ -89,4 +91,4 @@ def test_an_effect_of_the_sensor_settles_it(fit: Fit, sensor: str) -> None:
     typical = {n: p.start for n, p in effect.parameters.items()}
     beside = (s175q.MODEL + effect).with_values(typical)
     again = identify([s175q.zigzag(5), s175q.zigzag(10)], beside, SETTINGS)
-    assert doubts_of(replace(again, scores=late.scores)) == ()
+    assert not in_doubt(replace(again, scores=late.scores))
