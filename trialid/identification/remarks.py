@@ -89,6 +89,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *against,
         *driven,
         *_one_sided(fit),
+        *_another_in_each(fit),
         *_late(fit),
         *_current(fit),
         *(weak if fit.weakly_identified else []),
@@ -115,6 +116,18 @@ def _one_sided(fit: Fit) -> list[str]:
         STANDS_OFF[column][1].format(f"{np.rad2deg(off):.2g}")
         for column, off in found.items()
         if off is not None
+    ]
+
+
+def _another_in_each(fit: Fit) -> list[str]:
+    """That a rudder's zero changes from trial to trial by more than each is uncertain by."""
+    found = fit.of_all_trials.get("delta_0")
+    between = 0.0 if found is None else math.sqrt(found.variance)
+    if between < OFF_AMIDSHIPS:
+        return []
+    return [
+        f"the rudder's zero is another in each trial, by {np.rad2deg(between):.2g} deg (standard "
+        "deviation): a gear has one; wind, waves or a current from another side may stand in it"
     ]
 
 

@@ -77,3 +77,23 @@ def test_a_rate_that_is_late_in_all_trials_is_told(of_each, told):
     assert bool(lines) is told
     for line in lines:
         assert float(line.split(" s late")[0].split()[-1]) == pytest.approx(3.0, abs=0.4)
+
+
+WINDY = (MODEL + CATALOGUE["steady_wind"]).with_values(
+    {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.08, "z_wind": 0.0}
+)
+
+
+@pytest.mark.parametrize(("wind", "told"), [(1.0, True), (0.0, False)])
+def test_a_rudders_zero_that_is_another_in_each_trial_is_told(wind, told):
+    """A wind that nobody recorded, from another side in each."""
+    made = []
+    for k, heading in enumerate((0.0, 0.5 * np.pi, np.pi)):
+        model = WINDY.with_values({"F_E": wind * 3e-4 * np.cos(heading)})
+        trial = zigzag((5, 10, 20)[k], replace(model, states=(*model.states, "psi")))
+        made.append(with_noise(trial, *white(np.random.default_rng(90 + k), trial.samples)))
+    settings = replace(SETTINGS, nuisance=("initial_state", "bias", "rudder_offset"))
+    lines = [x for x in remarks(identify(made, MODEL, settings)) if "another in each trial" in x]
+    assert bool(lines) is told
+    for line in lines:
+        assert float(line.split(" deg (")[0].split()[-1]) == pytest.approx(0.8, abs=0.4)

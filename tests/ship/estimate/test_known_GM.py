@@ -49,7 +49,9 @@ def test_beside_a_known_GM_the_inertia_is_found(made):
 def test_what_may_be_off_as_far_as_that_is_not_contradicted():
     known = {"prior": (0.0323, 0.0032), "prior_share": 0.01}
     row = ParameterRow(name="GM", value=0.052, likely=(0.028, 0.053), **known)
-    assert contradictions([row]) == []
+    [away] = contradictions([row])
+    assert away.startswith("The fit ends far from what was known of GM: 0.052")
+    assert away.endswith("what was known stands.")
     sure = contradictions([replace(row, likely=(0.045, 0.053))])
     assert sure[0].startswith("The record contradicts what was known of GM: 0.052")
     assert contradictions([replace(row, likely=None)])

@@ -45,13 +45,13 @@ def prior_words(parameters: Sequence[ParameterRow]) -> str:
 
 
 def contradictions(parameters: Sequence[ParameterRow]) -> list[str]:
-    """A sentence for each prior that the record contradicts.
+    """A sentence for each prior that the record contradicts, or that the fit alone left.
 
-    An estimate that may be off as far does not: of a GM that was known, where the inertia in roll
-    was not, the record tells their ratio alone.
+    An estimate that may be off as far contradicts nothing: of a GM that was known, where the
+    inertia in roll was not, the record tells their ratio alone.
     """
     far = [row for row in parameters if abs(row.off_prior or 0.0) > CONTRADICTS]
-    return [_against(row) for row in far if not _may_be_as_known(row)]
+    return [_away(row) if _may_be_as_known(row) else _against(row) for row in far]
 
 
 def _may_be_as_known(row: ParameterRow) -> bool:
@@ -65,12 +65,22 @@ def _may_be_as_known(row: ParameterRow) -> bool:
 
 
 def _against(row: ParameterRow) -> str:
+    return f"The record contradicts what was known of {row.name}: {_beside_the_known(row)}."
+
+
+def _away(row: ParameterRow) -> str:
+    return (
+        f"The fit ends far from what was known of {row.name}: {_beside_the_known(row)}. "
+        "Where it is likely holds that as well: what the model lacks may have moved it, and what "
+        "was known stands."
+    )
+
+
+def _beside_the_known(row: ParameterRow) -> str:
     assert row.prior is not None
     unit, factor = wording.shown_unit(row.unit)
     mean, deviation = (x * factor for x in row.prior)
     value, off = (row.value or 0.0) * factor, row.off_prior or 0.0
     unit = "" if unit == "1" else f" {unit}"
-    return (
-        f"The record contradicts what was known of {row.name}: {value:.4g}, where {mean:.4g} "
-        f"+-{deviation:.2g}{unit} was expected ({abs(off):.1f} deviations)."
-    )
+    expected = f"{mean:.4g} +-{deviation:.2g}{unit} was expected"
+    return f"{value:.4g}, where {expected} ({abs(off):.1f} deviations)"
