@@ -5,6 +5,7 @@ from typing import Final
 
 from house.imports import dependencies
 from house.names import function_names, module_names
+from house.order import set_orders
 from house.shapes import (
     dataclass_keywords,
     error_returns,
@@ -32,6 +33,7 @@ RULES: Final[Mapping[str, Rule]] = {
     "positional-arguments": positional_arguments,
     "string-subscript": string_subscripts,
     "error-return": error_returns,
+    "set-order": set_orders,
     "dependencies": dependencies,
 }
 """Every rule by its name: what it finds, each with the place and what to do."""

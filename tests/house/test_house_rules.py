@@ -37,6 +37,11 @@ def project(*names: str) -> str:
     return f'[project]\nname = "trialid"\ndependencies = [{rows}]\n'
 
 
+def through(said: str, *, bad: str, good: str) -> list[Case]:
+    return [Case(rule="set-order", bad=bad, good=good, line=2, said=said)]
+
+
+TELLS = "def tell(names: set[str]) -> None:\n    for n in names:\n        print(n)\n"
 LONG = "def steps():\n" + "    x = 1\n" * 40
 SCRIPT = "function steps() {\n" + "  x(); // a } in words\n" * 39 + "}\n"
 ARROW = "const steps = (a) => {\n" + '  x("}");\n' * 39 + "};\n"
@@ -49,6 +54,13 @@ CASES = [
         good="x;\n" * 300,
         line=0,
         said="301 lines",
+    ),
+    *through(
+        "names in a set's order", bad=TELLS, good=TELLS.replace("in names", "in sorted(names)")
+    ),
+    *through("in a set's", bad="\nx = [n for n in a.keys() & b]\n", good="x = max(n for n in {1})"),
+    *through(
+        "told in a set's", bad="told = {1}\nx = ', '.join(told)", good="told = {1}\nx = {*told}"
     ),
     Case(rule="function-length", bad=LONG, good=LONG[:-10], said="steps() has 41 lines"),
     Case(

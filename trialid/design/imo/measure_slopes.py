@@ -135,7 +135,8 @@ def with_columns(
     for one in linear:
         model = model + one.effect
     model = model.with_values({n: x for m in linear for n, x in m.effect.nulls.items()})
-    outputs = dict.fromkeys(["psi", *speed_outputs(model), *({"v"} & {*model.states}), *more])
+    sway = [n for n in model.states if n == "v"]
+    outputs = dict.fromkeys(["psi", *speed_outputs(model), *sway, *more])
     ship = replace(base, model=model, simulator=prepare(model, [*places], [*outputs]))
     return WithColumns(ship, [places[n] for n in ship.simulator.equations.free])
 

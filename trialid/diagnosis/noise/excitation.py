@@ -60,7 +60,7 @@ def is_driven(inputs: Iterable[str], trials: Iterable[Trial]) -> bool:
 
     What is left of a ship let go depends on where she began, and on nothing that comes again.
     """
-    asked = {*inputs} - {"u"}
+    asked = [n for n in dict.fromkeys(inputs) if n != "u"]
     recorded = ((t, record_for(t, n)) for t in trials for n in asked)
     return any(float(np.ptp(t.signals[n])) > 0.0 for t, n in recorded if n is not None)
 

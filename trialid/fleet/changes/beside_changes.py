@@ -76,8 +76,9 @@ def _copies(rows: Sequence[RunRow]) -> Iterator[str]:
     """Voyages that hold the same log."""
     holders: dict[str, list[str]] = {}
     for row in rows:
-        for log in {*(row.logs or "").split(", ")} - {""}:
+        for log in dict.fromkeys((row.logs or "").split(", ")):
             holders.setdefault(log, []).append(row.voyage)
+    holders.pop("", None)
     alike = {tuple(voyages) for voyages in holders.values() if len(voyages) > 1}
     if alike:
         told = _few([" = ".join(voyages) for voyages in sorted(alike)])

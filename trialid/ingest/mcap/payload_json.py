@@ -83,7 +83,8 @@ def _leaves(value: Any, path: str, names: Sequence[str] = ()) -> Iterator[tuple[
         for i, item in enumerate(value if len(value) <= LONGEST_ARRAY else ()):
             yield from _leaves(item, f"{path}[{called[i] if called else i}]")
     elif not _is_time(value):
-        beside = next((n for k in NAMES_FIELDS & value.keys() if (n := _texts(value[k]))), ())
+        naming = (k for k in value if k in NAMES_FIELDS)
+        beside = next((n for k in naming if (n := _texts(value[k]))), ())
         for key, item in value.items():
             yield from _leaves(item, f"{path}.{key}" if path else key, beside)
 

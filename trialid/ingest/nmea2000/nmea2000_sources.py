@@ -72,7 +72,7 @@ def name_sources(
         if not len(claimed):
             holders.append(Holder(address, None))
     of = alone[source]
-    for address in {holder.address for holder in holders if holder.name is not None}:
+    for address in sorted({holder.address for holder in holders if holder.name is not None}):
         mine = source[claims] == address
         if len(np.unique(names[mine])) > 1:
             _change_hands(of, source, address, claims[mine], names[mine], holders)

@@ -99,7 +99,7 @@ def numbers(table: Table, column: int) -> NDArray[np.float64] | None:
         return values.astype(np.float64, copy=False)
     if values.dtype.kind != "O":
         return None
-    known = {value: _read(value, table.number) for value in set(values.tolist())}
+    known = {value: _read(value, table.number) for value in dict.fromkeys(values.tolist())}
     read = [known[value] for value in values.tolist()]
     bad = next((row for row, y in enumerate(read) if y is None), -1)
     y = np.array([math.nan if one is None else one for one in read])

@@ -84,8 +84,8 @@ def _on_common_samples(
     made = []
     for trial in trials:
         there = np.ones(trial.samples, dtype=bool)
-        for name in wanted & trial.valid.keys():
-            there &= trial.valid[name]
+        for valid in (trial.valid[n] for n in trial.valid if n in wanted):
+            there &= valid
         shown = {c: trial.valid[c] & there for c in outputs if c in trial.valid}
         made.append(replace(trial, valid={**trial.valid, **shown}))
     return tuple(made)

@@ -93,7 +93,7 @@ class Reach:
     def see(self, text: bytes) -> None:
         """Add a piece of the part; tags lie in it whole."""
         places = PLACE.findall(text)
-        for letters in {letters for letters, _ in places}:
+        for letters in sorted({letters for letters, _ in places}):
             self.column = max(self.column, _number(letters.upper()))
         self.row = max(self.row, max((int(number) for _, number in places), default=0))
         named = sum(1 for letters, _ in places if letters)

@@ -56,4 +56,4 @@ def _sides(cells: Sequence[object]) -> tuple[Vector, str] | None:
     if len(axes) != 1 or None in axes:
         return None
     sign = np.where(np.isin(letters, list(NEGATIVE)), -1.0, 1.0)
-    return np.where(np.isin(letters, list(told)), sign, np.nan), str(axes.pop())
+    return np.where(np.isin(letters, sorted(told)), sign, np.nan), str(axes.pop())
