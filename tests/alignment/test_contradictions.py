@@ -1,8 +1,10 @@
 """A rate that is not the slope of its angle stays with the trial, with the line that mends it."""
 
+import numpy as np
 import pytest
 from aligned_records import aligned, healthy, with_values
 from real_channels import series
+from scipy.signal import lfilter
 
 
 @pytest.fixture(scope="module")
@@ -39,3 +41,13 @@ def test_where_the_heading_is_late_the_delay_is_its_own(zigzag):
     assert " s earlier than the slope of psi" in apart.sentence
     assert apart.sentence.endswith(" in psi would mend it")
     assert "delay = -" not in apart.sentence
+
+
+def test_a_rate_that_a_sensor_smooths_is_one_doubt_that_neither_delay_nor_gain_mends(zigzag):
+    """A display that damps, by a pole of 25 s."""
+    one = zigzag["r"]
+    pole = float(np.exp(-np.median(np.diff(one.t)) * 1e-9 / 25.0))
+    slow = {**zigzag, "r": series("r", one.t, lfilter([1.0 - pole], [1.0, -pole], one.y))}
+    [apart] = aligned(slow).contradictions
+    assert 15.0 < apart.late < 25.0
+    assert apart.sentence.endswith(", as of a sensor that smooths: the effect lag_r has it")

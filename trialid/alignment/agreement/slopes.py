@@ -111,19 +111,28 @@ def _small_faults(
 ) -> Iterator[Finding]:
     low, high = found.gain
     late = found.later and abs(found.lag) > LATE
-    if is_clear(found) and late:
-        words = (
-            f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
-            f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
-        )
+    off = low > FAIR or high < 1 / FAIR
+    if not is_clear(found) or not (late or off):
+        return
+    pair, times = (rate, angle), f"is {low:.3g} to {high:.3g} times"
+    comes = (
+        f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
+        f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"
+    )
+    if late and found.lag > 0 and high < 1 / FAIR:  # no delay makes it small, no gain late
+        smooths = f"as of a sensor that smooths: the effect lag_{rate} has it"
+        words = f"{comes} and {times} that slope, {smooths}"
+        yield Finding("lag", "remark", pair, words, evidence)
+        return
+    if late:
         mend = f"delay = {abs(found.lag):.2g}"  # of the later one: no sensor is early
-        yield Finding("lag", "remark", (rate, angle), words, evidence, mend)
-    if is_clear(found) and (low > FAIR or high < 1 / FAIR):
-        smooths = ", as of a sensor that smooths (lag_r)" if late and rate == "r" else ""
-        words = f"{rate} is {low:.3g} to {high:.3g} times the slope of {angle}{smooths}"
-        # over whole turns no compass is wrong by a factor; a sensor that smooths is late, too
+        yield Finding("lag", "remark", pair, comes, evidence, mend)
+    if off:
+        # over whole turns no compass is wrong by a factor
         gain = f"gain = {1 / np.sqrt(low * high):.3g}" if angle == "psi" and not late else None
-        yield Finding("scale", "remark", (rate, angle), words, evidence, gain)
+        yield Finding(
+            "scale", "remark", pair, f"{rate} {times} the slope of {angle}", evidence, gain
+        )
 
 
 def contradiction(found: Finding) -> Contradiction | None:
