@@ -98,7 +98,7 @@ def handed(case: Case) -> FittedModel:
         words=("a remark",),
         origin={"made_by": "trialid"},
         period=PERIOD,
-        reliable=True,
+        verdict="missing",
     )
 
 

@@ -64,7 +64,7 @@ def test_a_fit_without_a_verdict_is_marked(run_folder: Path, tmp_path: Path) -> 
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
     assert not (tmp_path / "x.json").exists()
     found = written(spoilt, tmp_path / "model.json", "--anyway")
-    assert not found["reliable"]
+    assert found["verdict"] == "no fit"
     assert found["words"][0] == "no fit: the search did not end"
     for kind in ("c", "python", "ship", "nomoto", "ardupilot", "gazebo"):
         out = tmp_path / f"marked-{kind}{KINDS[kind].suffixes[0]}"

@@ -278,4 +278,4 @@ def test_a_fit_without_a_verdict_is_refused(run_folder: Path, tmp_path: Path) ->
     assert "no fit: the search did not end" in marked.stdout
     with out.open("rb") as stream:
         [about] = make_reader(stream).iter_attachments()
-    assert json.loads(about.data)["reliable"] is False
+    assert json.loads(about.data)["verdict"] == "no fit"

@@ -118,7 +118,7 @@ def _about(
         "pipeline": model.result.file,
         "orders": " ".join(orders),
         "changes": [*changes, *(f"without {name}" for name in without)],
-        "reliable": model.reliable,
+        "verdict": model.result.verdict.kind,
         "words": [*made.words],
         "numbers": numbers,
         "seen": {name: [r.low, r.high] for name, r in model.seen.items()},

@@ -127,7 +127,8 @@ def _another_in_each(fit: Fit) -> list[str]:
         return []
     return [
         f"the rudder's zero is another in each trial, by {np.rad2deg(between):.2g} deg (standard "
-        "deviation): a gear has one; wind, waves or a current from another side may stand in it"
+        "deviation): a gear has one; wind or current from another side may stand in it, or "
+        "whatever else the model lacks"
     ]
 
 

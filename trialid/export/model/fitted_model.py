@@ -57,6 +57,8 @@ class FittedModel:
         Pipeline, logs and version it comes from, by key.
     period
         The longest step it was integrated with [s].
+    verdict
+        Of the run; where that is `no fit`, nothing is to be built on this.
     """
 
     name: str
@@ -68,7 +70,7 @@ class FittedModel:
     words: tuple[str, ...]
     origin: Mapping[str, str]
     period: float
-    reliable: bool
+    verdict: str
 
     @property
     def fitted(self) -> tuple[FittedParameter, ...]:
@@ -128,7 +130,7 @@ def fitted_model(
         words=(*words, *_left_out(model, equations)),
         origin=_origin(result),
         period=fit.problem.trials[0].period / fit.settings.substeps,
-        reliable=result.verdict.kind != "no fit",
+        verdict=result.verdict.kind or "no fit",
     )
 
 

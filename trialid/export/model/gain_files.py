@@ -110,7 +110,7 @@ class PidFile:
 
     schema: Literal["trialid-pid/1"] = SCHEMA
     name: str
-    reliable: bool
+    verdict: str
     words: tuple[str, ...] = ()
     origin: Mapping[str, str] = field(default_factory=dict)
     speed: float
@@ -133,7 +133,7 @@ def pid_file(made: FittedModel, gains: Gains, full: float) -> PidFile:
     whole: PidFile = finite(
         PidFile(
             name=made.name,
-            reliable=made.reliable,
+            verdict=made.verdict,
             words=(*made.words, *promises(gains, "heading")),
             origin=dict(made.origin),
             speed=gains.ship.speed,

@@ -53,8 +53,9 @@ class ModelFile:
 
     Attributes
     ----------
-    reliable
-        Whether the run reached a verdict; where it did not, nothing is to be built on this.
+    verdict
+        Of the run; where that is `no fit`, nothing is to be built on this. How sure each number is
+        stands beside it.
     covariance
         Of the parameters named in `covariance_of`, as wide as their likely ranges: 1.96 standard
         deviations reach the farther end. None where nobody knows.
@@ -64,7 +65,7 @@ class ModelFile:
 
     schema: Literal["trialid-model/1"] = SCHEMA
     name: str
-    reliable: bool
+    verdict: str
     words: tuple[str, ...] = ()
     origin: Mapping[str, str] = field(default_factory=dict)
     period: float
@@ -94,7 +95,7 @@ def model_file(made: FittedModel) -> ModelFile:
     found: ModelFile = finite(
         ModelFile(
             name=made.name,
-            reliable=made.reliable,
+            verdict=made.verdict,
             words=made.words,
             origin=dict(made.origin),
             period=made.period,

@@ -140,7 +140,7 @@ def _annotation(made: FittedModel) -> Iterator[str]:
         "likely": [f"{own_name(p.name)}={_array(ends)}" for p, ends, _ in sure if ends],
         "standardError": [f"{own_name(p.name)}={x!r}" for p, _, x in sure if x is not None],
     }
-    parts = [f"reliable={str(made.reliable).lower()}", f"longestStep={made.period!r}"]
+    parts = [f'verdict="{_text(made.verdict)}"', f"longestStep={made.period!r}"]
     parts += [f'origin_{key}="{_text(words)}"' for key, words in made.origin.items()]
     parts += [f"{word}({', '.join(rows)})" for word, rows in groups.items() if rows]
     rows = made.covariance.tolist()

@@ -71,7 +71,7 @@ class NomotoFile:
 
     schema: Literal["trialid-nomoto/1"] = SCHEMA
     name: str
-    reliable: bool
+    verdict: str
     words: tuple[str, ...] = ()
     origin: Mapping[str, str] = field(default_factory=dict)
     at: tuple[AtSpeed, ...] = ()
@@ -83,7 +83,7 @@ def nomoto_file(made: FittedModel, found: Sequence[Nomoto]) -> NomotoFile:
     whole: NomotoFile = finite(
         NomotoFile(
             name=made.name,
-            reliable=made.reliable,
+            verdict=made.verdict,
             words=made.words if stable else (UNSTABLE, *made.words),
             origin=dict(made.origin),
             at=tuple(_at_speed(one) for one in found),

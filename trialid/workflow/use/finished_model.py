@@ -65,15 +65,10 @@ class FinishedModel:
         return {**SIGNALS, **drives, **own}
 
     @property
-    def reliable(self) -> bool:
-        """Whether the run reached a verdict at all."""
-        return self.result.verdict.kind != NO_FIT
-
-    @property
     def doubts(self) -> tuple[str, ...]:
         """What anybody who uses the model has to know of it, a sentence each."""
         verdict = self.result.verdict
-        said = [verdict.sentence or "no fit"] if not self.reliable else []
+        said = [verdict.sentence or "no fit"] if verdict.kind == NO_FIT else []
         said += filter(None, [missing_words(verdict), doubtful(self.result.physical)])
         return (*said, *(f"{line}." for line in self.result.fit.remarks))
 

@@ -90,8 +90,7 @@ def units_of(variables: list[Variable]) -> Iterator[str]:
 
 def known_of(made: FittedModel) -> Iterator[str]:
     """What was seen, how sure the numbers are, where they come from."""
-    reliable = str(made.reliable).lower()
-    yield f'<Model file="resources/model.json" reliable="{reliable}">'
+    yield f'<Model file="resources/model.json" verdict={quoteattr(made.verdict)}>'
     for key, words in made.origin.items():
         yield f"<Origin key={quoteattr(key)} value={quoteattr(words)}/>"
     yield from (f"<Note text={quoteattr(words)}/>" for words in made.words)
