@@ -5,7 +5,6 @@ from typing import Final
 
 import numpy as np
 
-from trialid.effects.track import current_in_speed
 from trialid.identification.fit import Fit
 from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
@@ -18,10 +17,6 @@ that is seen, where sensors are mounted to that."""
 
 OFF_RATE: Final = np.deg2rad(0.05)
 """[rad/s] Zero of a rate of turn that a course shows: 3 deg in a minute of what is predicted."""
-
-SLIGHT: Final = 0.01
-"""Share of her speed below which a current is worth no word: a diameter is 2 % off by it. At 15
-kn it is 0.08 m/s: a zig-zag of 5 deg alone reads 0.1 to 0.35 out of still water, circles 0.01."""
 
 STANDS_OFF: Final = {
     "b_phi": (
@@ -91,22 +86,8 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *_one_sided(fit),
         *_another_in_each(fit),
         *_late(fit),
-        *_current(fit),
         *(weak if fit.weakly_identified else []),
     )
-
-
-def _current(fit: Fit) -> list[str]:
-    """The current in a speed over ground, where it is a part of her speed worth a word."""
-    water = [fit.estimates[n] for n in current_in_speed.parameters if n in fit.estimates]
-    drift, speed = math.hypot(*water), fit.model.ship.particulars["U0"]
-    if not water or drift < SLIGHT * speed:
-        return []
-    to = round(float(np.rad2deg(np.arctan2(water[1], water[0])))) % 360
-    return [
-        f"the fit reads a current of {drift:.2g} m/s to {to:03d} deg out of the speed over ground; "
-        "how surely, Uc_N and Uc_E among the nuisance parameters say"
-    ]
 
 
 def _one_sided(fit: Fit) -> list[str]:

@@ -13,7 +13,7 @@ from trialid.design.imo.trial_numbers import Manoeuvre, ManoeuvreNumber, Oversho
 from trialid.design.separation import Separation
 from trialid.design.standard import Measure
 from trialid.design.steering.nomoto import Nomoto
-from trialid.design.wind_and_current import cannot_tell
+from trialid.design.wind_and_current import cannot_tell, in_speed
 from trialid.diagnosis.another_value import follow_with_another_value
 from trialid.diagnosis.diagnosed import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.error_parts import Split
@@ -159,7 +159,12 @@ def _fit(done: Diagnosed, *, missing: bool) -> FitPart:
         y_rms=dict(zip(fit.problem.outputs, map(float, fit.problem.y_rms), strict=True)),
         band=dict(done.band),
         search=fit.told,
-        remarks=(*other, *remarks(fit), *cannot_tell(fit, done.accuracy)),
+        remarks=(
+            *other,
+            *remarks(fit),
+            *in_speed(fit, done.accuracy),
+            *cannot_tell(fit, done.accuracy),
+        ),
     )
 
 
