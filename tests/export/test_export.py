@@ -13,6 +13,7 @@ from trialid.export.provenance import provenance
 from trialid.ingest import read
 from trialid.names import labels
 from trialid.trial import Trial
+from trialid.workflow.quantities_read import quantities_of
 from trialid.workflow.read_trials import align_trials
 
 ROOT = Path(__file__).parents[2]
@@ -24,7 +25,7 @@ SUFFIXES = tuple(export.FORMATS)
 def aligned():
     found = pipeline_file.load(PIPELINE)
     trials = align_trials(found, lambda words, share: None)
-    return trials, provenance(found, trials)
+    return trials, provenance(found, trials, quantities_of(found))
 
 
 def gapped(start=1_700_000_000_000_000_000):
@@ -189,3 +190,16 @@ def test_places_that_cannot_be_are_refused(tmp_path):
     (tmp_path / "folder.mat").mkdir()
     with pytest.raises(TrialidError, match="is a folder"):
         export.check_place(tmp_path / "folder.mat", replace=True)
+
+
+def test_a_command_of_a_thruster_has_the_unit_of_its_ship(tmp_path):
+    """In newtons here; the dictionary knows no actuator of a ship, and had called it a share."""
+    t = np.arange(20) * 0.5
+    trial = Trial("a", "fit", 0.5, {"left_order": 3.0 * t}, {"left_order": np.ones(20, bool)})
+    known = {"unit": "N", "masked": 0, "source": None}
+    about = {**ABOUT, "trials": [{"name": "a", "signals": {"left_order": known}}]}
+    for suffix, written in ((".csv", ("left_order", "N")), (".mcap", ("left_order_N", None))):
+        out = tmp_path / f"a{suffix}"
+        export.write(out, [trial], about)
+        [(name, channel)] = [each for each in read(out).channels.items() if "left" in each[0]]
+        assert (name.rpartition(":")[2], channel.unit) == written

@@ -111,6 +111,7 @@ def align(pipeline: Path, out: Path, only: tuple[str, ...], force: bool, quiet: 
     asked = load(pipeline)
     check_trial_names(only, [trial.name for trial in asked.trials], pipeline)
     from trialid.export.provenance import provenance
+    from trialid.workflow.quantities_read import quantities_of
     from trialid.workflow.read_trials import align_trials
 
     wanted = asked.model_copy(
@@ -118,7 +119,7 @@ def align(pipeline: Path, out: Path, only: tuple[str, ...], force: bool, quiet: 
     )
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         trials = align_trials(wanted, progress)
-        export.write(out, trials, provenance(wanted, trials))
+        export.write(out, trials, provenance(wanted, trials, quantities_of(wanted)))
     for trial in () if quiet else trials:
         names = ", ".join(trial.signals)
         say(f"{trial.name}: {trial.samples} samples, {trial.period:g} s apart: {names}")

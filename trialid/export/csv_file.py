@@ -21,13 +21,18 @@ def masked_signals(trial: Trial) -> dict[str, Vector]:
     }
 
 
-def heading(name: str) -> str:
+def heading(name: str, unit: str | None = None) -> str:
     """A column of a CSV file, its unit where our own reader and people find it.
 
-    >>> heading("r")
-    'r[rad/s]'
+    >>> heading("r"), heading("left", "N")
+    ('r[rad/s]', 'left[N]')
     """
-    return f"{name}[{labels.quantity(name).unit}]"
+    return f"{name}[{unit or labels.quantity(name).unit}]"
+
+
+def units(provenance: Mapping[str, Any]) -> dict[str, str]:
+    """The unit of each signal, as its ship has it."""
+    return {n: s["unit"] for t in provenance["trials"] for n, s in t["signals"].items()}
 
 
 def quantities(trials: Sequence[Trial]) -> tuple[str, ...]:
@@ -37,11 +42,10 @@ def quantities(trials: Sequence[Trial]) -> tuple[str, ...]:
 
 def write_csv(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) -> None:
     """One row a sample, all digits; a trial's time begins at zero. Provenance goes beside it."""
-    del provenance
-    names = quantities(trials)
+    names, known = quantities(trials), units(provenance)
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["trial", "t[s]", *map(heading, names)])
+        writer.writerow(["trial", "t[s]", *(heading(n, known.get(n)) for n in names)])
         for trial in trials:
             values = masked_signals(trial)
             blank = [""] * trial.samples

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from trialid.export.csv_file import masked_signals
+from trialid.export.csv_file import masked_signals, units
 from trialid.names import labels
 from trialid.trial import Trial
 
@@ -22,13 +22,15 @@ def write_mat(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]
     from scipy.io import savemat
 
     names = variables(trial.name for trial in trials)
-    structs = {name: _struct(trial) for name, trial in zip(names, trials, strict=True)}
+    known = units(provenance)
+    structs = {name: _struct(trial, known) for name, trial in zip(names, trials, strict=True)}
     text = json.dumps(provenance, ensure_ascii=True, allow_nan=False)
     savemat(path, {**structs, "provenance": text}, long_field_names=True, oned_as="column")
 
 
-def _struct(trial: Trial) -> dict[str, Any]:
-    columns = {labels.column(name): values for name, values in masked_signals(trial).items()}
+def _struct(trial: Trial, known: Mapping[str, str]) -> dict[str, Any]:
+    measured = masked_signals(trial).items()
+    columns = {labels.column(name, unit=known.get(name)): values for name, values in measured}
     remarks = np.array(trial.remarks, dtype=object)
     return {
         "name": trial.name,
