@@ -16,7 +16,7 @@ from trialid.design.imo.speed_loss import (
     speed_loss,
     with_speed_loss,
 )
-from trialid.design.manoeuvres import zigzag
+from trialid.design.manoeuvres import turning_circle, zigzag
 from trialid.design.standard import predict
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -29,9 +29,10 @@ KEEPING = vessel(GIVEN, 0.5, {"n": SHAFT, "u": 7.33}, 2.5 * D)
 SETTINGS = Settings(("Nr", "Ndelta"), OUTPUTS, nuisance=("initial_state",))
 
 
-def logged(angle, noise=0.02, ship=TRUE, stated=None):
+def logged(angle, noise=0.02, ship=TRUE, stated=None, orders=None):
     """A zig-zag as logged, with the speed ahead; or with a stated one in its place."""
-    passage = carry_out(ship, zigzag(angle * D, angle * D), 20.0, 600.0, f"zigzag-{angle}")
+    orders = orders or zigzag(angle * D, angle * D)
+    passage = carry_out(ship, orders, 20.0, 600.0, f"zigzag-{angle}")
     signals = {n: passage.trial.signals[n].copy() for n in ("delta", "n", "r", "phi")}
     u = np.full(passage.trial.samples, stated)
     if stated is None:
@@ -108,3 +109,13 @@ def test_the_track_goes_by_the_speed_that_is_left():
     run = np.hypot(np.diff(passage.x), np.diff(passage.y)).sum()
     speeds = np.hypot(left, signals["v"])
     assert run == pytest.approx(np.sum(speeds[1:] + speeds[:-1]) * 0.25, rel=1e-4)
+
+
+def test_a_boat_that_turns_in_two_lengths_loses_what_her_logs_say():
+    """By what is typical of ships she would stand still there, where no slope leads back."""
+    law = dict(zip(NAMES, (1.7, 0.3, 3.0), strict=True))
+    nimble = GIVEN.with_values({"Ndelta": 3.0 * GIVEN.value("Ndelta")})
+    ship = with_speed_loss(vessel(nimble, 0.5, KEEPING.constants, 2.5 * D), law)
+    trials = [logged(10, 0.0, ship), logged(35, 0.0, ship, orders=turning_circle(35 * D))]
+    found = speed_loss(fit_of(nimble, trials))
+    assert found.values == pytest.approx(law, rel=0.02)

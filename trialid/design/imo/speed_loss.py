@@ -50,6 +50,10 @@ def logged_loss(
 
 NAMES: Final = tuple(logged_loss.parameters)
 TYPICAL: Final = np.array([p.start for p in logged_loss.parameters.values()])
+BEGIN: Final = np.array([0.1, 0.1, 1.0]) * TYPICAL
+"""Where the search begins. A boat that turns in two lengths would lose all her speed by what is
+typical of ships, and at standstill no slope leads back: of one of 2 m twice the loss was read that
+she had. From half and twice of it she ends at the same."""
 NOTHING: Final = np.array([0.0, 0.0, TYPICAL[-1]])
 LAW: Final = 0.15
 """Standard deviation of each number as a share of it: a ship loses speed by a law of her own, and a
@@ -93,7 +97,7 @@ def speed_loss(fit: Fit) -> SpeedLoss | None:
 
     ranges = logged_loss.parameters.values()
     low, high = np.array([p.low for p in ranges]), np.array([p.high for p in ranges])
-    found = minimise(at, TYPICAL, TYPICAL, low, high)
+    found = minimise(at, BEGIN, TYPICAL, low, high)
     lost = loses_speed(_named(found.theta))
     best, e, psi = (
         (found.theta, found.residual, found.jacobian) if lost else (NOTHING, *at(NOTHING))
