@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
+from trialid.effects import CATALOGUE
 from trialid.identification.adequacy import (
     SLOWEST_TIMES,
     UNEXPLAINED,
     why_no_fit,
 )
-from trialid.identification.file_of_ship import steers_backwards
+from trialid.identification.file_of_ship import moment_by_rudder, steers_backwards
 from trialid.identification.fit import identify
 from trialid.identification.no_manoeuvre import RUDDER_RANGE
 from trialid.identification.problem import Settings
@@ -242,6 +243,20 @@ def test_a_rudder_that_turns_her_the_wrong_way_is_no_fit(sound):
     assert "turns her the wrong way" in str(why_no_fit(identify([turned], begun, SETTINGS)))
     blind = with_signals(zigzag(10), delta=0.05 * zigzag(10).signals["delta"])
     assert not steers_backwards(identify([noisy(blind, 14)], MODEL, SETTINGS))
+
+
+def test_by_a_race_that_grips_the_rudder_she_turns_as_she_should():
+    """Her rudder's own coefficient is of the other sign there, as of a push that is turned."""
+    racing = (MODEL + CATALOGUE["rudder_race_shaft"]).with_values(
+        {"N_un": 0.0, "N_nn": 8e-8, "z_race": 0.0, "Ndelta": -0.3 * MODEL.value("Ndelta")}
+    )
+    trials = [noisy(zigzag(angle, racing), angle) for angle in (10, 20)]
+    settings = replace(SETTINGS, free=("Nr", "Ndelta", "N_nn"))
+    fit = identify(trials, replace(racing, values={**racing.values, "Ndelta": 0.0}), settings)
+    assert fit.value("Ndelta") == pytest.approx(racing.value("Ndelta"), rel=0.1)
+    assert moment_by_rudder(fit) > 0.0
+    assert not steers_backwards(fit)
+    assert why_no_fit(fit) is None
 
 
 @pytest.mark.study

@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from trialid.identification.fit import Fit
 from trialid.identification.one_search import search
 from trialid.identification.output_error import Unknown, ranges
+from trialid.identification.trial_score import Score
 from trialid.linear_algebra import triangle
+from trialid.ship.effect import Force
+from trialid.ship.motion import effect_parts
+from trialid.simulation.integrate import inputs
 
 Vector = NDArray[np.float64]
 
@@ -28,6 +32,8 @@ files of ships at least twice or half as long 23 leave more than 2.0, and 17 mor
 """
 STEERS: Final = "Ndelta"
 """What a missing effect moves least: the yaw acceleration with which she answers her rudder."""
+SMALL: Final = float(np.deg2rad(1.0))
+"""[rad] Rudder to either side by which its moment is told."""
 PLACEHOLDER: Final = "PLACEHOLDER"
 """How the source of a ship file begins that says itself that it is not hers."""
 
@@ -134,7 +140,9 @@ def steers_backwards(fit: Fit) -> bool:
 
     Which side is the file's `rudder_positive`, of a placeholder too; a model that lacks something
     may follow a turn by a ship that is unstable and held by her rudder. Of the real turn where this
-    was found it is 4.8 standard errors: half of `CLEARLY` finds it too, twice does not.
+    was found it is 4.8 standard errors: half of `CLEARLY` finds it too, twice does not. Beside a
+    race that grips the rudder the coefficient may be of either sign: of an outboard, whose push is
+    turned, it was, and by all that goes by the rudder together she turned as she should.
     """
     names = [x.name for x in fit.problem.unknowns]
     if STEERS not in names:
@@ -142,7 +150,35 @@ def steers_backwards(fit: Fit) -> bool:
     model = fit.problem.simulator.model
     value, stated = fit.value(STEERS), replace(model, values={}).stated(STEERS)
     error = float(_standard_errors(fit)[names.index(STEERS)])
-    return value * (stated or 0.0) < 0.0 and abs(value) > CLEARLY * error
+    if value * (stated or 0.0) >= 0.0 or abs(value) <= CLEARLY * error:
+        return False
+    return value * moment_by_rudder(fit) >= 0.0
+
+
+def moment_by_rudder(fit: Fit) -> float:
+    """Yaw moment by a radian of rudder [N m], of all forces, on average along the fitted trials."""
+    fitted = [s for s in fit.scores if s.trial.use == "fit"]
+    over = [_moment(fit, i, s, SMALL) - _moment(fit, i, s, -SMALL) for i, s in enumerate(fitted)]
+    return float(np.mean([np.nanmean(moment) for moment in over])) / (2.0 * SMALL)
+
+
+def _moment(fit: Fit, place: int, score: Score, off: float) -> Vector:
+    """Yaw moment at each sample of a fitted trial with the rudder off by so much [N m]; (N,)."""
+    simulator, own = fit.problem.simulator, fit.problem.values(fit.theta, place)
+    model = simulator.model
+    known = {n: own[n] if n in own else model.value(n) for n in model.parameters}
+    given = inputs(simulator, score.trial, known)
+    states, acting = (
+        {n: x + off if n == "delta" else x for n, x in zip(names, columns.T, strict=True)}
+        for names, columns in (
+            (model.all_states, score.response.states),
+            (simulator.equations.inputs, given),
+        )
+    )
+    total = np.zeros(score.trial.samples)
+    for _, part in effect_parts(model, states, acting, known):
+        total = total + (part.N if isinstance(part, Force) else 0.0)
+    return total
 
 
 def _as_in_file(fit: Fit) -> tuple[Unknown, ...]:
