@@ -71,7 +71,11 @@ def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
     words = f"Added no more: {done[-1].end}."
     if names := worth_naming(done[-1].worths):
         rest = [n for n in added if n not in names]
-        corrected = f"; a correction of shape without a name: {', '.join(rest)}" if rest else ""
+        corrected = (
+            f"; each worth less than a tenth, which the shapes of others may be: {', '.join(rest)}"
+            if rest
+            else ""
+        )
         words += f"\nWhat was added, the dearest to leave out first: {', '.join(names)}{corrected}."
     if added and keep:
         words += f"\n{pipeline} now has {', '.join(added)}."

@@ -91,8 +91,8 @@ def correction(named: Refit) -> str:
     """It mends the shapes of the effects that were added."""
     return (
         f"{named.candidate.effect.name} would take another {1.0 - named.carried.ratio:.1%} off the "
-        f"squared error where it was not fitted: beside the effects that were added this "
-        "is a correction of their shape, and has no name"
+        f"squared error where it was not fitted: beside the effects that were added that "
+        "may be a correction of their shape, and has no name"
     )
 
 

@@ -46,6 +46,12 @@ of 8 m whose rudder acts 0.7 and 1 s after its record have 0.47 and 0.9, five ot
 APART: Final = 3.0
 """Times the scatter over trials from which on a mean is of all of them."""
 
+AHEAD: Final = "k_ahead"
+OTHER_MASS: Final = 2.0
+"""Factor on a thrust in newtons from which on her file's mass is doubted: a hull's part in it, and
+the water that she carries, are some tenths. Half of it is no factor; by twice of it two boats
+whose masses were guessed five and seven times too large are still told, at 4.1 and 6.7."""
+
 DAMPS: Final = {"Yv": "drifts", "Nr": "turns"}
 """What holds a hull back, below zero for all of them, and when."""
 
@@ -86,6 +92,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *_one_sided(fit),
         *_another_in_each(fit),
         *_late(fit),
+        *another_mass(fit),
         *(weak if fit.weakly_identified else []),
     )
 
@@ -110,6 +117,21 @@ def _another_in_each(fit: Fit) -> list[str]:
         f"the rudder's zero is another in each trial, by {np.rad2deg(between):.2g} deg (standard "
         "deviation): a gear has one; wind or current from another side may stand in it, or "
         "whatever else the model lacks"
+    ]
+
+
+def another_mass(fit: Fit) -> list[str]:
+    """That a thrust logged in newtons would have to be another for a mass as in the file."""
+    logged = any(one.command == "thrust" for one in fit.model.ship.actuators)
+    gain = fit.estimates.get(AHEAD, 1.0) if logged else 1.0
+    if 1.0 / OTHER_MASS < gain < OTHER_MASS:
+        return []
+    known = fit.model.ship.particulars
+    mass = known["rho"] * known["nabla"]
+    return [
+        f"each newton of thrust that is logged would push with {gain:.2g}: either it is no thrust, "
+        f"or her mass is nearer {mass / gain:.2g} kg than the {mass:.2g} of her file, and every "
+        "number in kg with it; state her displacement"
     ]
 
 

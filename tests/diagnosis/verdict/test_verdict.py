@@ -49,7 +49,7 @@ def test_beside_effects_that_were_added_a_name_costs_a_tenth(ratio, kind):
         decide(fit(0.10), (), [named], split(0.04), None, 0.05, grown=g) for g in (True, False)
     ]
     assert [f.kind for f in found] == [kind, "missing"]
-    assert ("a correction of their shape" in found[0].sentence) is (kind == "cannot tell")
+    assert ("may be a correction of their shape" in found[0].sentence) is (kind == "cannot tell")
 
 
 def test_of_two_that_leave_as_much_the_one_of_fewer_parameters_is_taken():

@@ -99,7 +99,7 @@ HULL = "--length 175 --beam 25.4 --draught 8.5 --block 0.56"
         ("--length 175 --draught 850", "draught 850 m is more than the length 175 m"),
         ("--length 175 --beam 2.54", "makes a hull of 175 x 2.54 x"),
         ("--length 175 --block 1.01", "block coefficient 1.01 is above 1"),
-        ("--length 175 --block 0.05", "block coefficient 0.05 is below 0.1"),
+        ("--length 175 --block 0.03", "block coefficient 0.03 is below 0.05"),
         (f"{HULL} --displacement 21752550", "is a block coefficient of 562 with"),
         (f"{HULL} --displacement 21.75", "is a block coefficient of 0.000562 with"),
         (f"{HULL} --displacement 15000", "coefficient of 0.387, and block coefficient 0.56"),

@@ -16,8 +16,9 @@ LONGEST: Final = 500.0
 """[m] The longest ship ever built had 440 between perpendiculars."""
 SHORTEST: Final = 0.3
 """[m] Of a model that can be steered."""
-LEAST_BLOCK: Final = 0.1
-"""A rowing shell has 0.4, a catamaran over its whole beam 0.2."""
+LEAST_BLOCK: Final = 0.05
+"""A rowing shell has 0.4, a catamaran over its whole beam 0.2, a slender one of 5 m 0.09. Kilograms
+for tonnes are off by a thousand."""
 ALIKE: Final = 0.05
 """Share by which a block coefficient and a displacement may differ, as they are rounded."""
 HIGHEST: Final = 1.5
