@@ -12,6 +12,7 @@ import pytest
 import s175q
 from test_bad_input import trialid_
 
+from trialid.errors import EffectError
 from trialid.maths import cos, sin
 from trialid.ship.effect import Force, effect
 from trialid.ship.model import ShipModel
@@ -151,3 +152,11 @@ def test_two_files_that_define_one_effect_are_refused(folder):
     found = trialid_("run", "rail.toml")
     assert found.exit_code == 2
     assert "model.effects_from[1]: ours.py and rail.py both define 'wavy_rail'" in found.stderr
+
+
+def test_a_function_that_was_not_declared_is_no_effect() -> None:
+    def pull(r):
+        return Force(N=r)
+
+    with pytest.raises(EffectError, match="is no effect; a function is one by @effect"):
+        s175q.MODEL + pull

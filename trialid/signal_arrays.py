@@ -18,6 +18,8 @@ UNIFORM: Final = 0.01
 SLOWEST: Final = 10.0
 """[s] No log of a manoeuvre is slower: a longer step is rather one of milliseconds or finer. Half
 of it asks of logs every 5 s, twice takes milliseconds at 50 a second for seconds."""
+HALF_ROUND: Final = {"delta": "rudder", "delta_order": "rudder", "phi": "ship"}
+"""Angles that are never beyond 180 deg, and whose."""
 CLOCK: Final = "t"
 """What the time is called; its unit is seconds where none is stated."""
 
@@ -53,8 +55,19 @@ def in_si(
         side = -1.0 if positive.get(quantity) == "port" else 1.0
         valid[quantity] = np.isfinite(y)
         in_si = side * unit_table.factor(units[quantity], wanted[quantity]) * y
+        _check_turned(name, quantity, in_si[valid[quantity]], units[quantity])
         values[quantity] = _filled(name, quantity, in_si, valid[quantity])
     return period, values, valid
+
+
+def _check_turned(name: str, quantity: str, y: Vector, unit: str) -> None:
+    """Refuse a rudder or a heel that is turned more than half round: degrees as radians."""
+    if quantity in HALF_ROUND and float(np.abs(y).max(initial=0.0)) > np.pi:
+        raise AlignmentError(
+            f"trial {name!r}, {quantity}: reaches {np.rad2deg(np.abs(y).max()):.4g} deg in "
+            f"{unit!r}; no {HALF_ROUND[quantity]} is turned half round: state the unit its numbers "
+            "are in"
+        )
 
 
 def columns_of(frame: "pd.DataFrame", units: Mapping[str, str]) -> tuple[Any, dict[str, Any]]:
@@ -127,7 +140,7 @@ def _read_stamps(name: str, stamps: Any) -> Any:
 def numbers(where: str, given: Any) -> Vector:
     """Values as numbers, one that is missing as NaN; AlignmentError where one is none."""
     plain = np.asarray(given)
-    if plain.dtype.kind in "cmM":
+    if plain.dtype.kind in "bcmM":
         raise AlignmentError(f"{where}: expected numbers, got {plain.dtype}")
     try:
         return np.asarray(plain, dtype=float)
@@ -156,8 +169,10 @@ def _period(name: str, t: Vector, *, stated: bool) -> float:
     if t.ndim != 1 or t.size < 2 or not np.isfinite(t).all():
         raise AlignmentError(f"trial {name!r}: t must be a row of at least two finite times [s]")
     period = float(t[-1] - t[0]) / (t.size - 1)
+    if period <= 0.0:
+        raise AlignmentError(f"trial {name!r}: t runs backwards, from {t[0]:.6g} to {t[-1]:.6g} s")
     off = np.abs(t - t[0] - period * np.arange(t.size))
-    if period <= 0.0 or off.max() > UNIFORM * period:
+    if off.max() > UNIFORM * period:
         worst = int(off.argmax())
         raise AlignmentError(
             f"trial {name!r}: t is not uniform (at index {worst} it is {off[worst]:.3g} s off a "

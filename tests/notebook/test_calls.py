@@ -120,6 +120,7 @@ def test_a_simulation_of_what_cannot_be_simulated() -> None:
         ti.simulate(None, weave("a", "fit"))
     with pytest.raises(TrialidError, match="start: no state 'rr' is simulated; did you mean 'r'"):
         ti.simulate(model, weave("a", "fit"), ("r",), start={"rr": 0.1})
+    assert [*ti.simulate(model, weave("a", "fit")).columns] == ["r"]  # she has no heel
     fit = ti.identify([weave("a", "fit")], model, free=["Nr"], outputs=["r"], max_iterations=2)
     with pytest.raises(TrialidError, match="trial 'b' has use='fit' and was not fitted"):
         ti.simulate(fit, weave("b", "fit"))

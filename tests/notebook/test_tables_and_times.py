@@ -109,3 +109,25 @@ def test_a_value_that_is_missing_is_a_gap_whatever_stands_for_it() -> None:
     column = pd.array([None, *RATE["r"][1:]], dtype="Float64")
     found = Trial.from_frame("mine", pd.DataFrame({"t": SECONDS, "r": column}), units=UNITS)
     assert found.valid["r"].tolist() == [False] + [True] * 59
+
+
+@pytest.mark.parametrize(
+    ("given", "unit", "said"),
+    [
+        (
+            np.linspace(-20.0, 20.0, 60),
+            "rad",
+            "reaches 1146 deg in 'rad'; no rudder is turned half",
+        ),
+        (SECONDS > 6.0, "rad", "expected numbers, got bool"),
+    ],
+)
+def test_a_rudder_that_is_none_is_refused(given: Any, unit: str, said: str) -> None:
+    units, side = {"delta": unit}, {"delta": "starboard"}
+    with pytest.raises(AlignmentError, match=said):
+        Trial.from_arrays("mine", SECONDS, {"delta": given}, units=units, positive=side)
+
+
+def test_times_that_run_backwards_are_said_to() -> None:
+    with pytest.raises(AlignmentError, match=r"t runs backwards, from 16\.8 to 5 s"):
+        made(SECONDS[::-1])

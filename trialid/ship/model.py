@@ -68,6 +68,10 @@ class ShipModel:
                 )
 
     def __add__(self, effect: Effect) -> "ShipModel":
+        if not isinstance(effect, Effect):
+            raise EffectError(
+                f'{effect!r} is no effect; a function is one by @effect(source="...")'
+            )
         if effect.held is not None:  # its coefficient is there
             return self
         model = self

@@ -122,7 +122,7 @@ def diagnose(
 def simulate(
     model: ShipModel | Fit,
     trial: Trial,
-    outputs: Sequence[str] = ("r", "phi"),
+    outputs: Sequence[str] | None = None,
     start: Mapping[str, float] | None = None,
 ) -> "pd.DataFrame":
     """The motion a model makes of a trial's inputs.
@@ -132,7 +132,8 @@ def simulate(
     model
         A ship model, or a fit: then with the trial's own nuisances, and the outputs of the fit.
     outputs
-        States or what sensors make of them.
+        States or what sensors make of them; where none is said the rate of turn and the heel, as
+        far as she has them.
     start
         Initial states that are not to be taken from the record [SI].
 
@@ -157,6 +158,7 @@ def simulate(
         values, own = of_trial(model, trial)
         begun = {**own, **begun}
     else:
+        outputs = [n for n in ("r", "phi") if n in model.states] if outputs is None else outputs
         simulator = prepare(model, (), outputs)
     for state in (s for s in begun if s not in simulator.equations.states):
         known = nearest(state, simulator.equations.states)
