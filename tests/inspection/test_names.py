@@ -83,6 +83,8 @@ WITH_UNITS = {
     ("surge", "m"): None,
     ("surge", None): None,
     ("steering", "deg"): "delta",
+    ("servo_cmd", "deg"): "delta_order",
+    ("servo", "us"): None,
     ("steering", None): None,
     ("steering wheel", "deg"): None,
     ("v_meas", "V"): None,

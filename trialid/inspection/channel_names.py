@@ -85,7 +85,7 @@ QUALIFIERS: Final = frozenset(
 )  # fmt: skip
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
 
-TURNED: Final = dict.fromkeys(("steering", "nozzle", "azimuth"), "delta")
+TURNED: Final = dict.fromkeys(("steering", "nozzle", "azimuth", "servo"), "delta")
 LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
 """What such words may follow; a letter alone and the words only with a unit that fits."""
 

@@ -110,7 +110,7 @@ def own_time(fit: Fit) -> float:
 
 def said_of(jump: Jump) -> str:
     """What to do about it, in a clause."""
-    return f"delta {jump}, which no gear does: where it is the order, call it delta_order"
+    return f"delta {jump}, which no ship's gear does: where it is the order, call it delta_order"
 
 
 def _course(trial: Trial) -> Course:

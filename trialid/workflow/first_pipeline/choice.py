@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.inspection import channel_names
+from trialid.inspection import channel_names, name_words
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
@@ -70,6 +70,14 @@ def choose_signals(survey: Inspection, speed: float | None) -> Chosen:
     )
 
 
+PUSHES: Final = frozenset(("azimuth", "pod", "outboard", "drive", "jet", "motor", "nozzle"))
+"""Words of an angle to which a push is turned, where a rudder's force goes as her speed squared."""
+AS_RUDDER: Final = (
+    "read as a rudder; a push that is turned, with its revolutions, is an azimuth of `trialid "
+    "guide actuators`"
+)
+
+
 Live = dict[str, tuple[ChannelInspection, ...]]
 
 
@@ -128,6 +136,8 @@ def _side_of(heading: ChannelInspection, rate: ChannelInspection) -> str | None:
 def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     """The rudder or its order, its side measured where the motion tells it."""
     plain = plain_signal(name, live, "")
+    if PUSHES.intersection(name_words.words(plain.source.name)):
+        plain = dataclasses.replace(plain, further=(*plain.further, AS_RUDDER))
     witness = rate.source if rate else live["psi"][0]
     towards = (rate.positive or "starboard") if rate else None
     found = side(plain.source, witness, towards)

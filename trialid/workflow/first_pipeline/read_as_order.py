@@ -16,6 +16,7 @@ from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 
 ORDER_WORDS: Final = ORDERED | {"pwm", "throttle", "servo"}
 """Words of a drive that is an order: what is sent to a motor, never what it makes of it."""
+NO_GEAR: Final = "as no ship's gear does and a model's servo may, of which call it delta"
 LEAST: Final = 0.05
 """Share of the largest drive: jumps less than this are noise. Motors of boats that start from rest
 make larger ones, and half or twice of it tells the same of them."""
@@ -36,7 +37,7 @@ def with_orders(trials: Sequence[Chosen], own_time: float, drives: frozenset[str
         Signals of what drives her, beside the rudder.
     """
     found = _jump(trials, {"delta"}, lambda courses: jump_of(courses, own_time))
-    ordered = _read_as(trials, {"delta"}, f"it {found}, which no gear does" if found else "")
+    ordered = _read_as(trials, {"delta"}, f"it {found}, {NO_GEAR}" if found else "")
     return _read_as(ordered, drives, _of_drives(trials, drives, own_time))
 
 
