@@ -93,6 +93,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *_another_in_each(fit),
         *_late(fit),
         *another_mass(fit),
+        *_astern(fit),
         *(weak if fit.weakly_identified else []),
     )
 
@@ -118,6 +119,13 @@ def _another_in_each(fit: Fit) -> list[str]:
         "deviation): a gear has one; wind or current from another side may stand in it, or "
         "whatever else the model lacks"
     ]
+
+
+def _astern(fit: Fit) -> list[str]:
+    """Trials whose recorded speed is below zero for more than half of the time."""
+    found = [t.name for t in fit.trials if np.median(t.signals.get("u", 0.0)) < 0.0]
+    said = f"u is below zero in {', '.join(found)}: she goes astern there, or its sign is wrong"
+    return [said] if found else []
 
 
 def another_mass(fit: Fit) -> list[str]:

@@ -97,3 +97,18 @@ def test_a_rudders_zero_that_is_another_in_each_trial_is_told(wind, told):
     assert bool(lines) is told
     for line in lines:
         assert float(line.split(" deg (")[0].split()[-1]) == pytest.approx(0.8, abs=0.4)
+
+
+def test_a_speed_below_zero_is_told():
+    made = trials(MODEL, 0.0, 0.0)
+    settings = replace(SETTINGS, free=("Ndelta",))
+    for sign, told in ((-1.0, True), (1.0, False)):
+        given = [with_u(t, np.full(t.samples, sign * 7.0)) for t in made]
+        words = remarks(identify(given, replace(MODEL, states=("v", "p", "r", "phi")), settings))
+        assert any("u is below zero in zigzag-5, zigzag-10: she goes" in x for x in words) is told
+
+
+def with_u(trial, u):
+    """The same with a recorded speed [m/s]."""
+    valid = {**trial.valid, "u": np.ones(trial.samples, dtype=bool)}
+    return replace(trial, signals={**trial.signals, "u": u}, valid=valid)
