@@ -49,7 +49,7 @@ class PredictedMotion:
     remark
         Why there are not all numbers; empty where there are.
     departure
-        Where the ship left the domain of her model; everything ends before.
+        Where the ship left the domain of her model; everything ends before, a stop long before.
     """
 
     t: Vector
@@ -60,6 +60,12 @@ class PredictedMotion:
     numbers: Mapping[str, tuple[float, Range | None]] = field(default_factory=dict)
     remark: str = ""
     departure: Departure | None = None
+
+    @property
+    def ended_by_departure(self) -> bool:
+        """Whether it ends where she left her model's domain, and not before as a stop may."""
+        step = float(np.diff(self.t[-2:]).sum())
+        return self.departure is not None and self.departure.t <= float(self.t[-1]) + 2.0 * step
 
 
 def with_ranges(

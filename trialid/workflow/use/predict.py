@@ -246,6 +246,6 @@ def with_words(
         )
     if shown:
         words.append(f"Not among the orders, held as in the trials: {', '.join(shown.values())}.")
-    if made.departure is not None:
+    if made.ended_by_departure:
         words.append(f"The ship leaves her model: {made.departure}; nothing is given beyond.")
     return Prediction(name, made, tuple(words))
