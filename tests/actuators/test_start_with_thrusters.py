@@ -237,4 +237,6 @@ def test_pulse_widths_are_known_by_their_size(tmp_path, monkeypatch) -> None:
     said = " ".join(done.stdout.split())
     assert "look like pulse widths [us], about 1500 at rest" in said
     assert "side confirmed by the turn" in said
+    [ship] = tmp_path.glob("*_ship.toml")
+    assert ship.read_text(encoding="utf-8").count('command = "share"') == 2
     assert not (tmp_path / "runs").exists()

@@ -23,7 +23,7 @@ from trialid.workflow.first_pipeline.boats.turned_drives import (
     angles_of,
     do_the_same,
 )
-from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
+from trialid.workflow.first_pipeline.boats.unit_of_drive import at_rest, unit_of_drive
 from trialid.workflow.first_pipeline.choice import (
     RUDDERS,
     Live,
@@ -211,6 +211,8 @@ def boat_actuators(signals: tuple[Signal, ...], ship: Ship) -> tuple[Actuator, .
 def _unit_once_filled(signal: Signal) -> str:
     """The unit of a drive; of one that is open for its side the one that will be filled in."""
     unit = signal.unit or "1"
+    if unit == OPEN and at_rest(signal.source):
+        return "1"  # of pulses the guide's line makes a share of full
     return unit_of_drive(signal.source)[0] if unit == OPEN else unit
 
 
