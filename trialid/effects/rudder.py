@@ -1,8 +1,9 @@
 """The rudder: linear and cubic forces, its neutral angle, and the propeller's race over it."""
 
 import math
+from typing import Final
 
-from trialid.maths import Number, arctan, clip, cos, sin, sqrt
+from trialid.maths import Number, arctan, cos, sin, sqrt
 from trialid.ship.effect import Force, Parameter, Steered, effect
 
 BK99 = "Blanke & Knudsen (1999), section 4"
@@ -54,22 +55,35 @@ def drift_with_rudder(
     return Force(Y=Yvdd * v * delta**2, N=Nvdd * v * delta**2)
 
 
+ROUNDED: Final = 0.005
+"""[rad] Over which a rudder begins to stall; half and twice of it name it too, on four records of a
+ship that stalls at 12 to 20 deg."""
+
+
+def _above(x: Number) -> Number:
+    """x where it is above zero, else none of it, over half a degree: no lift breaks at a corner.
+
+    At one a search for its angle ends where the rudder of a zig-zag is held.
+    """
+    return 0.5 * (x + sqrt(x * x + ROUNDED * ROUNDED))
+
+
 @effect(source="rudders stall at 20 to 35 deg; 23 deg in " + BC93)
 def rudder_stall(
     delta, *,
-    N_stall=Parameter(-0.0015, low=-0.05, high=0.0),
-    delta_stall=Parameter(0.45, "rad", low=0.2, high=0.9, null=None),
+    N_stall=Parameter(-0.0015, low=-0.05, high=0.0, scan=(-0.0015,)),
+    delta_stall=Parameter(0.45, "rad", low=0.2, high=0.9, null=None, scan=(0.21, 0.29, 0.37)),
 ):  # fmt: skip
     """N = N_stall (delta beyond +- delta_stall),  Y = -2 N: lift that breaks off; aft."""
-    N = N_stall * (delta - clip(delta, delta_stall))
+    N = N_stall * (_above(delta - delta_stall) - _above(-delta - delta_stall))
     return Force(Y=-2.0 * N, N=N)
 
 
 @effect(source="MMG: flow straightening gamma_R differs by 20 % to port and starboard")
 def rudder_flow_asymmetry(
     v, r, *,
-    N_flow=Parameter(0.00015, low=-0.003, high=0.003),
-    l_flow=Parameter(-0.8, low=-2.0, high=0.0, null=None),
+    N_flow=Parameter(0.00015, low=-0.003, high=0.003, scan=(0.0005, -0.0005)),
+    l_flow=Parameter(-0.8, low=-2.0, high=0.0, null=None, scan=(0.0, -0.4)),
 ):  # fmt: skip
     """N = N_flow |v + l_flow r|,  Y = -2 N: drift feeds the rudder unlike on each side."""
     N = N_flow * abs(v + l_flow * r)

@@ -130,11 +130,11 @@ def test_periods_of_a_periodic_test():
 def test_a_stated_figure_is_the_last_resort_and_not_separable_is_said():
     rng = np.random.default_rng(8)
     trial = zigzag(10, TRUTH)
-    short = {n: s[:120] for n, s in trial.signals.items()}
-    valid = {n: np.ones(120, dtype=bool) for n in short}
+    short = {n: s[:100] for n, s in trial.signals.items()}
+    valid = {n: np.ones(100, dtype=bool) for n in short}
     noise = np.deg2rad(0.05), np.deg2rad(0.1)
     piece = with_noise(
-        Trial("short", "fit", 0.5, short, valid), *(s * rng.standard_normal(120) for s in noise)
+        Trial("short", "fit", 0.5, short, valid), *(s * rng.standard_normal(100) for s in noise)
     )
     few = replace(SETTINGS, free=("Nr", "Ndelta", "Kp"))
     fit = identify([piece], MODEL, few)

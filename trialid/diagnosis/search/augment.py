@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.diagnosis.noise.thinning import with_means
-from trialid.diagnosis.search.candidates import candidates_for, linear_parameters, out_of_reach
+from trialid.diagnosis.search.candidates import (
+    candidates_for,
+    linear_parameters,
+    of_one_clock,
+    out_of_reach,
+)
 from trialid.diagnosis.search.projection import Evidence, gather
 from trialid.diagnosis.search.scan import secants
 from trialid.identification.fit import Fit
@@ -95,7 +100,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     length = base.ship.particulars["L"]
     sized = {name: effect.of_ship(length) for name, effect in catalogue.items()}
     able, left_out = candidates_for(base, shared_record(fit.trials), sized)
-    left_out |= out_of_reach(fit.trials, able)
+    left_out |= out_of_reach(fit.trials, able) | of_one_clock(fit.trials, able)
     able = {name: effect for name, effect in able.items() if name not in left_out}
     able, silent = _with_trace(able, problem.outputs)
     linear = [e for e in able.values() if not e.scanned]

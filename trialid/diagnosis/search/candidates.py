@@ -6,10 +6,13 @@ from typing import Final
 import numpy as np
 
 from trialid.names.quantities import ACCELERATIONS, PARTICULARS
-from trialid.ship.effect import Effect, Steered
+from trialid.ship.effect import Delayed, Effect, Steered
 from trialid.ship.model import STATES, ShipModel, takes_place
 from trialid.simulation.integrate import record_for, signals_of
 from trialid.trial import Trial
+
+TABLES: Final = frozenset({"csv", "excel", "parquet"})
+"""Adapters whose logs are a table with one column of times."""
 
 AT_ZERO: Final = 0.01
 """Share of the largest up to which an input is at zero: revolutions of a motor that stands still
@@ -46,6 +49,17 @@ def out_of_reach(trials: Sequence[Trial], able: Mapping[str, Effect]) -> dict[st
         for name, effect in able.items()
         if effect.within and not any(_small(trials, n, x) for n, x in effect.within.items())
     }
+
+
+def of_one_clock(trials: Sequence[Trial], able: Mapping[str, Effect]) -> dict[str, str]:
+    """Clocks that drift, where each trial is one table: all its columns have the same times.
+
+    Of a Mariner whose rudder stalls the rudder's clock had been named 1340 ppm fast.
+    """
+    if not all(len(t.logs) == 1 and t.logs[0].adapter in TABLES for t in trials):
+        return {}
+    drifting = [n for n, e in able.items() if Delayed in e.forms and "t" in e.signals]
+    return dict.fromkeys(drifting, "needs two clocks, and each trial is one table with one")
 
 
 def _small(trials: Sequence[Trial], name: str, below: float) -> bool:
