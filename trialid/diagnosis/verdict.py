@@ -41,6 +41,7 @@ from trialid.diagnosis.verdict_sentences import (
     denied_lead,
     explains_little,
     falls_by,
+    little_more,
     moved_otherwise,
     no_split,
     one_of,
@@ -213,6 +214,8 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None, none: str) -> Ver
     if parts.undermodelling_interval is None:
         return Verdict("cannot tell", None, (), no_split(parts, none))
     low, high = parts.undermodelling_interval
+    if low > 0.0 and high < HARDLY:
+        return Verdict("cannot tell", None, (), little_more(low, high, parts.method))
     if low > 0.0 and whole is not None and whole.any_shape <= 0.0:
         return Verdict(
             "cannot tell", None, (),

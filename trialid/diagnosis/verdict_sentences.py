@@ -110,6 +110,14 @@ def no_split(parts: Split, none: str) -> str:
     return f"{none}, but noise and model error cannot be separated on this record: " + parts.why
 
 
+def little_more(low: float, high: float, method: str) -> str:
+    """Something is left beside noise, and it is little of what moved."""
+    return (
+        f"an error of {low:.1%} to {high:.1%} is more than the noise ({method}), but of what moved "
+        "that is little: an input that is logged too seldom leaves as much"
+    )
+
+
 def small_rest(left: float, none: str) -> str:
     """All of the error is little, and what it is made of is nothing to ask."""
     return f"{none}, and of no trial is more left than {left:.1%}, noise and model error together"
