@@ -47,9 +47,9 @@ At 15 kn it is 0.08 m/s: a zig-zag of 5 deg alone reads 0.1 to 0.35 out of still
 0.01."""
 
 SURE: Final = 2.0
-"""Ranges from still water from which on a current in her speed is said: of three boats without any,
-whose models lacked something, it was 1.5, 1.0 and 1.2. Half says two of them; of 0.8 m/s it is 8
-and more."""
+"""Ranges from still water from which on a current in her speed is said: of two boats without any,
+whose models lacked something, it was 1.5 and 0.9. Half of it says one of them, twice neither; of
+0.8 m/s it is 10 and more."""
 
 WORDS: Final = "cannot tell wind and current apart"
 

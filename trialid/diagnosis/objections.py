@@ -183,7 +183,7 @@ def _gives_way(refit: Refit, grown: bool) -> bool:
 
 SEEN: Final = 0.002
 """Error that must go, as a share of what moved: nobody notices less, and a rudder that is logged
-every 2 s leaves as much. Of 13 such records of a ship of whom nothing was missing two had a name,
+every 2 s leaves as much. Of 12 such records of a ship of whom nothing was missing two had a name,
 0.0012 and 0.0017 for it; with half of it they have."""
 
 NO_SUCH_VALUE: Final = (turns_round, at_a_sensors_end, sweeps_away, no_such_mass)

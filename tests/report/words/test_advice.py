@@ -14,7 +14,7 @@ from trialid.result.json_file import result_of
 def advised(result, **changed):
     run = copy.deepcopy(result)
     for key, value in changed.items():
-        run[key] = run[key] | value if isinstance(value, dict) else value
+        run[key] = (run.get(key) or {}) | value if isinstance(value, dict) else value
     return advice(result_of(run))
 
 
@@ -69,6 +69,15 @@ def test_a_force_outside_the_catalogue_is_drafted(result):
     assert draft == "trialid run --draft my_effect.py container_ship.toml"
     assert_known(draft)
     assert 'effects_from = ["my_effect.py"]' in commands
+
+
+def test_a_force_that_no_equation_shows_is_not_drafted(result):
+    force = {"equations": [{"equation": "K", "unit": "N m"}], "sentence": "no force stands out"}
+    gap = verdict("not in catalogue")
+    for possible, drafts in ((["K"], True), ([], False)):
+        shown = advised(result, verdict=gap, missing_force={**force, "possible": possible})
+        assert any("--draft" in (e.command or "") for e in shown) is drafts
+        assert any("No force can be drafted" in e.words for e in shown) is not drafts
 
 
 @pytest.mark.parametrize(

@@ -146,6 +146,13 @@ def _outside(run: Result) -> Iterable[Advice]:
     first = next((row.sentence for row in run.where if row.sentence), None)
     if first is not None:
         yield Advice(f"Look where the model fails first: {first.rstrip('.')}.")
+    force = run.missing_force
+    if force is not None and force.equations and not force.possible:
+        yield Advice(
+            f"No force can be drafted of this record: {force.sentence}. A trial that moves her "
+            "more, or a motion that is simulated too, may show one."
+        )
+        return
     yield Advice(
         "Have the force that is missing written down as an effect in a Python file, and edit it:",
         shlex.join(["trialid", "run", "--draft", "my_effect.py", run.file or "PIPELINE"]),
