@@ -15,6 +15,7 @@ from scipy.special import fdtrc  # scipy.stats would take another 0.4 s to impor
 
 from trialid.arrays import Mask, Vector
 from trialid.diagnosis.noise.residual import OutputNoise, heavy_tail, pool_variance, residuals
+from trialid.diagnosis.objections import SEEN
 from trialid.diagnosis.search.falls import fall, fall_of_all, fall_of_check
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.verdict import SHARE, Verdict
@@ -42,6 +43,11 @@ class LeftByCheck:
     left: float
     by_noise: float
     p_value: float
+
+    @property
+    def beyond_noise(self) -> float:
+        """What noise does not leave of it, a share of y_RMS."""
+        return float(np.sqrt(max(self.left**2 - self.by_noise**2, 0.0)))
 
 
 def with_held_out(
@@ -71,7 +77,7 @@ def with_held_out(
     fit = fit.examined
     found = left_by_check(fit, covariance())
     worst = min(found, key=lambda one: one.p_value, default=None)
-    if worst is None or worst.p_value >= level / len(found):
+    if worst is None or worst.p_value >= level / len(found) or worst.beyond_noise < SEEN:
         said = "" if named else _by_own_sensors(fit, found)
         return replace(verdict, sentence=f"{verdict.sentence}{said}") if said else verdict
     if named is not None and _explained(fit, named, worst) >= SHARE:
@@ -97,10 +103,16 @@ def _left_open(fit: Fit, named: Refit | None, worst: LeftByCheck) -> str:
         )
         lacks = "something greater"
     return (
-        f"{begins} held out leave {worst.left:.1%} of {worst.output} where noise would leave "
-        f"{worst.by_noise:.1%} (p = {worst.p_value:.2g}): {lacks} is missing that acts there, or "
-        "it was rougher; fit them too and hold others out"
+        f"{begins} held out leave {worst.left:.1%} of {worst.output}{_of_own(fit, worst)} where "
+        f"noise would leave {worst.by_noise:.1%} (p = {worst.p_value:.2g}): {lacks} is missing "
+        "that acts there, or it was rougher; fit them too and hold others out"
     )
+
+
+def _of_own(fit: Fit, one: LeftByCheck) -> str:
+    """That it is so little with sensors of their own alone, where the table has far more."""
+    whole = fit.eps_check_by_output[one.output]
+    return " with zeros and delays of their own" if whole >= OWN * one.left else ""
 
 
 def _by_own_sensors(fit: Fit, found: Sequence[LeftByCheck]) -> str:
