@@ -26,9 +26,9 @@ STANDS_OFF: Final = {
     ),
     "delta_0": (
         OFF_AMIDSHIPS,
-        "the rudder's zero is {} deg in all trials, a screw's side push, what a list does or a "
-        "feedback's error: what is predicted of her has it there, by the recorded rudder, and is "
-        "likely from where it would be without",
+        "the rudder's zero is {} deg in all trials, a screw's side push, wind from one side, what "
+        "a list does or a feedback's error: what is predicted of her has it there, by the recorded "
+        "rudder, and is likely from where it would be without",
     ),
     "b_r": (
         OFF_RATE,
@@ -172,7 +172,7 @@ def _untold_GM(fit: Fit) -> list[str]:
         ratio = abs(damped_by(fit.problem, fit.theta))
         return [
             f"the record does not tell GM: her roll is damped by {ratio:.2g} of what is critical, "
-            f"as no ship's is, so that {fit.value('GM'):.3g} m is of a swell or of nothing"
+            f"as no ship's is, so that {fit.value('GM'):.3g} m may be of a swell or of nothing"
         ]
     listed = [f"{values['GM']:.3g}" for values in fit.rivals]
     rivals = (

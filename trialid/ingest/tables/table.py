@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from trialid.errors import LogError
 from trialid.names.side_words import LETTERS, SIDES
 
-POSITIVE = frozenset(("+", "positive", "pos", "is", "to", "side", "down", "="))
+POSITIVE = frozenset(("+", "ve", "positive", "pos", "is", "to", "side", "down", "="))
 """What stands beside a side behind a unit: `deg, + stbd`."""
 
 MISSING = frozenset({"", "nan", "na", "n/a", "null"})
@@ -81,6 +81,8 @@ def head(text: str, unit: str | None = None) -> Head:
 
     >>> head("roll rate [deg/s]")
     Head(text='roll rate [deg/s]', name='roll rate', unit='deg/s')
+    >>> head("rudder [deg] (port positive)")
+    Head(text='rudder [deg] (port positive)', name='rudder', unit='deg')
     """
     text = text.strip()
     for opening, closing in ("[]", "()"):
@@ -88,6 +90,10 @@ def head(text: str, unit: str | None = None) -> Head:
             at = text.find(opening, text.rfind(closing, 0, -1) + 1)
             if at >= 0:
                 own = text[at + 1 : -1].strip()
+                if own.lower() in SIDES:  # one of two
+                    return Head(text, text, unit or None)
+                if without_side(f"deg, {own}") == "deg":  # the side that counts as positive
+                    return replace(head(text[:at], unit), text=text)
                 return Head(text, text[:at].strip(), without_side(own) or unit or None)
     return Head(text, text, unit or None)
 
