@@ -151,6 +151,7 @@ def test_what_cannot_be_chosen_is_said() -> None:
         chosen="linear",
         chosen_without={"a": "linear", "b": None},
     )
-    first, second = sentences(one)
+    first, unfinished, second = sentences(one)
+    assert unfinished.startswith("Not compared, as their searches did not arrive: `cubic`; with")
     assert first.endswith("is the only structure that stands, so there was no choice.")
     assert "1 of 2 choices are the same; without b: none." in second

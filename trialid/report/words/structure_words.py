@@ -1,16 +1,21 @@
 """What comparing structures found, in sentences: the choice, and how far it can be relied on."""
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
 from trialid.diagnosis.search.carry_over import WHOLE
 from trialid.result.structure_rows import StructureRow, Structures
 
+NOT_ARRIVED: Final = ("did not converge", "does not arrive")
+"""What is said of a search that did not, with all trials and without one."""
+
 
 def sentences(found: Structures) -> tuple[str, ...]:
     """The choice first; then what limits it."""
-    return (_choice(found), *_unforetold(found), *_stability(found), *_few(found))
+    told = (_unforetold, _not_compared, _stability, _few)
+    return (_choice(found), *(words for tell in told for words in tell(found)))
 
 
 def _choice(found: Structures) -> str:
@@ -34,6 +39,20 @@ def _unforetold(found: Structures) -> Iterator[str]:
             f"But from the other trials it foretells {' and '.join(lost)} worse than no model at "
             "all would: look at signs, units and speed; where they agree, she moves there as in no "
             "other trial, and no choice holds there before there are more like it."
+        )
+
+
+def _not_compared(found: Structures) -> Iterator[str]:
+    """Structures whose search did not arrive: they may be better than all that were compared."""
+    out = [
+        f"`{row.name}`"
+        for row in found.rows
+        if any(words in (row.why_not or "") for words in NOT_ARRIVED)
+    ]
+    if out and found.chosen is not None:
+        yield (
+            f"Not compared, as their searches did not arrive: {' and '.join(out)}; with more "
+            "[identify] max_iterations or starts they may stand, and be better."
         )
 
 
