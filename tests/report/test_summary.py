@@ -55,6 +55,21 @@ def test_a_short_run_is_shown_whole_and_a_long_one_less(result):
     assert any(line.endswith("more, all better known") for line in less)
 
 
+def test_of_many_trials_the_worst_are_shown(result):
+    run = copy.deepcopy(result)
+    [first, *_] = run["trials"]
+    errors = [0.1, 0.2, 0.3, None, 0.25, 0.15, 0.12, 0.11, 0.05, 0.9]
+    run["trials"] = [
+        first | {"name": f"zigzag {k}", "eps_rmsn": dict.fromkeys(first["eps_rmsn"], x)}
+        for k, x in enumerate(errors)
+    ]
+    shown = [" ".join(line.split()[:2]) for line in lines(run) if line.startswith("zigzag ")]
+    assert {"zigzag 3", "zigzag 9"} <= {*shown}
+    assert "zigzag 8" not in shown
+    assert shown == sorted(shown)
+    assert any(line.split()[2:] == ["trials", "with", "less"] for line in lines(run))
+
+
 def test_the_verdict_comes_first_and_then_what_to_do(result):
     shown = lines(result, file="pipelines/a.toml")
     assert shown[1].startswith("The model lacks nonlinear yaw damping")

@@ -24,7 +24,7 @@ from trialid.report.terminal.terminal import (
 )
 from trialid.report.words import advice, beforehand, doubt
 from trialid.result.change_rows import ChangePart
-from trialid.result.fit_rows import ParameterRow, Part, SplitPart
+from trialid.result.fit_rows import ParameterRow, Part, SplitPart, TrialRow
 from trialid.result.schema import Result
 
 if TYPE_CHECKING:
@@ -133,17 +133,25 @@ def _errors(run: Result, rows: Rows) -> "Table":
     share = "error by RMS; x, y by length" if tracked else "error, share of measured RMS"
     table = new_table(share, "use", *letters, "all", words=2)
     trials = run.trials
-    shown = trials if len(trials) <= rows.trials else trials[: rows.trials - 1]
+    shown = trials if len(trials) <= rows.trials else _worst(trials, rows.trials - 1)
     for trial in shown:
         use = "held out" if trial.use == "check" else "fitted"
         add_row(table, trial.name, use, *percents(map(trial.eps_rmsn.get, outputs)), "")
     if len(shown) < len(trials):
-        add_row(table, f"... and {wording.count_of(len(trials) - len(shown), 'more trial')}")
+        add_row(table, f"... {wording.count_of(len(trials) - len(shown), 'trial')} with less")
     by_output = percents(fit.eps_rmsn_by_output[name] for name in outputs)
     add_row(table, "all fitted trials", "", *by_output, percent(fit.eps_rmsn), style="bold")
     check = percent(fit.eps_rmsn_check) if _holds_out(run) else "none"
     add_row(table, "all held-out trials", "", *[""] * len(outputs), check)
     return table
+
+
+def _worst(trials: Sequence[TrialRow], count: int) -> list[TrialRow]:
+    """Those of the largest error of an output, or that were lost, in their own order."""
+    errors = [[np.inf if x is None else x for x in t.eps_rmsn.values()] for t in trials]
+    largest = [max(own, default=0.0) for own in errors]
+    places = sorted(np.argsort(largest, kind="stable")[len(trials) - count :].tolist())
+    return [trials[i] for i in places]
 
 
 def _holds_out(run: Result) -> bool:
