@@ -14,6 +14,8 @@ from trialid.ingest.tables.table import head
         ("Ruder (Grad) (+ Steuerbord)", "Ruder", "Grad"),
         ("rudder (deg, + to port)", "rudder", "deg"),
         ("rudder (port)", "rudder (port)", None),
+        ("t [s]", "t", "s"),
+        ("shaft [P]", "shaft", "P"),
         ("speed (log) [kn]", "speed (log)", "kn"),
     ],
 )

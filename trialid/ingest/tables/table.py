@@ -92,8 +92,8 @@ def head(text: str, unit: str | None = None) -> Head:
                 own = text[at + 1 : -1].strip()
                 if own.lower() in SIDES:  # one of two
                     return Head(text, text, unit or None)
-                if without_side(f"deg, {own}") == "deg":  # the side that counts as positive
-                    return replace(head(text[:at], unit), text=text)
+                if ("+" in own or "pos" in own) and without_side(f"deg, {own}") == "deg":
+                    return replace(head(text[:at], unit), text=text)  # the side is no unit
                 return Head(text, text[:at].strip(), without_side(own) or unit or None)
     return Head(text, text, unit or None)
 
