@@ -6,6 +6,7 @@ import pytest
 from test_effects_by_hand import MASSES, NABLA, RHO, SHIP, STILL, U0, G, L, forces, sensed
 
 from trialid.effects import CATALOGUE
+from trialid.effects.rudder import ROUNDED
 from trialid.ship.model import STATES, ShipModel
 from trialid.ship.readings import readings
 
@@ -32,12 +33,12 @@ def test_a_current_to_the_north_sets_an_eastbound_ship_to_port() -> None:
 def test_a_rudder_loses_lift_only_beyond_its_stall() -> None:
     values = {"N_stall": -0.0015, "delta_stall": 0.4}
     scale = 0.5 * RHO * L**3 * U0**2
-    for delta, beyond in ((0.5, 0.1), (-0.6, -0.2)):
+    for delta, beyond in ((0.5, 0.1), (-0.6, -0.2), (0.39, 0.0), (0.0, 0.0)):
+        over = delta + 0.5 * (math.hypot(delta - 0.4, ROUNDED) - math.hypot(delta + 0.4, ROUNDED))
+        assert over == pytest.approx(beyond, abs=7e-4)  # of a corner it is 0.04 deg off
         found = forces("rudder_stall", values, delta=delta)
-        assert found["N"] == pytest.approx(-0.0015 * beyond * scale, rel=1e-3)
-        assert found["Y"] == pytest.approx(0.003 * beyond * scale / L, rel=1e-3)
-    below = forces("rudder_stall", values, delta=0.35)["N"]
-    assert abs(below) < 0.002 * abs(found["N"])  # it begins within half a degree
+        assert found["N"] == pytest.approx(-0.0015 * over * scale, rel=1e-6, abs=1e-6)
+        assert found["Y"] == pytest.approx(0.003 * over * scale / L, rel=1e-6, abs=1e-6)
 
 
 def test_the_slipstream_counts_the_speed_ahead_not_the_drift() -> None:

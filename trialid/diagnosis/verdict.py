@@ -78,7 +78,8 @@ side by side all that is left is less. Half of it and twice say the same of both
 
 
 HARDLY: Final = 0.01
-"""All of any trial's error that is little where nobody knows what of it is noise. Of a real roll
+"""All of any trial's error that is little where nobody knows what of it is noise, and what is not
+noise at most where that is known. Of a real roll
 decay 3.0, 1.6 and 0.3 % are left by the linear model, with the arm and with the damping too: half
 of it says the same of them, with twice nothing is missing while the damping is."""
 

@@ -68,8 +68,8 @@ def _above(x: Number) -> Number:
     return 0.5 * (x + sqrt(x * x + ROUNDED * ROUNDED))
 
 
-# Both are tried as low as a zig-zag of 15 deg shows them: at its typical angle a rudder that was
-# never put over so far has no trace, and drift feeds it along the hull as it may at midships.
+# Tried at 12, 17 and 21 deg too: at its typical angle a rudder that was never put over so far has
+# no trace.
 @effect(source="rudders stall at 20 to 35 deg; 23 deg in " + BC93)
 def rudder_stall(
     delta, *,
@@ -81,6 +81,8 @@ def rudder_stall(
     return Force(Y=-2.0 * N, N=N)
 
 
+# The lever is tried from none to its typical one: of a tanker by the MMG model that one showed
+# nothing (p = 1), and with none the error falls by a sixth.
 @effect(source="MMG: flow straightening gamma_R differs by 20 % to port and starboard")
 def rudder_flow_asymmetry(
     v, r, *,

@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.accuracy.parameter_table import Accuracy
 from trialid.identification.fit import Fit
 from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
@@ -44,7 +45,8 @@ of 8 m whose rudder acts 0.7 and 1 s after its record have 0.47 and 0.9, five ot
 0.1 at most, or another in each trial; half and twice say the same of all seven."""
 
 APART: Final = 3.0
-"""Times the scatter over trials from which on a mean is of all of them."""
+"""Times the scatter over trials from which on a mean is of all of them; standard errors from which
+on a gain is another."""
 
 AHEAD: Final = "k_ahead"
 OTHER_MASS: Final = 2.0
@@ -92,7 +94,6 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *_one_sided(fit),
         *_another_in_each(fit),
         *_late(fit),
-        *another_mass(fit),
         *_astern(fit),
         *(weak if fit.weakly_identified else []),
     )
@@ -128,19 +129,25 @@ def _astern(fit: Fit) -> list[str]:
     return [said] if found else []
 
 
-def another_mass(fit: Fit) -> list[str]:
-    """That a thrust logged in newtons would have to be another for a mass as in the file."""
+def another_mass(fit: Fit, accuracy: Accuracy) -> tuple[str, ...]:
+    """That a thrust logged in newtons would have to be another for a mass as in the file.
+
+    Nothing where noise alone may have made it so.
+    """
     logged = any(one.command == "thrust" for one in fit.model.ship.actuators)
-    gain = fit.estimates.get(AHEAD, 1.0) if logged else 1.0
+    gains = [p for p in accuracy.parameters if p.name == AHEAD and logged]
+    if not gains or not gains[0].standard_error < abs(gains[0].value - 1.0) / APART:
+        return ()
+    gain = gains[0].value
     if 1.0 / OTHER_MASS < gain < OTHER_MASS:
-        return []
+        return ()
     known = fit.model.ship.particulars
     mass = known["rho"] * known["nabla"]
-    return [
+    return (
         f"each newton of thrust that is logged would push with {gain:.2g}: either it is no thrust, "
         f"or her mass is nearer {mass / gain:.2g} kg than the {mass:.2g} of her file, and every "
-        "number in kg with it; state her displacement"
-    ]
+        "number in kg with it; state her displacement",
+    )
 
 
 def _late(fit: Fit) -> list[str]:

@@ -21,7 +21,7 @@ from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import step_halving
-from trialid.identification.remarks import remarks
+from trialid.identification.remarks import another_mass, remarks
 from trialid.plugins import packages
 from trialid.result.accuracy_part import accuracy_part, weighting
 from trialid.result.change_rows import ChangePart, MovedRow, Pair, StepRow
@@ -162,6 +162,7 @@ def _fit(done: Diagnosed, *, missing: bool) -> FitPart:
         remarks=(
             *other,
             *remarks(fit),
+            *another_mass(fit, done.accuracy),
             *in_speed(fit, done.accuracy),
             *cannot_tell(fit, done.accuracy),
         ),

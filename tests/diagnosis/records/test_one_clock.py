@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 from s175q import zigzag
 
-from trialid.diagnosis.search.candidates import of_one_clock
+from trialid.diagnosis.search.candidates import TABLES, of_one_clock
 from trialid.effects import CATALOGUE
+from trialid.ingest import ADAPTERS
 from trialid.trial import LogSource
 
 DRIFTING = {n for n in CATALOGUE if n.startswith("clock_drift")}
@@ -17,8 +18,9 @@ def logged(*adapters):
     return replace(zigzag(10), logs=logs)
 
 
-@pytest.mark.parametrize("adapter", ["csv", "excel", "parquet"])
+@pytest.mark.parametrize("adapter", sorted(TABLES))
 def test_a_table_has_one_clock(adapter):
+    assert adapter in {known.name for known in ADAPTERS}
     assert {*of_one_clock([logged(adapter), logged("csv")], CATALOGUE)} == DRIFTING
 
 

@@ -16,7 +16,8 @@ from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 
 ORDER_WORDS: Final = ORDERED | {"pwm", "throttle", "servo"}
 """Words of a drive that is an order: what is sent to a motor, never what it makes of it."""
-NO_GEAR: Final = "as no ship's gear does and a model's servo may, of which call it delta"
+NO_GEAR: Final = "which no ship's gear does (a model's servo may: then call it delta)"
+"""Why a rudder that jumps is read as its order."""
 LEAST: Final = 0.05
 """Share of the largest drive: jumps less than this are noise. Motors of boats that start from rest
 make larger ones, and half or twice of it tells the same of them."""
