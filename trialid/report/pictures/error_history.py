@@ -22,7 +22,7 @@ OWN: Final = "this report"
 """What stands under the step that is this report's own model."""
 
 LEFT, RIGHT = 52.0, 12.0
-TOP, FLOOR = 34.0, 214.0
+TOP, FLOOR = 34.0, 204.0
 BAR, GAP = 30.0, 6.0
 LINE: Final = 13.0
 """Height of a line of a label."""
