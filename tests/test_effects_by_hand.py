@@ -248,9 +248,9 @@ def test_gears_by_hand() -> None:
     found = dict(second(at | {"omega_servo": 2.0, "zeta_servo": 0.5})[0])
     assert found == pytest.approx({"delta": 0.05, "delta_rate": 4.0 * 0.2 - 2.0 * 0.05})
     slack = {"b_play": 0.02, "T_play": 0.5}
-    inside, beyond = (dict(play({"delta_order": x, "delta": 0.1} | slack)[0]) for x in (0.11, 0.15))
-    assert inside == {"delta": 0.0}
-    assert beyond == pytest.approx({"delta": (0.05 - 0.02) / 0.5})
+    inside, beyond = (play({"delta": x, "delta_blade": 0.1} | slack) for x in (0.11, 0.15))
+    assert [inside[0]["delta"], beyond[0]["delta"]] == pytest.approx([0.1 - 0.11, 0.1 - 0.15])
+    assert [x[1]["delta_blade"] for x in (inside, beyond)] == pytest.approx([0.0, 0.03 / 0.5])
     dead = CATALOGUE["rudder_deadband"]
     acting = [x + dead({"delta": x, "b_dead": 0.01})[0]["delta"] for x in (0.005, -0.03)]
     assert acting == pytest.approx([0.0, -0.02])

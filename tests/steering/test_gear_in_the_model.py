@@ -1,5 +1,6 @@
 """A steering gear in the model can be the wrong one, or have the wrong numbers."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.pipeline_file import load
+from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
 from trialid.workflow.edit_pipeline import add_to_pipeline
@@ -29,10 +31,18 @@ FEW = (
 """Other gears, and what was named in their place."""
 
 
-def ordered(gear: str, seed: int, **values: float) -> list[Trial]:
-    """Zig-zags of which orders are logged, the rudder moved by a gear that nobody announced."""
+def with_gears(gears: Mapping[str, Mapping[str, float]]) -> ShipModel:
+    """The test ship with her rudder moved by these, one after the other."""
+    model = s175q.MODEL
+    for name, values in gears.items():
+        model = (model + CATALOGUE[name]).with_values(values)
+    return model
+
+
+def ordered(gears: Mapping[str, Mapping[str, float]], seed: int) -> list[Trial]:
+    """Zig-zags of which orders are logged, the rudder moved by gears that nobody announced."""
     rng = np.random.default_rng(seed)
-    model = (s175q.MODEL + CATALOGUE[gear]).with_values(values)
+    model = with_gears(gears)
     trials = []
     for amplitude in (5, 10, 20):
         bare = s175q.zigzag(amplitude)
@@ -55,6 +65,34 @@ def of_the_gear(trials: list[Trial]) -> Verdict:
     return diagnose(fit, DiagnoseSettings(candidates={n: CATALOGUE[n] for n in FEW})).verdict
 
 
+LIMITED = {"rudder_servo_limited": {"T_servo": 1.0, "rate_max": 0.04}}
+
+
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", [2051, 2052])
+def test_a_play_behind_a_limited_gear_has_its_name(seed: int) -> None:
+    """Both gave the rudder's angle once, and a dead band was named in the place of the play."""
+    play = {"rudder_backlash": {"b_play": float(np.deg2rad(1.0)), "T_play": 0.5}}
+    fit = identify(ordered(LIMITED | play, seed), with_gears(LIMITED), s175q.SETTINGS)
+    tried = {n: CATALOGUE[n] for n in (*FEW, "rudder_backlash", "rudder_deadband")}
+    found = diagnose(fit, DiagnoseSettings(candidates=tried)).verdict
+    assert found.effect == "rudder_backlash"
+    assert not fit.model.displaced_by(CATALOGUE["rudder_backlash"])
+
+
+@pytest.mark.parametrize("gear", [{}, LIMITED])
+def test_an_offset_is_added_behind_the_play_whichever_comes_first(gear) -> None:
+    play = {"rudder_backlash": {"b_play": 0.02, "T_play": 0.5}}
+    offset = {"rudder_offset": {"delta_0": 0.03}}
+    blank = ordered({}, 1)[0]
+    there, back, without = (
+        respond(prepare(with_gears(gear | more), (), ("r",)), blank, {}, {"u": 7.33}).y
+        for more in (play | offset, offset | play, play)
+    )
+    np.testing.assert_array_equal(there, back)
+    assert np.ptp(there - without) > 0.1 * np.ptp(without)
+
+
 @pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     ("gear", "values", "effect", "said"),
@@ -71,7 +109,7 @@ def of_the_gear(trials: list[Trial]) -> Verdict:
 )
 def test_the_gear_that_moved_the_rudder_is_named(gear, values, effect, said) -> None:
     """Without gears among what is tried, a force is: drift_with_rudder, lag_phi."""
-    found = of_the_gear(ordered(gear, 2041, **values))
+    found = of_the_gear(ordered({gear: values}, 2041))
     assert found.effect == effect
     assert found.sentence.startswith(said)
 

@@ -43,19 +43,19 @@ def rudder_servo_second_order(
     return Rate(delta=delta_rate, delta_rate=omega_servo * drive)
 
 
-@effect(source="play of the linkage: 0.2 to 1.5 deg", states=FOLLOWS)
+@effect(source="play of the linkage: 0.2 to 1.5 deg", states={"delta_blade": "delta_order"})
 def rudder_backlash(
-    delta_order, delta, *,
+    delta, delta_blade, *,
     b_play=Parameter(0.01, "rad", low=0.0, high=0.1, scan=(0.004, 0.01, 0.025)),
     T_play=Parameter(0.5, "s", low=0.05, high=20.0, null=None),
 ):  # fmt: skip
-    """d(delta)/dt = (e - clip(e, b_play)) / T_play,  e = delta_order - delta: play in the linkage.
+    """delta = delta_blade,  d(delta_blade)/dt = (e - clip(e, b_play)) / T_play: a linkage's play.
 
-    The rudder stays where it is until its order has moved b_play ahead of it, then follows at that
-    distance; T_play is how quickly.
+    e = delta - delta_blade: the blade stays where it is until the gear has moved b_play ahead of
+    it, then follows at that distance; T_play is how quickly.
     """
-    e = delta_order - delta
-    return Rate(delta=(e - clip(e, b_play)) / T_play)
+    e = delta - delta_blade
+    return Steered(delta=-e), Rate(delta_blade=(e - clip(e, b_play)) / T_play)
 
 
 @effect(source="dead band of the control valve: 0.2 to 1 deg")

@@ -16,7 +16,8 @@ def signals_now(
     for name, tau in _late_by(model, signals, theta).items():
         # the record comes shifted by the current delay: the value stands, and so does the slope
         signals[name] = signals[name] + (tau - signals[late(name)]) * signals[slope(name)]
-    for effect in model.effects:
+    # what follows by a law of its own does before what is added to it: a play, then an offset
+    for effect in sorted(model.effects, key=lambda e: not e.states):
         if Steered in effect.forms:
             for part in effect({**signals, **theta}):
                 if isinstance(part, Steered):
