@@ -106,8 +106,22 @@ def test_a_trial_is_proposed_that_tells_more_than_the_one_there_is(fit):
     pair = following.by_name(CATALOGUE, ["rudder_offset", "propeller_side_force"])
     proposal = following.next_trial(fit, pair, {c: n.sigma for c, n in NOISE.items()})
     assert proposal.after.cosine < proposal.before.cosine
-    assert proposal.after.separate
+    assert proposal.separate
     assert proposal.programme[0].name in following.FEASIBLE
+
+
+def test_the_trial_with_the_most_evidence_is_proposed(fit, monkeypatch):
+    """Not the one in which they look least alike: what is small in it is hidden by noise."""
+    pair = following.by_name(CATALOGUE, ["yaw_drag_rar", "yaw_cubic_rrr"])
+    noise = {c: n.sigma for c, n in NOISE.items()}
+    proposal, alone = following.next_trial(fit, pair, noise), []
+    for test in following.FEASIBLE.items():
+        monkeypatch.setattr(following, "FEASIBLE", dict([test]))
+        alone.append(following.next_trial(fit, pair, noise))
+    by_odds = {x.programme[0].name: min(x.after.odds) for x in alone if x}
+    by_cosine = {x.programme[0].name: -x.after.cosine for x in alone if x}
+    assert proposal.programme[0].name == max(by_odds, key=by_odds.__getitem__)
+    assert proposal.programme[0].name != max(by_cosine, key=by_cosine.__getitem__)
 
 
 def test_where_no_test_helps_it_is_said(fit):

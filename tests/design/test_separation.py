@@ -76,7 +76,7 @@ def test_trials_so_far_are_fitted_together_with_the_new():
     assert alone.before is None
     assert added.before == likeness(GEAR, [TEN_TEN])
     assert min(added.after.odds) > min(added.before.odds)
-    assert f"(so far {added.before.cosine:.3f})" in added.sentence
+    assert f", {min(added.before.odds):.0f} so far, " in added.sentence
 
 
 def test_the_odds_are_what_the_record_loses_by_the_wrong_name():
@@ -111,9 +111,21 @@ def test_no_feasible_test_is_said():
 def test_the_sentence_of_two_that_come_apart():
     found = Separation(("a", "b"), (), Likeness(0.9876, (1.0, 2.0)), Likeness(0.1, (20.0, 9.0)), 5)
     assert found.sentence == (
-        "a and b come apart: |cos| 0.100 (so far 0.988), log odds for the right one 9, where 6 "
-        "are enough"
+        "a and b come apart: log odds for the right one 9, 1 so far, where 6 are enough against "
+        "noise alone; |cos| 0.100"
     )
+
+
+@pytest.mark.parametrize(("odds", "enough"), [(239.0, False), (241.0, True)])
+def test_more_of_the_same_does_not_tell_them_apart(odds: float, enough: bool):
+    """By the noise alone those of the trials there are, 120, would have done it long since."""
+    found = Separation(
+        ("a", "b"), (), Likeness(0.9, (400.0, 120.0)), Likeness(0.8, (900.0, odds)), 5
+    )
+    assert found.after.separate
+    assert found.separate is enough
+    assert found.sentence.startswith("a and b come apart") is enough
+    assert ("much better than the trials there are" in found.sentence) is not enough
 
 
 def test_odds_and_cosine_against_least_squares():

@@ -23,7 +23,7 @@ from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.rating import Goal, Noise, goal
 from trialid.design.rudder_rate import gear_rate
 from trialid.design.search import natural_roll, sail_all
-from trialid.design.separation import ENOUGH, Likeness, Separation, likeness_of, rivals
+from trialid.design.separation import Likeness, Separation, likeness_of, rivals
 from trialid.design.standard import Measure, in_calm, measures_of
 from trialid.design.triangles import Triangles, triangles, triangles_beside
 from trialid.errors import DesignError, TrialidError
@@ -112,13 +112,13 @@ def _proposed(
         speed=fit.model.ship.particulars["U0"],
     )
     so_far = triangles(pair.goal, fit.problem.trials)
-    rated: list[tuple[float, Test, Likeness]] = []
-    for test, trial in _feasible(fit, ready):
-        found = likeness_of(pair, triangles_beside(pair.goal, so_far, trial))
-        rated.append((found.cosine + max(0.0, ENOUGH - min(found.odds)) / ENOUGH, test, found))
+    rated: list[tuple[Test, Likeness]] = [
+        (test, likeness_of(pair, triangles_beside(pair.goal, so_far, trial)))
+        for test, trial in _feasible(fit, ready)
+    ]
     if not rated:
         return None
-    _, test, after = min(rated, key=lambda r: r[0])
+    test, after = max(rated, key=lambda r: min(r[1].odds))
     return Separation(pair.names, (test,), likeness_of(pair, so_far), after, len(rated))
 
 

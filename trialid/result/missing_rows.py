@@ -128,10 +128,10 @@ def verdict_part(v: Verdict, proposal: Separation | None) -> VerdictPart:
 def _next_trial(proposal: Separation) -> NextTrialPart:
     """The trial that would tell rivals apart, or that none of those any crew can run does."""
     name = proposal.programme[0].name
-    told = f"{name}: {proposal.sentence}" if proposal.after.separate else proposal.sentence
+    told = f"{name}: {proposal.sentence}" if proposal.separate else proposal.sentence
     return NextTrialPart(
         sentence=told,
-        test=name if proposal.after.separate else None,
+        test=name if proposal.separate else None,
         effects=tuple(proposal.names),
         cosine=proposal.after.cosine,
         cosine_before=None if proposal.before is None else proposal.before.cosine,

@@ -133,7 +133,7 @@ def of_separation(found: Separation | None) -> dict[str, Any] | None:
         return None
     return {
         "effects": list(found.names),
-        "separate": found.after.separate,
+        "separate": found.separate,
         "cosine": found.after.cosine,
         "cosine_before": None if found.before is None else found.before.cosine,
         "odds": list(found.after.odds),
