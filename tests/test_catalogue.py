@@ -6,6 +6,7 @@ import pytest
 
 from trialid.effects import CATALOGUE, FILES
 from trialid.effects.coverage import besides, left_out, rows, rows_of, trial_results
+from trialid.errors import EffectError
 from trialid.names.quantities import SIGNALS
 from trialid.report.terminal.catalogue import KINDS, kind, needs, part
 
@@ -178,3 +179,10 @@ def test_a_range_is_no_wider_than_physics_asks() -> None:
             continue
         for parameter, p in effect.parameters.items():
             assert p.low > -float("inf") or p.high < float("inf"), f"{effect.name} {parameter}"
+
+
+def test_a_name_that_is_none_is_told_with_the_nearest() -> None:
+    with pytest.raises(EffectError, match=r"no effect 'yaw_drag_rra'.*yaw_drag_rar"):
+        CATALOGUE["yaw_drag_rra"]
+    assert CATALOGUE.get("yaw_drag_rra") is None
+    assert "yaw_drag_rra" not in CATALOGUE

@@ -13,7 +13,7 @@ from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.search.candidates import candidates_for
 from trialid.diagnosis.search.carried import Carried
-from trialid.diagnosis.search.completeness import completeness
+from trialid.diagnosis.search.completeness import _sums, completeness
 from trialid.diagnosis.search.refit import refit
 from trialid.diagnosis.search.score import VISIBLE, Candidate, rank
 from trialid.diagnosis.search.simple_forces import probes
@@ -104,6 +104,22 @@ def test_a_candidate_that_is_no_number_along_the_record_is_left_out_alone():
     augmented = augment(fit, {**CATALOGUE, "rooted": rooted})
     assert "no number" in augmented.left_out["rooted"]
     assert "yaw_cubic_rrr" in {e.name for e in augmented.effects}
+
+
+@pytest.mark.filterwarnings("error")
+def test_columns_of_any_size_have_sums():
+    """A force of 1e25 noises is no number once squared in single precision."""
+    rng = np.random.default_rng(4)
+    effects, forces = rng.standard_normal((300, 2)), rng.standard_normal((300, 3))
+    residual = rng.standard_normal(300)
+    gram, moment = _sums(effects * [1.0, 1e25], forces * [1e-30, 1.0, 3e20], residual)
+    both = np.hstack([effects, forces])
+    plain, gained = both.T @ both, both.T @ residual
+    sizes, lengths = np.sqrt(np.diag(gram)), np.sqrt(np.diag(plain))
+    np.testing.assert_allclose(
+        gram / np.outer(sizes, sizes), plain / np.outer(lengths, lengths), atol=1e-6
+    )
+    np.testing.assert_allclose(moment / sizes, gained / lengths, atol=1e-5)
 
 
 def test_unseen_effects_are_left_out_with_a_reason():

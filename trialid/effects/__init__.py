@@ -31,7 +31,14 @@ FILES: tuple[ModuleType, ...] = (
 """In the order a person reads a ship: the hull first, the sensors last."""
 
 
-def _catalogue() -> dict[str, Effect]:
+class Catalogue(dict[str, Effect]):
+    """Effects by name; what is asked for and not there is told with the nearest names."""
+
+    def __missing__(self, name: str) -> Effect:
+        raise EffectError(f"there is no effect {name!r}; {nearest(name, self)}")
+
+
+def _catalogue() -> Catalogue:
     """Ours, then those of installed packages.
 
     Raises
@@ -47,10 +54,10 @@ def _catalogue() -> dict[str, Effect]:
             why = f"its effect {taken[0]!r} is there already" if taken else "declares no effect"
             raise PluginError(f"trialid.effects {name!r}: {why}; rename it, or uninstall it")
         known |= {e.name: e for e in own}
-    return known
+    return Catalogue(known)
 
 
-CATALOGUE: dict[str, Effect] = _catalogue()
+CATALOGUE: Catalogue = _catalogue()
 
 FAULTS = (
     SyntaxError, NameError, ImportError, TypeError, AttributeError, ValueError, ArithmeticError,
@@ -67,10 +74,7 @@ def find(name: str, own: dict[str, Effect]) -> Effect:
     EffectError
         There is none; the message has the nearest names.
     """
-    known = CATALOGUE | own
-    if name not in known:
-        raise EffectError(f"there is no effect {name!r}; {nearest(name, known)}")
-    return known[name]
+    return Catalogue(CATALOGUE | own)[name]
 
 
 def from_file(path: Path) -> dict[str, Effect]:

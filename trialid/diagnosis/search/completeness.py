@@ -125,13 +125,15 @@ def _sums(effects: Vector, forces: Vector, residual: Vector) -> tuple[Vector, Ve
     """Products of all columns with each other and with the residual; (n, n) and (n,).
 
     A few rows at a time: one table of both would be as large as they are. In single precision, for
-    there are thousands of sums and they are compared by their tenths.
+    there are thousands of sums and they are compared by their tenths; each column at a length near
+    one, whose square such numbers can hold.
     """
     count = effects.shape[1] + forces.shape[1]
+    near_one = np.exp2(-np.frexp(np.append(_lengths(effects), _lengths(forces)))[1])
     gram, moment = np.zeros((count, count)), np.zeros(count)
     for start in range(0, len(residual), TOGETHER):
         rows = slice(start, start + TOGETHER)
-        Z = np.hstack([effects[rows], forces[rows]], dtype=np.float32, casting="same_kind")
+        Z = (np.hstack([effects[rows], forces[rows]]) * near_one).astype(np.float32)
         gram += Z.T @ Z
         moment += Z.T @ residual[rows].astype(np.float32)
     return gram, moment
