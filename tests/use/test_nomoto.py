@@ -17,7 +17,9 @@ from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
 from trialid.progress import silent
 from trialid.ship.model import ShipModel
+from trialid.workflow.use import hand_over
 from trialid.workflow.use.finished_model import finished_model
+from trialid.workflow.use.steering import Wishes
 
 EFFECTS = ("linear_hull", "linear_rudder", "linear_roll", "heel_yaw", "yaw_drag_rar")
 MODEL = ShipModel(s175q.SHIP, ("v", "p", "r", "phi"), tuple(CATALOGUE[n] for n in EFFECTS))
@@ -157,3 +159,14 @@ def test_the_command_writes_them(run_folder: Path, tmp_path: Path):
     true = nomoto(ship(replace(MODEL, effects=MODEL.effects[:3])), known_by("Nr", 0.0)).values
     low, high = at["numbers"]["K"]["likely"]
     assert low < true["K"] < high
+
+
+@pytest.mark.parametrize("told", [True, False, None])
+def test_what_the_record_does_not_tell_the_file_does_not(run_folder: Path, told: bool | None):
+    model = finished_model(run_folder, silent)
+    part = replace(model.result.accuracy.stability, stable=told)
+    accuracy = replace(model.result.accuracy, stability=part)
+    doubted = replace(model, result=replace(model.result, accuracy=accuracy))
+    found = json.loads(hand_over.WRITERS["nomoto"](doubted, "ship", Wishes())[".json"])
+    assert found["at"][0]["stable"] is (None if told is None else True)
+    assert (hand_over.UNTOLD in found["words"]) is (told is None)

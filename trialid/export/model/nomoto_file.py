@@ -55,11 +55,11 @@ class AtSpeed:
     """T dr/dt + r = K delta, delta positive to starboard, at a speed [m/s]; and second order.
 
     r = K (1 + T3 s) / ((1 + T1 s) (1 + T2 s)) delta, of the rudder or the thrusters themselves;
-    `order` says what delta is.
+    `order` says what delta is; `stable` is None where the record does not tell.
     """
 
     speed: float
-    stable: bool
+    stable: bool | None
     order: str
     numbers: Mapping[str, NomotoNumber] = field(default_factory=dict)
     state_space: StateSpace
@@ -77,8 +77,8 @@ class NomotoFile:
     at: tuple[AtSpeed, ...] = ()
 
 
-def nomoto_file(made: FittedModel, found: Sequence[Nomoto]) -> NomotoFile:
-    """The content of the file."""
+def nomoto_file(made: FittedModel, found: Sequence[Nomoto], told: bool = True) -> NomotoFile:
+    """The content of the file; `told` whether the record tells that she is stable or not."""
     stable = all(one.stable for one in found)
     whole: NomotoFile = finite(
         NomotoFile(
@@ -86,13 +86,13 @@ def nomoto_file(made: FittedModel, found: Sequence[Nomoto]) -> NomotoFile:
             verdict=made.verdict,
             words=made.words if stable else (UNSTABLE, *made.words),
             origin=dict(made.origin),
-            at=tuple(_at_speed(one) for one in found),
+            at=tuple(_at_speed(one, one.stable if told else None) for one in found),
         )
     )
     return whole
 
 
-def _at_speed(found: Nomoto) -> AtSpeed:
+def _at_speed(found: Nomoto, stable: bool | None) -> AtSpeed:
     numbers = {
         name: NomotoNumber(value=value, unit=_unit(name, found), likely=found.ranges.get(name))
         for name, value in found.values.items()
@@ -111,7 +111,7 @@ def _at_speed(found: Nomoto) -> AtSpeed:
     )
     return AtSpeed(
         speed=found.speed,
-        stable=found.stable,
+        stable=stable,
         order=nomoto_words(ship),
         numbers=numbers,
         state_space=space,

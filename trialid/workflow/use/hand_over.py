@@ -54,10 +54,13 @@ def _others(model: FinishedModel) -> list[Uncertain]:
 
 def _steered(model: FinishedModel) -> FittedModel:
     """The same where K and T are made use of: what is said of a ship that may be unstable."""
-    made, part = taken_up(model), model.result.accuracy.stability
-    if part is None or part.stable is not None:
-        return made
-    return replace(made, words=(UNTOLD, *made.words))
+    made = taken_up(model)
+    return made if _tells_stability(model) else replace(made, words=(UNTOLD, *made.words))
+
+
+def _tells_stability(model: FinishedModel) -> bool:
+    part = model.result.accuracy.stability
+    return part is None or part.stable is not None
 
 
 def _ship(model: FinishedModel, name: str, wishes: Wishes) -> Files:
@@ -104,7 +107,7 @@ def _nomoto(model: FinishedModel, name: str, wishes: Wishes) -> Files:
         with suppress(DesignError):
             pairs = zip(found, at_speeds(*other, speeds), strict=True)
             found = tuple(one.embracing(there) for one, there in pairs)
-    return {".json": text_of(nomoto_file(_steered(model), found))}
+    return {".json": text_of(nomoto_file(_steered(model), found, _tells_stability(model)))}
 
 
 def _ardupilot(model: FinishedModel, name: str, wishes: Wishes) -> Files:
