@@ -44,6 +44,28 @@ def test_what_lies_between_both_ends_of_the_circle_is_found_and_nothing_else(lea
     assert taken <= 0.03 * wrong
 
 
+def means(seed: int, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """True heading [rad] of a zig-zag about north at 2 Hz, and means of five samples of its log."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, duration, PERIOD / 5.0)
+    psi = np.deg2rad(40.0) * np.sin(t / rng.uniform(4.0, 8.0) + rng.uniform(0.0, 6.0))
+    each = psi.reshape(-1, 5)
+    return each.mean(axis=1), (each % (2 * np.pi)).mean(axis=1)
+
+
+@pytest.mark.parametrize("duration", [40.0, 90.0])
+def test_means_of_a_short_zig_zag_about_north_are_found(duration: float) -> None:
+    """She passes it so often that one step in twenty is none of hers."""
+    wrong = found = 0
+    for seed in range(980, 1020):
+        true, logged = means(seed, duration)
+        bad = off(logged, true) > np.deg2rad(15.0)
+        wrong += int(bad.sum())
+        found += int((bad & on_the_long_way(logged)).sum())
+    assert wrong >= 70
+    assert found >= 0.95 * wrong
+
+
 def test_a_heading_that_passes_north_as_logged_keeps_all_its_values() -> None:
     for seed in range(940, 980):
         true, _ = turning(seed, 0.0)
@@ -75,8 +97,8 @@ def test_a_sketch_goes_on_through_north() -> None:
         assert np.ptp(told - true) < np.deg2rad(30.0)
 
 
-def test_what_is_found_is_masked_and_said() -> None:
-    true, logged = turning(943, 0.0)
+@pytest.mark.parametrize(("true", "logged"), [turning(943, 0.0), means(981, 40.0)])
+def test_what_is_found_is_masked_and_said(true: np.ndarray, logged: np.ndarray) -> None:
     t = (1e9 * PERIOD * np.arange(len(true))).astype(np.int64)
     log = Series(SIGNALS["psi"], t, logged, "made")
     left, remarks = mask_faults(log, Grid(0, PERIOD, len(t)), (), 0.0, "here")
