@@ -19,6 +19,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Final
@@ -41,8 +42,7 @@ from hidden_truth import (
 )
 from spread import add_options, spread
 
-from trialid.arrays import Vector
-from trialid.diagnosis.diagnose import refits_of
+from trialid.diagnosis.diagnose import beside_others, refits_of
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import gap_beside_best
 from trialid.diagnosis.left_by_check import with_held_out
@@ -59,6 +59,7 @@ from trialid.effects import CATALOGUE
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
 from trialid.identification.problem import Settings
+from trialid.progress import silent
 from trialid.ship.effect import Force
 from trialid.ship.model import ShipModel
 from trialid.threads import one_thread
@@ -130,18 +131,16 @@ def diagnosed(
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        tried = refits_of(fit, ranking, asked, lambda words: None)
+        refits = (tried := refits_of(fit, ranking, asked, lambda words: None)).refits
     with watch("decide"):
         whole = gap_beside_best(completeness(augmented), fit, tried, asked)
-        parts = held_against(parts, routes, fit, [r.fit for r in tried.refits], whole)
-        verdict = decide(fit, ranking, tried.refits, parts, whole, asked.level)
-
-        def covariance() -> Vector:
-            return accuracy_of(fit, parts, may_be_off(augmented)).covariance
-
-        verdict = with_held_out(fit.examined, verdict, covariance, asked.level)
-        named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
-    return Diagnosis(fit, ranking, tried.refits, named, verdict)
+        parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)
+        verdict = decide(fit, ranking, refits, parts, whole, asked.level)
+        sure = partial(accuracy_of, fit, parts, may_be_off(augmented))
+        verdict = with_held_out(fit.examined, verdict, lambda: sure().covariance, asked.level)
+        verdict = beside_others(fit, verdict, refits, asked, silent)
+        named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
+    return Diagnosis(fit, ranking, refits, named, verdict)
 
 
 def settings_of(model: ShipModel) -> Settings:
@@ -204,7 +203,7 @@ def judged(row: Row, scenario: Scenario, right: set[str], done: Diagnosis) -> Ro
     return row.also(
         kind=verdict.kind, name=verdict.effect or "", family=family,
         exact=verdict.effect in scenario.exact,
-        right=bool({verdict.effect, *family} & right),
+        right=bool({verdict.effect, *family, *verdict.held_as_well} & right),
         physical=effect is not None and Force in effect.forms,
         eps=done.fit.eps_rmsn, eps_check=done.fit.eps_check,
     )  # fmt: skip

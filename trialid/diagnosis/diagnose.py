@@ -18,7 +18,7 @@ from trialid.diagnosis.force.missing_force import MissingForce, missing_force
 from trialid.diagnosis.force.usual_forces import hull_at_once
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
-from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
+from trialid.diagnosis.meant_as_well import also_from, held_before, held_instead, two_instead
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
@@ -53,8 +53,7 @@ def diagnose(
 ) -> Diagnosis:
     """What the error is made of, where it is, what is missing, and the model with it.
 
-    With `force` the missing force is sought whatever the verdict, beside a named effect; `grown`
-    says that effects were added to the model before.
+    With `force` the missing force is sought whatever the verdict; `grown`: effects were added.
     """
     asked, fit = settings or DiagnoseSettings(), with_means(fit)
     if faults := gross_faults(fit, asked.candidates, progress, partial(leaves_noise, asked=asked)):
@@ -68,21 +67,21 @@ def diagnose(
     with meanwhile(partial(_after, tried.best, tried, asked, progress), _of(tried.best)) as best:
         whole = gap_beside_best(whole, fit, tried, asked, grown=grown)
         before = _bounded(before, tried.refits, whole)
-        verdict = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
+        found = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
+        verdict = beside_others(fit, found, tried.refits, asked, progress)
         named = _named(verdict, tried.refits)
         verdict, together = _or_of_several(fit, verdict, whole, tried.refits, asked, progress)
         if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
-        wanted = force or verdict.kind == "not in catalogue"
-        missing = _force(wanted, named.fit if named else fit, asked.level, progress)
-        said, there = _beside_others(fit, verdict, tried.refits, asked, progress), where(fit)
+        missing = _force(force, verdict, named.fit if named else fit, asked.level, progress)
+        there = where(fit)
         after = best() if named is tried.best else _after(named, tried, asked, progress)
     return Diagnosis(
         before=before.beside(verdict.effect, after),
         ranking=ranking,
         left_out=left_out,
         refits=tried.refits,
-        verdict=said,
+        verdict=verdict,
         where=there,
         after=after,
         force=missing,
@@ -113,14 +112,14 @@ def _verdict(
     return settle(fit, found, asked.candidates.get(found.effect or ""))
 
 
-def _beside_others(
+def beside_others(
     fit: Fit,
     verdict: Verdict,
     refits: Sequence[Refit],
     asked: DiagnoseSettings,
     progress: Progress,
 ) -> Verdict:
-    """The verdict with what its name is not told from beside single effects."""
+    """The verdict beside two effects at once, and what is held, which leaves it no name."""
     named = _named(verdict, refits)
     if named is None:
         return verdict
@@ -128,9 +127,11 @@ def _beside_others(
     def said(words: str) -> None:
         progress(words, 0.85)
 
+    adds = named.candidate.effect.held is None  # what is freed itself is not a rival of the rest
+    if asked.coefficients and adds and (freed := held_instead(fit, named, said)):
+        return held_before(fit, named, freed)
     tried = tried_effects(fit, asked)
-    two = two_instead(fit, named, verdict.family, tried, asked.refit, said)
-    return also_from(verdict, two, held_instead(fit, named, said) if asked.coefficients else ())
+    return also_from(verdict, two_instead(fit, named, verdict.family, tried, asked.refit, said))
 
 
 def _or_of_several(
@@ -148,7 +149,7 @@ def _or_of_several(
     may as well: two would be chosen by the slopes of a fit that stands nowhere. Where the catalogue
     seems to miss something, it must not seem so with them.
     """
-    if verdict.effect or verdict.family or in_doubt(fit):  # one, or a sensor is in doubt
+    if verdict.effect or verdict.family or verdict.held_as_well or in_doubt(fit):
         return verdict, None
     found = None
     if why_no_fit(fit) is None and verdict.kind != "nothing missing":
@@ -192,8 +193,11 @@ def _whole(
     )
 
 
-def _force(wanted: bool, fit: Fit, level: float, progress: Progress) -> MissingForce | None:
+def _force(
+    asked: bool, verdict: Verdict, fit: Fit, level: float, progress: Progress
+) -> MissingForce | None:
     """The missing force, None where nobody asks or nothing is simulated that it could push."""
+    wanted = asked or verdict.kind == "not in catalogue"
     if not wanted or not fit.model.states:
         return None
     progress("looking for the missing force", 0.9)

@@ -8,14 +8,14 @@ flow goes by the screws, and her added masses lie one to two standard deviations
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.augment import fixed_coefficients
-from trialid.diagnosis.search.carried import EACH, does_as_well
+from trialid.diagnosis.search.carried import does_as_well
 from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.falls import fall
 from trialid.diagnosis.search.refit import Refit
@@ -42,22 +42,40 @@ FORETOLD: Final = 0.5
 1.2 and 1.6 of it where that does as much, at most 0.2 where not (`test_meant_as_well.py` and the
 shipped sample, whose fit of it took a second), so that half and twice change none of them."""
 
+FAR: Final = 1.0
+"""Standard deviations from which a number that is held is told of, and two in any case."""
+
 TOLD: Final = 2
 """Numbers that are held, those moved most, that a sentence tells of."""
 
 
-def also_from(found: Verdict, two: Together | None, held: Sequence[str]) -> Verdict:
-    """The verdict with what its name is not told from, beside what it says already."""
-    others = list[str]()
-    if two:
-        others.append(f"{' and '.join(two.names)} together")
-    if held:
-        others.append(f"what is held, off by what its source allows, {' and '.join(held)} most")
+@dataclass(frozen=True)
+class Freed:
+    """The model with all that is held sought, and which numbers moved, those most first."""
+
+    fit: Fit
+    moved: tuple[str, ...]
+
+
+def also_from(found: Verdict, two: Together | None) -> Verdict:
+    """The verdict with two effects that its name is not told from, beside what it says already."""
+    if two is None:
+        return found
     begin = "nor" if len(found.family) > 1 else "this record cannot tell it"
-    words = "".join(f"; {'nor' if i else begin} from {x}" for i, x in enumerate(others))
-    pair = two.names if two else ()
-    sentence = found.sentence + words
-    return replace(found, sentence=sentence, pair_as_well=pair, held_as_well=tuple(held))
+    sentence = f"{found.sentence}; {begin} from {' and '.join(two.names)} together"
+    return replace(found, sentence=sentence, pair_as_well=two.names)
+
+
+def held_before(fit: Fit, named: Refit, freed: Freed) -> Verdict:
+    """The verdict where what is held does as well: nothing has to be missing."""
+    most = " and ".join(freed.moved[:TOLD])
+    before, eps, other = (f"{x.eps_rmsn:.2%}" for x in (fit, named.fit, freed.fit))
+    said = (
+        f"{named.candidate.effect.name} takes the error from {before} to {eps}, and numbers that "
+        f"are held do as well, off by no more than her file says of them: to {other}, {most} "
+        "most. No effect has to be missing: free those first, and look again"
+    )
+    return Verdict("cannot tell", None, (), said, held_as_well=freed.moved)
 
 
 def two_instead(
@@ -82,10 +100,11 @@ def two_instead(
     return min(able, key=lambda one: one.cost, default=None)
 
 
-def held_instead(fit: Fit, named: Refit, progress: Progress) -> tuple[str, ...]:
-    """Numbers that are held and do as well, off by no more than what is known of them; the first.
+def held_instead(fit: Fit, named: Refit, progress: Progress) -> Freed | None:
+    """The model with what is held freed, where that does as well; off by no more than is known.
 
-    All are freed at once, each about its value and near it. They count as any parameter does.
+    All are freed at once, each about its value and near it. They are in the model, and off by some
+    of that in any ship: no more is counted for them, as for an effect's coefficients.
     """
     fit = with_means(fit).examined
     model = fit.problem.simulator.model
@@ -94,21 +113,22 @@ def held_instead(fit: Fit, named: Refit, progress: Progress) -> tuple[str, ...]:
     known = {n: (x, abs(x) * model.ship.share_off(n)) for n, x in held.items()}
     known = {n: each for n, each in known.items() if each[1] > 0.0}
     if not known:
-        return ()
+        return None
     wider = _wider(fit.settings, known)
     near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
     if _foretold(fit, wider, near) < FORETOLD * fall(fit, named):
-        return ()
+        return None
     progress("freeing what is held")
     try:
         freed = identify(fit.trials, fit.model, wider, near=near)
     except TrialidError:  # they cannot be sought on this record
-        return ()
+        return None
     carried = carried_between(fit, freed)
-    if not freed.converged or carried.log_ratio + EACH * (len(known) - 1) > named.cost:
-        return ()
+    if not freed.converged or carried.log_ratio > named.cost:
+        return None
     moved = {n: abs(freed.value(n) - x) / off for n, (x, off) in known.items()}
-    return tuple(sorted(known, key=lambda n: -moved[n])[:TOLD])
+    order = sorted(known, key=lambda n: -moved[n])
+    return Freed(freed, tuple(n for i, n in enumerate(order) if moved[n] >= FAR or i < TOLD))
 
 
 def _wider(asked: Settings, known: Mapping[str, tuple[float, float]]) -> Settings:

@@ -88,8 +88,8 @@ of it says the same of them, with twice nothing is missing while the damping is.
 class AsWell:
     """What a name is not told from beside single effects, and why there may be none.
 
-    Two others at once, that do as well as it; numbers that are held and do, off by what their
-    source allows, those moved most; what the records leave in doubt about themselves.
+    Two others at once, that do as well as it; numbers that are held and do as well as the best
+    effect, which then has no name; what the records leave in doubt about themselves.
     """
 
     pair_as_well: tuple[str, ...] = ()

@@ -155,9 +155,10 @@ class VerdictPart:
 
     `family` are the effect and what it is not told from; without an effect those of which one is
     missing. `together` are two effects that do at once what none does alone. Of a name that two
-    others do as well as, both at once, these are `pair_as_well`; numbers that are held and do as
-    well, off by what their source allows, are `held_as_well`, those moved most. `doubts` are what
-    the records leave in doubt about themselves, with how to settle it.
+    others do as well as, both at once, these are `pair_as_well`. Numbers that are held and do as
+    well as the best effect, off by what their source allows, are `held_as_well`, those moved most
+    first; then nothing has a name. `doubts` are what the records leave in doubt about themselves,
+    with how to settle it.
     """
 
     kind: str | None = None

@@ -55,6 +55,8 @@ def test_of_several_of_which_one_is_missing_no_two_are_tried_at_once(monkeypatch
     assert len(tried) == len(hulls) == 1
     diagnose._or_of_several(fit(0.10), replace(none, effect="a"), None, (), asked, silent)
     assert len(tried) == len(hulls) == 1
+    diagnose._or_of_several(fit(0.10), replace(none, held_as_well=("m",)), None, (), asked, silent)
+    assert len(tried) == len(hulls) == 1
     nothing = replace(none, kind="nothing missing")
     assert diagnose._or_of_several(fit(0.10), nothing, None, (), asked, silent) == (nothing, None)
     assert (len(tried), len(hulls)) == (1, 2)

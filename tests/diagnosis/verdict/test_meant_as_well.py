@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
 
-from trialid.diagnosis.meant_as_well import also_from, held_instead, two_instead
+from trialid.diagnosis.meant_as_well import Freed, also_from, held_before, held_instead, two_instead
 from trialid.diagnosis.search.freed import free_coefficient
 from trialid.diagnosis.search.refit import refit
 from trialid.diagnosis.search.score import rank
@@ -75,7 +75,9 @@ def test_what_is_held_is_told_as_far_as_its_source_lets_it_be_off(knows, told):
     trials = sailed(replace(MODEL, ship=replace(SHIP, mass={**SHIP.mass, **water})))
     fit = identify(trials, replace(MODEL, ship=known), replace(SETTINGS, free=FREE))
     found = held_instead(fit, tried(fit, "yaw_inertia_error"), silent)
-    assert {*found} == ({*water} if told else set())
+    assert (found is not None) is told
+    if found is not None:
+        assert {*found.moved} == {*water}
 
 
 def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
@@ -86,28 +88,40 @@ def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
     freed = {"Nvav": free_coefficient(fit.model, "Nvav")}
     ranking, _ = rank(fit, freed)
     [named] = refit(fit, ranking, silent)
-    assert held_instead(fit, named, silent) == ()
+    assert held_instead(fit, named, silent) is None
     [other] = refit(fit, rank(fit, {"rudder_cubic": CATALOGUE["rudder_cubic"]})[0], silent)
-    assert held_instead(fit, other, silent) == ("Nvav",)
+    assert held_instead(fit, other, silent).moved == ("Nvav",)
+
+
+def test_where_what_is_held_does_as_well_nothing_has_a_name(without_two):
+    named = tried(without_two, "yaw_drag_rar")
+    found = held_before(without_two, named, Freed(named.fit, ("m", "Yv", "Yr")))
+    assert (found.kind, found.effect, found.family) == ("cannot tell", None, ())
+    assert verdict_part(found, None).held_as_well == ("m", "Yv", "Yr")
+    before, after = (f"{fit.eps_rmsn:.2%}" for fit in (without_two, named.fit))
+    assert found.sentence == (
+        f"yaw_drag_rar takes the error from {before} to {after}, and numbers that are held do as "
+        f"well, off by no more than her file says of them: to {after}, m and Yv most. No effect "
+        "has to be missing: free those first, and look again"
+    )
 
 
 @pytest.mark.parametrize(
-    ("family", "held", "said"),
+    ("family", "said"),
     [
-        (("a",), (), "a is missing"),
-        (("a",), ("m",), "a is missing; this record cannot tell it from what is held"),
-        (("a", "b"), ("m",), "a is missing; nor from what is held"),
+        (("a",), "a is missing; this record cannot tell it from b and c together"),
+        (("a", "b"), "a is missing; nor from b and c together"),
     ],
 )
-def test_it_is_said_after_what_is_said(family, held, said):
-    found = also_from(Verdict("missing", "a", family, "a is missing"), None, held)
-    assert found.sentence.split(", off by")[0] == said
-    assert verdict_part(found, None).held_as_well == held
+def test_two_at_once_are_said_after_what_is_said(family, said):
+    found = Verdict("missing", "a", family, "a is missing")
+    assert also_from(found, SimpleNamespace(names=("b", "c"))).sentence == said
+    assert also_from(found, None) is found
 
 
 def test_two_at_once_stand_in_the_result_too():
     two = SimpleNamespace(names=("b", "c"))
-    row = verdict_part(also_from(Verdict("missing", "a", ("a",), "a is missing"), two, ()), None)
+    row = verdict_part(also_from(Verdict("missing", "a", ("a",), "a is missing"), two), None)
     assert (row.pair_as_well, row.held_as_well, row.family) == (("b", "c"), (), ("a",))
 
 
@@ -115,7 +129,8 @@ def test_what_is_held_of_the_roll_is_freed_where_no_roll_is_compared(without_two
     """GM is one of it, and a search of other GMs has nothing to go by there."""
     yaw = replace(without_two.settings, outputs=("r",))
     fit = identify(without_two.trials, without_two.model, yaw)
-    assert "GM" not in held_instead(fit, tried(fit, "yaw_drag_rar"), silent)
+    found = held_instead(fit, tried(fit, "yaw_drag_rar"), silent)
+    assert found is None or "GM" not in found.moved
 
 
 def test_what_is_held_and_moves_nothing_is_no_hindrance(without_two):
@@ -125,7 +140,7 @@ def test_what_is_held_and_moves_nothing_is_no_hindrance(without_two):
     trials = [with_speed(trial) for trial in without_two.trials]
     asked = replace(without_two.settings, free=("Nv", "Nr", "Ndelta"), outputs=("r",))
     fit = identify(trials, replace(yaw, ship=known), asked)
-    assert held_instead(fit, tried(fit, "yaw_drag_rar"), silent) == ()
+    assert held_instead(fit, tried(fit, "yaw_drag_rar"), silent) is None
 
 
 def with_speed(trial):

@@ -11,6 +11,7 @@ from trialid.names.quantities import RUDDERS
 from trialid.report.words import doubt
 from trialid.result.fit_rows import ParameterRow, WeakRow
 from trialid.result.schema import Result
+from trialid.toml_text import array
 
 RIVALS: Final = 2
 """Other members of the family whose command is written out."""
@@ -171,6 +172,10 @@ def _unclear(run: Result) -> Iterable[Advice]:
             f"Let it add {several} at once, and what follows; the file stays as it is:",
             command(run, "run", "--auto"),
         )
+        return
+    if run.verdict.held_as_well:
+        line = f'free = {array([*run.model.free, *run.verdict.held_as_well])}  # priors = "ship"'
+        yield Advice("Free what is held, under [identify], by her file, and run again:", line)
         return
     yield from _one_of(run)
     if run.split.noise is not None:
