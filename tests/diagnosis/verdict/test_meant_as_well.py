@@ -80,6 +80,18 @@ def test_what_is_held_is_told_as_far_as_its_source_lets_it_be_off(knows, told):
         assert {*found.moved} == {*water}
 
 
+def test_nothing_more_is_counted_for_a_dozen_that_are_held():
+    """Her file says of each how far it may be off; two are, by what does little to the error."""
+    water = {name: 1.15 * SHIP.mass[name] for name in ("Nrdot", "Yvdot")}
+    known = replace(SHIP, uncertainty={"default": 0.02, **dict.fromkeys(water, 0.2)})
+    trials = sailed(replace(MODEL, ship=replace(SHIP, mass={**SHIP.mass, **water})))
+    fit = identify(trials, replace(MODEL, ship=known), replace(SETTINGS, free=FREE))
+    found = held_instead(fit, tried(fit, "yaw_inertia_error"), silent)
+    assert found is not None
+    assert len({*found.fit.settings.free} - {*FREE}) > 10
+    assert found.fit.eps_rmsn < fit.eps_rmsn
+
+
 def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
     """Of a ship whose yaw moment of drift is 1.5 times her file's, and all else is known."""
     known = replace(SHIP, uncertainty={"default": 0.0, "Nvav": 0.3})
