@@ -97,7 +97,7 @@ def test_one_simulation_foretells_what_each_fit_finds(runs, searches):
         assert found[effect[0]].eps_rmsn_predicted * unit == pytest.approx(rms(run), rel=0.05)
     twin = found["cubic_roll_damping"].eps_rmsn_predicted
     assert twin == pytest.approx(found["quadratic_roll_damping"].eps_rmsn_predicted, rel=0.02)
-    assert found["delay_phi"].eps_rmsn_predicted * unit > 0.98 * rms(runs[LINEAR])
+    assert "to be late against" in searches[LINEAR].result.not_tried["delay_phi"]
 
 
 def test_the_righting_arm_is_named_first(searches):

@@ -67,6 +67,15 @@ def at_a_sensors_end(effect: Effect, fit: Fit) -> bool:
     return not of_the_ship(effect) and bool({*effect.parameters} & {*fit.at_bounds})
 
 
+def at_no_place_within(effect: Effect, fit: Fit) -> bool:
+    """Whether most of what it adds ran to the ends of what may be sought: nothing it does fits.
+
+    Of a boat whose battery ran down two of three coefficients of a surge in turns did.
+    """
+    added = {n for n, p in effect.parameters.items() if p.null == 0.0}
+    return 2 * len(added & {*fit.at_bounds}) > len(added)
+
+
 def sweeps_away(effect: Effect, fit: Fit) -> bool:
     """Whether it is a current that nobody recorded, faster than she goes: no trial is sailed in it.
 

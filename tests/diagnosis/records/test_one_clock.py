@@ -1,11 +1,12 @@
-"""No clock drifts from another where all that was logged has one."""
+"""No clock drifts from another where all that was logged has one; what is free is not late."""
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from s175q import zigzag
+from s175q import MODEL, zigzag
 
-from trialid.diagnosis.search.candidates import TABLES, of_one_clock
+from trialid.diagnosis.search.candidates import TABLES, of_one_clock, undriven
 from trialid.effects import CATALOGUE
 from trialid.ingest import ADAPTERS
 from trialid.trial import LogSource
@@ -27,3 +28,17 @@ def test_a_table_has_one_clock(adapter):
 @pytest.mark.parametrize("adapters", [("mcap",), ("csv", "csv"), ()])
 def test_several_logs_messages_and_arrays_may_have_more(adapters):
     assert of_one_clock([logged("csv"), logged(*adapters)], CATALOGUE) == {}
+
+
+LATE = {"delay_phi", "lag_phi", "clock_drift_phi"}
+
+
+def test_a_roll_that_nothing_drives_is_not_late():
+    """Nor is one that is sailed with her rudder amidships, at a speed that is logged."""
+    free = zigzag(10)
+    rudder = np.zeros(free.samples)
+    speed = 7.0 + 0.1 * np.sin(np.arange(free.samples))
+    still = replace(free, signals={**free.signals, "delta": rudder, "u": speed})
+    assert {*undriven(MODEL, [still, still], ("phi",), CATALOGUE)} == LATE
+    assert undriven(MODEL, [still, still], ("r", "phi"), CATALOGUE) == {}
+    assert undriven(MODEL, [still, free], ("phi",), CATALOGUE) == {}

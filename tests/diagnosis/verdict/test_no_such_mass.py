@@ -1,4 +1,4 @@
-"""A mass that no ship has is not named: it stands in for a hull of another shape."""
+"""What ends at values that no ship has is not named: it stands in for something else."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import s175q
 
-from trialid.diagnosis.found_values import no_such_mass
+from trialid.diagnosis.found_values import at_no_place_within, no_such_mass
 from trialid.diagnosis.objections import NO_SUCH_VALUE
 from trialid.effects import CATALOGUE
 from trialid.ship.model import ShipModel
@@ -64,3 +64,21 @@ def test_what_is_stated_and_what_is_added_count_together() -> None:
 def test_nothing_is_said_of_a_force() -> None:
     fit = SimpleNamespace(model=s175q.MODEL, at_bounds={"Nrar": 1.0})
     assert not no_such_mass(CATALOGUE["yaw_drag_rar"], fit)
+
+
+@pytest.mark.parametrize(
+    ("name", "ended", "told"),
+    [
+        ("surge_turning", ("Xvr", "Xvv"), True),
+        ("surge_turning", ("Xvv",), False),
+        ("surge_turning", (), False),
+        ("yaw_drag_rar", ("Nrar",), True),
+        ("yaw_drag_rar", ("Nr",), False),
+        ("rudder_servo_limited", ("T_servo",), False),
+    ],
+)
+def test_most_of_what_an_effect_adds_at_its_ends(name: str, ended: tuple[str, ...], told) -> None:
+    """What only shapes it may well be there: a gear that is as quick as it can be."""
+    assert at_no_place_within in NO_SUCH_VALUE
+    fit: Any = SimpleNamespace(at_bounds=dict.fromkeys(ended, 0.05))
+    assert at_no_place_within(CATALOGUE[name], fit) is told

@@ -13,6 +13,7 @@ from trialid.diagnosis.search.candidates import (
     linear_parameters,
     of_one_clock,
     out_of_reach,
+    undriven,
 )
 from trialid.diagnosis.search.projection import Evidence, gather
 from trialid.diagnosis.search.scan import secants
@@ -101,6 +102,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
     sized = {name: effect.of_ship(length) for name, effect in catalogue.items()}
     able, left_out = candidates_for(base, shared_record(fit.trials), sized)
     left_out |= out_of_reach(fit.trials, able) | of_one_clock(fit.trials, able)
+    left_out |= undriven(fit.model, fit.trials, fit.problem.outputs, able)
     able = {name: effect for name, effect in able.items() if name not in left_out}
     able, silent = _with_trace(able, problem.outputs)
     linear = [e for e in able.values() if not e.scanned]

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from trialid.names.quantities import ACCELERATIONS, PARTICULARS
-from trialid.ship.effect import Delayed, Effect, Steered
+from trialid.ship.effect import Delayed, Effect, Lagged, Steered
 from trialid.ship.model import STATES, ShipModel, takes_place
 from trialid.simulation.integrate import record_for, signals_of
 from trialid.trial import Trial
@@ -60,6 +60,22 @@ def of_one_clock(trials: Sequence[Trial], able: Mapping[str, Effect]) -> dict[st
         return {}
     drifting = [n for n, e in able.items() if Delayed in e.forms and "t" in e.signals]
     return dict.fromkeys(drifting, "needs two clocks, and each trial is one table with one")
+
+
+def undriven(
+    model: ShipModel, trials: Sequence[Trial], outputs: Sequence[str], able: Mapping[str, Effect]
+) -> dict[str, str]:
+    """Sensors that are late, where one motion is recorded and nothing drives her.
+
+    A free motion that is late is one that began later. Of a roll decay held for 3 s before the
+    release the roll was named 3 s late.
+    """
+    driving = {*model.recorded} - {"u"}
+    moving = [n for t in trials for n, y in t.signals.items() if n in driving and np.ptp(y) > 0.0]
+    if moving or len(outputs) > 1:
+        return {}
+    late = [n for n, e in able.items() if {*e.acts_on(Delayed, Lagged)} & {*outputs}]
+    return dict.fromkeys(late, "needs what drives her, or a second motion, to be late against")
 
 
 def _small(trials: Sequence[Trial], name: str, below: float) -> bool:

@@ -7,7 +7,7 @@ from typing import Final
 
 from trialid.accuracy.ranges import ANOTHER_GM, USUAL_FORCES
 from trialid.names import wording
-from trialid.names.quantities import RUDDERS
+from trialid.names.quantities import MOTIONS
 from trialid.report.words import doubt
 from trialid.result.fit_rows import ParameterRow, WeakRow
 from trialid.result.schema import Result
@@ -16,14 +16,15 @@ from trialid.toml_text import array
 RIVALS: Final = 2
 """Other members of the family whose command is written out."""
 
+STATED: Final = "stated sensor figure"
 OPENS: Final = {
     "repeated manoeuvre": "run one manoeuvre twice, with the same orders",
     "periods of a periodic test": "run a test whose orders repeat themselves several times",
     "quiet stretch": "record a minute or more of steady course, nothing ordered, in the same sea",
-    "stated sensor figure": "state how much each sensor scatters, as noise under [diagnose]",
+    STATED: "state how much each sensor scatters, as noise under [diagnose]",
 }
-"""What would open a route to the noise that this record does not have."""
-
+"""What would open a route to the noise that this record does not have; of a ship that nothing
+drives, as in a roll decay, only the last is one."""
 
 EACH: Final = ("This", "Any one of these")
 
@@ -186,12 +187,8 @@ def _unclear(run: Result) -> Iterable[Advice]:
         )
         return
     closed = {row.method for row in run.split.routes if not row.available}
-    ruddered = not run.signals or any(row.signal in RUDDERS for row in run.signals)
-    ways = [
-        words
-        for method, words in OPENS.items()
-        if method in closed and (ruddered or "rudder" not in words)
-    ]
+    driven = not run.signals or not MOTIONS.issuperset(row.signal for row in run.signals)
+    ways = [w for method, w in OPENS.items() if method in closed and (driven or method == STATED)]
     if ways:
         yield Advice(
             f"Noise and model error cannot be told apart. {EACH[len(ways) > 1]} opens a way: "
