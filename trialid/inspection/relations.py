@@ -107,6 +107,20 @@ def side(
     return Side(to if found.sign > 0 else other, found.correlation, to, found.words)
 
 
+def turns_late(drive: ChannelInspection, rate: ChannelInspection) -> tuple[float, float] | None:
+    """After what time [s] she answers a drive best, by both clocks, and the correlation then.
+
+    None where the two have too little in common.
+    """
+    common = on_one_clock(drive.sketch, rate.sketch)
+    if common is None:
+        return None
+    period, (force, r), whole = common
+    if rate.guess is not None and rate.guess.quantity == "psi":
+        r = np.gradient(r)
+    return signs.late_cause(force, r, whole, period)
+
+
 def _turning(
     rudder: ChannelInspection, turning: ChannelInspection, beside: Sequence[ChannelInspection]
 ) -> signs.Turning | None:

@@ -12,7 +12,7 @@ from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
-from trialid.inspection.relations import side
+from trialid.inspection.relations import side, turns_late
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator, Command, actuator_tables
@@ -162,9 +162,17 @@ def _agreement(port: ChannelInspection, starboard: ChannelInspection, turn: Sign
     told = f"correlation of port less starboard with {found.by} {found.strength:+.2f}"
     if found.side == "starboard":
         return Reason(f"side confirmed by the turn: {told}", "measured")
+    settle = f"FILL IN the unit after settling this: she turns towards the stronger one ({told})"
+    lag, strength = turns_late(both, turn.source) or (0.0, 0.0)
+    if strength * found.strength < 0.0:
+        return Reason(
+            f"{settle}, and away from it with clocks {abs(lag):.1f} s apart ({strength:+.2f}): the "
+            f"{'thrusters are' if lag < 0.0 else f'{turn.quantity} is'} logged late, and `delay` "
+            "says by how much; else port and starboard are exchanged",
+            "denied",
+        )
     return Reason(
-        f"FILL IN the unit after settling this: she turns towards the stronger one ({told}): port "
-        f"and starboard are exchanged, or the side of {turn.quantity} is wrong",
+        f"{settle}: port and starboard are exchanged, or the side of {turn.quantity} is wrong",
         "denied",
     )
 

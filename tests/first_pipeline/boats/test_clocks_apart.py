@@ -1,0 +1,36 @@
+"""Motors that are logged late turn a boat the other way: a clock is doubted, and not her sides."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_boat import PERIOD, T, begun, log, pushes, sailed
+
+from trialid.alignment.agreement.signs import late_cause
+
+NAMES = ("rpm_port [1]", "rpm_starboard [1]")
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("late", [0.0, 0.5, 1.5, 2.5])
+def test_the_delay_of_the_motors_log_and_the_side(late: float, side: float) -> None:
+    for seed in range(60, 72):
+        acts = pushes(seed)
+        left, right = (acts**2).T
+        r = sailed(acts)["r"] + 0.01 * np.random.default_rng(seed).standard_normal(len(T))
+        logged = np.roll(side * (left - right), round(late / PERIOD))
+        lag, strength = late_cause(logged, r, np.ones(len(T), dtype=bool), PERIOD)
+        assert np.sign(strength) == side
+        assert lag == pytest.approx(-late, abs=0.5)
+
+
+@pytest.mark.parametrize(("late", "exchanged"), [(3.0, False), (0.0, True)])
+def test_a_clock_or_the_sides(tmp_path: Path, late: float, exchanged: bool) -> None:
+    acts = pushes(8)
+    logged = np.roll(acts, round(late / PERIOD), axis=0)
+    made = begun(
+        tmp_path, log(tmp_path / "boat.csv", acts, logged[:, ::-1] if exchanged else logged, NAMES)
+    )
+    [said, *_] = [one for one in made.to_fill if "towards the stronger one" in one]
+    assert ("the thrusters are logged late" in said) is not exchanged
+    assert ("are exchanged, or the side of r is wrong" in said) is exchanged
