@@ -34,3 +34,21 @@ def test_a_clock_or_the_sides(tmp_path: Path, late: float, exchanged: bool) -> N
     [said, *_] = [one for one in made.to_fill if "towards the stronger one" in one]
     assert ("the thrusters are logged late" in said) is not exchanged
     assert ("are exchanged, or the side of r is wrong" in said) is exchanged
+
+
+@pytest.mark.parametrize(("late", "told"), [(8.0, True), (0.0, False)])
+def test_a_heading_of_another_clock_is_said_and_left(
+    tmp_path: Path, late: float, told: bool
+) -> None:
+    acts = pushes(9)
+    path = log(tmp_path / "boat.csv", acts, acts, NAMES)
+    heading = np.rad2deg(sailed(acts)["psi"]) % 360.0
+    moved = np.concatenate([np.full(round(late / PERIOD), heading[0]), heading])[: len(T)]
+    rows = path.read_text(encoding="utf-8").splitlines()
+    told_too = [f"{row},{x:.2f}" for row, x in zip(rows[1:], moved, strict=True)]
+    path.write_text("\n".join([f"{rows[0]},heading_deg", *told_too]), encoding="utf-8")
+    made = begun(tmp_path, path)
+    text = next(iter(made.trials)).signals
+    [rate] = [one for one in text if one.quantity == "r"]
+    assert ("two clocks are apart; `delay = 8` in psi" in rate.why) is told
+    assert ("psi" in {one.quantity for one in text}) is not told

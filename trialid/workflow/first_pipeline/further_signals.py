@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.inspection.disagreements import findings
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.relations import slope_agreement
 from trialid.inspection.sketch import on_one_clock
@@ -48,6 +49,12 @@ moved at random; with half of it that one is told too, with twice none is."""
 STRAIGHT: Final = Reason(
     "she goes straight on, and whether the rate goes by it does not show", "unshown"
 )
+LATE: Final = 2.0
+"""[s] No compass is later. A GNSS receiver's heading is 0.1 to 0.5 s late, a filtered gyro's 1; the
+leap seconds are 18."""
+APART: Final = Reason(
+    "its clock is another than the rate's, and how far they are apart is said there"
+)
 TURNED: Final = 10.0
 """Degrees within which the heading of a log straight on stays. A rate that stood still in a turn is
 not left beside it for that; at half of it and at twice the same logs are straight on."""
@@ -82,12 +89,29 @@ def with_heading(trial: Chosen, live: Live) -> Chosen:
     found = slope_agreement(rate.source, heading.source)
     if heading.open:
         return trial
+    if abs(found) <= SURE and _straight_on(heading):
+        return _beside(trial, heading, STRAIGHT)
     if abs(found) <= SURE:
-        return _beside(trial, heading, STRAIGHT) if _straight_on(heading) else trial
+        return _with_clocks_apart(trial, rate, heading)
     if (found < 0.0) != (rate.positive == "port"):
         of_side = Reason(COUNTED) if from_east(heading.source, "port") else heading.of_side
         heading = dataclasses.replace(heading, positive="port", of_side=of_side)
     return dataclasses.replace(trial, signals=(*trial.signals, heading))
+
+
+def _with_clocks_apart(trial: Chosen, rate: Signal, heading: Signal) -> Chosen:
+    """The trial where a heading is late: no compass is by so much, and its log's clock is."""
+    of_rate = (x for x in findings(trial.survey) if x.kind == "lag" and x.of_slope("r"))
+    late = next((x for x in of_rate if x.evidence.get("lag", 0.0) < -LATE), None)
+    if late is None:
+        return trial
+    said = (
+        f"CAREFUL: {late.sentence}: no compass is so late, two clocks are apart; `{late.mend}` in "
+        "psi and in all that is logged with it would mend it"
+    )
+    told = dataclasses.replace(rate, further=(*rate.further, said))
+    signals = tuple(told if one is rate else one for one in trial.signals)
+    return _beside(dataclasses.replace(trial, signals=signals), heading, APART)
 
 
 def _straight_on(heading: Signal) -> bool:
