@@ -16,8 +16,12 @@ T = np.arange(0.0, 600.0, 0.5)
 ORDERS = 10.0 * np.sign(np.sin(0.05 * T) + 0.3 * np.sin(0.013 * T))
 
 
-def begun(folder: Path, length: float, *rudders: np.ndarray) -> str:
-    """The pipeline of a log for each of these rudders [deg], of a ship at 6 m/s; it loads."""
+def begun(folder: Path, length: float, *rudders: np.ndarray, back: float = 0.0) -> str:
+    """The pipeline of a log for each of these rudders [deg], of a ship at 6 m/s; it loads.
+
+    Her clock is set back by so much [s] after two minutes.
+    """
+    stamps = np.where(T < 120.0, T, T - back)
     logs = []
     for i, delta in enumerate(rudders):
         r = np.zeros(len(T))
@@ -25,7 +29,7 @@ def begun(folder: Path, length: float, *rudders: np.ndarray) -> str:
             r[k + 1] = r[k] + 0.5 * (0.05 * delta[k] - r[k]) / 15.0
         logs.append(folder / f"log{i}.csv")
         heads = "t,rudder_deg,rate of turn [deg/s],stw [m/s]"
-        table = np.column_stack([T, delta, r, np.full(len(T), 6.0)])
+        table = np.column_stack([stamps, delta, r, np.full(len(T), 6.0)])
         np.savetxt(logs[-1], table, delimiter=",", header=heads, comments="", fmt="%.6g")
     given = Given(length=length)
     made = starter([inspect_log(one) for one in logs], folder / "p.toml", None, given, 6.0)
@@ -55,5 +59,12 @@ def test_a_rudder_that_jumps_is_read_as_its_order(tmp_path: Path) -> None:
 )
 def test_a_rudder_is_a_rudder(tmp_path: Path, length: float, rudders: tuple) -> None:
     text = begun(tmp_path, length, *rudders)
+    assert "delta = {" in text
+    assert "delta_order" not in text
+
+
+def test_samples_of_two_times_between_one_another_are_no_jumps(tmp_path: Path) -> None:
+    """A rudder went from 10 deg to -10 within a sample, where its clock had been set back."""
+    text = begun(tmp_path, 100.0, geared(ORDERS), back=100.0)
     assert "delta = {" in text
     assert "delta_order" not in text

@@ -68,15 +68,18 @@ def _repaired(t: Vector, y: Vector, origin: int) -> tuple[Vector, list[str]]:
 def _run_on(t: Vector, y: Vector) -> tuple[Vector, list[float], NDArray[np.int64]]:
     """Stamps [s] that run on where a counter began again, its turns, and first deliveries.
 
-    A stretch that comes again with all its values is no turn of a counter, whatever its length.
+    A stretch that comes again with all its values is no turn of a counter, whatever its length. Of
+    one that does not, after a clock was set back, a few values are by chance those of then.
     """
-    first = _first_delivery(t, y)
-    again = first != np.arange(len(t))
-    behind = int(np.sum(t < np.maximum.accumulate(t)))
-    if again.sum() > behind / 2 and len(np.unique(y[again])) >= DISTINCT:
+    first, own = _first_delivery(t, y), np.arange(len(t))
+    again = first != own
+    mostly = again.sum() > np.sum(t < np.maximum.accumulate(t)) / 2
+    if mostly and len(np.unique(y[again])) >= DISTINCT:
         return t, [], first
     whole, turns = unwrap_counter(t)
-    return whole, turns, _first_delivery(whole, y) if turns else first
+    if turns:
+        return whole, turns, _first_delivery(whole, y)
+    return whole, turns, first if mostly else own
 
 
 def _first_delivery(t: Vector, y: Vector) -> NDArray[np.int64]:

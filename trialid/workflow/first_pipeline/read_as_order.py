@@ -72,9 +72,15 @@ def _jump(
     names: frozenset[str] | set[str],
     jump: Callable[[list[Course]], Jump | None],
 ) -> Jump | None:
-    """How the signals of these names jump; None where not every trial has one of them."""
+    """How the signals of these names jump; None where not every trial has one of them.
+
+    None too where a clock was set back: samples of two times stand between one another there.
+    """
     signals = [[s for s in one.signals if s.quantity in names] for one in trials]
-    return jump([_course(s) for ones in signals for s in ones]) if all(signals) else None
+    every = [s for ones in signals for s in ones]
+    if not all(signals) or any(s.source.clock.furthest_back * s.source.rate > 1.0 for s in every):
+        return None
+    return jump([_course(s) for s in every])
 
 
 def _course(signal: Signal) -> Course:
