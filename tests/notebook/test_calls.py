@@ -102,6 +102,24 @@ def test_orders_that_are_no_numbers() -> None:
         _table(TOLD, 0.5, {"delta": ["a", "b"]})
     with pytest.raises(TrialidError, match="inputs of one length and their period"):
         _table(TOLD, "a", {"delta": [0.1, 0.2]})
+    with pytest.raises(
+        TrialidError, match=r"delta: reaches 20 rad; no rudder is turned half round"
+    ):
+        _table(TOLD, 0.5, {"delta": [0.0, -20.0]})
+
+
+def test_a_run_shows_itself_in_a_line() -> None:
+    """It was half a million characters of what it holds."""
+    result = SimpleNamespace(
+        pipeline="her trials", verdict=SimpleNamespace(kind="missing", sentence="a is missing")
+    )
+    findings = SimpleNamespace(before=SimpleNamespace(fit=SimpleNamespace(eps_rmsn=0.0544)))
+    runs: tuple[Any, ...] = (
+        PipelineRun(None, findings, result, ()),
+        FitRun(None, findings, result, ()),
+    )
+    for run in runs:
+        assert repr(run) == "her trials: error 5.44%; missing: a is missing"
 
 
 def weave(name: str, use: str) -> ti.Trial:

@@ -24,7 +24,7 @@ from trialid.workflow.notebook.arguments import effect_name, path_of
 from trialid.workflow.notebook.run_view import RunView
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FitRun(RunView):
     """A fit with all that was found out about it."""
 

@@ -19,7 +19,7 @@ from trialid.workflow.run_folder import check_replaceable
 from trialid.workflow.write_run import write
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PipelineRun(RunView):
     """A finished run of a pipeline file; nothing is written before `write`."""
 

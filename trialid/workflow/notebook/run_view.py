@@ -175,6 +175,10 @@ class RunView:
 
         return plot(self.series, str(output))
 
+    def __repr__(self) -> str:
+        kind, sentence = self.verdict.kind, self.verdict.sentence or ""
+        return f"{self.result.pipeline}: error {self.error:.2%}; {kind}: {sentence}"
+
     def _repr_html_(self) -> str:
         from trialid.report.pages.card import card
 

@@ -15,7 +15,7 @@ from trialid.errors import TrialidError, nearest
 from trialid.export.predicted_file import predicted_columns
 from trialid.result.build import Findings
 from trialid.result.schema import Result
-from trialid.signal_arrays import numbers
+from trialid.signal_arrays import HALF_ROUND, numbers
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict
 from trialid.workflow.use.orders import OrderTable, named_manoeuvre, stop_order
 from trialid.workflow.use.predict import (
@@ -144,6 +144,11 @@ def _table(
     for name, one in values.items():
         if one.ndim != 1 or len(one) < 2 or not np.isfinite(one).all():
             raise TrialidError(f"{name}: expected a row of at least two finite numbers, in SI")
+        if name in HALF_ROUND and float(np.abs(one).max()) > np.pi:
+            raise TrialidError(
+                f"{name}: reaches {np.abs(one).max():.4g} rad; no {HALF_ROUND[name]} is turned "
+                "half round: give radians, as np.deg2rad(20)"
+            )
     lengths = {len(one) for one in values.values()}
     timed = isinstance(period, float | int) and 0.0 < period < np.inf
     if len(lengths) != 1 or period is None or not timed:
