@@ -7,8 +7,9 @@ import pytest
 import s175q
 
 from trialid.effects import CATALOGUE
-from trialid.errors import StepsTooLong
+from trialid.errors import SimulationError, StepsTooLong
 from trialid.identification.fit import identify
+from trialid.identification.one_search import no_start
 from trialid.identification.problem import FASTEST, pose_problem
 from trialid.simulation.integrate import prepare, respond
 
@@ -80,3 +81,12 @@ def test_steps_in_which_a_stated_gear_cannot_be_followed_are_made_finer():
     assert fit.problem.simulator.substeps == told[-1]
     with pytest.raises(StepsTooLong, match=r"steps of 0\.5 s are too long for this model"):
         identify(trials, quick, replace(settings, most_substeps=1))
+
+
+@pytest.mark.parametrize(("T_delta", "kind"), [(0.1, StepsTooLong), (0.9, SimulationError)])
+def test_a_gear_quicker_than_a_step_is_told_wherever_a_start_leads(T_delta, kind):
+    """A hull that turns ever faster leaves her model in the finest steps, too; here they are 0.5 s."""
+    gear = (s175q.MODEL + CATALOGUE["rudder_servo"]).with_values({"T_delta": T_delta, "Nr": 0.05})
+    settings = replace(s175q.SETTINGS, free=("Nr", "Ndelta"), substeps=1)
+    said = no_start(pose_problem(ordered(1, **TRUE), gear, settings))
+    assert type(said) is kind

@@ -19,6 +19,8 @@ from trialid.identification.output_error import (
 )
 from trialid.identification.problem import Settings
 from trialid.identification.weighing import Weighing, colour_of
+from trialid.ship.effect import Rate
+from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure
 
 Vector = NDArray[np.float64]
@@ -202,22 +204,30 @@ def random_starts(problem: Problem, count: int, spread: float, seed: int) -> lis
     return starts
 
 
+def _is_quicker(model: ShipModel, step: float) -> bool:
+    """Whether a gear or a drive of hers follows in less than a step [s]."""
+    of_rates = (e for e in model.effects if Rate in e.forms)
+    times = [n for e in of_rates for n, p in e.parameters.items() if p.unit == "s"]
+    return any(0.0 < model.value(n) < step for n in times)
+
+
 def no_start(problem: Problem) -> SimulationError:
     """Why nothing can be simulated where a search would begin, and what to do.
 
     Steps are too long where samples come before she has gone her length: her motion is seen, and a
     gear's need not be. Of a container ship, 24 s, samples of 30 s are no trial however fine the
-    steps between them.
+    steps between them. A gear that is quicker than a step is one reason, whatever else a start
+    does: of a boat whose gear took 0.05 s nothing could be simulated in steps of 0.2.
     """
     departure = linearise(problem, problem.start)
     simulator = problem.simulator
+    step = problem.trials[0].period / simulator.substeps
     finer = replace(problem, simulator=replace(simulator, substeps=16 * simulator.substeps))
-    if not isinstance(respond_all(finer, problem.start, False), Departure):
-        period = problem.trials[0].period
-        step = period / simulator.substeps
-        seen = period < time_per_length(simulator.model, problem.trials)
+    sailed = not isinstance(respond_all(finer, problem.start, False), Departure)
+    if sailed or _is_quicker(simulator.model, step):
+        seen = problem.trials[0].period < time_per_length(simulator.model, problem.trials)
         return (StepsTooLong if seen else SimulationError)(
-            f"steps of {step:g} s are too long for this model: {departure}, with finer steps not; "
+            f"steps of {step:g} s are too long for this model: {departure}; "
             "choose a shorter [align] period, or more [identify] substeps"
         )
     return SimulationError(
