@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
 
+from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import refit
 from trialid.diagnosis.search.rivals import _held_back, rivals
 from trialid.diagnosis.search.score import rank
@@ -80,3 +81,20 @@ def test_what_is_held_back_by_the_file_may_be_meant_as_well(trials, spread, held
         assert EFFECT.name in rivals(cube, ranking, (cube, square))
     else:
         assert square.fit.eps_rmsn < cube.fit.eps_rmsn
+
+
+def test_what_is_held_back_and_would_do_nothing_is_not_meant(trials):
+    """By its slope it has to do as well: else no number of it would."""
+    ship = replace(SHIP, uncertainty={"default": 10.0, "Nrar": 0.05})
+    base = replace(MODEL - "yaw_drag_rar", ship=ship)
+    asked = replace(SETTINGS, free=FREE, priors=ship_priors(base, FREE), priors_of_ship=True)
+    fit = identify(trials, base, asked)
+    ranking, _ = rank(fit, {EFFECT.name: EFFECT, OTHER.name: OTHER})
+    found = {r.candidate.effect.name: r for r in refit(fit, ranking, lambda words: None)}
+    square, cube = found[EFFECT.name], found[OTHER.name]
+    before = square.candidate.carried.before
+    idle = replace(square.candidate, carried=Carried(before, before))
+    rest = tuple(idle if c.effect is EFFECT else c for c in ranking)
+    told = rivals(cube, rest, (cube, replace(square, candidate=idle)))
+    assert _held_back(square)
+    assert EFFECT.name not in told

@@ -85,7 +85,7 @@ def test_steps_in_which_a_stated_gear_cannot_be_followed_are_made_finer():
 
 @pytest.mark.parametrize(("T_delta", "kind"), [(0.1, StepsTooLong), (0.9, SimulationError)])
 def test_a_gear_quicker_than_a_step_is_told_wherever_a_start_leads(T_delta, kind):
-    """A hull that turns ever faster leaves her model in the finest steps, too; here they are 0.5 s."""
+    """A hull that turns ever faster leaves her model in the finest steps, too: of 0.5 s here."""
     gear = (s175q.MODEL + CATALOGUE["rudder_servo"]).with_values({"T_delta": T_delta, "Nr": 0.05})
     settings = replace(s175q.SETTINGS, free=("Nr", "Ndelta"), substeps=1)
     said = no_start(pose_problem(ordered(1, **TRUE), gear, settings))

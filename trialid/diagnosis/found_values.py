@@ -70,10 +70,12 @@ def at_a_sensors_end(effect: Effect, fit: Fit) -> bool:
 def at_no_place_within(effect: Effect, fit: Fit) -> bool:
     """Whether most of what it adds ran to the ends of what may be sought: nothing it does fits.
 
-    Of a boat whose battery ran down two of three coefficients of a surge in turns did.
+    Of a boat whose battery ran down two of three coefficients of a surge in turns did. A single one
+    may be as large.
     """
     added = {n for n, p in effect.parameters.items() if p.null == 0.0}
-    return 2 * len(added & {*fit.at_bounds}) > len(added)
+    ended = len(added & {*fit.at_bounds})
+    return ended > 1 and 2 * ended > len(added)
 
 
 def sweeps_away(effect: Effect, fit: Fit) -> bool:

@@ -33,7 +33,7 @@ def refit(name, ratio, eps, parameters=1, check=None, wobble=0.0, family=(), sta
     candidate = SimpleNamespace(
         effect=SimpleNamespace(
             name=name,
-            parameters={n: SimpleNamespace(unit="1") for n in "abcdef"[:parameters]},
+            parameters={n: SimpleNamespace(unit="1", null=0.0) for n in "abcdef"[:parameters]},
             states={},
             forms=(),
             signals=(),

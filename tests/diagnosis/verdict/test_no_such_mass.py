@@ -72,8 +72,8 @@ def test_nothing_is_said_of_a_force() -> None:
         ("surge_turning", ("Xvr", "Xvv"), True),
         ("surge_turning", ("Xvv",), False),
         ("surge_turning", (), False),
-        ("yaw_drag_rar", ("Nrar",), True),
-        ("yaw_drag_rar", ("Nr",), False),
+        ("yaw_drag_rar", ("Nrar",), False),
+        ("sway_cubic_cross", ("Yvvr", "Yvrr"), True),
         ("rudder_servo_limited", ("T_servo",), False),
     ],
 )

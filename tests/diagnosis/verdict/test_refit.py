@@ -42,7 +42,7 @@ def refit(
     candidate = SimpleNamespace(
         effect=SimpleNamespace(
             name=name,
-            parameters={"a": SimpleNamespace(unit="1")},
+            parameters={"a": SimpleNamespace(unit="1", null=0.0)},
             states={},
             forms=FORMS[name == "lag"],
             held=None,
@@ -90,7 +90,9 @@ def test_what_speaks_against_a_refit(changes, words):
 def test_a_coefficient_that_turns_round_when_it_is_freed_has_no_name(found, named):
     old, new = refit("Yv", BEFORE, LESS)
     new.candidate.effect.held = -0.02
-    new.candidate.effect.parameters = {"Yv": SimpleNamespace(low=-np.inf, high=0.0, unit="1")}
+    new.candidate.effect.parameters = {
+        "Yv": SimpleNamespace(low=-np.inf, high=0.0, unit="1", null=0.0)
+    }
     new.fit.estimates = {"Yv": found}
     assert (objection(old, new, 0.05) == "") is named
     assert (likeliest_refit(old, [new], 0.05) is new) is named
@@ -120,7 +122,7 @@ def test_beside_effects_that_were_added_a_lag_gives_way_to_what_is_of_the_ship_a
 def lag_of(late, after):
     """A sensor so late [s], on a model of 3 m at 0.6 m/s."""
     old, new = refit("lag", BEFORE, after)
-    new.candidate.effect.parameters = {"T_r": SimpleNamespace(unit="s")}
+    new.candidate.effect.parameters = {"T_r": SimpleNamespace(unit="s", null=0.0)}
     ship = SimpleNamespace(particulars={"L": 3.0, "g": 9.81, "U0": 0.6})
     new.fit.model = SimpleNamespace(ship=ship, value=lambda name: {"T_r": late}[name])
     new.fit.problem.trials = (SimpleNamespace(signals={}),)
@@ -232,7 +234,9 @@ def test_nor_is_it_named_where_held_out_trials_deny_what_of_the_ship_does_as_muc
     assert likeliest_refit(old, [lag, chance], 0.05) is lag
     turned = refit("Yv", BEFORE, LESS)[1]
     turned.candidate.effect.held = -0.02
-    turned.candidate.effect.parameters = {"Yv": SimpleNamespace(low=-np.inf, high=0.0, unit="1")}
+    turned.candidate.effect.parameters = {
+        "Yv": SimpleNamespace(low=-np.inf, high=0.0, unit="1", null=0.0)
+    }
     turned.fit.estimates = {"Yv": 0.003}
     assert likeliest_refit(old, [lag, turned], 0.05) is lag  # what has no name takes none away
 

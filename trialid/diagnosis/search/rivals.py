@@ -38,11 +38,12 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
 
     As good is what leaves no more of the blocks left out than chance would, and explains more than
     half of what the named one does, when it is fitted; by its slope where slopes are believed. What
-    is held back by what was known of it might be: of a model whose eddies damped her by ten times
-    the estimate, damping by the cube had the name, of which nothing was known.
+    is held back by what was known of it might be, where its slope would: of a model whose eddies
+    damped her by ten times the estimate, damping by the cube had the name, of which nothing was
+    known.
     """
     others = [r for r in refits if r is not named]
-    as_well = (r for r in others if does_as_well(named.carried, r.carried) or _held_back(r))
+    as_well = (r for r in others if does_as_well(named.carried, r.carried) or _might(named, r))
     good = {r.candidate.effect.name for r in as_well}
     apart = {r.candidate.effect.name for r in others} - good
     apart |= {c.effect.name for c in ranking if _has_ends(c.effect) and not c.allowed}
@@ -56,6 +57,11 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
 def _has_ends(effect: Effect) -> bool:
     """Whether a value beyond its range says that it is not this, as of a coefficient."""
     return effect.bound_by_meaning or effect.held is not None
+
+
+def _might(named: Refit, other: Refit) -> bool:
+    """Whether another does as well by its slope, and was held back when it was fitted."""
+    return does_as_well(named.carried, other.candidate.carried) and _held_back(other)
 
 
 def _held_back(refit: Refit) -> bool:
