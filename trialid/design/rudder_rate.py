@@ -17,6 +17,10 @@ OVER: Final = 0.9
 EVENLY: Final = 0.1
 """Share by which it may be slower over that: a ramp is by noise alone, a sine by 0.2. With half of
 it a zig-zag 10/10 counts up to 0.1 deg of noise on the rudder's angle, with this up to 0.2."""
+LONG: Final = 8
+"""Samples from angle to angle from which the whole way is clocked: of 2.7 deg/s in 0.1 to 0.2 deg
+of noise, logged once a second, 2.70 to 2.71 then, 2.77 to 2.84 by the quickest part. At half of it
+5 deg/s, logged every 2 s, are 4.8; with twice of it those 2.7 have to be logged twice a second."""
 SPIKE: Final = 3
 """Moves as quick that there have to be: a wild sample makes two."""
 
@@ -36,20 +40,26 @@ def gear_rate(trials: Iterable[Trial]) -> float:
 def _goes_evenly(trial: Trial) -> bool:
     """Whether the rudder goes from angle to angle at one rate, more than a sample long."""
     delta = trial.signals["delta"]
-    quick, whole = _quickest(delta, MOVED), _quickest(delta, OVER)
+    return _is_even(_quickest(delta, MOVED), _quickest(delta, OVER))
+
+
+def _is_even(quick: "Move", whole: "Move") -> bool:
     return quick.samples > 1 and whole.moved >= (1.0 - EVENLY) * quick.moved
 
 
 def rudder_rate(delta: Vector, period: float) -> float:
     """How fast a recorded rudder goes over [rad/s]: its quickest move by a part of its range.
 
-    From one sample to the next noise moves it too, and the faster the log the more.
+    From one sample to the next noise moves it too, and the faster the log the more: one that goes
+    evenly is clocked from angle to angle.
 
     >>> noisy = np.tile([0.0, 0.003], 50) + np.repeat([0.0, 0.2], 50).cumsum() / 50
     >>> round(rudder_rate(noisy, 0.1), 2)
     0.04
     """
-    return _quickest(delta, MOVED).moved / period
+    quick, whole = _quickest(delta, MOVED), _quickest(delta, OVER)
+    long = whole.samples >= LONG and _is_even(quick, whole)
+    return (whole if long else quick).moved / period
 
 
 class Move(NamedTuple):

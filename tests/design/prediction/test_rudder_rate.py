@@ -39,6 +39,15 @@ def test_a_gear_goes_as_fast_as_it_went(rate):
     )
 
 
+@pytest.mark.parametrize(("rate", "period"), [(2.3, 0.2), (2.7, 1.0), (2.7, 0.5)])
+def test_noise_makes_no_gear_quicker(rate, period):
+    """By its quickest part one of 2.7 deg/s in 0.2 deg of noise went 2.84, and overshoots less."""
+    trial = steered(rate, period=period)
+    rng = np.random.default_rng(5)
+    noisy = trial.signals["delta"] + 0.2 * D * rng.standard_normal(trial.samples)
+    assert rudder_rate(noisy, period) == pytest.approx(rate * D, rel=0.02)
+
+
 def test_a_rudder_worked_little_by_little_shows_no_gear():
     t = np.arange(0.0, 1200.0, PERIOD)
     waved = Trial("wave", "fit", PERIOD, {"delta": 10.0 * D * np.sin(0.05 * t)}, {})
