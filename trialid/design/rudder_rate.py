@@ -29,22 +29,15 @@ def gear_rate(trials: Iterable[Trial]) -> float:
     """How fast a rudder goes over [rad/s]: as fast as in the trials, `GEAR` where none shows it.
 
     One that goes from angle to angle at one rate goes as fast as it can, however slow that is. One
-    that is worked little by little, or is over from one sample to the next, may go faster.
+    that is worked little by little, or is over from one sample to the next, may go faster. What a
+    long way shows is better known than what a short one does, as far as these are not unlike.
     """
-    logged = [t for t in trials if "delta" in t.signals]
-    shown = any(_goes_evenly(t) for t in logged)
-    paces = [rudder_rate(t.signals["delta"], t.period) for t in logged]
-    return max([0.0 if shown else GEAR, *paces])
-
-
-def _goes_evenly(trial: Trial) -> bool:
-    """Whether the rudder goes from angle to angle at one rate, more than a sample long."""
-    delta = trial.signals["delta"]
-    return _is_even(_quickest(delta, MOVED), _quickest(delta, OVER))
-
-
-def _is_even(quick: "Move", whole: "Move") -> bool:
-    return quick.samples > 1 and whole.moved >= (1.0 - EVENLY) * quick.moved
+    clocked = [_clocked(t.signals["delta"], t.period) for t in trials if "delta" in t.signals]
+    long = max((c.rate for c in clocked if c.long), default=0.0)
+    short = max((c.rate for c in clocked), default=0.0)
+    if long > 0.0 and short <= (1.0 + EVENLY) * long:
+        return long
+    return max(0.0 if any(c.even for c in clocked) else GEAR, short)
 
 
 def rudder_rate(delta: Vector, period: float) -> float:
@@ -57,9 +50,22 @@ def rudder_rate(delta: Vector, period: float) -> float:
     >>> round(rudder_rate(noisy, 0.1), 2)
     0.04
     """
+    return _clocked(delta, period).rate
+
+
+class _Clocked(NamedTuple):
+    """How fast a rudder goes [rad/s], whether at one rate, and whether a long way shows it."""
+
+    rate: float
+    even: bool
+    long: bool
+
+
+def _clocked(delta: Vector, period: float) -> _Clocked:
     quick, whole = _quickest(delta, MOVED), _quickest(delta, OVER)
-    long = whole.samples >= LONG and _is_even(quick, whole)
-    return (whole if long else quick).moved / period
+    even = quick.samples > 1 and whole.moved >= (1.0 - EVENLY) * quick.moved
+    long = even and whole.samples >= LONG
+    return _Clocked((whole if long else quick).moved / period, even, long)
 
 
 class Move(NamedTuple):

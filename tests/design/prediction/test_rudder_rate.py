@@ -48,6 +48,17 @@ def test_noise_makes_no_gear_quicker(rate, period):
     assert rudder_rate(noisy, period) == pytest.approx(rate * D, rel=0.02)
 
 
+def test_a_long_way_is_believed_before_a_short_one_that_is_not_unlike():
+    rng = np.random.default_rng(6)
+    long, short = steered(2.7, period=1.0), steered(2.7, angle=9.0, period=1.0)
+    noisy = short.signals["delta"] + 0.15 * D * rng.standard_normal(short.samples)
+    short = Trial("short", "fit", 1.0, {"delta": noisy}, {})
+    assert gear_rate([short]) > 2.78 * D
+    assert gear_rate([long, short]) == pytest.approx(2.7 * D, rel=0.01)
+    quicker = steered(3.6, angle=9.0, period=1.0)  # with both pumps
+    assert gear_rate([long, quicker]) == pytest.approx(3.6 * D, rel=0.02)
+
+
 def test_a_rudder_worked_little_by_little_shows_no_gear():
     t = np.arange(0.0, 1200.0, PERIOD)
     waved = Trial("wave", "fit", PERIOD, {"delta": 10.0 * D * np.sin(0.05 * t)}, {})
