@@ -153,3 +153,13 @@ def test_a_rudder_logged_as_it_changes_is_told_from_none(tmp_path: Path) -> None
         begun(tmp_path, inspect_log(rewritten(path, sparse)))
     with pytest.raises(LogError, match="'rudder_deg' does not move"):
         begun(tmp_path, inspect_log(rewritten(path, [f"{a},0.0" for a, _ in rows])))
+
+
+@pytest.mark.parametrize(("length", "doubted"), [(95.0, False), (31.0, True), (29.0, False)])
+def test_a_speed_that_few_ships_have_is_doubted(tmp_path: Path, length: float, doubted: bool):
+    """8 m/s of 95 m is a Froude number of 0.26, of 31 m 0.46; a boat may plane."""
+    survey = inspect_log(log(tmp_path / "a.csv", 10.0))
+    made = starter([survey], tmp_path / "p.toml", None, Given(length=length))
+    said = "8.01 m/s of 31 m is a Froude number of 0.46, a fast craft's; as knots it would be 0.24"
+    assert (said in made.files[tmp_path / "p.toml"]) is doubted
+    assert ("Froude" in made.files[tmp_path / "p.toml"]) is doubted

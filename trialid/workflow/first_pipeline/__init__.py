@@ -48,6 +48,7 @@ from trialid.workflow.first_pipeline.twin_rudders import (
     with_twins,
 )
 from trialid.workflow.first_pipeline.unit_by_turning import (
+    with_doubtful_speeds,
     with_headings,
     with_rate_units,
     with_rudder_units,
@@ -145,7 +146,7 @@ def starter(
         left_out += short
         trials = with_rudder_units(with_rate_units(trials, L, u0), L, u0)
         trials = with_orders(trials, L / u0, main_drives(own))
-    trials = _cut(trials, windows) if windows else trials
+    trials = with_doubtful_speeds(_cut(trials, windows) if windows else trials, L)
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials, left_out=left_out)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials), tuple(left_out))
 
