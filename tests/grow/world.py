@@ -58,8 +58,10 @@ def carried_between(before: Any, after: Any, *_: Any) -> Carried:
 
 def candidate(name: str) -> Any:
     return SimpleNamespace(
-        effect=SimpleNamespace(name=name, parameters={name: SimpleNamespace(unit="1")}, states={},
-                               forms=(Force,), held=None, signals=()),
+        effect=SimpleNamespace(
+            name=name, parameters={name: SimpleNamespace(unit="1", null=0.0)}, states={},
+            forms=(Force,), held=None, signals=(),
+        ),
         family=(name,), p_value=0.001,
         shown=lambda level: True, carried=SimpleNamespace(seen=1.0),
     )  # fmt: skip
