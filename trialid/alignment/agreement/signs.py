@@ -45,7 +45,8 @@ it a zig-zag of 5 deg in a slow log."""
 STRETCH = 0.6
 """[s] A light boat's turn changes over this. Of nine records whose motors are logged 0.5 to 2.5 s
 late, and eight whose clocks are one, three of them with the sides exchanged, each has its side, and
-the delay to 0.4 s: with half of it, too, and to 0.8 s with twice."""
+the delay to 0.4 s: with half of it, too, and to 0.8 s with twice. A ninth, whose motors hardly turn
+her, shows neither."""
 APART = 8.0
 """[s] Clocks that are further apart show in what they hold of themselves."""
 DEPENDENT = 0.03
