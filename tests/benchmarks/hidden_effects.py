@@ -131,7 +131,8 @@ def diagnosed(
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        refits = (tried := refits_of(fit, ranking, asked, lambda words: None)).refits
+        tried = refits_of(fit, ranking, asked, lambda words: None)
+        refits = tried.refits
     with watch("decide"):
         whole = gap_beside_best(completeness(augmented), fit, tried, asked)
         parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)

@@ -67,7 +67,7 @@ def at_a_sensors_end(effect: Effect, fit: Fit) -> bool:
     return not of_the_ship(effect) and bool({*effect.parameters} & {*fit.at_bounds})
 
 
-def at_no_place_within(effect: Effect, fit: Fit) -> bool:
+def mostly_at_ends(effect: Effect, fit: Fit) -> bool:
     """Whether most of what it adds ran to the ends of what may be sought: nothing it does fits.
 
     Of a boat whose battery ran down two of three coefficients of a surge in turns did. A single one

@@ -72,7 +72,7 @@ def held_before(fit: Fit, named: Refit, freed: Freed) -> Verdict:
     before, eps, other = (f"{x.eps_rmsn:.2%}" for x in (fit, named.fit, freed.fit))
     said = (
         f"{named.candidate.effect.name} takes the error from {before} to {eps}, and numbers that "
-        f"are held do as well, off by no more than her file says of them: to {other}, {most} "
+        f"are held do as well, off by at most twice what her file says: to {other}, {most} "
         "most. No effect has to be missing: free those first, and look again"
     )
     return Verdict("cannot tell", None, (), said, held_as_well=freed.moved)

@@ -8,11 +8,11 @@ import numpy as np
 from trialid.diagnosis.found_values import (
     as_slow_as_the_ship,
     at_a_sensors_end,
-    at_no_place_within,
     by_heading,
     gives_way,
     her_own,
     late_sensor,
+    mostly_at_ends,
     no_such_mass,
     of_the_ship,
     sweeps_away,
@@ -187,7 +187,7 @@ SEEN: Final = 0.002
 every 2 s leaves as much. Of 12 such records of a ship of whom nothing was missing two had a name,
 0.0012 and 0.0017 for it; with half of it they have."""
 
-ENDS: Final = (at_a_sensors_end, at_no_place_within)
+ENDS: Final = (at_a_sensors_end, mostly_at_ends)
 NO_SUCH_VALUE: Final = (turns_round, *ENDS, sweeps_away, no_such_mass)
 """What a value is that no ship, no sensor and no trial has."""
 

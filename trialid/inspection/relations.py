@@ -112,25 +112,32 @@ def turns_late(drive: ChannelInspection, rate: ChannelInspection) -> tuple[float
 
     None where the two have too little in common.
     """
-    common = on_one_clock(drive.sketch, rate.sketch)
+    common = _with_rate(drive, rate, ())
     if common is None:
         return None
     period, (force, r), whole = common
-    if rate.guess is not None and rate.guess.quantity == "psi":
-        r = np.gradient(r)
     return signs.late_cause(force, r, whole, period)
+
+
+def _with_rate(
+    rudder: ChannelInspection, turning: ChannelInspection, beside: Sequence[ChannelInspection]
+) -> tuple[float, list[Vector], Mask] | None:
+    """Both on one clock, as `on_one_clock`, of a heading its slope, and what stands beside."""
+    common = on_one_clock(rudder.sketch, turning.sketch, *(one.sketch for one in beside))
+    if common is not None and turning.guess is not None and turning.guess.quantity == "psi":
+        period, (delta, psi, *others), whole = common
+        return period, [delta, np.gradient(psi), *others], whole
+    return common
 
 
 def _turning(
     rudder: ChannelInspection, turning: ChannelInspection, beside: Sequence[ChannelInspection]
 ) -> signs.Turning | None:
     """How the ship answers a rudder; None where the two have too little in common."""
-    common = on_one_clock(rudder.sketch, turning.sketch, *(one.sketch for one in beside))
+    common = _with_rate(rudder, turning, beside)
     if common is None:
         return None
     period, (delta, r, *others), whole = common
-    if turning.guess is not None and turning.guess.quantity == "psi":
-        r = np.gradient(r)
     found = signs.answer_of(delta, r, whole, period, others)
     return found if found.sign or others else first_turn(delta, r, whole)
 

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import s175q
 
-from trialid.diagnosis.found_values import at_no_place_within, no_such_mass
+from trialid.diagnosis.found_values import mostly_at_ends, no_such_mass
 from trialid.diagnosis.objections import NO_SUCH_VALUE
 from trialid.effects import CATALOGUE
 from trialid.ship.model import ShipModel
@@ -79,6 +79,6 @@ def test_nothing_is_said_of_a_force() -> None:
 )
 def test_most_of_what_an_effect_adds_at_its_ends(name: str, ended: tuple[str, ...], told) -> None:
     """What only shapes it may well be there: a gear that is as quick as it can be."""
-    assert at_no_place_within in NO_SUCH_VALUE
+    assert mostly_at_ends in NO_SUCH_VALUE
     fit: Any = SimpleNamespace(at_bounds=dict.fromkeys(ended, 0.05))
-    assert at_no_place_within(CATALOGUE[name], fit) is told
+    assert mostly_at_ends(CATALOGUE[name], fit) is told

@@ -24,6 +24,16 @@ def test_the_delay_of_the_motors_log_and_the_side(late: float, side: float) -> N
         assert lag == pytest.approx(-late, abs=0.5)
 
 
+@pytest.mark.parametrize("samples", [0, 3, 30, 120])
+def test_a_short_record_tells_what_it_can(samples: int) -> None:
+    """Three seconds and twelve: less than the clocks that are sought lie apart."""
+    acts = pushes(60)[:samples]
+    r = np.sin(np.arange(samples))
+    lag, strength = late_cause(acts[:, 0], r, np.ones(samples, dtype=bool), PERIOD)
+    assert abs(lag) <= 0.5 * samples * PERIOD
+    assert abs(strength) <= 1.0
+
+
 @pytest.mark.parametrize(("late", "exchanged"), [(3.0, False), (0.0, True)])
 def test_a_clock_or_the_sides(tmp_path: Path, late: float, exchanged: bool) -> None:
     acts = pushes(8)

@@ -1,4 +1,5 @@
 import copy
+import json
 import shlex
 
 import click
@@ -6,7 +7,7 @@ import pytest
 
 from trialid.cli.main import commands as known_commands
 from trialid.names.wording import THIN
-from trialid.report.words.advice import advice, moves, trust
+from trialid.report.words.advice import OPENS, STATED, advice, moves, trust
 from trialid.result.fit_rows import WeakRow
 from trialid.result.json_file import result_of
 
@@ -53,6 +54,27 @@ def test_where_one_of_several_is_missing_each_may_be_tried(result):
     assert tried == [f"trialid add container_ship.toml {name}" for name in names]
     for command in tried:
         assert_known(command)
+
+
+def test_what_is_held_is_freed_before_anything_is_added(result):
+    held = verdict("cannot tell") | {"held_as_well": ["I_xx", "Yr"]}
+    free = [*result["model"]["free"], "I_xx", "Yr"]
+    commands = [each.command for each in advised(result, verdict=held) if each.command]
+    assert commands[0] == f"free = {json.dumps(free)}  # priors = " + '"ship"'
+    assert not any(" add " in command for command in commands)
+
+
+@pytest.mark.parametrize(("signals", "ways"), [(["phi", "u"], 1), (["phi", "delta"], 4)])
+def test_what_opens_a_way_to_the_noise_of_a_free_roll(result, signals, ways):
+    """Nothing drives her: no orders can be given again, and none steady."""
+    names = ("repeated manoeuvre", "periods of a periodic test", "quiet stretch", STATED)
+    closed = [{"method": name, "available": False, "reason": "none"} for name in names]
+    rows = [{"trial": "a", "signal": name, "channel": name} for name in signals]
+    run = copy.deepcopy(result) | {"signals": rows, "verdict": verdict("cannot tell")}
+    run["split"] |= {"noise": None, "routes": closed}
+    [said] = [each.words for each in advice(result_of(run)) if "opens a way" in each.words]
+    assert sum(words in said for words in OPENS.values()) == ways
+    assert OPENS[STATED] in said
 
 
 def assert_known(command):

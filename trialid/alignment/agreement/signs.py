@@ -202,10 +202,16 @@ def late_cause(cause: Vector, effect: Vector, valid: Mask, period: float) -> tup
 
     Over short stretches: in long ones a turn and the next one to the other side run together. A
     cause that is logged late has the effect before it, and a delay below zero.
+
+    Parameters
+    ----------
+    cause, effect, valid
+        On one clock of this period [s], and where both are; (N,) each.
     """
     n = max(1, round(STRETCH / period))
-    found = []
-    for k in range(-int(APART / period), int(APART / period) + 1):
+    most = min(int(APART / period), len(cause) // 2 - 3 * n)
+    found = [(0.0, 0.0)]
+    for k in range(-most, most + 1):
         whole = slice(max(0, k), len(cause) + min(0, k))
         part = slice(max(0, -k), len(cause) - max(0, k))
         table = _of_stretches(cause[part], effect[whole], valid[part] & valid[whole], n)

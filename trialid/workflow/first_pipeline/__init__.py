@@ -40,7 +40,11 @@ from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_revolutions
 from trialid.workflow.first_pipeline.roll_decay import decays_among
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
-from trialid.workflow.first_pipeline.speed_by_track import held_against_track, with_speed_units
+from trialid.workflow.first_pipeline.speed_by_track import (
+    held_against_track,
+    with_doubtful_speeds,
+    with_speed_units,
+)
 from trialid.workflow.first_pipeline.twin_rudders import (
     RUDDERS,
     has_twins,
@@ -48,7 +52,6 @@ from trialid.workflow.first_pipeline.twin_rudders import (
     with_twins,
 )
 from trialid.workflow.first_pipeline.unit_by_turning import (
-    with_doubtful_speeds,
     with_headings,
     with_rate_units,
     with_rudder_units,

@@ -52,9 +52,7 @@ STRAIGHT: Final = Reason(
 LATE: Final = 2.0
 """[s] No compass is later. A GNSS receiver's heading is 0.1 to 0.5 s late, a filtered gyro's 1; the
 leap seconds are 18."""
-APART: Final = Reason(
-    "its clock is another than the rate's, and how far they are apart is said there"
-)
+APART: Final = Reason("its clock is another than that of r, where it is said how far")
 TURNED: Final = 10.0
 """Degrees within which the heading of a log straight on stays. A rate that stood still in a turn is
 not left beside it for that; at half of it and at twice the same logs are straight on."""

@@ -1,7 +1,4 @@
-"""Units of headings, yaw rates and small rudders that no log states, by how fast a ship turns.
-
-And a stated one of a speed that few ships of that length have.
-"""
+"""Units of headings, yaw rates and small rudders that no log states, by how fast a ship turns."""
 
 import dataclasses
 from collections.abc import Mapping, Sequence
@@ -24,33 +21,6 @@ TURNED: Final = 0.1
 have 0.3 to 3 once they turn, in a fast zig-zag less. Degrees taken for radians give 0.005 to 0.05.
 At half of it a ferry that is hardly steered is read in degrees still (0.02), as a cargo ship in a
 sea is (0.04), and at twice; a fast zig-zag (0.2 and more) at twice no longer in radians."""
-
-
-FAST: Final = 0.45
-"""Froude number of a ship, over which few go: a ferry of 170 m at 21 knots has 0.26, a destroyer's
-32 are 0.42, a fast catamaran's 38 are 0.6. At half of it a ferry is doubted, at twice of it no ship
-whose knots are called metres a second."""
-OF_SHIPS: Final = 30.0
-"""[m] Shorter ones may plane."""
-
-
-def with_doubtful_speeds(trials: Sequence[Chosen], length: float) -> list[Chosen]:
-    """The trials, a speed that few ships of this length [m] have with what it would be in knots."""
-    return [
-        dataclasses.replace(t, signals=tuple(_doubted(s, t.speed, length) for s in t.signals))
-        for t in trials
-    ]
-
-
-def _doubted(signal: Signal, speed: float | None, length: float) -> Signal:
-    froude = (speed or 0.0) / float(np.sqrt(9.81 * length))
-    if signal.quantity != "u" or length < OF_SHIPS or froude < FAST:
-        return signal
-    said = (
-        f"CAREFUL: {speed:.3g} m/s of {length:.3g} m is a Froude number of {froude:.2f}, a fast "
-        f"craft's; as knots it would be {froude * units.factor('kn', 'm/s'):.2f}"
-    )
-    return dataclasses.replace(signal, further=(*signal.further, said))
 
 
 def with_headings(surveys: Sequence[Inspection], seconds: float | None) -> list[Inspection]:
