@@ -6,5 +6,5 @@ Progress = Callable[[str, float | None], None]
 """Takes words and the share that is done, None where nobody knows."""
 
 
-def silent(words: str, share: float | None) -> None:
+def silent(words: str, share: float | None = None) -> None:
     """Progress that nobody watches."""

@@ -42,11 +42,12 @@ from hidden_truth import (
 )
 from spread import add_options, spread
 
-from trialid.diagnosis.diagnose import beside_others, refits_of
+from trialid.diagnosis.diagnose import refits_of
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import gap_beside_best
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.may_be_off import may_be_off
+from trialid.diagnosis.meant_as_well import beside_others
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.completeness import completeness
@@ -124,24 +125,23 @@ def diagnosed(
     """From trials to a verdict as `trialid.workflow.run.run` goes, with its own functions."""
     asked = DEFAULTS
     with watch("fit"):
-        fit = fit_model.fit_with_progress(tuple(trials), model, settings, lambda words, share: None)
+        fit = fit_model.fit_with_progress(tuple(trials), model, settings, silent)
     with watch("rank"):
         candidates = {**CATALOGUE, **candidates_to_free(fit)}
         ranking, augmented = rank(fit, candidates, asked.family_cos, asked.level)
     with watch("split"):
         parts, routes = split(fit, augmented, {})
     with watch("refit"):
-        tried = refits_of(fit, ranking, asked, lambda words: None)
-        refits = tried.refits
+        tried = refits_of(fit, ranking, asked, silent)
     with watch("decide"):
         whole = gap_beside_best(completeness(augmented), fit, tried, asked)
-        parts = held_against(parts, routes, fit, [r.fit for r in refits], whole)
-        verdict = decide(fit, ranking, refits, parts, whole, asked.level)
+        parts = held_against(parts, routes, fit, [r.fit for r in tried.refits], whole)
+        verdict = decide(fit, ranking, tried.refits, parts, whole, asked.level)
         sure = partial(accuracy_of, fit, parts, may_be_off(augmented))
         verdict = with_held_out(fit.examined, verdict, lambda: sure().covariance, asked.level)
-        verdict = beside_others(fit, verdict, refits, asked, silent)
-        named = next((r for r in refits if r.candidate.effect.name == verdict.effect), None)
-    return Diagnosis(fit, ranking, refits, named, verdict)
+        named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
+        verdict = beside_others(fit, verdict, named, parts, whole, asked=asked, progress=silent)
+    return Diagnosis(fit, ranking, tried.refits, named if verdict.effect else None, verdict)
 
 
 def settings_of(model: ShipModel) -> Settings:

@@ -18,7 +18,7 @@ from trialid.diagnosis.force.missing_force import MissingForce, missing_force
 from trialid.diagnosis.force.usual_forces import hull_at_once
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
-from trialid.diagnosis.meant_as_well import also_from, held_before, held_instead, two_instead
+from trialid.diagnosis.meant_as_well import beside_others
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
@@ -67,10 +67,9 @@ def diagnose(
     with meanwhile(partial(_after, tried.best, tried, asked, progress), _of(tried.best)) as best:
         whole = gap_beside_best(whole, fit, tried, asked, grown=grown)
         before = _bounded(before, tried.refits, whole)
-        found = _verdict(fit, ranking, tried.refits, before, whole, asked=asked, grown=grown)
-        verdict = beside_others(fit, found, tried.refits, asked, progress)
-        named = _named(verdict, tried.refits)
-        verdict, together = _or_of_several(fit, verdict, whole, tried.refits, asked, progress)
+        found = _verdict(fit, ranking, tried, before, whole, asked, grown=grown, progress=progress)
+        named = _named(found, tried.refits)
+        verdict, together = _or_of_several(fit, found, whole, tried.refits, asked, progress)
         if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
         missing = _force(force, verdict, named.fit if named else fit, asked.level, progress)
@@ -96,42 +95,31 @@ def _of(refit: Refit | None) -> tuple[Fit, ...]:
 def _verdict(
     fit: Fit,
     ranking: Sequence[Candidate],
-    refits: Sequence[Refit],
+    tried: Tried,
     before: Diagnosed,
     whole: Completeness | None,
-    *,
     asked: DiagnoseSettings,
+    *,
     grown: bool,
+    progress: Progress,
 ) -> Verdict:
-    """What is missing, held against a motion left out, trials held out, and what nobody logged."""
+    """What is missing, held against a motion left out, trials held out, and what nobody logged.
+
+    And beside two effects at once, and what the model holds.
+    """
+    refits = tried.refits
     found = decide(fit, ranking, refits, before.split, whole, level=asked.level, grown=grown)
     found = with_motion(fit, found, ranking, refits, asked.level)
     named = None if grown else _named(found, refits)
     found = with_held_out(fit, found, lambda: before.own_accuracy.covariance, asked.level, named)
     found = name_records(fit, found, asked.candidates.values())
-    return settle(fit, found, asked.candidates.get(found.effect or ""))
-
-
-def beside_others(
-    fit: Fit,
-    verdict: Verdict,
-    refits: Sequence[Refit],
-    asked: DiagnoseSettings,
-    progress: Progress,
-) -> Verdict:
-    """The verdict beside two effects at once, and what is held, which leaves it no name."""
-    named = _named(verdict, refits)
-    if named is None:
-        return verdict
+    found = settle(fit, found, asked.candidates.get(found.effect or ""))
+    named = _named(found, refits)
 
     def said(words: str) -> None:
         progress(words, 0.85)
 
-    adds = named.candidate.effect.held is None  # what is freed itself is not a rival of the rest
-    if asked.coefficients and adds and (freed := held_instead(fit, named, said)):
-        return held_before(fit, named, freed)
-    tried = tried_effects(fit, asked)
-    return also_from(verdict, two_instead(fit, named, verdict.family, tried, asked.refit, said))
+    return beside_others(fit, found, named, before.split, whole, asked=asked, progress=said)
 
 
 def _or_of_several(

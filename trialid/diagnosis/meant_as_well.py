@@ -7,16 +7,20 @@ not told from `heel_drift` alone. She has neither: her roll is damped at rest, t
 flow goes by the screws, and her added masses lie one to two standard deviations off their formulas.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import gap_with, tried_effects
+from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.augment import fixed_coefficients
-from trialid.diagnosis.search.carried import does_as_well
+from trialid.diagnosis.search.carried import Carried, does_as_well
 from trialid.diagnosis.search.carry_over import carried_between
+from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.falls import fall
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.together import Pair, Together, fit_pairs
@@ -55,6 +59,34 @@ class Freed:
 
     fit: Fit
     moved: tuple[str, ...]
+    carried: Carried
+
+
+def beside_others(
+    fit: Fit,
+    verdict: Verdict,
+    named: Refit | None,
+    parts: Split,
+    whole: Completeness | None,
+    *,
+    asked: DiagnoseSettings,
+    progress: Progress,
+) -> Verdict:
+    """The verdict beside two effects at once, and what is held, which leaves it no name.
+
+    Nor is anything outside the catalogue where what is held does all that it does not.
+    """
+    if not (named or verdict.kind == "not in catalogue"):
+        return verdict
+    if named is None:
+        freed = held_alone(fit, parts, progress) if asked.coefficients else None
+        known = freed and not gap_with(whole, freed.fit, asked)
+        return held_before(fit, None, freed) if freed and known else verdict
+    adds = named.candidate.effect.held is None  # what is freed itself is not a rival of the rest
+    if asked.coefficients and adds and (freed := held_instead(fit, named, progress)):
+        return held_before(fit, named, freed)
+    tried = tried_effects(fit, asked)
+    return also_from(verdict, two_instead(fit, named, verdict.family, tried, asked.refit, progress))
 
 
 def also_from(found: Verdict, two: Together | None) -> Verdict:
@@ -66,14 +98,20 @@ def also_from(found: Verdict, two: Together | None) -> Verdict:
     return replace(found, sentence=sentence, pair_as_well=two.names)
 
 
-def held_before(fit: Fit, named: Refit, freed: Freed) -> Verdict:
-    """The verdict where what is held does as well: nothing has to be missing."""
+def held_before(fit: Fit, named: Refit | None, freed: Freed) -> Verdict:
+    """The verdict where what is held does as well, or as all that is missing."""
     most = " and ".join(freed.moved[:TOLD])
-    before, eps, other = (f"{x.eps_rmsn:.2%}" for x in (fit, named.fit, freed.fit))
+    before, other = (f"{x.eps_rmsn:.2%}" for x in (fit, freed.fit))
+    begun = (
+        f"{named.candidate.effect.name} takes the error from {before} to "
+        f"{named.fit.eps_rmsn:.2%}, and numbers that are held do as well"
+        if named
+        else f"no effect of the catalogue explains what is left of {before}, and numbers that are "
+        "held do"
+    )
     said = (
-        f"{named.candidate.effect.name} takes the error from {before} to {eps}, and numbers that "
-        f"are held do as well, off by at most twice what her file says: to {other}, {most} "
-        "most. No effect has to be missing: free those first, and look again"
+        f"{begun}, off by at most twice what her file says: to {other}, {most} most. "
+        "No effect has to be missing: free those first, and look again"
     )
     return Verdict("cannot tell", None, (), said, held_as_well=freed.moved)
 
@@ -101,34 +139,57 @@ def two_instead(
 
 
 def held_instead(fit: Fit, named: Refit, progress: Progress) -> Freed | None:
-    """The model with what is held freed, where that does as well; off by no more than is known.
+    """The model with what is held freed, where that does as well as a named effect."""
+    own = named.candidate.effect.parameters  # a coefficient that is freed is no rival of itself
+    freed = _freed(fit, FORETOLD * fall(fit, named), progress, own)
+    return freed if freed and freed.carried.log_ratio <= named.cost else None
 
-    All are freed at once, each about its value and near it. They are in the model, and off by some
-    of that in any ship: no more is counted for them, as for an effect's coefficients.
+
+def held_alone(fit: Fit, parts: Split, progress: Progress) -> Freed | None:
+    """The model with what is held freed, where that leaves no more than noise may be.
+
+    And is worth what a name is; None where nothing says how much of the error is no noise.
+    """
+    sure = parts.undermodelling_interval[0] if parts.undermodelling_interval else 0.0
+    if not sure > 0.0:
+        return None
+    share = (sure / fit.examined.eps_rmsn) ** 2  # of the squared error, that cannot be noise
+    freed = _freed(fit, FORETOLD * share, progress)
+    enough = freed and freed.carried.falls and fall(fit.examined, freed) >= share
+    return freed if enough else None
+
+
+def _freed(fit: Fit, least: float, progress: Progress, own: Collection[str] = ()) -> Freed | None:
+    """All that is held freed at once, each about its value; None where slopes foretell too little.
+
+    They are in the model, and off by some of that in any ship: no more is counted for them, as for
+    an effect's coefficients.
     """
     fit = with_means(fit).examined
-    model = fit.problem.simulator.model
-    own = named.candidate.effect.parameters  # a coefficient that is freed is no rival of itself
-    held = {n: model.value(n) for n in fixed_coefficients(fit) if n not in own}
-    known = {n: (x, abs(x) * model.ship.share_off(n)) for n, x in held.items()}
-    known = {n: each for n, each in known.items() if each[1] > 0.0}
-    if not known:
-        return None
+    known = _as_known(fit, own)
     wider = _wider(fit.settings, known)
     near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
-    if _foretold(fit, wider, near) < FORETOLD * fall(fit, named):
+    if not known or _foretold(fit, wider, near) < least:
         return None
     progress("freeing what is held")
     try:
         freed = identify(fit.trials, fit.model, wider, near=near)
     except TrialidError:  # they cannot be sought on this record
         return None
-    carried = carried_between(fit, freed)
-    if not freed.converged or carried.log_ratio > named.cost:
+    if not freed.converged:
         return None
     moved = {n: abs(freed.value(n) - x) / off for n, (x, off) in known.items()}
     order = sorted(known, key=lambda n: -moved[n])
-    return Freed(freed, tuple(n for i, n in enumerate(order) if moved[n] >= FAR or i < TOLD))
+    most = tuple(n for i, n in enumerate(order) if moved[n] >= FAR or i < TOLD)
+    return Freed(freed, most, carried_between(fit, freed))
+
+
+def _as_known(fit: Fit, own: Collection[str]) -> dict[str, tuple[float, float]]:
+    """What is held, with its standard deviation by the ship's file where that says one."""
+    model = fit.problem.simulator.model
+    held = {n: model.value(n) for n in fixed_coefficients(fit) if n not in own}
+    known = {n: (x, abs(x) * model.ship.share_off(n)) for n, x in held.items()}
+    return {n: each for n, each in known.items() if each[1] > 0.0}
 
 
 def _wider(asked: Settings, known: Mapping[str, tuple[float, float]]) -> Settings:

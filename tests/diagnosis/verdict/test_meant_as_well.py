@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
 
-from trialid.diagnosis.meant_as_well import Freed, also_from, held_before, held_instead, two_instead
+from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.examine import examine_fit
+from trialid.diagnosis.meant_as_well import (
+    Freed,
+    also_from,
+    beside_others,
+    held_before,
+    held_instead,
+    two_instead,
+)
 from trialid.diagnosis.search.freed import free_coefficient
 from trialid.diagnosis.search.refit import refit
 from trialid.diagnosis.search.score import rank
@@ -107,7 +116,7 @@ def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
 
 def test_where_what_is_held_does_as_well_nothing_has_a_name(without_two):
     named = tried(without_two, "yaw_drag_rar")
-    found = held_before(without_two, named, Freed(named.fit, ("m", "Yv", "Yr")))
+    found = held_before(without_two, named, Freed(named.fit, ("m", "Yv", "Yr"), named.carried))
     assert (found.kind, found.effect, found.family) == ("cannot tell", None, ())
     assert verdict_part(found, None).held_as_well == ("m", "Yv", "Yr")
     before, after = (f"{fit.eps_rmsn:.2%}" for fit in (without_two, named.fit))
@@ -116,6 +125,35 @@ def test_where_what_is_held_does_as_well_nothing_has_a_name(without_two):
         f"well, off by at most twice what her file says: to {after}, m and Yv most. No effect "
         "has to be missing: free those first, and look again"
     )
+
+
+NONE = Verdict("not in catalogue", None, (), "no effect explains it")
+
+
+def beside(fit):
+    """What is said of it where no effect explains it."""
+    asked = DiagnoseSettings(candidates={})
+    parts = examine_fit(fit, asked, lambda words, share: None)[0].split
+    return beside_others(fit, NONE, None, parts, None, asked=asked, progress=silent)
+
+
+@pytest.mark.parametrize(("knows", "kind"), [(0.3, "cannot tell"), (0.02, "not in catalogue")])
+def test_nothing_lies_outside_the_catalogue_that_what_is_held_explains(knows, kind):
+    """Of a ship whose added masses are 1.5 times her file's; a file that is sure shuts them out."""
+    water = {name: 1.5 * SHIP.mass[name] for name in ("Nrdot", "Yvdot")}
+    known = replace(SHIP, uncertainty={"default": 0.0, **dict.fromkeys(water, knows)})
+    trials = sailed(replace(MODEL, ship=replace(SHIP, mass={**SHIP.mass, **water})))
+    fit = identify(trials, replace(MODEL, ship=known), replace(SETTINGS, free=FREE))
+    found = beside(fit)
+    assert found.kind == kind
+    assert {*found.held_as_well} == ({*water} if kind == "cannot tell" else set())
+
+
+def test_what_is_held_and_leaves_more_than_noise_explains_nothing(without_two):
+    """Two effects are missing: what is held takes of it a part, and something is outside still."""
+    known = replace(SHIP, uncertainty={"default": 0.01})
+    fit = identify(without_two.trials, replace(MODEL, ship=known), without_two.settings)
+    assert beside(fit) is NONE
 
 
 @pytest.mark.parametrize(
