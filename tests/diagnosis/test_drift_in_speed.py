@@ -82,7 +82,7 @@ def test_a_current_that_is_looked_for_is_found_and_leaves_the_ship_alone(seed, c
         assert fit.value(name) == pytest.approx(MODEL.value(name), rel=0.04)
     done = diagnose(fit)
     words = re.compile(
-        r"the fit reads a current of 0\.[78]\d* \+-0\.\d+ m/s to (00|35)\d deg out of"
+        r"the fit reads a current of 0\.[78]\d* \+-0\.\d+ m/s to (00|35)\d \+-\d+ deg out of"
     )
     assert any(words.match(said) for said in done.result.fit.remarks) is (current > 0.0)
     assert done.verdict.effect != "current_in_speed_record"

@@ -82,7 +82,10 @@ def cannot_tell(fit: Fit, accuracy: Accuracy) -> tuple[str, ...]:
 
 
 def in_speed(fit: Fit, accuracy: Accuracy) -> tuple[str, ...]:
-    """The current that a speed over ground tells, where it is more than what nobody knows of it."""
+    """The current that a speed over ground tells, where it is more than what nobody knows of it.
+
+    Its ranges are the noise's: what the model lacks leads it off, and no range tells.
+    """
     names = [p.name for p in accuracy.parameters]
     own = [names.index(n) for n in current_in_speed.parameters if n in names]
     if not own:
@@ -92,9 +95,10 @@ def in_speed(fit: Fit, accuracy: Accuracy) -> tuple[str, ...]:
     if drift < max(SURE * half, SLIGHT * fit.model.ship.particulars["U0"]):
         return ()
     to = round(float(np.rad2deg(np.arctan2(east, north)))) % 360
+    turned = np.rad2deg(np.arcsin(half / drift))
     return (
-        f"the fit reads a current of {drift:.2g} +-{half:.1g} m/s to {to:03d} deg out of the speed "
-        "over ground",
+        f"the fit reads a current of {drift:.2g} +-{half:.1g} m/s to {to:03d} +-{turned:.0f} deg "
+        "out of the speed over ground, as far as noise tells",
     )
 
 
