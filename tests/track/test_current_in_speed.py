@@ -18,7 +18,8 @@ def told(north, east, error):
 
 
 @pytest.mark.parametrize(
-    ("north", "east", "words"), [(0.0, 0.8, "0.8 +-0.06 m/s to 090 +-4 deg"), (-0.3, 0.0, "to 180 +-11 deg")]
+    ("north", "east", "words"),
+    [(0.0, 0.8, "0.8 +-0.06 m/s to 090 +-4 deg"), (-0.3, 0.0, "to 180 +-11 deg")],
 )
 def test_one_that_is_sure_is_told_with_its_range_and_where_it_sets(north, east, words):
     [said] = told(north, east, 0.03)

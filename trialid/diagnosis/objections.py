@@ -64,6 +64,9 @@ TOUCHED: Final = 0.05
 """Part of that which an effect must take to have a share in it: those three took 0.003 at most, a
 steady wind 0.93. Half and twice change nothing there."""
 
+SURER: Final = 12.0
+"""Twice the log odds at which one of two is surer, e^6: as in the trial to sail next."""
+
 MOST: Final = 0.5
 """Share of the squared error that goes with an effect from which on it has a name although no test
 against the noise shows it: where most that a model leaves is of the effect, the noise looks as
@@ -140,10 +143,26 @@ def _looks_like_the_ship(
         r.candidate.allowed and does_as_well(refit.carried, r.carried) for r in ship
     ):
         return True
-    return (doubted or as_slow_as_the_ship(*_found(refit))) and any(
-        objection(fit, r, level) in ("", HELD_OUT) and as_good(refit.carried.after, r.carried.after)
-        for r in ship
+    standing = [r for r in ship if objection(fit, r, level) in ("", HELD_OUT)]
+    sensor = not of_the_ship(refit.candidate.effect)
+    slow = (grown and sensor) or as_slow_as_the_ship(*_found(refit))
+    return any(
+        _shown_more(refit, r) or (slow and as_good(refit.carried.after, r.carried.after))
+        for r in standing
     )
+
+
+def _shown_more(refit: Refit, other: Refit) -> bool:
+    """Whether a twin of a sensor's effect, of the ship, stands out more against the noise.
+
+    Whatever blocks say: where two measures contradict each other about twins a record does not tell
+    them apart. Of a stranger's boat without drag by her speed in her model her log was named as
+    0.16 m/s off in 13 of 20 voyages (cosine 0.98); in five of these the drag stands out more, by
+    30 to 73.
+    """
+    mine, its = refit.candidate, other.candidate
+    alike = its.effect.name in mine.family and not of_the_ship(mine.effect)
+    return alike and its.score > mine.score + SURER
 
 
 def _told_by_held_out(fit: Fit, refit: Refit, other: Refit) -> bool:
@@ -168,7 +187,7 @@ def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit
     if not refits:
         return None
     least = min(refits, key=lambda r: r.cost)
-    close = [r for r in refits if as_good(least.carried.after, r.carried.after)]
+    close = [r for r in refits if does_as_well(least.carried, r.carried)]
 
     def standing(r: Refit) -> tuple[bool, bool, float]:
         return _gives_way(r, grown), not r.candidate.p_value < level, r.cost

@@ -9,6 +9,8 @@ from test_refit import ALIKE, LESS, refit
 
 from trialid.diagnosis.found_values import by_heading, sweeps_away
 from trialid.diagnosis.objections import likeliest_refit, objection
+from trialid.diagnosis.search.carried import Carried
+from trialid.diagnosis.search.rivals import rivals
 from trialid.effects import CATALOGUE
 
 
@@ -64,3 +66,58 @@ def test_held_out_trials_tell_the_wind_from_what_they_deny(wind, hers, named):
     force = refit("force", BEFORE, LESS, check=(0.2, hers))[1]
     found = likeliest_refit(old, [blowing, force], 0.05)
     assert (found is blowing) is named
+
+
+@pytest.mark.parametrize(
+    ("more", "alike", "named"),
+    [(30.0, ("force",), "force"), (6.0, ("force",), "lag"), (30.0, (), "lag")],
+)
+def test_a_sensor_gives_way_to_its_twin_of_the_ship_that_stands_out_more(more, alike, named):
+    """Although blocks prefer the sensor, all of them."""
+    old, lag = refit("lag", BEFORE, tuple(0.6 * x for x in BEFORE), alike=alike)
+    force = refit("force", BEFORE, LESS, score=lag.candidate.score + more)[1]
+    assert likeliest_refit(old, [lag, force], 0.05).candidate.effect.name == named
+    assert likeliest_refit(old, [lag], 0.05) is lag
+
+
+@pytest.mark.parametrize(("most", "named"), [(3.0, True), (0.97, False)])
+def test_wind_does_not_give_way_to_what_blocks_only_cannot_tell_from_it(most, named):
+    """Of a ferry in wind terms of sway took a third off five blocks and trebled the sixth."""
+    old, wind = refit("unseen wind", BEFORE, tuple(0.3 * x for x in BEFORE))
+    after = (*(0.2 * x for x in BEFORE[:5]), most)
+    hers = refit("force", BEFORE, after, p_value=0.5)[1]
+    assert (likeliest_refit(old, [wind, hers], 0.05) is wind) is named
+
+
+@pytest.mark.parametrize(("share", "first"), [(0.9, "plain"), (0.35, "sure")])
+def test_what_stands_out_comes_first_where_it_does_as_much(share, first):
+    """By blocks that scatter a sixth of the fall looks as good as three quarters."""
+    after = (*(0.1 * x for x in BEFORE[:5]), 1.0)
+    old, plain = refit("plain", BEFORE, after, p_value=0.4)
+    sure = refit("sure", BEFORE, tuple(share * x for x in BEFORE))[1]
+    assert likeliest_refit(old, [plain, sure], 0.05).candidate.effect.name == first
+
+
+@pytest.mark.parametrize(("whole", "falls"), [(1.25, False), (1.01, True)])
+def test_nothing_falls_where_the_whole_rises_and_one_output_alone_falls(whole, falls):
+    own = BEFORE, tuple(0.8 * x for x in BEFORE)
+    assert Carried(BEFORE, tuple(whole * x for x in BEFORE), own=own).falls is falls
+
+
+@pytest.mark.parametrize(
+    ("ratio", "hers", "as_well"),
+    [
+        (0.75, ("v", "r"), ("twin",)),
+        (0.9, ("v", "r"), ()),
+        (0.75, ("psi",), ()),
+    ],
+)
+def test_a_sensor_is_not_told_from_its_twin_of_the_ship_that_does_half_of_it(ratio, hers, as_well):
+    """A twin by the heading, as of a current, is not hers."""
+    lag = refit("lag", BEFORE, tuple(0.6 * x for x in BEFORE), alike=("twin",))[1]
+    twin = refit("twin", BEFORE, tuple(ratio * x for x in BEFORE))[1]
+    twin.candidate.effect.signals = hers
+    for one in (lag, twin):
+        one.candidate.carried = one.carried
+        one.candidate.effect.bound_by_meaning = False
+    assert rivals(lag, [lag.candidate, twin.candidate], [lag, twin]) == as_well

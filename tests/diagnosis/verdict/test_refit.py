@@ -37,6 +37,8 @@ def refit(
     seen=1.0,
     converged=True,
     p_value=0.001,
+    score=50.0,
+    alike=(),
 ):
     """A refit as far as its errors go, and the fit before it."""
     candidate = SimpleNamespace(
@@ -53,6 +55,8 @@ def refit(
         allowed=True,
         carried=SimpleNamespace(seen=seen),
         p_value=p_value,
+        score=score,
+        family=(name, *alike),
     )
     old, new = (fit(e, c) for e, c in zip(eps, check, strict=True))
     new.converged = converged

@@ -125,11 +125,12 @@ class Carried:
 
         Of the whole error, or of each output's own: where one is measured coarsely, what another
         shows plainly is next to nothing of the whole. Of what is hardly seen it must be more: other
-        errors of the model look like it.
+        errors of the model look like it. Neither may rise by as much where the other falls.
         """
-        return any(
+        both = (self.before, self.after), self.own
+        return not any(_ratio(old, new) > 1.0 / FALL for old, new in both) and any(
             self._believed(_ratio(old, new)) < np.log(FALL) and 2 * _better(old, new) > len(old)
-            for old, new in ((self.before, self.after), self.own)
+            for old, new in both
         )
 
     @property
