@@ -110,7 +110,7 @@ def held_before(fit: Fit, named: Refit | None, freed: Freed) -> Verdict:
         "held do"
     )
     said = (
-        f"{begun}, off by at most twice what her file says: to {other}, {most} most. "
+        f"{begun}, off by at most twice what is known of each: to {other}, {most} most. "
         "No effect has to be missing: free those first, and look again"
     )
     return Verdict("cannot tell", None, (), said, held_as_well=freed.moved)

@@ -60,7 +60,7 @@ def test_what_is_held_is_freed_before_anything_is_added(result):
     held = verdict("cannot tell") | {"held_as_well": ["I_xx", "Yr"]}
     free = [*result["model"]["free"], "I_xx", "Yr"]
     commands = [each.command for each in advised(result, verdict=held) if each.command]
-    assert commands[0] == f"free = {json.dumps(free)}  # priors = " + '"ship"'
+    assert commands[0] == f"free = {json.dumps(free)}"
     assert not any(" add " in command for command in commands)
 
 

@@ -175,8 +175,11 @@ def _unclear(run: Result) -> Iterable[Advice]:
         )
         return
     if run.verdict.held_as_well:
-        line = f'free = {array([*run.model.free, *run.verdict.held_as_well])}  # priors = "ship"'
-        yield Advice("Free what is held, under [identify], by her file, and run again:", line)
+        yield Advice(
+            'Free what is held, under [identify], and run again; priors = "ship" holds all of it '
+            "about her file, where that says under [uncertainty] how far each may be off:",
+            f"free = {array([*run.model.free, *run.verdict.held_as_well])}",
+        )
         return
     yield from _one_of(run)
     if run.split.noise is not None:
