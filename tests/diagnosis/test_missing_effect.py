@@ -205,12 +205,14 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
     jumps = np.deg2rad(10.0) * np.sign(sailed.signals["delta"])
     fit.trials = (replace(trial, signals={**trial.signals, "delta": jumps}),)
     assert name_records(fit, none, wind[:1]).sentence.endswith(
-        "jumps by 10 deg within 0.5 s, which no ship's gear does: where it is the order, call it "
+        "jumps by up to 10 deg within 0.5 s, which no ship's gear does: where it is the order, "
+        "call it "
         "delta_order"
     )
     known = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")
     assert name_records(fit, known, wind).sentence == (
-        "rudder_cubic is missing; delta jumps by 10 deg within 0.5 s, which no ship's gear does: "
+        "rudder_cubic is missing; delta jumps by up to 10 deg within 0.5 s, which no ship's gear "
+        "does: "
         "where it is the order, call it delta_order"
     )
     fit.trials = (trial,)

@@ -9,6 +9,7 @@ from s175q import MODEL, SETTINGS, white, with_noise, zigzag
 from scipy.optimize import lsq_linear
 from scipy.signal import lfilter
 
+from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.gauss_newton import minimise
 from trialid.identification.nuisance.priors import nuisance_prior
@@ -50,6 +51,27 @@ def test_an_output_is_not_compared_where_its_delay_looks_beyond_the_record():
     for ends in (mask[:9], mask[-9:]):
         assert not ends.any()
     assert mask[9:-9].all()
+
+
+@pytest.mark.parametrize("samples", [33, 49, 97])
+def test_a_short_trial_keeps_three_quarters_whatever_a_delay_is_sought(samples):
+    """It is sought by an eighth of the trial at most, and three samples more are left out."""
+    trial = cut(zigzag(10), samples)
+    problem = pose_problem([trial], MODEL, replace(PLAIN, nuisance=("delay",)))
+    (mask,) = problem.compared
+    most = min(3.0, 0.125 * trial.duration)
+    ends = int(np.ceil(most / trial.period)) + 3
+    assert mask.sum(axis=0).tolist() == [samples - 2 * ends] * 2
+    late = [x for x in problem.unknowns if x.column.startswith("tau_")]
+    assert {(x.low, x.high) for x in late} == {(-most, most)}
+
+
+def test_a_delay_of_all_trials_is_sought_as_far_as_the_shortest_lets_it():
+    both = [zigzag(10), replace(cut(zigzag(20), 21), name="short")]
+    late = MODEL + CATALOGUE["delay_r"]
+    problem = pose_problem(both, late, replace(PLAIN, free=(*FEW, "tau_r")))
+    [tau] = [x for x in problem.unknowns if x.name == "tau_r"]
+    assert (tau.low, tau.high) == (-1.25, 1.25)
 
 
 def test_an_output_is_normed_about_its_own_mean_unless_about_zero():

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.arrays import Mask
+from trialid.identification.nuisance.delays import spoilt_by_delay
 from trialid.identification.roll.roll_range import RollRange
 from trialid.simulation.by_parts import respond_by_parts
-from trialid.simulation.delay import margin
 from trialid.simulation.integrate import Departure, Response, Simulator, record_for, respond
 from trialid.threads import side_by_side
 from trialid.trial import Trial
@@ -264,23 +264,11 @@ def compared_mask(trial: Trial, simulator: Simulator) -> Mask:
     columns = []
     for c in simulator.outputs:
         mask = inputs & trial.valid[c]
-        edge = spoilt_by_delay(simulator, c, trial.period)
+        edge = spoilt_by_delay(simulator, c, trial)
         if edge:
             mask[:edge] = mask[-edge:] = False
         columns.append(mask)
     return np.column_stack(columns)
-
-
-def spoilt_by_delay(simulator: Simulator, output: str, period: float) -> int:
-    """Samples to leave out at each end because the output's delay is free or not zero."""
-    for effect in simulator.model.effects:
-        for name, parameter in effect.parameters.items():
-            if name == f"tau_{output}":
-                if name in simulator.equations.free:
-                    return margin(parameter.low, parameter.high, period)
-                value = simulator.model.value(name)
-                return margin(value, value, period) if value else 0
-    return 0
 
 
 def step_halving(problem: Problem, theta: Vector) -> dict[str, float]:

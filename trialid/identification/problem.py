@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask
 from trialid.errors import NotIdentifiable, nearest
+from trialid.identification.nuisance.delays import delay_limits
 from trialid.identification.nuisance.of_each_trial import Nuisance, nuisances, with_nuisance
 from trialid.identification.nuisance.priors import fastest, water_prior
 from trialid.identification.output_error import Norm, Problem, Unknown, compared_mask
@@ -122,8 +123,7 @@ def question(
     near
         Starts by the name of the unknown.
     """
-    step = max(t.period for t in trials) / simulator.substeps
-    unknowns = (*(_shared(simulator, n, settings, step) for n in shared),
+    unknowns = (*(_shared(simulator, n, settings, trials) for n in shared),
                 *nuisances(simulator, trials, per_trial, settings))  # fmt: skip
     unknowns = tuple(replace(x, start=near.get(x.name, x.start)) for x in unknowns)
     compared = tuple(compared_mask(t, simulator) for t in trials)
@@ -166,8 +166,7 @@ def _check_simulated(simulator: Simulator) -> None:
     """Refuse an output that no simulated motion reaches: an input has nothing to fit."""
     states = simulator.equations.states
     for name, node in simulator.equations.outputs.items():
-        moved_by = {*states, f"{name}_ref"}
-        if not any(n.op == SYMBOL and n.value in moved_by for n in order([node])):
+        if {*states, f"{name}_ref"}.isdisjoint(n.value for n in order([node]) if n.op == SYMBOL):
             raise NotIdentifiable(
                 f"output {name!r} is not simulated, it is an input; take it out of [identify] "
                 f"outputs, or choose from what is simulated: {', '.join(states)}"
@@ -190,32 +189,34 @@ def with_starts(model: ShipModel, free: Sequence[str], settings: Settings) -> Sh
     return model.with_values(missing) if missing else model
 
 
-def is_sensor(model: ShipModel, name: str) -> bool:
-    """Whether a parameter belongs to a sensor or an offset, not to the ship."""
-    forms = _forms_of(model, name)
-    return bool(forms) and not {Force, Rate, Mass}.intersection(forms)
-
-
 def _forms_of(model: ShipModel, name: str) -> tuple[type, ...]:
     """What the effect that a parameter belongs to returns; nothing where it is a mass."""
     return next((e.forms for e in model.effects if name in e.parameters), ())
 
 
-def _range(model: ShipModel, name: str, step: float) -> tuple[float, float]:
-    """The physical range, of a state's time constant less what a step [s] cannot follow."""
+def _range(simulator: Simulator, name: str, trials: Sequence[Trial]) -> tuple[float, float]:
+    """The physical range, of a state's time constant less what a step cannot follow."""
+    model = simulator.model
     p = model.parameters[name]
+    if name in {f"tau_{c}" for c in simulator.outputs}:
+        return delay_limits(p, trials)
+    step = max(t.period for t in trials) / simulator.substeps
     follows = p.unit == "s" and Rate in _forms_of(model, name)
     return (min(max(p.low, FASTEST * step), p.high) if follows else p.low), p.high
 
 
-def _shared(simulator: Simulator, name: str, settings: Settings, step: float) -> Unknown:
+def _shared(
+    simulator: Simulator, name: str, settings: Settings, trials: Sequence[Trial]
+) -> Unknown:
     parameter = simulator.model.parameters[name]
-    low, high = settings.bounds.get(name) or _range(simulator.model, name, step)
+    low, high = settings.bounds.get(name) or _range(simulator, name, trials)
     start = simulator.model.value(name)
     size = abs(start) if start else abs(parameter.start)
     of_a_drive = any(e.of_a_drive for e in simulator.model.effects if name in e.parameters)
-    beside = simulator.model.states and is_sensor(simulator.model, name) and not of_a_drive
-    kind: Kind = "nuisance" if beside else "physical"  # where nothing moves, sensors are the matter
+    forms = _forms_of(simulator.model, name)
+    sensor = forms and not ({Force, Rate, Mass} & {*forms} or of_a_drive)
+    beside = simulator.model.states and sensor  # where nothing moves, sensors are the matter
+    kind: Kind = "nuisance" if beside else "physical"
     prior = settings.priors.get(name, water_prior(name) if settings.hold_nuisance else None)
     return Unknown(
         name=name,
@@ -232,9 +233,7 @@ def _shared(simulator: Simulator, name: str, settings: Settings, step: float) ->
 
 
 def _record(trial: Trial, name: str) -> Vector:
-    source = record_for(trial, name)
-    assert source is not None  # a trial without it has been refused
-    return trial.signals[source]
+    return trial.signals[record_for(trial, name) or name]  # without either it has been refused
 
 
 def _check_excitation(problem: Problem) -> None:

@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.identification.gauss_newton import minimise
+from trialid.identification.nuisance.delays import spoilt_by_delay
 from trialid.identification.one_search import search
-from trialid.identification.output_error import Problem, ranges, spoilt_by_delay
+from trialid.identification.output_error import Problem, ranges
 from trialid.identification.problem import Settings, question
 from trialid.identification.weighing import Weighing
 from trialid.trial import Trial
@@ -126,7 +127,7 @@ def in_pieces(
 
 def _cut(problem: Problem, trial: Trial, number: int) -> list[Trial]:
     """Pieces of about the same length; the first has the trial's name."""
-    spoilt = (spoilt_by_delay(problem.simulator, c, trial.period) for c in problem.outputs)
+    spoilt = (spoilt_by_delay(problem.simulator, c, trial) for c in problem.outputs)
     most = int(np.clip(trial.samples // (SHORTEST + 2 * max(spoilt)), 1, number))
     ends = np.linspace(0, trial.samples, most + 1).round().astype(int)
     return [

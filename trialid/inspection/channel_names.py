@@ -33,9 +33,11 @@ PHRASES: Final = {
     "yaw dot, psi dot, psidot, heading rate, heading dot, girhastighet, velocidad de giro, "
     "angular rate z, ang vel z, omega z, wendegeschw, drehgeschw, "
     "drehrate, wendegeschwindigkeit, drehgeschwindigkeit, gierrate, "
-    "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, gyro z",
+    "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, twist angular z, "
+    "gyro z",
     "p": "roll rate, rollrate, rollgeschwindigkeit, roll speed, rollspeed, roll velocity, "
-    "roll dot, phi dot, phidot, angular rate x, ang vel x, omega x, angular velocity x, gyro x",
+    "roll dot, phi dot, phidot, angular rate x, ang vel x, omega x, angular velocity x, "
+    "twist angular x, gyro x",
     "phi": "roll, roll angle, rolling, heel, heel angle, rollwinkel, kraengung, krängung, "
     "kraengungswinkel, krängungswinkel, krengning, slagside, list angle, bank angle",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
@@ -217,7 +219,7 @@ def unit_in_name(name: str) -> str | None:
     ('rad/s', None)
     """
     field = words(drop_number(name.rpartition(":")[2]))
-    if field[:2] == ("angular", "velocity"):
+    if field[:2] == ("angular", "velocity") or field[-3:-1] == ("twist", "angular"):
         return "rad/s"  # as ROS messages have it, which state no unit
     if field[-3:-1] == ("twist", "linear"):
         return "m/s"  # as those do

@@ -49,7 +49,7 @@ class Jump:
     def __str__(self) -> str:
         """In words, for a sentence."""
         size = np.rad2deg(self.size) if self.shown == "deg" else 100.0 * self.size
-        return f"jumps by {size:.0f} {self.shown} within {self.time:.2g} s"
+        return f"jumps by up to {size:.0f} {self.shown} within {self.time:.2g} s"
 
 
 def jump_of(courses: Iterable[Course], own_time: float) -> Jump | None:
@@ -70,7 +70,7 @@ def jump_of(courses: Iterable[Course], own_time: float) -> Jump | None:
 def jump_where(
     courses: Iterable[Course], at_once: Callable[[Vector, Vector], Steps], least: float
 ) -> Jump | None:
-    """The usual jump, where most that is moved is moved `at_once`, in steps of more than `least`.
+    """The largest jump, where most that is moved is moved `at_once`, in steps of more than `least`.
 
     `at_once` is given times and values.
     """
@@ -89,7 +89,7 @@ def jump_where(
     every = np.concatenate(jumps or [np.zeros(0)])
     if not len(every) or every.sum() < MOST * moved:
         return None
-    return Jump(float(np.median(every)), float(np.median(np.concatenate(times))))
+    return Jump(float(every.max()), float(np.median(np.concatenate(times))))
 
 
 def rudder_jump(trials: Iterable[Trial], own_time: float) -> Jump | None:

@@ -9,6 +9,7 @@ from trialid.effects import CATALOGUE
 from trialid.effects.environment import drift_in_speed_record
 from trialid.effects.track import current, current_in_speed
 from trialid.errors import NotIdentifiable
+from trialid.identification.nuisance.delays import delay_limits
 from trialid.identification.nuisance.priors import limits, nuisance_prior
 from trialid.identification.output_error import Unknown
 from trialid.names.quantities import OVER_GROUND, SIGNALS
@@ -90,6 +91,8 @@ def nuisances(
     for i, trial in enumerate(trials):
         for name in names:
             p: Parameter = model.parameters[name]
+            late = name.startswith("tau_")
+            low, high = delay_limits(p, [trial]) if late else (p.low, p.high)
             label = f"{name} [{trial.name}]"
             null, size = p.start if p.null is None else p.null, abs(p.start)
             held = asked.hold_nuisance
@@ -101,8 +104,8 @@ def nuisances(
                     trial=i,
                     start=null,
                     size=size,
-                    low=p.low,
-                    high=p.high,
+                    low=low,
+                    high=high,
                     unit=p.unit,
                     kind="nuisance",
                     prior=prior,

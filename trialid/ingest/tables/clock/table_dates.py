@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trialid.errors import LogError
 from trialid.ingest.tables.clock import table_stamps
+from trialid.ingest.tables.clock.lost_zeros import with_lost_zeros
 from trialid.ingest.tables.clock.table_time import (
     DAY_NS,
     LATEST_S,
@@ -28,7 +29,7 @@ FIRST_DAY = {"excel days": 25_569, "matlab datenum": 719_529}
 
 def date_clock(table: Table, columns: tuple[int, ...], spec: Time, zone: str | None) -> Clock:
     """Dates, in one column or two; in UTC where nothing else is said."""
-    name = " and ".join(table.heads[column].name for column in columns)
+    name, remark = " and ".join(table.heads[column].name for column in columns), ""
     values = table.columns[columns[0]]
     if spec.kind in FIRST_DAY:
         naive, aware = _days(table, columns[0], FIRST_DAY[spec.kind]), False
@@ -39,15 +40,14 @@ def date_clock(table: Table, columns: tuple[int, ...], spec: Time, zone: str | N
         _no_gaps(table, columns[0], naive)
         said = f"column {name}, dates"
     else:
-        naive, aware = _read_dates(table, columns, spec.format)
+        naive, aware, remark = _read_dates(table, columns, spec.format)
         aware = aware or _universal(table, columns)
         said = f"column {name}, dates"
-    if aware:
-        return Clock(naive, columns, f"{said} (UTC where no zone is given)")
-    if zone is None:
-        return Clock(naive, columns, f"{said} (UTC where no zone is given)")
+    remarks = (f"{table.path.name}: {remark}",) if remark else ()
+    if aware or zone is None:
+        return Clock(naive, columns, f"{said} (UTC where no zone is given)", remarks)
     t = _localized(table, columns[0], naive, zone)
-    return Clock(t, columns, f"{said}, time zone {zone}")
+    return Clock(t, columns, f"{said}, time zone {zone}", remarks)
 
 
 def _universal(table: Table, columns: Sequence[int]) -> bool:
@@ -73,12 +73,21 @@ def _no_gaps(table: Table, column: int, t: NDArray[np.int64]) -> None:
         raise LogError(f"{table.where(row, column)}: '' is no time; delete the line")
 
 
-def _read_dates(table: Table, columns: Sequence[int], form: str | None) -> table_stamps.Stamps:
-    """Stamps as written [ns], and whether the texts stated their zone."""
+def _read_dates(
+    table: Table, columns: Sequence[int], form: str | None
+) -> tuple[NDArray[np.int64], bool, str]:
+    """Stamps as written [ns], whether the texts stated their zone, and what is remarked."""
     texts = join_columns(table, columns, form)
     if form is None and not table_stamps.ISO.match(texts[0] if texts else ""):
         texts = table_stamps.as_iso(texts) or texts
-    return table_stamps.stamps(texts, form) or _one_by_one(table, columns, texts, form)
+    t, aware = table_stamps.stamps(texts, form) or _one_by_one(table, columns, texts, form)
+
+    def again(written: list[str]) -> NDArray[np.int64] | None:
+        found = table_stamps.stamps(written, form)
+        return None if found is None else found[0]
+
+    t, remark = with_lost_zeros(texts, t, again)
+    return t, aware, remark
 
 
 def join_columns(table: Table, columns: Sequence[int], form: str | None) -> list[str]:
