@@ -212,8 +212,7 @@ def test_what_nobody_logged_is_told_where_the_catalogue_has_no_answer():
     known = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")
     assert name_records(fit, known, wind).sentence == (
         "rudder_cubic is missing; delta jumps by up to 10 deg within 0.5 s, which no ship's gear "
-        "does: "
-        "where it is the order, call it delta_order"
+        "does: where it is the order, call it delta_order"
     )
     fit.trials = (trial,)
     assert name_records(fit, known, wind) == known
