@@ -94,6 +94,12 @@ def test_a_wrong_effect_has_the_nearest_first(wrong: str, right: str) -> None:
         assert f"there is no effect {wrong!r}; did you mean {right!r}" in said
 
 
+def test_an_effect_of_a_boats_actuators_says_where_it_comes_from() -> None:
+    assert refused("effects", "still_water_yaw") == (
+        "still_water_yaw comes with a boat's own actuators: add --ship SHIP.toml"
+    )
+
+
 def test_a_name_like_none_is_no_list_to_scroll() -> None:
     said = refused("effects", "zzz")
     assert f"of {len(CATALOGUE)} known the nearest are " in said

@@ -1,8 +1,14 @@
 """Where a search cannot begin."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
+from s175q import MODEL, SETTINGS, zigzag
 
 from trialid.identification.gauss_newton import minimise
+from trialid.identification.one_search import no_start
+from trialid.identification.problem import pose_problem
 
 X = np.array([1.0, 2.0, 3.0, 4.0])
 
@@ -28,3 +34,13 @@ def test_where_the_model_overflows_there_is_no_warning() -> None:
         return 1.0 - 0.0 * y, y[:, None]
 
     assert minimise(steep, np.array([1.0]), np.ones(1)).reason == "start"
+
+
+@pytest.mark.parametrize(
+    ("value", "said"), [(9.0, " (first of all of Kp = 9, usually at most 0)"), (None, "bounds")]
+)
+def test_a_value_that_no_ship_has_is_the_first_to_look_at(value, said) -> None:
+    """Beside one that any may have, a rate of turn that grows by itself."""
+    wrong = {"Nr": 5.0} if value is None else {"Nr": 5.0, "Kp": value}
+    problem = pose_problem([zigzag(10)], MODEL.with_values(wrong), replace(SETTINGS, free=("Nv",)))
+    assert str(no_start(problem)).endswith(said)

@@ -31,12 +31,16 @@ def effects(
     """List the effects a model can be made of, or tell all about the one called NAME."""
     from trialid.effects import CATALOGUE, find, from_file
     from trialid.effects.actuators import actuator_effects
+    from trialid.effects.actuators.standstill import EFFECTS as AT_REST
+    from trialid.errors import EffectError
     from trialid.report.terminal.catalogue import list_effects, plain, plain_list, sheet
     from trialid.ship.particulars import read_ship
 
     own = {} if ship is None else actuator_effects(read_ship(ship))
     own |= {n: e for path in own_files for n, e in from_file(path).items()}
     everything = {**CATALOGUE, **own}
+    if name in {e.name for e in AT_REST} - everything.keys():
+        raise EffectError(f"{name} comes with a boat's own actuators: add --ship SHIP.toml")
     if as_json:
         data = plain(find(name, own)) if name else plain_list(everything)
         say(json.dumps(data, indent=2, allow_nan=False))

@@ -19,7 +19,7 @@ from trialid.identification.output_error import (
 )
 from trialid.identification.problem import Settings
 from trialid.identification.weighing import Weighing, colour_of
-from trialid.ship.effect import Rate
+from trialid.ship.effect import Parameter, Rate
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure
 
@@ -232,5 +232,24 @@ def no_start(problem: Problem) -> SimulationError:
         )
     return SimulationError(
         f"the model cannot be simulated at its start values: {departure}; give nearer values in "
-        "[model.values] or in the ship file, or narrower [identify] bounds"
+        f"[model.values] or in the ship file, or narrower [identify] bounds{_outside(problem)}"
     )
+
+
+def _ends(p: Parameter) -> str:
+    """The range of a parameter that has one."""
+    if np.isfinite(p.low) and np.isfinite(p.high):
+        return f"{p.low:g} to {p.high:g}"
+    return f"at most {p.high:g}" if np.isfinite(p.high) else f"at least {p.low:g}"
+
+
+def _outside(problem: Problem) -> str:
+    """Values that no ship has, as far as the effects say, which are the first to look at."""
+    model = problem.simulator.model
+    found = (
+        f"{n} = {model.value(n):g}, usually {_ends(p)}"
+        for n, p in model.parameters.items()
+        if not p.low <= model.value(n) <= p.high
+    )
+    said = ", ".join(found)
+    return f" (first of all of {said})" if said else ""
