@@ -8,7 +8,7 @@ TIMES = frozenset(
         "t", "time", "timestamp", "time_stamp", "stamp", "datetime", "date_time", "utc", "epoch",
         "unix_time", "elapsed", "elapsed_time", "time_elapsed", "seconds", "zeit", "uhrzeit",
         "zeitstempel", "datum_zeit", "datum_uhrzeit", "tid", "tidspunkt", "tijd", "tiempo", "hora",
-        "heure", "horodatage", "rosbagtimestamp", "ts",
+        "heure", "horodatage", "rosbagtimestamp", "ts", "gps_time", "gnss_time", "log_time",
     )
 )  # fmt: skip
 DATES = frozenset(("date", "datum", "dato", "fecha"))
@@ -23,9 +23,17 @@ PARTS = frozenset(("nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"))
 UNIVERSAL = frozenset(("utc", "gmt"))
 
 
+GLUED = re.compile(r"(?<=time|tamp)(ms|us|ns)$")
+"""A unit that stands at a time without a mark: `TimeUS`, `TIMESTAMPms`."""
+
+
 def bare_words(name: str) -> list[str]:
-    """The words of a name in small letters: `_value`, `Msg-ID`."""
-    return [word for word in re.split(r"[\W_]+", name.lower()) if word]
+    """The words of a name in small letters: `_value`, `Msg-ID`, `TIMESTAMPms`.
+
+    >>> bare_words("TIMESTAMPms"), bare_words("Msg-ID")
+    (['timestamp', 'ms'], ['msg', 'id'])
+    """
+    return [word for word in re.split(r"[\W_]+", GLUED.sub(r"_\1", name.lower())) if word]
 
 
 def is_time(name: str) -> bool:
