@@ -20,6 +20,8 @@ SLOWEST: Final = 10.0
 of it asks of logs every 5 s, twice takes milliseconds at 50 a second for seconds."""
 HALF_ROUND: Final = {"delta": "rudder", "delta_order": "rudder", "phi": "ship"}
 """Angles that are never beyond 180 deg, and whose."""
+WRAPPED: Final = 4.0 * np.pi
+"""[rad] A heading jumps by a turn where it begins again, and in degrees by 57 of them."""
 CLOCK: Final = "t"
 """What the time is called; its unit is seconds where none is stated."""
 
@@ -48,9 +50,10 @@ def in_si(
     for quantity, given in signals.items():
         y = numbers(f"trial {name!r}, {quantity}", given)
         if y.shape != clock.shape:
+            shown = f"{y.size} values" if y.ndim == 1 else f"values of shape {y.shape}"
             raise AlignmentError(
-                f"trial {name!r}, {quantity}: {y.size} values for {clock.size} times; give one "
-                "value a time"
+                f"trial {name!r}, {quantity}: {shown} for {clock.size} times; give one value a "
+                f"time, of shape ({clock.size},)"
             )
         side = -1.0 if positive.get(quantity) == "port" else 1.0
         valid[quantity] = np.isfinite(y)
@@ -67,6 +70,12 @@ def _check_turned(name: str, quantity: str, y: Vector, unit: str) -> None:
             f"trial {name!r}, {quantity}: reaches {np.rad2deg(np.abs(y).max()):.4g} deg in "
             f"{unit!r}; no {HALF_ROUND[quantity]} is turned half round: state the unit its numbers "
             "are in"
+        )
+    jump = float(np.abs(np.diff(y)).max(initial=0.0))
+    if quantity == "psi" and jump > WRAPPED:
+        raise AlignmentError(
+            f"trial {name!r}, psi: jumps by {jump:.4g} rad as {unit!r}, and a heading begins again "
+            "after a turn of 6.283 rad: state the unit its numbers are in"
         )
 
 

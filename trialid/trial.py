@@ -9,7 +9,7 @@ import numpy as np
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
 from trialid.names.quantities import SIGNALS
-from trialid.signal_arrays import columns_of, in_si
+from trialid.signal_arrays import CLOCK, columns_of, in_si
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -169,7 +169,10 @@ class Trial:
         or without a zone, or as spans of time. The rest as `from_arrays`.
         """
         t, signals = columns_of(frame, units)
-        return cls.from_arrays(name, t, signals, units=units, positive=positive, use=use, own=own)
+        made = cls.from_arrays(name, t, signals, units=units, positive=positive, use=use, own=own)
+        left = [str(c) for c in frame.columns if str(c) in {*SIGNALS} - {CLOCK, *units}]
+        said = f"left out, as units states none of them: {', '.join(left)}"
+        return replace(made, remarks=(said,)) if left else made
 
     def part(self, begin: int, end: int, remark: str) -> "Trial":
         """The samples from `begin` up to `end`, as a window of the logs, with a remark on it."""

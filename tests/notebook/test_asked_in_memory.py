@@ -109,3 +109,31 @@ def test_a_rudder_that_is_not_recorded_for_long_is_refused(model: ti.ShipModel) 
                 ti.identify([holed], model, **ASKED)
         else:
             assert checked_trials([holed], model) == (holed,)
+
+
+def turning(factor: float, late: int = 0) -> ti.Trial:
+    """A weave whose rate is so many times the slope of her heading, and late by so many samples."""
+    t = 0.5 * np.arange(400)
+    rate = 0.02 * np.cos(t / 7.0) * np.cos(t / 31.0)
+    heading = np.concatenate([[0.0], 0.25 * np.cumsum(rate[1:] + rate[:-1])])
+    signals = {"delta": rate, "r": factor * np.roll(rate, late), "psi": heading, "u": 0.0 * t + 7.3}
+    units = {"delta": "rad", "r": "rad/s", "psi": "rad", "u": "m/s"}
+    return ti.Trial.from_arrays("weave", t, signals, units=units, positive={"delta": "starboard"})
+
+
+@pytest.mark.parametrize("factor", [57.3, 1.0 / 57.3, 60.0])
+def test_a_rate_in_another_unit_than_its_angle_is_refused(model: ti.ShipModel, factor: float):
+    with pytest.raises(
+        TrialidError, match=r"'weave': r is \S+ times the slope of psi .* a unit is"
+    ):
+        checked_trials([turning(factor)], model)
+
+
+def test_a_rate_that_contradicts_its_angle_is_told_by_the_verdict_of_arrays_too(
+    model: ti.ShipModel,
+) -> None:
+    [off] = checked_trials([turning(0.9)], model)
+    assert [(c.rate, c.angle) for c in off.contradictions] == [("r", "psi")]
+    assert off.contradictions[0].factor == pytest.approx(0.9, abs=0.01)
+    [right] = checked_trials([turning(1.0)], model)
+    assert right.contradictions == ()

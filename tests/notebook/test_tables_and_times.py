@@ -131,3 +131,29 @@ def test_a_rudder_that_is_none_is_refused(given: Any, unit: str, said: str) -> N
 def test_times_that_run_backwards_are_said_to() -> None:
     with pytest.raises(AlignmentError, match=r"t runs backwards, from 16\.8 to 5 s"):
         made(SECONDS[::-1])
+
+
+def test_a_heading_begins_again_after_a_turn_in_its_own_unit() -> None:
+    """In degrees it jumps by 360: as radians by 57 turns."""
+    heading = {"psi": (10.0 * SECONDS + 300.0) % 360.0}
+    with pytest.raises(
+        AlignmentError, match="psi: jumps by 358 rad as 'rad', and a heading begins"
+    ):
+        Trial.from_arrays("mine", SECONDS, heading, units={"psi": "rad"})
+    for unit, factor in (("deg", 1.0), ("rad", np.pi / 180.0)):
+        scaled = {"psi": factor * heading["psi"]}
+        found = Trial.from_arrays("mine", SECONDS, scaled, units={"psi": unit})
+        assert np.ptp(found.signals["psi"]) == pytest.approx(np.deg2rad(358.0))
+
+
+def test_a_column_of_a_signal_without_a_unit_is_told_and_another_is_not() -> None:
+    frame = pd.DataFrame({"t": SECONDS, **RATE, "psi": SECONDS, "note": "calm"})
+    assert Trial.from_frame("mine", frame, units=UNITS).remarks == (
+        "left out, as units states none of them: psi",
+    )
+    assert Trial.from_frame("mine", frame.drop(columns="psi"), units=UNITS).remarks == ()
+
+
+def test_a_column_of_two_dimensions_says_which_it_should_have() -> None:
+    with pytest.raises(AlignmentError, match=r"values of shape \(60, 1\) for 60 times; give one"):
+        Trial.from_arrays("mine", SECONDS, {"r": RATE["r"][:, None]}, units=UNITS)

@@ -1,12 +1,14 @@
 """What a notebook asks of a fit, held against the form and the rules of a pipeline file."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from pydantic import ValidationError
 
+from trialid.alignment.agreement import checks, slopes
 from trialid.alignment.held_roll import held_roll
 from trialid.errors import NotIdentifiable, nearest
 from trialid.identification.problem import Settings
@@ -74,7 +76,23 @@ def checked_trials(trials: Sequence[Trial], model: ShipModel) -> tuple[Trial, ..
         )
     for trial in found:
         _check_gaps(trial, model)
-    return found
+    return tuple(_agreeing(trial) for trial in found)
+
+
+def _agreeing(trial: Trial) -> Trial:
+    """A trial made in memory with rates that are not the slopes of their angles, as `align` has it.
+
+    Refused where a unit is wrong.
+    """
+    if trial.logs:
+        return trial
+    findings = checks.of_trial(trial)
+    wrong = next((one.sentence for one in findings if one.severity == "error"), None)
+    if wrong is not None:
+        said = wrong.partition("; write gain")[0]
+        raise NotIdentifiable(f"trial {trial.name!r}: {said}; state it right under units")
+    apart = tuple(c for one in findings if (c := slopes.contradiction(one)) is not None)
+    return replace(trial, contradictions=apart)
 
 
 def _check_gaps(trial: Trial, model: ShipModel) -> None:
