@@ -26,6 +26,7 @@ from trialid.diagnosis.search.carried import (
     FALL,
     SHAPE,
     as_good,
+    believed_as_much,
     does_as_well,
     is_far,
 )
@@ -187,7 +188,7 @@ def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit
     if not refits:
         return None
     least = min(refits, key=lambda r: r.cost)
-    close = [r for r in refits if does_as_well(least.carried, r.carried)]
+    close = [r for r in refits if believed_as_much(least.carried, r.carried)]
 
     def standing(r: Refit) -> tuple[bool, bool, float]:
         return _gives_way(r, grown), not r.candidate.p_value < level, r.cost
