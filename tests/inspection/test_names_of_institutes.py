@@ -79,6 +79,10 @@ NUMBERED = {
     "positioningsystem_accx_mps2_1": (None, None),
     "speed_mps2": (None, None),
     "rudder_1": ("delta", None),
+    "dvl_u": ("u", None),
+    "dvl_v": ("v", None),
+    "vel_u_mps": ("u", "m/s"),
+    "dvl_w": (None, None),
 }
 
 

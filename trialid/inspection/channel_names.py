@@ -45,9 +45,10 @@ PHRASES: Final = {
     "u": "stw, speed through water, speed water, water speed, speed log, log speed, "
     "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
     "forward velocity, longitudinal speed, longitudinal velocity, long speed, vitesse surface, "
-    "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w",
+    "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w, dvl u, vel u, "
+    "velocity u",
     "v": "sway speed, sway velocity, sway vel, vel sway, lateral speed, lateral velocity, "
-    "lat speed, transverse speed, transverse velocity",
+    "lat speed, transverse speed, transverse velocity, dvl v, vel v, velocity v",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
     "drehzahl, wellendrehzahl, propellerdrehzahl, engine rpm, engine speed, motordrehzahl, "
     "jet rpm, impeller rpm, revolutions, rate of revolutions, shaft revolutions, "
