@@ -4,6 +4,8 @@ import os
 import random
 import shutil
 import signal
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -216,3 +218,14 @@ def test_a_cluster_described_in_a_file(fresh: Path, tmp_path: Path) -> None:
         described.write_text(text)
         with pytest.raises(TrialidError, match=r"cluster\.yaml"), connect(str(described), None, 1):
             pass
+
+
+def test_ctrl_c_is_for_the_command_and_not_for_its_workers() -> None:
+    """A shell sends it to both; a worker that begins does as it finds it."""
+    asks = "import signal; print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)"
+    before = signal.getsignal(signal.SIGINT)
+    with dask_workers._keyboard_for_us():
+        inside = subprocess.run([sys.executable, "-c", asks], capture_output=True, check=True)
+    after = subprocess.run([sys.executable, "-c", asks], capture_output=True, check=True)
+    assert (inside.stdout.strip(), after.stdout.strip()) == (b"True", b"False")
+    assert signal.getsignal(signal.SIGINT) is before

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from compared import FITS, result_in, run
 
-from trialid.errors import NotIdentifiable
+from trialid.errors import NotIdentifiable, TrialidError
 from trialid.fleet import structure_fits
 from trialid.fleet.inputs import pack_inputs
 from trialid.fleet.structure_fits import FitParcel, OtherInputs, do_fit
@@ -89,10 +89,23 @@ def test_a_worker_that_reads_other_logs_is_refused(copy) -> None:
         do_fit(FitParcel(task=task, name="other", inputs=inputs))
 
 
-def test_jobs_without_workers_is_one_line(turning) -> None:
-    said = run(turning, "--jobs", "2")
+def test_jobs_of_workers_elsewhere_are_refused_in_one_line(turning) -> None:
+    said = run(turning, "--on", "tcp://127.0.0.1:9", "--jobs", "2")
     assert said.exit_code == 2
     assert "--jobs goes with --on local" in said.stderr
+
+
+def test_jobs_alone_are_of_this_machine(turning, monkeypatch) -> None:
+    asked = []
+
+    def compute_of(pipeline, on, jobs, tell):
+        asked.append((on, jobs))
+        raise TrialidError("asked")
+
+    monkeypatch.setattr("trialid.fleet.structure_fits.compute_of", compute_of)
+    for more in ((), ("--jobs", "1"), ("--on", "local")):
+        assert run(turning, *more).exit_code == 2
+    assert asked == [(None, None), ("local", 1), ("local", None)]
 
 
 @pytest.mark.study(turn=2)

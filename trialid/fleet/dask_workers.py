@@ -2,6 +2,8 @@
 
 import logging
 import os
+import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from importlib import import_module
@@ -58,15 +60,16 @@ def connect(on: str, jobs: int | None, tasks: int) -> Iterator[Any]:
         if on == LOCAL:
             number = min(jobs or os.cpu_count() or 1, max(tasks, 1))
             stack.enter_context(_light())
-            where = stack.enter_context(
-                distributed.LocalCluster(
-                    n_workers=number,
-                    threads_per_worker=1,
-                    host="127.0.0.1",
-                    dashboard_address="127.0.0.1:0",
-                    silence_logs=logging.CRITICAL,
+            with _keyboard_for_us():
+                where = stack.enter_context(
+                    distributed.LocalCluster(
+                        n_workers=number,
+                        threads_per_worker=1,
+                        host="127.0.0.1",
+                        dashboard_address="127.0.0.1:0",
+                        silence_logs=logging.CRITICAL,
+                    )
                 )
-            )
         elif "://" not in on:
             where = stack.enter_context(_described_cluster(Path(on)))
         try:
@@ -77,6 +80,22 @@ def connect(on: str, jobs: int | None, tasks: int) -> Iterator[Any]:
                 "dask scheduler"
             ) from error
         yield client
+
+
+@contextmanager
+def _keyboard_for_us() -> Iterator[None]:
+    """Ctrl-C for none of the processes that begin now: this one stops them, without their traces.
+
+    They have it as it is when they begin, and a shell sends it to all of a command's.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only that one may say what a signal does
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _distributed() -> Any:

@@ -1,11 +1,14 @@
 """The options that say which workers do many runs or fits."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 import click
 
 from trialid.cli.console import note
+
+HERE: Final = "local"
+"""What `--on` calls this machine."""
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -37,7 +40,7 @@ def check_jobs(on: str | None, jobs: int | None) -> None:
     UsageError
         In one line.
     """
-    if jobs is not None and on != "local":
+    if jobs is not None and on != HERE:
         raise click.UsageError("--jobs goes with --on local; workers elsewhere are started there")
 
 
