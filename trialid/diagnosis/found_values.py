@@ -8,7 +8,7 @@ import numpy as np
 from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.identification.fit import Fit
 from trialid.names.quantities import MASS_PARAMETERS, PARTICULARS, RUDDERS
-from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Rate
+from trialid.ship.effect import Delayed, Effect, Force, Lagged, Mass, Measured, Rate
 from trialid.ship.model import ADDED, STATES
 from trialid.ship.motion import masses_of
 
@@ -23,6 +23,11 @@ delay pass."""
 def of_the_ship(effect: Effect) -> bool:
     """Whether it moves the ship or her rudder; else it belongs to a sensor or a clock."""
     return bool({Force, Rate, Mass} & {*effect.forms})
+
+
+def of_a_sensor(effect: Effect) -> bool:
+    """Whether it belongs to what measures her motion, and to no gear."""
+    return bool({Measured, Delayed, Lagged} & {*effect.forms}) and not by_heading(effect)
 
 
 def is_force(effect: Effect) -> bool:

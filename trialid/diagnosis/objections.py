@@ -14,6 +14,7 @@ from trialid.diagnosis.found_values import (
     late_sensor,
     mostly_at_ends,
     no_such_mass,
+    of_a_sensor,
     of_the_ship,
     sweeps_away,
     turns_round,
@@ -144,12 +145,13 @@ def _looks_like_the_ship(
         r.candidate.allowed and does_as_well(refit.carried, r.carried) for r in ship
     ):
         return True
-    standing = [r for r in ship if objection(fit, r, level) in ("", HELD_OUT)]
     sensor = not of_the_ship(refit.candidate.effect)
     slow = (grown and sensor) or as_slow_as_the_ship(*_found(refit))
+    against = [(objection(fit, r, level), r) for r in ship]
     return any(
-        _shown_more(refit, r) or (slow and as_good(refit.carried.after, r.carried.after))
-        for r in standing
+        (not why and _shown_more(refit, r))
+        or (why in ("", HELD_OUT) and slow and as_good(refit.carried.after, r.carried.after))
+        for why, r in against
     )
 
 
@@ -162,7 +164,7 @@ def _shown_more(refit: Refit, other: Refit) -> bool:
     30 to 73.
     """
     mine, its = refit.candidate, other.candidate
-    alike = its.effect.name in mine.family and not of_the_ship(mine.effect)
+    alike = its.effect.name in mine.family and of_a_sensor(mine.effect)
     return alike and its.score > mine.score + SURER
 
 

@@ -12,6 +12,7 @@ from trialid.diagnosis.objections import likeliest_refit, objection
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.rivals import rivals
 from trialid.effects import CATALOGUE
+from trialid.ship.effect import Lagged, Steered
 
 
 @pytest.mark.parametrize(("name", "named"), [("force", True), ("lag", False)])
@@ -78,6 +79,15 @@ def test_a_sensor_gives_way_to_its_twin_of_the_ship_that_stands_out_more(more, a
     force = refit("force", BEFORE, LESS, score=lag.candidate.score + more)[1]
     assert likeliest_refit(old, [lag, force], 0.05).candidate.effect.name == named
     assert likeliest_refit(old, [lag], 0.05) is lag
+
+
+@pytest.mark.parametrize(("form", "check"), [(Steered, 0.15), (Lagged, 0.21)])
+def test_a_gear_keeps_its_name_beside_its_twin_and_a_sensor_beside_one_that_is_denied(form, check):
+    """Of a tanker with a dead band a cubic rudder stood out more, and held-out trials deny it."""
+    old, mine = refit("lag", BEFORE, tuple(0.6 * x for x in BEFORE), alike=("force",))
+    mine.candidate.effect.forms = (form,)
+    force = refit("force", BEFORE, LESS, score=100.0, check=(0.2, check))[1]
+    assert likeliest_refit(old, [mine, force], 0.05) is mine
 
 
 @pytest.mark.parametrize(("most", "named"), [(3.0, True), (0.97, False)])

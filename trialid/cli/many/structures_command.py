@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from trialid.cli.console import progress_bar, render, say
-from trialid.cli.many.where_done import HERE, check_jobs, jobs_option, on_option, teller
+from trialid.cli.many.where_done import jobs_option, on_option, teller, workers_of
 
 
 @click.command(short_help="Compare whole models; name the simplest that holds.")
@@ -45,8 +45,7 @@ def structures(
     fits are done one after the other, or with --on by as many workers as there are, with the same
     digits.
     """
-    on = HERE if on is None and jobs is not None else on
-    check_jobs(on, jobs)
+    on = workers_of(on, jobs)
     if schema:
         from trialid.result.json_file import json_schema
         from trialid.result.structure_rows import Structures

@@ -32,16 +32,17 @@ jobs_option = click.option(
 )
 
 
-def check_jobs(on: str | None, jobs: int | None) -> None:
-    """Refuse a number of workers where it is not for this command to say.
+def workers_of(on: str | None, jobs: int | None) -> str | None:
+    """Where the workers are: on this machine, where only their number is said.
 
     Raises
     ------
     UsageError
-        In one line.
+        In one line: a number of workers that it is not for this command to say.
     """
-    if jobs is not None and on != HERE:
+    if jobs is not None and on not in (None, HERE):
         raise click.UsageError("--jobs goes with --on local; workers elsewhere are started there")
+    return on if jobs is None or on is not None else HERE
 
 
 def teller(quiet: bool) -> Callable[[str], None]:

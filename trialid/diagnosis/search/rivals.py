@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from trialid.accuracy.parameter_table import prior_shares
-from trialid.diagnosis.found_values import gives_way, her_own, of_the_ship
+from trialid.diagnosis.found_values import gives_way, her_own, of_a_sensor
 from trialid.diagnosis.search.carried import RIVAL, does_as_well
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.diagnosis.search.refit import Refit
@@ -70,7 +70,7 @@ def _is_twin(named: Refit, other: Refit) -> bool:
     drag by her speed in her model, and more beside, her log was named as 0.16 m/s off in 13 of 20
     voyages (cosines 0.93 to 0.99), in five of them without that drag.
     """
-    sensor = not of_the_ship(named.candidate.effect) and her_own(other.candidate.effect)
+    sensor = of_a_sensor(named.candidate.effect) and her_own(other.candidate.effect)
     alike = sensor and other.candidate.effect.name in named.candidate.family
     return alike and 0.0 < other.carried.ratio < named.carried.ratio**RIVAL
 
