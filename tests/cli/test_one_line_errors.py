@@ -94,6 +94,11 @@ def test_a_wrong_effect_has_the_nearest_first(wrong: str, right: str) -> None:
         assert f"there is no effect {wrong!r}; did you mean {right!r}" in said
 
 
+def test_a_number_below_zero_is_no_option() -> None:
+    said = refused("simulate", "nowhere", "circle", "-20")
+    assert said.startswith("-2...: a number below zero reads as an option; none is asked for")
+
+
 def test_an_effect_of_a_boats_actuators_says_where_it_comes_from() -> None:
     assert refused("effects", "still_water_yaw") == (
         "still_water_yaw comes with a boat's own actuators: add --ship SHIP.toml"

@@ -67,5 +67,7 @@ def _refuse(ctx: click.Context, error: click.UsageError) -> NoReturn:
     """Say what is wrong with the words of a command, and where its help is."""
     asked = error.ctx.command_path if error.ctx else "trialid"
     said = str(TrialidError(error.format_message())).rstrip(".")
+    if isinstance(error, click.NoSuchOption) and error.option_name[1:2].isdigit():
+        said = f"{error.option_name}...: a number below zero reads as an option; none is asked for"
     complain(f"{said[:1].lower()}{said[1:]}; see {asked} --help")
     ctx.exit(WRONG_INPUT)
