@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, SHIP, white, with_noise, zigzag
 
+from trialid.diagnosis import meant_as_well
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import examine_fit
 from trialid.diagnosis.meant_as_well import (
@@ -112,6 +113,17 @@ def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
     assert held_instead(fit, named, silent) is None
     [other] = refit(fit, rank(fit, {"rudder_cubic": CATALOGUE["rudder_cubic"]})[0], silent)
     assert held_instead(fit, other, silent).moved == ("Nvav",)
+
+
+@pytest.mark.parametrize(("short", "as_well"), [(0.005, True), (0.02, False)])
+def test_what_is_held_does_as_well_but_for_what_one_parameter_is_worth(
+    without_two, monkeypatch, short, as_well
+):
+    named = tried(without_two, "yaw_drag_rar")
+    after = tuple(x * np.exp(short) for x in named.carried.after)
+    made = Freed(named.fit, ("m",), replace(named.carried, after=after))
+    monkeypatch.setattr(meant_as_well, "_freed", lambda *asked: made)
+    assert held_instead(without_two, named, silent) is (made if as_well else None)
 
 
 def test_where_what_is_held_does_as_well_nothing_has_a_name(without_two):
