@@ -29,6 +29,7 @@ EVERY = pytest.mark.parametrize("name", CATALOGUE)
 PUSHES = {
     "static_list", "rudder_offset", "bias_v", "bias_p", "bias_r", "bias_phi", "bias_psi",
     "hull_asymmetry", "propeller_side_force", "propeller_astern", "steady_wind", "current_in_sway",
+    "compass_deviation",
 }  # fmt: skip
 """Something to one side that is there on a straight course too."""
 
@@ -45,9 +46,9 @@ FORCED_AT_REST = {"static_list", "steady_wind", "propeller_unrecorded"}
 """Forces that do not ask for speed."""
 
 NO_NULL = {
-    "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "propeller_unrecorded",
-    "rudder_backlash", "propeller_thrust", "propeller_rudder",
-    "rudder_race", "drift_in_speed_record",
+    "rudder_servo", "rudder_servo_limited", "rudder_servo_second_order", "rudder_backlash",
+    "propeller_unrecorded", "propeller_thrust", "propeller_rudder", "rudder_race",
+    "drift_in_speed_record",
 }  # fmt: skip
 """Never absent: parameters inside the formula (time constants) or none, or instead of others."""
 NOT_LINEAR = NO_NULL | {"rudder_deadband"}
@@ -55,7 +56,6 @@ NOT_LINEAR = NO_NULL | {"rudder_deadband"}
 
 EVEN_STATES = {"u_lost"}
 """States of an effect's own that the mirror leaves alone."""
-
 TWINS = {"n_p": "n_s", "n_s": "n_p"}
 """What the mirror exchanges."""
 

@@ -1,11 +1,12 @@
 """What the sensors add of their own: bias, scale, tilted axes, places off the centre."""
 
-from trialid.maths import cos
+from trialid.maths import cos, sin
 from trialid.ship.effect import Effect, Measured, Parameter, effect
 from trialid.ship.parameter import S175
 
 PRACTICE = "sensor practice: typical sizes from data sheets and sea trials"
 MOUNT = "mounting: 0.5 to 3 deg"
+COMPASS = "deviation, coefficients B and C: 3 to 5 deg where nobody corrected it"
 PENDULUM = "a pendulum or an accelerometer feels gravity and acceleration as one"
 ANTENNA = "rigid body: velocity at a point off the origin; up to 0.4 L"
 
@@ -32,6 +33,20 @@ def bias_phi(*, b_phi=Parameter(0.005, "rad", low=-0.2, high=0.2)):
 def bias_psi(*, b_psi=Parameter(0.02, "rad", low=-0.5, high=0.5)):
     """psi_measured = psi + b_psi: offset of the compass."""
     return Measured(psi=b_psi)
+
+
+@effect(source=COMPASS)
+def compass_deviation(
+    psi,
+    *,
+    B_dev=Parameter(0.05, "rad", low=-0.5, high=0.5),
+    C_dev=Parameter(0.05, "rad", low=-0.5, high=0.5),
+):
+    """psi_measured = psi + B_dev sin(psi) + C_dev cos(psi): deviation of a magnetic compass.
+
+    Of iron that turns with the ship: once a turn one way and the other; a constant is bias_psi.
+    """
+    return Measured(psi=B_dev * sin(psi) + C_dev * cos(psi))
 
 
 @effect(source=PRACTICE)
@@ -139,7 +154,7 @@ def reference_rate(r_ref, *, k_ref=Parameter(1.0, low=0.0, high=2.0)):
 
 
 EFFECTS: tuple[Effect, ...] = (
-    bias_u, bias_v, bias_p, bias_r, bias_phi, bias_psi,
+    bias_u, bias_v, bias_p, bias_r, bias_phi, bias_psi, compass_deviation,
     scale_u, scale_v, scale_p, scale_r, scale_phi,
     gyro_cross_axis, gyro_cross_axis_p, gyro_heels, inclinometer_sway, inclinometer_lever,
     lever_arm_x, lever_arm_y, lever_arm_z, reference_rate,

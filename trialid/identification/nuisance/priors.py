@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.effects.sensors import compass_deviation
 from trialid.effects.track import CURRENT as WATER
 from trialid.effects.track import current_in_speed
 from trialid.identification.nuisance.gyro_offset import ANGLES, gyro_offset
@@ -123,9 +124,16 @@ def _offset(model: ShipModel, trial: Trial, column: str, size: float) -> float:
     return 3.0 * size
 
 
+def _deviates(model: ShipModel) -> bool:
+    """Whether her compass reads another heading than she has, from the first sample on."""
+    return not compass_deviation.parameters.keys().isdisjoint(model.parameters)
+
+
 def _initial(model: ShipModel, trial: Trial, state: str) -> Known:
     if state in trial.signals:
-        return _as_recorded(model, trial, state)
+        mean, deviation = _as_recorded(model, trial, state)
+        off = OFFSETS["b_psi"] if state == "psi" and _deviates(model) else 0.0
+        return mean, float(np.hypot(deviation, off))
     U, L = speed(model, trial), model.ship.particulars["L"]
     start = guess(model, trial, state)
     if state == "v":
