@@ -21,8 +21,8 @@ of it asks of logs every 5 s, twice takes milliseconds at 50 a second for second
 HALF_ROUND: Final = {"delta": "rudder", "delta_order": "rudder", "phi": "ship"}
 """Angles that are never beyond 180 deg, and whose."""
 WRAPPED: Final = 4.0 * np.pi
-"""[rad] A heading jumps by a turn where it begins again, and in degrees by 57 of them: half of it is
-that turn, twice of it says the same."""
+"""[rad] A heading jumps by a turn where it begins again, and in degrees by 57 of them: half of it
+is that turn, twice of it says the same."""
 CLOCK: Final = "t"
 """What the time is called; its unit is seconds where none is stated."""
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from trialid.alignment.agreement import signs
 from trialid.alignment.agreement.first_turn import first_turn
+from trialid.alignment.agreement.turning import Turning
 from trialid.arrays import Mask
 from trialid.inspection.inspected import ChannelInspection, Guess
 from trialid.inspection.sketch import Vector, on_one_clock
@@ -132,7 +133,7 @@ def _with_rate(
 
 def _turning(
     rudder: ChannelInspection, turning: ChannelInspection, beside: Sequence[ChannelInspection]
-) -> signs.Turning | None:
+) -> Turning | None:
     """How the ship answers a rudder; None where the two have too little in common."""
     common = _with_rate(rudder, turning, beside)
     if common is None:

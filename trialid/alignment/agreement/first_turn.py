@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.alignment.agreement.signs import Turning
+from trialid.alignment.agreement.turning import Turning
 from trialid.arrays import Mask, Vector
 
 LEAD: Final = 10

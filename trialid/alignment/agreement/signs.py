@@ -12,11 +12,12 @@ every swing would show the opposite sign there, but after the ship and not befor
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from trialid.alignment.agreement import relation
+from trialid.alignment.agreement.held_turn import held_turn
+from trialid.alignment.agreement.turning import Turning
 from trialid.alignment.sources import SignalSource
 from trialid.arrays import Mask, Vector
 from trialid.errors import AlignmentError
@@ -85,19 +86,6 @@ def _heading(trial: Trial, where: str) -> Iterator[str]:
     yield f"r and the slope of psi: correlation {found[0]:.2f}"
 
 
-@dataclass(frozen=True)
-class Turning:
-    """How the ship answers a rudder: to which side, and what tells it.
-
-    `sign` is 1.0 where a positive rudder turns her to starboard, -1.0 to port, 0.0 where the
-    record does not tell.
-    """
-
-    sign: float
-    correlation: float
-    words: str
-
-
 def _rudder(
     trial: Trial, rudder: str, turning: tuple[Vector, Mask], source: SignalSource, where: str
 ) -> Iterator[str]:
@@ -115,7 +103,10 @@ def _rudder(
 def answer(trial: Trial, rudder: str, turning: tuple[Vector, Mask]) -> Turning:
     """How the ship answers this rudder; `turning` is from `rate_of_turn`."""
     rate, valid = turning
-    return answer_of(trial.signals[rudder], rate, valid & trial.valid[rudder], trial.period)
+    delta, both = trial.signals[rudder], valid & trial.valid[rudder]
+    found = answer_of(delta, rate, both, trial.period)
+    held = found if found.sign else held_turn(delta, rate, both, trial.period)
+    return held if held.sign else found
 
 
 def answer_of(
