@@ -65,7 +65,7 @@ def in_si(
 
 
 def _check_turned(name: str, quantity: str, y: Vector, unit: str) -> None:
-    """Refuse a rudder or a heel that is turned more than half round: degrees as radians."""
+    """Refuse degrees as radians: a rudder or a heel more than half round, a heading over turns."""
     if quantity in HALF_ROUND and float(np.abs(y).max(initial=0.0)) > np.pi:
         raise AlignmentError(
             f"trial {name!r}, {quantity}: reaches {np.rad2deg(np.abs(y).max()):.4g} deg in "

@@ -36,7 +36,7 @@ def is_force(effect: Effect) -> bool:
 
 
 def by_heading(effect: Effect) -> bool:
-    """Whether it is of surroundings that nobody recorded: no force of her own knows the north.
+    """Whether it is of surroundings unrecorded, or a compass: no force of her own knows the north.
 
     One that takes a record of its own beside the heading, as of a wind that was measured, is not.
     """

@@ -6,7 +6,9 @@ from trialid.ship.parameter import S175
 
 PRACTICE = "sensor practice: typical sizes from data sheets and sea trials"
 MOUNT = "mounting: 0.5 to 3 deg"
-COMPASS = "deviation, coefficients B and C: 3 to 5 deg where nobody corrected it"
+COMPASS = (
+    "semicircular deviation, B and C of Bowditch's coefficients; a boat's 4.6 deg was measured"
+)
 PENDULUM = "a pendulum or an accelerometer feels gravity and acceleration as one"
 ANTENNA = "rigid body: velocity at a point off the origin; up to 0.4 L"
 

@@ -27,7 +27,7 @@ def test_a_sensor_at_the_end_of_what_is_possible_has_no_name(name, named):
 def test_only_what_nobody_recorded_is_by_the_heading_alone():
     """What takes a record beside the heading is of a wind or a tug that was measured.
 
-    A compass is not, but it too goes by nothing else, and what turns her may look like it.
+    A compass that deviates is counted with what nobody recorded: it goes by the heading alone, too.
     """
     found = {name for name, effect in CATALOGUE.items() if by_heading(effect)}
     unseen = {"current_in_sway", "current_in_surge", "current_in_speed_record"}

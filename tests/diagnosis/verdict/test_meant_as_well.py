@@ -162,7 +162,7 @@ def test_nothing_lies_outside_the_catalogue_that_what_is_held_explains(knows, ki
 
 
 def test_what_is_held_and_leaves_more_than_noise_explains_nothing(without_two):
-    """Two effects are missing: what is held takes of it a part, and something is outside still."""
+    """Two numbers are four times those of a file that is sure to 1 %: what is held takes a part."""
     known = replace(SHIP, uncertainty={"default": 0.01})
     fit = identify(without_two.trials, replace(MODEL, ship=known), without_two.settings)
     assert beside(fit) is NONE

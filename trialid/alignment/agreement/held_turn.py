@@ -13,15 +13,16 @@ from trialid.alignment.agreement.turning import Turning
 from trialid.arrays import Mask, Vector
 
 OVER: Final = float(np.deg2rad(10.0))
-"""[rad] A rudder that is well over. The loop of an unstable ship reaches 3 or 4 deg to either side,
-so that half of it is near to what she may turn against; twice misses circles of 15 deg."""
+"""[rad] A rudder that is well over. Of 158 trials of strangers' ships and boats whose sides are
+right 12 are such turns and tell theirs, all rightly; with half of it the same, with twice 3."""
 
 ROUND: Final = 2.0 * np.pi
-"""[rad] What she must have turned by then: a boat whose side was stated wrong was sailed 1.3 of it.
-By half of it a gust may, twice misses that boat."""
+"""[rad] What she must have turned by then: with half of it 14 tell their side, rightly too, with
+twice 7, and a boat whose side was stated wrong, sailed 1.3 of it, is missed."""
 
 ONE_WAY: Final = 0.9
-"""Share by which what is one way outweighs what is not; 1 where all of it is."""
+"""Share by which what is one way outweighs what is not; 1 where all of it is. With half of it, and
+with 0.99, the same 12."""
 
 
 def held_turn(rudder: Vector, rate: Vector, both: Mask, period: float) -> Turning:

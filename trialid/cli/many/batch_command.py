@@ -7,7 +7,7 @@ import click
 
 from trialid.cli.answering import write_or_say_why
 from trialid.cli.console import complain, progress_bar, say
-from trialid.cli.many.where_done import HERE, jobs_option, on_option, teller, workers_of
+from trialid.cli.many.where_done import jobs_option, on_option, teller, workers_of
 
 
 @click.command(short_help="Do the runs of a fleet on many cores; only what is new.")
@@ -29,7 +29,7 @@ def batch(fleet: Path, on: str, out: Path | None, jobs: int | None, quiet: bool)
     stops no other. What comes out: a folder for each run, runs.parquet, parameters.parquet,
     changes.parquet, and fleet.html with parameters over voyages and ships.
     """
-    on = workers_of(on, jobs) or HERE
+    on = workers_of(on, jobs) or on
     from trialid.fleet.parquet_tables import check_parquet
     from trialid.pipeline_file.fleet_file import load_fleet
 

@@ -1,14 +1,11 @@
 """The options that say which workers do many runs or fits."""
 
 from collections.abc import Callable
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
 
 import click
 
 from trialid.cli.console import note
-
-HERE: Final = "local"
-"""What `--on` calls this machine."""
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -40,9 +37,13 @@ def workers_of(on: str | None, jobs: int | None) -> str | None:
     UsageError
         In one line: a number of workers that it is not for this command to say.
     """
-    if jobs is not None and on not in (None, HERE):
+    if jobs is None:
+        return on
+    from trialid.fleet.dask_workers import LOCAL
+
+    if on not in (None, LOCAL):
         raise click.UsageError("--jobs goes with --on local; workers elsewhere are started there")
-    return on if jobs is None or on is not None else HERE
+    return LOCAL
 
 
 def teller(quiet: bool) -> Callable[[str], None]:
