@@ -117,3 +117,23 @@ def test_what_is_wrong_outside_a_trials_window_is_not_told_of_it():
     ]
     before, across = (sum("jumped" in words for words in each) for each in told)
     assert (before, across) == (0, 1)
+
+
+@pytest.mark.parametrize(("senders", "told"), [(1, False), (2, True), (3, True)])
+def test_two_compasses_by_turns_in_a_channel_are_asked_for(senders, told):
+    noise = np.random.default_rng(4100).normal(0.0, 0.002, len(T))
+    y = 0.3 * swing(T) + noise + 0.03 * (np.arange(len(T)) % senders == 0)
+    found = [one for one in remarks_on(T, y, "psi", "rad") if "in turn" in one]
+    assert bool(found) == told
+    if told:
+        assert f"psi: {senders} series in turn, " in found[0]
+        assert "deg apart: as many sensors in one channel?" in found[0]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05, 3.0])
+def test_a_sensor_that_is_noisy_or_coarse_is_one(noise):
+    y = swing(T) + noise * np.random.default_rng(4101).normal(size=len(T)).clip(-0.5, 0.5)
+    for step in (1e-6, 0.1, 1.0):
+        assert not any("in turn" in one for one in remarks_on(T, step * np.round(y / step)))
+    dithers = 0.1 * (np.arange(len(T)) % 2)  # between two counts, as roll at rest is
+    assert not any("in turn" in one for one in remarks_on(T, dithers))

@@ -81,7 +81,7 @@ def _lacking(
     if not alive & {"r", "psi", "phi"}:
         yield "no yaw rate, heading or roll angle that moves is recognised: a fit needs a motion"
     if "u" not in alive:
-        yield "no speed through the water is recognised: state `speed` in the pipeline"
+        yield "no speed through the water that moves is recognised: state `speed` in the pipeline"
 
 
 def _unitless(known: Mapping[str, Sequence[ChannelInspection]]) -> Iterator[str]:
