@@ -1,6 +1,6 @@
 """One search from one start: least squares, robust or not, with what is known beforehand."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -17,11 +17,13 @@ from trialid.identification.output_error import (
     residual_at,
     respond_all,
 )
-from trialid.identification.problem import Settings
+from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.weighing import Weighing, colour_of
 from trialid.ship.effect import Parameter, Rate
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure
+from trialid.threads import one_thread
+from trialid.trial import Trial
 
 Vector = NDArray[np.float64]
 Progress = Callable[[Iteration], None]
@@ -134,6 +136,21 @@ def search(
         start = minimum.theta
         weights = huber(_plain(problem, start)) if robust else None
     return _end(weighing, minimum, path)
+
+
+@one_thread
+def left_by_one(trials: Sequence[Trial], model: ShipModel, settings: Settings) -> float:
+    """Normed error that one search from the stated start leaves; inf where it cannot begin.
+
+    Raises
+    ------
+    NotIdentifiable
+        As `identify` does, which searches from other starts, too.
+    StepsTooLong
+        The integration asks for finer steps than `settings.substeps`.
+    """
+    problem = pose_problem(trials, model, settings, {})
+    return float(np.sqrt(2.0 * search(problem, settings, problem.start).V))
 
 
 def _minimise(
