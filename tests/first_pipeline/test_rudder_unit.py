@@ -101,6 +101,47 @@ def test_a_rudder_in_percent_needs_its_degrees_at_full_and_then_runs(tmp_path: P
         ran(tmp_path / "p.toml")
 
 
+@pytest.mark.parametrize(
+    ("factor", "amidships", "why"),
+    [
+        (20.0, 1500.0, "1100 to 1900 look like pulse widths [us], about 1500 amidships"),
+        (1.0, 40.0, "20 to 60 are of one side alone, though she turns to both"),
+        (100.0, 0.0, "-2000 to 2000 are no degrees, which end at 90, and no share of full"),
+    ],
+)
+def test_a_rudder_on_a_scale_of_its_own_needs_its_zero_and_then_runs(
+    tmp_path: Path, factor: float, amidships: float, why: str
+) -> None:
+    """Of a real boat 1077 to 1907 `can only be deg`, and 10 to 70 ended in `rudder_backlash`."""
+    path = log(tmp_path / "a.csv", 20.0, factor)
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    table[:, -1] += amidships
+    rewritten(path, [",".join(f"{x:.9g}" for x in row) for row in table])
+    text, made = begun(tmp_path, inspect_log(path))
+    assert all('unit = "?"' in line for line in rudders(text))
+    assert why in made.to_fill[0]
+    mended = f'unit = "deg", gain = {1 / factor}, offset = {-amidships / factor}'
+    for place, words in made.files.items():
+        place.write_text(words.replace('unit = "?"', mended), encoding="utf-8")
+    delta = np.rad2deg(ran(tmp_path / "p.toml").signals["delta"])
+    assert [delta.min(), delta.max()] == pytest.approx([-20.0, 20.0])
+
+
+@pytest.mark.parametrize("manoeuvre", ["circle", "berth"])
+def test_a_rudder_of_one_side_that_she_obeys_is_in_degrees(tmp_path: Path, manoeuvre: str) -> None:
+    """In a turn she goes to one side, and at a berth nothing turns her but noise."""
+    path = log(tmp_path / "a.csv", 20.0)
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    if manoeuvre == "circle":
+        table[:, -1], table[:, 2] = np.abs(table[:, -1]) + 0.5, np.abs(table[:, 2])
+    else:
+        table[:, -1] = 5.0 + 0.01 * table[:, -1]
+    table[:, 3] = np.cumsum(0.5 * table[:, 2]) % 360.0
+    rewritten(path, [",".join(f"{x:.9g}" for x in row) for row in table])
+    text, _ = begun(tmp_path, inspect_log(path))
+    assert all('unit = "deg"' in line for line in rudders(text))
+
+
 def test_a_rudder_counted_from_0_to_360_is_to_either_side(tmp_path: Path) -> None:
     """It was read as an order, which jumps, and nine tenths of it were beyond 90 deg."""
     path = log(tmp_path / "a.csv", 20.0, name="rudder_deg")

@@ -131,6 +131,15 @@ def _with_rate(
     return common
 
 
+def turning_beside(rudder: ChannelInspection, turning: ChannelInspection) -> Vector | None:
+    """How fast she turns where both were logged, in the unit of `turning`, of a heading its slope.
+
+    (N,), without what lies in gaps; None where the two have too little in common.
+    """
+    common = _with_rate(rudder, turning, ())
+    return None if common is None else common[1][1][common[2]]
+
+
 def _turning(
     rudder: ChannelInspection, turning: ChannelInspection, beside: Sequence[ChannelInspection]
 ) -> Turning | None:

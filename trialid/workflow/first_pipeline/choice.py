@@ -8,6 +8,7 @@ import numpy as np
 
 from trialid.inspection import channel_names, name_words
 from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.inspection.own_scale import why_no_angle
 from trialid.inspection.positions import FASTEST, approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.inspection.speed_letters import of_either
@@ -33,6 +34,10 @@ ASK_FULL: Final = Reason(
 )
 ASK_PERCENT: Final = Reason(
     'FILL IN unit = "deg" and gain = the degrees at full / 100, for it is in %', "asked"
+)
+ASK_COUNTS: Final = (
+    'FILL IN unit = "deg", gain = degrees of one count, offset = less what it shows amidships '
+    "times gain"
 )
 ASK_SIDE: Final = Reason(
     "FILL IN starboard or port: the side the ship turns to when it is positive", "asked"
@@ -139,6 +144,7 @@ def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     if PUSHES.intersection(name_words.words(plain.source.name)):
         plain = dataclasses.replace(plain, further=(*plain.further, AS_RUDDER))
     witness = rate.source if rate else live["psi"][0]
+    plain = _on_own_scale(plain, witness)
     towards = (rate.positive or "starboard") if rate else None
     found = side(plain.source, witness, towards)
     convention = plain.source.guess.positive if plain.source.guess else None
@@ -152,6 +158,23 @@ def rudder_signal(name: str, live: Live, rate: Signal | None) -> Signal:
     if convention is not None:
         return dataclasses.replace(plain, positive=convention, of_side=CONVENTION)
     return dataclasses.replace(plain, positive=OPEN, of_side=ASK_SIDE)
+
+
+def _on_own_scale(rudder: Signal, turning: ChannelInspection) -> Signal:
+    """The rudder, and what to fill in where its numbers are no angle from amidships."""
+    why = why_no_angle(rudder.source, turning)
+    if not why:
+        return rudder
+    said = f"{rudder.source.low:.4g} to {rudder.source.high:.4g} {why}"
+    if rudder.source.stated_unit is not None:
+        told = f"CAREFUL: {said}; offset = less what that is"
+        return dataclasses.replace(rudder, further=(*rudder.further, told))
+    return dataclasses.replace(rudder, unit=OPEN, of_unit=Reason(f"{ASK_COUNTS}: {said}", "asked"))
+
+
+def is_counted(rudder: Signal) -> bool:
+    """Whether it is on a scale of its own."""
+    return rudder.of_unit.words.startswith(ASK_COUNTS)
 
 
 def choose_speed(survey: Inspection, live: Live, known: float | None, told: str) -> Signal | None:

@@ -10,8 +10,9 @@ from trialid.arrays import Vector
 from trialid.diagnosis.records.rudder_jumps import Course, Jump, Steps, jump_of, jump_where
 from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.name_words import words
+from trialid.inspection.own_scale import at_rest
 from trialid.names import units
-from trialid.workflow.first_pipeline.boats.unit_of_drive import at_rest
+from trialid.workflow.first_pipeline.choice import is_counted
 from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 
 ORDER_WORDS: Final = ORDERED | {"pwm", "throttle", "servo"}
@@ -37,8 +38,13 @@ def with_orders(trials: Sequence[Chosen], own_time: float, drives: frozenset[str
     drives
         Signals of what drives her, beside the rudder.
     """
-    found = _jump(trials, {"delta"}, lambda courses: jump_of(courses, own_time))
-    ordered = _read_as(trials, {"delta"}, f"it {found}, {NO_GEAR}" if found else "")
+    rudder = frozenset({"delta"})
+    if any(s.quantity == "delta" and is_counted(s) for one in trials for s in one.signals):
+        why = _of_drives(trials, rudder, own_time)
+    else:
+        found = _jump(trials, rudder, lambda courses: jump_of(courses, own_time))
+        why = f"it {found}, {NO_GEAR}" if found else ""
+    ordered = _read_as(trials, rudder, why)
     return _read_as(ordered, drives, _of_drives(trials, drives, own_time))
 
 
@@ -69,7 +75,7 @@ def stays(t: Vector, y: Vector, own_time: float) -> Steps:
 
 def _jump(
     trials: Sequence[Chosen],
-    names: frozenset[str] | set[str],
+    names: frozenset[str],
     jump: Callable[[list[Course]], Jump | None],
 ) -> Jump | None:
     """How the signals of these names jump; None where not every trial has one of them.
@@ -84,9 +90,9 @@ def _jump(
 
 
 def _course(signal: Signal) -> Course:
-    """Angles [rad]; of a drive the share of its largest."""
+    """Angles [rad]; of a drive, and of a rudder on a scale of its own, the share of its largest."""
     seen = signal.source.sketch
-    if signal.quantity == "delta":
+    if signal.quantity == "delta" and not is_counted(signal):
         if signal.unit in (None, OPEN):  # a share of full is as large as its radians
             of_full = 0.01 if signal.source.stated_unit == "%" else 1.0
             return seen.t / 1e9, seen.y * of_full
@@ -95,7 +101,7 @@ def _course(signal: Signal) -> Course:
     return seen.t / 1e9, y / (np.abs(y).max(initial=0.0) or 1.0)
 
 
-def _read_as(trials: Sequence[Chosen], names: frozenset[str] | set[str], why: str) -> list[Chosen]:
+def _read_as(trials: Sequence[Chosen], names: frozenset[str], why: str) -> list[Chosen]:
     if not why:
         return list(trials)
     return [

@@ -12,6 +12,7 @@ from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.drives import drives_of, has_side
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
+from trialid.inspection.own_scale import at_rest
 from trialid.inspection.relations import side, turns_late
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
@@ -23,7 +24,7 @@ from trialid.workflow.first_pipeline.boats.turned_drives import (
     angles_of,
     do_the_same,
 )
-from trialid.workflow.first_pipeline.boats.unit_of_drive import at_rest, unit_of_drive
+from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
 from trialid.workflow.first_pipeline.choice import (
     RUDDERS,
     Live,

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from trialid.effects.actuators.pushes import push_effects
+from trialid.inspection.own_scale import at_rest
 from trialid.ship.particulars import Ship
 from trialid.workflow.first_pipeline.boats.boat_choice import main_drives
-from trialid.workflow.first_pipeline.boats.unit_of_drive import at_rest
 from trialid.workflow.first_pipeline.chosen import Chosen
 from trialid.workflow.first_pipeline.held_out import held_out
 

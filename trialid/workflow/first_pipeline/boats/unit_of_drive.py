@@ -4,6 +4,7 @@ from typing import Final
 
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.name_words import words
+from trialid.inspection.own_scale import at_rest
 from trialid.workflow.first_pipeline.choice import BY_NAME
 from trialid.workflow.first_pipeline.chosen import OPEN, UNSAID, Reason
 
@@ -12,11 +13,6 @@ SHARE: Final = 1.05
 FULL: Final = 100.0
 """Nor is a percentage; thrusts in newton of a small boat may be smaller, so that none is taken for
 one up to here: the thrust of a share goes with its square."""
-PULSES: Final = (800.0, 2200.0)
-"""[us] Between which pulses of servos and speed controllers lie: 1000 to 2000, some 900 to 2100.
-Only words depend on it, and whether she goes astern: the unit is asked for either way."""
-REST: Final = 1500.0
-"""[us] The pulse at which speed controllers that go both ways stand still."""
 
 
 def unit_of_drive(source: ChannelInspection) -> tuple[str, Reason]:
@@ -51,8 +47,3 @@ def _unit_by_size(source: ChannelInspection) -> tuple[str, Reason]:
         "its command in the ship file too",
         "asked",
     )
-
-
-def at_rest(drive: ChannelInspection) -> float:
-    """What a drive shows where it does nothing: that of pulses of servos, else 0."""
-    return REST if PULSES[0] < drive.low and drive.high < PULSES[1] else 0.0
