@@ -150,3 +150,31 @@ def test_what_no_other_log_shows_is_left_to_the_user(
     logs = [log(tmp_path / f"z{i}.csv", ZIGZAG, gain) for i, gain in enumerate(gains)]
     made = begun(tmp_path, *logs, log(tmp_path / "turn.csv", TURN, 0.05, name))
     assert [words.partition(",")[0] for words in made.to_fill] == ["turn.csv: delta"]
+
+
+@pytest.mark.parametrize("heading", [True, False])
+def test_a_rudder_of_another_side_than_in_the_other_logs_is_told(
+    tmp_path: Path, heading: bool
+) -> None:
+    """A heading says that her rate was right; without one either may have been turned round."""
+    logs = [log(tmp_path / f"z{i}.csv", ZIGZAG, 0.05) for i in range(3)]
+    table = np.loadtxt(logs[2], delimiter=",", skiprows=1)
+    table[:, 1 if heading else 2] *= -1.0
+    kept = [0, 1, 2, 3, 4] if heading else [0, 1, 2, 4]
+    heads = np.array(["t", "rudder_deg", "rot [deg/s]", "heading [deg]", "stw [m/s]"])
+    for i, one in enumerate(logs):
+        rows = table if i == 2 else np.loadtxt(one, delimiter=",", skiprows=1)
+        np.savetxt(one, rows[:, kept], delimiter=",", header=",".join(heads[kept]), comments="")
+    made = begun(tmp_path, *logs)
+    text = made.files[tmp_path / "p.toml"]
+    said = "by the motion port, and of the same name starboard in z0.csv"
+    assert text.count(said) == 1
+    assert text.count('positive = "starboard"') == 2
+    if heading:
+        assert made.to_fill == ()
+        assert f"CAREFUL: {said}" in text
+        assert text.count('positive = "port"') == 1
+    else:
+        assert len(made.to_fill) == 1
+        assert "or rot counts the other way here" in made.to_fill[0]
+        assert text.count('positive = "?"') == 1

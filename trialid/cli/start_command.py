@@ -95,6 +95,7 @@ def _told(begun: "Starter") -> Iterator[str]:
     yield f"{wording.count_of(len(names), 'trial')}: {_few(names)}{held}."
     for signal in begun.trials[0].signals:
         yield f"{signal.quantity}: {signal.source.key}, {signal.why}{_left_out(signal)}."
+    yield from _other_sides(begun)
     if left := [*_left_to_user(begun)]:
         yield f"In the log too, commented out in the pipeline with why: {', '.join(left)}."
     yield f"Written, each choice with its reason: {' and '.join(map(str, begun.files))}."
@@ -102,6 +103,15 @@ def _told(begun: "Starter") -> Iterator[str]:
         yield f"Left out: {words}."
     for words in begun.to_fill:
         yield f"To fill in: {words}"
+
+
+def _other_sides(begun: "Starter") -> Iterator[str]:
+    """Signals that count to another side in other trials than in the first."""
+    sides = {s.source.key: s.positive for s in begun.trials[0].signals}
+    for one in begun.trials[1:]:
+        for s in one.signals:
+            if s.positive != sides.get(s.source.key, s.positive) and not s.open:
+                yield f"{s.quantity} of {one.name}: {s.why}."
 
 
 def _left_to_user(begun: "Starter") -> Iterator[str]:

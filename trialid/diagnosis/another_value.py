@@ -64,9 +64,15 @@ def _told(fit: Fit, score: Score) -> Iterator[str]:
     yield (
         f"held-out {score.trial.name} is followed with {unknown.name} = {there}"
         f"{f' {unit}' if unit != '1' else ''}, {here} in the fitted trials: its error falls from "
-        f"{before:.1%} to {after:.1%}; she was loaded otherwise there, or the model "
-        "lacks what makes it so"
+        f"{before:.1%} to {after:.1%}; {_why(fit, score)}"
     )
+
+
+def _why(fit: Fit, score: Score) -> str:
+    """What makes it so; within one log no cargo comes aboard."""
+    lacks = "the model lacks what makes it so"
+    fitted = {log for t in fit.trials if t.use == "fit" for log in t.logs}
+    return lacks if fitted & {*score.trial.logs} else f"she was loaded otherwise there, or {lacks}"
 
 
 def _starts(fit: Fit, score: Score) -> Iterator[tuple[int, float]]:

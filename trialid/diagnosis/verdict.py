@@ -6,7 +6,6 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.found_values import is_force
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.objections import (
     AS_A_GEAR,
@@ -24,11 +23,11 @@ from trialid.diagnosis.objections import (
     outputs_beside,
     standing_but,
 )
-from trialid.diagnosis.search.carried import FALL, as_good
+from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.falls import fall, worse_held_out
 from trialid.diagnosis.search.refit import Refit
-from trialid.diagnosis.search.rivals import rivals
+from trialid.diagnosis.search.rivals import is_open, rivals, unlike_in_trace
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import far_ahead
 from trialid.diagnosis.search.together import Together
@@ -176,9 +175,10 @@ def _judged(
     if (share := _explained(fit, named, parts)) < SHARE:
         return Verdict("not in catalogue", None, (), explains_little(named, share, parts))
     others = rivals(named, ranking, refits)
-    if fall(fit, named) < MOST and _open(named, others, ranking, level):
+    unlike = unlike_in_trace(named, others, ranking)
+    if is_open(named, unlike, level, most=fall(fit, named) >= MOST):
         either = (named.candidate.effect.name, *others)
-        return Verdict("cannot tell", None, either, one_of(fit, named, others, level))
+        return Verdict("cannot tell", None, either, one_of(fit, named, others, unlike, level))
     return _missing(fit, named, others, level)
 
 
@@ -276,23 +276,3 @@ def _missing(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> V
         f"{subject(fit, named, len(others))} {falls_by(fit, named.fit)} "
         f"({by_chance(candidate, level)}){alike}",
     )  # fmt: skip
-
-
-def _open(
-    named: Refit, others: tuple[str, ...], ranking: Sequence[Candidate], level: float
-) -> bool:
-    """Whether effects unlike in trace may be meant, and nothing says that it is this one.
-
-    None stands out against the noise; or the named one is no force, and a force leaves less where
-    it was not fitted, by what is worth a name: a sensor, a clock or a gear that is late mends any
-    hull a little, so that it stands out says that something is missing, and not which. Where this
-    was found forces leave 5 and 20 % less, beside a gear that has such a fault 0.1 at most: half
-    and twice say the same.
-    """
-    meant = {named.candidate.effect.name, *others}
-    unlike = [c for c in ranking if c.effect.name in meant - {*named.candidate.family}]
-    if all(c.p_value >= level for c in ranking if c.effect.name in meant):
-        return bool(unlike)
-    return not is_force(named.candidate.effect) and any(
-        is_force(c.effect) and c.price < named.candidate.price + np.log(FALL) for c in unlike
-    )

@@ -123,11 +123,15 @@ def small_rest(left: float, none: str) -> str:
     return f"{none}, and of no trial is more left than {left:.1%}, noise and model error together"
 
 
-def one_of(fit: Fit, named: Refit, others: tuple[str, ...], level: float) -> str:
+def one_of(
+    fit: Fit, named: Refit, others: tuple[str, ...], unlike: Sequence[Candidate], level: float
+) -> str:
     """Something is missing, and effects unlike each other mend it."""
     name, p = named.candidate.effect.name, named.candidate.p_value
     freed = " freed" if named.candidate.effect.held is not None else ""
     why = "against the noise none stands out"
+    if p >= level and (shown := [c for c in unlike if c.p_value < level]):
+        why = f"{shown[0].effect.name} stands out against the noise, {name} does not"
     if p < level:
         why = f"{name}, which is no force, stands out, but forces leave less where not fitted"
     return (

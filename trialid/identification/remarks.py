@@ -65,6 +65,8 @@ def remarks(fit: Fit) -> tuple[str, ...]:
     """
     own = {x.name for x in fit.problem.unknowns if x.kind == "physical" and x.prior}
     units = {x.name: x.unit for x in fit.problem.unknowns}
+    off = _off_in_all(fit)
+    of_all = {x.name for x in fit.problem.unknowns if x.column in off and x.trial is not None}
 
     def said(name: str, value: float) -> str:
         return with_unit(value, units[name])
@@ -77,7 +79,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         f"{n} = {said(n, fit.value(n))} is {abs(z):.1f} deviations "
         f"{'above' if z > 0.0 else 'below'} what is likely"
         for n, z in fit.contradicted.items()
-        if n not in own
+        if n not in own | of_all
     ]
     driven = [
         f"{n} = {said(n, fit.value(n))} would drive her on when she {when}: no hull does, and "
@@ -91,7 +93,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *bounds,
         *against,
         *driven,
-        *_one_sided(fit),
+        *(STANDS_OFF[name][1].format(f"{np.rad2deg(by):.2g}") for name, by in off.items()),
         *_another_in_each(fit),
         *_late(fit),
         *_astern(fit),
@@ -99,14 +101,10 @@ def remarks(fit: Fit) -> tuple[str, ...]:
     )
 
 
-def _one_sided(fit: Fit) -> list[str]:
+def _off_in_all(fit: Fit) -> dict[str, float]:
     """What stands off by the same in all trials: a rudder's zero, in predictions too; a heel's."""
     found = {column: _in_all(fit, column, least) for column, (least, _) in STANDS_OFF.items()}
-    return [
-        STANDS_OFF[column][1].format(f"{np.rad2deg(off):.2g}")
-        for column, off in found.items()
-        if off is not None
-    ]
+    return {column: off for column, off in found.items() if off is not None}
 
 
 def _another_in_each(fit: Fit) -> list[str]:

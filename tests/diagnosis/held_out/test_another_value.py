@@ -13,6 +13,7 @@ from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
 from trialid.progress import silent
 from trialid.result import build
+from trialid.trial import LogSource
 
 FREE = ("Nv", "Nr", "Ndelta", "Kv", "Kdelta", "Kp", "GM")
 SETTINGS = Settings(FREE, ("r", "phi"), nuisance=("initial_state", "bias"))
@@ -48,6 +49,18 @@ def test_a_ship_that_rolls_for_long_is_told_too(times):
     [said] = follow_with_another_value(fitted(her=light, GM=times))
     there = float(said.split(" = ")[1].split(" m, ")[0])
     assert there == pytest.approx(times * 1.2, rel=0.05)
+
+
+@pytest.mark.parametrize("one_log", [True, False])
+def test_within_one_log_no_cargo_comes_aboard(one_log):
+    """Of the next 30 s of a boat's log it was said that she was loaded otherwise there."""
+    fit = fitted(GM=0.6)
+    logs = [LogSource(f"{0 if one_log else k}.csv", "0", "csv") for k in range(3)]
+    made = zip(fit.scores, logs, strict=True)
+    scores = tuple(replace(s, trial=replace(s.trial, logs=(log,))) for s, log in made)
+    [said] = follow_with_another_value(replace(fit, scores=scores))
+    assert ("loaded otherwise" in said) is not one_log
+    assert said.endswith("the model lacks what makes it so")
 
 
 def test_a_ship_as_she_was_has_nothing_to_tell():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from s175q import MODEL, white, with_noise, zigzag
 
-from trialid.diagnosis.records.heel_side import leans_inward
+from trialid.diagnosis.records.heel_side import leans_to, side_in_doubt
 from trialid.diagnosis.records.in_doubt import settle
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import identify
@@ -81,7 +81,8 @@ def test_healthy_ships_and_stated_sides_have_their_verdict(wrong):
         of_trials(wrong, sailed()),
     ]
     for fit in fits:
-        assert leans_inward(fit) == ()
+        assert leans_to(fit)[0] == ()
+        assert side_in_doubt(fit) is None
         assert settle(fit, named) is named
 
 
@@ -92,3 +93,27 @@ def test_a_side_is_stated_with_the_signal():
         "a", t, signals, units={"phi": "deg", "r": "deg/s"}, positive={"phi": "port"}
     )
     assert made.sided == {"phi"}
+
+
+def test_a_roll_of_the_wrong_side_is_told_through_the_roll_of_a_swell(wrong):
+    """Of a boat 0.45 to 0.69 of it was in step with her turns, and `rudder_stall` had the name."""
+    rng, trials = np.random.default_rng(4110), []
+    for trial in sailed(-1.0):
+        swell = np.convolve(rng.normal(size=trial.samples + 40), np.sin(np.arange(41) / 3), "valid")
+        scale = 1.2 * np.std(trial.signals["phi"]) / np.std(swell)
+        phi = trial.signals["phi"] + scale * swell
+        trials.append(replace(trial, signals={**trial.signals, "phi": phi}))
+    lean = [np.corrcoef(t.signals["phi"], t.signals["r"])[0, 1] for t in trials]
+    assert 0.4 < min(lean) < max(lean) < 0.7
+    assert leans_to(of_trials(wrong, trials)) == (("zigzag-10", "zigzag-20"), ())
+
+
+def test_a_rate_that_was_turned_round_in_one_trial_is_told_by_the_roll(wrong):
+    """Of one zig-zag of four it was, without a heading, and `rudder_stall` had the name."""
+    trials = sailed()
+    signals = {**trials[1].signals, "r": -trials[1].signals["r"]}
+    fit = of_trials(wrong, [trials[0], replace(trials[1], signals=signals), trials[2]])
+    assert leans_to(fit)[0] == ("zigzag-20",)
+    found = settle(fit, Verdict("missing", "rudder_stall", ("rudder_stall",), "it is"))
+    assert found.effect is None
+    assert "into her turns in zigzag-20 and out of them in zigzag-10" in found.sentence

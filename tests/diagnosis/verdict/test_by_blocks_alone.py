@@ -15,13 +15,15 @@ from trialid.progress import silent
 from trialid.ship.effect import Delayed, Force, Lagged, Mass, Rate
 
 
-def decided(fall, *, p_value, alike=()):
+def decided(fall, *, p_value, alike=(), other=None):
     """The verdict on two effects unlike each other in trace that do as well."""
     eps = 0.10 * np.sqrt(1.0 - fall)
     first = refit("a", 1.0 - fall, eps, family=alike)
     second = refit("b", 1.02 * (1.0 - fall), 1.001 * eps, wobble=0.1)
-    for one in (first, second):
-        one.candidate.p_value = p_value
+    first.candidate.p_value = p_value
+    second.candidate.p_value = p_value if other is None else other
+    if other is not None:  # wind that nobody recorded, which gives way to a hull
+        first.candidate.effect.forms, second.candidate.effect.signals = (Force,), ("psi",)
     ranking = (first.candidate, second.candidate)
     return decide(fit(0.10), ranking, [first, second], NO_ROUTE, None, 0.05)
 
@@ -37,6 +39,17 @@ def test_of_effects_unlike_each_other_one_that_explains_most_is_named(fall, p_va
         assert "as well it may be b" in found.sentence
         assert "(p = 1 over the catalogue)" in found.sentence
     assert found.family == ("a", "b")
+
+
+@pytest.mark.parametrize(("alike", "kind"), [((), "cannot tell"), (("b",), "missing")])
+def test_what_alone_stands_out_is_not_put_behind_what_does_not(alike, kind):
+    """Of a real boat wind stood out, p = 0.011, and an asymmetry with p = 1 had the name."""
+    found = decided(0.65, p_value=1.0, other=0.011, alike=alike)
+    assert found.kind == kind
+    assert found.family == ("a", "b")
+    said = "b stands out against the noise, a does not (p = 1 over the catalogue)"
+    assert (said in found.sentence) == (kind == "cannot tell")
+    assert decided(0.65, p_value=0.011, other=1.0).kind == "missing"
 
 
 def test_of_several_of_which_one_is_missing_no_two_are_tried_at_once(monkeypatch):

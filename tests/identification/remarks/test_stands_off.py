@@ -79,6 +79,22 @@ def test_a_rate_that_is_late_in_all_trials_is_told(of_each, told):
         assert float(line.split(" s late")[0].split()[-1]) == pytest.approx(3.0, abs=0.4)
 
 
+def test_what_is_said_of_all_trials_is_not_said_of_each_again():
+    """Of a boat with a side push of 3.7 deg it was cut off behind three lines of its trials."""
+    made = []
+    for k in range(3):
+        trial = zigzag((5, 10, 20)[k], MODEL)
+        turned = {**trial.signals, "delta": trial.signals["delta"] - np.deg2rad(4.0)}
+        noise = white(np.random.default_rng(95 + k), trial.samples)
+        made.append(with_noise(replace(trial, signals=turned), *noise))
+    fit = identify(made, MODEL, replace(SETTINGS, nuisance=("initial_state", "rudder_offset")))
+    assert sum(name.startswith("delta_0") for name in fit.contradicted) == 3
+    lines = remarks(fit)
+    assert sum("the rudder's zero is 4 deg in all trials" in line for line in lines) == 1
+    assert not any(line.startswith("delta_0") for line in lines)
+    assert any(x.startswith("delta_0") for x in remarks(identify(made[:1], MODEL, fit.settings)))
+
+
 WINDY = (MODEL + CATALOGUE["steady_wind"]).with_values(
     {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.08, "z_wind": 0.0}
 )

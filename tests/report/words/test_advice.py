@@ -47,6 +47,17 @@ def test_two_that_are_missing_at_once_are_added_by_the_loop(result):
     assert_known(both_at_once.command)
 
 
+@pytest.mark.parametrize("use", ["fit", "check"])
+def test_a_model_is_for_use_where_a_trial_held_out_has_tested_it(result, use):
+    """Thirteen numbers of one zig-zag were for use, and left three times as much on its end."""
+    run = copy.deepcopy(result)
+    for trial in run["trials"]:
+        trial["use"] = use
+    first = advised(run, verdict=verdict("nothing missing"))[0].words
+    assert first.startswith("Use the model within") == (use == "check")
+    assert first.startswith("Hold a trial out before you use the model") == (use == "fit")
+
+
 def test_where_one_of_several_is_missing_each_may_be_tried(result):
     one_of = verdict("cannot tell", family=["rudder_backlash", "yaw_drag", "sway_drag", "heel"])
     tried = [e.command for e in advised(result, verdict=one_of) if " add " in e.command]

@@ -31,8 +31,11 @@ CLOSE = 1.15
 ALIKE = 0.02
 """Units whose factors fit as well as this tell nothing apart: both are named.
 57.3 and 60 differ by 0.046."""
-FAIR = 1.1
-"""Gains within this factor of one are not worth a remark."""
+FAIR = 1.04
+"""Gains within this factor of one are not worth a remark. Of 687 logs of real and made records that
+tell the gain of a gyro those of sound ones lie within 1.02, and 22 whose gyro is wrong, or which
+call a course a heading, beyond 1.05; so that half of it tells the same, and twice loses a boat's
+whose predictions were 6 % too large."""
 PROMPT = 0.1
 """Share of a swing: smoothing to a third delays by a fifth of a swing and more."""
 LATE = 0.2

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from trialid.accuracy.parameter_table import prior_shares
-from trialid.diagnosis.found_values import gives_way, her_own, of_a_sensor
-from trialid.diagnosis.search.carried import RIVAL, does_as_well
+from trialid.diagnosis.found_values import gives_way, her_own, is_force, of_a_sensor
+from trialid.diagnosis.search.carried import FALL, RIVAL, does_as_well
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
@@ -56,6 +56,31 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
     close = [c.effect.name for c in ranking if c.effect.name in good and c.allowed]
     alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
     return (*close, *alike)
+
+
+def unlike_in_trace(
+    named: Refit, others: Sequence[str], ranking: Sequence[Candidate]
+) -> tuple[Candidate, ...]:
+    """Those of its rivals whose traces are not like its own."""
+    unlike = {*others} - {*named.candidate.family}
+    return tuple(c for c in ranking if c.effect.name in unlike)
+
+
+def is_open(named: Refit, unlike: Sequence[Candidate], level: float, *, most: bool) -> bool:
+    """Whether effects `unlike` it may be meant, and nothing says that it is this one.
+
+    It does not stand out against the noise, and another does, or it takes less than `most` of the
+    squared error; or it takes less, is no force, and a force leaves less where it was not fitted,
+    by what is worth a name: a sensor, a clock or a gear that is late mends any hull a little, so
+    that it stands out says that something is missing, and not which. Where this was found forces
+    leave 5 and 20 % less, beside a gear that has such a fault 0.1 at most: half and twice say the
+    same.
+    """
+    if named.candidate.p_value >= level:
+        return any(c.p_value < level or not most for c in unlike)
+    worth = named.candidate.price + np.log(FALL)
+    none = not most and not is_force(named.candidate.effect)
+    return none and any(is_force(c.effect) and c.price < worth for c in unlike)
 
 
 def _has_ends(effect: Effect) -> bool:

@@ -138,10 +138,10 @@ def _missing(run: Result) -> Iterable[Advice]:
 def _nothing(run: Result) -> Iterable[Advice]:
     ends = run.split.ends("undermodelling")
     limit = f" A model error of up to {wording.percent(ends[1])} would not be seen." if ends else ""
-    yield Advice(
-        "Use the model within the orders, speeds and heel that the trials cover; no effect is to "
-        f"be added on the strength of this record.{limit}"
-    )
+    use = "Use the model within the orders, speeds and heel that the trials cover; no"
+    if not any(trial.use == "check" for trial in run.trials):
+        use = "Hold a trial out before you use the model: what was fitted does not test it. No"
+    yield Advice(f"{use} effect is to be added on the strength of this record.{limit}")
 
 
 def _outside(run: Result) -> Iterable[Advice]:

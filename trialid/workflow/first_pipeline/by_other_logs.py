@@ -6,9 +6,11 @@ beside it, whose channel has the same name, do; whatever a format says of the si
 """
 
 import dataclasses
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from trialid.inspection.inspected import ChannelInspection, Inspection
+from trialid.workflow.first_pipeline.choice import RUDDERS
 from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
 
 Side = tuple[str, str]
@@ -40,12 +42,49 @@ def _sized(one: ChannelInspection, known: Mapping[str, str]) -> ChannelInspectio
 
 
 def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
-    """The trials, with sides that only others of them show; where these disagree it stays open."""
-    known = _shown(trials)
+    """The trials, with sides that only others of them show; where these disagree it stays open.
+
+    And so does the side of a rudder where most others of the same name show another, unless the
+    heading confirms her rate of turn: else one of the two was turned round, and nothing says which.
+    """
+    known, usual = _shown(trials), _usual(trials)
     return [
-        dataclasses.replace(one, signals=tuple(_told(s, known) for s in one.signals))
+        dataclasses.replace(
+            one, signals=tuple(_unlike(_told(s, known), one, usual) for s in one.signals)
+        )
         for one in trials
     ]
+
+
+def _usual(trials: Sequence[Chosen]) -> Mapping[str, Side]:
+    """The side that most trials show of a rudder, by its channel's name; the first log of it."""
+    shown: dict[str, list[Side]] = {}
+    for one in trials:
+        for s in one.signals:
+            if s.quantity in RUDDERS and s.of_side.rests_on("measured"):
+                shown.setdefault(s.source.name, []).append((str(s.positive), one.path.name))
+    most = {name: Counter(side for side, _ in them).most_common(1) for name, them in shown.items()}
+    return {
+        name: next(each for each in them if each[0] == most[name][0][0])
+        for name, them in shown.items()
+    }
+
+
+def _unlike(signal: Signal, trial: Chosen, usual: Mapping[str, Side]) -> Signal:
+    """A rudder that most others deny, told or left open."""
+    side, log = usual.get(signal.source.name, ("", ""))
+    if not (signal.of_side.rests_on("measured") and side) or signal.positive == side:
+        return signal
+    said = f"by the motion {signal.positive}, and of the same name {side} in {log}"
+    rate = next((s for s in trial.signals if s.quantity in ("r", "psi")), None)
+    if rate is not None and (rate.quantity == "psi" or rate.of_side.rests_on("measured")):
+        return dataclasses.replace(signal, further=(*signal.further, f"CAREFUL: {said}"))
+    or_r = rate.source.key if rate else "the rate of turn"
+    ask = (
+        f"FILL IN starboard or port: {said}: this or {or_r} counts the other way here, and "
+        "positive of that one has to say so"
+    )
+    return dataclasses.replace(signal, positive=OPEN, of_side=Reason(ask, "asked"))
 
 
 def with_unshown(trials: Sequence[Chosen]) -> list[Chosen]:
