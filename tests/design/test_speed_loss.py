@@ -119,3 +119,26 @@ def test_a_boat_that_turns_in_two_lengths_loses_what_her_logs_say():
     trials = [logged(10, 0.0, ship), logged(35, 0.0, ship, orders=turning_circle(35 * D))]
     found = speed_loss(fit_of(nimble, trials))
     assert found.values == pytest.approx(law, rel=0.02)
+
+
+@pytest.mark.parametrize("times", [1.0, 10.0])
+def test_a_turn_drives_no_ship_astern(times):
+    """Of ten times what is typical 24 m/s astern came out, in a circle of 35 deg at 8 m/s."""
+    law = dict(zip(NAMES, times * TYPICAL, strict=True))
+    circle = carry_out(with_speed_loss(KEEPING, law), turning_circle(35.0 * D), 20.0, 900.0, "a")
+    ahead = circle.trial.signals["u"] - circle.trial.signals["u_off"]
+    assert ahead[-1] < 0.9 * ahead[0]
+    assert ahead.min() > -0.05 * ahead[0]
+
+
+def test_logs_of_which_turns_are_not_the_cause_tell_no_loss(trials):
+    """As of an autopilot in gusts: speeds that fall by ten times what her turns can cost."""
+    gusts = np.random.default_rng(4150)
+    blown = []
+    for one in trials:
+        slow = np.repeat(gusts.uniform(0.0, 6.0, one.samples // 100 + 1), 100)[: one.samples]
+        still = {n: 0.02 * one.signals[n] for n in ("delta", "r", "phi")}
+        blown.append(replace(one, signals={**one.signals, **still, "u": 7.33 - slow}))
+    found = speed_loss(fit_of(GIVEN, blown))
+    assert not loses_speed(found.values)
+    assert np.sqrt(np.diag(found.covariance)) == pytest.approx(TYPICAL, rel=0.5)

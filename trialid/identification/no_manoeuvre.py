@@ -23,6 +23,10 @@ SELDOM: Final = (0.005, 0.995)
 AROUND: Final = 60.0
 """[s] Before and after the rudder is used: the ship has come to rest, and shows her bias."""
 
+STRAIGHT: Final = 0.1
+"""Share of how fast she turns below which she goes straight on, and shows where amidships is: of a
+circle of 880 s, and a voyage with one turn in it, half and twice say the same."""
+
 MOST_TOLD: Final = 8
 """Of a day more are seldom; each takes sixteen letters of one line."""
 
@@ -39,7 +43,7 @@ def no_manoeuvre(fit: Fit) -> Inadequate | None:
         return None
     rudders = [(s, n) for s in of_use(fit, "fit") for n in steered]
     moved = max(_range(s, n, OFTEN) for s, n in rudders)
-    if moved > RUDDER_RANGE:
+    if moved > RUDDER_RANGE or any(_is_held_over(s, n) for s, n in rudders):
         return None
     score, name = max(rudders, key=lambda one: _range(one[0], one[1], SELDOM))
     if _range(score, name, SELDOM) > RUDDER_RANGE:
@@ -49,6 +53,18 @@ def no_manoeuvre(fit: Fit) -> Inadequate | None:
         f"takes more than {np.rad2deg(RUDDER_RANGE):.2g} deg",
         "fit a zig-zag or a turn, or check which channel is the rudder and in what unit",
     )
+
+
+def _is_held_over(score: Score, name: str) -> bool:
+    """Whether the rudder is held over for more than a tenth, as in a turning circle."""
+    signals = score.trial.signals
+    r = signals["r"] if "r" in signals else np.gradient(np.unwrap(signals.get("psi", np.zeros(2))))
+    straight = np.abs(r) < STRAIGHT * np.quantile(np.abs(r), OFTEN[1])
+    rudder = _rudder(score, name)
+    if len(r) != len(rudder) or not straight.any():
+        return False
+    off = np.abs(rudder - np.median(rudder[straight]))
+    return bool(np.mean(off > 0.5 * RUDDER_RANGE) > 1.0 - (OFTEN[1] - OFTEN[0]))
 
 
 def _manoeuvres_seldom(score: Score, name: str, moved: float) -> Inadequate:
