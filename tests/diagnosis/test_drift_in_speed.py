@@ -126,6 +126,10 @@ def test_a_wind_that_nobody_recorded_may_be_the_current_in_a_speed_over_ground()
         fit = SimpleNamespace(model=model, trials=problem.trials, problem=problem)
         sentence = name_records(fit, named, [CATALOGUE["steady_wind"], current]).sentence
         assert ("the speed is over ground, and a current in it" in sentence) is said
+    for model, doubted in ((PLAIN, True), (READ, False)):
+        fit.model = problem.simulator.model = model
+        told = name_records(fit, replace(named, effect=current.name), [current]).sentence
+        assert ("a wind that nobody recorded may look like it" in told) is doubted
     other = replace(named, effect="yaw_drag_rar")
     fit.model = problem.simulator.model = READ
     assert "over ground" not in name_records(fit, other, [CATALOGUE["yaw_drag_rar"]]).sentence

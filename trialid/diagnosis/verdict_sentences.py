@@ -145,7 +145,7 @@ def several_together(fit: Fit, found: Together) -> str:
     """Effects do what none of them does alone."""
     alike = "".join(f"; {named_together(names)} do as much" for names in found.alike[:1])
     return (
-        f"more than one thing is missing: no effect alone stands every check, but with "
+        f"more than one thing may be missing: no effect alone stands every check, but with "
         f"{named_together(found.names)} together {falls_by(fit, found.fit)}{alike}"
     )
 

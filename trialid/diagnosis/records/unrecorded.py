@@ -25,7 +25,8 @@ UNANSWERED: Final = ("not in catalogue", "cannot tell", "nothing missing")
 missing of a ship in 14 m/s of wind, whose heading and wind nobody gave."""
 
 READ_OVER_GROUND: Final = "drift_in_speed_record"
-CURRENTS: Final = {"current_in_speed_record", current_in_speed.name}
+READ_WITH_CURRENT: Final = "current_in_speed_record"
+CURRENTS: Final = {READ_WITH_CURRENT, current_in_speed.name}
 """Effects of a model whose speed is one over ground, and of the current in it."""
 
 SHOWN: Final = 5
@@ -52,11 +53,19 @@ def name_records(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> Verdi
 def _or_current(fit: Fit, verdict: Verdict, effects: Iterable[Effect]) -> str:
     """That a wind which nobody recorded may be a current, where the speed is one over ground.
 
-    Of three of four ships in a current, of another hull than the model's, wind was named last.
+    And a current something else, where it is not. Of three of four ships in a current, of another
+    hull than the model's, wind was named last; of one of eight boats in wind, whose log is through
+    the water, a current.
     """
-    wind = any(e.name == verdict.effect and by_heading(e) and of_the_ship(e) for e in effects)
     present = {e.name for e in fit.problem.simulator.model.effects}
-    if not wind or READ_OVER_GROUND not in present or present & CURRENTS:
+    over_ground = READ_OVER_GROUND in present
+    if verdict.effect == READ_WITH_CURRENT and not over_ground:
+        return (
+            "that is of a speed recorded over ground, and the model takes it as one through the "
+            "water: where it is that, a wind that nobody recorded may look like it"
+        )
+    wind = any(e.name == verdict.effect and by_heading(e) and of_the_ship(e) for e in effects)
+    if not wind or not over_ground or present & CURRENTS:
         return ""
     return "the speed is over ground, and a current in it, unrecorded too, may look like that"
 
