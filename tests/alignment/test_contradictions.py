@@ -6,6 +6,8 @@ from aligned_records import aligned, healthy, with_values
 from real_channels import series
 from scipy.signal import lfilter
 
+from trialid.alignment.agreement import checks
+
 
 @pytest.fixture(scope="module")
 def zigzag():
@@ -23,13 +25,28 @@ def test_a_late_rate_of_turn_is_mended_by_a_delay(zigzag, delay):
     assert apart.sentence.endswith(" in r would mend it")
 
 
-def test_a_rate_that_reads_less_than_the_heading_turns_is_mended_by_a_gain(zigzag):
-    """No compass is wrong by a factor over whole turns."""
-    less = with_values(zigzag, "r", 0.8 * zigzag["r"].y)
+@pytest.mark.parametrize("gain", [0.8, 0.92, 0.95, 1.06, 1.08, 1.12])
+def test_a_rate_that_reads_less_than_the_heading_turns_is_mended_by_a_gain(zigzag, gain):
+    """No compass is wrong by a factor over whole turns; 1.08 ended in `nothing missing`."""
+    less = with_values(zigzag, "r", gain * zigzag["r"].y)
     [apart] = aligned(less).contradictions
-    assert (apart.late, apart.factor) == (0.0, pytest.approx(0.8, abs=0.01))
-    assert apart.sentence.endswith("; gain = 1.25 in r would mend it")
-    assert aligned(zigzag).contradictions == ()
+    assert (apart.late, apart.factor) == (0.0, pytest.approx(gain, abs=0.01))
+    mends = float(apart.sentence.split("; gain = ")[1].removesuffix(" in r would mend it"))
+    assert mends == pytest.approx(1.0 / gain, abs=0.01)
+
+
+@pytest.mark.parametrize("gain", [0.98, 1.0, 1.02])
+def test_gyros_as_they_are_contradict_no_heading(zigzag, gain):
+    assert aligned(with_values(zigzag, "r", gain * zigzag["r"].y)).contradictions == ()
+
+
+@pytest.mark.parametrize("times", [-0.3, 0.3, 5.0])
+def test_roll_that_goes_with_her_turns_is_not_taken_for_their_rate(zigzag, times):
+    """A gyro read a third; her roll went with the turns as any does, at another size."""
+    c = {**zigzag, "phi": series("phi", zigzag["r"].t, times * zigzag["r"].y)}
+    less = with_values(c, "r", 0.2 * zigzag["r"].y)
+    [found] = [one for one in checks.of_series(less) if one.severity == "error"]
+    assert "exchanged" not in found.sentence
 
 
 def test_where_the_heading_is_late_the_delay_is_its_own(zigzag):

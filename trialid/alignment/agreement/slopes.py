@@ -66,7 +66,10 @@ def check_slopes(trial: Trial, stated: Mapping[str, str], beside: Trial) -> Iter
 
 
 def _better(trial: Trial, rate: str, angle: str) -> str:
-    """Words on another signal that is the slope of the angle, whatever its name."""
+    """Words on another signal that is the slope of the angle, whatever its name.
+
+    In size, too: roll goes with every turn, and is not the rate of it.
+    """
     if angle not in trial.signals:
         return ""
     for name, y in trial.signals.items():
@@ -74,7 +77,8 @@ def _better(trial: Trial, rate: str, angle: str) -> str:
             continue
         valid = trial.valid[name] & trial.valid[angle]
         found = relation.of_slope(y, trial.signals[angle], valid, trial.period)
-        if found is not None and abs(found.correlation) > SAME and _prompt(found):
+        as_large = found is not None and CLOSE**-2 < found.gain[0] * found.gain[1] < CLOSE**2
+        if found and as_large and abs(found.correlation) > SAME and _prompt(found):
             return f"; {name} goes with that slope ({found.correlation:.3f}): are they exchanged?"
     return ""
 
