@@ -72,6 +72,24 @@ def test_ranges_are_what_the_parameters_do():
         assert found.ranges[name] == pytest.approx((low, high), rel=1e-4)
 
 
+def test_of_a_ship_that_may_be_neither_k_has_no_end():
+    """Through infinity no range is told: of a tanker hardly stable 1.2 was the end of it, of 93."""
+    Nv = MODEL.value("Nv")
+    steps = [Nv * k for k in (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)]
+    found = [nomoto(ship(MODEL.with_values({"Nv": n})), known_by("Nv", 0.0)) for n in steps]
+    stable = [one.stable for one in found]
+    assert stable[0]
+    assert not stable[-1]
+    last = stable.index(False) - 1
+    least, wide = 0.01 * abs(Nv), 2.0 * abs(steps[last] - steps[last + 1])
+    near = ship(MODEL.with_values({"Nv": steps[last]}))
+    told, not_told = (nomoto(near, known_by("Nv", off)).ranges for off in (least, wide))
+    for name in ("K", "T", "T1", "K_prime", "T_prime"):
+        assert told[name] is not None
+        assert not_told[name] is None
+    assert not_told["T2"] is not None
+
+
 def test_a_ship_that_is_not_stable_is_told():
     wild = MODEL.with_values({"Nv": 4.0 * MODEL.value("Nv")})
     found = nomoto(ship(wild), known_by("Nr", 0.0))

@@ -33,6 +33,9 @@ STEP: Final = 1e-5
 FIRST: Final = ("K", "T", "K_prime", "T_prime")
 SECOND: Final = ("T1", "T2", "T3")
 NAMES: Final = (*FIRST, *SECOND)
+BOUNDLESS: Final = (*FIRST, "T1")
+"""Those that pass through infinity where she turns from a stable ship into an unstable one: of a
+tanker hardly stable K was 0.05, "likely" -0.2 to 1.2, and 93 in truth."""
 UNITS: Final = {"K": "1/s", "K_prime": "1", "T_prime": "1"}
 """Of those that are no times [s]."""
 
@@ -46,6 +49,8 @@ class Nomoto:
     stable
         Whether a small disturbance dies out without an order; where it does not K and T
         are negative, and no rate of turn is ever steady.
+    ranges
+        None of K, T and T1 where she may be neither: they have no end then.
     values
         T1, T2 and T3 are left out where the ship does not sway, or T1 and T2 are no real numbers.
     ship
@@ -92,7 +97,10 @@ def nomoto(ship: Vessel, spread: LikelySpread) -> Nomoto:
     at = linear.at(linear.theta)
     values = read(at)
     ranges = _ranges(base, spread, at.states)
+    *ranges, neutral = ranges
     known = dict(zip(NAMES, ranges, strict=False))
+    if neutral is None or neutral[0] <= 0.0 <= neutral[1]:
+        known |= dict.fromkeys(BOUNDLESS)
     entries = np.array([r or (np.nan, np.nan) for r in ranges[len(NAMES) :]])
     split = at.A.size
     return Nomoto(
@@ -155,11 +163,12 @@ def _second(hull: LinearShip) -> dict[str, float]:
 
 
 def _all_numbers(ship: LinearShip, states: Sequence[str]) -> Vector:
-    """Every number, then A and B of these states, whatever an effect has added to them."""
+    """Every number, then A and B of these states, whatever an effect has added, and det A."""
     found = read(ship)
     named = [found.get(n, np.nan) for n in NAMES]
     kept = [ship.states.index(s) for s in states]
-    return np.concatenate([named, ship.A[np.ix_(kept, kept)].ravel(), ship.driven(states)[kept]])
+    entries = ship.A[np.ix_(kept, kept)].ravel(), ship.driven(states)[kept]
+    return np.concatenate([named, *entries, [np.linalg.det(ship.A)]])
 
 
 def _ranges(base: Vessel, spread: LikelySpread, states: Sequence[str]) -> list[Range | None]:

@@ -86,13 +86,15 @@ def nomoto_file(made: FittedModel, found: Sequence[Nomoto], told: bool = True) -
             verdict=made.verdict,
             words=made.words if stable else (UNSTABLE, *made.words),
             origin=dict(made.origin),
-            at=tuple(_at_speed(one, one.stable if told else None) for one in found),
+            at=tuple(_at_speed(one, told) for one in found),
         )
     )
     return whole
 
 
-def _at_speed(found: Nomoto, stable: bool | None) -> AtSpeed:
+def _at_speed(found: Nomoto, told: bool) -> AtSpeed:
+    """At one speed; whether she is stable is told where K, too, has a range."""
+    stable = found.stable if told and found.ranges.get("K") else None
     numbers = {
         name: NomotoNumber(value=value, unit=_unit(name, found), likely=found.ranges.get(name))
         for name, value in found.values.items()
