@@ -69,3 +69,22 @@ def test_samples_of_two_times_between_one_another_are_no_jumps(tmp_path: Path) -
     text = begun(tmp_path, 100.0, geared(ORDERS), back=100.0)
     assert "delta = {" in text
     assert "delta_order" not in text
+
+
+@pytest.mark.parametrize("zero", [0.0, 15.0])
+def test_an_order_beside_the_rudder_is_left_to_the_user(tmp_path: Path, zero: float) -> None:
+    """With it the run seeks the gear; on a scale of its own it is asked for its zero."""
+    begun(tmp_path, 100.0, geared(ORDERS))
+    table = np.loadtxt(tmp_path / "log0.csv", delimiter=",", skiprows=1)
+    heads = "t,rudder_deg,rate of turn [deg/s],stw [m/s],rudder_command"
+    both = np.column_stack([table, ORDERS + zero])
+    np.savetxt(tmp_path / "log.csv", both, delimiter=",", header=heads, comments="", fmt="%.6g")
+    survey = inspect_log(tmp_path / "log.csv")
+    made = starter([survey], tmp_path / "q.toml", None, Given(length=100.0), 6.0)
+    text = made.files[tmp_path / "q.toml"]
+    assert made.to_fill == ()
+    unit = "?" if zero else "deg"
+    line = f'# delta_order = {{ channel = "rudder_command", unit = "{unit}", positive = "starboard"'
+    assert line in text
+    assert "the run seeks what the steering gear does" in text
+    assert ("FILL IN" in text) == (zero > 0.0)

@@ -24,8 +24,8 @@ AROUND: Final = 60.0
 """[s] Before and after the rudder is used: the ship has come to rest, and shows her bias."""
 
 STRAIGHT: Final = 0.1
-"""Share of how fast she turns below which she goes straight on, and shows where amidships is: of a
-circle of 880 s, and a voyage with one turn in it, half and twice say the same."""
+"""Share of how fast she turns below which she goes straight on, and shows where amidships is: of
+circles to either side, and of voyages with one turn in them, half and twice say the same."""
 
 MOST_TOLD: Final = 8
 """Of a day more are seldom; each takes sixteen letters of one line."""

@@ -206,8 +206,8 @@ def _arrived(fit: Fit, model: ShipModel, effect: Effect) -> Fit | None:
     if not effect.is_whole:
         return None
     whole = _searched(fit, model, [n for n, p in effect.parameters.items() if not p.by_meaning])
-    found = freed is None or (whole and whole.eps_rmsn < UNSEEN * freed.eps_rmsn)
-    return whole if found else None
+    most = UNSEEN * freed.eps_rmsn if freed else np.inf
+    return whole if whole and whole.eps_rmsn < most else None
 
 
 def _searched(fit: Fit, model: ShipModel, names: Iterable[str]) -> Fit | None:

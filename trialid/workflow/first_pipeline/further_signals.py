@@ -11,7 +11,7 @@ from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.relations import slope_agreement
 from trialid.inspection.sketch import on_one_clock
 from trialid.names import units
-from trialid.workflow.first_pipeline.choice import SURE, Live, plain_signal
+from trialid.workflow.first_pipeline.choice import SURE, Live, plain_signal, rudder_signal
 from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
 from trialid.workflow.first_pipeline.signed_speed import from_east
 
@@ -22,6 +22,9 @@ LEFT: Final[Mapping[str, str]] = {
     "psi": "with it the run seeks a steady wind and a current",
 }
 """Inputs that no first model asks for, and what for."""
+
+OF_GEAR: Final = "with the order beside the rudder the run seeks what the steering gear does"
+"""Of a rudder's order where the rudder is logged."""
 
 IN_SPEED: Final = "with a speed over ground it tells the current in that"
 BESIDE_RATE: Final = "tells the offset of the rate; with it the run seeks a steady wind, too"
@@ -123,6 +126,11 @@ def _left(trial: Chosen, live: Live) -> Iterator[tuple[Signal, str]]:
     for name, why in LEFT.items():
         if live.get(name) and name not in there:
             yield plain_signal(name, live, ""), why
+    if "delta" in there and live.get("delta_order"):
+        rate = next((one for one in trial.signals if one.quantity == "r"), None)
+        order = rudder_signal("delta_order", live, rate)
+        asked = (why.words for why in (order.of_unit, order.of_side) if why.rests_on("asked"))
+        yield order, "; ".join((*asked, OF_GEAR))
 
 
 def with_sway(trial: Chosen, live: Live) -> Chosen:
