@@ -42,7 +42,7 @@ def test_gyros_as_they_are_contradict_no_heading(zigzag, gain):
 
 @pytest.mark.parametrize("times", [-0.3, 0.3, 5.0])
 def test_roll_that_goes_with_her_turns_is_not_taken_for_their_rate(zigzag, times):
-    """A gyro read a third; her roll went with the turns as any does, at another size."""
+    """A gyro read a fifth; her roll went with the turns as any does, at another size."""
     c = {**zigzag, "phi": series("phi", zigzag["r"].t, times * zigzag["r"].y)}
     less = with_values(c, "r", 0.2 * zigzag["r"].y)
     [found] = [one for one in checks.of_series(less) if one.severity == "error"]

@@ -58,11 +58,13 @@ def no_manoeuvre(fit: Fit) -> Inadequate | None:
 def _is_held_over(score: Score, name: str) -> bool:
     """Whether the rudder is held over for more than a tenth, as in a turning circle."""
     signals = score.trial.signals
-    r = signals["r"] if "r" in signals else np.gradient(np.unwrap(signals.get("psi", np.zeros(2))))
-    straight = np.abs(r) < STRAIGHT * np.quantile(np.abs(r), OFTEN[1])
-    rudder = _rudder(score, name)
-    if len(r) != len(rudder) or not straight.any():
+    if not {"r", "psi"} & signals.keys():
         return False
+    turning = np.abs(signals["r"] if "r" in signals else np.gradient(np.unwrap(signals["psi"])))
+    straight = turning < STRAIGHT * np.quantile(turning, OFTEN[1])
+    if not straight.any():
+        return False
+    rudder = _rudder(score, name)
     off = np.abs(rudder - np.median(rudder[straight]))
     return bool(np.mean(off > 0.5 * RUDDER_RANGE) > 1.0 - (OFTEN[1] - OFTEN[0]))
 

@@ -46,7 +46,7 @@ SOON: Final = 20
 
 ASTRAY: Final = 1.0
 """Share of the error without a fault that one search may leave for it to be searched further, which
-took half of the time of growing a boat's model. Of 33 faults named in studies of other ships one
+took 76 of 124 s of growing a boat's model. Of 33 faults named in studies of other ships one
 search leaves 0.05 to 0.67 of it; of 820 searches for one that is not there 115 leave less than all
 of it. Half of it would lose two names, twice none."""
 

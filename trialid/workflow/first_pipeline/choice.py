@@ -169,12 +169,13 @@ def _on_own_scale(rudder: Signal, turning: ChannelInspection) -> Signal:
     if rudder.source.stated_unit is not None:
         told = f"CAREFUL: {said}; offset = less what that is"
         return dataclasses.replace(rudder, further=(*rudder.further, told))
-    return dataclasses.replace(rudder, unit=OPEN, of_unit=Reason(f"{ASK_COUNTS}: {said}", "asked"))
+    ask = Reason(f"{ASK_COUNTS}: {said}", "counts")
+    return dataclasses.replace(rudder, unit=OPEN, of_unit=ask)
 
 
 def is_counted(rudder: Signal) -> bool:
     """Whether it is on a scale of its own."""
-    return rudder.of_unit.words.startswith(ASK_COUNTS)
+    return rudder.of_unit.rests_on("counts")
 
 
 def choose_speed(survey: Inspection, live: Live, known: float | None, told: str) -> Signal | None:

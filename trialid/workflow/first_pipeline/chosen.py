@@ -10,12 +10,15 @@ from trialid.workflow.first_pipeline.long_log import Window
 OPEN: Final = "?"
 """Stands where only the user knows; the pipeline does not run until it is replaced."""
 
-Basis = Literal["size", "small", "measured", "convention", "alike", "denied", "unshown", "asked"]
+Basis = Literal[
+    "size", "small", "counts", "measured", "convention", "alike", "denied", "unshown", "asked"
+]
 """What a unit or a side rests on, where another log may tell more or be told by it.
 
-`size`: only this unit has such numbers; `small`: so small a rudder may be in another; `measured`:
-the motion shows it; `convention`: the format says so, the motion does not; `alike`: little hangs on
-it; `denied`: the motion denies it; `unshown`: nothing shows it; `asked`: only the user knows.
+`size`: only this unit has such numbers; `small`: so small a rudder may be in another; `counts`: no
+unit has, and only the user knows the scale; `measured`: the motion shows it; `convention`: the
+format says so, the motion does not; `alike`: little hangs on it; `denied`: the motion denies it;
+`unshown`: nothing shows it; `asked`: only the user knows.
 """
 
 

@@ -129,7 +129,8 @@ def _left(trial: Chosen, live: Live) -> Iterator[tuple[Signal, str]]:
     if "delta" in there and live.get("delta_order"):
         rate = next((one for one in trial.signals if one.quantity == "r"), None)
         order = rudder_signal("delta_order", live, rate)
-        asked = (why.words for why in (order.of_unit, order.of_side) if why.rests_on("asked"))
+        reasons = (order.of_unit, order.of_side)
+        asked = (why.words for why in reasons if why.rests_on("asked", "counts"))
         yield order, "; ".join((*asked, OF_GEAR))
 
 
