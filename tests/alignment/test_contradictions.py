@@ -56,6 +56,7 @@ def test_where_the_heading_is_late_the_delay_is_its_own(zigzag):
     assert apart.late == pytest.approx(-3.0, abs=0.3)
     assert apart.sentence.startswith("r comes ")
     assert " s earlier than the slope of psi" in apart.sentence
+    assert ": psi may be a course over ground, or its clock be late; delay" in apart.sentence
     assert apart.sentence.endswith(" in psi would mend it")
     assert "delay = -" not in apart.sentence
 

@@ -104,6 +104,7 @@ def test_a_rudder_in_percent_needs_its_degrees_at_full_and_then_runs(tmp_path: P
 @pytest.mark.parametrize(
     ("factor", "amidships", "why"),
     [
+        (0.5, 40.0, "30 to 50 are of one side alone, though she turns to both"),
         (20.0, 1500.0, "1100 to 1900 look like pulse widths [us], about 1500 amidships"),
         (1.0, 40.0, "20 to 60 are of one side alone, though she turns to both"),
         (100.0, 0.0, "-2000 to 2000 are no degrees, which end at 90, and no share of full"),

@@ -20,11 +20,11 @@ BOTH: Final = 0.1
 AS_FAST: Final = 0.5
 """... and how fast to the slower one, as a share of the other: a gyro that reads too much does not
 make it, nor the swing back out of a turn."""
-STIRS: Final = 0.5
+STIRS: Final = 0.2
 """How far a rudder moves that turned her so, as a share of where it stands: at a berth the boat and
 what stirs her rudder are noise. Of 1 096 rudders logged with a rate of turn or a heading the three
-tell a boat's servo alone, and at half and at twice of each the same; but that she turned as fast to
-both sides, which is `AS_FAST` twice, is true of none."""
+tell a boat's servo alone, and at half and at twice of each the same, this down to 0.05; but that
+she turned as fast to both sides, which is `AS_FAST` twice, is true of none."""
 
 
 def at_rest(drive: ChannelInspection) -> float:

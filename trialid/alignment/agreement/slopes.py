@@ -133,7 +133,9 @@ def _small_faults(
         return
     if late:
         mend = f"delay = {abs(found.lag):.2g}"  # of the later one: no sensor is early
-        yield Finding("lag", "remark", pair, comes, evidence, mend)
+        why = ": psi may be a course over ground, or its clock be late"  # which follows her drift
+        words = comes + why if angle == "psi" and found.lag < 0.0 else comes
+        yield Finding("lag", "remark", pair, words, evidence, mend)
     if off:
         # over whole turns no compass is wrong by a factor
         gain = f"gain = {1 / np.sqrt(low * high):.3g}" if angle == "psi" and not late else None
