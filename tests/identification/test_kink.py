@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trialid.identification.gauss_newton import AT_A_KINK, minimise
+from trialid.least_squares.gauss_newton import AT_A_KINK, minimise
 
 NOISE = 10.0
 LEFT = np.sqrt(2.0) / np.hypot(1.0, NOISE)

@@ -18,7 +18,7 @@ import pytest
 from numpy import exp
 from numpy.typing import NDArray
 
-from trialid.identification.gauss_newton import EXACT, REASONS, Iteration, Minimum, minimise
+from trialid.least_squares.gauss_newton import EXACT, REASONS, Iteration, Minimum, minimise
 
 Vector = NDArray[np.float64]
 Prediction = tuple[Vector, list[Vector]]

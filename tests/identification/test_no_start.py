@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from s175q import MODEL, SETTINGS, zigzag
 
-from trialid.identification.gauss_newton import minimise
 from trialid.identification.one_search import no_start
 from trialid.identification.problem import pose_problem
+from trialid.least_squares.gauss_newton import minimise
 
 X = np.array([1.0, 2.0, 3.0, 4.0])
 

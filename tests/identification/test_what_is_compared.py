@@ -11,11 +11,11 @@ from scipy.signal import lfilter
 
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
-from trialid.identification.gauss_newton import minimise
 from trialid.identification.nuisance.priors import nuisance_prior
 from trialid.identification.output_error import linearise, row_scale, step_halving
 from trialid.identification.problem import norms, pose_problem
 from trialid.identification.weighing import level_of
+from trialid.least_squares.gauss_newton import minimise
 from trialid.trial import Trial
 
 FEW = ("Nr", "Ndelta", "Kdelta", "Kp")

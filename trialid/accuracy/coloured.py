@@ -8,7 +8,7 @@ import numpy as np
 
 from trialid.accuracy.felt import Draw, Felt, felt_by, freedom_of_sum
 from trialid.arrays import Mask, Vector
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.trial_rows import Stretch
 
 DRAWS: Final = 64

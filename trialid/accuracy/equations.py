@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from trialid.arrays import Mask, Vector
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 
 RANK: Final = 1e-10
 """Singular values below this share of the largest are zero: a direction nobody can see."""

@@ -24,7 +24,7 @@ from trialid.accuracy.felt import Draw
 from trialid.accuracy.ranges import ANYWHERE, Range, share_off
 from trialid.accuracy.weak import Weakness, weak_directions, without_nuisance
 from trialid.arrays import Vector
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.trial_rows import Kind, Stretch
 
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Mask, Vector
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 
 
 @dataclass(frozen=True)

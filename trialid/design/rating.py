@@ -28,7 +28,7 @@ from trialid.identification.output_error import (
     stretches,
 )
 from trialid.identification.problem import Settings, question, ready
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure, Simulator
 from trialid.trial import Trial

@@ -20,7 +20,7 @@ from trialid.design.search import BROKEN, Found, Search, binding_limit, sail_all
 from trialid.design.triangles import Triangles, triangles
 from trialid.errors import DesignError
 from trialid.identification.problem import Settings
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.trial import Trial

@@ -13,7 +13,7 @@ from trialid.accuracy.equations import relative_sensitivities
 from trialid.arrays import Vector
 from trialid.design.rating import Goal, Noise, fit_to_come, linearisation
 from trialid.identification.output_error import Problem, Unknown, row_scale, stretches
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.trial import Trial
 
 

@@ -12,13 +12,13 @@ import numpy as np
 from trialid.identification import file_of_ship
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
 from trialid.identification.fit import Fit
-from trialid.identification.gauss_newton import REASONS
 from trialid.identification.inadequate import Inadequate
 from trialid.identification.no_manoeuvre import no_manoeuvre
 from trialid.identification.nuisance.at_the_end import at_the_end
 from trialid.identification.time_scales import longest_by_its_clock
 from trialid.identification.trial_score import Score
 from trialid.identification.weighing import NO_NOISE
+from trialid.least_squares.gauss_newton import REASONS
 from trialid.names import wording
 
 ABOVE_NOISE: Final = 2.0

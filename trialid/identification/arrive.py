@@ -7,7 +7,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.identification.gauss_newton import REASONS
 from trialid.identification.one_search import End, Progress, cost_at, random_starts, search
 from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
@@ -16,6 +15,7 @@ from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.roll_range import RollRange
 from trialid.identification.roll.told_gm import FAR, along_GM, rivals, roll_error
 from trialid.identification.weighing import NO_NOISE
+from trialid.least_squares.gauss_newton import REASONS
 from trialid.names import wording
 
 Vector = NDArray[np.float64]

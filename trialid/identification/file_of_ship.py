@@ -11,7 +11,7 @@ from trialid.identification.fit import Fit
 from trialid.identification.one_search import search
 from trialid.identification.output_error import Unknown, ranges
 from trialid.identification.trial_score import Score
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.ship.effect import Force
 from trialid.ship.motion import effect_parts
 from trialid.simulation.integrate import inputs

@@ -11,7 +11,6 @@ from trialid.arrays import Vector
 from trialid.errors import NotIdentifiable, SimulationError, StepsTooLong
 from trialid.identification.arrive import arrive
 from trialid.identification.check.common_values import Common, common_values
-from trialid.identification.gauss_newton import REASONS, Iteration
 from trialid.identification.one_search import End, Progress, no_start
 from trialid.identification.output_error import (
     Problem,
@@ -24,6 +23,7 @@ from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.smaller import point_of_smaller
 from trialid.identification.trial_score import Score, of_own_motion, pool_errors, score_trial
 from trialid.identification.weighing import contradictions, level_of
+from trialid.least_squares.gauss_newton import REASONS, Iteration
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure
 from trialid.threads import one_thread

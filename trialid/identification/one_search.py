@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import SimulationError, StepsTooLong
-from trialid.identification.gauss_newton import Iteration, Minimum, minimise
 from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.output_error import (
     Problem,
@@ -19,6 +18,7 @@ from trialid.identification.output_error import (
 )
 from trialid.identification.problem import Settings, pose_problem
 from trialid.identification.weighing import Weighing, colour_of
+from trialid.least_squares.gauss_newton import Iteration, Minimum, minimise
 from trialid.ship.effect import Parameter, Rate
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import Departure

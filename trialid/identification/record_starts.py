@@ -19,12 +19,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.identification.gauss_newton import minimise
 from trialid.identification.nuisance.delays import spoilt_by_delay
 from trialid.identification.one_search import search
 from trialid.identification.output_error import Problem, ranges
 from trialid.identification.problem import Settings, question
 from trialid.identification.weighing import Weighing
+from trialid.least_squares.gauss_newton import minimise
 from trialid.trial import Trial
 
 Vector = NDArray[np.float64]

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from trialid.identification.fit import Fit, identify
-from trialid.identification.gauss_newton import Iteration
 from trialid.identification.problem import Settings
+from trialid.least_squares.gauss_newton import Iteration
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
 from trialid.result.series import OutputSeries, TrialSeries

@@ -13,9 +13,9 @@ from trialid.design.imo.trial_measures import measure_trials
 from trialid.effects.track import CURRENT
 from trialid.identification.check.own_start import OwnRows, priors_of
 from trialid.identification.fit import Fit, identify
-from trialid.identification.gauss_newton import minimise
 from trialid.identification.output_error import compared_mask
 from trialid.identification.trial_score import of_trial, own_start_error
+from trialid.least_squares.gauss_newton import minimise
 from trialid.threads import one_thread
 
 BY_NOISE = replace(SETTINGS, weights={"x": 12.0, "y": 12.0, "psi": 12.0})

@@ -14,8 +14,8 @@ import numpy as np
 from trialid.arrays import Mask, Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.identification.fit import Fit
-from trialid.identification.gauss_newton import minimise
 from trialid.identification.trial_score import Score
+from trialid.least_squares.gauss_newton import minimise
 from trialid.maths import Number, clip
 from trialid.ship.effect import Parameter, Rate, Steered, effect
 from trialid.ship.model import ShipModel

@@ -11,7 +11,7 @@ from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.weighing import CONTRADICTS
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.ship.effect import Effect
 
 

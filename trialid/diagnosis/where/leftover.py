@@ -13,7 +13,7 @@ from trialid.arrays import Mask
 from trialid.diagnosis.noise.residual import Residual, residuals
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale, stretches
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
 from trialid.names import units
 from trialid.names.quantities import SIGNALS, Quantity
 

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask
 from trialid.effects.track import CURRENT
-from trialid.identification.gauss_newton import minimise
 from trialid.identification.nuisance.of_each_trial import STATE_SIZE
 from trialid.identification.nuisance.priors import limits, nuisance_prior
 from trialid.identification.output_error import Problem, output_error, output_matrix, row_scale
+from trialid.least_squares.gauss_newton import minimise
 from trialid.simulation.integrate import Response, guess, initial, respond, starts_of
 from trialid.trial import Trial
 

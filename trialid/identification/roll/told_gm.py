@@ -7,14 +7,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.identification.gauss_newton import minimise
 from trialid.identification.one_search import End
 from trialid.identification.output_error import Problem, ranges, stretches
 from trialid.identification.record_starts import Part, of_roll, rows_of
 from trialid.identification.roll.own_roll import goes_on, only_follows
 from trialid.identification.roll.roll_range import FACTOR, GM_OVER_L
 from trialid.identification.weighing import CONTRADICTS, Weighing, deviations
-from trialid.linear_algebra import triangle
+from trialid.least_squares.fold import triangle
+from trialid.least_squares.gauss_newton import minimise
 from trialid.second_process import each
 
 Vector = NDArray[np.float64]

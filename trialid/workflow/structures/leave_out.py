@@ -11,8 +11,8 @@ from trialid.errors import NotIdentifiable, TrialidError
 from trialid.identification.adequacy import why_no_fit, worse_than_none
 from trialid.identification.file_of_ship import most_are_unlike
 from trialid.identification.fit import Fit, identify
-from trialid.identification.gauss_newton import REASONS
 from trialid.identification.trial_score import Score
+from trialid.least_squares.gauss_newton import REASONS
 from trialid.trial import Trial
 from trialid.version import VERSION
 from trialid.workflow.structures.asked_structures import Structure
