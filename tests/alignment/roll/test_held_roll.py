@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from drawn_decays import drawn
 
 from trialid.alignment.held_roll import held_roll, released_at, without_held_roll
@@ -57,6 +58,26 @@ def test_a_rudder_that_goes_over_heels_her_and_no_hand():
     assert held_roll(trial) is not None
     rudder = np.where(np.arange(trial.samples) < release, 0.3, 0.0)
     assert held_roll(replace(trial, signals={**trial.signals, "delta": rudder})) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "moves", "held"),
+    [
+        ("rudder_port", 0.2, True, False),
+        ("rudder_port", 0.02, True, True),
+        ("rudder_port", 0.2, False, True),
+        ("thruster_bow_order", 400.0, True, False),
+        ("thruster_bow_order", 400.0, False, True),
+    ],
+)
+def test_an_actuator_with_a_name_of_its_own_heels_her_where_it_works(name, size, moves, held):
+    """Of a ferry with two rudders three quarters of her zig-zags were left out."""
+    trial, _ = drawn(7, held=True, delta=0.0)
+    order = np.sign(np.sin(2.0 * np.pi * np.arange(trial.samples) / (trial.samples / 3.0)))
+    noise = 0.005 * size * np.random.default_rng(3).standard_normal(trial.samples)
+    works = size * (order if moves else 1.0) + noise
+    moved = replace(trial, signals={**trial.signals, name: works})
+    assert (held_roll(moved) is not None) == held
 
 
 def test_a_steady_turn_heels_her_and_no_hand():
