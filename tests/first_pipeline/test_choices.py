@@ -1,5 +1,6 @@
 """What a first pipeline chooses by numbers: what is held out, how far apart samples are, sides."""
 
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,7 +13,13 @@ from trialid.workflow.first_pipeline.sample_period import period
 from trialid.workflow.first_pipeline.twin_rudders import sides_of
 
 
-def logged(travel: float = 40.0, unit: str = "deg", rate: float = 10.0, mean: float = 0.0) -> Any:
+def logged(
+    travel: float = 40.0,
+    unit: str = "deg",
+    rate: float = 10.0,
+    mean: float = 0.0,
+    steering: str = "delta",
+) -> Any:
     """A trial whose rudder goes so far from one side to the other, all sampled so fast [Hz].
 
     To one side alone where it has a mean.
@@ -20,7 +27,7 @@ def logged(travel: float = 40.0, unit: str = "deg", rate: float = 10.0, mean: fl
     low = 0.0 if mean else -travel / 2.0
     sketch = SimpleNamespace(y=np.array([mean]))
     source = SimpleNamespace(high=low + travel, low=low, rate=rate, unit=unit, sketch=sketch)
-    signals = [SimpleNamespace(quantity=n, unit=unit, source=source) for n in ("delta", "r")]
+    signals = [SimpleNamespace(quantity=n, unit=unit, source=source) for n in (steering, "r")]
     return SimpleNamespace(signals=signals, window=None)
 
 
@@ -31,12 +38,18 @@ def test_the_trial_in_the_middle_is_held_out() -> None:
     assert held_out([logged()]) is None
 
 
-def test_a_turn_counts_for_more_than_a_zigzag_at_the_same_rudder() -> None:
-    """And at 35 deg for more than any zig-zag of the usual ones, though its rudder goes 35 deg."""
-    zigzags = [logged(10.0), logged(20.0), logged(40.0)]
-    assert held_out([zigzags[2], logged(35.0, mean=30.0), zigzags[0]]) == 0
-    assert held_out([logged(20.0, mean=18.0), zigzags[2], zigzags[0]]) == 1
-    assert held_out([*zigzags, logged(35.0, mean=30.0), logged(35.0, mean=-30.0)]) == 2
+@pytest.mark.parametrize("steering", ["delta", "rudder_port", "nozzle"])
+def test_a_turn_counts_for_more_than_a_zigzag_at_the_same_rudder(steering: str) -> None:
+    """And at 35 deg for more than any zig-zag of the usual ones, though its rudder goes 35 deg.
+
+    Of a ferry with two rudders her largest turn was held out, which no zig-zag foretells.
+    """
+    one = partial(logged, steering=steering)
+    zigzags = [one(10.0), one(20.0), one(40.0)]
+    assert held_out([zigzags[2], one(35.0, mean=30.0), zigzags[0]]) == 0
+    assert held_out([one(20.0, mean=18.0), zigzags[2], zigzags[0]]) == 1
+    assert held_out([*zigzags, one(35.0, mean=30.0), one(35.0, mean=-30.0)]) == 2
+    assert held_out([one(3.0), *zigzags, one(3.0)]) == 2  # a decay on a course is not steered
 
 
 def test_of_two_trials_the_one_that_excites_her_more_is_fitted() -> None:

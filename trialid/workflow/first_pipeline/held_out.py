@@ -51,7 +51,7 @@ def _tell_most(trials: Sequence[Chosen]) -> Sequence[int]:
 
 def _is_steered(trial: Chosen) -> bool:
     """Whether a rudder goes further to a side than to keep a course; by other means, yes."""
-    return trial.signals[0].quantity not in RUDDERS or _travel(trial) > STEERED / 2.0
+    return not _by_angle(trial.signals[0]) or _travel(trial) > STEERED / 2.0
 
 
 def _variation(trial: Chosen) -> float:
@@ -64,22 +64,32 @@ def _variation(trial: Chosen) -> float:
 def _travel(trial: Chosen) -> float:
     """How far what steers her went; in SI where its unit is known.
 
-    A rudder by its greatest angle and its mean: a turn at 20 deg takes a ship further than a
-    zig-zag of 20, and one at 35 further than any.
+    A rudder by its greatest angle and its mean, whatever its name: a turn at 20 deg takes a ship
+    further than a zig-zag of 20, and one at 35 further than any.
     """
     if trial.window is not None:
         return trial.window.travel
     steering = trial.signals[0]
     source, factor = steering.source, _si(steering)
-    if steering.quantity not in RUDDERS:
+    if not _by_angle(steering):
         return factor * (source.high - source.low)
     return factor * (max(abs(source.high), abs(source.low)) + abs(float(np.mean(source.sketch.y))))
 
 
+def _by_angle(steering: Signal) -> bool:
+    """Whether it steers by its angle, as rudders, nozzles and pods do."""
+    return steering.quantity in RUDDERS or _factor(steering, "rad") is not None
+
+
 def _si(steering: Signal) -> float:
     """What to multiply it by; 1 where the unit is asked for with the pipeline, or is its own."""
-    unit = steering.unit or steering.source.unit or steering.source.unit_in_name
+    known = SIGNALS.get(steering.quantity)
+    return _factor(steering, known.unit if known else "rad") or 1.0
+
+
+def _factor(steering: Signal, unit: str) -> float | None:
     try:
-        return units.factor(unit or "", SIGNALS[steering.quantity].unit)
-    except (UnitError, KeyError):
-        return 1.0
+        own = steering.unit or steering.source.unit or steering.source.unit_in_name
+        return units.factor(own or "", unit)
+    except UnitError:
+        return None
