@@ -51,6 +51,17 @@ def test_a_log_whose_rudder_stays_is_left_out_beside_one_that_steers(tmp_path: P
     assert [one.name for one in pipeline_file.load(tmp_path / "p.toml").trials] == ["zz"]
 
 
+def test_a_rudder_without_a_number_is_none(tmp_path: Path) -> None:
+    """It ended in a traceback; `inspect` had said `not available`."""
+    path = log(tmp_path / "a.csv", ZIGZAG)
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    fields = [row.split(",") for row in rows]
+    kept = [",".join((*one[:2], "nan", *one[3:])) for one in fields]
+    path.write_text("\n".join((head, *kept)), encoding="utf-8")
+    with pytest.raises(LogError, match="'Rudder' holds no number"):
+        begun(tmp_path, path)
+
+
 def test_a_rudder_that_stays_is_no_thruster(tmp_path: Path) -> None:
     """Her shaft was said to steer her: it is called as what drives a boat is."""
     with pytest.raises(LogError) as error:

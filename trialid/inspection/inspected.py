@@ -152,8 +152,8 @@ class ChannelInspection:
 
     @property
     def constant(self) -> bool:
-        """Whether it never moves."""
-        return self.low == self.high
+        """Whether it never moves, or holds no value at all."""
+        return not self.low < self.high
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,8 @@ from trialid.names.side_words import LETTERS, SIDES
 POSITIVE = frozenset(("+", "ve", "positive", "pos", "is", "to", "side", "down", "="))
 """What stands beside a side behind a unit: `deg, + stbd`."""
 
+DASHES = frozenset("-\N{EN DASH}\N{EM DASH}")
+
 MISSING = frozenset({"", "nan", "na", "n/a", "null"})
 
 MOST_COLUMNS = 10_000
@@ -83,6 +85,8 @@ def head(text: str, unit: str | None = None) -> Head:
     Head(text='roll rate [deg/s]', name='roll rate', unit='deg/s')
     >>> head("rudder [deg] (port positive)")
     Head(text='rudder [deg] (port positive)', name='rudder', unit='deg')
+    >>> head("left [-]")
+    Head(text='left [-]', name='left', unit=None)
     """
     text = text.strip()
     for opening, closing in ("[]", "()"):
@@ -94,8 +98,13 @@ def head(text: str, unit: str | None = None) -> Head:
                     return Head(text, text, unit or None)
                 if ("+" in own or "pos" in own) and without_side(f"deg, {own}") == "deg":
                     return replace(head(text[:at], unit), text=text)  # the side is no unit
-                return Head(text, text[:at].strip(), without_side(own) or unit or None)
+                return Head(text, text[:at].strip(), stated_unit(without_side(own)) or unit or None)
     return Head(text, text, unit or None)
+
+
+def stated_unit(text: str) -> str:
+    """The text of a unit; a dash is how tables write none."""
+    return "" if set(text) <= DASHES else text
 
 
 def numbers(table: Table, column: int) -> NDArray[np.float64] | None:

@@ -28,7 +28,14 @@ from trialid.ingest.bytes.encoded_text import (
 )
 from trialid.ingest.tables import table_quick
 from trialid.ingest.tables.clock import table_clock
-from trialid.ingest.tables.table import Head, Table, check_width, head, reader_of_numbers
+from trialid.ingest.tables.table import (
+    Head,
+    Table,
+    check_width,
+    head,
+    reader_of_numbers,
+    stated_unit,
+)
 from trialid.ingest.tables.table_layout import (
     SPACES,
     Layout,
@@ -192,8 +199,7 @@ def _header(rows: list[list[str]]) -> list[str]:
 def _bare_unit(text: str) -> str:
     text = text.strip()
     found = re.fullmatch(r"[\[(](.*)[\])]", text)
-    text = found[1].strip() if found else text
-    return "" if text == "-" else text
+    return stated_unit(found[1].strip() if found else text)
 
 
 def _agree(path: Path, heads: tuple[Head, ...], stated: list[str]) -> None:

@@ -1,5 +1,6 @@
 """What to say where logs hold too little to begin with: no rudder, no motion, no speed."""
 
+import math
 import shlex
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -50,7 +51,7 @@ def no_speed_of_boat(survey: Inspection) -> TooLittle:
 def _useless(one: ChannelInspection) -> Iterator[str]:
     """Why a channel that is called so is none to begin with."""
     if one.constant:
-        yield f"{one.key!r} does not move"
+        yield f"{one.key!r} " + ("holds no number" if math.isnan(one.low) else "does not move")
     elif not one.mostly_there:
         yield (
             f"{one.key!r} has a value in {1.0 - one.missing:.0%} of its rows, the longest time "
