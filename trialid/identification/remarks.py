@@ -107,11 +107,16 @@ def _off_in_all(fit: Fit) -> dict[str, float]:
     return {column: off for column, off in found.items() if off is not None}
 
 
-def _another_in_each(fit: Fit) -> list[str]:
-    """That a rudder's zero changes from trial to trial by more than each is uncertain by."""
+def zero_between_trials(fit: Fit) -> float:
+    """By how much a rudder's zero changes from trial to trial [rad]; 0 where that is little."""
     found = fit.of_all_trials.get("delta_0")
     between = 0.0 if found is None else math.sqrt(found.variance)
-    if between < OFF_AMIDSHIPS:
+    return between if between >= OFF_AMIDSHIPS else 0.0
+
+
+def _another_in_each(fit: Fit) -> list[str]:
+    """That a rudder's zero changes from trial to trial by more than each is uncertain by."""
+    if not (between := zero_between_trials(fit)):
         return []
     return [
         f"the rudder's zero is another in each trial, by {np.rad2deg(between):.2g} deg (standard "

@@ -93,6 +93,16 @@ def test_the_zero_of_a_sensor_is_the_trials_own():
     assert said(identify(trials, MODEL, SETTINGS)).kind == "cannot tell"
 
 
+def test_a_gear_has_one_zero():
+    """A trial whose rudder stands off by itself is told, and nobody says that nothing is missing."""
+    one, *others = sailed(14, (2, 5, 10), (20,))
+    moved = {**one.signals, "delta": one.signals["delta"] + np.deg2rad(4.0)}
+    settings = replace(BIASED, nuisance=(*BIASED.nuisance, "rudder_offset"))
+    found = said(identify([replace(one, signals=moved), *others], MODEL, settings))
+    assert (found.kind, found.effect) == ("cannot tell", None)
+    assert f"deg, in {one.name} most: something acts there" in found.sentence
+
+
 def test_what_is_left_is_a_share_of_what_moved():
     """White noise of both sensors, held against what was added."""
     fit = identify(sailed(13, (10, 20), (5,)), MODEL, SETTINGS)
