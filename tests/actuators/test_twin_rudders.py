@@ -1,6 +1,7 @@
 """Two rudders, one half as effective: named on its side where they moved apart, else not at all."""
 
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,16 +12,24 @@ from click.testing import CliRunner
 
 import trialid
 from trialid.cli.main import commands
+from trialid.design.following import vessel_of
+from trialid.design.helm import Vessel, carry_out
+from trialid.design.imo.measure_slopes import measure_slopes
+from trialid.design.prediction.keeping_place import sail_each
+from trialid.design.standard import MANOEUVRES
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.verdict import Verdict
+from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
 from trialid.result.json_file import read
 from trialid.ship.actuators import Actuator
 from trialid.ship.model import ShipModel
+from trialid.ship.particulars import Ship
 from trialid.trial import Trial
 
+KNOWN = ("Nv", "Nr", "Ydelta", "Ndelta")
 TWINS = (
     Actuator(name="port", kind="rudder", x=-80.0, y=-4.0),
     Actuator(name="stbd", kind="rudder", x=-80.0, y=4.0),
@@ -90,6 +99,39 @@ def found(
 def test_the_half_rudder_is_named_and_its_healthy_twin_is_not() -> None:
     verdict = found(500, (1.0, 0.5))
     assert (verdict.effect, verdict.family) == ("stbd_weak", ("stbd_weak",))
+
+
+def steered(trial: Trial, ship: Ship, rudder: str) -> Vessel:
+    effects = (CATALOGUE["linear_hull"], both(ship)[rudder])
+    asked = Settings(free=KNOWN, outputs=("r",), nuisance=("initial_state",))
+    return vessel_of(identify((trial,), ShipModel(ship, ("v", "r"), effects), asked))
+
+
+def test_two_rudders_steer_her_as_the_one_that_does_what_both_do() -> None:
+    """`she has no rudder to steer by` was said of a ferry with two: no measure, no prediction."""
+    twin = record(510, (1.0, 1.0), apart=False)
+    one = replace(twin, signals={**twin.signals, "delta": twin.signals["port"]})
+    ships = steered(twin, SHIP, "rudders"), steered(one, ship_with(()), "linear_rudder")
+    of_two, of_one = (measure_slopes(ship, KNOWN, (), 0) for ship in ships)
+    assert {*of_two.values} >= {"advance", "tactical diameter", "first overshoot 10/10"}
+    assert of_two.values == pytest.approx(of_one.values, rel=1e-4)
+    np.testing.assert_allclose(of_two.by, of_one.by, rtol=1e-3, atol=1e-3)
+
+
+@pytest.mark.parametrize("slower", [np.inf, np.deg2rad(1.0)])
+def test_a_ship_of_two_rudders_keeps_her_place_as_she_is_carried_out(slower: float) -> None:
+    """The same orders at the same samples, each rudder at its own rate."""
+    slow = ship_with((TWINS[0], replace(TWINS[1], rate=slower)))
+    ship = steered(record(510, apart=False, kept=(1.0, 1.0)), slow, "rudders")
+    theta = np.array([[ship.model.value(n) for n in ship.simulator.equations.free]])
+    told = MANOEUVRES["zig-zag 10/10"]
+    [quick] = [
+        {n: x.copy() for n, x in passage.trial.signals.items()}
+        for passage in sail_each(ship, theta, told, 30.0, 600.0)
+    ]
+    whole = carry_out(ship, told(), 30.0, 600.0, "zig-zag").trial.signals
+    for name in ("r", "port", "stbd", "delta_order"):
+        np.testing.assert_allclose(quick[name], whole[name][: len(quick[name])], atol=1e-9)
 
 
 def test_rudders_that_move_as_one_do_not_tell_which_of_them_is_weak() -> None:

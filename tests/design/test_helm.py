@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from waters import VESSEL, D
 
-from trialid.design.helm import Follow, Hold, carry_out, ramp, sail, track, vessel
+from trialid.design.helm import Follow, Hold, carry_out, sail, track, vessel
+from trialid.design.rudders import ramp
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
 from trialid.ship.model import ShipModel

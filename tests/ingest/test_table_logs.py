@@ -174,14 +174,6 @@ def test_names_and_units_say_the_quantity(tmp_path):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("dash", ["[-]", "[\N{EN DASH}]", "(-)"])
-def test_a_dash_is_how_tables_write_no_unit(tmp_path, dash):
-    """`start` had written it into the pipeline, which then refused it."""
-    (tmp_path / "log").write_text(f"t,cmd_left {dash},u [m/s]\n0,1,2\n", encoding="utf-8")
-    [left] = [c for n, c in read(tmp_path / "log").channels.items() if n == "cmd_left"]
-    assert left.unit is None
-
-
 def test_damage_gives_one_line_or_what_is_intact(tmp_path):
     """Bits turned, cut, doubled: nothing but LogError, and packed data never come out wrong."""
     rng = np.random.default_rng(4)

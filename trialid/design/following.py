@@ -22,6 +22,7 @@ from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.rating import Goal, Noise, goal
 from trialid.design.rudder_rate import gear_rate
+from trialid.design.rudders import steered_signals
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import Likeness, Separation, likeness_of, rivals
 from trialid.design.standard import Measure, in_calm, measures_of
@@ -35,7 +36,6 @@ from trialid.ship.model import STATES, ShipModel
 from trialid.simulation.integrate import inputs
 from trialid.trial import Trial
 
-STEERED: Final = frozenset({"delta", "delta_order"})
 APART: Final = 0.05
 """Share by which approach speeds differ that are two."""
 WORTH_SAILING: Final = 0.9
@@ -65,11 +65,10 @@ def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
         The model does not turn, or is not steered by a rudder.
     """
     sailed = model or fit.model
-    if not STEERED & {*sailed.recorded}:
+    if steered_signals(sailed).isdisjoint(sailed.recorded):
         raise DesignError("she has no rudder to steer by; `stop` and orders of your own need none")
-    ship = vessel(
-        sailed, fit.problem.trials[0].period, steady_inputs(fit), gear_rate(fit.problem.trials)
-    )
+    trials, angles = fit.problem.trials, sorted(steered_signals(sailed))
+    ship = vessel(sailed, trials[0].period, steady_inputs(fit), gear_rate(trials, angles))
     return at_her_speed(ship, in_calm(ship))
 
 
@@ -80,7 +79,8 @@ def steady_inputs(fit: Fit) -> dict[str, float]:
     u = inputs(fit.problem.simulator, trial, fit.problem.simulator.fixed | fit.estimates)
     steady = {n: float(np.median(c)) for n, c in zip(eq.inputs, u.T, strict=True)}
     logged = {n: float(np.median(x)) for n, x in trial.signals.items() if n not in STATES}
-    constants = {n: x for n, x in (logged | steady).items() if n not in STEERED and n != "t"}
+    moved = steered_signals(fit.model) | {"t"}
+    constants = {n: x for n, x in (logged | steady).items() if n not in moved}
     return constants | {"u": fit.model.ship.particulars["U0"]}  # not what a turn leaves of it
 
 

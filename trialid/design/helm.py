@@ -6,7 +6,6 @@ reverses on the heading, Bech's reversed spiral steers to a rate of turn.
 """
 
 import functools
-import itertools
 import math
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, replace
@@ -17,9 +16,10 @@ from numpy.typing import NDArray
 
 from trialid.arrays import Mask
 from trialid.design.drive_commands import Drive
+from trialid.design.rudders import amidships, ramp, steering_courses
 from trialid.errors import DesignError
 from trialid.names.quantities import POSITION
-from trialid.ship.actuators import Actuator, rudder_signals
+from trialid.ship.actuators import Actuator
 from trialid.ship.model import ShipModel, without_sensors
 from trialid.simulation.integrate import Departure, Simulator, prepare, respond
 from trialid.trial import Trial
@@ -30,10 +30,6 @@ Motion = Mapping[str, Vector]
 """Signals of a stretch of the trial by name, all of one length: `t`, `psi`, `r`, `phi`, `delta`."""
 
 OVER_GROUND: Final = ("sog", "cog")
-GEAR_STATE: Final = "delta"
-"""The state a steering gear among the effects adds; without one the gear here is used."""
-
-
 LOOK_AHEAD: Final = 100.0
 """s that are simulated at first to see whether a condition comes to hold."""
 
@@ -159,7 +155,7 @@ def carry_out(
 def _driven(vessel: Vessel, told: Drive, at: int, samples: int, name: str) -> Passage:
     """Sail with drives commanded by the clock; what is commanded last is held."""
     known = {one.name: one for one in vessel.model.ship.actuators}
-    given = {n: np.zeros(samples) for n in rudder_signals(known.values())}
+    given = amidships(vessel.model, samples)
     for drive, order in told.courses(at, samples).items():
         given[f"{drive}_order"] = order
         if drive not in vessel.model.all_states:
@@ -210,17 +206,7 @@ def sail(vessel: Vessel, orders: Vector) -> dict[str, Vector]:
 
 
 def _sail(vessel: Vessel, orders: Vector) -> tuple[dict[str, Vector], Departure | None]:
-    given = {"delta_order": orders}
-    model = vessel.model
-    if GEAR_STATE not in model.all_states:
-        given["delta"] = ramp(orders, vessel.rudder_rate * vessel.period)
-    for one in model.ship.actuators:
-        if one.kind == "rudder":  # several rudders move as one
-            given[f"{one.name}_order"] = orders
-            rate = min(one.rate, vessel.rudder_rate)
-            if one.name not in model.all_states:
-                given[one.name] = ramp(orders, rate * vessel.period)
-    return _run(vessel, given)
+    return _run(vessel, steering_courses(vessel.model, orders, vessel.rudder_rate, vessel.period))
 
 
 def _run(vessel: Vessel, given: Mapping[str, Vector]) -> tuple[dict[str, Vector], Departure | None]:
@@ -233,25 +219,6 @@ def _run(vessel: Vessel, given: Mapping[str, Vector]) -> tuple[dict[str, Vector]
     states = dict(zip(model.all_states, response.states.T, strict=True))
     speed = {} if "u" in states else {"U": response.y[:, 0]}
     return {"t": blank.t, **given, **still, **states, **speed}, response.departure
-
-
-def ramp(orders: Vector, step: float) -> Vector:
-    """A rudder that follows its orders by at most `step` a sample, from amidships; (n,).
-
-    >>> ramp(np.array([0.0, 3.0, 3.0, 3.0, -1.0]), 2.0).tolist()
-    [0.0, 0.0, 2.0, 3.0, 3.0]
-    """
-    followed = np.empty(len(orders))
-    edges = np.flatnonzero(np.diff(orders)) + 1
-    angle = 0.0
-    for begin, end in itertools.pairwise([0, *edges.tolist(), len(orders)]):
-        order = float(orders[begin])
-        moved = step * np.arange(end - begin + 1)  # an order acts from the next sample on
-        on_the_way = angle + math.copysign(1.0, order - angle) * moved
-        path = np.where(moved < abs(order - angle), on_the_way, order)
-        followed[begin:end] = path[:-1]
-        angle = float(path[-1])
-    return followed
 
 
 def _passage(

@@ -17,6 +17,7 @@ from trialid.design.helm import Passage, Vessel
 from trialid.design.kinds import KINDS, Test, Value, sail
 from trialid.design.limits import Excess, Limits, excesses
 from trialid.design.rating import Goal, Rating, rate
+from trialid.design.rudders import amidships
 from trialid.errors import DesignError
 
 Vector = NDArray[np.float64]
@@ -236,7 +237,7 @@ def natural_roll(vessel: Vessel) -> float:
         raise DesignError("the model does not roll; put p and phi among its states")
     period, count = 0.1, 6000
     still = {c: np.full(count, value) for c, value in vessel.constants.items()}
-    rest = {"delta": np.zeros(count), "delta_order": np.zeros(count), **still}
+    rest = amidships(model, count) | still
     blank = Trial("roll decay", "fit", period, rest, {})
     states = respond(vessel.simulator, blank, {}, {"phi": 0.02}, sensitivities=False).states
     roll = states[:, model.all_states.index("p")]

@@ -69,6 +69,11 @@ class ModelPart:
         return self.turns and bool({"delta", "delta_order"} & {*self.inputs})
 
     @property
+    def by_rudders(self) -> bool:
+        """Whether several rudders steer, which move as one."""
+        return self.turns and "rudders" in self.effects
+
+    @property
     def by_thrusters(self) -> bool:
         """Whether thrusters steer and no rudder does."""
         return self.turns and "thrusters" in self.effects and not self.by_rudder

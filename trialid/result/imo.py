@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from trialid.design.helm import GEAR_STATE, Vessel
+from trialid.design.helm import Vessel
 from trialid.design.imo.speed_loss import NAMES, loses_speed
 from trialid.design.prediction.rudders_zero import ZERO
+from trialid.design.rudders import GEAR_STATE
 from trialid.design.standard import Measure, in_calm
 from trialid.design.steering.nomoto import UNITS, Nomoto
 from trialid.names import labels

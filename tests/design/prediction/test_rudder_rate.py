@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from trialid.design.helm import ramp
 from trialid.design.rudder_rate import GEAR, gear_rate, rudder_rate
+from trialid.design.rudders import ramp
 from trialid.trial import Trial
 
 D = float(np.deg2rad(1.0))

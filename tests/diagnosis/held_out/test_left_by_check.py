@@ -94,7 +94,7 @@ def test_the_zero_of_a_sensor_is_the_trials_own():
 
 
 def test_a_gear_has_one_zero():
-    """A trial whose rudder stands off by itself is told, and nobody says that nothing is missing."""
+    """A trial whose rudder stands off by itself is told: nobody says that nothing is missing."""
     one, *others = sailed(14, (2, 5, 10), (20,))
     moved = {**one.signals, "delta": one.signals["delta"] + np.deg2rad(4.0)}
     settings = replace(BIASED, nuisance=(*BIASED.nuisance, "rudder_offset"))

@@ -17,6 +17,8 @@ from trialid.ingest.tables.table import head
         ("t [s]", "t", "s"),
         ("shaft [P]", "shaft", "P"),
         ("speed (log) [kn]", "speed (log)", "kn"),
+        ("cmd_left [-]", "cmd_left", None),  # a dash is how tables write none
+        ("cmd_left (\N{EN DASH})", "cmd_left", None),
     ],
 )
 def test_a_side_is_no_unit(text: str, name: str, unit: str | None) -> None:

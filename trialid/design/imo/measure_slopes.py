@@ -13,8 +13,9 @@ from typing import Final, Protocol
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.helm import GEAR_STATE, Passage, Vessel, ramp, speed_outputs, track, vessel
+from trialid.design.helm import Passage, Vessel, speed_outputs, track, vessel
 from trialid.design.imo.measures import execute_sample, reversal_samples
+from trialid.design.rudders import steering_courses, steering_orders
 from trialid.design.standard import (
     READINGS,
     Reading,
@@ -199,14 +200,12 @@ def motion_slopes(ship: Vessel, passage: Passage) -> Vector:
 def _by_time(ship: Vessel, trial: Trial, k: int, y: Vector) -> Vector:
     """What the time of the order at a sample does to the motion [1/s]; (N, n_outputs)."""
     order = trial.signals["delta_order"]
-    signals = dict(trial.signals)
-    signals["delta_order"] = order.copy()
-    signals["delta_order"][k] -= (order[k] - order[k - 1]) / LATER
-    if GEAR_STATE not in ship.model.all_states:
-        fine = np.repeat(order, LATER)
-        fine[k * LATER] = order[k - 1]
-        signals["delta"] = ramp(fine, ship.rudder_rate * trial.period / LATER)[::LATER]
-    moved = replace(trial, signals=signals)
+    part, fine = order.copy(), np.repeat(order, LATER)
+    part[k] -= (order[k] - order[k - 1]) / LATER
+    fine[k * LATER] = order[k - 1]
+    signals = steering_courses(ship.model, fine, ship.rudder_rate, trial.period, LATER)
+    signals |= dict.fromkeys(steering_orders(ship.model), part)
+    moved = replace(trial, signals={**trial.signals, **signals})
     later = respond(ship.simulator, moved, _values(ship), {}, sensitivities=False)
     return (later.y - y) * (LATER / trial.period)
 

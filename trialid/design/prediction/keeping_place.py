@@ -12,7 +12,8 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.helm import GEAR_STATE, Hold, Instructions, Passage, Vessel, track
+from trialid.design.helm import Hold, Instructions, Passage, Vessel, track
+from trialid.design.rudders import amidships, steering_gears, steering_orders
 from trialid.errors import DesignError
 from trialid.simulation.integrate import arguments, departure
 from trialid.simulation.readout import sensor_outputs
@@ -34,7 +35,7 @@ class _Voyage:
     u: Vector
     X: Vector
     orders: Vector
-    delta: Vector
+    rudders: dict[str, Vector]
     known: int = 0
     left: int = 0
 
@@ -42,7 +43,8 @@ class _Voyage:
         """Go on to the sample before `end`."""
         inputs = self.ship.simulator.equations.inputs
         here = slice(self.known, end)
-        for name, values in (("delta", self.delta), ("delta_order", self.orders)):
+        told = dict.fromkeys(steering_orders(self.ship.model), self.orders)
+        for name, values in (told | self.rudders).items():
             if name in inputs:
                 self.u[here, inputs.index(name)] = values[here]
         run = self.ship.simulator.engine
@@ -54,16 +56,17 @@ class _Voyage:
     def steer(self, at: int, end: int, order: float) -> None:
         """Give an order at a sample; the rudder is under way from the next one on."""
         self.orders[at:end] = order
-        step, far = self.ship.rudder_rate * self.ship.period, order - self.delta[at]
-        moved = np.minimum(step * np.arange(end + 1 - at), abs(far))
-        self.delta[at : end + 1] = self.delta[at] + math.copysign(1.0, far) * moved
+        for name, rate in steering_gears(self.ship.model, self.ship.rudder_rate).items():
+            angle = self.rudders[name]
+            step, far = rate * self.ship.period, order - angle[at]
+            moved = np.minimum(step * np.arange(end + 1 - at), abs(far))
+            angle[at : end + 1] = angle[at] + math.copysign(1.0, far) * moved
 
     def look(self, begin: int, end: int) -> dict[str, Vector]:
         """Every motion between two samples."""
         states = self.ship.simulator.equations.states
         found = dict(zip(states, self.X[begin:end].T, strict=True))
-        if GEAR_STATE not in found:
-            found["delta"] = self.delta[begin:end]
+        found |= {n: angle[begin:end] for n, angle in self.rudders.items()}
         return {**found, "t": np.asarray(np.arange(begin, end) * self.ship.period)}
 
 
@@ -122,15 +125,16 @@ def _sailed(voyage: _Voyage, told: Instructions, approach: float) -> Passage:
 def _start(ship: Vessel, samples: int) -> _Voyage:
     """The ship on her straight course, amidships."""
     given = {n: np.full(samples, x) for n, x in ship.constants.items()}
-    given |= {n: np.zeros(samples) for n in ("delta", "delta_order")}
+    given |= amidships(ship.model, samples)
     free = {n: ship.model.value(n) for n in ship.simulator.equations.free}
     blank = Trial("sailed", "fit", ship.period, given, {})
     theta, x0, u, limit = arguments(ship.simulator, blank, free, {})
     X = np.empty((samples, len(x0)))
     X[0] = x0
-    orders, delta = np.zeros(samples), np.zeros(samples + 1)
+    orders, gears = np.zeros(samples), steering_gears(ship.model, ship.rudder_rate)
+    rudders = {n: np.zeros(samples + 1) for n in gears}
     return _Voyage(
-        ship=ship, theta=theta, limit=limit, u=np.array(u), X=X, orders=orders, delta=delta
+        ship=ship, theta=theta, limit=limit, u=np.array(u), X=X, orders=orders, rudders=rudders
     )
 
 
@@ -156,7 +160,8 @@ def _held(voyage: _Voyage, at: int, told: Hold) -> int:
 
 def _back(voyage: _Voyage, at: int) -> None:
     """To the last sample that an order given at this one leaves as it is."""
-    gear = "delta_order" in voyage.ship.simulator.equations.inputs
+    ship = voyage.ship
+    gear = not {*ship.simulator.equations.inputs}.isdisjoint(steering_orders(ship.model))
     voyage.known = max(at - 1, 0) if gear else at
 
 

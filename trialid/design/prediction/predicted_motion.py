@@ -12,14 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.helm import (
-    GEAR_STATE,
-    Instructions,
-    Passage,
-    Vessel,
-    carry_out,
-    ramp,
-)
+from trialid.design.helm import Instructions, Passage, Vessel, carry_out
 from trialid.design.imo.measure_slopes import (
     Shows,
     motion_slopes,
@@ -30,6 +23,7 @@ from trialid.design.imo.measure_slopes import (
 )
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.ranged_motion import PredictedMotion, Read, read_numbers, with_ranges
+from trialid.design.rudders import GEAR_STATE, ramp
 from trialid.design.standard import (
     AT_SEA,
     LENGTHS,

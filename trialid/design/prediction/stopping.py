@@ -13,6 +13,7 @@ from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.predicted_motion import sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.unseen_astern import all_of, screws_astern
+from trialid.design.rudders import amidships
 from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, in_calm
 from trialid.trial import Trial
 
@@ -51,7 +52,7 @@ def _orders(base: Vessel, start: int, astern: bool) -> Trial:
     """Straight ahead, then from a sample on the engine stopped, or as fast astern."""
     engine, samples = engine_of(base), round(LENGTHS * STEPS) + 1
     signals = {n: np.full(samples, x) for n, x in base.constants.items() if n != "u"}
-    signals |= {n: np.zeros(samples) for n in ("delta", "delta_order")}
+    signals |= amidships(base.model, samples)
     orders = astern_orders(base, engine) if astern else dict.fromkeys(engine.approach, 0.0)
     for name, order in orders.items():
         ahead = engine.approach[name]

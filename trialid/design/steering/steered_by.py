@@ -9,8 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from trialid.design.helm import GEAR_STATE, Vessel
+from trialid.design.helm import Vessel
 from trialid.design.prediction.engine_orders import PUSHING
+from trialid.design.rudders import GEAR_STATE
 from trialid.errors import DesignError
 from trialid.ship.actuators import Actuator
 

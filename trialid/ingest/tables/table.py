@@ -1,6 +1,7 @@
 """A table of any format: columns under headers, and its fields as numbers."""
 
 import math
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from trialid.names.side_words import LETTERS, SIDES
 POSITIVE = frozenset(("+", "ve", "positive", "pos", "is", "to", "side", "down", "="))
 """What stands beside a side behind a unit: `deg, + stbd`."""
 
+BRACKETED = re.compile(r"[\[(](.*)[\])]")
 DASHES = frozenset("-\N{EN DASH}\N{EM DASH}")
 
 MISSING = frozenset({"", "nan", "na", "n/a", "null"})
@@ -103,7 +105,10 @@ def head(text: str, unit: str | None = None) -> Head:
 
 
 def stated_unit(text: str) -> str:
-    """The text of a unit; a dash is how tables write none."""
+    """A unit without the brackets about it; empty for a dash, which is how tables write none."""
+    text = text.strip()
+    found = BRACKETED.fullmatch(text)
+    text = found[1].strip() if found else text
     return "" if set(text) <= DASHES else text
 
 

@@ -146,7 +146,7 @@ def _top(path: Path, raw: bytes, layout: Layout, template: Template | None) -> T
     texts = list(distinct(texts)) if template is not None else texts
     if template is not None:
         check_header(path, texts, template)
-    unit = [_bare_unit(text) for text in stated] + [""] * len(texts)
+    unit = [stated_unit(text) for text in stated] + [""] * len(texts)
     heads = tuple(head(text, one) for text, one in zip(texts, unit, strict=False))
     _agree(path, heads, unit)
     return Top(heads, lines.offset, lines.number)
@@ -194,12 +194,6 @@ def _header(rows: list[list[str]]) -> list[str]:
     """Header texts; of several rows those that stand above each other, joined."""
     stacked = itertools.zip_longest(*rows, fillvalue="")
     return [" ".join(part.strip() for part in parts if part.strip()) for parts in stacked]
-
-
-def _bare_unit(text: str) -> str:
-    text = text.strip()
-    found = re.fullmatch(r"[\[(](.*)[\])]", text)
-    return stated_unit(found[1].strip() if found else text)
 
 
 def _agree(path: Path, heads: tuple[Head, ...], stated: list[str]) -> None:

@@ -38,8 +38,9 @@ def equations(run: Result) -> Iterator[EquationRow]:
 def commands(run: Result) -> Iterator[CommandRow]:
     """What can be done with the run, from its own folder; nothing that its model would refuse."""
     model, marked = run.model, " --anyway" if run.verdict.kind == "no fit" else ""
-    if model.by_rudder or model.by_thrusters:
-        manoeuvre = "zigzag 20 20" if model.by_rudder else "stop"
+    by_angle = model.by_rudder or model.by_rudders
+    if by_angle or model.by_thrusters:
+        manoeuvre = "zigzag 20 20" if by_angle else "stop"
         yield CommandRow(
             f"trialid simulate . {manoeuvre}{marked}", "a manoeuvre with likely ranges"
         )

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.design.following import STEERED, sailed_ship, steady_inputs
+from trialid.design.following import sailed_ship, steady_inputs
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.speed_loss import logged_loss, loses_speed
 from trialid.design.prediction.embrace import embrace
@@ -19,6 +19,7 @@ from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.seen_range import beyond_words
 from trialid.design.rudder_rate import GEAR
+from trialid.design.rudders import STEERED, steered_signals
 from trialid.errors import DesignError, TrialidError, list_names
 from trialid.identification.fit import Fit
 from trialid.names import labels
@@ -152,7 +153,7 @@ def ready_orders(
     signals = {n: np.interp(t, table.t, x) for n, x in table.signals.items()}
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
-    unread = {*table.signals} - acting - {*ship.model.all_states} - STEERED
+    unread = {*table.signals} - acting - {*ship.model.all_states} - {*STEERED}
     loses = _loses(ship) if "u" in held else ""
     return ship, orders, OnClock(every, held, unread, loses, table.unknown)
 
@@ -189,7 +190,7 @@ def _ship_for(
     if "u" in given and "u" not in model.fit.model.states:
         steered = vessel(model.fit.model, steered.period, steered.constants, steered.rudder_rate)
     steered = changed_ship(steered, what_if)
-    needed = {*steered.simulator.equations.inputs} - given - STEERED - {"t"}
+    needed = {*steered.simulator.equations.inputs} - given - steered_signals(steered.model) - {"t"}
     needed = {name for name in needed if f"{name}_order" not in given}
     return steered, {n: steered.constants[n] for n in sorted(needed) if n in steered.constants}
 
