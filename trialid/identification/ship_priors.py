@@ -50,17 +50,18 @@ def known_of_ship(model: ShipModel, free: Sequence[str]) -> dict[str, Known]:
     """
     plain, known = replace(model, values={}), dict[str, Known]()
     ship = model.ship
-    for name in free:
-        share = ship.uncertainty.get(name, ship.uncertainty.get("default"))
-        value = plain.stated(name) if name in plain.parameters else None
-        if share is None or value is None or not (name in ship.mass or name in ship.coefficients):
+    for name in (n for n in free if n in plain.parameters):
+        told = plain.parameters[name].corrects or name
+        share = ship.uncertainty.get(told, ship.uncertainty.get("default"))
+        value = plain.stated(told)
+        if share is None or value is None or not (told in ship.mass or told in ship.coefficients):
             continue
         if share == 0.0 and value != 0.0:
             raise ShipError(
-                f"ship {ship.name!r}: [uncertainty] {name} = 0 calls it exact, and the pipeline "
-                'estimates it with priors = "ship"; take it out of identify.free, or say how far '
-                "it may be off"
+                f"ship {ship.name!r}: [uncertainty] {told} = 0 calls it exact, and the pipeline "
+                f'estimates {name} with priors = "ship"; take that out of identify.free, or say '
+                "how far it may be off"
             )
         if value != 0.0:
-            known[name] = value, share * abs(value)
+            known[name] = value if told == name else 0.0, share * abs(value)
     return known

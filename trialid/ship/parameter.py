@@ -32,6 +32,8 @@ class Parameter:
         or may be far from it, as a sensor of many seconds.
     by_meaning
         Whether its range is what it means: beyond it is another effect, as strong is beyond weak.
+    corrects
+        The number of the ship's file that it is added to: as sure as the file calls that.
     """
 
     start: float
@@ -42,6 +44,7 @@ class Parameter:
     scan: tuple[float, ...] = ()
     by_meaning: bool = False
     of_length: float | None = None
+    corrects: str | None = None
 
     def of_ship(self, length: float) -> "Parameter":
         """The same with a typical value for a ship of this length [m], by Froude's law.
