@@ -26,7 +26,7 @@ from trialid.diagnosis.plain_damping import dampings
 from trialid.diagnosis.records.in_doubt import in_doubt, settle
 from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.search.completeness import Completeness
-from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults
+from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults, with_other_fault
 from trialid.diagnosis.search.refit import Refit, refit
 from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate
@@ -142,6 +142,7 @@ def _or_of_several(
     found = None
     if why_no_fit(fit) is None and verdict.kind != "nothing missing":
         found = two_at_once(fit, asked.candidates, asked.refit, lambda words: progress(words, 0.8))
+        found = found and with_other_fault(fit, found, asked.candidates, progress)
     found = found or hull_at_once(fit, asked.candidates)
     if found and (
         more_on_course(fit, refits, asked.level, found) or gap_with(whole, found.fit, asked)

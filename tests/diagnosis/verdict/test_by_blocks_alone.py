@@ -84,6 +84,7 @@ def test_two_come_before_all_that_a_hull_has(monkeypatch, kind):
     monkeypatch.setattr(diagnose, "in_doubt", lambda fit: False)
     monkeypatch.setattr(diagnose, "why_no_fit", lambda fit: None)
     monkeypatch.setattr(diagnose, "hull_at_once", lambda *given: several)
+    monkeypatch.setattr(diagnose, "with_other_fault", lambda fit, found, *asked: found)
     asked = DiagnoseSettings(candidates={})
     for two in (pair, None):
         together = several if kind == "nothing missing" else two or several

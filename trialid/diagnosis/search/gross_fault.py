@@ -13,8 +13,9 @@ import numpy as np
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.carry_over import carried_between
-from trialid.diagnosis.search.refit import Refit
+from trialid.diagnosis.search.refit import Refit, settings_with
 from trialid.diagnosis.search.score import Candidate
+from trialid.diagnosis.search.together import Together
 from trialid.errors import StepsTooLong, TrialidError
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
@@ -121,6 +122,32 @@ def whole_faults(
     if not unlike or not leaves_noise(found[0].fit):
         return ()
     return tuple(r for r in found if as_good(first.after, r.carried.after))
+
+
+def with_other_fault(
+    fit: Fit, found: Together, candidates: Mapping[str, Effect], progress: Progress
+) -> Together:
+    """Two effects at once, an actuator's fault chosen anew where the model has the other already.
+
+    Slopes at a fit that lacks both do not tell one fault from another: of a boat without sway whose
+    port thruster gives 0.6 of its push one that is misaligned had been added, at 19.1 %; weak, it
+    leaves 15.1.
+    """
+    of_one = tuple(f"{one.name}_" for one in fit.model.ship.actuators)
+    hers = [e for e in found.effects if not e.name.startswith(of_one)]
+    if len(hers) != 1:
+        return found
+    try:
+        model, settings = fit.model + hers[0], settings_with(fit, hers)
+        beside = identify(fit.trials, model, settings, near=found.fit.estimates)
+    except TrialidError:  # it arrives beside that fault alone
+        return found
+    tried = [e for e in _absent(beside, candidates) if e.name not in found.names]
+    better = (
+        Together((*hers, one.candidate.effect), one.fit, carried_between(fit, one.fit))
+        for one in _of_these(beside, tried, progress)
+    )
+    return min((found, *better), key=lambda one: one.cost)
 
 
 def _absent(fit: Fit, candidates: Mapping[str, Effect]) -> list[Effect]:
