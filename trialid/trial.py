@@ -24,7 +24,7 @@ class LogSource:
     adapter: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Contradiction:
     """A rate that is not the slope of its angle, measured on the record.
 
@@ -38,13 +38,16 @@ class Contradiction:
         The rate over the slope of the angle; 1 where that is not told.
     sentence
         In words, with the line of a pipeline's signal that would mend it, where it is known.
+    drift
+        By how much the rate drifts against that slope from begin to end [rad/s].
     """
 
     rate: str
     angle: str
-    late: float
-    factor: float
     sentence: str
+    late: float = 0.0
+    factor: float = 1.0
+    drift: float = 0.0
 
 
 @dataclass(frozen=True)

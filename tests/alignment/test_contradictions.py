@@ -40,6 +40,25 @@ def test_gyros_as_they_are_contradict_no_heading(zigzag, gain):
     assert aligned(with_values(zigzag, "r", gain * zigzag["r"].y)).contradictions == ()
 
 
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_gyro_that_drifts_beside_a_heading_is_told_with_how_far(zigzag, sign):
+    """Of 0.3 deg/s in 500 s `displacement_error` was the closest, and no word of the gyro."""
+    one = zigzag["r"]
+    share = (one.t - one.t[0]) / (one.t[-1] - one.t[0])
+    far = sign * 0.5 * float(np.std(one.y))
+    [apart] = aligned(with_values(zigzag, "r", one.y + far * share)).contradictions
+    assert (apart.late, apart.factor) == (0.0, 1.0)
+    assert apart.drift == pytest.approx(far, rel=0.05)
+    assert apart.sentence.endswith("which no zero of a sensor does; leave r out, psi tells it")
+
+
+def test_a_gyro_whose_zero_is_off_or_that_hardly_drifts_is_as_gyros_are(zigzag):
+    one = zigzag["r"]
+    share, moves = (one.t - one.t[0]) / (one.t[-1] - one.t[0]), float(np.std(one.y))
+    for off in (0.5 * moves, 0.05 * moves * share):
+        assert aligned(with_values(zigzag, "r", one.y + off)).contradictions == ()
+
+
 @pytest.mark.parametrize("times", [-0.3, 0.3, 5.0])
 def test_roll_that_goes_with_her_turns_is_not_taken_for_their_rate(zigzag, times):
     """A gyro read a fifth; her roll went with the turns as any does, at another size."""

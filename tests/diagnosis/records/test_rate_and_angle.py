@@ -14,7 +14,7 @@ from trialid.trial import Contradiction
 
 NAMED = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")
 SETTINGS = replace(s175q.SETTINGS, free=("Nr",))
-LATE = Contradiction("r", "psi", 6.0, 1.0, "r comes 6 s later")
+LATE = Contradiction(rate="r", angle="psi", late=6.0, sentence="r comes 6 s later")
 OWN_TIME = 175.0 / 7.33
 
 

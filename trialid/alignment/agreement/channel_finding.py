@@ -39,7 +39,7 @@ class Finding:
 
     def of_slope(self, rate: str) -> bool:
         """Whether it says that a rate comes at another time than its angle, or is not its slope."""
-        told = self.kind in ("lag", "scale") and self.severity == "remark"
+        told = self.kind in ("lag", "scale", "drift") and self.severity == "remark"
         return told and self.about[0] == rate
 
     @property

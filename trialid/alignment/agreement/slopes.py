@@ -12,6 +12,7 @@ import numpy as np
 
 from trialid.alignment.agreement import relation
 from trialid.alignment.agreement.channel_finding import Finding
+from trialid.alignment.agreement.rate_drift import drift_finding, drift_of
 from trialid.alignment.agreement.relation import Relation
 from trialid.errors import UnitError
 from trialid.names import units
@@ -63,6 +64,9 @@ def check_slopes(trial: Trial, stated: Mapping[str, str], beside: Trial) -> Iter
                 for one in _slope(rate, angle, found, float(np.ptp(x[valid])), stated):
                     hint = _better(beside, rate, angle) if one.kind in ASKS else ""
                     yield replace(one, sentence=one.sentence + hint)
+                drift = drift_of(y, x, valid, trial.period) if is_clear(found) else 0.0
+                if drift:
+                    yield drift_finding(rate, angle, drift, trial.duration)
 
 
 def _better(trial: Trial, rate: str, angle: str) -> str:
@@ -148,10 +152,15 @@ def contradiction(found: Finding) -> Contradiction | None:
     """What a finding says of a rate and its angle; None where it is another."""
     if not found.of_slope(found.about[0]):
         return None
-    lag, low, high = (found.evidence[n] for n in ("lag", "gain_low", "gain_high"))
-    late, factor = (lag, 1.0) if found.kind == "lag" else (0.0, float(np.sqrt(low * high)))
     rate, angle = found.about
-    return Contradiction(rate, angle, late, factor, found.words)
+    told = Contradiction(rate=rate, angle=angle, sentence=found.words)
+    if found.kind == "drift":
+        return replace(told, drift=found.evidence["drift"])
+    if found.kind == "lag":
+        return replace(told, late=found.evidence["lag"])
+    return replace(
+        told, factor=float(np.sqrt(found.evidence["gain_low"] * found.evidence["gain_high"]))
+    )
 
 
 def is_clear(found: Relation) -> bool:

@@ -30,9 +30,8 @@ def contradictions(fit: Fit, named: Effect | None = None) -> tuple[Contradiction
     measured = {s for e in effects for s in e.measures}
     outputs = {*fit.problem.outputs} - measured
     found = [c for t in fit.trials for c in t.contradictions if _wrong(c) in outputs]
-    able = [c for c in found if c.factor != 1.0 or abs(c.late) > SLOW * own_time(fit)]
-    kinds = dict.fromkeys((_wrong(c), c.factor == 1.0) for c in able)
-    alike = ([c for c in able if (_wrong(c), c.factor == 1.0) == kind] for kind in kinds)
+    able = [c for c in found if c.factor != 1.0 or c.drift or abs(c.late) > SLOW * own_time(fit)]
+    alike = ([c for c in able if _kind(c) == kind] for kind in dict.fromkeys(map(_kind, able)))
     return tuple(_middle(some) for some in alike if len(some) >= MOSTLY * len(fit.trials))
 
 
@@ -42,6 +41,11 @@ def rate_in_doubt(fit: Fit, named: Effect | None = None) -> str | None:
     return "; ".join(c.sentence for c in found) or None
 
 
+def _kind(one: Contradiction) -> tuple[str, bool, bool]:
+    """Which of the two it is, and whether by a factor or a drift."""
+    return _wrong(one), one.factor == 1.0, one.drift == 0.0
+
+
 def _wrong(one: Contradiction) -> str:
     """Which of the two it is: the later one, or the rate where it is wrong by a factor."""
     return one.angle if one.late < 0.0 else one.rate
@@ -49,5 +53,5 @@ def _wrong(one: Contradiction) -> str:
 
 def _middle(some: list[Contradiction]) -> Contradiction:
     """Of the same contradiction in several trials the one in the middle."""
-    order = np.argsort([c.late * c.factor for c in some], kind="stable")
+    order = np.argsort([(c.late + c.drift) * c.factor for c in some], kind="stable")
     return some[int(order[len(order) // 2])]

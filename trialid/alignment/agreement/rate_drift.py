@@ -1,0 +1,60 @@
+"""Does a rate drift against the slope of its angle? A gyro warms up, a compass does not.
+
+The integral of the difference is a straight line where a gyro's zero stands, a parabola where it
+drifts evenly. A fit takes a zero for each trial, and no drift: an effect has that to explain.
+"""
+
+from typing import Final
+
+import numpy as np
+
+from trialid.alignment.agreement.channel_finding import Finding
+from trialid.arrays import Mask, Vector
+from trialid.names import units
+from trialid.names.quantities import SIGNALS
+
+LARGE: Final = 0.1
+"""Drift from the first to the last sample, as a share of what the rate moves, that is told. Of
+1406 logs of a rate and an angle, real and made, the eight are told whose gyro was made to drift,
+and at half and at twice of this and of what `CURVED` leaves the same."""
+
+CURVED: Final = 0.95
+"""Share of what a straight line leaves of the difference in angle that an even drift explains: a
+gyro's gain that is wrong leaves what goes as the angle does."""
+
+KNOWN: Final = 0.95
+"""Share of the samples that both are measured in: through a gap nobody knows how she turned."""
+
+
+def drift_of(rate: Vector, angle: Vector, valid: Mask, period: float) -> float:
+    """By how much a rate drifts from begin to end [rad/s]; 0 where it does not, or nobody knows.
+
+    >>> t = np.arange(0.0, 100.0, 0.1)
+    >>> round(drift_of(np.cos(t / 5) / 5 + 0.001 * t, np.sin(t / 5), t >= 0.0, 0.1), 3)
+    0.1
+    """
+    if len(rate) < 3 or valid.mean() < KNOWN:
+        return 0.0
+    turned = np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2.0) * period])
+    x = np.linspace(-1.0, 1.0, len(rate))
+    line, curve = np.vander(x, 2), np.vander(x, 3)
+    off = turned - angle
+    left = off - line @ np.linalg.lstsq(line, off, rcond=None)[0]
+    found = np.linalg.lstsq(curve, off, rcond=None)[0]
+    rest = off - curve @ found
+    duration = (len(rate) - 1) * period
+    drift = float(8.0 * found[0] / duration)  # off = a x^2 is a rate of 4 a x / duration
+    told = float(rest @ rest) < (1.0 - CURVED) * float(left @ left)
+    moves = float(np.std(rate - drift * x / 2.0))
+    return drift if told and abs(drift) > LARGE * moves else 0.0
+
+
+def drift_finding(rate: str, angle: str, drift: float, duration: float) -> Finding:
+    """That a rate drifts against its angle, in words."""
+    shown = SIGNALS[rate].shown
+    by = drift / units.factor(shown, SIGNALS[rate].unit)
+    words = (
+        f"{rate} drifts by {by:.2g} {shown} against the slope of {angle} from begin to end of "
+        f"{duration:.0f} s, which no zero of a sensor does; leave {rate} out, {angle} tells it"
+    )
+    return Finding("drift", "remark", (rate, angle), words, {"drift": drift})
