@@ -87,6 +87,15 @@ def test_a_motion_that_freezes_for_a_while():
     assert not any("stuck" in remark for remark in rudder)
 
 
+@pytest.mark.parametrize(("noise", "told"), [(0.002, True), (0.0, False)])
+def test_a_rudder_is_stuck_where_its_noise_rests(noise: float, told: bool) -> None:
+    """A zig-zag's order rests at each angle, a feedback that freezes does so once."""
+    y = 0.2 * np.sign(np.sin(0.3 * T)) + noise * np.random.default_rng(5).standard_normal(len(T))
+    y[(T > 60.0) & (T < 100.0)] = 0.15
+    said = remarks_on(T, y, "delta", "rad")
+    assert any(one.endswith("s; stuck?") for one in said) == told
+
+
 def test_signals_by_different_clocks():
     log = recording(
         channel("a", T, swing, clock="header stamp"), channel("b", T, swing, clock="log")

@@ -30,6 +30,10 @@ STUCK_S = 10.0
 STUCK_SHARE = 0.1
 """A motion that does not change for so long, and for this share of the trial, is worth a remark."""
 
+RESTLESS = 0.3
+"""Share of the samples beside that time at which a rudder turns back; noise does at two of three.
+Of 1680 logged rudders two are told, made to freeze for 80 of 500 s; at half and twice the same."""
+
 IN_TURN = 0.25
 """Of a sample's distance from the mean of its neighbours, what it is at most from those `TURN` away
 where senders take turns in a channel; noise alone gives 1, motion more. Of 8 640 channels of 841
@@ -88,8 +92,9 @@ def of_values(series: Series, grid: Grid) -> Iterator[str]:
     elif len(y):
         yield from _coarse(series, y)
         yield from _in_turn(series, y)
-    if len(y) and np.ptp(y) > 0 and name in MOTIONS and series.quantity.mirror < 0:
-        yield from _stuck(name, t, y)
+        moves = name in MOTIONS and series.quantity.mirror < 0
+        if np.ptp(y) > 0 and (moves or (series.quantity.steers and _is_restless(t, y))):
+            yield from _stuck(name, t, y)
 
 
 def _coarse(series: Series, y: Vector) -> Iterator[str]:
@@ -123,16 +128,31 @@ def _in_turn(series: Series, y: Vector) -> Iterator[str]:
         )
 
 
-def _stuck(name: str, t: Vector, y: Vector) -> Iterator[str]:
-    """The longest time a motion keeps one and the same value."""
-    if not len(y):
-        return
+def _is_restless(t: Vector, y: Vector) -> bool:
+    """Whether a rudder goes to and fro from sample to sample but for one time, of half at most.
+
+    A feedback's noise does not rest; orders do, rudders logged without noise, and at their stops.
+    """
+    begin, end = _longest(t, y)
+    step = np.delete(np.diff(y), slice(begin, end))
+    if not len(step) or y[begin] in (np.min(y), np.max(y)):
+        return False
+    back = float(np.mean(step[1:] * step[:-1] < 0.0))
+    return t[end] - t[begin] < 0.5 * (t[-1] - t[0]) and back > RESTLESS
+
+
+def _longest(t: Vector, y: Vector) -> tuple[int, int]:
+    """The first and last sample of the longest time of one and the same value."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(y)) + 1, [len(y)]])
-    spans = t[edges[1:] - 1] - t[edges[:-1]]
-    k = int(np.argmax(spans))
-    if spans[k] >= max(STUCK_S, STUCK_SHARE * (t[-1] - t[0])):
-        begin = t[edges[k]]
-        yield f"{name}: does not change from {begin:.1f} to {begin + spans[k]:.1f} s; stuck?"
+    k = int(np.argmax(t[edges[1:] - 1] - t[edges[:-1]]))
+    return int(edges[k]), int(edges[k + 1]) - 1
+
+
+def _stuck(name: str, t: Vector, y: Vector) -> Iterator[str]:
+    """The longest time that it keeps one and the same value."""
+    begin, end = (float(t[k]) for k in _longest(t, y))
+    if end - begin >= max(STUCK_S, STUCK_SHARE * (t[-1] - t[0])):
+        yield f"{name}: does not change from {begin:.1f} to {end:.1f} s; stuck?"
 
 
 def _gaps(series: Series, grid: Grid) -> Iterator[str]:
