@@ -128,7 +128,7 @@ def _with_own_sensors(fit: Fit, verdict: Verdict, said: str) -> Verdict:
     middle = float(np.median([*zeros.values()]))
     most = max(zeros, key=lambda name: abs(zeros[name] - middle))
     sentence = (
-        f"no effect stands out against the noise, but {said}; and the rudder's zero is another in "
+        f"no effect stands out against the noise; {said}; and the rudder's zero is another in "
         f"each trial, by {np.rad2deg(between):.2g} deg, in {most} most: something acts there that "
         "does not in others, or its rudder reads too much or too little"
     )
