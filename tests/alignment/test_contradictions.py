@@ -7,6 +7,7 @@ from real_channels import series
 from scipy.signal import lfilter
 
 from trialid.alignment.agreement import checks
+from trialid.alignment.agreement.rate_drift import drift_of
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +58,15 @@ def test_a_gyro_whose_zero_is_off_or_that_hardly_drifts_is_as_gyros_are(zigzag):
     share, moves = (one.t - one.t[0]) / (one.t[-1] - one.t[0]), float(np.std(one.y))
     for off in (0.5 * moves, 0.05 * moves * share):
         assert aligned(with_values(zigzag, "r", one.y + off)).contradictions == ()
+
+
+@pytest.mark.parametrize("gain", [0.8, 1.2])
+def test_a_gain_is_no_drift_however_she_turns(gain):
+    """Of a turn that quickens evenly both leave a parabola: nobody can tell one from the other."""
+    t = np.arange(0.0, 100.0, 0.1)
+    known = np.ones(len(t), np.bool_)
+    assert drift_of(gain * 0.001 * t, 0.0005 * t**2, known, 0.1) == 0.0
+    assert drift_of(0.01 * np.sin(t) + 0.001 * t, 0.01 * (1.0 - np.cos(t)), known, 0.1) > 0.09
 
 
 @pytest.mark.parametrize("times", [-0.3, 0.3, 5.0])

@@ -22,7 +22,7 @@ from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.rating import Goal, Noise, goal
 from trialid.design.rudder_rate import gear_rate
-from trialid.design.rudders import steered_signals
+from trialid.design.rudders import steered_signals, steering_angles
 from trialid.design.search import natural_roll, sail_all
 from trialid.design.separation import Likeness, Separation, likeness_of, rivals
 from trialid.design.standard import Measure, in_calm, measures_of
@@ -67,8 +67,9 @@ def vessel_of(fit: Fit, model: ShipModel | None = None) -> Vessel:
     sailed = model or fit.model
     if steered_signals(sailed).isdisjoint(sailed.recorded):
         raise DesignError("she has no rudder to steer by; `stop` and orders of your own need none")
-    trials, angles = fit.problem.trials, sorted(steered_signals(sailed))
-    ship = vessel(sailed, trials[0].period, steady_inputs(fit), gear_rate(trials, angles))
+    trials = fit.problem.trials
+    rate = gear_rate(trials, steering_angles(sailed))
+    ship = vessel(sailed, trials[0].period, steady_inputs(fit), rate)
     return at_her_speed(ship, in_calm(ship))
 
 

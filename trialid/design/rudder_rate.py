@@ -1,6 +1,6 @@
 """How fast a ship's rudder goes over, from how it went over in her trials."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,14 +25,13 @@ SPIKE: Final = 3
 """Moves as quick that there have to be: a wild sample makes two."""
 
 
-def gear_rate(trials: Iterable[Trial], angles: Iterable[str] = ("delta",)) -> float:
+def gear_rate(trials: Iterable[Trial], angles: Sequence[str] = ("delta",)) -> float:
     """How fast a rudder goes over [rad/s]: as fast as in the trials, `GEAR` where none shows it.
 
     One that goes from angle to angle at one rate goes as fast as it can, however slow that is. One
     that is worked little by little, or is over from one sample to the next, may go faster. What a
     long way shows is better known than what a short one does, as far as these are not unlike.
     """
-    angles = [*angles]
     clocked = [_clocked(t.signals[n], t.period) for t in trials for n in angles if n in t.signals]
     long = max((c.rate for c in clocked if c.long), default=0.0)
     short = max((c.rate for c in clocked), default=0.0)

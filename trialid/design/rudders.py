@@ -7,24 +7,26 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
-from trialid.ship.actuators import Actuator, rudder_signals
+from trialid.ship.actuators import Actuator
 from trialid.ship.model import ShipModel
-
-STEERED: Final = ("delta", "delta_order")
-"""The rudder of a ship that has no other."""
 
 GEAR_STATE: Final = "delta"
 """The state a steering gear among the effects adds; without one the gear here is used."""
 
 
-def steered_signals(model: ShipModel) -> frozenset[str]:
-    """Angles and orders of all rudders that a model may have."""
-    return frozenset(STEERED) | rudder_signals(model.ship.actuators)
+def steering_angles(model: ShipModel) -> tuple[str, ...]:
+    """Signals that say where the rudders stand, that of a ship which has one first."""
+    return (GEAR_STATE, *(one.name for one in _rudders(model)))
 
 
 def steering_orders(model: ShipModel) -> tuple[str, ...]:
     """Signals that say what the rudders are told; several move as one."""
     return ("delta_order", *(f"{one.name}_order" for one in _rudders(model)))
+
+
+def steered_signals(model: ShipModel) -> frozenset[str]:
+    """Angles and orders of all rudders that a model may have."""
+    return frozenset((*steering_angles(model), *steering_orders(model)))
 
 
 def steering_gears(model: ShipModel, rate: float) -> dict[str, float]:

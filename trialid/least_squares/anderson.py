@@ -13,8 +13,8 @@ from trialid.arrays import Mask, Vector
 REMEMBERED: Final = 3
 """Points before this one whose steps are looked at. Of the searches for six boats and ships by
 others 123 of 205 ended where nothing is left to win without it, and 72 for want of iterations; with
-it 142 of 207 and 58, for as many points tried (2681 for 2704). One that any step lets fall (as here
-but for the waiting) gives the same with two and with five."""
+it 142 of 207 and 58, for as many points tried (2681 for 2704). Before any waited 142 did with two
+points, 143 with three and with five."""
 
 RANK: Final = 1e-6
 """Share of the largest below which a change of steps is rounding; at 1e-3 the same."""

@@ -1,8 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from s175q import MODEL, SETTINGS, zigzag
 
+from trialid.design.following import vessel_of
 from trialid.design.rudder_rate import GEAR, gear_rate, rudder_rate
 from trialid.design.rudders import ramp
+from trialid.identification.fit import identify
 from trialid.trial import Trial
 
 D = float(np.deg2rad(1.0))
@@ -73,3 +78,12 @@ def test_a_rudder_that_is_over_from_one_sample_to_the_next_shows_no_gear():
     rare = steered(2.5, angle=5.0, period=20.0)
     assert rudder_rate(rare.signals["delta"], 20.0) < 0.6 * D
     assert gear_rate([rare]) == GEAR
+
+
+def test_an_order_beside_the_rudder_is_no_rate_of_its_gear() -> None:
+    """It jumps from angle to angle: her rudder would go over at once in every prediction."""
+    trial = zigzag(10)
+    order = np.deg2rad(10.0) * np.sign(trial.signals["delta"])
+    both = replace(trial, signals={**trial.signals, "delta_order": order})
+    rates = [vessel_of(identify([one], MODEL, SETTINGS)).rudder_rate for one in (trial, both)]
+    assert rates[0] == rates[1] < np.deg2rad(10.0)

@@ -1,7 +1,8 @@
 """Does a rate drift against the slope of its angle? A gyro warms up, a compass does not.
 
-The integral of the difference is a straight line where a gyro's zero stands, a parabola where it
-drifts evenly. A fit takes a zero for each trial, and no drift: an effect has that to explain.
+The integral of the difference is a straight line where a gyro's zero stands, goes as the angle
+where its gain is wrong, and is a parabola where it drifts evenly. A fit takes a zero for each
+trial, and no drift: an effect has that to explain.
 """
 
 from typing import Final
@@ -19,8 +20,7 @@ LARGE: Final = 0.1
 and at half and at twice of this and of what `CURVED` leaves the same."""
 
 CURVED: Final = 0.95
-"""Share of what a straight line leaves of the difference in angle that an even drift explains: a
-gyro's gain that is wrong leaves what goes as the angle does."""
+"""Share of what a zero and a gain leave of the difference in angle that an even drift explains."""
 
 KNOWN: Final = 0.95
 """Share of the samples that both are measured in: through a gap nobody knows how she turned."""
@@ -37,9 +37,9 @@ def drift_of(rate: Vector, angle: Vector, valid: Mask, period: float) -> float:
         return 0.0
     turned = np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2.0) * period])
     x = np.linspace(-1.0, 1.0, len(rate))
-    line, curve = np.vander(x, 2), np.vander(x, 3)
+    curve = np.column_stack([x**2, x, np.ones(len(x)), angle])
     off = turned - angle
-    left = off - line @ np.linalg.lstsq(line, off, rcond=None)[0]
+    left = off - curve[:, 1:] @ np.linalg.lstsq(curve[:, 1:], off, rcond=None)[0]
     found = np.linalg.lstsq(curve, off, rcond=None)[0]
     rest = off - curve @ found
     duration = (len(rate) - 1) * period

@@ -19,11 +19,11 @@ from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.seen_range import beyond_words
 from trialid.design.rudder_rate import GEAR
-from trialid.design.rudders import STEERED, steered_signals
+from trialid.design.rudders import steered_signals
 from trialid.errors import DesignError, TrialidError, list_names
 from trialid.identification.fit import Fit
 from trialid.names import labels
-from trialid.names.quantities import SIGNALS
+from trialid.names.quantities import RUDDERS, SIGNALS
 from trialid.pipeline_file.contradictions import nearest_signal
 from trialid.second_process import each
 from trialid.ship.effect import Steered
@@ -153,7 +153,7 @@ def ready_orders(
     signals = {n: np.interp(t, table.t, x) for n, x in table.signals.items()}
     signals |= {n: np.full(len(t), x) for n, x in held.items()}
     orders = Trial(name, "check", float(t[1] - t[0]), signals, {})
-    unread = {*table.signals} - acting - {*ship.model.all_states} - {*STEERED}
+    unread = {*table.signals} - acting - {*ship.model.all_states} - RUDDERS
     loses = _loses(ship) if "u" in held else ""
     return ship, orders, OnClock(every, held, unread, loses, table.unknown)
 

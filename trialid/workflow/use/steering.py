@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 from trialid.design.following import sailed_ship
 from trialid.design.helm import Vessel
-from trialid.design.rudders import STEERED
 from trialid.design.steering.steered_by import SteeredBy, steered_by
 from trialid.design.steering.straight_course import LinearShip
 from trialid.errors import DesignError, TrialidError
 from trialid.export.model.order_words import command_unit, command_words
+from trialid.names.quantities import RUDDERS
 from trialid.workflow.use.finished_model import FinishedModel
 from trialid.workflow.use.predict import ready_ship
 
@@ -33,7 +33,7 @@ def steered_ship(model: FinishedModel) -> Vessel:
     TrialidError
         She is steered by something else, of which there is no K and no T.
     """
-    if not {*STEERED}.isdisjoint(model.fit.model.recorded):
+    if not RUDDERS.isdisjoint(model.fit.model.recorded):
         return sailed_ship(model.fit)
     ship = ready_ship(model.fit)
     try:
