@@ -23,6 +23,7 @@ from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
 from trialid.diagnosis.plain_damping import dampings
+from trialid.diagnosis.records.contradicting_trial import settle_held_out, settle_trials
 from trialid.diagnosis.records.in_doubt import in_doubt, settle
 from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.search.completeness import Completeness
@@ -70,6 +71,7 @@ def diagnose(
         found = _verdict(fit, ranking, tried, before, whole, asked, grown=grown, progress=progress)
         named = _named(found, tried.refits)
         verdict, together = _or_of_several(fit, found, whole, tried.refits, asked, progress)
+        verdict = settle_held_out(fit, verdict, named or together)
         if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
         missing = _force(force, verdict, named.fit if named else fit, asked.level, progress)
@@ -115,6 +117,9 @@ def _verdict(
     found = name_records(fit, found, asked.candidates.values())
     found = settle(fit, found, asked.candidates.get(found.effect or ""))
     named = _named(found, refits)
+    found = settle_trials(fit, found, named.fit if named else None)
+    if found.doubts:
+        return found
 
     def said(words: str) -> None:
         progress(words, 0.85)
@@ -137,7 +142,7 @@ def _or_of_several(
     may as well: two would be chosen by the slopes of a fit that stands nowhere. Where the catalogue
     seems to miss something, it must not seem so with them.
     """
-    if verdict.effect or verdict.family or verdict.held_as_well or in_doubt(fit):
+    if verdict.effect or verdict.family or verdict.held_as_well or verdict.doubts or in_doubt(fit):
         return verdict, None
     found = None
     if why_no_fit(fit) is None and verdict.kind != "nothing missing":

@@ -6,7 +6,7 @@ missed the truth, while the heading beside it told the delay to 0.1 s. No sensor
 of two the later one is late; and over whole turns no compass is wrong by a factor.
 """
 
-from typing import Final
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,31 +14,39 @@ from trialid.diagnosis.found_values import SLOW
 from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
-from trialid.trial import Contradiction
-
-MOSTLY: Final = 0.5
-"""Share of the trials in which it has to be seen: in a single one it may be of that trial. Half of
-it and twice say the same of those two ships, whose trials all show it."""
+from trialid.trial import Contradiction, Trial
 
 
-def contradictions(fit: Fit, named: Effect | None = None) -> tuple[Contradiction, ...]:
-    """What rates and angles of most trials contradict each other in, by enough to be a hull's.
+def rate_in_doubt(fit: Fit, named: Effect | None = None) -> str | None:
+    """What rates and angles of fitted trials contradict each other in, and how to settle it.
 
-    Nothing of an output whose sensor has an effect in the model, or one that is `named`.
+    None where they agree, by all that a hull would take up. Of a single trial, too: where one gyro
+    of three read 1.1 and 1.2 of what it is, or came 4 s late, a rudder's effect was named. Nothing
+    of an output whose sensor has an effect in the model, or one that is `named`.
     """
     effects = (*fit.model.effects, *filter(None, [named]))
     measured = {s for e in effects for s in e.measures}
     outputs = {*fit.problem.outputs} - measured
-    found = [c for t in fit.trials for c in t.contradictions if _wrong(c) in outputs]
-    able = [c for c in found if c.factor != 1.0 or c.drift or abs(c.late) > SLOW * own_time(fit)]
-    alike = ([c for c in able if _kind(c) == kind] for kind in dict.fromkeys(map(_kind, able)))
-    return tuple(_middle(some) for some in alike if len(some) >= MOSTLY * len(fit.trials))
+    found = [(c, t.name) for t in _fitted(fit) for c in t.contradictions]
+    able = [(c, name) for c, name in found if _wrong(c) in outputs and _is_a_hulls(fit, c)]
+    kinds = dict.fromkeys(_kind(c) for c, _ in able)
+    alike = ([one for one in able if _kind(one[0]) == kind] for kind in kinds)
+    return "; ".join(_told(fit, some) for some in alike) or None
 
 
-def rate_in_doubt(fit: Fit, named: Effect | None = None) -> str | None:
-    """What the rates and angles leave open, and how to settle it; None where they agree."""
-    found = contradictions(fit, named)
-    return "; ".join(c.sentence for c in found) or None
+def _is_a_hulls(fit: Fit, one: Contradiction) -> bool:
+    """Whether it is by so much that a hull would be another for it."""
+    return one.factor != 1.0 or one.drift != 0.0 or abs(one.late) > SLOW * own_time(fit)
+
+
+def _told(fit: Fit, alike: Sequence[tuple[Contradiction, str]]) -> str:
+    """The one in the middle, and where it is seen if not everywhere."""
+    sentence, names = _middle([one for one, _ in alike]).sentence, [name for _, name in alike]
+    return sentence if len(names) == len(_fitted(fit)) else f"in {', '.join(names)} {sentence}"
+
+
+def _fitted(fit: Fit) -> list[Trial]:
+    return [t for t in fit.trials if t.use == "fit"]
 
 
 def _kind(one: Contradiction) -> tuple[str, bool, bool]:
