@@ -8,9 +8,10 @@ from trialid.diagnosis import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 
 
-def candidate(name, p_value, falls):
+def candidate(name, p_value, falls, states=()):
     return SimpleNamespace(
-        effect=SimpleNamespace(name=name, states={}, forms=()),
+        effect=SimpleNamespace(name=name, states=states, forms=()),
+        allowed=True,
         p_value=p_value,
         carried=SimpleNamespace(falls=falls),
         shown=lambda level: p_value < level,
@@ -25,6 +26,9 @@ def candidate(name, p_value, falls):
         ([("a", 0.01, True), ("b", 0.002, False)], ["a", "b"]),
         ([("a", 0.2, True), ("b", 0.01, False)], ["b"]),  # nothing else is shown
         ([("a", 0.2, True), ("b", 0.2, False)], []),
+        # only orders are recorded: no rudder stands where it is told at once
+        ([("a", 0.01, True), ("b", 0.9, False), ("gear", 0.9, False, ["delta"])], ["a", "gear"]),
+        ([("gear", 0.01, True, ["delta"]), ("other", 0.9, False, ["delta"])], ["gear"]),
     ],
 )
 def test_which_candidates_are_fitted(monkeypatch, ranking, fitted):

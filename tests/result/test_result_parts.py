@@ -108,6 +108,14 @@ def test_levers_are_those_of_the_equations_of_motion():
     )
 
 
+@pytest.mark.parametrize("upright", [{"GM": 0.0, "Kphi": 0.0}, {"GM": -0.2}])
+def test_what_does_not_stand_upright_has_no_heel_of_a_slow_turn(upright):
+    """Of a yacht that heels all the while GM ended at zero, and the run in a traceback."""
+    found = part(MODEL.with_values(upright)).stability
+    assert found.roll_coupled is None
+    assert found.margin == part(MODEL).stability.margin
+
+
 def test_a_margin_is_likely_where_other_models_say_that_it_may_be():
     unsure = done_with(MODEL, variance=0.2**2)
     without_hull = done_with(MODEL - "linear_hull")

@@ -61,7 +61,8 @@ def _coefficients(model: ShipModel, coupled: bool) -> Mapping[str, float] | None
     values = _values(model, (*(WITH_HEEL if coupled else PLAIN), *turning))
     if values is None or not coupled:
         return values
-    return values | _heel(model) if model.ship.particulars["U0"] > 0.0 else None
+    heel = _heel(model) if model.ship.particulars["U0"] > 0.0 else {"G_phi": 0.0}
+    return values | heel if heel["G_phi"] > 0.0 else None  # what does not stand upright has no heel
 
 
 def _values(model: ShipModel, names: Sequence[str]) -> dict[str, float] | None:

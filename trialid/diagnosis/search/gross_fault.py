@@ -13,7 +13,7 @@ import numpy as np
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.carry_over import carried_between
-from trialid.diagnosis.search.refit import Refit, settings_with
+from trialid.diagnosis.search.refit import Refit, first_model, settings_with
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
 from trialid.errors import StepsTooLong, TrialidError
@@ -183,7 +183,7 @@ def _fitted(fit: Fit, effect: Effect, progress: Progress) -> Refit | None:
     """The model with a fault, fitted; None where that fails or the fault is at its range's end."""
     progress(f"trying {effect.name}", 0.68)
     start = {n: p.start if effect.is_whole else 0.9 * p.high for n, p in effect.parameters.items()}
-    model = (_as_begun(fit) + effect).with_values(start)
+    model = (first_model(fit) + effect).with_values(start)
     try:
         fitted = _arrived(fit.examined, model, effect)
     except TrialidError:  # it cannot act on this record: it is not the one
@@ -215,14 +215,6 @@ def _is_a_gain(fit: Fit, effect: Effect) -> bool:
     rest = rest[:, sizes > 0.0] / sizes[sizes > 0.0]
     left = trace - rest @ np.linalg.lstsq(rest, trace, rcond=None)[0]
     return bool(np.linalg.norm(left) < OTHER_THAN_A_GAIN * np.linalg.norm(trace))
-
-
-def _as_begun(fit: Fit) -> ShipModel:
-    """The model where its own search began: far from a fault it may have ended anywhere."""
-    own = fit.model.parameters
-    return fit.model.with_values(
-        {x.column: x.start for x in fit.problem.unknowns if x.column in own}
-    )
 
 
 def _arrived(fit: Fit, model: ShipModel, effect: Effect) -> Fit | None:

@@ -72,6 +72,9 @@ def _fitted(fit: Fit, candidate: Candidate) -> Fit:
     model, start = begun_at(fit.model, (effect,), candidate.expected)
     settings = settings_with(fit, (effect,))
     found = identify(fit.trials, model, settings, near=fit.estimates | start, smaller=fit)
+    if moves_rudder(effect):  # a hull that is fitted without one may be none
+        begun = identify(fit.trials, first_model(fit) + effect, settings, near=start)
+        found = min(begun, found, key=lambda one: (not one.converged, one.eps_rmsn))
     if found.converged or not effect.scanned:
         return found
     shape = {n for n, p in effect.parameters.items() if not p.scan}
@@ -79,6 +82,19 @@ def _fitted(fit: Fit, candidate: Candidate) -> Fit:
     rest = identify(fit.trials, model, replace(settings, free=kept), near=start)
     again = identify(fit.trials, model, settings, near=start | rest.estimates, smaller=fit)
     return again if again.converged else found
+
+
+def first_model(fit: Fit) -> ShipModel:
+    """The model where its own search began: far from a fault it may have ended anywhere."""
+    own = fit.model.parameters
+    return fit.model.with_values(
+        {x.column: x.start for x in fit.problem.unknowns if x.column in own}
+    )
+
+
+def moves_rudder(effect: Effect) -> bool:
+    """Whether it is a steering gear: the rudder is a state that follows its order."""
+    return "delta" in effect.states
 
 
 def begun_at(

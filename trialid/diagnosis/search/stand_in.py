@@ -19,7 +19,7 @@ from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.carried import is_far
 from trialid.diagnosis.search.carry_over import left_out
 from trialid.diagnosis.search.falls import fall
-from trialid.diagnosis.search.refit import Progress, Refit, refit
+from trialid.diagnosis.search.refit import Progress, Refit, moves_rudder, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
@@ -91,6 +91,21 @@ def foretell_far_more(
     most = max(able, key=lambda c: _foretold(fit, c), default=None)
     done = max((fall(fit, r) for r in refits if r.fit.converged), default=0.0)
     return [most] if most is not None and is_far(_foretold(fit, most), done) else []
+
+
+def further_gears(
+    named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]
+) -> list[Candidate]:
+    """Steering gears that were not fitted, where something else is to be named and only orders are.
+
+    No rudder stands where it is told at once, so that a hull fitted as if it did may be none: of an
+    outsider's tanker the rudder turned her the wrong way, and `yaw_memory` stood alone.
+    """
+    fitted = {r.candidate.effect.name for r in refits}
+    if moves_rudder(named.candidate.effect):
+        return []
+    able = (c for c in ranking if c.allowed and moves_rudder(c.effect))
+    return [c for c in able if c.effect.name not in fitted]
 
 
 def far_ahead(
