@@ -123,7 +123,8 @@ def test_a_ship_of_two_rudders_keeps_her_place_as_she_is_carried_out(slower: flo
     """The same orders at the same samples, each rudder at its own rate."""
     slow = ship_with((TWINS[0], replace(TWINS[1], rate=slower)))
     ship = steered(record(510, apart=False, kept=(1.0, 1.0)), slow, "rudders")
-    theta = np.array([[ship.model.value(n) for n in ship.simulator.equations.free]])
+    parameters = ship.simulator.equations.parameters
+    theta = np.array([[ship.simulator.fixed[n] for n in parameters]])
     told = MANOEUVRES["zig-zag 10/10"]
     [quick] = [
         {n: x.copy() for n, x in passage.trial.signals.items()}

@@ -56,6 +56,13 @@ def test_what_acts_late_is_refused() -> None:
         next(sail_each(ship(late), np.zeros((1, 9)), asked.told, 1.0, 10.0))
 
 
+def test_parameters_of_another_model_are_refused() -> None:
+    """The kernel would read what lies beside them."""
+    asked = named_manoeuvre(["circle", "35"])
+    with pytest.raises(ValueError, match=r"thetas: a row a ship of .*Ndelta.*, got"):
+        next(sail_each(ship(MODEL), np.zeros((1, 0)), asked.told, 1.0, 10.0))
+
+
 def test_draws_of_what_is_missing_have_the_moments_of_the_average() -> None:
     """Expected moves and variances by the formulas, through a rival that the rows speak for."""
     rng = np.random.default_rng(1)

@@ -89,12 +89,17 @@ def sail_each(
     ------
     DesignError
         The model delays an input: a record would have to be shifted as a whole.
+    ValueError
+        Other parameters than those of the equations.
     """
     if ship.model.late_inputs:
         raise DesignError(
             f"{', '.join(ship.model.late_inputs)} acts late in this model, which needs a whole "
             "record at once; simulate it once, or draw from a model without that delay"
         )
+    names = ship.simulator.equations.parameters
+    if np.shape(thetas)[1:] != (len(names),):
+        raise ValueError(f"thetas: a row a ship of {', '.join(names)}, got {np.shape(thetas)}")
     voyage = _start(ship, round(duration / ship.period) + 1)
     for theta in np.ascontiguousarray(thetas, dtype=np.float64):
         voyage.theta, voyage.known, voyage.left = theta, 0, 0
