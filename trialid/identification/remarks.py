@@ -49,6 +49,11 @@ APART: Final = 3.0
 on a gain is another."""
 
 AHEAD: Final = "k_ahead"
+OTHER_SPEED: Final = 1.4
+"""Times the U0 of her file, either way, from which on her speed in all trials is asked about: a
+speed in another unit is 1.85 times off at least. Half as far says so of a ship a fifth slower than
+in service, twice misses knots that are called km/h."""
+
 OTHER_MASS: Final = 2.0
 """Factor on a thrust in newtons from which on her file's mass is doubted: a hull's part in it, and
 the water that she carries, are some tenths. Half of it is no factor; by twice of it two boats
@@ -97,6 +102,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *_another_in_each(fit),
         *_late(fit),
         *_astern(fit),
+        *_other_speed(fit),
         *(weak if fit.weakly_identified else []),
     )
 
@@ -130,6 +136,21 @@ def _astern(fit: Fit) -> list[str]:
     found = [t.name for t in fit.trials if np.median(t.signals.get("u", 0.0)) < 0.0]
     said = f"u is below zero in {', '.join(found)}: she goes astern there, or its sign is wrong"
     return [said] if found else []
+
+
+def _other_speed(fit: Fit) -> list[str]:
+    """That she is far from the speed of her file in all trials, on her approach."""
+    stated = fit.model.ship.particulars["U0"]
+    speeds = [np.quantile(np.abs(t.signals["u"]), 0.95) for t in fit.trials if "u" in t.signals]
+    if not speeds or stated <= 0.0:
+        return []
+    shares = np.array(speeds) / stated
+    if not (shares.min() > OTHER_SPEED or shares.max() < 1.0 / OTHER_SPEED):
+        return []
+    return [
+        f"she sails at {np.median(speeds):.3g} m/s, {np.median(shares):.3g} times the U0 of her "
+        "file, in all trials: knots called m/s are 1.94 times, km/h 3.6 times too many"
+    ]
 
 
 def another_mass(fit: Fit, accuracy: Accuracy) -> tuple[str, ...]:

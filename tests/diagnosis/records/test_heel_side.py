@@ -62,7 +62,8 @@ def test_both_readings_are_named_where_the_side_of_her_turns_is_nobodys_word(wro
 def test_a_fit_that_fails_says_it_too(wrong):
     no_fit = settle(wrong, Verdict("no fit", None, (), "no fit: another ship"))
     assert no_fit.kind == "no fit"
-    assert no_fit.sentence.startswith("no fit: another ship; she heels into her turns in zigzag-")
+    assert no_fit.sentence.startswith("no fit: she heels into her turns in zigzag-")
+    assert no_fit.sentence.endswith("; another ship")
 
 
 @pytest.mark.parametrize("kind", ["missing", "not in catalogue", "cannot tell"])

@@ -41,7 +41,7 @@ def test_nothing_has_a_name_where_the_rate_is_late(fit: Fit) -> None:
     assert settled(fit, LATE, nothing).kind == "cannot tell"
     failed = settled(fit, LATE, Verdict("no fit", None, (), "no fit: another ship"))
     assert (failed.kind, failed.doubts) == ("no fit", ("r comes 6 s later",))
-    assert failed.sentence == "no fit: another ship; r comes 6 s later"
+    assert failed.sentence == "no fit: r comes 6 s later; another ship"
 
 
 def test_nor_where_it_reads_less(fit: Fit) -> None:

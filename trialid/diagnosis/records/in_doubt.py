@@ -1,31 +1,37 @@
 """What the records leave in doubt about themselves: before that is settled nothing has a name."""
 
 from dataclasses import replace
+from typing import Final
 
 from trialid.diagnosis.records.heel_side import side_in_doubt
 from trialid.diagnosis.records.rate_and_angle import rate_in_doubt
+from trialid.diagnosis.records.unit_in_doubt import unit_in_doubt
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
 
+NO_FIT: Final = "no fit: "
+
 
 def in_doubt(fit: Fit) -> bool:
     """Whether the records leave anything in doubt about themselves."""
-    return rate_in_doubt(fit) is not None or side_in_doubt(fit) is not None
+    return any(one(fit) is not None for one in (unit_in_doubt, rate_in_doubt, side_in_doubt))
 
 
 def settle(fit: Fit, verdict: Verdict, named: Effect | None = None) -> Verdict:
     """The verdict; of records in doubt, that and how to settle it.
 
     Nothing of a sensor that an effect is `named` of. Where nothing is missing the roll's side takes
-    no part; a rate that is wrong is in every number.
+    no part; a rate or a unit that is wrong is in every number.
     """
     side = None if verdict.kind == "nothing missing" else side_in_doubt(fit)
-    found = tuple(one for one in (rate_in_doubt(fit, named), side) if one is not None)
+    asked = unit_in_doubt(fit), rate_in_doubt(fit, named), side
+    found = tuple(one for one in asked if one is not None)
     if not found:
         return verdict
     doubt = "; ".join(found)
     if verdict.kind == "no fit":
-        return replace(verdict, sentence=f"{verdict.sentence}; {doubt}", doubts=found)
+        why = verdict.sentence.removeprefix(NO_FIT)  # what is wrong with the records comes first
+        return replace(verdict, sentence=f"{NO_FIT}{doubt}; {why}", doubts=found)
     said = f"{doubt}; until then no effect is named"
     return Verdict("cannot tell", None, (), said, doubts=found)

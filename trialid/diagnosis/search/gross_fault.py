@@ -208,13 +208,13 @@ def _fitted(fit: Fit, effect: Effect, progress: Progress) -> Refit | None:
 
 
 def _is_a_gain(fit: Fit, effect: Effect) -> bool:
-    """Whether free parameters do the same: then it is another value of theirs, and not missing."""
+    """Whether free parameters do the same, or nothing moves: another value, and not missing."""
     own = np.array([x.name in effect.parameters for x in fit.problem.unknowns])
     rest, trace = fit.psi[:, ~own], fit.psi[:, own]
     sizes = np.linalg.norm(rest, axis=0)
     rest = rest[:, sizes > 0.0] / sizes[sizes > 0.0]
     left = trace - rest @ np.linalg.lstsq(rest, trace, rcond=None)[0]
-    return bool(np.linalg.norm(left) < OTHER_THAN_A_GAIN * np.linalg.norm(trace))
+    return bool(np.linalg.norm(left) <= OTHER_THAN_A_GAIN * np.linalg.norm(trace))
 
 
 def _arrived(fit: Fit, model: ShipModel, effect: Effect) -> Fit | None:

@@ -1,0 +1,96 @@
+"""A rate, a rudder, a speed or a length in another unit is told by how she turns."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import s175q
+
+from trialid.diagnosis.records.in_doubt import in_doubt, settle
+from trialid.diagnosis.records.unit_in_doubt import unit_in_doubt
+from trialid.diagnosis.verdict import Verdict
+from trialid.identification.fit import Fit, identify
+from trialid.names.wording import number
+from trialid.trial import Trial
+
+NAMED = Verdict("missing", "rudder_cubic", ("rudder_cubic",), "rudder_cubic is missing")
+SETTINGS = replace(s175q.SETTINGS, free=("Nr",))
+ANGLES = (5, 10, 20)
+
+
+def with_speed(trial: Trial, speed: float) -> Trial:
+    """The trial with a record of her speed."""
+    u = np.full(trial.samples, speed)
+    valid = {**trial.valid, "u": np.ones(trial.samples, dtype=bool)}
+    return replace(trial, signals={**trial.signals, "u": u}, valid=valid)
+
+
+@pytest.fixture(scope="module")
+def sound() -> Fit:
+    trials = [with_speed(s175q.zigzag(angle), 7.33) for angle in ANGLES]
+    return identify(trials, s175q.MODEL, SETTINGS)
+
+
+def changed(fit: Fit, name: str, by: float, only: str = "") -> Fit:
+    """The same with a signal too large by a factor, in one trial or in all of them."""
+
+    def other(trial: Trial) -> Trial:
+        if only not in ("", trial.name):
+            return trial
+        return replace(trial, signals={**trial.signals, name: by * trial.signals[name]})
+
+    return replace(fit, scores=tuple(replace(s, trial=other(s.trial)) for s in fit.scores))
+
+
+def test_a_sound_record_is_not_in_doubt(sound: Fit) -> None:
+    assert unit_in_doubt(sound) is None
+    assert settle(sound, NAMED) is NAMED
+    assert unit_in_doubt(changed(sound, "u", 1.3)) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "by", "said"),
+    [
+        ("r", 1.0 / 60.0, "lengths, where ships have 2 to 20: a rate of turn in deg/s"),
+        ("r", 60.0, "as no ship does: a rate of turn in deg/min that is called deg/s"),
+        ("delta", np.pi / 180.0, "a rudder in rad that is called deg 57 times too small"),
+    ],
+)
+def test_no_ship_turns_so(sound: Fit, name: str, by: float, said: str) -> None:
+    doubt = unit_in_doubt(changed(sound, name, by))
+    assert doubt is not None
+    assert doubt.startswith("she turns by r L/U = ")
+    assert said in doubt
+    found = settle(changed(sound, name, by), NAMED)
+    assert (found.kind, found.effect, found.doubts) == ("cannot tell", None, (doubt,))
+    failed = Verdict("no fit", None, (), "no fit: the search did not converge")
+    told = settle(changed(sound, name, by), failed).sentence
+    assert told == f"no fit: {doubt}; the search did not converge"
+
+
+def test_of_one_trial_it_is_told_in_which(sound: Fit) -> None:
+    doubt = unit_in_doubt(changed(sound, "r", 60.0, "zigzag-10"))
+    assert doubt is not None
+    assert doubt.startswith("she turns in zigzag-10 by r L/U = ")
+
+
+@pytest.mark.parametrize(
+    ("by", "called"),
+    [
+        (1.944, "knots that are called m/s"),
+        (1.0 / 1.852, "knots that are called km/h"),
+        (3.6, "km/h that are called m/s"),
+    ],
+)
+def test_a_speed_in_another_unit_in_one_trial_is_told(sound: Fit, by: float, called: str) -> None:
+    doubt = unit_in_doubt(changed(sound, "u", by, "zigzag-10"))
+    assert doubt is not None
+    assert doubt.startswith(f"the speed in zigzag-10 is {number(by, 3)} times that in the others")
+    assert doubt.endswith(f"it is as of {called}")
+    assert in_doubt(changed(sound, "u", by, "zigzag-10"))
+
+
+def test_a_run_that_is_as_much_faster_turns_as_much_faster(sound: Fit) -> None:
+    faster = changed(changed(sound, "u", 1.944, "zigzag-20"), "r", 1.944, "zigzag-20")
+    assert unit_in_doubt(faster) is None
+    assert unit_in_doubt(changed(sound, "u", 1.5, "zigzag-20")) is None
