@@ -15,6 +15,7 @@ from trialid.diagnosis.objections import (
     MOST,
     NOT_ARRIVED,
     ON_COURSE,
+    SEEN,
     SLIGHT,
     best_of,
     likeliest_refit,
@@ -134,7 +135,8 @@ def decide(
     if named and (lead := far_ahead(fit, named, refits, level, grown=grown)):
         why = objection(fit, lead, level, grown)
         return Verdict("cannot tell", None, (), denied_lead(fit, named, lead, why))
-    if whole is not None and (whole.outdoes(named.carried) if named else whole.gap):
+    gap = whole is not None and (whole.outdoes(named.carried) if named else whole.gap)
+    if whole is not None and gap and fit.eps_rmsn >= SEEN:  # of less nobody notices all of it
         return Verdict("not in catalogue", None, (), outdone_by_a_shape(named, whole))
     if named is not None:
         return _judged(fit, named, ranking, refits, parts, level=level, grown=grown)

@@ -69,11 +69,17 @@ def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
     Raises
     ------
     PipelineError
-        Two trials share a log and more than `SHARED` of the shorter one's time.
+        Two trials share a log and more than `SHARED` of the shorter one's time, or are copies.
     """
     clocked = {t.name for t in pipeline.trials if any(log.clock for log in t.logs)}
     plain = [trial for trial in trials if trial.name not in clocked]  # others count as they state
     for one, other in combinations(plain, 2):
+        if _hold_the_same(one, other):
+            raise PipelineError(
+                f"{pipeline.path}: trials {one.name!r} and {other.name!r} hold the same samples, "
+                "whatever their stamps, and no two runs of a ship are alike to the last digit: "
+                "leave one out"
+            )
         files = [log.path for log in one.logs if log.sha256 in {x.sha256 for x in other.logs}]
         begin = max(one.start, other.start)
         end = min(t.start + t.duration * 1e9 for t in (one, other))
@@ -84,6 +90,17 @@ def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
                 f"{(end - begin) / 1e9:.0f} s of {files[0]}; a record cannot be held out that is "
                 "fitted, nor count twice: leave one out, or give each a window of its own"
             )
+
+
+def _hold_the_same(one: Trial, other: Trial) -> bool:
+    """Whether all that moves in two trials of other logs is the same to the last digit."""
+    if {x.sha256 for x in one.logs} & {x.sha256 for x in other.logs}:
+        return False  # how much of one log they have in common is asked beside
+    count = min(one.samples, other.samples)
+    moves = [n for n, x in one.signals.items() if n in other.signals and np.ptp(x[:count]) > 0.0]
+    return bool(moves) and all(
+        np.array_equal(one.signals[n][:count], other.signals[n][:count]) for n in moves
+    )
 
 
 def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
