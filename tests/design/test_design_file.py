@@ -140,7 +140,13 @@ def test_values_of_a_finished_run(file, tmp_path):
     (tmp_path / "out").mkdir()
     rows = [{"name": "Nr", "value": -0.002, "kind": "physical"},
             {"name": "b_r", "value": 0.1, "kind": "nuisance"}]  # fmt: skip
-    result = json.dumps({"accuracy": {"parameters": rows}})
-    (tmp_path / "out" / "result.json").write_text(result, encoding="utf-8")
-    assert finished_run(recipe) == FinishedRun(values={"Nr": -0.002})
+    effects = recipe.model.effects
+    result = {"accuracy": {"parameters": rows}, "model": {"effects": effects}}
+    (tmp_path / "out" / "result.json").write_text(json.dumps(result), encoding="utf-8")
+    found = finished_run(recipe)
+    assert (found.values, found.effects) == ({"Nr": -0.002}, tuple(effects))
+    result["model"] = {"effects": [*effects, "cross_flow_drag"]}
+    (tmp_path / "out" / "result.json").write_text(json.dumps(result), encoding="utf-8")
+    with pytest.raises(PipelineError, match=r"of another model \(apart in cross_flow_drag\)"):
+        finished_run(recipe)
     assert finished_run(load_design(file())) == FinishedRun()

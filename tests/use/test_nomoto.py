@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from trialid.design.helm import sail, vessel
 from trialid.design.steering.nomoto import NAMES, at_speeds, nomoto
 from trialid.effects import CATALOGUE
 from trialid.errors import DesignError
+from trialid.export.model.nomoto_file import ENDLESS, nomoto_file
 from trialid.progress import silent
 from trialid.ship.model import ShipModel
 from trialid.workflow.use import hand_over
@@ -88,6 +90,10 @@ def test_of_a_ship_that_may_be_neither_k_has_no_end():
         assert told[name] is not None
         assert not_told[name] is None
     assert not_told["T2"] is not None
+    made = SimpleNamespace(name="near", verdict="nothing missing", words=(), origin={})
+    for off, words in ((least, ()), (wide, (ENDLESS,))):  # an empty range has its reason
+        file = nomoto_file(made, [nomoto(near, known_by("Nv", off))])
+        assert (file.words, file.at[0].stable) == (words, None if words else True)
 
 
 def test_a_ship_that_is_not_stable_is_told():

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,7 @@ class FinishedRun:
     rudders_zero: float | None = None
     intervals: Mapping[str, tuple[float, tuple[float, float]]] = field(default_factory=dict)
     verdict: str = ""
+    effects: tuple[str, ...] = ()
 
     def gear_rate(self, given: float | None) -> float:
         """Of the rudder [rad/s]: as a file gives it in deg/s, else as in the run, else usual."""
@@ -48,15 +50,25 @@ def finished_run(pipeline: DesignFile) -> FinishedRun:
     Raises
     ------
     PipelineError
-        The folder holds no run.
+        The folder holds no run, or one of another model: its values hold in no other.
     """
     if pipeline.run is None:
         return FinishedRun()
-    file = pipeline.path.parent / pipeline.run / "result.json"
+    found = _read(pipeline, pipeline.path.parent / pipeline.run / "result.json")
+    if apart := sorted({*found.effects} ^ {*pipeline.model.effects}):
+        raise PipelineError(
+            f"{pipeline.path}: run: {pipeline.run} is of another model (apart in "
+            f"{', '.join(apart)}); name a run of this one, or give [model] the effects of that one"
+        )
+    return found
+
+
+def _read(pipeline: DesignFile, file: Path) -> FinishedRun:
     try:
         result = json.loads(user_files.text(file, user_files.MOST_OF_A_RESULT))
         rows = result["accuracy"]["parameters"]
         values = {p["name"]: float(p["value"]) for p in rows if p["kind"] == "physical"}
+        effects = tuple(map(str, result["model"]["effects"]))
         sailed = result.get("sailed") or {}  # runs of before have none
         rate, zero = sailed.get("rudder_rate"), sailed.get("rudders_zero")
         return FinishedRun(
@@ -67,6 +79,7 @@ def finished_run(pipeline: DesignFile) -> FinishedRun:
             rudders_zero=None if zero is None else float(zero),
             intervals=_intervals(result.get("imo")),
             verdict=str((result.get("verdict") or {}).get("kind", "")),
+            effects=effects,
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise PipelineError(

@@ -94,10 +94,11 @@ def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
 
 def _hold_the_same(one: Trial, other: Trial) -> bool:
     """Whether all that moves in two trials of other logs is the same to the last digit."""
-    if {x.sha256 for x in one.logs} & {x.sha256 for x in other.logs}:
+    shared = {x.sha256 for x in one.logs} & {x.sha256 for x in other.logs}
+    if shared or one.signals.keys() != other.signals.keys():
         return False  # how much of one log they have in common is asked beside
     count = min(one.samples, other.samples)
-    moves = [n for n, x in one.signals.items() if n in other.signals and np.ptp(x[:count]) > 0.0]
+    moves = [n for n, x in one.signals.items() if np.ptp(x[:count]) > 0.0]
     return bool(moves) and all(
         np.array_equal(one.signals[n][:count], other.signals[n][:count]) for n in moves
     )

@@ -22,6 +22,10 @@ UNSTABLE: Final = (
     "As fitted the ship is not directionally stable: K and T are negative, and a small order leads "
     "to no steady turn."
 )
+ENDLESS: Final = (
+    "K, T and T1 have no range, nor is it said that she is stable: with some of what may be "
+    "missing they pass through infinity, though the margin of the model stays on one side."
+)
 
 Row = tuple[float | None, ...]
 
@@ -79,12 +83,14 @@ class NomotoFile:
 
 def nomoto_file(made: FittedModel, found: Sequence[Nomoto], told: bool = True) -> NomotoFile:
     """The content of the file; `told` whether the record tells that she is stable or not."""
-    stable = all(one.stable for one in found)
+    beside = () if all(one.stable for one in found) else (UNSTABLE,)
+    if told and not all(one.ranges.get("K") for one in found):
+        beside = (*beside, ENDLESS)
     whole: NomotoFile = finite(
         NomotoFile(
             name=made.name,
             verdict=made.verdict,
-            words=made.words if stable else (UNSTABLE, *made.words),
+            words=(*beside, *made.words),
             origin=dict(made.origin),
             at=tuple(_at_speed(one, told) for one in found),
         )
