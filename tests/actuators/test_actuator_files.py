@@ -15,7 +15,7 @@ source = "made up"
 system = "prime"
 rudder_positive = "starboard"
 particulars = { L = 10.0, nabla = 10.0, rho = 1000.0, g = 9.81, U0 = 3.0 }
-mass = { m = 0.01, I_zz = 0.0006 }
+mass = { m = 0.02, I_zz = 0.0006 }
 """
 ONE = '[[actuator]]\nname = "left"\nkind = "thruster"\nat = [-4.0, -1.0]\n'
 AFT = '[[actuator]]\nname = "aft"\nkind = "rudder"\nat = [-5, 0]\n'

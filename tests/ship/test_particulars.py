@@ -1,5 +1,6 @@
 """A ship file is read, or refused in one clear line."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -140,3 +141,24 @@ def test_a_wrong_uncertainty(line: str, says: str, text: str, tmp_path: Path) ->
     file = tmp_path / "ship.toml"
     file.write_text(f"{text}\n[uncertainty]\n{line}\n", encoding="utf-8")
     expect_refusal(lambda: read_ship(file), says)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"L": 17.5}, r"nabla = 21222 m3 is more than L B T = 3778"),
+        ({"L": 574.0}, r"\[mass\] m = 0\.00792, and she floats at 0\.0002244 by nabla and L"),
+        ({"m": 7.9}, r"\[mass\] m = 7\.9, and she floats at 0\.00792"),
+    ],
+    ids=["a tenth", "feet", "of another system"],
+)
+def test_a_hull_that_cannot_be_is_refused(
+    changed: dict[str, float], said: str, tmp_path: Path
+) -> None:
+    """A length of 18 for 180 m ended in `check the sides of rudder and turn`."""
+    text = (SHIPS / "s175q.toml").read_text(encoding="utf-8")
+    for key, value in changed.items():
+        text = re.sub(rf"(?m)^{key} = .*$", f"{key} = {value}", text)
+    (path := tmp_path / "ship.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(ShipError, match=said):
+        read_ship(path)

@@ -197,10 +197,33 @@ def _check_sections(path: Path, table: Mapping[str, Any]) -> None:
         raise ShipError(f"ship file {path}: [particulars] lacks {', '.join(missing)}")
     for key in (k for k in KNOWN if k in table["particulars"]):
         _positive(path, "[particulars] ", table["particulars"], key, zero=key == "U0")
+    _check_volume(path, table)
     for key in table["mass"]:  # one with a slip in its name would silently be zero
         if key not in MASS_PARAMETERS:
             known = nearest(key, MASS_PARAMETERS)
             raise ShipError(f"ship file {path}: [mass] {key} is not a mass parameter; {known}")
+
+
+def _check_volume(path: Path, table: Mapping[str, Any]) -> None:
+    """Refuse a hull that its box does not hold, or that is no mass of it: a number is no SI."""
+    known: dict[str, float] = {
+        key: float(x)
+        for key, x in {**table["mass"], **table["particulars"]}.items()
+        if isinstance(x, int | float) and not isinstance(x, bool)
+    }
+    L, nabla, m = known["L"], known["nabla"], known.get("m", 0.0)
+    box = L * known.get("B", math.inf) * known.get("T", math.inf)
+    if nabla > FULLEST * box > 0.0:
+        raise ShipError(
+            f"ship file {path}: [particulars] nabla = {nabla:g} m3 is more than L B T = {box:g} "
+            "m3, and no hull is fuller than its box; check their units [m, m3]"
+        )
+    floats = 2.0 * nabla / L**3 if table["system"] == "prime" else known["rho"] * nabla
+    if m > 0.0 and not 1.0 / AFLOAT < m / floats < AFLOAT:
+        raise ShipError(
+            f"ship file {path}: [mass] m = {m:g}, and she floats at {floats:.4g} by nabla and L; "
+            "check their units, and the system of the file"
+        )
 
 
 def _positive(
@@ -237,6 +260,14 @@ def _arm(path: Path, table: Mapping[str, Any]) -> dict[str, float]:
             raise ShipError(f"ship file {path}: [antenna] {key} is not known; write x, y and z")
     return _numbers(path, table, "antenna")
 
+
+FULLEST: Final = 1.05
+"""Block coefficient that no hull has: a barge has 1, by a length that may be a little less than it
+is under water. A length in feet or a tenth of it has 8 and more; half of it is a tanker's."""
+
+AFLOAT: Final = 2.0
+"""Factor by which a mass is none of what floats at this volume: files round, and count water that
+goes along. A length in feet makes 35 of it; half and twice of it refuse no file of the project."""
 
 _CHOICES: Final = {"system": ("prime", "dimensional"), "rudder_positive": ("starboard", "port")}
 
