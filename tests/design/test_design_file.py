@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from trialid.effects import CATALOGUE
 from trialid.errors import PipelineError
 from trialid.pipeline_file.design_file import load_design
 from trialid.pipeline_file.finished_run import FinishedRun, finished_run
+from trialid.workflow.design import design_ships
 
 ROOT = Path(__file__).parents[2]
 GOOD = """
@@ -150,3 +152,14 @@ def test_values_of_a_finished_run(file, tmp_path):
     with pytest.raises(PipelineError, match=r"of another model \(apart in cross_flow_drag\)"):
         finished_run(recipe)
     assert finished_run(load_design(file())) == FinishedRun()
+
+
+def test_she_is_sailed_with_the_loss_of_speed_of_her_run(file, monkeypatch):
+    lost = FinishedRun(speed_lost={"lost_in_turns": 6.0, "lost_by_rudder": 0.4, "lost_after": 7.0})
+    monkeypatch.setattr(design_ships, "finished_run", lambda pipeline: lost)
+    [ship] = design_ships.ships_of_design(load_design(file()), CATALOGUE)
+    assert "u_off" in ship.vessel.model.all_states
+    assert ship.vessel.model.value("lost_in_turns") == 6.0
+    stated = GOOD.replace("rudder_rate = 2.0", "rudder_rate = 2.0\nconstant = { u = 7.0 }")
+    [ship] = design_ships.ships_of_design(load_design(file(stated)), CATALOGUE)
+    assert "u_off" not in ship.vessel.model.all_states

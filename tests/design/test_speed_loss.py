@@ -16,7 +16,11 @@ from trialid.design.imo.speed_loss import (
     speed_loss,
     with_speed_loss,
 )
+from trialid.design.kinds import Test
+from trialid.design.limits import Limits
 from trialid.design.manoeuvres import turning_circle, zigzag
+from trialid.design.rating import Noise, goal, rate
+from trialid.design.search import Ship, outcome
 from trialid.design.standard import predict
 from trialid.identification.fit import identify
 from trialid.identification.problem import Settings
@@ -142,3 +146,18 @@ def test_logs_of_which_turns_are_not_the_cause_tell_no_loss(trials):
     found = speed_loss(fit_of(GIVEN, blown))
     assert not loses_speed(found.values)
     assert np.sqrt(np.diag(found.covariance)) == pytest.approx(TYPICAL, rel=0.5)
+
+
+def test_a_test_is_rated_at_the_speed_it_would_be_sailed_at(trials):
+    """At her approach speed 6.6 % were promised of a tanker that came out 10.4 %."""
+    asked = goal(GIVEN, SETTINGS, {"r": Noise(0.05 * D), "phi": Noise(0.1 * D)})
+    found = speed_loss(fit_of(GIVEN, trials)).values
+    told = Test("zigzag", {"angle": 35.0 * D, "heading": 35.0 * D}, 600.0, 20.0)
+    true = rate(asked, [logged(35, 0.0)])
+    kept, lost = (
+        outcome([told], Ship(made, asked, 0.4, 7.33), Limits()).rating
+        for made in (KEEPING, with_speed_loss(KEEPING, found))
+    )
+    for name in ("Nr", "Ndelta"):
+        assert lost.of(name).error == pytest.approx(true.of(name).error, rel=0.1)
+        assert kept.of(name).error < 0.8 * true.of(name).error

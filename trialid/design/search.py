@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from trialid.design.evolution import evolve
 from trialid.design.helm import Passage, Vessel
+from trialid.design.imo.speed_loss import with_logged_speed
 from trialid.design.kinds import KINDS, Test, Value, sail
 from trialid.design.limits import Excess, Limits, excesses
 from trialid.design.rating import Goal, Rating, rate
@@ -81,7 +82,8 @@ def outcome(programme: Sequence[Test], ship: Ship, limits: Limits) -> Outcome:
     passages = sail_all(programme, ship.vessel, ship.roll_frequency)
     broken = [e for p in passages for e in excesses(p, limits, ship.speed)]
     broken = sorted(broken, key=lambda e: -e.share)
-    rating = None if broken else rate(ship.goal, [p.trial for p in passages])
+    logged = [with_logged_speed(p.trial, ship.speed) for p in passages]
+    rating = None if broken else rate(ship.goal, logged)
     return Outcome(passages, tuple(broken), rating)
 
 

@@ -6,7 +6,7 @@ to the logs along the rates of turn that the model had there.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -130,6 +130,14 @@ def with_speed_loss(ship: Vessel, values: Mapping[str, float]) -> Vessel:
         return ship
     model = (ship.model + logged_loss).with_values(values)
     return vessel(model, ship.period, ship.constants, ship.rudder_rate)
+
+
+def with_logged_speed(trial: Trial, approach: float) -> Trial:
+    """What was sailed with `logged_loss` from an approach speed [m/s], with the speed as logged."""
+    if "u_off" not in trial.signals:
+        return trial
+    u = trial.signals.get("u", approach) - trial.signals["u_off"]
+    return replace(trial, signals={**trial.signals, "u": u})
 
 
 def _logged(trial: Trial) -> bool:

@@ -198,7 +198,7 @@ def _most(left: Mapping[str, float], names: Sequence[str]) -> float:
 
 
 def _fall(beside: Fit, alone: Fit, names: Sequence[str]) -> float:
-    return 1.0 - _squares(alone, names) / _squares(beside, names)
+    return 1.0 - _squares(alone, names) / max(_squares(beside, names), 1e-300)
 
 
 def _squares(fit: Fit, names: Sequence[str]) -> float:
@@ -210,7 +210,7 @@ def _squares(fit: Fit, names: Sequence[str]) -> float:
         for c, eps in score.eps_rmsn.items():
             moved = np.mean([np.var(s.trial.signals[c]) for s in fit.scores if c in s.eps_rmsn])
             whole += (eps * fit.problem.y_rms[outputs.index(c)]) ** 2 * score.counts[c] / moved
-    return whole
+    return float(whole)  # of one that is lost it is endless, and proves nothing
 
 
 def _is_no_further(fit: Fit, name: str) -> bool:

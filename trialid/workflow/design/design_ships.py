@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from trialid.design.helm import vessel
+from trialid.design.imo.speed_loss import with_speed_loss
 from trialid.design.limits import Limits
 from trialid.design.rating import Noise, goal
 from trialid.design.search import Ship, natural_roll
@@ -78,6 +79,8 @@ def _ship(pipeline: DesignFile, run: FinishedRun, model: ShipModel, full: ShipMo
         for name, given in at_sea.constant.items()
     }
     ready = vessel(full, at_sea.period, constants, run.gear_rate(at_sea.rudder_rate))
+    if "u" not in at_sea.constant:  # a speed that is stated stays
+        ready = with_speed_loss(ready, run.speed_lost)
     noise = {
         c: Noise(n.sigma / units.shown_factor(SIGNALS[c]), n.memory)
         for c, n in pipeline.noise.items()
