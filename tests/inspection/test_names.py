@@ -95,6 +95,17 @@ WITH_UNITS = {
     ("Drehzahl", "U/min"): "n",
     ("Drehzahl", "1/min"): "n",
     ("Fahrt", "kn"): None,
+    ("Barre", "deg"): "delta",
+    ("Taux de giration", "deg/s"): "r",
+    ("Gîte", "deg"): "phi",
+    ("Cap", "deg"): "psi",
+    ("Cap", "uF"): None,
+    ("Vitesse fond", "kn"): None,
+    ("velocidad de guiñada", "deg/s"): "r",
+    ("escora", "deg"): "phi",
+    ("rumbo", "deg"): "psi",
+    ("rumbo sobre el fondo", "deg"): None,
+    ("corredera", "kn"): "u",
     ("Kurs über Grund", "°"): None,
 }
 

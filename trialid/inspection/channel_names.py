@@ -26,7 +26,8 @@ PHRASES: Final = {
     "ruderwinkel, rorvinkel, roerhoek, roderutslag, angle de barre, angle barre, angolo timone, "
     "angulo timon, ángulo timón, steering angle, outboard angle, motor angle, drive angle, "
     "nozzle angle, tiller angle, azimuth angle, pod angle, jet angle, rsa, rudder sensor angle, "
-    "helm angle, roder, rodervinkel, timon, timón, timone, leme",
+    "helm angle, roder, rodervinkel, timon, timón, timone, leme, angle safran, "
+    "angulo de timon, ángulo de timón, barre",
     "delta_order": "rudder order, rudder command, commanded rudder, ordered rudder, ruderkommando, "
     "helm order",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
@@ -34,19 +35,21 @@ PHRASES: Final = {
     "angular rate z, ang vel z, omega z, wendegeschw, drehgeschw, "
     "drehrate, wendegeschwindigkeit, drehgeschwindigkeit, gierrate, "
     "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, twist angular z, "
-    "gyro z",
+    "gyro z, taux de giration, taux de virage, vitesse de giration, velocidad de guinada, "
+    "velocidad de guiñada, taxa de guinada, velocita di accostata, velocità di accostata",
     "p": "roll rate, rollrate, rollgeschwindigkeit, roll speed, rollspeed, roll velocity, "
     "roll dot, phi dot, phidot, angular rate x, ang vel x, omega x, angular velocity x, "
     "twist angular x, gyro x",
     "phi": "roll, roll angle, rolling, heel, heel angle, rollwinkel, kraengung, krängung, "
-    "kraengungswinkel, krängungswinkel, krengning, slagside, list angle, bank angle",
+    "kraengungswinkel, krängungswinkel, krengning, slagside, list angle, bank angle, gite, gîte, "
+    "roulis, escora, angulo de escora, ángulo de escora, sbandamento, rollio, slagzij",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
-    "kompasskurs, kreiselkurs, cap vrai, cap compas, prua",
+    "kompasskurs, kreiselkurs, cap vrai, cap compas, prua, rumbo verdadero, rumbo aguja",
     "u": "stw, speed through water, speed water, water speed, speed log, log speed, "
     "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
     "forward velocity, longitudinal speed, longitudinal velocity, long speed, vitesse surface, "
     "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w, dvl u, vel u, "
-    "velocity u",
+    "velocity u, loch, corredera",
     "v": "sway speed, sway velocity, sway vel, vel sway, lateral speed, lateral velocity, "
     "lat speed, transverse speed, transverse velocity, dvl v, vel v, velocity v",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
@@ -67,7 +70,7 @@ PHRASES: Final = {
 ALONE: Final = {
     "u": "u", "v": "v", "p": "p", "r": "r", "phi": "phi", "psi": "psi", "delta": "delta",
     "n": "n", "rev": "n", "h": "h", "delta_c": "delta_order", "delta_order": "delta_order",
-    "compass": "psi",
+    "compass": "psi", "cap": "psi", "Cap": "psi", "rumbo": "psi", "Rumbo": "psi",
 }  # fmt: skip
 """Words that mean a quantity only where they are the whole name of a column."""
 
@@ -105,12 +108,21 @@ OVER_GROUND: Final = frozenset(
     {
         ("sog",), ("speed", "over", "ground"), ("speed", "ground"), ("fahrt", "über", "grund"),
         ("fahrt", "ueber", "grund"), ("füg",), ("fueg",), ("gps", "speed"), ("gnss", "speed"),
-        ("speed", "gps"), ("speed", "gnss"),
+        ("speed", "gps"), ("speed", "gnss"), ("vitesse", "fond"), ("velocidad", "fondo"),
+        ("velocidad", "sobre", "fondo"), ("velocidad", "sobre", "el", "fondo"),
     }
 )  # fmt: skip
 RUDDERS: Final = ("delta", "delta_order")
 SIDEWAYS: Final = frozenset(("sway", "lateral", "transverse", "transversal", "east", "north"))
-COURSES: Final = (("cog",), ("course", "over", "ground"), ("kurs", "über", "grund"), ("course",))
+COURSES: Final = (
+    ("cog",),
+    ("course", "over", "ground"),
+    ("kurs", "über", "grund"),
+    ("course",),
+    ("route", "fond"),
+    ("rumbo", "sobre", "fondo"),
+    ("rumbo", "sobre", "el", "fondo"),
+)
 """Names of the course over ground; a `Kurs` alone is a heading."""
 SPEEDS: Final = frozenset(
     ("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad", "boatspeed", "bsp")

@@ -8,7 +8,8 @@ TIMES = frozenset(
         "t", "time", "timestamp", "time_stamp", "stamp", "datetime", "date_time", "utc", "epoch",
         "unix_time", "elapsed", "elapsed_time", "time_elapsed", "seconds", "zeit", "uhrzeit",
         "zeitstempel", "datum_zeit", "datum_uhrzeit", "tid", "tidspunkt", "tijd", "tiempo", "hora",
-        "heure", "horodatage", "rosbagtimestamp", "ts", "gps_time", "gnss_time", "log_time",
+        "heure", "temps", "tempo", "horodatage", "rosbagtimestamp", "ts", "gps_time", "gnss_time",
+        "log_time",
     )
 )  # fmt: skip
 DATES = frozenset(("date", "datum", "dato", "fecha"))
