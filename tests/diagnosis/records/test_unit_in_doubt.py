@@ -94,3 +94,12 @@ def test_a_run_that_is_as_much_faster_turns_as_much_faster(sound: Fit) -> None:
     faster = changed(changed(sound, "u", 1.944, "zigzag-20"), "r", 1.944, "zigzag-20")
     assert unit_in_doubt(faster) is None
     assert unit_in_doubt(changed(sound, "u", 1.5, "zigzag-20")) is None
+
+
+def test_a_trial_that_ends_at_rest_is_by_her_speed_on_the_approach(sound: Fit) -> None:
+    def stopped(trial: Trial) -> Trial:
+        u = np.where(np.arange(trial.samples) < 0.3 * trial.samples, 7.33, 0.05)
+        return replace(trial, signals={**trial.signals, "u": u})
+
+    scores = tuple(replace(s, trial=stopped(s.trial)) for s in sound.scores)
+    assert unit_in_doubt(replace(sound, scores=scores)) is None

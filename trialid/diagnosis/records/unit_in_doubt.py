@@ -17,11 +17,11 @@ from trialid.trial import Trial
 
 LITTLE: Final = 0.15
 MUCH: Final = 15.0
-"""r L / U over the rudder's angle, each where 99 of 100 samples are below, that no ship has. Of 600
-trials of drawn ships it is 0.49 to 4.6, of a tanker's and another model 0.74 to 1.8, of outsiders'
-ships, boats and a vehicle under water 0.49 to 3.3. A rate 60 times too small has 0.02, a length a
-tenth of hers 0.12, rates 60 times too large and rudders in radians 59 to 76. Half of the one and
-twice of the other tell all but the length, twice and half none that is sound."""
+"""r L / U over the rudder's angle, where 99 of 100 samples are below, that no ship has. Of 450
+trials of drawn ships it is 0.49 to 4.6, of a tanker's and another model 0.74 to 1.6, of outsiders'
+ships, boats and a vehicle under water 0.44 to 2.7. Rates 60 times too small have 0.01 to 0.02, 60
+times too large and rudders in radians 50 to 70. At half and at twice of either the same are told.
+"""
 
 UNITS: Final = {("knots", "m/s"): 1.944, ("km/h", "m/s"): 3.6, ("km/h", "knots"): 1.852}
 """What a speed is too large by that is in the one unit and called the other."""
@@ -50,7 +50,10 @@ def unit_in_doubt(fit: Fit) -> str | None:
 
 
 def _turns(fit: Fit) -> dict[str, tuple[float, float]]:
-    """Each trial's r L / U and its rudder [rad]; none of her who has other means to turn."""
+    """Each trial's r L / U and its rudder [rad]; none of her who has other means to turn.
+
+    By her speed on the approach: one that begins or ends at rest turns by any share of it there.
+    """
     ship = fit.problem.simulator.model.ship
     if ship.actuators or "delta" not in fit.problem.simulator.equations.inputs:
         return {}
@@ -60,15 +63,15 @@ def _turns(fit: Fit) -> dict[str, tuple[float, float]]:
         if rudder is None or "r" not in trial.signals:
             continue
         over, rate = (float(np.quantile(np.abs(trial.signals[n]), 0.99)) for n in (rudder, "r"))
-        speed = _speed(trial, 0.5) or ship.particulars["U0"]
+        speed = _speed(trial) or ship.particulars["U0"]
         if over > 0.0 and speed > 0.0:
             found[trial.name] = rate * ship.particulars["L"] / speed, over
     return found
 
 
-def _speed(trial: Trial, share: float) -> float:
-    """What her speed is below in that share of a trial [m/s]; 0 where it is not recorded."""
-    return float(np.quantile(np.abs(trial.signals["u"]), share)) if "u" in trial.signals else 0.0
+def _speed(trial: Trial) -> float:
+    """Her speed on the approach [m/s]; 0 where it is not recorded."""
+    return float(np.quantile(np.abs(trial.signals["u"]), APPROACH)) if "u" in trial.signals else 0.0
 
 
 def _outside(turns: dict[str, tuple[float, float]], off: Sequence[str]) -> str:
@@ -92,7 +95,7 @@ def _outside(turns: dict[str, tuple[float, float]], off: Sequence[str]) -> str:
 
 def _unlike_others(fit: Fit, turns: dict[str, tuple[float, float]]) -> str | None:
     """That one trial's speed is another by a unit's factor, and she turns as at the others'."""
-    speeds = {t.name: _speed(t, APPROACH) for t in fit.trials if t.name in turns}
+    speeds = {t.name: _speed(t) for t in fit.trials if t.name in turns}
     if len(speeds) < 3 or not all(speeds.values()):
         return None
     for name, speed in speeds.items():
