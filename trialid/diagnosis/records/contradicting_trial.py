@@ -98,7 +98,7 @@ class Contradicting:
         loses = f"without it their squared error falls by {self.fall:.0%}{both}, and "
         return (
             f"{self.trial} contradicts the others: {'' if self.held else loses}the model of the "
-            f"others leaves {left[self.trial]:.0%} of it, of each of them "
+            f"others leaves an error of {left[self.trial]:.0%} in it, in each of them "
             f"{_most(left, _others(self.alone, self.trial)):.0%} at most, though she is asked for "
             "no more there: another ship or loading, a current or wind, or a fault in its log"
         )
