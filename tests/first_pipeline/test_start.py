@@ -131,6 +131,19 @@ def test_a_rudder_that_is_left_out_is_told(tmp_path, monkeypatch):
     assert "; CAREFUL: rudder_stbd, another of them, left out: commented out in the" in told
 
 
+def test_channels_of_which_nothing_is_known_are_told_if_they_move(tmp_path, monkeypatch):
+    t, delta, *_ = trial()
+    fins = {"fin_port_in_deg": -delta, "fin_stbd_in_deg": delta, "spare_in_V": 0.0 * t}
+    told = started(tmp_path, monkeypatch, log(tmp_path / "a.csv", **fins), *SHIP).stdout
+    words = " ".join(told.split())
+    said = "Not read, as their names say nothing that is known: fin_port, fin_stbd."
+    assert said in words
+    many = {f"x{i}_in_V": i + delta for i in range(9)}
+    made = log(tmp_path / "b.csv", **many)
+    told = started(tmp_path, monkeypatch, made, *SHIP, "--pipeline", "q.toml").stdout
+    assert "Not read" not in told
+
+
 def test_the_water_and_the_natural_roll_are_her_particulars(tmp_path, monkeypatch):
     made = log(tmp_path / "a.csv")
     of_her = (*SHIP, "--rho", "998.5", "--roll-period", "12")

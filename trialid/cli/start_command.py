@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 FIRST: Final = Path("first_trial.toml")
 
+MOST_UNREAD: Final = 8
+"""Channels that are listed of which nothing is known: an autopilot's log has hundreds."""
+
 
 @click.command(short_help="Logs in, a first model out: inspect, begin, fit.")
 @click.argument("logs", nargs=-1, required=True, type=FILE, metavar="LOG...")
@@ -98,6 +101,8 @@ def _told(begun: "Starter") -> Iterator[str]:
     yield from _other_sides(begun)
     if left := [*_left_to_user(begun)]:
         yield f"In the log too, commented out in the pipeline with why: {', '.join(left)}."
+    if unread := _unread(begun):
+        yield f"Not read, as their names say nothing that is known: {', '.join(unread)}."
     yield f"Written, each choice with its reason: {' and '.join(map(str, begun.files))}."
     for words in begun.left_out:
         yield f"Left out: {words}."
@@ -122,6 +127,19 @@ def _left_to_user(begun: "Starter") -> Iterator[str]:
             found.setdefault(f"{signal.quantity} ({signal.source.key})", []).append(one.name)
     for words, names in found.items():
         yield words if len(names) == len(begun.trials) else f"{words} of {_few(names)}"
+
+
+def _unread(begun: "Starter") -> list[str]:
+    """Channels that move and that nothing is known of, as a stabiliser's; of many none.
+
+    Of an outsider's ship her fins were, and her damping was that with them, without a word.
+    """
+    first = begun.trials[0]
+    signals = (*first.signals, *(signal for signal, _ in first.beside))
+    taken = {one.key for signal in signals for one in (signal.source, *signal.others)}
+    channels = first.survey.channels.values()
+    moving = [c.key for c in channels if c.guess is None and not c.constant and c.key not in taken]
+    return moving if len(moving) <= MOST_UNREAD else []
 
 
 def _left_out(signal: "Signal") -> str:
