@@ -29,6 +29,7 @@ def candidate(name, p_value, falls, states=()):
         # only orders are recorded: no rudder stands where it is told at once
         ([("a", 0.01, True), ("b", 0.9, False), ("gear", 0.9, False, ["delta"])], ["a", "gear"]),
         ([("gear", 0.01, True, ["delta"]), ("other", 0.9, False, ["delta"])], ["gear"]),
+        ([("a", 0.2, True), ("gear", 0.9, False, ["delta"])], ["gear"]),  # nor where none is named
     ],
 )
 def test_which_candidates_are_fitted(monkeypatch, ranking, fitted):

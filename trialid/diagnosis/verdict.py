@@ -148,7 +148,8 @@ def decide(
 def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> str | None:
     """What one check alone denies, where nothing stands them all; None where that is nothing."""
     if (against := standing_but(HELD_OUT, fit, refits, level)) is not None:
-        return contradiction(fit, against)
+        ahead = _ahead(fit, against, refits, level)
+        return unfinished_lead(fit, against, ahead) if ahead else contradiction(fit, against)
     if (apart := standing_but(BESIDE, fit, refits, level)) is not None:
         return moved_otherwise(fit, apart, outputs_beside(fit, apart))
     for why in (AS_A_GEAR, AS_SLOW) if grown else (AS_A_GEAR,):

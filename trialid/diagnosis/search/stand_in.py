@@ -94,15 +94,15 @@ def foretell_far_more(
 
 
 def further_gears(
-    named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]
+    named: Refit | None, ranking: Sequence[Candidate], refits: Sequence[Refit]
 ) -> list[Candidate]:
-    """Steering gears that were not fitted, where something else is to be named and only orders are.
+    """Steering gears that were not fitted, where only orders are and no gear is to be named.
 
     No rudder stands where it is told at once, so that a hull fitted as if it did may be none: of an
     outsider's tanker the rudder turned her the wrong way, and `yaw_memory` stood alone.
     """
     fitted = {r.candidate.effect.name for r in refits}
-    if moves_rudder(named.candidate.effect):
+    if named and moves_rudder(named.candidate.effect):
         return []
     able = (c for c in ranking if c.allowed and moves_rudder(c.effect))
     return [c for c in able if c.effect.name not in fitted]
