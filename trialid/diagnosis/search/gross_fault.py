@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.arrays import Mask, Vector
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.search.carried import as_good
 from trialid.diagnosis.search.carry_over import carried_between
@@ -20,9 +21,11 @@ from trialid.errors import StepsTooLong, TrialidError
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
 from trialid.identification.one_search import left_by_one
+from trialid.identification.output_error import linearise, ranges
 from trialid.progress import Progress
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
+from trialid.simulation.integrate import Departure
 
 WHOLE: Final = 0.1
 """Error from which on faults are fitted that are there whole or not at all: rudders of two screws
@@ -210,11 +213,21 @@ def _fitted(fit: Fit, effect: Effect, progress: Progress) -> Refit | None:
 def _is_a_gain(fit: Fit, effect: Effect) -> bool:
     """Whether free parameters do the same, or nothing moves: another value, and not missing."""
     own = np.array([x.name in effect.parameters for x in fit.problem.unknowns])
-    rest, trace = fit.psi[:, ~own], fit.psi[:, own]
+    psi = _slopes_inside(fit, own)
+    rest, trace = psi[:, ~own], psi[:, own]
     sizes = np.linalg.norm(rest, axis=0)
     rest = rest[:, sizes > 0.0] / sizes[sizes > 0.0]
     left = trace - rest @ np.linalg.lstsq(rest, trace, rcond=None)[0]
     return bool(np.linalg.norm(left) <= OTHER_THAN_A_GAIN * np.linalg.norm(trace))
+
+
+def _slopes_inside(fit: Fit, own: Mask) -> Vector:
+    """Slopes of all unknowns; of a fault at its end, where it has none, those beside it."""
+    _, low, high = (x[own] for x in ranges(fit.problem.unknowns))
+    theta, margin = fit.theta.copy(), INSIDE * (high - low)
+    theta[own] = np.clip(theta[own], low + margin, high - margin)
+    point = linearise(fit.problem, theta)
+    return fit.psi if isinstance(point, Departure) else point[1]
 
 
 def _arrived(fit: Fit, model: ShipModel, effect: Effect) -> Fit | None:
