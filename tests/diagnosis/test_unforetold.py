@@ -37,7 +37,7 @@ def test_which_candidates_are_fitted(monkeypatch, ranking, fitted):
 
     def refit(fit, worth, *more):
         asked.extend(c.effect.name for c in worth)
-        return [SimpleNamespace(candidate=c) for c in worth]
+        return [SimpleNamespace(candidate=c, effects=(c.effect,)) for c in worth]
 
     def likeliest(fit, done, *more):
         return min(done, key=lambda r: r.candidate.p_value, default=None)
@@ -49,5 +49,12 @@ def test_which_candidates_are_fitted(monkeypatch, ranking, fitted):
     monkeypatch.setattr(diagnose, "to_fit", lambda *given: ())
     monkeypatch.setattr(diagnose, "look_beside", lambda *given, **named: None)
     made = [candidate(*each) for each in ranking]
-    diagnose.refits_of(None, made, DiagnoseSettings(candidates={}), lambda words: None)
+    without_gear = SimpleNamespace(model=SimpleNamespace(effects=()))
+    diagnose.refits_of(without_gear, made, DiagnoseSettings(candidates={}), lambda words: None)
     assert asked == fitted
+    asked.clear()
+    gear = SimpleNamespace(states=["delta"])  # no hull was fitted for want of one
+    with_gear = SimpleNamespace(model=SimpleNamespace(effects=(gear,)))
+    diagnose.refits_of(with_gear, made, DiagnoseSettings(candidates={}), lambda words: None)
+    named = [name for name in fitted if name != "gear" or ranking[0][0] == "gear"]
+    assert asked == named

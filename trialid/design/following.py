@@ -14,7 +14,7 @@ from trialid.accuracy.likely import WIDE, Standing
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.measure_slopes import Shows, measure_slopes
-from trialid.design.imo.speed_loss import APPROACH, speed_loss, with_speed_loss
+from trialid.design.imo.speed_loss import speed_loss, with_speed_loss
 from trialid.design.kinds import Test
 from trialid.design.limits import Limits, excesses
 from trialid.design.prediction.engine_orders import at_her_speed
@@ -28,6 +28,7 @@ from trialid.design.separation import Likeness, Separation, likeness_of, rivals
 from trialid.design.standard import Measure, in_calm, measures_of
 from trialid.design.triangles import Triangles, triangles, triangles_beside
 from trialid.errors import DesignError, TrialidError
+from trialid.identification.approach import approach_speed
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import compared_mask
 from trialid.identification.problem import norms
@@ -250,15 +251,10 @@ def sailed_ship(fit: Fit) -> Vessel:
 
 
 def approach_speeds(fit: Fit) -> tuple[float, ...]:
-    """The approach speed of the ship's file, then those of the fitted trials that differ [m/s].
-
-    Of a trial: what its speed log shows before turns cost any, as speed lost in turns is reckoned.
-    """
+    """The approach speed of the ship's file, then those of the fitted trials that differ [m/s]."""
     found = [fit.model.ship.particulars["U0"]]
-    for trial in (s.trial for s in fit.scores if s.trial.use == "fit" and "u" in s.trial.signals):
-        valid = trial.valid.get("u", np.ones(trial.samples, dtype=bool))
-        logged = trial.signals["u"][valid & np.isfinite(trial.signals["u"])]
-        speed = float(np.quantile(logged, APPROACH)) if len(logged) else 0.0
+    for trial in (t for t in fit.trials if t.use == "fit"):
+        speed = approach_speed(trial) or 0.0
         if speed > 0.0 and all(abs(speed - x) > APART * x for x in found):
             found.append(speed)
     return tuple(found)

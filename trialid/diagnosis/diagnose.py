@@ -257,7 +257,7 @@ def refits_of(
         fitted = [r.candidate.effect.name for r in best]
         best += refit(fit, dampings(named.candidate, ranking, fitted), progress)
         named = likeliest_refit(fit, best, asked.level, grown)
-    if gears := further_gears(named, ranking, best):
+    if gears := further_gears(fit, named, ranking, best):
         best += refit(fit, gears, progress)
         named = likeliest_refit(fit, best, asked.level, grown)
     others = to_fit(named, ranking, best, grown) if named else ()

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from trialid.accuracy.parameter_table import Accuracy
+from trialid.identification.approach import approach_speed
 from trialid.identification.fit import Fit
 from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
@@ -51,8 +52,8 @@ on a gain is another."""
 AHEAD: Final = "k_ahead"
 OTHER_SPEED: Final = 1.4
 """Times the U0 of her file, either way, from which on her speed in all trials is asked about: a
-speed in another unit is 1.85 times off at least. Half as far says so of a ship a fifth slower than
-in service, twice misses knots that are called km/h."""
+speed in another unit is 1.85 times off at least. Half as far beyond 1 says so of a ship that is a
+sixth slower than in service, at twice as far knots that are called km/h are hardly told."""
 
 OTHER_MASS: Final = 2.0
 """Factor on a thrust in newtons from which on her file's mass is doubted: a hull's part in it, and
@@ -141,8 +142,8 @@ def _astern(fit: Fit) -> list[str]:
 def _other_speed(fit: Fit) -> list[str]:
     """That she is far from the speed of her file in all trials, on her approach."""
     stated = fit.model.ship.particulars["U0"]
-    speeds = [np.quantile(np.abs(t.signals["u"]), 0.95) for t in fit.trials if "u" in t.signals]
-    if not speeds or stated <= 0.0:
+    speeds = [speed for t in fit.trials if (speed := approach_speed(t)) is not None]
+    if not speeds or min(stated, *speeds) <= 0.0:  # astern is told for itself
         return []
     shares = np.array(speeds) / stated
     if not (shares.min() > OTHER_SPEED or shares.max() < 1.0 / OTHER_SPEED):

@@ -263,11 +263,13 @@ def _arm(path: Path, table: Mapping[str, Any]) -> dict[str, float]:
 
 FULLEST: Final = 1.05
 """Block coefficient that no hull has: a barge has 1, by a length that may be a little less than it
-is under water. A length in feet or a tenth of it has 8 and more; half of it is a tanker's."""
+is under water. By a tenth of their lengths a container ship and a tanker have 6 and 8. Half of it
+refuses the one as she is, twice says the same."""
 
 AFLOAT: Final = 2.0
 """Factor by which a mass is none of what floats at this volume: files round, and count water that
-goes along. A length in feet makes 35 of it; half and twice of it refuse no file of the project."""
+goes along. A length in feet makes 35 of it. Half as far beyond 1 and twice refuse none of the
+project's own files, whose masses are 1.00 of it."""
 
 _CHOICES: Final = {"system": ("prime", "dimensional"), "rudder_positive": ("starboard", "port")}
 

@@ -59,7 +59,8 @@ def test_a_sound_record_is_not_in_doubt(sound: Fit) -> None:
 def test_no_ship_turns_so(sound: Fit, name: str, by: float, said: str) -> None:
     doubt = unit_in_doubt(changed(sound, name, by))
     assert doubt is not None
-    assert doubt.startswith("she turns by r L/U = ")
+    assert doubt.startswith("she turns ")
+    assert " by r L/U = " in doubt
     assert said in doubt
     found = settle(changed(sound, name, by), NAMED)
     assert (found.kind, found.effect, found.doubts) == ("cannot tell", None, (doubt,))
@@ -77,16 +78,16 @@ def test_of_one_trial_it_is_told_in_which(sound: Fit) -> None:
 @pytest.mark.parametrize(
     ("by", "called"),
     [
-        (1.944, "knots that are called m/s"),
-        (1.0 / 1.852, "knots that are called km/h"),
-        (3.6, "km/h that are called m/s"),
+        (1.944, "one in kn that is called m/s"),
+        (1.0 / 1.852, "one in kn that is called km/h"),
+        (3.6, "one in km/h that is called m/s"),
     ],
 )
 def test_a_speed_in_another_unit_in_one_trial_is_told(sound: Fit, by: float, called: str) -> None:
     doubt = unit_in_doubt(changed(sound, "u", by, "zigzag-10"))
     assert doubt is not None
     assert doubt.startswith(f"the speed in zigzag-10 is {number(by, 3)} times that in the others")
-    assert doubt.endswith(f"it is as of {called}")
+    assert doubt.endswith(f"it is as {called}")
     assert in_doubt(changed(sound, "u", by, "zigzag-10"))
 
 
@@ -103,3 +104,31 @@ def test_a_trial_that_ends_at_rest_is_by_her_speed_on_the_approach(sound: Fit) -
 
     scores = tuple(replace(s, trial=stopped(s.trial)) for s in sound.scores)
     assert unit_in_doubt(replace(sound, scores=scores)) is None
+
+
+DEG = np.deg2rad(1.0)
+
+
+@pytest.mark.parametrize(
+    ("rudder", "steady", "swell"),
+    [(1.5, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.5)],
+    ids=["a decay, her rudder a little over", "she drifts round", "a swell, amidships"],
+)
+def test_a_ship_that_nobody_steers_denies_no_unit(sound: Fit, rudder, steady, swell) -> None:
+    """The rate [deg/s] has nothing to do with the rudder [deg], whatever the share of both."""
+    rng, first = np.random.default_rng(1), sound.scores[0]
+    t = first.trial.t
+    delta = rudder + 0.05 * rng.standard_normal(len(t))
+    r = steady + swell * np.sin(0.8 * t) + 0.002 * rng.standard_normal(len(t))
+    signals = {**first.trial.signals, "delta": DEG * delta, "r": DEG * r}
+    unsteered = replace(first, trial=replace(first.trial, signals=signals))
+    assert unit_in_doubt(replace(sound, scores=(unsteered, *sound.scores[1:]))) is None
+
+
+def test_a_helm_that_keeps_her_course_in_a_swell_denies_no_unit(sound: Fit) -> None:
+    """It is over by her heading, which a swell turns by little and often."""
+    first = sound.scores[0]
+    psi = 0.6 * np.sin(0.8 * first.trial.t)
+    signals = {**first.trial.signals, "delta": -DEG * psi, "r": np.gradient(DEG * psi, 0.5)}
+    kept = replace(first, trial=replace(first.trial, signals=signals))
+    assert unit_in_doubt(replace(sound, scores=(kept, *sound.scores[1:]))) is None

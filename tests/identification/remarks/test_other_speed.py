@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import s175q
 
+from trialid.identification.approach import approach_speed
 from trialid.identification.fit import identify
 from trialid.identification.remarks import remarks
 
@@ -28,3 +29,14 @@ def test_a_speed_that_is_far_from_her_files(speeds, said) -> None:
     told = [one for one in remarks(replace(fit, scores=tuple(made))) if "U0 of her file" in one]
     assert len(told) == bool(said)
     assert all(one.startswith(said) for one in told)
+
+
+def test_her_approach_is_before_turns_cost_speed() -> None:
+    """And not what she lies still with; below zero where she goes astern."""
+    trial = s175q.zigzag(5)
+    u = np.where(np.arange(trial.samples) < 0.3 * trial.samples, 7.33, 0.05)
+    for sign in (1.0, -1.0):
+        sailed = replace(trial, signals={**trial.signals, "u": sign * u})
+        speed = approach_speed(sailed)
+        assert speed == pytest.approx(7.33 if sign > 0.0 else -0.05)
+    assert approach_speed(trial) is None

@@ -13,6 +13,7 @@ import numpy as np
 
 from trialid.arrays import Mask, Vector
 from trialid.design.helm import Vessel, vessel
+from trialid.identification.approach import APPROACH
 from trialid.identification.fit import Fit
 from trialid.identification.trial_score import Score
 from trialid.least_squares.gauss_newton import minimise
@@ -70,8 +71,6 @@ TINY: Final = 1e-12
 """(m/s)^2 that are always left of the logs."""
 LEAST: Final = 0.01
 """Share of what is typical below which nothing is lost."""
-APPROACH: Final = 0.95
-"""Quantile of the logged speeds that is the approach: noise is beyond it, turns are below."""
 
 
 @dataclass(frozen=True)

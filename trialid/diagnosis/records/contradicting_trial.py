@@ -35,10 +35,12 @@ APART: Final = 3.0
 
 FURTHER: Final = 1.1
 """Times what drives her in the others, or her speed, from which on she does there what she does in
-none of them. Of the tanker's trials the largest lowers the error of the others by up to 0.65."""
+none of them. Of the tanker's trials the largest lowers the error of the others by up to 0.65. Half
+as far beyond 1 and twice find the same 8 of the 24, and none that is no other ship's."""
 
 MOVES: Final = 2.0
-"""Times what she moves by in the others, from which on it is the same."""
+"""Times what she moves by in the others, from which on it is the same. With 1.5 one of the 8 is
+missed, with 3 none."""
 
 
 @dataclass(frozen=True)
@@ -159,8 +161,8 @@ def contradicting_held_out(fit: Fit) -> Contradicting | None:
     left, fitted = _left(fit), _fitted(fit)
     most = APART * max(left[n] for n in fitted)
     able = [t.name for t in fit.trials if t.use == "check" and left[t.name] >= most]
-    name = max((n for n in able if _is_no_further(fit, n)), key=lambda n: left[n], default=None)
-    found = name and len(fitted) >= OTHERS and _told(fit, name)
+    within = [n for n in able if len(fitted) >= OTHERS and _is_no_further(fit, n)]
+    found = _told(fit, max(within, key=lambda n: left[n])) if within else None
     return found if found and found.stays else None
 
 

@@ -94,16 +94,18 @@ def foretell_far_more(
 
 
 def further_gears(
-    named: Refit | None, ranking: Sequence[Candidate], refits: Sequence[Refit]
+    fit: Fit, named: Refit | None, ranking: Sequence[Candidate], refits: Sequence[Refit]
 ) -> list[Candidate]:
-    """Steering gears that were not fitted, where only orders are and no gear is to be named.
+    """Steering gears that were not fitted, where orders alone are recorded and the model has none.
+
+    And none is to be named.
 
     No rudder stands where it is told at once, so that a hull fitted as if it did may be none: of an
     outsider's tanker the rudder turned her the wrong way, and `yaw_memory` stood alone.
     """
-    fitted = {r.candidate.effect.name for r in refits}
-    if named and moves_rudder(named.candidate.effect):
+    if any(map(moves_rudder, (*fit.model.effects, *(named.effects if named else ())))):
         return []
+    fitted = {r.candidate.effect.name for r in refits}
     able = (c for c in ranking if c.allowed and moves_rudder(c.effect))
     return [c for c in able if c.effect.name not in fitted]
 
