@@ -179,7 +179,8 @@ def test_a_boat_of_thrusters_is_told_what_she_is(tmp_path, monkeypatch):
 def test_a_strangers_first_logs(tmp_path, monkeypatch, names, length):
     """A cubic yaw term is what both lack: it is named, or a twin the record cannot tell from it.
 
-    That of the coaster hides behind her roll, which is seen with a tenth of the precision.
+    That of the coaster hides behind her roll, which is seen with a tenth of the precision; and her
+    added masses, of which only formulas tell, do as well 1.3 standard deviations off: that is said.
     """
     logs = [NEWCOMER / f"{name}.csv" for name in names]
     done = started(tmp_path, monkeypatch, *logs, "--length", length)
@@ -187,8 +188,12 @@ def test_a_strangers_first_logs(tmp_path, monkeypatch, names, length):
     result = read(tmp_path / "runs" / "first_trial" / "result.json")
     assert result.fit.converged
     assert [t.name for t in result.trials if t.use == "check"] == [names[2]]
-    assert result.verdict.kind == "missing"
-    assert "yaw_cubic_rrr" in result.verdict.family
+    if length == 96:
+        assert result.verdict.kind == "missing"
+        assert "yaw_cubic_rrr" in result.verdict.family
+    else:
+        assert {"Yvdot", "Nvdot"} <= {*result.verdict.held_as_well}
+        assert result.verdict.sentence.startswith(("yaw_drag_rar takes", "yaw_cubic_rrr takes"))
     ship = read_ship(tmp_path / "first_trial_ship.toml")
     rudders = ["rudder_port", "rudder_starboard"] if length == 96 else []
     assert [one.name for one in ship.actuators] == rudders

@@ -141,12 +141,19 @@ def two_instead(
 def held_instead(fit: Fit, named: Refit, progress: Progress) -> Freed | None:
     """The model with what is held freed, where that does as well as a named effect.
 
-    But for what one parameter more would have to be worth: of a linear ship in whom nothing was
-    missing an added mass had a name by 0.0007, although freed with all else it is what moved.
+    What the effect does beyond that has to be worth a name itself: of a linear ship in whom nothing
+    was missing an added mass had one by 0.0007, although freed with all else it is what moved.
     """
     own = named.candidate.effect.parameters  # a coefficient that is freed is no rival of itself
     freed = _freed(fit, FORETOLD * fall(fit, named), progress, own)
-    return freed if freed and freed.carried.log_ratio <= named.cost + EACH else None
+    return None if freed is None or _goes_beyond(named, freed) else freed
+
+
+def _goes_beyond(named: Refit, freed: Freed) -> bool:
+    """Whether an effect is worth a name, and its parameters, beside what is held."""
+    beyond = named.carried.beyond(freed.carried)
+    least = EACH * len(named.candidate.effect.parameters)
+    return beyond.falls and np.log(beyond.worth) > least
 
 
 def held_alone(fit: Fit, parts: Split, progress: Progress) -> Freed | None:

@@ -115,13 +115,28 @@ def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
     assert held_instead(fit, other, silent).moved == ("Nvav",)
 
 
-@pytest.mark.parametrize(("short", "as_well"), [(0.005, True), (0.02, False)])
-def test_what_is_held_does_as_well_but_for_what_one_parameter_is_worth(
-    without_two, monkeypatch, short, as_well
+@pytest.mark.parametrize(
+    ("effect", "short", "as_well"),
+    [
+        ("yaw_drag_rar", 0.013, True),
+        ("yaw_drag_rar", 0.02, False),
+        ("heel_yaw_cubic", 0.03, True),
+        ("heel_yaw_cubic", 0.05, False),
+    ],
+)
+@pytest.mark.parametrize("alone", [False, True])
+def test_what_is_held_does_as_well_but_for_what_is_worth_a_name(
+    without_two, monkeypatch, effect, short, as_well, alone
 ):
-    named = tried(without_two, "yaw_drag_rar")
-    after = tuple(x * np.exp(short) for x in named.carried.after)
-    made = Freed(named.fit, ("m",), replace(named.carried, after=after))
+    """By the whole error, or by each output's own alone: a coarse one hides what another shows.
+
+    And 1 % for each of its coefficients, of which the second has four.
+    """
+    named = tried(without_two, effect)
+    of, more = named.carried, np.exp(short)
+    own = tuple(more * x for x in of.own[1])
+    after = of.after if alone else tuple(more * x for x in of.after)
+    made = Freed(named.fit, ("m",), replace(of, after=after, own=(of.own[0], own)))
     monkeypatch.setattr(meant_as_well, "_freed", lambda *asked: made)
     assert held_instead(without_two, named, silent) is (made if as_well else None)
 

@@ -1,7 +1,7 @@
 """What a change of the model does to the error where nobody fitted it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Self
 
 import numpy as np
@@ -93,6 +93,10 @@ class Carried:
     ) -> Self:
         """Give what lies between the errors of two models."""
         return cls(before.whole, after.whole, seen, steady, (before.own, after.own))
+
+    def beyond(self, other: Self) -> Self:
+        """Give what lies between another change of the model, of the same blocks, and this one."""
+        return replace(self, before=other.after, own=(other.own[1], self.own[1]))
 
     @property
     def ratio(self) -> float:
