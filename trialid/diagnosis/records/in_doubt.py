@@ -5,6 +5,7 @@ from typing import Final
 
 from trialid.diagnosis.records.heel_side import side_in_doubt
 from trialid.diagnosis.records.rate_and_angle import rate_in_doubt
+from trialid.diagnosis.records.speed_in_doubt import speed_in_doubt
 from trialid.diagnosis.records.unit_in_doubt import unit_in_doubt
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit
@@ -15,17 +16,18 @@ NO_FIT: Final = "no fit: "
 
 def in_doubt(fit: Fit) -> bool:
     """Whether the records leave anything in doubt about themselves."""
-    return any(one(fit) is not None for one in (unit_in_doubt, rate_in_doubt, side_in_doubt))
+    asked = unit_in_doubt, speed_in_doubt, rate_in_doubt, side_in_doubt
+    return any(one(fit) is not None for one in asked)
 
 
 def settle(fit: Fit, verdict: Verdict, named: Effect | None = None) -> Verdict:
     """The verdict; of records in doubt, that and how to settle it.
 
     Nothing of a sensor that an effect is `named` of. Where nothing is missing the roll's side takes
-    no part; a rate or a unit that is wrong is in every number.
+    no part; a rate, a speed or a unit that is wrong is in every number.
     """
     side = None if verdict.kind == "nothing missing" else side_in_doubt(fit)
-    asked = unit_in_doubt(fit), rate_in_doubt(fit, named), side
+    asked = unit_in_doubt(fit), speed_in_doubt(fit), rate_in_doubt(fit, named), side
     found = tuple(one for one in asked if one is not None)
     if not found:
         return verdict
