@@ -94,6 +94,13 @@ def test_a_folder_without_a_log(tmp_path):
         read_together([LogFile(tmp_path)])
 
 
+def test_a_folder_of_trials_names_its_folders(tmp_path):
+    for name in ("b", "a", ".git"):
+        (tmp_path / name).mkdir()
+    with pytest.raises(LogError, match=r"it holds folders: a, b; name those, a trial each$"):
+        read_together([LogFile(tmp_path)])
+
+
 @pytest.mark.parametrize(
     "head",
     [

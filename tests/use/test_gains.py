@@ -140,8 +140,10 @@ def test_a_doubtful_ship_has_wider_promises_and_a_wild_one_none(
     T = nomoto(ship(MODEL), CERTAIN).values["T"]
     with pytest.raises(DesignError, match="slower than the ship by herself"):
         rate_gains(ship(MODEL), CERTAIN, 0.5 / T)
-    with pytest.raises(DesignError, match="is none"):
-        heading_gains(ship(MODEL), CERTAIN, float("nan"))
+    assert heading_gains(ship(MODEL), CERTAIN, 29.0 / T).bandwidth == 29.0 / T
+    for none in (float("nan"), 31.0 / T):
+        with pytest.raises(DesignError, match=r"is none of hers.*30 times what is usual"):
+            heading_gains(ship(MODEL), CERTAIN, none)
 
 
 def test_a_promise_holds_for_other_models_of_the_ship(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -110,10 +110,7 @@ def files_of(log: LogFile) -> tuple[Path, ...]:
         if not _is_aid(child, log.aids) and _able(child, _inside(child), log.aids)
     )
     if not logs:
-        names = _some([child.name for child in files])
-        raise LogError(
-            f"{log.path}: no file in this folder is a log; it holds: {names}; {OF_ANOTHER_LAYOUT}"
-        )
+        raise LogError(f"{log.path}: no file in this folder is a log; {_instead(log.path, files)}")
     return logs
 
 
@@ -165,6 +162,14 @@ def _is_aid(path: Path, aids: Aids) -> bool:
     """True for a file that says how the logs beside it are read."""
     given = (aid for aid in (aids.template, aids.dbc) if aid is not None and aid.exists())
     return any(aid.samefile(path) for aid in given)
+
+
+def _instead(folder: Path, files: Sequence[Path]) -> str:
+    """What a folder without a log holds, and what to do: its folders may each be a trial."""
+    folders = sorted(c.name for c in folder.iterdir() if c.is_dir() and not c.name.startswith("."))
+    if folders and not files:
+        return f"it holds folders: {_some(folders)}; name those, a trial each"
+    return f"it holds: {_some([child.name for child in files])}; {OF_ANOTHER_LAYOUT}"
 
 
 def _visible(path: Path) -> bool:

@@ -36,6 +36,9 @@ SLOWER: Final = 25.0
 """By how much the integral of a rate controller is slower than its bandwidth."""
 FASTER: Final = 2.0
 """Bandwidth of a rate controller, where none is asked for, in 1 / T: twice as fast as the ship."""
+MOST: Final = 30.0
+"""Times the usual bandwidth up to which gains are made: beyond, steering gears, samples and waves
+are what acts, of which her model says nothing. Where it stands is a choice, by no record."""
 DAMPING: Final = 0.8
 NUMBER: Final = 200
 """Ships drawn that gains are tried on."""
@@ -142,8 +145,11 @@ def _known(ship: Vessel) -> tuple[LinearShip, float, float]:
 def _asked(bandwidth: float | None, usual: float) -> float:
     if bandwidth is None:
         return usual
-    if not 0.0 < bandwidth < np.inf:
-        raise DesignError(f"a bandwidth of {bandwidth:g} rad/s is none; expected more than 0")
+    if not 0.0 < bandwidth <= MOST * usual:
+        raise DesignError(
+            f"a bandwidth of {bandwidth:g} rad/s is none of hers; expected more than 0, up to "
+            f"{MOST * usual:.3g}, {MOST:g} times what is usual for her"
+        )
     return bandwidth
 
 
