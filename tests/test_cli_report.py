@@ -88,6 +88,17 @@ def test_it_goes_where_it_is_asked_to(place: Path) -> None:
     assert sorted(p.name for p in (place / "plain").iterdir()) == before
 
 
+def test_somebody_elses_report_is_not_replaced(place: Path) -> None:
+    """One of this name was taken for an earlier one of ours."""
+    own = place / "paper" / "report.html"
+    own.parent.mkdir()
+    own.write_text("mine", encoding="utf-8")
+    outcome = trialid_("report", "plain", "--out", "paper")
+    assert outcome.exit_code == 2
+    assert "paper/report.html: is no file of trialid's and is not replaced" in outcome.stderr
+    assert own.read_text(encoding="utf-8") == "mine"
+
+
 def test_two_runs_side_by_side(place: Path) -> None:
     assert written("plain", "marked").startswith("Report: comparison/compare.html\n")
     folder = place / "comparison"

@@ -26,7 +26,6 @@ Hashes = dict[str, list[str]]
 def check(
     folder: Path,
     names: tuple[str, ...],
-    older: tuple[str, ...] = (),
     option: str = "--out",
 ) -> None:
     """Refuse, before the work, a folder in which one of these names is not ours to replace.
@@ -35,8 +34,6 @@ def check(
     ----------
     names
         Files that will be written, beside those that were.
-    older
-        Files that a folder without a list of ours may hold from an earlier version.
     option
         What of the command says the folder.
 
@@ -47,8 +44,7 @@ def check(
     """
     ours = _ours(folder)
     for name in dict.fromkeys([*names, *ours]):
-        if ours or name not in older:
-            _check(folder, name, ours, option)
+        _check(folder, name, ours, option)
 
 
 def check_folder(folder: Path, names: tuple[str, ...], what: str) -> None:
@@ -90,7 +86,6 @@ def check_all_ours(folder: Path, option: str = "--out") -> None:
 def replacing(
     folder: Path,
     below: tuple[str, ...] = ("",),
-    older: tuple[str, ...] = (),
     option: str = "--out",
 ) -> Iterator[Path]:
     """A place to write into; at the end its files are moved into the folder.
@@ -110,7 +105,7 @@ def replacing(
         work = Path(tempfile.mkdtemp(prefix=temporary.prefix(), dir=folder))
         try:
             yield work
-            _move(work, folder, below, older, option=option)
+            _move(work, folder, below, option=option)
         finally:
             shutil.rmtree(work, ignore_errors=True)
     finally:
@@ -119,12 +114,8 @@ def replacing(
                 parent.rmdir()
 
 
-def _move(
-    work: Path, folder: Path, below: tuple[str, ...], older: tuple[str, ...], option: str
-) -> None:
+def _move(work: Path, folder: Path, below: tuple[str, ...], option: str) -> None:
     ours = _ours(folder)
-    if not ours:
-        ours = {name: [_hash(folder / name)] for name in older if (folder / name).is_file()}
     new = {path.relative_to(work).as_posix(): [_hash(path)] for path in _files(work)}
     for name in new:
         _check(folder, name, ours, option)

@@ -114,7 +114,7 @@ def test_a_log_that_grows_no_more_is_followed_to_its_end(done):
 @pytest.mark.parametrize(("arguments", "words"), [
     (["--trial", "zigzag"], "no trial 'zigzag'"),
     (["--run", "nowhere"], "--run nowhere: result.json cannot be read"),
-    (["--out", "replay.csv"], "a recording ends in .mcap"),
+    (["--out", "replay.csv"], "the suffix says the format, .mcap"),
     (["--out", "nowhere/replay.mcap"], "make it first"),
     (["--from", "5000", "--fast"], "--from 5000: trial 'halfway' lasts 1199"),
 ])  # fmt: skip

@@ -260,6 +260,21 @@ def test_the_command_writes_what_it_prints(run_folder: Path, tmp_path: Path) -> 
     assert "exists" in kept.stderr
 
 
+def test_what_a_run_was_fitted_to_is_not_replaced(run_folder: Path, tmp_path: Path) -> None:
+    """Not with `--force` either, wherever a copy lies; nor are the orders that are sailed."""
+    result = json.loads((run_folder / "result.json").read_text(encoding="utf-8"))
+    [log] = {run_folder.parents[1] / each["path"] for each in result["trials"][0]["logs"]}
+    orders = tmp_path / "o.csv"
+    orders.write_text("t[s],delta[deg]\n0,0\n10,5\n60,5\n", encoding="utf-8")
+    shutil.copy(log, tmp_path / log.name)
+    for out in (orders, tmp_path / log.name):
+        kept = out.read_bytes()
+        command = ("simulate", str(run_folder), str(orders), "--out", str(out), "--force")
+        told = trialid_(*command)
+        assert (told.exit_code, out.read_bytes()) == (2, kept)
+        assert "is read by this command, or by its run; name another" in told.stderr
+
+
 def test_a_fit_without_a_verdict_is_refused(run_folder: Path, tmp_path: Path) -> None:
     """Nothing is built on it, unless somebody says so, and then it is marked."""
     shutil.copytree(run_folder.parents[1], tmp_path / "copy")

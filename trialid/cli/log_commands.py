@@ -105,10 +105,11 @@ def align(pipeline: Path, out: Path, only: tuple[str, ...], force: bool, quiet: 
     empty or NaN. Channels, remarks and hashes of the logs are inside, of CSV in FILE.json.
     """
     from trialid import export
-    from trialid.pipeline_file import load
+    from trialid.pipeline_file import load, sources
 
     export.check_place(out, replace=force)
     asked = load(pipeline)
+    export.check_unread(out, sources(asked))
     check_trial_names(only, [trial.name for trial in asked.trials], pipeline)
     from trialid.export.provenance import provenance
     from trialid.workflow.quantities_read import quantities_of

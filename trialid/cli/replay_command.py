@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from trialid import temporary
 from trialid.cli.answering import check_trial_names
 from trialid.cli.console import complain, progress_bar, say
 from trialid.cli.replay_source import Following, source_of
@@ -100,11 +99,11 @@ def replay(
         raise click.UsageError("--fast and --speed exclude each other")
     if loop and (follow or fast):
         raise click.UsageError("--loop goes with a pace and a whole log: not --fast or --follow")
-    _check_out(out, force)
     from trialid.pipeline_file import load
     from trialid.replay.session import Wishes
 
     asked = load(pipeline)
+    _check_out(out, force, asked)
     chosen = _chosen(asked, name, pipeline)
     result = None if folder is None else _finished(folder)
     with source_of(chosen, follow, record, force) as (playing, bus):
@@ -133,20 +132,16 @@ def replay(
         say(_summary(played, start or 0.0, files))
 
 
-def _check_out(out: Path | None, force: bool) -> None:
+def _check_out(out: Path | None, force: bool, asked: "Pipeline") -> None:
     """Refuse, before the work, a place that no recording can be written to."""
-    if out is not None and out.suffix != ".mcap":
-        raise TrialidError(f"--out {out}: a recording ends in .mcap")
-    if out is not None and not out.parent.is_dir():
-        raise TrialidError(f"--out {out}: there is no folder {out.parent}; make it first")
-    if out is not None and not force:
-        from trialid.replay.record import layout_paths
+    if out is None:
+        return
+    from trialid.export import check_place, check_unread
+    from trialid.pipeline_file import sources
+    from trialid.replay.record import layout_paths
 
-        for file in (out, *layout_paths(out)):
-            if file.exists():
-                raise TrialidError(f"--out {out}: {file} exists; name another, or add --force")
-    if out is not None:
-        temporary.check_writable(out.parent)
+    check_place(out, replace=force, formats=(".mcap",), more=layout_paths(out))
+    check_unread(out, sources(asked))
 
 
 def _chosen(asked: "Pipeline", name: str | None, pipeline: Path) -> "TrialSection":

@@ -65,6 +65,9 @@ def simulate(
     ready = _told(orders, changes, without)
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         model = finished_model(run, progress, anyway=anyway)
+        if out is not None:
+            logs = {log.sha256 for score in model.fit.scores for log in score.trial.logs}
+            export.check_unread(out, [Path(orders[0])], logs)
         progress("simulating", 0.8)
         made = ready(model)
     if out is not None:

@@ -4,7 +4,8 @@ Everything is in SI and says so; a sample that was not measured is empty or NaN,
 simulation would put there; and each file carries where it comes from.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+import hashlib
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,7 +15,7 @@ from trialid.export import csv_file, mat_file, mcap_file, parquet_file
 from trialid.plugins import plugins
 from trialid.trial import Trial
 
-__all__ = ["FORMATS", "check_place", "place", "provenance_beside", "write"]
+__all__ = ["FORMATS", "check_place", "check_unread", "place", "provenance_beside", "write"]
 
 Writer = Callable[[Path, Sequence[Trial], Mapping[str, Any]], None]
 
@@ -60,6 +61,29 @@ def check_place(
         if (file.exists() or file.is_symlink()) and not replace:
             raise TrialidError(f"--out {path}: {file} exists; name another, or add --force")
     temporary.check_writable(path.parent)
+
+
+def check_unread(path: Path, files: Iterable[Path], hashes: Collection[str] = ()) -> None:
+    """Refuse, `--force` or not, to replace what a command itself reads: a log is not made again.
+
+    Parameters
+    ----------
+    files
+        Files and folders that it reads.
+    hashes
+        SHA-256 of logs, wherever they lie.
+
+    Raises
+    ------
+    TrialidError
+        It is one of them.
+    """
+    if not path.is_file():
+        return
+    place = path.resolve()
+    read = any(place.is_relative_to(file.resolve()) for file in files)
+    if read or hashlib.sha256(path.read_bytes()).hexdigest() in hashes:
+        raise TrialidError(f"--out {path}: is read by this command, or by its run; name another")
 
 
 def write(path: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) -> None:

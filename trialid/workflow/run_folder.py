@@ -41,7 +41,7 @@ def check_replaceable(folder: Path, pipeline: Pipeline) -> None:
     if folder.is_dir() and any(folder.iterdir()) and not _is_of_a_run(folder):
         raise PipelineError(f"{folder}: holds other files and no earlier run; choose another --out")
     if folder.is_dir():
-        own_files.check(folder, FILES, older=FILES)
+        own_files.check(folder, FILES)
 
 
 def _is_of_a_run(folder: Path) -> bool:

@@ -17,7 +17,7 @@ from trialid.result.series import write_csv
 from trialid.result.track_series import write_track_csv
 from trialid.second_process import both
 from trialid.workflow.outcome import Outcome, Run
-from trialid.workflow.run_folder import FILES, ORIGIN
+from trialid.workflow.run_folder import ORIGIN
 from trialid.workflow.use import kept_standing
 from trialid.workflow.use.kept_standing import standing_bytes
 
@@ -33,7 +33,7 @@ def write(done: Run | Outcome, folder: Path) -> None:
     TrialidError
         A file that is not ours stands in the way; the folder is as it was.
     """
-    with own_files.replacing(folder, older=FILES) as work:
+    with own_files.replacing(folder) as work:
         _write_files(done, work)
         _write_origin(done, work, folder)
 

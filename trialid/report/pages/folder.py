@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
 
 from trialid import own_files
 from trialid.report.pages import side_by_side
@@ -15,9 +14,6 @@ from trialid.result.force_series import ForceSeries, read_force_csv
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries, read_csv
 from trialid.result.track_series import FILE, read_track_csv
-
-OLDER: Final = ("report.html",)
-"""What a folder written by an earlier version may hold of a report's."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +83,7 @@ def write_texts(
     folder: Path, texts: Mapping[str, str], below: tuple[str, ...] = ("tables/", "figures/")
 ) -> None:
     """Texts by their names below the folder; ours of an earlier report that are not made go."""
-    with own_files.replacing(folder, below=below, older=OLDER) as work:
+    with own_files.replacing(folder, below=below) as work:
         for name, text in texts.items():
             (work / name).parent.mkdir(parents=True, exist_ok=True)
             (work / name).write_text(text, encoding="utf-8")
