@@ -20,6 +20,15 @@ a delay of -0.18; half of it doubts a lag of 1 s of a ship of 140 m at 14 knots,
 delay pass."""
 
 
+HURRICANE: Final = 32.7
+"""m/s: Beaufort 12, World Meteorological Organization, Manual on codes; none is sailed in."""
+
+WINDAGE: Final = 2.5e-4
+"""rho_air C_Y A / rho L^2 of a ship with a side of a fifth of her length squared. At half of it the
+same two are told that it alone tells, 43 and 38 m/s on a ferry, at twice none of them; what a model
+on a pond finds is 0.004, where it may be 1.7."""
+
+
 def of_the_ship(effect: Effect) -> bool:
     """Whether it moves the ship or her rudder; else it belongs to a sensor or a clock."""
     return bool({Force, Rate, Mass} & {*effect.forms})
@@ -92,6 +101,20 @@ def sweeps_away(effect: Effect, fit: Fit) -> bool:
     if not flow or not by_heading(effect):
         return False
     return float(np.hypot.reduce(flow)) * own_time(fit) > fit.model.ship.particulars["L"]
+
+
+def no_wind(effect: Effect, fit: Fit) -> bool:
+    """Whether it is a wind that nobody recorded, of a hurricane, or one that grips nowhere on her.
+
+    By what is there, north and east, as over 1/2 rho L^2 U0^2; its lever is at the end of what may
+    be sought. Of ships under an unsteady moment, of ice, whose heading it turns, such a wind was
+    named in seven of 22: 9 MN on one of 100 m, at 0.3 L, or 43 and 38 m/s on a ferry.
+    """
+    if not {"F_N", "F_E", "x_wind"} <= {*effect.parameters}:
+        return False
+    found, speed = fit.estimates, fit.model.ship.particulars["U0"]
+    most = WINDAGE * (HURRICANE / speed) ** 2
+    return float(np.hypot(found["F_N"], found["F_E"])) > most or "x_wind" in fit.at_bounds
 
 
 def no_such_mass(effect: Effect, fit: Fit) -> bool:

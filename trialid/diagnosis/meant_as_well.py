@@ -9,6 +9,7 @@ flow goes by the screws, and her added masses lie one to two standard deviations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -46,8 +47,9 @@ FORETOLD: Final = 0.5
 1.2 and 1.6 of it where that does as much, at most 0.2 where not (`test_meant_as_well.py` and the
 shipped sample, whose fit of it took a second), so that half and twice change none of them."""
 
-FAR: Final = 1.0
-"""Standard deviations from which a number that is held is told of, and two in any case."""
+MOST: Final = 0.9
+"""Share of what slopes foretell of all that is held, from which on fewer of it are fitted alone. At
+half and at twice as far from all of it the same are told of the five of `test_meant_as_well.py`."""
 
 TOLD: Final = 2
 """Numbers that are held, those moved most, that a sentence tells of."""
@@ -55,7 +57,7 @@ TOLD: Final = 2
 
 @dataclass(frozen=True)
 class Freed:
-    """The model with all that is held sought, and which numbers moved, those most first."""
+    """The model with what is held sought, and which numbers those are, moved most first."""
 
     fit: Fit
     moved: tuple[str, ...]
@@ -145,8 +147,11 @@ def held_instead(fit: Fit, named: Refit, progress: Progress) -> Freed | None:
     was missing an added mass had one by 0.0007, although freed with all else it is what moved.
     """
     own = named.candidate.effect.parameters  # a coefficient that is freed is no rival of itself
-    freed = _freed(fit, FORETOLD * fall(fit, named), progress, own)
-    return None if freed is None or _goes_beyond(named, freed) else freed
+
+    def as_well(freed: Freed) -> bool:
+        return not _goes_beyond(named, freed)
+
+    return _freed(fit, FORETOLD * fall(fit, named), as_well, progress, own)
 
 
 def _goes_beyond(named: Refit, freed: Freed) -> bool:
@@ -165,34 +170,57 @@ def held_alone(fit: Fit, parts: Split, progress: Progress) -> Freed | None:
     if not sure > 0.0:
         return None
     share = (sure / fit.examined.eps_rmsn) ** 2  # of the squared error, that cannot be noise
-    freed = _freed(fit, FORETOLD * share, progress)
-    enough = freed and freed.carried.falls and fall(fit.examined, freed) >= share
-    return freed if enough else None
+
+    def enough(freed: Freed) -> bool:
+        return freed.carried.falls and fall(fit.examined, freed) >= share
+
+    return _freed(fit, FORETOLD * share, enough, progress)
 
 
-def _freed(fit: Fit, least: float, progress: Progress, own: Collection[str] = ()) -> Freed | None:
-    """All that is held freed at once, each about its value; None where slopes foretell too little.
+def _freed(
+    fit: Fit,
+    least: float,
+    able: Callable[[Freed], bool],
+    progress: Progress,
+    own: Collection[str] = (),
+) -> Freed | None:
+    """The fewest of what is held that are `able`, all where no fewer are, each about its value.
 
-    They are in the model, and off by some of that in any ship: no more is counted for them, as for
-    an effect's coefficients.
+    None where slopes foretell too little. They are in the model, and off by some of that in any
+    ship: no more is counted for them, as for an effect's coefficients.
     """
     fit = with_means(fit).examined
     known = _as_known(fit, own)
-    wider = _wider(fit.settings, known)
-    near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
-    if not known or _foretold(fit, wider, near) < least:
+    if not known or (whole := _foretold(fit, known)) < least:
         return None
     progress("freeing what is held")
+    freed = _sought(fit, known)
+    if freed is None or not able(freed):
+        return None
+    fewer = _first_of(fit, {n: known[n] for n in freed.moved}, MOST * whole)
+    alone = _sought(fit, fewer) if len(fewer) < len(known) else None
+    return alone if alone and able(alone) else freed
+
+
+def _first_of(
+    fit: Fit, known: Mapping[str, tuple[float, float]], share: float
+) -> Mapping[str, tuple[float, float]]:
+    """The first of them by which slopes foretell such a share, two at least."""
+    each = [dict(islice(known.items(), n)) for n in range(TOLD, len(known))]
+    return next((some for some in each if _foretold(fit, some) >= share), known)
+
+
+def _sought(fit: Fit, known: Mapping[str, tuple[float, float]]) -> Freed | None:
+    """The model with these sought, each about its value; None where that cannot be, or is lost."""
+    near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
     try:
-        freed = identify(fit.trials, fit.model, wider, near=near)
+        freed = identify(fit.trials, fit.model, _wider(fit.settings, known), near=near)
     except TrialidError:  # they cannot be sought on this record
         return None
     if not freed.converged:
         return None
     moved = {n: abs(freed.value(n) - x) / off for n, (x, off) in known.items()}
-    order = sorted(known, key=lambda n: -moved[n])
-    most = tuple(n for i, n in enumerate(order) if moved[n] >= FAR or i < TOLD)
-    return Freed(freed, most, carried_between(fit, freed))
+    return Freed(freed, tuple(sorted(known, key=lambda n: -moved[n])), carried_between(fit, freed))
 
 
 def _as_known(fit: Fit, own: Collection[str]) -> dict[str, tuple[float, float]]:
@@ -214,9 +242,10 @@ def _wider(asked: Settings, known: Mapping[str, tuple[float, float]]) -> Setting
     )
 
 
-def _foretold(fit: Fit, wider: Settings, near: Mapping[str, float]) -> float:
+def _foretold(fit: Fit, known: Mapping[str, tuple[float, float]]) -> float:
     """Share of the squared error that slopes say goes when all of them move; one linear solve."""
-    problem = pose_problem(fit.trials, fit.model, wider, near)
+    near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
+    problem = pose_problem(fit.trials, fit.model, _wider(fit.settings, known), near)
     weighing = Weighing(problem)
     if (point := weighing(problem.start)) is None:
         return 0.0

@@ -14,6 +14,7 @@ from trialid.diagnosis.found_values import (
     late_sensor,
     mostly_at_ends,
     no_such_mass,
+    no_wind,
     of_a_sensor,
     of_the_ship,
     sweeps_away,
@@ -210,7 +211,7 @@ every 2 s leaves as much. Of 12 such records of a ship of whom nothing was missi
 0.0012 and 0.0017 for it; with half of it they have."""
 
 ENDS: Final = (at_a_sensors_end, mostly_at_ends)
-NO_SUCH_VALUE: Final = (turns_round, *ENDS, sweeps_away, no_such_mass)
+NO_SUCH_VALUE: Final = (turns_round, *ENDS, sweeps_away, no_wind, no_such_mass)
 """What a value is that no ship, no sensor and no trial has."""
 
 

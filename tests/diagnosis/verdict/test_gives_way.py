@@ -7,7 +7,7 @@ from made_up_fits import BEFORE
 from s175q import MODEL, zigzag
 from test_refit import ALIKE, LESS, refit
 
-from trialid.diagnosis.found_values import by_heading, sweeps_away
+from trialid.diagnosis.found_values import by_heading, no_wind, sweeps_away
 from trialid.diagnosis.objections import likeliest_refit, objection
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.rivals import rivals
@@ -44,6 +44,19 @@ def test_no_trial_is_sailed_in_a_current_faster_than_the_ship(north, east, swept
         found = dict(zip(effect.parameters, (north, east, 0.0, 0.0), strict=False))
         fit = SimpleNamespace(model=MODEL, problem=problem, estimates=found)
         assert sweeps_away(effect, fit) is (swept and counted)
+
+
+@pytest.mark.parametrize(
+    ("north", "ends", "none"),
+    [(0.003, {}, False), (0.007, {}, True), (0.003, {"x_wind": -0.3}, True)],
+)
+def test_no_trial_is_sailed_in_a_hurricane_nor_wind_felt_at_one_end(north, ends, none):
+    """At 7.33 m/s: 0.003 is 25 m/s on a fifth of her length squared, 0.007 is 39."""
+    effect = CATALOGUE["steady_wind"]
+    found = {"F_N": north, "F_E": 0.0, "x_wind": -0.3, "z_wind": 0.1}
+    fit = SimpleNamespace(model=MODEL, estimates=found, at_bounds=ends)
+    assert no_wind(effect, fit) is none
+    assert not no_wind(CATALOGUE["yaw_cubic_rrr"], fit)
 
 
 def test_wind_that_nobody_recorded_gives_way_to_whatever_of_the_ship_does_as_much():

@@ -174,11 +174,11 @@ def _unclear(run: Result) -> Iterable[Advice]:
             command(run, "run", "--auto"),
         )
         return
-    if run.verdict.held_as_well:
+    if held := run.verdict.held_as_well:
         yield Advice(
-            'Free what is held, under [identify], and run again; priors = "ship" holds all of it '
-            "about her file, where that says under [uncertainty] how far each may be off:",
-            f"free = {array([*run.model.free, *run.verdict.held_as_well])}",
+            f"Under [identify] free {wording.named_together(held)} as well, each held about her "
+            'file by priors = "ship", and run again:',
+            f"free = {array([*run.model.free, *held])}",
         )
         return
     yield from _one_of(run)
