@@ -165,8 +165,8 @@ def test_a_resolution_that_matters_is_told():
     coarse = np.deg2rad(1.0) * np.round(0.1 * np.sin(2 * np.pi * T / 50) / np.deg2rad(1.0))
     remarks = aligned({"delta": coarse}).remarks
     assert "delta: in steps of 1 deg, an error of 7.0% of its motion" in remarks
-    fine = np.round(coarse + 0.02 * swing(T), 4)
-    assert not any("in steps" in one for one in aligned({"delta": fine}).remarks)
+    exact = aligned({"delta": np.round(coarse + 0.02 * swing(T), 4), "delta_order": coarse})
+    assert not any("in steps" in one for one in exact.remarks)
 
 
 def false_ones(seeds):

@@ -98,7 +98,12 @@ def of_values(series: Series, grid: Grid) -> Iterator[str]:
 
 
 def _coarse(series: Series, y: Vector) -> Iterator[str]:
-    """A resolution that is felt: its error is uniform, step / sqrt(12) rms, whatever the motion."""
+    """A resolution that is felt: its error is uniform, step / sqrt(12) rms, whatever the motion.
+
+    An order has none: full ahead and astern are two steps, and exact.
+    """
+    if series.quantity.commands or series.quantity.name.endswith("_order"):
+        return
     levels = np.unique(y)
     step = float(np.diff(levels).min())
     error = step / np.sqrt(12.0)

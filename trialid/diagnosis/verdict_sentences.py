@@ -10,6 +10,7 @@ from trialid.diagnosis.noise.split import INPUT_DRIVEN
 from trialid.diagnosis.objections import AS_SLOW
 from trialid.diagnosis.search.carried import FALL
 from trialid.diagnosis.search.completeness import Completeness
+from trialid.diagnosis.search.falls import fall_of_check
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.together import Together
@@ -52,13 +53,15 @@ def moved_otherwise(fit: Fit, found: Refit, outputs: Sequence[str]) -> str:
 
 
 def contradiction(fit: Fit, found: Refit) -> str:
-    """With this effect trials held out become worse, or are lost."""
+    """With this effect trials held out become worse, or are lost; or not better by anything."""
     lost = found.fit.eps_check is None or not np.isfinite(found.fit.eps_check)
     how = "are lost" if lost else f"go from {fit.eps_check:.2%} to {found.fit.eps_check:.2%}"
+    hardly = not lost and -fall_of_check(fit, found) < 1.0 / FALL - 1.0
+    means = "it does nothing there" if hardly else "the trials contradict each other about it"
     return (
         f"{found.candidate.effect.name} lowers the squared error where it was not fitted by "
         f"{1.0 - 1.0 / found.carried.worth:.0%}{_of_which(found)}, but with it the held-out trials "
-        f"{how}: the trials contradict each other about it"
+        f"{how}: {means}"
     )
 
 

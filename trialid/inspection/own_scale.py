@@ -15,6 +15,10 @@ REST: Final = 1500.0
 """[us] The pulse at which speed controllers that go both ways stand still, and servos amidships."""
 SELDOM: Final = 0.02
 """Share of a record that noise may take a rudder beyond amidships, to either side."""
+SPIKES: Final = 2
+"""Values beyond which a rudder that goes as far to its other side as it stands on this is no wild
+sample. Of a voyage on one course, 1.5 deg to one side, `-20 to 20 are of one side alone` was said;
+at half and at twice the same is said of it, and of a servo's 30 to 50."""
 BOTH: Final = 0.1
 """Share of a record in which she turns to either side at least, ..."""
 AS_FAST: Final = 0.5
@@ -53,8 +57,12 @@ def _are_pulses(one: ChannelInspection) -> bool:
 
 def _keeps_to_a_side(rudder: ChannelInspection, turning: ChannelInspection) -> bool:
     """Whether she turns both ways while her rudder as logged keeps to one."""
-    one, other = np.quantile(rudder.sketch.y, (SELDOM, 1 - SELDOM))
-    stirs = one * other > 0.0 and other - one > STIRS * abs(one + other) / 2
+    y = np.sort(rudder.sketch.y)
+    one, other = np.quantile(y, (SELDOM, 1 - SELDOM))
+    middle, within = abs(one + other) / 2, y[SPIKES:-SPIKES]
+    if len(within) and min(-within[0], within[-1]) > middle:
+        return False  # seldom, as on a voyage, but she steers to the other side
+    stirs = one * other > 0.0 and other - one > STIRS * middle
     r = turning_beside(rudder, turning) if stirs else None
     if r is None or not len(r):
         return False

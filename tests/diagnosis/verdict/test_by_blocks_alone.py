@@ -173,6 +173,16 @@ def test_a_fall_that_held_out_trials_deny_is_that_of_the_output_that_shows_it(ow
 
 
 @pytest.mark.parametrize(
+    ("check", "means"),
+    [(0.1101, "it does nothing there"), (0.115, "the trials contradict each other about it")],
+)
+def test_trials_that_hardly_become_worse_do_not_contradict(check, means):
+    """`From 3.12% to 3.12%: the trials contradict each other` was said of an outsider's ship."""
+    found = refit("a", 0.9, 0.09, check=check)
+    assert contradiction(fit(0.10, 0.11), found).endswith(f": {means}")
+
+
+@pytest.mark.parametrize(
     ("ratio", "said"), [(0.999, "is significant and small"), (3.65, "rises by")]
 )
 def test_what_stands_out_and_makes_others_worse_is_not_small(ratio, said):
