@@ -77,6 +77,9 @@ class Trial:
         Quantities whose positive side was stated: what speaks against it is no doubt of it.
     contradictions
         Rates that are not the slopes of their angles.
+    logged_every
+        Time between samples as the slowest of orders, rates and roll was logged [s]; zero where
+        nobody says.
     """
 
     name: str
@@ -90,6 +93,7 @@ class Trial:
     opening: float = 0.0
     sided: frozenset[str] = frozenset()
     contradictions: tuple[Contradiction, ...] = ()
+    logged_every: float = 0.0
 
     def __post_init__(self) -> None:
         if self.use not in ("fit", "check"):

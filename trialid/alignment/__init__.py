@@ -25,6 +25,7 @@ from trialid.alignment.sources import SignalSource, log_with, seams
 from trialid.alignment.stamps import clock_health, dejitter
 from trialid.alignment.track import antenna, astern, position
 from trialid.errors import AlignmentError
+from trialid.names.quantities import is_input
 from trialid.recording import Recording
 from trialid.trial import Contradiction, LogSource, Trial
 
@@ -80,7 +81,7 @@ def align(
     grid = clocks.common(series, period, window, where)
     series, found = _without_faults(series, sources, grid, keep or {}, at)
     signals = _on_grid(series, sources, grid, where)
-    trial = astern.with_sign(antenna.with_course(_trial(name, use, recordings, signals, grid)))
+    trial = _trial(name, use, recordings, signals, series, grid)
     agreement, apart = _agreement(trial, sources, recordings, where)
     remarks = (
         *_of_logs(recordings, sources),
@@ -96,6 +97,11 @@ def align(
     return dataclasses.replace(
         trial, remarks=remarks, opening=(window or (0.0,))[0], sided=stated, contradictions=apart
     )
+
+
+def _paces(series: Series) -> bool:
+    """Whether it is an order or a motion that has to be followed from sample to sample."""
+    return is_input(series.quantity) or series.quantity.name in ("p", "r", "phi")
 
 
 def _agreement(
@@ -210,9 +216,13 @@ def _trial(
     use: Literal["fit", "check"],
     recordings: Sequence[Recording],
     signals: Mapping[str, combine.Sampled],
+    series: Sequence[Series],
     grid: Grid,
 ) -> Trial:
     logs = tuple(LogSource(str(r.path), r.sha256, r.adapter) for r in recordings)
     values = {quantity: sampled[0] for quantity, sampled in signals.items()}
     valid = {quantity: sampled[1] for quantity, sampled in signals.items()}
-    return Trial(name, use, grid.period, values, valid, logs=logs, start=grid.start)
+    every = max((one.period for one in series if _paces(one)), default=0.0)
+    made = Trial(name, use, grid.period, values, valid, logs=logs, start=grid.start)
+    made = dataclasses.replace(made, logged_every=every)
+    return astern.with_sign(antenna.with_course(made))

@@ -5,6 +5,7 @@ from typing import Final
 
 from trialid.diagnosis.records.heel_side import side_in_doubt
 from trialid.diagnosis.records.rate_and_angle import rate_in_doubt
+from trialid.diagnosis.records.sampling_in_doubt import sampling_in_doubt
 from trialid.diagnosis.records.speed_in_doubt import speed_in_doubt
 from trialid.diagnosis.records.unit_in_doubt import unit_in_doubt
 from trialid.diagnosis.verdict import Verdict
@@ -13,10 +14,13 @@ from trialid.ship.effect import Effect
 
 NO_FIT: Final = "no fit: "
 
+OF_ALL: Final = (unit_in_doubt, speed_in_doubt, sampling_in_doubt)
+"""Doubts that every number hangs on."""
+
 
 def in_doubt(fit: Fit) -> bool:
     """Whether the records leave anything in doubt about themselves."""
-    asked = unit_in_doubt, speed_in_doubt, rate_in_doubt, side_in_doubt
+    asked = *OF_ALL, rate_in_doubt, side_in_doubt
     return any(one(fit) is not None for one in asked)
 
 
@@ -27,7 +31,7 @@ def settle(fit: Fit, verdict: Verdict, named: Effect | None = None) -> Verdict:
     no part; a rate, a speed or a unit that is wrong is in every number.
     """
     side = None if verdict.kind == "nothing missing" else side_in_doubt(fit)
-    asked = unit_in_doubt(fit), speed_in_doubt(fit), rate_in_doubt(fit, named), side
+    asked = *(one(fit) for one in OF_ALL), rate_in_doubt(fit, named), side
     found = tuple(one for one in asked if one is not None)
     if not found:
         return verdict
