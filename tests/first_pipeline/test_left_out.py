@@ -122,3 +122,32 @@ def test_what_is_no_log_in_a_folder_of_logs_stops_none(tmp_path: Path) -> None:
     (tmp_path / "zz.csv").unlink()
     with pytest.raises(LogError, match="no time column"):
         inspect_trials(tmp_path)
+
+
+def test_an_empty_log_and_folders_beside_others_are_told(tmp_path: Path) -> None:
+    """`3 trials` was said of four files, one of them empty, and nothing of logs in a folder."""
+    log(tmp_path / "zz.csv", ZIGZAG)
+    (tmp_path / "a.csv").touch()
+    (tmp_path / "notes.txt").touch()
+    for name in ("day1", "runs"):
+        (tmp_path / name).mkdir()
+    log(tmp_path / "day1" / "zz.csv", ZIGZAG)
+    said: list[str] = []
+    assert len(inspect_trials(tmp_path, say=said.append)) == 1
+    empty, folder = said
+    assert "a.csv: is empty (0 bytes)" in empty
+    assert "day1: folders in a folder are not looked into" in folder
+
+
+def test_roll_decays_at_rest_beside_zigzags_are_left_out_with_what_to_do(tmp_path: Path) -> None:
+    """One was held out, and the pipeline was refused: the ship lies still."""
+    decay = log(tmp_path / "decay.csv", 0.1 * ZIGZAG)
+    rows = np.loadtxt(decay, delimiter=",", skiprows=1)
+    rows[:, 3] *= 0.004
+    heads = decay.read_text(encoding="utf-8").splitlines()[0]
+    np.savetxt(decay, rows, delimiter=",", header=heads, comments="", fmt="%.5g")
+    made = begun(tmp_path, decay, log(tmp_path / "zz.csv", ZIGZAG), log(tmp_path / "b.csv", ZIGZAG))
+    [words] = made.left_out
+    assert words.startswith("decay.csv: she lies still, 0.029 m/s where others have 7.2")
+    assert words.endswith("trialid start decay.csv --pipeline roll.toml")
+    assert sorted(one.path.name for one in made.trials) == ["b.csv", "zz.csv"]

@@ -3,7 +3,7 @@
 `inspect_log` reads logs of any size, in parts that fit into memory, and keeps no samples.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 
 from trialid.alignment import frames
@@ -54,18 +54,31 @@ def inspect_trials(
 
 
 def _readable(path: Path, aids: Aids, say: Callable[[str], None]) -> "list[File]":
-    """Files of a folder: a table of remarks beside logs, or one log that is damaged, stops none."""
+    """Files of a folder: a table of remarks beside logs, or one log that is damaged, stops none.
+
+    Nor does one that is called as the logs are and is none, as an empty one.
+    """
     files, errors = list[File](), list[LogError]()
-    for one in files_of(LogFile(path, aids)):
+    logs = files_of(LogFile(path, aids))
+    called = {one.suffix for one in logs}
+    beside = (child for child in path.iterdir() if child.is_file() and child.suffix in called)
+    for one in sorted({*logs, *(child for child in beside if child.name[0] != ".")}):
         try:
             files.append(_file(one, aids))
         except LogError as error:
             errors.append(error)
     if not files:
         raise errors[0]
-    for left in errors:
+    for left in (*errors, *_below(path, called)):
         say(str(left))
     return files
+
+
+def _below(path: Path, called: Collection[str]) -> Iterator[str]:
+    """Folders in a folder of logs that hold files which are called as these are."""
+    for folder in sorted(child for child in path.iterdir() if child.is_dir()):
+        if any(child.suffix in called and child.name[0] != "." for child in folder.iterdir()):
+            yield f"{folder}: folders in a folder are not looked into; name it, too"
 
 
 File = tuple[list[ChannelInspection], LogFileInspection]

@@ -11,6 +11,7 @@ from trialid.inspection import Inspection
 from trialid.ship.estimate import Given, estimate
 from trialid.ship.estimate.ship_text import ship_text
 from trialid.ship.particulars import Ship, read_ship
+from trialid.workflow.build_model import LYING_STILL
 from trialid.workflow.first_pipeline.axes_of_earth import (
     with_velocities_beside,
     without_axes_of_earth,
@@ -145,7 +146,7 @@ def starter(
         trials = [replace(t, signals=named_by_ship(t.signals, own)) for t in trials]
     L = own.particulars["L"]
     if not decays:
-        trials, short = _long_enough(trials, L / u0)
+        trials, short = _long_enough(*_under_way(trials, u0), L / u0)
         left_out += short
         trials = with_rudder_units(with_rate_units(trials, L, u0), L, u0)
         trials = with_orders(trials, L / u0, main_drives(own))
@@ -199,7 +200,25 @@ def _tried(survey: Inspection, speed: float | None) -> Chosen | TooLittle:
         return error
 
 
-def _long_enough(trials: list[Chosen], seconds: float) -> tuple[list[Chosen], list[str]]:
+def _under_way(trials: list[Chosen], u0: float) -> tuple[list[Chosen], list[str]]:
+    """The trials in which a ship steered by rudders goes, and why others are left out.
+
+    She is let go from a heel there, and no rudder turns her; a boat turns on the spot by thrusters.
+    """
+    still = [one for one in trials if one.speed is not None and one.speed < LYING_STILL * u0]
+    if is_boat(shared_signals(trials)) or len(still) == len(trials):
+        return trials, []
+    names = " ".join(one.path.name for one in still)
+    return [one for one in trials if one not in still], [
+        f"{one.path.name}: she lies still, {one.speed:.2g} m/s where others have {u0:.3g}; of roll "
+        f"decays at rest begin a pipeline of their own: trialid start {names} --pipeline roll.toml"
+        for one in still
+    ]
+
+
+def _long_enough(
+    trials: list[Chosen], left_out: list[str], seconds: float
+) -> tuple[list[Chosen], list[str]]:
     """The trials in which she goes her own length at least, and why others are left out.
 
     None is where all are as short: what that is worth the fit says. Of 20 s a log of 4 s, a test of
@@ -208,9 +227,9 @@ def _long_enough(trials: list[Chosen], seconds: float) -> tuple[list[Chosen], li
     """
     enough = [one for one in trials if one.survey.duration >= seconds]
     if not enough:
-        return trials, []
+        return trials, left_out
     short = (one for one in trials if one not in enough)
-    return enough, [
+    return enough, left_out + [
         f"{one.path.name}: {one.survey.duration:.3g} s long, and she takes {seconds:.3g} s for her "
         "own length"
         for one in short
