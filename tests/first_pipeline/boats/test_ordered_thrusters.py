@@ -34,6 +34,17 @@ def test_pulses_go_astern_below_those_at_rest(tmp_path: Path) -> None:
         assert ('"k_ahead", "k_astern"' in text_of(tmp_path, made)) == bool(astern)
 
 
+@pytest.mark.parametrize("often", [1.0, 4.0])
+def test_a_gain_starts_by_the_revolutions_of_her_log_where_those_are_unusual(tmp_path, often):
+    """A catamaran at 1900 rpm left for 35 m/s in two seconds by the gain of a usual screw."""
+    p, usual = pushes(1), 1100.0  # rpm of a boat of 2 m
+    made = log(tmp_path / "run.csv", p, often * usual * p, ("rpm_left", "rpm_right"))
+    text = text_of(tmp_path, made)
+    assert ("her gain starts where the most of her log drives her" in text) == (often > 1.0)
+    done = run(pipeline_file.load(tmp_path / "p.toml"), lambda words, share=None: None)
+    assert done.result.fit.converged
+
+
 @pytest.mark.parametrize("names", [PERCENT, ("/left/thrust", "/right/thrust")])
 def test_a_drive_that_jumps_is_read_as_its_order(tmp_path: Path, names) -> None:
     p = pushes(1)
