@@ -247,9 +247,11 @@ def no_start(problem: Problem) -> SimulationError:
             f"steps of {step:g} s are too long for this model: {departure}; "
             "choose a shorter [align] period, or more [identify] substeps"
         )
+    over = isinstance(departure, Departure) and departure.state in ("phi", "p")
+    GM = "; the GM of her file lets her capsize: state hers, or her period of roll" if over else ""
     return SimulationError(
-        f"the model cannot be simulated at its start values: {departure}; give nearer values in "
-        f"[model.values] or in the ship file, or narrower [identify] bounds{_outside(problem)}"
+        f"the model cannot be simulated at its start values: {departure}{GM}; give nearer values "
+        f"in [model.values] or in the ship file, or narrower [identify] bounds{_outside(problem)}"
     )
 
 
