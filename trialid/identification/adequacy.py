@@ -114,10 +114,12 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
         return None
     units = {x.name: x.unit for x in fit.problem.unknowns}
     bounds = ", ".join(f"{n} = {wording.with_unit(x, units[n])}" for n, x in held.items())
+    rolls = any(n.startswith("tau_phi") for n in held) and len(fit.problem.outputs) > 1
+    swell = "; where a swell rolls her, leave phi out of outputs and states" if rolls else ""
     return Inadequate(
         f"what no sensor does had to be assumed: {bounds}, the end of what is possible",
         "look at that signal's clock, sign and unit, and whether the model is one of this ship; "
-        "compare whole models by `trialid structures`",
+        f"compare whole models by `trialid structures`{swell}",
     )
 
 
