@@ -19,7 +19,7 @@ from trialid.diagnosis.examine import gap_with, tried_effects
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.augment import fixed_coefficients
-from trialid.diagnosis.search.carried import EACH, Carried, does_as_well
+from trialid.diagnosis.search.carried import EACH, FALL, Carried, does_as_well
 from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.falls import fall
@@ -156,9 +156,8 @@ def held_instead(fit: Fit, named: Refit, progress: Progress) -> Freed | None:
 
 def _goes_beyond(named: Refit, freed: Freed) -> bool:
     """Whether an effect is worth a name, and its parameters, beside what is held."""
-    beyond = named.carried.beyond(freed.carried)
-    least = EACH * len(named.candidate.effect.parameters)
-    return beyond.falls and np.log(beyond.worth) > least
+    worth = named.carried.beyond(freed.carried).worth
+    return np.log(worth) > max(EACH * len(named.candidate.effect.parameters), -np.log(FALL))
 
 
 def held_alone(fit: Fit, parts: Split, progress: Progress) -> Freed | None:
