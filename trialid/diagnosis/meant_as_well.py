@@ -19,7 +19,7 @@ from trialid.diagnosis.examine import gap_with, tried_effects
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.augment import fixed_coefficients
-from trialid.diagnosis.search.carried import EACH, FALL, Carried, does_as_well
+from trialid.diagnosis.search.carried import EACH, Carried, does_as_well
 from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.falls import fall
@@ -143,8 +143,9 @@ def two_instead(
 def held_instead(fit: Fit, named: Refit, progress: Progress) -> Freed | None:
     """The model with what is held freed, where that does as well as a named effect.
 
-    What the effect does beyond that has to be worth a name itself: of a linear ship in whom nothing
-    was missing an added mass had one by 0.0007, although freed with all else it is what moved.
+    But for what the effect's parameters have to be worth, of the whole error or of each output's
+    own: of a linear ship in whom nothing was missing an added mass had a name by 0.0007, although
+    freed with all else it is what moved.
     """
     own = named.candidate.effect.parameters  # a coefficient that is freed is no rival of itself
 
@@ -155,9 +156,9 @@ def held_instead(fit: Fit, named: Refit, progress: Progress) -> Freed | None:
 
 
 def _goes_beyond(named: Refit, freed: Freed) -> bool:
-    """Whether an effect is worth a name, and its parameters, beside what is held."""
+    """Whether an effect does what its parameters cost beyond what is held does."""
     worth = named.carried.beyond(freed.carried).worth
-    return np.log(worth) > max(EACH * len(named.candidate.effect.parameters), -np.log(FALL))
+    return bool(np.log(worth) > EACH * len(named.candidate.effect.parameters))
 
 
 def held_alone(fit: Fit, parts: Split, progress: Progress) -> Freed | None:

@@ -123,14 +123,14 @@ def test_a_coefficient_that_is_freed_is_no_rival_of_itself():
 @pytest.mark.parametrize(
     ("effect", "short", "as_well"),
     [
-        ("yaw_drag_rar", 0.013, True),
+        ("yaw_drag_rar", 0.008, True),
         ("yaw_drag_rar", 0.02, False),
         ("heel_yaw_cubic", 0.03, True),
         ("heel_yaw_cubic", 0.05, False),
     ],
 )
 @pytest.mark.parametrize("alone", [False, True])
-def test_what_is_held_does_as_well_but_for_what_is_worth_a_name(
+def test_what_is_held_does_as_well_but_for_what_parameters_are_worth(
     without_two, monkeypatch, effect, short, as_well, alone
 ):
     """By the whole error, or by each output's own alone: a coarse one hides what another shows.
