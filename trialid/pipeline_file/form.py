@@ -137,7 +137,7 @@ class AlignSection(Section):
     """The common clock."""
 
     period: Period = 0.5
-    """Time between samples [s]."""
+    """Time between samples [s]; of a boat a tenth of what she takes for her length, or less."""
     clocks: Literal["repair", "as logged"] = "repair"
     """`"repair"` puts the stamps of evenly paced sensors on a line through their count of samples,
     so that latency, bundles and whole seconds do not shake them; `"as logged"` takes every stamp
