@@ -102,7 +102,8 @@ def also_from(found: Verdict, two: Together | None) -> Verdict:
 
 def held_before(fit: Fit, named: Refit | None, freed: Freed) -> Verdict:
     """The verdict where what is held does as well, or as all that is missing."""
-    most = " and ".join(freed.moved[:TOLD])
+    first, count = " and ".join(freed.moved[:TOLD]), len(freed.moved)
+    which = f"{first} most of {count}" if count > TOLD else first
     before, other = (f"{x.eps_rmsn:.2%}" for x in (fit, freed.fit))
     begun = (
         f"{named.candidate.effect.name} takes the error from {before} to "
@@ -112,8 +113,8 @@ def held_before(fit: Fit, named: Refit | None, freed: Freed) -> Verdict:
         "held do"
     )
     said = (
-        f"{begun}, off by at most twice what is known of each: to {other}, {most} most. "
-        "No effect has to be missing: free those first, and look again"
+        f"{begun}, off by at most twice what is known of each: to {other}, by {which}. "
+        "No effect has to be missing: free all of them first, and look again"
     )
     return Verdict("cannot tell", None, (), said, held_as_well=freed.moved)
 
