@@ -213,9 +213,8 @@ def _first_of(
 
 def _sought(fit: Fit, known: Mapping[str, tuple[float, float]]) -> Freed | None:
     """The model with these sought, each about its value; None where that cannot be, or is lost."""
-    near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
     try:
-        freed = identify(fit.trials, fit.model, _wider(fit.settings, known), near=near)
+        freed = identify(fit.trials, fit.model, _wider(fit.settings, known), near=_near(fit, known))
     except TrialidError:  # they cannot be sought on this record
         return None
     if not freed.converged:
@@ -232,6 +231,11 @@ def _as_known(fit: Fit, own: Collection[str]) -> dict[str, tuple[float, float]]:
     return {n: each for n, each in known.items() if each[1] > 0.0}
 
 
+def _near(fit: Fit, known: Mapping[str, tuple[float, float]]) -> dict[str, float]:
+    """Where the fit ended, and what her file says of these."""
+    return {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
+
+
 def _wider(asked: Settings, known: Mapping[str, tuple[float, float]]) -> Settings:
     """The same question with these numbers sought, by their values and standard deviations."""
     ends = {n: (x - WITHIN * off, x + WITHIN * off) for n, (x, off) in known.items()}
@@ -245,8 +249,8 @@ def _wider(asked: Settings, known: Mapping[str, tuple[float, float]]) -> Setting
 
 def _foretold(fit: Fit, known: Mapping[str, tuple[float, float]]) -> float:
     """Share of the squared error that slopes say goes when all of them move; one linear solve."""
-    near = {**fit.estimates, **{n: x for n, (x, _) in known.items()}}
-    problem = pose_problem(fit.trials, fit.model, _wider(fit.settings, known), near)
+    wider = _wider(fit.settings, known)
+    problem = pose_problem(fit.trials, fit.model, wider, _near(fit, known))
     weighing = Weighing(problem)
     if (point := weighing(problem.start)) is None:
         return 0.0

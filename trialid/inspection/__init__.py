@@ -77,7 +77,7 @@ def _readable(path: Path, aids: Aids, say: Callable[[str], None]) -> "list[File]
 def _below(path: Path, called: Collection[str]) -> Iterator[str]:
     """Folders in a folder of logs that hold files which are called as these are."""
     for folder in sorted(child for child in path.iterdir() if child.is_dir()):
-        if any(child.suffix in called and child.name[0] != "." for child in folder.iterdir()):
+        if any(one.suffix in called for one in folder.glob("[!.]*")):  # none where unreadable
             yield f"{folder}: folders in a folder are not looked into; name it, too"
 
 
