@@ -223,10 +223,8 @@ def _line(before: int) -> Callable[[int], str]:
 
 
 def _careful(path: Path, raw: bytes, top: Top, layout: Layout, remarks: list[str]) -> Table:
-    rows, lines, blank = _rows(path, raw, top, layout)
-    rows = list(cut(rows, len(top.heads)))
-    if blank:
-        remarks = [*remarks, f"{blank} rows without any value, left out"]
+    rows, lines, left_out = _rows(path, raw, top, layout)
+    rows, remarks = list(cut(rows, len(top.heads))), [*remarks, *left_out]
     names = [one.name for one in top.heads]
     if rows and len(rows[-1]) < len(names) and not raw.endswith((b"\n", b"\r")):
         rows.pop()
@@ -250,15 +248,17 @@ def _careful(path: Path, raw: bytes, top: Top, layout: Layout, remarks: list[str
 
 def _rows(
     path: Path, raw: bytes, top: Top, layout: Layout
-) -> tuple[list[list[str]], list[int], int]:
-    """Rows that are not empty, the line each ended at, and how many hold separators alone."""
+) -> tuple[list[list[str]], list[int], list[str]]:
+    """Rows that are not empty, the line each ended at, and what of the others is left out."""
     comment = layout.comment
     text = decode_text(raw[top.offset :], layout.encoding)
-    numbers: list[int] = []
+    numbers, torn = list[int](), list[int]()
 
     def kept() -> Iterator[str]:
         for number, line in enumerate(io.StringIO(text, newline=""), top.lines + 1):
-            if not (comment and line.lstrip().startswith(comment)):
+            if "\0" in line:
+                torn.append(number)
+            elif not (comment and line.lstrip().startswith(comment)):
                 numbers.append(number)
                 yield _ends_bare(line, layout)
 
@@ -274,7 +274,9 @@ def _rows(
     except csv.Error as error:
         line = numbers[-1] if numbers else top.lines
         raise LogError(f"{path}, line {line}: {error}; look for a stray quote") from error
-    return rows, lines, blank
+    told = [f"{blank} rows without any value, left out"] if blank else []
+    told += [f"line {n} holds bytes of zero, left out" for n in torn]
+    return rows, lines, told
 
 
 def _either(
