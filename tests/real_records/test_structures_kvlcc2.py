@@ -46,7 +46,9 @@ def test_drag_of_the_cross_flow_with_the_race_whichever_run_is_missing(zigzags, 
     assert found.chosen == "cross-flow, race" + (", surge" if speed == "stated" else "")
     assert len(found.trials) == 7
     assert same >= 6
-    chosen, linear = found.row(found.chosen), found.row("linear")
-    assert chosen.eps_rmsn_left_out < 0.5 * linear.eps_rmsn_left_out
+    left = {r.name: r.eps_rmsn_left_out for r in found.rows if r.name.startswith("linear")}
+    told_of = [x for x in left.values() if x is not None]  # none of one whose numbers are not hers
+    assert told_of
+    assert found.row(found.chosen).eps_rmsn_left_out < 0.5 * min(told_of)
     again = {name for name in found.chosen_without.values() if name is not None}
     assert all(" race" in name for name in again)
