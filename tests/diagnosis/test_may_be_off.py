@@ -11,7 +11,7 @@ from trialid.diagnosis.search.augment import Trace
 from trialid.ship.effect import Parameter, Rate
 
 
-def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None):
+def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None, kind="physical"):
     """What a fit with one number held fixed hands to the averaging."""
     given = []
     monkeypatch.setattr(tested, "stand", lambda rows, rivals: given.append((rows, rivals)))
@@ -27,7 +27,9 @@ def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None):
     ship = SimpleNamespace(value=lambda name: -0.004, ship=SimpleNamespace(share_off=lambda n: 0.1))
     problem = SimpleNamespace(
         simulator=SimpleNamespace(model=ship),
-        unknowns=[SimpleNamespace(column=n, prior=p) for n, p in (("Nr", None), ("Nv", prior))],
+        unknowns=[
+            SimpleNamespace(column=n, prior=p, kind=kind) for n, p in (("Nr", None), ("Nv", prior))
+        ],
     )
     fit = SimpleNamespace(problem=problem, level=0.02, theta=np.array([1.0, 3e-3]))
     augmented = SimpleNamespace(
@@ -74,3 +76,10 @@ def test_a_single_parameter_stays_within_its_range_about_its_null(monkeypatch):
 def test_a_prior_is_a_row_in_units_of_the_level(monkeypatch):
     rows, _ = handed_over(monkeypatch, prior=(0.0, 0.005))
     assert rows.priors == pytest.approx(np.array([[0.0, 0.0], [4.0, -0.012]]))
+
+
+@pytest.mark.parametrize(("kind", "sure"), [("physical", 1.0 / 3.0), ("nuisance", 1.0)])
+def test_of_a_ships_own_numbers_what_is_three_off_is_a_third_as_sure(monkeypatch, kind, sure):
+    """A sensor's is as sure as it was: there are many, and some are off by as much."""
+    rows, _ = handed_over(monkeypatch, prior=(0.0, 0.001), kind=kind)
+    assert rows.priors[1] == pytest.approx(np.array([20.0, -0.06]) * sure)

@@ -14,6 +14,7 @@ from trialid.arrays import Vector
 from trialid.diagnosis.restated import restates
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
+from trialid.identification.fit import Fit
 from trialid.ship.effect import Parameter
 
 SMALLEST: Final = 1e-12
@@ -62,7 +63,7 @@ def doubts(augmented: Augmented) -> Doubts:
     rows = Rows(
         residual=augmented.residual,
         psi=augmented.psi,
-        priors=_as_contradicted(prior_rows(fit), fit.level),
+        priors=_as_contradicted(prior_rows(fit), fit),
         held=augmented.H,
         deviations=np.array(deviations),
         S=S,
@@ -73,16 +74,17 @@ def doubts(augmented: Augmented) -> Doubts:
     return Doubts(standing, augmented.held, traces)
 
 
-def _as_contradicted(priors: Vector, level: float) -> Vector:
-    """Rows of priors, each as uncertain as the record shows it to be.
+def _as_contradicted(priors: Vector, fit: Fit) -> Vector:
+    """Rows of priors, of her own numbers each as uncertain as the record shows it to be.
 
     The likeliest scatter of what is off by several of its own is that. Held to it as it was stated,
     it moves what is held instead: of ships whose rudder heels them four times as much as their
     file says, 4.2 of its deviations, inertias in roll went down with it and the range of a GM that
     was right to 8 % ended below it.
     """
-    off = np.abs(priors[:, 1]) / level
-    return priors / np.maximum(off, 1.0)[:, None]
+    own = np.array([x.kind == "physical" for x in fit.problem.unknowns])
+    off = np.abs(priors[:, 1]) / fit.level
+    return priors / np.where(own, np.maximum(off, 1.0), 1.0)[:, None]
 
 
 def _may_be_missing(augmented: Augmented) -> tuple[Vector, tuple[Trace, ...]]:
