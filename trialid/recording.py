@@ -3,12 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.errors import printable
+
+OF_TEXT: Final = "holds text, left out"
+"""How a recording's remark says that a column is no signal, as a rudder in words is none."""
 
 
 @dataclass(frozen=True)

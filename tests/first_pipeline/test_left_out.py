@@ -51,23 +51,24 @@ def test_a_log_whose_rudder_stays_is_left_out_beside_one_that_steers(tmp_path: P
     assert [one.name for one in pipeline_file.load(tmp_path / "p.toml").trials] == ["zz"]
 
 
-def test_a_rudder_in_words_is_said_to_be_text(tmp_path: Path) -> None:
-    path = log(tmp_path / "a.csv", ZIGZAG)
-    head, *rows = path.read_text(encoding="utf-8").splitlines()
+def rudder_of(path: Path, word: str) -> Path:
+    """The log with this in place of every angle of the rudder."""
+    head, *rows = log(path, ZIGZAG).read_text(encoding="utf-8").splitlines()
     fields = [row.split(",") for row in rows]
-    words = [",".join((*one[:2], "on", *one[3:])) for one in fields]
-    path.write_text("\n".join((head, *words)), encoding="utf-8")
+    made = [",".join((*one[:2], word, *one[3:])) for one in fields]
+    path.write_text("\n".join((head, *made)), encoding="utf-8")
+    return path
+
+
+def test_a_rudder_in_words_is_said_to_be_text(tmp_path: Path) -> None:
+    path = rudder_of(tmp_path / "a.csv", "on")
     [told] = begun(tmp_path, path, log(tmp_path / "zz.csv", ZIGZAG)).left_out
     assert "(column 'Rudder' holds text, left out)" in told
 
 
 def test_a_rudder_without_a_number_is_none(tmp_path: Path) -> None:
     """It ended in a traceback; `inspect` had said `not available`."""
-    path = log(tmp_path / "a.csv", ZIGZAG)
-    head, *rows = path.read_text(encoding="utf-8").splitlines()
-    fields = [row.split(",") for row in rows]
-    kept = [",".join((*one[:2], "nan", *one[3:])) for one in fields]
-    path.write_text("\n".join((head, *kept)), encoding="utf-8")
+    path = rudder_of(tmp_path / "a.csv", "nan")
     with pytest.raises(LogError, match="'Rudder' holds no number"):
         begun(tmp_path, path)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from s175q import OUTPUTS, SHIP, white, zigzag
+from s175q import OUTPUTS, SHIP, white, with_noise, zigzag
 
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import examine_fit
@@ -18,7 +18,6 @@ from trialid.identification.problem import Settings
 from trialid.identification.ship_priors import ship_priors
 from trialid.progress import silent
 from trialid.ship.model import ShipModel
-from trialid.trial import Trial
 
 FREE = ("Nv", "Nr", "Ndelta", "Kv", "Kr", "Kdelta", "Kp", "GM")
 LINEAR = ("linear_hull", "linear_rudder", "linear_roll")
@@ -35,10 +34,7 @@ def sailed(ship, seed):
     made = []
     for angle in (10, 20):
         trial = zigzag(angle, model(ship))
-        r, phi = white(np.random.default_rng([seed, angle]), trial.samples)
-        signals = trial.signals | {"r": trial.signals["r"] + r, "phi": trial.signals["phi"] + phi}
-        valid = dict.fromkeys(signals, np.ones(trial.samples, dtype=bool))
-        made.append(Trial(trial.name, "fit", trial.period, signals, valid))
+        made.append(with_noise(trial, *white(np.random.default_rng([seed, angle]), trial.samples)))
     return made
 
 

@@ -9,11 +9,11 @@ flow goes by the screws, and her added masses lie one to two standard deviations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 from typing import Final
 
 import numpy as np
 
+from trialid.arrays import Vector
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import gap_with, tried_effects
 from trialid.diagnosis.noise.error_parts import Split
@@ -62,6 +62,25 @@ class Freed:
     fit: Fit
     moved: tuple[str, ...]
     carried: Carried
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Residual and slopes where what is held would begin to move; what each column is of."""
+
+    residual: Vector
+    psi: Vector
+    rows: int
+    names: tuple[str, ...]
+
+    def foretold(self, still: Collection[str] = ()) -> float:
+        """Share of the squared error that they say goes, these held; one linear solve."""
+        psi = self.psi[:, [name not in still for name in self.names]]
+        sizes = np.maximum(np.linalg.norm(psi, axis=0), 1e-300)
+        by = np.linalg.lstsq(psi / sizes, self.residual, rcond=1e-9)[0]
+        left = self.residual - psi @ (by / sizes)
+        before, after = self.residual[: self.rows], left[: self.rows]
+        return 1.0 - float(after @ after) / float(before @ before)
 
 
 def beside_others(
@@ -192,23 +211,23 @@ def _freed(
     """
     fit = with_means(fit).examined
     known = _as_known(fit, own)
-    if not known or (whole := _foretold(fit, known)) < least:
+    slopes = _slopes(fit, known) if known else None
+    if slopes is None or slopes.foretold() < least:
         return None
     progress("freeing what is held")
     freed = _sought(fit, known)
     if freed is None or not able(freed):
         return None
-    fewer = _first_of(fit, {n: known[n] for n in freed.moved}, MOST * whole)
-    alone = _sought(fit, fewer) if len(fewer) < len(known) else None
+    count = _enough(slopes, freed.moved)
+    alone = _sought(fit, {n: known[n] for n in freed.moved[:count]}) if count < len(known) else None
     return alone if alone and able(alone) else freed
 
 
-def _first_of(
-    fit: Fit, known: Mapping[str, tuple[float, float]], share: float
-) -> Mapping[str, tuple[float, float]]:
-    """The first of them by which slopes foretell such a share, two at least."""
-    each = [dict(islice(known.items(), n)) for n in range(TOLD, len(known))]
-    return next((some for some in each if _foretold(fit, some) >= share), known)
+def _enough(slopes: Slopes, moved: Sequence[str]) -> int:
+    """How many of them, the first, slopes foretell `MOST` of all by; two at least."""
+    least = MOST * slopes.foretold()
+    counts = range(TOLD, len(moved))
+    return next((n for n in counts if slopes.foretold(moved[n:]) >= least), len(moved))
 
 
 def _sought(fit: Fit, known: Mapping[str, tuple[float, float]]) -> Freed | None:
@@ -247,15 +266,11 @@ def _wider(asked: Settings, known: Mapping[str, tuple[float, float]]) -> Setting
     )
 
 
-def _foretold(fit: Fit, known: Mapping[str, tuple[float, float]]) -> float:
-    """Share of the squared error that slopes say goes when all of them move; one linear solve."""
+def _slopes(fit: Fit, known: Mapping[str, tuple[float, float]]) -> Slopes | None:
+    """With all of these sought; None where nothing can be simulated."""
     wider = _wider(fit.settings, known)
     problem = pose_problem(fit.trials, fit.model, wider, _near(fit, known))
     weighing = Weighing(problem)
     if (point := weighing(problem.start)) is None:
-        return 0.0
-    residual, psi = point
-    sizes = np.maximum(np.linalg.norm(psi, axis=0), 1e-300)
-    left = residual - psi @ (np.linalg.lstsq(psi / sizes, residual, rcond=1e-9)[0] / sizes)
-    rows = slice(weighing.rows)
-    return 1.0 - float(left[rows] @ left[rows]) / float(residual[rows] @ residual[rows])
+        return None
+    return Slopes(*point, weighing.rows, tuple(x.column for x in problem.unknowns))

@@ -1,9 +1,10 @@
-"""The speed that a ship has before she manoeuvres, from the log of a trial."""
+"""What the log of a trial says of her speed, and which of it is her approach."""
 
 from typing import Final
 
 import numpy as np
 
+from trialid.arrays import Vector
 from trialid.trial import Trial
 
 APPROACH: Final = 0.95
@@ -15,8 +16,13 @@ def approach_speed(trial: Trial) -> float | None:
 
     Before turns cost any, as speed lost in turns is reckoned.
     """
-    if "u" not in trial.signals:
-        return None
-    valid = trial.valid.get("u", np.ones(trial.samples, dtype=bool))
-    logged = trial.signals["u"][valid & np.isfinite(trial.signals["u"])]
+    logged = logged_speed(trial)
     return float(np.quantile(logged, APPROACH)) if len(logged) else None
+
+
+def logged_speed(trial: Trial) -> Vector:
+    """What her log says of her speed [m/s], where it says anything; (n,), none without a log."""
+    if "u" not in trial.signals:
+        return np.empty(0)
+    valid = trial.valid.get("u", np.ones(trial.samples, dtype=bool))
+    return np.asarray(trial.signals["u"][valid & np.isfinite(trial.signals["u"])])

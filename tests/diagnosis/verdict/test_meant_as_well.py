@@ -143,7 +143,8 @@ def test_what_is_held_does_as_well_but_for_what_parameters_are_worth(
     after = of.after if alone else tuple(more * x for x in of.after)
     made = Freed(named.fit, ("m",), replace(of, after=after, own=(of.own[0], own)))
     monkeypatch.setattr(meant_as_well, "_sought", lambda *asked: made)
-    monkeypatch.setattr(meant_as_well, "_foretold", lambda *asked: 1.0)
+    whole = SimpleNamespace(foretold=lambda still=(): 1.0)
+    monkeypatch.setattr(meant_as_well, "_slopes", lambda *asked: whole)
     assert held_instead(without_two, named, silent) is (made if as_well else None)
 
 

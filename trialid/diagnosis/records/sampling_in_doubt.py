@@ -16,7 +16,8 @@ outsider's boat of 2 m, in whom nothing was missing, seven had a name at 0.29 to
 either; of 640 sets of other ships none is at half of it."""
 
 FINER: Final = 0.5
-"""Share of a sample that her logs take: of what they do not hold, nobody can make more."""
+"""Share of a sample that her logs take: of what they do not hold, nobody can make more. Those of
+that boat take 0.2, so that half of it tells the same; at twice logs that hold no more are asked."""
 
 
 def sampling_in_doubt(fit: Fit) -> str | None:

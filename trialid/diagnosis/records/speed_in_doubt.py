@@ -10,11 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from trialid.arrays import Vector
-from trialid.diagnosis.records.unit_in_doubt import ABOUT
-from trialid.identification.approach import approach_speed
+from trialid.diagnosis.records.unit_in_doubt import ABOUT, too_large
+from trialid.identification.approach import approach_speed, logged_speed
 from trialid.identification.fit import Fit
-from trialid.names import units
 from trialid.trial import Trial
 
 VALUES: Final = 4
@@ -28,31 +26,24 @@ twice of it no ship does."""
 
 def speed_in_doubt(fit: Fit) -> str | None:
     """What speaks against the log of her speed, and in which trials; None where nothing does."""
-    logged = [t for t in fit.trials if len(_valid(t))]
+    logged = [t for t in fit.trials if len(logged_speed(t))]
     return _stands_still(logged) or _another_unit(fit, logged)
-
-
-def _valid(trial: Trial) -> Vector:
-    """What her log says of her speed [m/s]; nothing where there is none."""
-    if "u" not in trial.signals:
-        return np.empty(0)
-    valid = trial.valid.get("u", np.ones(trial.samples, dtype=bool))
-    return np.asarray(trial.signals["u"][valid])
 
 
 def _stands_still(logged: Sequence[Trial]) -> str | None:
     """That it does not move in a trial, and does in another in which she turns no more."""
     turning = [t for t in logged if "r" in t.signals]
-    moving = [t for t in turning if len(np.unique(_valid(t))) >= VALUES]
+    moving = [t for t in turning if len(np.unique(logged_speed(t))) >= VALUES]
     least = min((_turn(t) for t in moving), default=np.inf)
-    dead = [t for t in turning if np.ptp(_valid(t)) == 0.0 and _turn(t) >= least]
+    dead = [t for t in turning if np.ptp(logged_speed(t)) == 0.0 and _turn(t) >= least]
     if not dead:
         return None
     names, lively = ", ".join(t.name for t in dead), min(moving, key=_turn)
+    stands, moves = logged_speed(dead[0])[0], np.ptp(logged_speed(lively))
     return (
-        f"the speed stands at {_valid(dead[0])[0]:.4g} m/s throughout {names}, and moves by "
-        f"{np.ptp(_valid(lively)):.2g} m/s in {lively.name}, in which she turns no more: the log "
-        "is dead there; mend that, or leave the trial out"
+        f"the speed stands at {stands:.4g} m/s throughout {names}, and moves by {moves:.2g} m/s in "
+        f"{lively.name}, in which she turns no more: the log is dead there; mend that, or leave "
+        "the trial out"
     )
 
 
@@ -68,8 +59,7 @@ def _another_unit(fit: Fit, logged: Sequence[Trial]) -> str | None:
     if not speeds or stated <= 0.0:
         return None
     for one, called in FASTER:
-        larger = units.factor(called, "m/s") / units.factor(one, "m/s")
-        if np.all(np.abs(np.array(speeds) / stated / larger - 1.0) < ABOUT):
+        if np.all(np.abs(np.array(speeds) / stated / too_large(one, called) - 1.0) < ABOUT):
             return (
                 f"she sails at {np.median(speeds):.3g} m/s in all trials, "
                 f"{np.median(speeds) / stated:.3g} times the U0 of her file: either that is "

@@ -145,10 +145,7 @@ def _unlike_others(answers: Mapping[str, Answer]) -> str | None:
     speeds = {name: answer.speed for name, answer in answers.items() if answer.speed}
     if len(speeds) < max(3, len(answers)):
         return None
-    factors = {
-        (one, called): units.factor(called, "m/s") / units.factor(one, "m/s")
-        for one, called in permutations(SPEEDS, 2)
-    }
+    factors = {(one, called): too_large(one, called) for one, called in permutations(SPEEDS, 2)}
     for name, speed in speeds.items():
         faster = speed / float(np.median([x for n, x in speeds.items() if n != name]))
         one, called = min(factors, key=lambda pair: abs(faster / factors[pair] - 1.0))
@@ -159,6 +156,11 @@ def _unlike_others(answers: Mapping[str, Answer]) -> str | None:
                 f"turns no faster for it: it is as one in {one} that is called {called}"
             )
     return None
+
+
+def too_large(one: str, called: str) -> float:
+    """How many times too large a speed in one unit is that is called another."""
+    return units.factor(called, "m/s") / units.factor(one, "m/s")
 
 
 def _turns_less(answers: Mapping[str, Answer], name: str, faster: float) -> float:

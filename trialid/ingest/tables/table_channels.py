@@ -24,7 +24,7 @@ from trialid.ingest.tables.written.written_angles import written_angles
 from trialid.ingest.tables.written.written_sides import written_sides
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
-from trialid.recording import Channel, Recording
+from trialid.recording import OF_TEXT, Channel, Recording
 
 LONGEST_UNIT = 16
 """Characters; what is longer is a remark and no unit to look up."""
@@ -51,7 +51,7 @@ def recording(
             continue
         channel = _of_earth(one, clock, *sided[i]) if i in sided else _channel(renamed, i, clock)
         if channel is None:
-            told = () if i - 1 in sided else (f"column {one.name!r} holds text, left out",)
+            told = () if i - 1 in sided else (f"column {one.name!r} {OF_TEXT}",)
             remarks.extend(told)
             continue
         if channel.description:
@@ -71,7 +71,7 @@ def _by_name(
             continue
         y = values_of(alone, of)
         if y is None:
-            remarks.append(f"{one.name!r} holds text, left out")
+            remarks.append(f"{one.name!r} {OF_TEXT}")
             continue
         made[one.name] = one, Channel(one.name, clock.t[rows], y, one.unit, clock.words)
     named = _quantities(tuple(one for one, _ in made.values()))

@@ -12,10 +12,8 @@ from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.positions import positions
 from trialid.inspection.usual_units import to_si
+from trialid.recording import OF_TEXT
 from trialid.ship.estimate.particulars_given import KNOT
-
-LEFT_OUT: Final = "holds text, left out"
-"""How a survey says that a column is no signal; a rudder in words is one."""
 
 NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
 
@@ -34,7 +32,7 @@ def no_signal(survey: Inspection, quantities: Sequence[str]) -> TooLittle:
     sources = [one for q in quantities for one in survey.sources(q)]
     unlike = [words for one in sources for words in _useless(one)]
     unlike += [] if "delta" in quantities else _courses(survey)
-    unlike += [told for file in survey.files for told in file.remarks if LEFT_OUT in told]
+    unlike += [told for file in survey.files for told in file.remarks if OF_TEXT in told]
     among = f"among its {len(survey.channels)} channels"
     why = f" ({'; '.join(unlike)})" if unlike else ""
     reason = f"no moving {called} is recognised {among}{why}"
