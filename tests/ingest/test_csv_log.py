@@ -160,3 +160,29 @@ def test_a_real_roll_decay():
     assert phi.unit is None
     assert np.median(np.diff(phi.t)) / 1e9 == pytest.approx(0.01, rel=0.01)
     assert np.abs(phi.y).max() < 0.5
+
+
+def test_torn_rows_and_a_repeated_header_cost_only_themselves(tmp_path):
+    lines = ["t,u", *(f"{k},{k % 7}" for k in range(400))]
+    lines[100] += ",9"
+    lines[200] = "199"
+    lines.insert(300, "t,u")
+    recording = read(log(tmp_path, "\n".join(lines) + "\n"))
+    assert len(recording.channels["u"].y) == 398
+    assert recording.remarks == (
+        "left out: the header, repeated (first line 301, 1 in all)",
+        "left out: rows that have not the header's 2 fields (first line 101, 2 in all)",
+    )
+
+
+def test_more_torn_rows_than_a_logger_leaves_are_another_layout(tmp_path):
+    lines = ["t,u", *(f"{k},{k % 7}" + ",9" * (k % 50 == 3) for k in range(400))]
+    with pytest.raises(LogError, match="line 5: 3 fields where the header has 2"):
+        read(log(tmp_path, "\n".join(lines) + "\n"))
+
+
+@pytest.mark.parametrize("word", ["-", "---", "#N/A", "None"])
+def test_a_word_for_no_value_is_a_value_that_lacks(tmp_path, word):
+    channels = read(log(tmp_path, f"t,u,v\n0,1,5\n1,{word},6\n2,3,7\n")).channels
+    assert channels["v"].y.tolist() == [5, 6, 7]
+    assert channels["u"].y == pytest.approx([1, np.nan, 3], nan_ok=True)

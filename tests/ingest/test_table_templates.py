@@ -361,7 +361,7 @@ def test_a_draft_loads_once_it_is_reviewed(tmp_path, form):
 
 
 def test_a_draft_asks_what_it_cannot_know(tmp_path):
-    rows = [f"05/11/2023,14:00:0{i},{y}\n" for i, y in enumerate(("1", "--", "3"))]
+    rows = [f"05/11/2023,14:00:0{i},{y}\n" for i, y in enumerate(("1", "xx", "3"))]
     text = "Run 7\nDate,Time,roll\n" + "".join(rows)
     (tmp_path / "log").write_text(text)
     drafted = draft_template(tmp_path / "log")
@@ -369,7 +369,7 @@ def test_a_draft_asks_what_it_cannot_know(tmp_path):
     assert "# QUESTION: which time zone?" in drafted
     assert "# QUESTION: these stand among numbers" in drafted
     told = template.parse(drafted, tmp_path / "draft")
-    assert (told.skip, told.missing, told.time.columns) == (1, ("--",), ("Date", "Time"))
+    assert (told.skip, told.missing, told.time.columns) == (1, ("xx",), ("Date", "Time"))
     assert not told.reviewed
 
 

@@ -84,6 +84,6 @@ def test_other_texts_are_no_such_table(tmp_path, text):
 def test_a_row_of_other_length_further_down_is_named(tmp_path):
     rows = np.column_stack([np.arange(400) / 10] * 3)
     lines = table("t  psi_deg  r", rows=rows).splitlines()
-    lines[350] = "34.9  1.0"
+    lines[350:355] = ["34.9  1.0"] * 5
     with pytest.raises(LogError, match="line 351: 2 fields where the header has 3"):
         channels(tmp_path, "\n".join([*lines, ""]))

@@ -19,7 +19,8 @@ POSITIVE = frozenset(("+", "ve", "positive", "pos", "is", "to", "side", "down", 
 BRACKETED = re.compile(r"[\[(](.*)[\])]")
 DASHES = frozenset("-\N{EN DASH}\N{EM DASH}")
 
-MISSING = frozenset({"", "nan", "na", "n/a", "null"})
+MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"})
+"""What programs write, in any case of letters, where there is no value."""
 
 MOST_COLUMNS = 10_000
 

@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.errors import LogError, list_names
+from trialid.errors import LogError
 from trialid.ingest.bytes.encoded_text import (
     LONGEST_LINE,
     OddTextError,
@@ -50,7 +50,7 @@ from trialid.ingest.tables.table_layout import (
     without_cut_line,
 )
 from trialid.ingest.tables.table_quick import is_number
-from trialid.ingest.tables.table_tidy import cut
+from trialid.ingest.tables.table_tidy import cut, even
 from trialid.ingest.tables.templates.template import Template, check_header, distinct
 
 MOST_BYTES = 2_000_000_000
@@ -231,19 +231,14 @@ def _careful(path: Path, raw: bytes, top: Top, layout: Layout, remarks: list[str
         remarks = [*remarks, f"line {lines.pop()}, the last, is cut short and left out"]
     if not rows:
         raise LogError(f"{path}: a header but no rows; check that the log was exported")
-    for line, row in zip(lines, rows, strict=True):
-        if len(row) != len(names):
-            raise LogError(
-                f"{path}, line {line}: {len(row)} fields where the header has {len(names)}"
-                f" ({list_names(names)}); mend or delete the line, or, where the table is laid out "
-                "otherwise, draft a template (trialid inspect LOG --template FILE)"
-            )
+    rows, lines, torn = even(path, rows, lines, top.heads)
     mark = decimal(raw, layout, top.offset)
     columns = tuple(np.array(column, dtype=object) for column in zip(*rows, strict=True))
     number = reader_of_numbers(mark, layout.thousands, layout.missing)
     if layout.decimal is None and mark == ",":
         number = _either(path, columns, lines, number)
-    return Table(path, top.heads, columns, lambda row: f"line {lines[row]}", number, tuple(remarks))
+    told = (*remarks, *torn)
+    return Table(path, top.heads, columns, lambda row: f"line {lines[row]}", number, told)
 
 
 def _rows(

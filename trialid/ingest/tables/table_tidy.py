@@ -2,13 +2,20 @@
 
 import dataclasses
 from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 
-from trialid.ingest.tables.table import MISSING, MOST_COLUMNS, Table, Values, head
+from trialid.errors import LogError, list_names
+from trialid.ingest.tables.table import MISSING, MOST_COLUMNS, Head, Table, Values, head
 
 LABELS = ("", "Unnamed: 0")
 """What stands above the rows' own labels in a table that pandas saved."""
+MOST_TORN: Final = 0.01
+"""Of the rows that a logger may leave torn, as a disk that was full or a line that was lost does. A
+table that is laid out otherwise than its header has all rows of another width, or every other one:
+half and twice as many tell the two apart as well."""
 
 
 def tidy(table: Table) -> Table:
@@ -60,3 +67,33 @@ def cut(rows: Sequence[list[str]], width: int) -> Sequence[list[str]]:
     if not width < most <= MOST_COLUMNS or any(any(row[width:]) for row in rows):
         return rows
     return [row[:width] for row in rows]
+
+
+def even(
+    path: Path, rows: Sequence[list[str]], lines: Sequence[int], heads: Sequence[Head]
+) -> tuple[list[list[str]], list[int], list[str]]:
+    """The rows as wide as the header and their lines, and what of the others is left out.
+
+    A header that is repeated, as loggers do that start again, is none of the rows. LogError names
+    the first row of another width where they are more than a logger leaves torn.
+    """
+    names = [one.name for one in heads]
+    again = [row == [one.text for one in heads] for row in rows]
+    torn = [len(row) != len(names) and not same for row, same in zip(rows, again, strict=True)]
+    if sum(torn) > MOST_TORN * len(rows):
+        at = torn.index(True)
+        raise LogError(
+            f"{path}, line {lines[at]}: {len(rows[at])} fields where the header has {len(names)}"
+            f" ({list_names(names)}); mend or delete the line, or, where the table is laid out "
+            "otherwise, draft a template (trialid inspect LOG --template FILE)"
+        )
+    kept = [i for i in range(len(rows)) if not (torn[i] or again[i])]
+    told = [
+        f"left out: {what} (first line {lines[odd.index(True)]}, {sum(odd)} in all)"
+        for odd, what in (
+            (again, "the header, repeated"),
+            (torn, f"rows that have not the header's {len(names)} fields"),
+        )
+        if any(odd)
+    ]
+    return [rows[i] for i in kept], [lines[i] for i in kept], told
