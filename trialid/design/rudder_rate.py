@@ -1,6 +1,7 @@
 """How fast a ship's rudder goes over, from how it went over in her trials."""
 
-from collections.abc import Iterable, Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,10 +18,14 @@ OVER: Final = 0.9
 EVENLY: Final = 0.1
 """Share by which it may be slower over that: a ramp is by noise alone, a sine by 0.2. With half of
 it a zig-zag 10/10 counts up to 0.1 deg of noise on the rudder's angle, with this up to 0.2."""
-LONG: Final = 8
-"""Samples from angle to angle from which the whole way is clocked: of 2.7 deg/s in 0.1 to 0.2 deg
-of noise, logged once a second, 2.70 to 2.71 then, 2.77 to 2.84 by the quickest part. At half of it
-5 deg/s, logged every 2 s, are 4.8; with twice of it those 2.7 have to be logged twice a second."""
+MOVE: Final = 0.5
+"""Share of its range that a rudder goes from where it turns to where it turns again, to be clocked
+from angle to angle; at half and twice of it, those of a zig-zag are the same ones."""
+ENDS: Final = 0.15
+"""Share of such a move at either end that is not clocked, and one sample at least: there it starts
+and stops between two samples. 2.3 to 8 deg/s of zig-zags of 10 to 20 deg, in up to 0.2 deg of noise
+and logged each 0.1 to 2 s, are 0.982 to 1.013 of themselves so, with half of it too, and 0.974 to
+1.017 with twice."""
 SPIKE: Final = 3
 """Moves as quick that there have to be: a wild sample makes two."""
 
@@ -41,10 +46,10 @@ def gear_rate(trials: Iterable[Trial], angles: Sequence[str] = ("delta",)) -> fl
 
 
 def rudder_rate(delta: Vector, period: float) -> float:
-    """How fast a recorded rudder goes over [rad/s]: its quickest move by a part of its range.
+    """How fast a recorded rudder goes over [rad/s]: in the middle of its moves, if they are even.
 
-    From one sample to the next noise moves it too, and the faster the log the more: one that goes
-    evenly is clocked from angle to angle.
+    Where these are over within a sample or two, or it was worked little by little, its quickest
+    move by a part of its range counts.
 
     >>> noisy = np.tile([0.0, 0.003], 50) + np.repeat([0.0, 0.2], 50).cumsum() / 50
     >>> round(rudder_rate(noisy, 0.1), 2)
@@ -64,8 +69,47 @@ class _Clocked(NamedTuple):
 def _clocked(delta: Vector, period: float) -> _Clocked:
     quick, whole = _quickest(delta, MOVED), _quickest(delta, OVER)
     even = quick.samples > 1 and whole.moved >= (1.0 - EVENLY) * quick.moved
-    long = even and whole.samples >= LONG
-    return _Clocked((whole if long else quick).moved / period, even, long)
+    slopes = [_slope(y) for y in _middles(delta) if len(y) > 1] if even else []
+    return _Clocked(
+        float(np.median(slopes) if slopes else quick.moved) / period, even, bool(slopes)
+    )
+
+
+def _middles(delta: Vector) -> Iterator[Vector]:
+    """The middle of each move by `MOVE` of the rudder's range, as far as it has gone then."""
+    turns = _turns(delta, MOVE * float(np.ptp(delta)))
+    for first, last in itertools.pairwise(turns):
+        gone = np.abs(delta[first : last + 1] - delta[first]) / abs(delta[last] - delta[first])
+        ends = max(ENDS, 0.8 / max(len(_between(gone, 0.1)), 1))
+        yield _between(gone, ends) * abs(delta[last] - delta[first])
+
+
+def _between(gone: Vector, ends: float) -> Vector:
+    """What of a move lies between its ends, each of which is a share of it."""
+    last = int(np.argmax(gone >= 1.0 - ends))
+    return gone[int(np.flatnonzero(gone[: last + 1] <= ends)[-1]) + 1 : last]
+
+
+def _turns(delta: Vector, least: float) -> list[int]:
+    """The samples at which a rudder turns that then goes at least so far the other way."""
+    turns, furthest, way = list[int](), [0, 0], 0
+    for i, angle in enumerate(delta.tolist()):
+        furthest = [
+            i if sign * angle > sign * delta[at] else at
+            for sign, at in zip((1, -1), furthest, strict=True)
+        ]
+        for sign, at in zip((1, -1), furthest, strict=True):
+            if way in (0, sign) and sign * (delta[at] - angle) >= least:
+                turns.append(at)
+                way, furthest = -sign, [i, i]
+                break
+    return [*turns, furthest[way < 0]] if turns else []
+
+
+def _slope(y: Vector) -> float:
+    """By how much equally spaced values rise from one to the next, by least squares."""
+    k = np.arange(len(y)) - 0.5 * (len(y) - 1)
+    return float(k @ y / (k @ k))
 
 
 class Move(NamedTuple):
@@ -81,7 +125,10 @@ def _quickest(delta: Vector, share: float) -> Move:
     if far == 0.0:
         return Move(0, 0.0)
     for apart in range(1, len(delta)):
-        quickest = np.sort(np.abs(delta[apart:] - delta[:-apart]))[-SPIKE:]
-        if len(quickest) == SPIKE and quickest[0] >= far:
-            return Move(apart, float(quickest[0]) / apart)
+        moved = np.abs(delta[apart:] - delta[:-apart])
+        if len(moved) < SPIKE:
+            break
+        least = float(np.partition(moved, -SPIKE)[-SPIKE])
+        if least >= far:
+            return Move(apart, least / apart)
     return Move(0, 0.0)

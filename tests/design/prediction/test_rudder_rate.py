@@ -53,6 +53,17 @@ def test_noise_makes_no_gear_quicker(rate, period):
     assert rudder_rate(noisy, period) == pytest.approx(rate * D, rel=0.02)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_moves_of_few_samples_are_clocked_between_their_ends(seed):
+    """By its quickest part 8 deg/s at 0.5 s were 7.66 to 8.33, and each overshoot off with it."""
+    rng = np.random.default_rng(seed)
+    fine = steered(8.0, angle=15.0, period=0.05)
+    t = 0.05 * np.arange(fine.samples)
+    noisy = fine.signals["delta"] + 0.05 * D * rng.standard_normal(fine.samples)
+    seen = np.interp(np.arange(rng.uniform(0.0, PERIOD), t[-1], PERIOD), t, noisy)
+    assert rudder_rate(seen, PERIOD) == pytest.approx(8.0 * D, rel=0.01)
+
+
 def test_a_long_way_is_believed_before_a_short_one_that_is_not_unlike():
     rng = np.random.default_rng(6)
     long, short = steered(2.7, period=1.0), steered(2.7, angle=9.0, period=1.0)
