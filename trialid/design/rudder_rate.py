@@ -68,7 +68,8 @@ class _Clocked(NamedTuple):
 
 def _clocked(delta: Vector, period: float) -> _Clocked:
     quick, whole = _quickest(delta, MOVED), _quickest(delta, OVER)
-    even = quick.samples > 1 and whole.moved >= (1.0 - EVENLY) * quick.moved
+    evenly = OVER * float(np.ptp(delta)) / whole.spent
+    even = quick.samples > 1 and whole.samples > 0 and evenly >= (1.0 - EVENLY) * quick.moved
     slopes = [_slope(y) for y in _middles(delta) if len(y) > 1] if even else []
     return _Clocked(
         float(np.median(slopes) if slopes else quick.moved) / period, even, bool(slopes)
@@ -113,22 +114,22 @@ def _slope(y: Vector) -> float:
 
 
 class Move(NamedTuple):
-    """The samples that a rudder's quickest move took, and by how much it moved in one [rad]."""
+    """The samples that a rudder's quickest move took, and by how much it moved in one [rad].
+
+    `spent` are the samples between which it got just so far, a part of one among them.
+    """
 
     samples: int
     moved: float
+    spent: float
 
 
 def _quickest(delta: Vector, share: float) -> Move:
     """The quickest move of a rudder by a share of its range."""
-    far = share * float(np.ptp(delta))
-    if far == 0.0:
-        return Move(0, 0.0)
-    for apart in range(1, len(delta)):
-        moved = np.abs(delta[apart:] - delta[:-apart])
-        if len(moved) < SPIKE:
-            break
-        least = float(np.partition(moved, -SPIKE)[-SPIKE])
-        if least >= far:
-            return Move(apart, least / apart)
-    return Move(0, 0.0)
+    far, before = share * float(np.ptp(delta)), 0.0
+    for apart in range(1, len(delta) - SPIKE + 1) if far > 0.0 else ():
+        moved = float(np.partition(np.abs(delta[apart:] - delta[:-apart]), -SPIKE)[-SPIKE])
+        if moved >= far:
+            return Move(apart, moved / apart, apart - (moved - far) / (moved - before))
+        before = moved
+    return Move(0, 0.0, 1.0)

@@ -66,7 +66,7 @@ def test_moves_of_few_samples_are_clocked_between_their_ends(seed):
 
 def test_a_long_way_is_believed_before_a_short_one_that_is_not_unlike():
     rng = np.random.default_rng(6)
-    long, short = steered(2.7, period=1.0), steered(2.7, angle=9.0, period=1.0)
+    long, short = steered(2.7, period=1.0), steered(2.7, angle=6.0, period=1.0)
     noisy = short.signals["delta"] + 0.15 * D * rng.standard_normal(short.samples)
     short = Trial("short", "fit", 1.0, {"delta": noisy}, {})
     assert gear_rate([short]) > 2.78 * D
