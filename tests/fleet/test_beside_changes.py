@@ -18,7 +18,8 @@ def voyages(many: int = 16, days: range | None = DAYS) -> list[RunRow]:
 
 def words(runs: list[RunRow]) -> list[str]:
     assert {each.ship for each in remarks(runs)} <= {"ann"}
-    return [each.words for each in remarks(runs)]
+    told = [each.words for each in remarks(runs)]
+    return [line for line in told if not line.startswith("no changes are sought")]
 
 
 def test_of_voyages_with_dates_and_one_model_nothing_is_told() -> None:
@@ -29,6 +30,19 @@ def test_voyages_without_dates_are_told_to_be_in_the_order_of_names() -> None:
     told = "no voyage has a date: they are in the order of their names, trip 0 to trip 15"
     assert words(voyages(days=None)) == [told]
     assert words(voyages(5, None)) == []  # too few for a change
+
+
+def test_ships_with_too_few_voyages_for_changes_are_told_in_one_line() -> None:
+    """`changes found: 0` of five voyages said that none had been; nobody had looked."""
+    five = voyages(5, DAYS[:5])
+    runs = [replace(row, ship=ship) for ship in ("ann", "bea") for row in five]
+    (told,) = remarks([*runs, *(replace(row, ship="cid") for row in voyages())])
+    assert told.ship == "ann and bea"
+    assert told.words.startswith("no changes are sought: it takes 6 voyages with a fit")
+    assert remarks(voyages(6, DAYS[:6])) == ()
+    undated = [replace(row, date=None) if k else row for k, row in enumerate(voyages())]
+    assert remarks(undated)[-1].words == told.words
+    assert remarks(voyages(1, DAYS[:1])) == ()  # of one voyage nobody expects it
 
 
 def test_some_without_a_date_are_named() -> None:

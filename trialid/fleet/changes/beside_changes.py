@@ -3,7 +3,7 @@
 None of it is a change of a ship's parameter, and each may stand behind one that is told.
 """
 
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
@@ -25,12 +25,27 @@ def remarks(runs: Sequence[RunRow]) -> tuple[Remark, ...]:
     """Every line, ship by ship; a voyage done in several ways counts once."""
     voyages = {(row.ship, row.voyage): row for row in reversed(runs)}  # of each its first run
     ordered = [row for row in dict.fromkeys(runs) if voyages[row.ship, row.voyage] is row]
-    return tuple(
+    ships = _grouped(ordered, lambda row: row.ship)
+    told = (
         Remark(ship=ship, words=words)
-        for ship, rows in _grouped(ordered, lambda row: row.ship).items()
+        for ship, rows in ships.items()
         for tell in (_dates, _copies, _models, _missing_since)
         for words in tell(rows)
     )
+    return *told, *_too_few(ships)
+
+
+def _too_few(ships: Mapping[str, Sequence[RunRow]]) -> Iterator[Remark]:
+    """The ships of several voyages in which no changes are sought."""
+    short = [
+        ship for ship, rows in ships.items() if len(rows) > 1 and len(with_a_say(rows)) < FEWEST
+    ]
+    if short:
+        yield Remark(
+            ship=_few(short),
+            words=f"no changes are sought: it takes {FEWEST} voyages with a fit and, where any has "
+            "a date, with one",
+        )
 
 
 def _grouped(rows: Sequence[RunRow], key: Callable[[RunRow], Key]) -> dict[Key, list[RunRow]]:
