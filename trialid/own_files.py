@@ -23,6 +23,18 @@ Hashes = dict[str, list[str]]
 """Names below a folder, with the hashes a file of ours may have there."""
 
 
+@contextmanager
+def write_or_say_why(place: Path, option: str = "--out") -> Iterator[None]:
+    """A place that cannot be written is the user's to mend."""
+    try:
+        yield
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise TrialidError(
+            f"{place}: cannot be written ({reason}); choose another {option}"
+        ) from error
+
+
 def check(
     folder: Path,
     names: tuple[str, ...],

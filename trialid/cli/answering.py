@@ -1,8 +1,7 @@
 """From a pipeline file to its answer on a screen: the folder, the summary, or plain data."""
 
 import json
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,15 +52,6 @@ def answer(
     elif not quiet:
         foot += f"Report: {folder / 'report.html'}"
         say(f"{show(result, screen_less(foot))}\n{foot}")
-
-
-@contextmanager
-def write_or_say_why(folder: Path) -> Iterator[None]:
-    """A place that cannot be written is the user's to mend."""
-    try:
-        yield
-    except OSError as error:
-        raise TrialidError(f"{folder}: cannot be written ({error.strerror or error})") from error
 
 
 def summary_of(pipeline: str, above: int = 0) -> "Callable[[Result, int], str]":

@@ -8,7 +8,6 @@ import click
 
 from trialid import own_files
 from trialid.cli.console import file_width, progress_bar, render, say
-from trialid.errors import TrialidError
 
 
 @click.command(short_help="Rate tests and choose the next one; papers for the bridge.")
@@ -39,11 +38,8 @@ def design(design: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
 
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         made = plan(pipeline, progress)
-        try:
+        with own_files.write_or_say_why(folder):
             data = write(made, folder)
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise TrialidError(f"{folder}: cannot be written ({reason})") from error
     if as_json:
         say(json.dumps(data, indent=2, allow_nan=False))
     elif not quiet:

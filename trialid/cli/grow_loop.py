@@ -5,8 +5,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trialid.cli.answering import answer, summary_of, write_or_say_why
+from trialid.cli.answering import answer, summary_of
 from trialid.cli.console import Progress, progress_bar, render, say
+from trialid.own_files import write_or_say_why
 
 if TYPE_CHECKING:
     from trialid.pipeline_file import Pipeline

@@ -15,14 +15,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from trialid import temporary
-from trialid.cli.answering import (
-    answer,
-    check_draft,
-    open_pipeline,
-    summary_of,
-    write_draft,
-    write_or_say_why,
-)
+from trialid.cli.answering import answer, check_draft, open_pipeline, summary_of, write_draft
 from trialid.cli.console import (
     complain,
     let_go,
@@ -48,6 +41,7 @@ from trialid.cli.ship_command import ship
 from trialid.cli.simulate_command import simulate
 from trialid.cli.start_command import start
 from trialid.cli.workbench_command import workbench
+from trialid.own_files import write_or_say_why
 from trialid.version import VERSION
 
 if TYPE_CHECKING:

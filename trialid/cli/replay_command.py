@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from trialid import own_files
 from trialid.cli.answering import check_trial_names
 from trialid.cli.console import complain, progress_bar, say
 from trialid.cli.replay_source import Following, source_of
@@ -283,10 +284,8 @@ def _written(out: Path, playback: "Playback", start: float) -> list[Path]:
     if playback.furthest <= round(start / playback.trial.period):
         complain(f"--out {out}: nothing was played, nothing is written")
         return []
-    try:
+    with own_files.write_or_say_why(out):
         return write(out, playback, VERSION, start)
-    except OSError as error:
-        raise TrialidError(f"{out}: cannot be written ({error.strerror or error})") from error
 
 
 def _summary(playback: "Playback", start: float, files: Sequence[Path]) -> str:

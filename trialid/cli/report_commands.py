@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from trialid import temporary
+from trialid import own_files, temporary
 from trialid.cli.console import complain, progress_bar, say
 from trialid.errors import TrialidError
 
@@ -54,7 +54,7 @@ def report(runs: tuple[Path, ...], out: Path | None, imo: bool, quiet: bool, sch
     ]
     place = out or (runs[0] if len(runs) == 1 else Path("comparison"))
     _check_place(place, runs)
-    try:
+    with own_files.write_or_say_why(place):
         if len(read) == 1:
             page, files = (write_form if imo else write_one)(read[0], place)
         else:
@@ -62,9 +62,6 @@ def report(runs: tuple[Path, ...], out: Path | None, imo: bool, quiet: bool, sch
             for each in read:
                 own = place / each.label
                 files += 1 + write_one(each, own)[1]
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise TrialidError(f"{place}: cannot be written ({reason}); choose --out") from error
     if not quiet:
         say(f"Report: {page}\n{files} tables, figures and pages beside it")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from trialid.cli.answering import answer, open_pipeline, summary_of, write_or_say_why
+from trialid.cli.answering import answer, open_pipeline, summary_of
 from trialid.cli.console import note, progress_bar, render, say
 from trialid.cli.log_commands import (
     FILE,
@@ -18,6 +18,7 @@ from trialid.cli.log_commands import (
 )
 from trialid.cli.particulars_options import given_from, particulars_options
 from trialid.names import wording
+from trialid.own_files import write_or_say_why
 
 if TYPE_CHECKING:
     from trialid.workflow.first_pipeline import Starter

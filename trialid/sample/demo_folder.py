@@ -42,12 +42,11 @@ def write(folder: Path) -> tuple[str, ...]:
         raise TrialidError(f"{folder}: is a file; DIR is a folder")
     temporary.check_writable(folder, "DIR")
     own_files.check(folder, names, option="DIR")
-    try:
-        with own_files.replacing(folder, option="DIR") as work:
-            _fill(work)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise TrialidError(f"{folder}: cannot be written ({reason}); choose another DIR") from error
+    with (
+        own_files.write_or_say_why(folder, option="DIR"),
+        own_files.replacing(folder, option="DIR") as work,
+    ):
+        _fill(work)
     return names
 
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import click
 
-from trialid.cli.answering import write_or_say_why
 from trialid.cli.console import complain, progress_bar, say
 from trialid.cli.many.where_done import jobs_option, on_option, teller, workers_of
+from trialid.own_files import write_or_say_why
 
 
 @click.command(short_help="Do the runs of a fleet on many cores; only what is new.")

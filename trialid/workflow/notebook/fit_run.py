@@ -77,11 +77,11 @@ class FitRun(RunView):
         Raises
         ------
         TrialidError
-            A file that is not ours stands in the way.
+            A file that is not ours stands in the way, or the folder cannot be written.
         """
         place = path_of(folder, "write")
         forces = () if self.findings.force is None else force_series(self.findings.force)
-        with own_files.replacing(place) as work:
+        with own_files.write_or_say_why(place), own_files.replacing(place) as work:
             (work / "result.json").write_text(text_of(self.result), encoding="utf-8")
             write_csv(work / "series.csv", self.series)
             write_page(work / "report.html", self.result, self.series, forces)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from trialid.own_files import write_or_say_why
 from trialid.pipeline_file import Pipeline
 from trialid.progress import silent
 from trialid.result.build import Findings
@@ -68,7 +69,8 @@ class PipelineRun(RunView):
         """
         place = path_of(folder, "write")
         check_replaceable(place, self.pipeline)
-        write(Run(self.pipeline, self.findings, self.result, self.series), place)
+        with write_or_say_why(place):
+            write(Run(self.pipeline, self.findings, self.result, self.series), place)
         return place / "report.html"
 
 
