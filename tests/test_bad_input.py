@@ -794,7 +794,7 @@ def test_a_place_nobody_may_write_to() -> None:
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_folder_without_the_right_to_write() -> None:
     Path("locked").mkdir(mode=0o500)
-    refused("locked/run", "cannot be written", "Permission denied", out="locked/run")
+    refused("locked/run", "cannot be written", "permission denied", out="locked/run")
 
 
 def test_a_name_too_long_for_the_disk() -> None:
@@ -803,7 +803,7 @@ def test_a_name_too_long_for_the_disk() -> None:
 
 def test_a_place_that_cannot_be_written_leaves_no_folders(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("trialid.workflow.write_run.write_page", full)
-    refused("a/b/run", "cannot be written", "No space left", out="a/b/run")
+    refused("a/b/run", "cannot be written", "no space left", out="a/b/run")
 
 
 def full(*_: object) -> None:
@@ -817,7 +817,7 @@ def stopped(*_: object) -> None:
 def test_a_full_disk_leaves_the_earlier_run(monkeypatch: pytest.MonkeyPatch) -> None:
     finished()
     monkeypatch.setattr("trialid.workflow.write_run.write_page", full)
-    refused("out", "cannot be written", "No space left on device")
+    refused("out", "cannot be written", "no space left on device")
 
 
 def test_the_keyboard_leaves_the_earlier_run(monkeypatch: pytest.MonkeyPatch) -> None:

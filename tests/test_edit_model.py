@@ -273,7 +273,7 @@ def test_what_is_missing_on_the_line(arguments: tuple[str, ...]) -> None:
 
 def test_a_full_disk_leaves_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("trialid.workflow.write_run.write_page", spoilt.full)
-    refused("add", "short.toml", ADDED, words=("out: cannot be written", "No space left"))
+    refused("add", "short.toml", ADDED, words=("out: cannot be written", "no space left"))
 
 
 def test_a_crash_at_the_last_moment_leaves_the_file(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -136,6 +136,12 @@ def test_a_run_is_written_as_the_command_writes_it(run, sample_run: Path, tmp_pa
     assert report.read_bytes() == (sample_run / "report.html").read_bytes()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="a place that nobody can write into")
+def test_a_place_that_cannot_be_written_is_said(run):
+    with pytest.raises(TrialidError, match=r"/proc/x: cannot be written .*choose another"):
+        run.write("/proc/x")
+
+
 # --- without any file
 
 

@@ -163,4 +163,5 @@ def test_the_command_says_it_in_one_line(began: Path, monkeypatch: pytest.Monkey
     words = ["batch", str(began / "fleet.toml"), "--out", str(began / "out"), "--quiet"]
     told = CliRunner().invoke(commands, words)
     assert told.exit_code == 2
-    assert told.stderr == f"trialid: {began / 'out'}: cannot be written (No space left on device)\n"
+    why = "cannot be written (no space left on device); choose another --out"
+    assert told.stderr == f"trialid: {began / 'out'}: {why}\n"

@@ -172,6 +172,6 @@ def _run(pipeline: Path, quiet: bool, above: int) -> None:
 
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         done = run(asked, progress)
-        with write_or_say_why(folder):
+        with write_or_say_why(folder, "--pipeline"):
             write(done, folder)
     answer(done.result, folder, False, quiet, summary_of(str(pipeline), above))
