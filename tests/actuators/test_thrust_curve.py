@@ -4,6 +4,7 @@ A motor gives less thrust astern, and none for 30 us to either side of its middl
 offset says that.
 """
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -62,15 +63,25 @@ def thrust(width: np.ndarray) -> np.ndarray:
 
 @cache
 def log() -> str:
-    """85 kg ahead and 50 kg m^2 in yaw against linear drag; widths held 4 s, from rest."""
+    """The boat by her pulse widths, held 4 s."""
     rng = np.random.default_rng(31)
     widths = np.repeat(rng.uniform(1150.0, 1880.0, (40, 2)), 20, axis=0)
-    rows, state, h = ["time_s,u,r,pwm_left [us],pwm_right [us]"], np.zeros(2), 0.04
+    return sailed(widths, thrust, rng, "pwm_left [us],pwm_right [us]")
+
+
+def sailed(
+    orders: np.ndarray,
+    thrust: Callable[[np.ndarray], np.ndarray],
+    rng: np.random.Generator,
+    names: str,
+) -> str:
+    """85 kg ahead and 50 kg m^2 in yaw against linear drag, from rest; a log."""
+    rows, state, h = [f"time_s,u,r,{names}"], np.zeros(2), 0.04
     damping = np.array([40.0 / 85.0, 25.0 / 50.0])
-    for k, now in enumerate(widths):
+    for k, now in enumerate(orders):
         u, r = state + rng.normal(0.0, (0.01, 0.002))
         rows.append(f"{0.2 * k:.1f},{u:.5f},{r:.6f},{now[0]:.4f},{now[1]:.4f}")
-        after = thrust(widths[min(k + 1, len(widths) - 1)])
+        after = thrust(orders[min(k + 1, len(orders) - 1)])
         for i in range(5):
             left, right = thrust(now) + (after - thrust(now)) * (i + 0.5) / 5.0
             push = np.array([(left + right) / 85.0, 0.4 * (left - right) / 50.0])
@@ -123,3 +134,26 @@ def test_what_is_wrong_with_a_curve_is_one_line(folder: Path, old: str, new: str
     with pytest.raises(TrialidError, match=says) as caught:
         pipeline_file.load(path)
     assert "\n" not in str(caught.value)
+
+
+SHARES = (
+    PIPELINE.replace(f', unit = "N", curve = {CURVE}', ', unit = "1"')
+    .replace("pwm_", "share_")
+    .replace('"k_astern", ', "")
+    .replace("[identify]", "values = { k_astern = 20.0 }\n[identify]")
+)
+
+
+@pytest.mark.parametrize(("power", "named"), [(1.0, True), (1.5, True), (2.0, False)])
+@pytest.mark.parametrize("seed", range(41, 44))
+def test_thrust_that_is_in_proportion_to_a_share_is_named(tmp_path, seed, power, named) -> None:
+    """What a command of half gives is a quarter of full in the model, as of revolutions."""
+    rng = np.random.default_rng(seed)
+    shares = np.repeat(rng.uniform(0.1, 1.0, (40, 2)), 20, axis=0)
+    text = sailed(shares, lambda share: 40.0 * share**power, rng, "share_left,share_right")
+    ship = SHIP.replace('"thrust"', '"share"')
+    for name, told in {"boat.toml": ship, "p.toml": SHARES, "a.csv": text}.items():
+        (tmp_path / name).write_text(told, encoding="utf-8")
+    done = run(pipeline_file.load(tmp_path / "p.toml")).findings
+    assert (done.verdict.effect == "thrusters_linear") == named, done.verdict.sentence
+    assert named or done.verdict.effect is None

@@ -41,6 +41,8 @@ def push_effects(ship: Ship) -> Iterator[Effect]:
             if len({one.command for one in ones}) == 1:  # else they have no band in common
                 yield _deadband(ship, push.effect, ones)
                 yield _saturation(ship, push.effect, ones)
+        if {one.command for one in ones} == {"share"} and not push.shapes:
+            yield _linear(ship, push, ones)
         if ones and kind == "thruster":
             yield _advance(ship, ones)
         if ones and kind == "tunnel":
@@ -154,6 +156,32 @@ def _saturation(ship: Ship, kind: str, ones: Sequence[Actuator]) -> Effect:
         parameters={
             full: Parameter(0.5 * size, COMMANDS[command], low=0.05 * size, null=None, scan=tried)
         },
+    )
+
+
+def _linear(ship: Ship, kind: PushKind, ones: Sequence[Actuator]) -> Effect:
+    """What thrust has in proportion to a share of full, that is no share of full revolutions.
+
+    A motor's voltage is not: the propeller's torque takes of it with the square of its revolutions,
+    so that thrust goes with a power of it between the first and the second.
+    """
+
+    def linear(**values: Number) -> Force:
+        forces = []
+        for one in ones:
+            gain = values[own_name(f"k_linear_{kind.effect}", one)]
+            by = driven(one, values)._replace(command="thrust")
+            forces.append(turned(one, kind.force(by, dict.fromkeys(kind.gains, gain))))
+        return total(forces)
+
+    gain = Parameter(typical_gain(ship, "share"), GAIN_UNITS["share"], low=0.0)
+    return make_effect(
+        linear,
+        name=f"{kind.effect}_linear",
+        equation=f"T = k_linear_{kind.effect} n: thrust in proportion to the share of full",
+        source=F11,
+        signals=[s for one in ones for s in one.signals],
+        parameters={own_name(f"k_linear_{kind.effect}", one): gain for one in ones},
     )
 
 
