@@ -8,11 +8,13 @@ from s175q import MODEL, SHAFT
 from waters import VESSEL, D
 
 from trialid.design import standard
-from trialid.design.helm import vessel
-from trialid.design.imo.measure_slopes import measure_slopes
+from trialid.design.helm import Passage, vessel
+from trialid.design.imo.measure_slopes import measure_slopes, until_amidships
 from trialid.design.standard import acts_in_calm, in_calm, predict
 from trialid.effects import CATALOGUE
+from trialid.errors import DesignError
 from trialid.ship.effect import Effect, Parameter, Steered, effect
+from trialid.trial import Trial
 
 KNOWN = ("Nv", "Nr", "Ndelta", "Ydelta", "GM", "Nrdot", "Nrar", "Xrr", "Xdd", "KT0", "b_r")
 NAMES = (
@@ -188,3 +190,13 @@ def test_calm_water_has_no_wind_and_no_sensors():
     left = in_calm(vessel(windy, 0.5, VESSEL.constants, VESSEL.rudder_rate)).model.effects
     assert left == MODEL.effects
     assert sailed(windy) == pytest.approx(sailed(MODEL))
+
+
+def test_a_ship_that_leaves_her_model_on_the_approach_is_told() -> None:
+    """Turned by her rudder's zero alone where a number that is changed makes her unstable."""
+    n = 8
+    signals = {name: np.zeros(n) for name in ("delta_order", "delta", "psi", "r", "v")}
+    trial = Trial("zig-zag 20/20", "check", 0.5, signals, {})
+    lost = Passage(trial, np.zeros(n), np.zeros(n), None)
+    with pytest.raises(DesignError, match="zig-zag 20/20: the ship leaves her model on the appr"):
+        until_amidships(lost)

@@ -84,6 +84,18 @@ def missing(row: RunRow, *family: str) -> RunRow:
     return replace(row, verdict="missing", effect=family[0], family=", ".join(family))
 
 
+def test_that_runs_have_no_fit_from_a_voyage_on_is_told() -> None:
+    """Of an outsider's ship every sensor was another from the seventh voyage on: no change."""
+    runs = [replace(row, verdict="no fit") if k >= 6 else row for k, row in enumerate(voyages(12))]
+    (told,) = words(runs)
+    assert told.startswith("from trip 6 on 6 of 6 runs have no fit, before 0 of 6: something is")
+    here_and_there = [
+        replace(row, verdict="no fit") if k in (1, 4, 9) else row
+        for k, row in enumerate(voyages(12))
+    ]
+    assert words(here_and_there) == []
+
+
 def test_an_effect_missing_from_a_voyage_on_is_told() -> None:
     runs = [
         missing(row, "rudder_scale", "Kdelta", *(["roll_cubic"] if k % 3 else []))

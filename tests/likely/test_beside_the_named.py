@@ -62,6 +62,7 @@ def test_a_diagnosis_beside_the_model_with_its_effect(monkeypatch):
     before, after, usual = (diagnosed.Diagnosed(fit, None, (), doubts) for fit in tables)
     beside = {"without": (usual,), "with": ()}
     monkeypatch.setattr(diagnosed, "beside_usual_forces", lambda fit, examine: beside[fit])
+    monkeypatch.setattr(diagnosed, "beside_in_time", lambda fit, examine: ())
     assert before.beside("cross_flow_drag", after).accuracy.parameters[0].likely == (0.0, 3.0)
     assert before.beside(None, after).accuracy.parameters[0].likely == (-1.0, 2.0)
     assert before.own_accuracy.parameters[0].likely == (0.0, 2.0)

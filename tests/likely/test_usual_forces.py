@@ -48,12 +48,20 @@ def sailed(ship, seed):
     return made
 
 
-def begun(trials, *, by_ship=True, **exact):
+def begun(trials, **exact):
     """The linear model of the S-175 fitted to them, held by her file as `trialid start` does."""
-    file = replace(
-        SHIP, uncertainty={"default": SCATTER, **dict.fromkeys(SHIP.mass, 0.02), "GM": 0.1, **exact}
+    return fitted(
+        replace(
+            SHIP,
+            uncertainty={"default": SCATTER, **dict.fromkeys(SHIP.mass, 0.02), "GM": 0.1, **exact},
+        ),
+        trials,
     )
-    model = ShipModel(file, ("v", "p", "r", "phi"), tuple(CATALOGUE[e] for e in LINEAR))
+
+
+def fitted(file, trials, *, by_ship=True, more=()):
+    """A linear model of a ship by her file, with some effects more."""
+    model = ShipModel(file, ("v", "p", "r", "phi"), tuple(CATALOGUE[e] for e in (*LINEAR, *more)))
     priors = ship_priors(model, FREE) if by_ship else {}
     settings = Settings(FREE, OUTPUTS, ("initial_state",), priors=priors, priors_of_ship=by_ship)
     fit = identify(trials, model, settings)
@@ -112,8 +120,32 @@ def test_with_all_forces_a_parameter_is_hers():
     assert whole.eps_rmsn < 0.7 * fit.eps_rmsn
 
 
-def test_nothing_holds_as_many_without_her_file():
-    assert usual_forces.beside_usual_forces(begun(sailed(drawn(27), 27), by_ship=False), id) == ()
+@pytest.mark.study(turn=4)
+def test_a_file_that_says_nothing_of_its_scatter_is_no_narrower_for_it():
+    """Her true file, and a linear hull: of an outsider's 30 voyages 5 and 8 held Nv and Nr.
+
+    Ours: 64 numbers of eight ships, 53 in the ranges of the linear model alone and 64 in these.
+    """
+    alone, every = [], []
+    for seed in range(30, 38):
+        ship = drawn(seed)
+        fit = fitted(ship, sailed(ship, seed), by_ship=False)
+        found, _ = examine_fit(fit, DiagnoseSettings(), silent)
+        alone += held(found.own_accuracy.physical, ship.coefficients).values()
+        every += held(found.accuracy.physical, ship.coefficients).values()
+    print(f"{sum(alone)} and {sum(every)} of {len(every)}")
+    assert sum(every) >= 0.9 * len(every) > sum(alone)
+
+
+def test_without_her_file_it_is_done_for_a_hull_that_is_nearly_linear():
+    """Of one with terms of a usual hull already there is little for another to stand in for."""
+    trials = sailed(drawn(27), 27)
+    one, two = ("sway_drag_vav",), ("sway_drag_vav", "yaw_drag_rar")
+    done = [
+        usual_forces.beside_usual_forces(fitted(SHIP, trials, by_ship=False, more=more), id)
+        for more in ((), one, two)
+    ]
+    assert [bool(found) for found in done] == [True, True, False]
 
 
 def test_a_hull_that_her_file_calls_exact_is_left_out():

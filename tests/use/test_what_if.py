@@ -114,6 +114,7 @@ def test_changes_act_on_orders_of_a_table_too(run_folder: Path, tmp_path: Path) 
         (["GM=nan"], "expected a finite number"),
         (["GN=1"], "no such parameter or input held; of 31 known the nearest are GM"),
         (["speed=-1"], "expected a speed above 0"),
+        (["speed=1e-6"], "expected 0.15 to 366 [m/s]"),
     ],
 )
 def test_a_wrong_change_is_one_line(changes, words, model: FinishedModel) -> None:

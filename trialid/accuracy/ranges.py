@@ -12,6 +12,9 @@ ANOTHER_GM: Final = "another GM"
 USUAL_FORCES: Final = "the usual forces at once"
 """What widens a range where all forces that a hull usually has move it further than any alone."""
 
+IN_TIME: Final = "sensors that are not early"
+"""What widens a range where a sensor is taken to be early, which none is."""
+
 
 def cut_to_ends(likely: Range | None, ends: Range) -> Range | None:
     """A likely range as far as the ends go between which a parameter may lie.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from trialid.accuracy.parameter_table import Accuracy
-from trialid.accuracy.ranges import USUAL_FORCES
+from trialid.accuracy.ranges import IN_TIME, USUAL_FORCES
 from trialid.accuracy.widened import embrace
 from trialid.diagnosis.force.missing_force import MissingForce
 from trialid.diagnosis.force.usual_forces import beside_usual_forces
@@ -13,6 +13,7 @@ from trialid.diagnosis.may_be_off import Doubts, doubts
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.prediction_band import prediction_band
+from trialid.diagnosis.records.early_sensor import beside_in_time
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
@@ -81,12 +82,15 @@ class Diagnosed:
         """Models that the ranges of whatever follows from this one hold, with what each has.
 
         The model with the effect that is missing, and what belongs beside that; where none has a
-        name, those with all usual forces.
+        name, those with all usual forces, and the one with its sensors in time if any is early.
         """
         if self.named is not None:
             return (self.named, *self.named[1].others)
-        usual = beside_usual_forces(self.fit, lambda fit: examination(fit, augment(fit, {})))
-        return tuple((USUAL_FORCES, one) for one in usual)
+        usual, in_time = (
+            beside(self.fit, lambda fit: examination(fit, augment(fit, {})))
+            for beside in (beside_usual_forces, beside_in_time)
+        )
+        return (*((USUAL_FORCES, one) for one in usual), *((IN_TIME, one) for one in in_time))
 
     @cached_property
     def accuracy(self) -> Accuracy:

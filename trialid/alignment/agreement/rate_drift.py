@@ -26,6 +26,10 @@ KNOWN: Final = 0.95
 """Share of the samples that both are measured in: through a gap nobody knows how she turned."""
 
 
+def _integral(rate: Vector, period: float) -> Vector:
+    return np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2.0) * period])
+
+
 def drift_of(rate: Vector, angle: Vector, valid: Mask, period: float) -> float:
     """By how much a rate drifts from begin to end [rad/s]; 0 where it does not, or nobody knows.
 
@@ -35,7 +39,7 @@ def drift_of(rate: Vector, angle: Vector, valid: Mask, period: float) -> float:
     """
     if len(rate) < 3 or valid.mean() < KNOWN:
         return 0.0
-    turned = np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2.0) * period])
+    turned = _integral(rate, period)
     x = np.linspace(-1.0, 1.0, len(rate))
     curve = np.column_stack([x**2, x, np.ones(len(x)), angle])
     off = turned - angle
@@ -47,6 +51,30 @@ def drift_of(rate: Vector, angle: Vector, valid: Mask, period: float) -> float:
     told = float(rest @ rest) < (1.0 - CURVED) * float(left @ left)
     moves = float(np.std(rate - drift * x / 2.0))
     return drift if told and abs(drift) > LARGE * moves else 0.0
+
+
+def late_of(rate: Vector, angle: Vector, valid: Mask, period: float) -> float:
+    """By how much a rate comes later than the slope of its angle [s]; 0 where nobody knows.
+
+    While she turns its integral is behind the angle by what it comes late times the rate, which is
+    plain in a turning circle, too, where the rate itself changes once.
+
+    >>> t = np.arange(0.0, 100.0, 0.1)
+    >>> turning = 0.1 * np.clip(t - 20.0, 0.0, 10.0)
+    >>> late = 0.1 * np.clip(t - 22.0, 0.0, 10.0)
+    >>> round(late_of(late, np.cumsum(turning) * 0.1, t >= 0.0, 0.1), 1)
+    2.0
+    """
+    if len(rate) < 3 or valid.mean() < KNOWN:
+        return 0.0
+    turned = _integral(rate, period)
+    x = np.linspace(-1.0, 1.0, len(rate))
+    behind = angle - turned
+    known = np.column_stack([np.ones(len(x)), x, turned])
+    moves, left = (y - known @ np.linalg.lstsq(known, y, rcond=None)[0] for y in (rate, behind))
+    late = float(moves @ left / max(float(moves @ moves), 1e-300))
+    rest = left - late * moves
+    return late if float(rest @ rest) < (1.0 - CURVED) * float(left @ left) else 0.0
 
 
 def drift_finding(rate: str, angle: str, drift: float, duration: float) -> Finding:

@@ -12,7 +12,7 @@ import numpy as np
 
 from trialid.alignment.agreement import relation
 from trialid.alignment.agreement.channel_finding import Finding
-from trialid.alignment.agreement.rate_drift import drift_finding, drift_of
+from trialid.alignment.agreement.rate_drift import drift_finding, drift_of, late_of
 from trialid.alignment.agreement.relation import Relation
 from trialid.errors import UnitError
 from trialid.names import units
@@ -64,9 +64,10 @@ def check_slopes(trial: Trial, stated: Mapping[str, str], beside: Trial) -> Iter
                 for one in _slope(rate, angle, found, float(np.ptp(x[valid])), stated):
                     hint = _better(beside, rate, angle) if one.kind in ASKS else ""
                     yield replace(one, sentence=one.sentence + hint)
-                drift = drift_of(y, x, valid, trial.period) if is_clear(found) else 0.0
-                if drift:
+                if is_clear(found) and (drift := drift_of(y, x, valid, trial.period)):
                     yield drift_finding(rate, angle, drift, trial.duration)
+                elif not is_clear(found) and found.correlation > CLEAR:
+                    yield from _late(rate, angle, late_of(y, x, valid, trial.period))
 
 
 def _better(trial: Trial, rate: str, angle: str) -> str:
@@ -146,6 +147,17 @@ def _small_faults(
         yield Finding(
             "scale", "remark", pair, f"{rate} {times} the slope of {angle}", evidence, gain
         )
+
+
+def _late(rate: str, angle: str, late: float) -> Iterator[Finding]:
+    """What the integral of a rate says where the record has too few turns for its slope.
+
+    That an angle is late is not told so: a course over ground is behind the heading as she drifts.
+    """
+    if late > LATE:
+        words = f"{rate} comes {late:.2g} s later than the slope of {angle}, by the angle it lacks"
+        evidence = {"lag": late}
+        yield Finding("lag", "remark", (rate, angle), words, evidence, f"delay = {late:.2g}")
 
 
 def contradiction(found: Finding) -> Contradiction | None:

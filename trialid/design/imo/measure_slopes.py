@@ -24,6 +24,7 @@ from trialid.design.standard import (
     read_all,
     sail_all,
 )
+from trialid.errors import DesignError
 from trialid.ship.effect import Effect
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
@@ -176,9 +177,21 @@ def _read(ship: Vessel, passage: Passage, change: Vector, reading: Reading) -> V
 
 
 def until_amidships(passage: Passage) -> Passage:
-    """A passage up to amidships, where it comes so far; what is after that is measured nowhere."""
+    """A passage up to amidships, where it comes so far; what is after that is measured nowhere.
+
+    Raises
+    ------
+    DesignError
+        The ship left her model on the approach, before anything was ordered.
+    """
     trial = passage.trial
-    end = int(np.flatnonzero(trial.signals["delta_order"])[-1]) + 3
+    ordered = np.flatnonzero(trial.signals["delta_order"])
+    if not len(ordered):
+        raise DesignError(
+            f"{trial.name}: the ship leaves her model on the approach, before anything is ordered: "
+            f"{passage.departure}"
+        )
+    end = int(ordered[-1]) + 3
     signals = {n: x[:end] for n, x in trial.signals.items()}
     short = Trial(trial.name, trial.use, trial.period, signals, {})
     return Passage(short, passage.x[:end], passage.y[:end], None)

@@ -16,7 +16,13 @@ from trialid.diagnosis.search.carry_over import carried_between
 from trialid.diagnosis.search.refit import settings_with
 from trialid.diagnosis.search.together import Together, able, fit_together
 from trialid.effects import CATALOGUE
-from trialid.effects.usual_structures import speed_of, usual_structures
+from trialid.effects.usual_structures import (
+    LOST_SPEED,
+    RACE,
+    TELLING,
+    speed_of,
+    usual_structures,
+)
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit
 from trialid.identification.problem import Settings
@@ -45,10 +51,11 @@ AS_HELD: Final = ("linear_hull", "linear_rudder")
 def beside_usual_forces(fit: Fit, examine: Callable[[Fit], T]) -> tuple[T, ...]:
     """What is found of the model with all usual forces, by each usual hull.
 
-    Where the pipeline's priors are her file's: nothing else holds so many. Nothing by a hull whose
-    search does not arrive, or that the record cannot carry.
+    Where the pipeline's priors are her file's, and of a hull that is linear, or so but for a term
+    that may stand in for all. Nothing by a hull whose search does not arrive, or that the record
+    cannot carry.
     """
-    if not fit.settings.priors_of_ship:
+    if not (fit.settings.priors_of_ship or _is_linear(fit.model)):
         return ()
     seen = with_means(fit).examined
 
@@ -117,11 +124,29 @@ def usual_effects(model: ShipModel, trials: Sequence[Trial], hull: str) -> tuple
     return tuple(able.values())
 
 
+def _is_linear(model: ShipModel) -> bool:
+    """Whether its hull is the linear one, with one term beyond at most."""
+    there = {e.name for e in model.effects}
+    return "linear_hull" in there and len(there & (TELLING - {RACE, LOST_SPEED})) < 2
+
+
 def _settings(fit: Fit, effects: Sequence[Effect]) -> Settings:
     """Free with them is what is held of the linear forces, as sure as her file is."""
     held, asked = _held(fit), settings_with(fit, effects)
     free = tuple(dict.fromkeys((*asked.free, *held)))
-    return replace(asked, free=free, priors={**asked.priors, **held})
+    new = {} if fit.settings.priors_of_ship else _usual(fit.model, effects)
+    return replace(asked, free=free, priors={**asked.priors, **held, **new})
+
+
+def _usual(model: ShipModel, effects: Sequence[Effect]) -> Mapping[str, tuple[float, float]]:
+    """What is likely of forces of which her file does not say how sure it is: their usual size."""
+    known = {}
+    for effect in effects:
+        for name, parameter in effect.parameters.items():
+            stated = model.stated(name)
+            mean = effect.nulls[name] if stated is None else stated
+            known[name] = (mean, max(abs(mean), abs(parameter.start)))
+    return known
 
 
 def _held(fit: Fit) -> Mapping[str, tuple[float, float]]:

@@ -19,6 +19,7 @@ NAMED: Final = 3
 """Voyages or effects that a line names before it only counts them."""
 
 Key = TypeVar("Key", bound=Hashable)
+Names = tuple[str, ...]
 
 
 def remarks(runs: Sequence[RunRow]) -> tuple[Remark, ...]:
@@ -29,7 +30,7 @@ def remarks(runs: Sequence[RunRow]) -> tuple[Remark, ...]:
     told = (
         Remark(ship=ship, words=words)
         for ship, rows in ships.items()
-        for tell in (_dates, _copies, _models, _missing_since)
+        for tell in (_dates, _copies, _models, _no_fit_since, _missing_since)
         for words in tell(rows)
     )
     return *told, *_too_few(ships)
@@ -133,10 +134,24 @@ class Since:
     before: int
 
 
+def _no_fit_since(rows: Sequence[RunRow]) -> Iterator[str]:
+    """That from some voyage on her runs have no fit, where they had, or the other way round."""
+    dated = any(row.date is not None for row in rows)
+    own = [row for row in rows if row.failure is None and (row.date is not None or not dated)]
+    without = {tuple(row.verdict == "no fit" for row in own): ("no fit",)}
+    since = _since(own, without)
+    if since is not None and since.p_value <= LEVEL:
+        yield (
+            f"from {own[since.first].voyage} on {since.after} of {len(own) - since.first} runs "
+            f"have no fit, before {since.before} of {since.first}: something is another since, a "
+            "sensor, a unit or the ship; runs without a fit have no say in changes"
+        )
+
+
 def _missing_since(rows: Sequence[RunRow]) -> Iterator[str]:
     """An effect that is missing from some voyage on, or no longer, in each model."""
     for own in _grouped(with_a_say(rows), lambda row: row.model).values():
-        since = _since(own)
+        since = _since(own, _patterns(own))
         if since is None or since.p_value > LEVEL:
             continue
         yield (
@@ -146,9 +161,8 @@ def _missing_since(rows: Sequence[RunRow]) -> Iterator[str]:
         )
 
 
-def _since(rows: Sequence[RunRow]) -> Since | None:
-    """The effect and voyage that part her record most; chance is that of all that were tried."""
-    patterns = _patterns(rows)
+def _since(rows: Sequence[RunRow], patterns: Mapping[tuple[bool, ...], Names]) -> Since | None:
+    """The pattern and voyage that part her record most; chance is that of all that were tried."""
     splits = range(EITHER_SIDE, len(rows) - EITHER_SIDE + 1)
     found = []
     for missing, effects in patterns.items():

@@ -1,15 +1,14 @@
 """What to do next, by the verdict: commands that exist, trials and lines the record calls for."""
 
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
-from trialid.accuracy.ranges import ANOTHER_GM, USUAL_FORCES
 from trialid.names import wording
 from trialid.names.quantities import MOTIONS
 from trialid.report.words import doubt
-from trialid.result.fit_rows import ParameterRow, WeakRow
+from trialid.result.fit_rows import WeakRow
 from trialid.result.schema import Result
 from trialid.toml_text import array
 
@@ -256,27 +255,7 @@ def widest_range(run: Result) -> str:
     """
     if run.verdict.kind == "no fit":
         return ""
-    return f"{widest(run.physical)} {run.accuracy.narrowed_by or ''}".strip()
-
-
-def widest(parameters: Sequence[ParameterRow]) -> str:
-    """Which likely range is the widest beside its value, and what widens it.
-
-    >>> widest([ParameterRow(name="Kp", value=-2.0, likely=(-3.0, -1.5), widened_by="static_list")])
-    'Least known: Kp, as static_list may be missing.'
-    """
-    known = [(r.may_be_off, r) for r in parameters if r.may_be_off is not None]
-    if not known:
-        return ""
-    _, row = max(known, key=lambda pair: pair[0])
-    why = "by the numbers held fixed (how sure those are: [uncertainty] in the ship file)"
-    if row.widened_by == ANOTHER_GM:
-        why = "as the record does not tell GM"
-    elif row.widened_by == USUAL_FORCES:
-        why = "as all forces that a hull usually has, each small, may be there at once"
-    elif row.widened_by:
-        why = f"as {row.widened_by} may be missing"
-    return f"Least known: {row.name}, {why}."
+    return f"{doubt.widest(run.physical)} {run.accuracy.narrowed_by or ''}".strip()
 
 
 def moves(weak: WeakRow) -> str:

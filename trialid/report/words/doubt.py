@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
+from trialid.accuracy.ranges import ANOTHER_GM, IN_TIME, USUAL_FORCES
 from trialid.names.wording import named_together
 from trialid.result.finding_rows import VerdictPart
 from trialid.result.fit_rows import LeversPart, ParameterRow
@@ -13,6 +14,15 @@ HALF: Final = 0.5
 
 NAMED: Final = 10
 """Doubtful parameters a sentence names before it only counts them."""
+
+
+WIDENED: Final = {
+    "": "by the numbers held fixed (how sure those are: [uncertainty] in the ship file)",
+    ANOTHER_GM: "as the record does not tell GM",
+    USUAL_FORCES: "as all forces that a hull usually has, each small, may be there at once",
+    IN_TIME: "as no sensor is early",
+}
+"""Why a range is wide, but for an effect that may be missing."""
 
 
 def doubtful(parameters: Sequence[ParameterRow]) -> str:
@@ -87,3 +97,17 @@ def _share(row: ParameterRow) -> float:
     """How far a parameter may be off, as a share of its value; not a number where nobody knows."""
     off = row.off_by_noise if row.likely is None else row.may_be_off
     return math.nan if off is None else off
+
+
+def widest(parameters: Sequence[ParameterRow]) -> str:
+    """Which likely range is the widest beside its value, and what widens it.
+
+    >>> widest([ParameterRow(name="Kp", value=-2.0, likely=(-3.0, -1.5), widened_by="static_list")])
+    'Least known: Kp, as static_list may be missing.'
+    """
+    known = [(r.may_be_off, r) for r in parameters if r.may_be_off is not None]
+    if not known:
+        return ""
+    _, row = max(known, key=lambda pair: pair[0])
+    why = WIDENED.get(row.widened_by or "", f"as {row.widened_by} may be missing")
+    return f"Least known: {row.name}, {why}."

@@ -10,6 +10,7 @@ from trialid.arrays import Vector
 from trialid.diagnosis.may_be_off import Doubts
 from trialid.diagnosis.search.augment import Trace
 from trialid.identification.fit import Fit, revive
+from trialid.identification.nuisance.of_each_trial import Nuisance
 from trialid.ship.effect import Effect
 
 COVARIANCE: Final = "covariance"
@@ -74,13 +75,15 @@ class AboutModel:
     ----------
     has
         What it has besides the run's, nothing for the run's own.
-    effects, free, estimates
-        What makes it again: effects by name, what was estimated of the ship, and every unknown.
+    effects, free, nuisance, estimates
+        What makes it again: effects by name, what was estimated of the ship and of each trial, and
+        every unknown.
     """
 
     has: str
     effects: tuple[str, ...]
     free: tuple[str, ...]
+    nuisance: tuple[Nuisance, ...]
     estimates: Mapping[str, float]
     unknowns: tuple[str, ...]
     variance: float
@@ -135,7 +138,7 @@ class KeptModel:
             model = model - name
         for name in (n for n in about.effects if n not in there):
             model = model + catalogue[name]
-        settings = replace(fit.settings, free=about.free)
+        settings = replace(fit.settings, free=about.free, nuisance=about.nuisance)
         trials = [score.trial for score in fit.scores]
         return self.of(revive(trials, model, settings, about.estimates))
 
@@ -148,6 +151,7 @@ def about_model(has: str, done: Known) -> AboutModel:
         has=has,
         effects=tuple(e.name for e in model.effects),
         free=done.fit.settings.free,
+        nuisance=done.fit.settings.nuisance,
         estimates=dict(done.fit.estimates),
         unknowns=tuple(p.name for p in done.own_accuracy.parameters),
         variance=reduced.variance,

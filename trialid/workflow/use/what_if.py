@@ -21,6 +21,8 @@ ROLL: Final = ("GM", "I_xx")
 
 SPEED: Final = "speed"
 """What the approach speed [m/s] is called among changes."""
+OTHER: Final = 50.0
+"""Times her own speed, either way, that a changed one may be: beyond it no number of hers holds."""
 
 
 @dataclass(frozen=True)
@@ -98,8 +100,14 @@ def _shown(model: ShipModel, name: str) -> tuple[str, float]:
 
 def _at_speed(model: ShipModel, speed: float) -> ShipModel:
     """The model approaching at another speed; numbers in the prime system stay as they are."""
+    usual = model.ship.particulars.get("U0", 0.0)
     if not speed > 0.0:
         raise TrialidError(f"--what-if speed={speed:g}: expected a speed above 0 [m/s]")
+    if usual > 0.0 and not usual / OTHER < speed < usual * OTHER:
+        raise TrialidError(
+            f"--what-if speed={speed:g}: she sails at {usual:.3g} m/s; expected "
+            f"{usual / OTHER:.2g} to {usual * OTHER:.3g} [m/s]"
+        )
     if "u" in model.states:
         raise TrialidError(
             "--what-if speed: this model simulates the speed, which follows from the shaft; "
