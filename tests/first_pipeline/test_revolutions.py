@@ -79,3 +79,26 @@ def test_of_two_screws_both_are_read(tmp_path: Path) -> None:
     assert read(begun(tmp_path, both, slower)) == ["n_p", "n_s"] * 2
     alone = (("rpm_port [rpm]", 60.0),)
     assert not read(begun(tmp_path, both, alone))
+
+
+DEPTH = "water depth [m]"
+READ_DEPTH = re.compile(r"(?m)^h +=")
+
+
+@pytest.mark.parametrize("wave", [0.0, 0.01])
+def test_a_depth_that_differs_between_trials_is_read(tmp_path: Path, wave: float) -> None:
+    """Of an outsider's barge in 4.2 and in 200 m one trial contradicted the others."""
+    text = begun(tmp_path, ((DEPTH, 200.0),), ((DEPTH, 4.2),), wave=wave)
+    assert len(READ_DEPTH.findall(text)) == 2
+    assert "by its name, the run seeks what shallow water does" in text
+
+
+@pytest.mark.parametrize(
+    ("head", "depths"), [(DEPTH, (4.2, 4.2)), ("depth below keel [m]", (200.0, 4.2))]
+)
+def test_a_depth_that_is_one_or_of_the_keel_is_left_to_the_user(
+    tmp_path: Path, head: str, depths: tuple[float, float]
+) -> None:
+    text = begun(tmp_path, *(((head, depth),) for depth in depths), wave=0.0)
+    assert not READ_DEPTH.findall(text)
+    assert text.count("# left to you: h; of the water, not below the keel") == 2

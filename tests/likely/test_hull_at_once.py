@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from s175q import SHIP
-from test_usual_forces import begun, drawn, sailed
+from test_usual_forces import begun, drawn, fitted, sailed
 
 from trialid.diagnosis.force.usual_forces import hull_at_once
 from trialid.diagnosis.search.together import stands
@@ -47,4 +47,4 @@ def test_a_ship_without_them_has_none():
 
 
 def test_nothing_holds_so_many_without_her_file():
-    assert hull_at_once(begun(sailed(drawn(SEED), SEED), by_ship=False), CATALOGUE) is None
+    assert hull_at_once(fitted(SHIP, sailed(drawn(SEED), SEED), by_ship=False), CATALOGUE) is None

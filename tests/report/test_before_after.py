@@ -104,3 +104,13 @@ def test_a_long_history_shows_its_end():
     assert lines[1] == "... 12 earlier steps"
     assert lines[-1].startswith("+ e19 ")
     assert list(rows([replace(step, step="proposed")])) == lines[:1]
+
+
+def test_what_to_do_next_stands_below_the_verdict(changed):
+    """After `trialid add` nobody was told of the next effect."""
+    changed["verdict"] |= {"kind": "missing", "effect": "roll_cubic", "sentence": "it is missing"}
+    console = Console(width=80, color_system=None)
+    with console.capture() as capture:
+        console.print(before_after(result_of(changed), "p.toml"))
+    assert "Next: trialid add p.toml roll_cubic" in capture.get()
+    assert "Next: " not in shown(changed)

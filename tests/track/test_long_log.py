@@ -85,6 +85,19 @@ def test_a_pipeline_begins_with_a_trial_for_each_manoeuvre(tmp_path: Path) -> No
     assert sum(t.duration for t in trials) < 0.5 * sail_day(6103, STEERED)[0].duration
 
 
+def test_manoeuvres_in_which_a_sensor_has_died_are_left_out_and_told() -> None:
+    """Of an outsider's day the later half was chosen too, and the run refused all of it."""
+    trial, day = sail_day(6103, STEERED)
+    whole = windows_of(trial, day.length, day.speed)
+    died = whole[-1].begin + 20.0
+    known = trial.valid | {"r": trial.valid["r"] & (trial.t < died)}
+    found = windows_of(dataclasses.replace(trial, valid=known), day.length, day.speed)
+    assert [one.begin for one in found] == [one.begin for one in whole[:-1]]
+    told = f"from {whole[-1].begin:.0f} s on, in which r is not measured throughout"
+    assert told in found[0].beside
+    assert not any(one.beside for one in (*found[1:], *whole))
+
+
 LENGTH, SPEED, PERIOD = 90.0, 7.5, 0.5
 
 

@@ -8,6 +8,7 @@ import io
 import sys
 import warnings
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final
@@ -217,14 +218,14 @@ def _change(
         complain(f"{pipeline}: taken out with {effect}: {words}")
     back = f"trialid {'drop' if step == 'added' else 'add'} {pipeline} {effect}"
     foot = f"{pipeline}: {difference_words(done.edit)}\nUndo: {back}\n"
-    answer(done.run.result, folder, as_json, quiet, _beside, foot)
+    answer(done.run.result, folder, as_json, quiet, partial(_beside, str(pipeline)), foot)
 
 
-def _beside(result: "Result", lines: int) -> str:
+def _beside(file: str, result: "Result", lines: int) -> str:
     """The model before and after."""
     from trialid.report.terminal.before_after import before_after
 
-    return render(before_after(result, lines))
+    return render(before_after(result, file, lines))
 
 
 def _report_bug(

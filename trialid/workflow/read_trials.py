@@ -22,6 +22,7 @@ from trialid.second_process import each
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
 from trialid.workflow.build_model import available
+from trialid.workflow.one_speed import without_noise_of_speed
 from trialid.workflow.origin import relative_path
 from trialid.workflow.quantities_read import quantities_of
 from trialid.workflow.steering_gaps import known_throughout, own_time
@@ -39,7 +40,7 @@ def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
         return align_trial(pipeline, trial, known)
 
     done = each(aligned, pipeline.trials)
-    return _with_jumps(pipeline, stretches_to_fit(pipeline, done))
+    return _at_one_speed(pipeline, _with_jumps(pipeline, stretches_to_fit(pipeline, done)))
 
 
 def stretches_to_fit(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
@@ -115,6 +116,15 @@ def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...
         replace(t, remarks=(*t.remarks, said_of(jump))) if "delta" in t.signals else t
         for t in trials
     )
+
+
+def _at_one_speed(pipeline: Pipeline, trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
+    """The trials, without the noise of a speed that is one in all and only read."""
+    known = {} if pipeline.ship is None else read_ship(pipeline.ship).particulars
+    length = own_time(known)
+    if length is None or "u" in (*pipeline.model.states, *pipeline.identify.outputs):
+        return trials
+    return without_noise_of_speed(trials, length)
 
 
 def align_trial(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 from trialid.names import labels, wording
 from trialid.report.pictures.bars import foreseen_in_errors
 from trialid.report.terminal import steps
+from trialid.report.terminal.summary import next_lines
 from trialid.report.terminal.terminal import (
     SCREEN,
     FirstThatFits,
@@ -49,12 +50,15 @@ ROWS: Final = (
 """From what a short change shows in full to what a crowded one is left with."""
 
 
-def before_after(run: Result, lines: int = SCREEN[0] - 1) -> "RenderableType":
-    """The change of a result, for a rich console; the page has all of it."""
-    return FirstThatFits([partial(_screen, run, rows) for rows in ROWS], lines)
+def before_after(run: Result, file: str = "", lines: int = SCREEN[0] - 1) -> "RenderableType":
+    """The change of a result, for a rich console; the page has all of it.
+
+    `file` is the pipeline as the user named it, for the command to give next.
+    """
+    return FirstThatFits([partial(_screen, run, file, rows) for rows in ROWS], lines)
 
 
-def _screen(run: Result, rows: Rows) -> "RenderableType":
+def _screen(run: Result, file: str, rows: Rows) -> "RenderableType":
     from rich.console import Group
     from rich.text import Text
 
@@ -66,6 +70,7 @@ def _screen(run: Result, rows: Rows) -> "RenderableType":
         Words(title, 1, "dim"),
         Words(_verdicts(change), 2, "bold"),
         Words(run.verdict.sentence or run.verdict.kind or "No verdict.", 4, "bold"),
+        *next_lines(run, file),
         Words(change.equation or "", 2, "dim"),
         Text(),
         _errors(change, rows),

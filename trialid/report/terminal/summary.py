@@ -56,6 +56,7 @@ ROWS: Final = (
     Rows(trials=5, parameters=5, candidates=3, findings=1),
     Rows(trials=4, parameters=4, candidates=2, findings=1),
     Rows(trials=3, parameters=3, candidates=1, findings=0),
+    Rows(trials=3, parameters=3, candidates=0, findings=0),
 )
 """From what a short run shows in full to what a crowded one is left with."""
 
@@ -80,7 +81,7 @@ def _screen(run: Result, file: str, rows: Rows) -> "RenderableType":
     return Group(
         title,
         *_verdict(run),
-        *_next(run, file),
+        *next_lines(run, file),
         Text(),
         _errors(run, rows),
         Words(_made_of(run), 2),
@@ -101,7 +102,7 @@ def _verdict(run: Result) -> "Iterable[RenderableType]":
         yield Words("The fit did not converge: rely on nothing here before it does.", 1, "bold red")
 
 
-def _next(run: Result, file: str) -> "Iterable[RenderableType]":
+def next_lines(run: Result, file: str) -> "Iterable[RenderableType]":
     """What to do about the verdict, and the trial that would tell more."""
     verdict = run.verdict
     if file and verdict.kind == "missing" and verdict.effect:
@@ -253,7 +254,7 @@ def _doubt(row: ParameterRow) -> float:
 def _ranking(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     from rich.text import Text
 
-    if not run.missing:
+    if not run.missing[: rows.candidates]:
         return
     yield Text()
     held_out = ("held out",) * _holds_out(run)  # no column of dashes that costs names their ends

@@ -38,7 +38,7 @@ from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.not_begun import TooLittle, no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.read_as_order import with_orders
-from trialid.workflow.first_pipeline.revolutions import with_revolutions
+from trialid.workflow.first_pipeline.revolutions import with_depth, with_revolutions
 from trialid.workflow.first_pipeline.roll_decay import decays_among
 from trialid.workflow.first_pipeline.small_roll import without_small_roll
 from trialid.workflow.first_pipeline.speed_by_track import (
@@ -62,7 +62,6 @@ __all__ = ["Starter", "begun_ship", "starter"]
 
 
 STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
-
 
 FIGURES: Final = re.compile(r"\d[\d.e+-]*+")
 """Numbers in a question, which differ from log to log."""
@@ -151,6 +150,7 @@ def starter(
         trials = with_rudder_units(with_rate_units(trials, L, u0), L, u0)
         trials = with_orders(trials, L / u0, main_drives(own))
     trials = with_doubtful_speeds(_cut(trials, windows) if windows else trials, L)
+    left_out += filter(None, (one.left_beside for one in trials))
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials, left_out=left_out)
     return Starter(files, tuple(_to_fill(trials)), tuple(trials), tuple(left_out))
 
@@ -183,7 +183,7 @@ def _steered(
         raise too_little[0]
     chosen = with_unshown(with_ports(_with_speeds(able, speed)))
     trials = with_revolutions(without_small_roll(with_sides(with_twins(chosen, own))))
-    trials = with_tunnels(trials, own)
+    trials = with_tunnels(with_depth(trials), own)
     as_read = [one for one, found in zip(surveys, tried, strict=True) if isinstance(found, Chosen)]
     trials = [
         with_velocities_beside(held_against_track(one), survey)

@@ -86,9 +86,13 @@ AS_RUDDER: Final = (
 Live = dict[str, tuple[ChannelInspection, ...]]
 
 
+STANDS: Final = ("h",)  # a trial has one depth of water, and the next may have another
+
+
 def live_sources(survey: Inspection, quantity: str) -> tuple[ChannelInspection, ...]:
-    """Sources that move, and of which most is there."""
-    return tuple(c for c in survey.sources(quantity) if not c.constant and c.mostly_there)
+    """Sources that move, or may stand, and of which most is there."""
+    moves = (c for c in survey.sources(quantity) if quantity in STANDS or not c.constant)
+    return tuple(c for c in moves if c.mostly_there)
 
 
 def plain_signal(quantity: str, live: Live, why: str) -> Signal:

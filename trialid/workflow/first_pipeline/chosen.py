@@ -103,3 +103,9 @@ class Chosen:
     def states_speed(self) -> bool:
         """Whether no channel is the speed, so that the pipeline must state it."""
         return "u" not in self.quantities
+
+    @property
+    def left_beside(self) -> str:
+        """Which manoeuvres of its log are no trials, and why; told by the first that is."""
+        told = self.window.beside if self.window else ""
+        return f"{self.path.name}: {told}" if told else ""

@@ -20,6 +20,7 @@ LEFT: Final[Mapping[str, str]] = {
     "n_p": "with both the run seeks what two screws do",
     "n_s": "with both the run seeks what two screws do",
     "psi": "with it the run seeks a steady wind and a current",
+    "h": "of the water, not below the keel; with it the run seeks what shallow water does",
 }
 """Inputs that no first model asks for, and what for."""
 

@@ -17,7 +17,7 @@ from trialid.arrays import Vector
 from trialid.design.imo.excursions import rudder_of
 from trialid.design.imo.recognise import recognise
 from trialid.design.imo.recognition import Recognised
-from trialid.errors import TrialidError
+from trialid.errors import TrialidError, list_names
 from trialid.inspection.inspected import Inspection
 from trialid.pipeline_file import Pipeline, TrialSection
 from trialid.ship.particulars import read_ship
@@ -70,6 +70,7 @@ class Window:
     `travel` and `variation` [rad] are of the rudder: its greatest angle and its mean, and its
     standard deviation; of the roll, where no rudder is. `why` says what else it is than a
     manoeuvre: that she was held before, with an empty `kind`, or that the recorder paused.
+    `beside` says which manoeuvres of its log are no trials, and why.
     """
 
     kind: str
@@ -78,6 +79,7 @@ class Window:
     travel: float
     variation: float
     why: str = ""
+    beside: str = ""
 
 
 def window_over(
@@ -148,14 +150,16 @@ def windows_of(trial: Trial, length: float, speed: float) -> tuple[Window, ...]:
     found = recognise(trial, length, speed)
     steered = [m for m in found if m.kind != "stop"]
     every = _apart(steered, length / speed / trial.period, trial.samples)
-    spans = [span for span in every if any(not m.remark for m in span.parts)]
+    whole = [span for span in every if any(not m.remark for m in span.parts)]
+    spans = [span for span in whole if not _lacking(trial, span)]
     taken = sum(span.end - span.begin for span in spans)
     if taken > MOSTLY * trial.samples:
         return parts
     if len(spans) < 2:
         stretch = round(STRETCH * length / speed / trial.period)
         return parts or _steered_most(trial, rudder, stretch, speed)
-    return tuple(_manoeuvre(trial, rudder, span) for span in _first_of_each(spans))
+    first, *more = (_manoeuvre(trial, rudder, span) for span in _first_of_each(spans))
+    return (replace(first, beside=_left_out(trial, whole)), *more)
 
 
 def _between_pauses(trial: Trial, rudder: Vector, clock: float) -> tuple[Window, ...]:
@@ -189,6 +193,23 @@ class Span:
     parts: tuple[Recognised, ...]
     begin: int
     end: int
+
+
+def _lacking(trial: Trial, span: Span) -> tuple[str, ...]:
+    """Signals that are not measured in a manoeuvre, as of a sensor that died on the way."""
+    known = {n: float(ok[span.begin : span.end].mean()) for n, ok in trial.valid.items()}
+    return tuple(n for n, share in known.items() if share < KNOWN)
+
+
+def _left_out(trial: Trial, spans: Sequence[Span]) -> str:
+    """Which manoeuvres are left out as a signal is not measured in them; else nothing."""
+    lost = [(round(span.begin * trial.period), _lacking(trial, span)) for span in spans]
+    lost = [(at, names) for at, names in lost if names]
+    if not lost:
+        return ""
+    begins = list_names([f"{at}" for at, _ in lost])
+    names = list_names(list(dict.fromkeys(n for _, some in lost for n in some)))
+    return f"the manoeuvres from {begins} s on, in which {names} is not measured throughout"
 
 
 def _apart(found: Sequence[Recognised], clock: float, samples: int) -> list[Span]:
