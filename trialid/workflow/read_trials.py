@@ -11,6 +11,7 @@ from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
 from trialid.alignment.held_roll import without_held_roll
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
+from trialid.diagnosis.records.one_speed import without_noise_of_speed
 from trialid.diagnosis.records.rudder_jumps import rudder_jump, said_of
 from trialid.errors import PipelineError
 from trialid.ingest import Aids, LogFile
@@ -22,7 +23,6 @@ from trialid.second_process import each
 from trialid.ship.particulars import read_ship
 from trialid.trial import Trial
 from trialid.workflow.build_model import available
-from trialid.workflow.one_speed import without_noise_of_speed
 from trialid.workflow.origin import relative_path
 from trialid.workflow.quantities_read import quantities_of
 from trialid.workflow.steering_gaps import known_throughout, own_time

@@ -8,11 +8,11 @@ from s175q import SETTINGS, SHIP, zigzag
 
 from trialid.diagnosis.diagnose import diagnose
 from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.diagnosis.records.one_speed import without_noise_of_speed
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import identify
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
-from trialid.workflow.one_speed import without_noise_of_speed
 
 LENGTH = 24.0
 """Time in which the S-175 goes her own length [s]."""

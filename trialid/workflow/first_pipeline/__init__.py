@@ -130,9 +130,8 @@ def starter(
             f"{pipeline}: no log knows the ship; add --ship SHIP.toml, or --length METRES, and "
             "--beam, --draught, --displacement where you have them"
         )
-    u0 = max((one.speed for one in trials if one.speed), default=speed)
-    if u0 is None and decays and own is not None:
-        u0 = own.particulars.get("U0")
+    in_file = own.particulars.get("U0") if decays and own is not None else None
+    u0 = max((one.speed for one in trials if one.speed), default=speed or in_file)
     if u0 is None:
         unknown = any("CAREFUL" in one.speed_words for one in decays)
         of_decays = NO_WAY if unknown else NO_SERVICE_SPEED

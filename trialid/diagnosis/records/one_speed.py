@@ -23,7 +23,7 @@ those in manoeuvres 0.0107 at least: with twice of it the same are told, with ha
 
 
 def without_noise_of_speed(trials: Sequence[Trial], length: float) -> tuple[Trial, ...]:
-    """The trials, at their mean speed where it is one in all; `length`: her time for her own [s]."""
+    """The trials at their mean speed where it is one in all; `length`: time for her own [s]."""
     logged = [(logged_speed(t), t.period) for t in trials]
     means = [_means(y, length / period) for y, period in logged if len(y) and np.ptp(y) > 0.0]
     if not means:
