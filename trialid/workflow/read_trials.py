@@ -40,13 +40,14 @@ def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
         return align_trial(pipeline, trial, known)
 
     done = each(aligned, pipeline.trials)
-    return _at_one_speed(pipeline, _with_jumps(pipeline, stretches_to_fit(pipeline, done)))
+    return _with_jumps(pipeline, stretches_to_fit(pipeline, done))
 
 
 def stretches_to_fit(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:
     """Trials of their own, each the stretch of it through which she can be simulated.
 
-    Where she is held at a heel and let go that begins at the release.
+    Where she is held at a heel and let go that begins at the release. Where she goes at one speed
+    in all, that is read without the noise of its log.
 
     Raises
     ------
@@ -59,7 +60,11 @@ def stretches_to_fit(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial
         return tuple(trials)
     particulars, catalogue = read_ship(pipeline.ship).particulars, available(pipeline)
     effects = [catalogue[name] for name in pipeline.model.effects if name in catalogue]
-    return tuple(known_throughout(trial, particulars, effects) for trial in trials)
+    known = tuple(known_throughout(trial, particulars, effects) for trial in trials)
+    length = own_time(particulars)
+    if length is None or "u" in (*pipeline.model.states, *pipeline.identify.outputs):
+        return known
+    return without_noise_of_speed(known, length)
 
 
 def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
@@ -116,15 +121,6 @@ def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...
         replace(t, remarks=(*t.remarks, said_of(jump))) if "delta" in t.signals else t
         for t in trials
     )
-
-
-def _at_one_speed(pipeline: Pipeline, trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
-    """The trials, without the noise of a speed that is one in all and only read."""
-    known = {} if pipeline.ship is None else read_ship(pipeline.ship).particulars
-    length = own_time(known)
-    if length is None or "u" in (*pipeline.model.states, *pipeline.identify.outputs):
-        return trials
-    return without_noise_of_speed(trials, length)
 
 
 def align_trial(

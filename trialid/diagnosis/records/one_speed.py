@@ -17,8 +17,8 @@ from trialid.trial import Trial
 
 ONE_SPEED: Final = 0.005
 """Share of her speed that its means over a length scatter by where it is the same: a hundredth of
-all forces goes by that. Those two ships have 0.002, others of outsiders on a course 0.0034 at most,
-those in manoeuvres 0.0107 at least: with twice of it the same are told, with half two of 13 fewer.
+all forces goes by that. Those two ships and six others of 50 of outsiders, on a course, have 0.0007
+to 0.0034, those in manoeuvres 0.0107 at least: at twice of it the same are told, at half two fewer.
 """
 
 
