@@ -5,10 +5,13 @@ digits: each is an `OSError` or a `TOMLDecodeError`, which every reader tells in
 """
 
 import errno
+import os
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
+
+from trialid.errors import TrialidError
 
 MOST_BYTES: Final = 20_000_000
 """Of a text that people write or edit, a thousand times as long as the shipped pipelines."""
@@ -20,6 +23,13 @@ MOST_PARTS: Final = 64
 """Of a dotted key, which the parser walks anew for every part."""
 LARGEST: Final = 2**63
 """As TOML has it; Python would read any number of digits, in the square of their count."""
+
+
+def path_of(given: Any, call: str) -> Path:
+    """A path that was given to a call; TrialidError where it is none."""
+    if not isinstance(given, str | os.PathLike) or not os.fspath(given):
+        raise TrialidError(f"{call}: expected the path of a file or folder, got {given!r}")
+    return Path(given)
 
 
 def content(path: Path, most: int = MOST_BYTES) -> bytes:

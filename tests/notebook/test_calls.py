@@ -11,7 +11,8 @@ import pytest
 import trialid as ti
 from trialid.errors import TrialidError
 from trialid.names.quantities import SIGNALS
-from trialid.workflow.notebook.arguments import changes_of, count_of, order_words, path_of
+from trialid.user_files import path_of
+from trialid.workflow.notebook.arguments import changes_of, count_of, order_words
 from trialid.workflow.notebook.fit_run import FitRun
 from trialid.workflow.notebook.pipeline_run import PipelineRun
 from trialid.workflow.notebook.run_view import RunView
@@ -28,7 +29,15 @@ class Nothing:
 
 @pytest.mark.parametrize("given", [None, "", 3, Nothing()])
 def test_a_path_that_is_none(given: Any, tmp_path: Path) -> None:
-    calls = (ti.run, ti.structures, lambda x: ti.batch(x, tmp_path), RUN.write, FITTED.write)
+    calls = (
+        ti.read,
+        ti.read_ship,
+        ti.run,
+        ti.structures,
+        lambda x: ti.batch(x, tmp_path),
+        RUN.write,
+        FITTED.write,
+    )
     for call in calls:
         with pytest.raises(TrialidError, match="expected the path of a file or folder, got "):
             call(given)

@@ -9,7 +9,7 @@ from trialid.fleet.batch import Batch, by_dask
 from trialid.fleet.parquet_tables import CHANGES, PARAMETERS, RUNS_TABLE, check_parquet
 from trialid.pipeline_file.fleet_file import load_fleet
 from trialid.progress import Progress, silent
-from trialid.workflow.notebook.arguments import path_of
+from trialid.user_files import path_of
 
 if TYPE_CHECKING:
     import pandas as pd

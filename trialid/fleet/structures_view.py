@@ -8,7 +8,7 @@ from trialid.fleet.structure_fits import compute_of
 from trialid.pipeline_file import load
 from trialid.progress import Progress, silent
 from trialid.result.structure_rows import Structures
-from trialid.workflow.notebook.arguments import path_of
+from trialid.user_files import path_of
 from trialid.workflow.structures.compare_structures import compare_structures
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from trialid import user_files
 from trialid.errors import LogError
 from trialid.ingest import fix_quality, gzipped, ulog_log
 from trialid.ingest.adapter import NO_AIDS, Adapter, Aids, Wanted, is_wanted
@@ -78,7 +79,7 @@ def read(path: str | Path, wanted: Wanted = None, aids: Aids = NO_AIDS) -> Recor
     that adapter cannot read it, and when it can make no use of an aid. A position that its receiver
     calls no fix is `not available`.
     """
-    place = Path(path)
+    place = user_files.path_of(path, "ti.read")
     found = adapter_of(place, aids).read(place, fix_quality.with_quality(wanted), aids)
     return fix_quality.without_poor_fixes(found, wanted)
 

@@ -146,7 +146,7 @@ def read_ship(path: str | Path) -> Ship:
     ShipError
         The file is missing, not TOML, or lacks something a model cannot do without.
     """
-    path = Path(path)
+    path = user_files.path_of(path, "ti.read_ship")
     try:
         text = user_files.text(path)
     except OSError as error:

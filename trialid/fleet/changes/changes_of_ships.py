@@ -10,6 +10,7 @@ from scipy.stats import norm
 from trialid.arrays import Vector
 from trialid.fleet.changes.change_points import Found, Varies, explain
 from trialid.fleet.changes.courses import Estimates
+from trialid.fleet.changes.of_voyage import each_of_voyage
 from trialid.result.fleet_rows import ChangeRow, FittedRow, RunRow
 
 LEVEL: Final = 0.05
@@ -22,12 +23,12 @@ NORMAL: Final = float(norm.ppf(0.975))
 
 def changes(runs: Iterable[RunRow], fitted: Iterable[FittedRow]) -> Iterator[ChangeRow]:
     """Every change in a fleet's records, and what varies otherwise, ship by ship."""
-    records = list(_records(with_a_say(runs), fitted))
+    records = list(_records(with_a_say(runs), each_of_voyage(fitted)))
     for rows in records:
         estimates, unit = _estimates(rows)
         found = explain(estimates, LEVEL / len(records))
         told = [_row(rows, estimates, each) for each in found.changes]
-        if found.varies:
+        if found.varies and rows[0].kind == "physical":  # what is each trial's may
             told.append(_varies(rows, found.varies))
         for row in told:
             p_value = min(1.0, len(records) * row.p_value)
@@ -52,7 +53,7 @@ def _records(runs: Sequence[RunRow], fitted: Iterable[FittedRow]) -> Iterator[li
     courses: dict[tuple[object, ...], list[FittedRow]] = {}
     for row in fitted:
         known = row.value is not None and _deviation(row) > 0.0
-        if row.run in models and row.kind == "physical" and known:
+        if row.run in models and known:
             key = (row.ship, *row.varied, models[row.run], row.parameter)
             courses.setdefault(key, []).append(row)
     yield from (rows for rows in courses.values() if len(rows) >= FEWEST)

@@ -1,22 +1,13 @@
 """Arguments of calls from a notebook, as what they have to be, or refused in one line."""
 
 import math
-import os
 from collections.abc import Mapping, Sequence
 from numbers import Real
-from pathlib import Path
 from typing import Any
 
 from trialid.errors import TrialidError
 from trialid.ship.effect import Effect
 from trialid.workflow.use.what_if import WhatIf
-
-
-def path_of(given: Any, call: str) -> Path:
-    """A path; TrialidError where it is none."""
-    if not isinstance(given, str | os.PathLike) or not os.fspath(given):
-        raise TrialidError(f"{call}: expected the path of a file or folder, got {given!r}")
-    return Path(given)
 
 
 def effect_name(given: Any, call: str) -> str:

@@ -18,9 +18,10 @@ from trialid.result.schema import Result
 from trialid.result.series import TrialSeries, write_csv
 from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
+from trialid.user_files import path_of
 from trialid.workflow.findings import narrowing_trial, proposal
 from trialid.workflow.fit_model import time_series
-from trialid.workflow.notebook.arguments import effect_name, path_of
+from trialid.workflow.notebook.arguments import effect_name
 from trialid.workflow.notebook.run_view import RunView
 
 

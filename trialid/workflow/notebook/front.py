@@ -21,7 +21,7 @@ from trialid.ship.effect import Effect
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
-from trialid.workflow.notebook.arguments import path_of
+from trialid.user_files import path_of
 from trialid.workflow.notebook.asked_settings import asked_diagnosis, asked_settings, checked_trials
 from trialid.workflow.notebook.fit_run import FitRun, diagnosed_run
 from trialid.workflow.notebook.pipeline_run import PipelineRun, pipeline_run

@@ -10,9 +10,10 @@ from trialid.result.build import Findings
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries
 from trialid.threads import one_thread
+from trialid.user_files import path_of
 from trialid.workflow.edit_model import fit_edit, foresee_edit, set_beside
 from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
-from trialid.workflow.notebook.arguments import effect_name, path_of
+from trialid.workflow.notebook.arguments import effect_name
 from trialid.workflow.notebook.run_view import RunView
 from trialid.workflow.outcome import Run
 from trialid.workflow.run import examine
