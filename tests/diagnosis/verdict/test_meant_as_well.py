@@ -143,7 +143,7 @@ def test_what_is_held_does_as_well_but_for_what_parameters_are_worth(
     after = of.after if alone else tuple(more * x for x in of.after)
     made = Freed(named.fit, ("m",), replace(of, after=after, own=(of.own[0], own)))
     monkeypatch.setattr(meant_as_well, "_sought", lambda *asked: made)
-    whole = SimpleNamespace(foretold=lambda still=(): 1.0)
+    whole = SimpleNamespace(foretold=lambda still=(): 1.0, still=lambda known: set())
     monkeypatch.setattr(meant_as_well, "_slopes", lambda *asked: whole)
     assert held_instead(without_two, named, silent) is (made if as_well else None)
 
@@ -225,6 +225,19 @@ def test_what_is_held_and_moves_nothing_is_no_hindrance(without_two):
     asked = replace(without_two.settings, free=("Nv", "Nr", "Ndelta"), outputs=("r",))
     fit = identify(trials, replace(yaw, ship=known), asked)
     assert held_instead(fit, tried(fit, "yaw_drag_rar"), silent) is None
+
+
+def test_nothing_is_told_to_be_freed_that_moves_nothing(without_two):
+    """An outsider freed 17 numbers of a yaw; eight of them were of the roll and moved nothing."""
+    yaw = replace(MODEL, states=("v", "r"), effects=MODEL.effects[:2])
+    known = replace(SHIP, uncertainty={"default": 0.3})
+    trials = [with_speed(trial) for trial in without_two.trials]
+    asked = replace(without_two.settings, free=("Nv", "Nr", "Ndelta"), outputs=("r",))
+    fit = identify(trials, replace(yaw, ship=known), asked)
+    held = meant_as_well._as_known(fit, ())
+    still = meant_as_well._slopes(fit, held).still(held)
+    assert {"I_xx", "Kpdot", "Kvdot", "Ypdot", "Kv", "Kr", "Kdelta"} & {*held} <= still
+    assert not {"Yvdot", "Nvdot", "Nrdot", "I_zz", "Yv", "Yr", "Ydelta"} & still
 
 
 def with_speed(trial):

@@ -175,8 +175,8 @@ def _unclear(run: Result) -> Iterable[Advice]:
         return
     if held := run.verdict.held_as_well:
         yield Advice(
-            f"Under [identify] free {wording.named_together(held)} as well, each held about her "
-            'file by priors = "ship", and run again:',
+            f"Under [identify] free {wording.count_of(len(held), 'number')} as well, held about "
+            'her file by priors = "ship", and run again:',
             f"free = {array([*run.model.free, *held])}",
         )
         return
