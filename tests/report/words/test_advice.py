@@ -88,6 +88,20 @@ def test_what_opens_a_way_to_the_noise_of_a_free_roll(result, signals, ways):
     assert OPENS[STATED] in said
 
 
+def test_a_figure_that_is_stated_and_refused_is_not_asked_for_again(result):
+    """Of an outsider's decays the same was asked for, whatever he stated."""
+    why = (
+        "as stated in [diagnose] noise: not typical, noise of 1.77% where 1.29% is the whole error"
+    )
+    routes = [{"method": STATED, "available": False, "why": why}]
+    run = copy.deepcopy(result) | {"verdict": verdict("cannot tell")}
+    run["split"] |= {"noise": None, "routes": routes}
+    said = [each.words for each in advice(result_of(run))]
+    assert not any("opens a way" in words for words in said)
+    [told] = [words for words in said if words.startswith("The noise that is stated is not used")]
+    assert "noise of 1.77% where 1.29% is the whole error: state what is left of it" in told
+
+
 def assert_known(command):
     """The words are those that the command line takes."""
     name, verb, *words = shlex.split(command)

@@ -16,6 +16,8 @@ RIVALS: Final = 2
 """Other members of the family whose command is written out."""
 
 STATED: Final = "stated sensor figure"
+AS_STATED: Final = "as stated in [diagnose] noise: not typical, "
+"""Begins why a figure that is stated is not used."""
 OPENS: Final = {
     "repeated manoeuvre": "run one manoeuvre twice, with the same orders",
     "periods of a periodic test": "run a test whose orders repeat themselves several times",
@@ -186,6 +188,14 @@ def _unclear(run: Result) -> Iterable[Advice]:
             "The record itself leaves it open. What settles it is a trial in which the effect does "
             "something that the free parameters cannot do as well, or parameters known from a "
             "model test, held fixed or given as priors."
+        )
+        return
+    refused = [row.why for row in run.split.routes if (row.why or "").startswith(AS_STATED)]
+    if refused:
+        yield Advice(
+            f"The noise that is stated is not used, {(refused[0] or '').removeprefix(AS_STATED)}: "
+            "state what is left of it in the samples of [align], which are means of what a sensor "
+            "gives in their period."
         )
         return
     closed = {row.method for row in run.split.routes if not row.available}
