@@ -33,6 +33,8 @@ def test_a_delay_is_at_its_end_from_a_twentieth_before_it(fit, late, ended):
     assert found == ({"tau_r [zigzag-20]": late} if ended else {})
     why = why_no_fit(replace(fit, theta=theta))
     assert (why is not None and "what no sensor does" in why.reason) is ended
+    told = why is not None and "the clock of what steers her" in why.advice
+    assert told is (ended and late < 0.0)
 
 
 def test_what_only_a_search_bounds_has_no_such_end(fit):

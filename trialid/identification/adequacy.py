@@ -116,10 +116,14 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
     bounds = ", ".join(f"{n} = {wording.with_unit(x, units[n])}" for n, x in held.items())
     rolls = any(n.startswith("tau_phi") for n in held) and len(fit.problem.outputs) > 1
     swell = "; where a swell rolls her, leave phi out of outputs and states" if rolls else ""
+    early = any(n.startswith("tau_") and x < 0.0 for n, x in held.items())
+    where = (
+        "first at the clock of what steers her, for no sensor is early, then at" if early else "at"
+    )
     return Inadequate(
         f"what no sensor does had to be assumed: {bounds}, the end of what is possible",
-        "look at that signal's clock, sign and unit, and whether the model is one of this ship; "
-        f"compare whole models by `trialid structures`{swell}",
+        f"look {where} that signal's clock, sign and unit, and whether the model is one of this "
+        f"ship; compare whole models by `trialid structures`{swell}",
     )
 
 
