@@ -18,6 +18,10 @@ from trialid.ingest import read as read_log
 from trialid.progress import silent
 from trialid.workflow.read_trials import align_trials
 from trialid.workflow.run import run
+from trialid.workflow.use.finished_model import finished_model
+from trialid.workflow.use.orders import read_orders
+from trialid.workflow.use.predict import predict_orders
+from trialid.workflow.write_run import write
 
 CURVE = [[1100, -30.0], [1300, -9.0], [1470, 0.0], [1530, 0.0], [1700, 12.0], [1900, 42.0]]
 SHIP = """
@@ -157,3 +161,12 @@ def test_thrust_that_is_in_proportion_to_a_share_is_named(tmp_path, seed, power,
     done = run(pipeline_file.load(tmp_path / "p.toml")).findings
     assert (done.verdict.effect == "thrusters_linear") == named, done.verdict.sentence
     assert named or done.verdict.effect is None
+
+
+def test_a_boat_without_sway_says_that_her_track_holds_no_drift(folder: Path) -> None:
+    """Of an outsider's 16 boats the truth was within the range of her track in three."""
+    write(run(pipeline_file.load(folder / "p.toml")), folder / "out")
+    (folder / "orders.csv").write_text("t[s],left[N],right[N]\n0,9,9\n20,12,6\n", encoding="utf-8")
+    model = finished_model(folder / "out", silent)
+    words = predict_orders(model, read_orders(folder / "orders.csv"), "orders").words
+    assert any(word.startswith("No sway is simulated: the track goes where") for word in words)

@@ -7,7 +7,7 @@ from trialid.alignment import frames
 from trialid.alignment.sources import SignalSource
 from trialid.errors import AlignmentError, UnitError
 from trialid.inspection import channel_names, inspect_log
-from trialid.inspection.drives import drives_among
+from trialid.inspection.drives import drives_among, drives_of
 from trialid.inspection.name_words import sides
 from trialid.inspection.positions import positions, usual_speed
 from trialid.inspection.speed_letters import of_either
@@ -179,3 +179,13 @@ def test_revolutions_in_one_over_a_second_are_asked_for(tmp_path):
         frames.series(SignalSource("n", name), [log], "")
     with pytest.raises(AlignmentError, match="the log states '1/s'"):
         frames.series(SignalSource("r", name, unit="deg/s"), [log], "")
+
+
+@pytest.mark.parametrize("names", [("left", "right"), ("port", "stbd")])
+def test_a_side_alone_is_a_drives_where_no_unit_is_stated(tmp_path, names) -> None:
+    """The guide called them so, and `start` knew no rudder and nothing that steers."""
+    waves = {name: np.sin((k + 1) * T) for k, name in enumerate(names)}
+    found = drives_of(looked_into(tmp_path, **waves))
+    assert [one.name for one in found] == [*names]
+    with_unit = {f"{name}__m": y for name, y in waves.items()}
+    assert drives_of(looked_into(tmp_path, **with_unit)) == ()

@@ -85,13 +85,15 @@ def _numbered(survey: Inspection) -> tuple[ChannelInspection, ...]:
 def _drives(one: ChannelInspection) -> bool:
     """Whether a channel that moves drives a boat: by its words, or by the letter of a shaft.
 
-    That needs a unit, or no more beside it than a side or a number: `n_left`, `n1`.
+    That needs a unit, or no more beside it than a side or a number: `n_left`, `n1`. A side alone is
+    a drive's, too, `left` beside `right`, where nothing states a unit: the turn has to say so.
     """
     told = {*words(one.name)}
     turns = to_si(one.stated_unit or "", SIGNALS["n"].unit) is not None
     plain = one.stated_unit is None and set() < told - {"n"} <= {*SIDES, *LETTERS, *NUMBERS}
     shaft = "n" in told and (turns or plain)
-    told_of = bool(DRIVES & told or shaft) and not NO_DRIVE & told
+    bare = one.stated_unit is None and set() < told <= SIDES.keys()
+    told_of = bool(DRIVES & told or shaft or bare) and not NO_DRIVE & told
     return told_of and not one.constant and one.mostly_there
 
 

@@ -247,6 +247,8 @@ def with_words(
         )
     if shown:
         words.append(f"Not among the orders, held as in the trials: {', '.join(shown.values())}.")
+    if model.fit.model.states and "v" not in model.fit.model.states:
+        words.append("No sway is simulated: the track goes where she heads, and holds no drift.")
     if made.ended_by_departure:
         words.append(f"The ship leaves her model: {made.departure}; nothing is given beyond.")
     return Prediction(name, made, tuple(words))
