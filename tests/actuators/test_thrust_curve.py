@@ -16,6 +16,7 @@ from trialid import pipeline_file
 from trialid.errors import TrialidError
 from trialid.ingest import read as read_log
 from trialid.progress import silent
+from trialid.workflow.quantities_read import quantities_of
 from trialid.workflow.read_trials import align_trials
 from trialid.workflow.run import run
 from trialid.workflow.use.finished_model import finished_model
@@ -166,7 +167,10 @@ def test_thrust_that_is_in_proportion_to_a_share_is_named(tmp_path, seed, power,
 def test_a_boat_without_sway_says_that_her_track_holds_no_drift(folder: Path) -> None:
     """Of an outsider's 16 boats the truth was within the range of her track in three."""
     write(run(pipeline_file.load(folder / "p.toml")), folder / "out")
-    (folder / "orders.csv").write_text("t[s],left[N],right[N]\n0,9,9\n20,12,6\n", encoding="utf-8")
+    (folder / "orders.csv").write_text(
+        "t[s],left[N],right[N]\n0,9,9\n20,12,6\n40,9,9\n", encoding="utf-8"
+    )
     model = finished_model(folder / "out", silent)
-    words = predict_orders(model, read_orders(folder / "orders.csv"), "orders").words
+    known = quantities_of(pipeline_file.load(folder / "p.toml"))
+    words = predict_orders(model, read_orders(folder / "orders.csv", known), "orders").words
     assert any(word.startswith("No sway is simulated: the track goes where") for word in words)
