@@ -13,7 +13,9 @@ from test_start_with_thrusters import log, started
 from typical import known_by
 
 from trialid.design.helm import vessel
+from trialid.design.prediction import stopping
 from trialid.design.prediction.engine_orders import astern_orders, engine_of
+from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.stopping import sail_stop
 from trialid.design.standard import in_calm
 from trialid.errors import DesignError, TrialidError
@@ -60,6 +62,18 @@ def test_the_identified_boat_stops_as_the_true_one(
     assert found["lateral deviation [m]"] == pytest.approx(0.0, abs=1e-6)
     assert made.given["left_order"][0] > 0.0
     assert (made.given["left_order"][-1] < 0.0) == astern
+
+
+def test_no_time_and_no_way_of_a_stop_is_below_zero() -> None:
+    """Of an outsider's boat, whose gain astern nobody knew, she stopped in -0.12 to 0.13 s."""
+    spread = (-0.12, 0.13)
+    numbers = {name: (0.03, spread) for name in (*stopping.FORWARD, stopping.ASIDE)}
+    t = np.arange(3.0)
+    u = np.array([1.0, 0.6, 0.4])
+    made = PredictedMotion(t=t, given={}, motion={"u": u}, ranges={}, numbers=numbers)
+    found = stopping._until_slow(made, 0.5, 0).numbers
+    assert [found[name][1] for name in stopping.FORWARD] == [(0.0, 0.13)] * 3
+    assert found[stopping.ASIDE][1] == spread
 
 
 def truth() -> ShipModel:

@@ -3,9 +3,11 @@
 import functools
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
+from trialid.accuracy.ranges import ANYWHERE, Range, cut_to_ends
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel
 from trialid.design.prediction.engine_orders import astern_orders, engine_of
@@ -61,6 +63,12 @@ def _orders(base: Vessel, start: int, astern: bool) -> Trial:
     return Trial("stop", "check", base.period, signals, {})
 
 
+FORWARD: Final = ("time to that speed [s]", "head reach [m]", "track reach [m]")
+ASIDE: Final = "lateral deviation [m]"
+"""What is told of a stop; nothing of the first three is below zero, whatever slopes say."""
+AHEAD: Final[Range] = (0.0, float("inf"))
+
+
 def _numbers(start: int, share: float, t: Vector, now: Mapping[str, Vector]) -> dict[str, float]:
     """Time and track from the order until the speed has fallen so far; nothing where it never does.
 
@@ -80,12 +88,8 @@ def _numbers(start: int, share: float, t: Vector, now: Mapping[str, Vector]) -> 
     def since(values: Vector) -> float:
         return float(np.interp(at, np.arange(len(values)), values) - values[start])
 
-    return {
-        "time to that speed [s]": since(t),
-        "head reach [m]": since(now["x"]),
-        "track reach [m]": since(way),
-        "lateral deviation [m]": since(now["y"]),
-    }
+    values = (t, now["x"], way, now["y"])
+    return {name: since(x) for name, x in zip((*FORWARD, ASIDE), values, strict=True)}
 
 
 def _until_slow(made: PredictedMotion, share: float, start: int) -> PredictedMotion:
@@ -94,9 +98,14 @@ def _until_slow(made: PredictedMotion, share: float, start: int) -> PredictedMot
     if not made.numbers:
         return replace(made, remark=f"the speed falls to {u[-1] / u[start]:.0%} of itself only")
     end = start + int(np.flatnonzero(u[start:] <= share * u[start])[0]) + 1
+    numbers = {
+        n: (x, cut_to_ends(r, AHEAD if n in FORWARD else ANYWHERE))
+        for n, (x, r) in made.numbers.items()
+    }
     return replace(
         made,
         t=made.t[:end],
+        numbers=numbers,
         given={n: x[:end] for n, x in made.given.items()},
         motion={n: x[:end] for n, x in made.motion.items()},
         ranges={n: (a[:end], b[:end]) for n, (a, b) in made.ranges.items()},
