@@ -17,14 +17,15 @@ OVER: Final = 0.9
 """Share of the range that a rudder goes over in one move, ordered from one angle to another."""
 EVENLY: Final = 0.1
 """Share by which it may be slower over that: a ramp is by noise alone, a sine by 0.2. With half of
-it a zig-zag 10/10 counts up to 0.1 deg of noise on the rudder's angle, with this up to 0.2."""
+it zig-zags 10/10 count in up to 0.05 deg of noise on the rudder's angle, with this in up to 0.1 and
+16 of 40 in 0.2, with twice all of these, and one of 20 sines."""
 MOVE: Final = 0.5
 """Share of its range that a rudder goes from where it turns to where it turns again, to be clocked
-from angle to angle; at half and twice of it, those of a zig-zag are the same ones."""
+from angle to angle; at half of it, and at 0.9, those of a zig-zag are the same ones."""
 ENDS: Final = 0.15
 """Share of such a move at either end that is not clocked, and one sample at least: there it starts
 and stops between two samples. 2.3 to 8 deg/s of zig-zags of 10 to 20 deg, in up to 0.2 deg of noise
-and logged each 0.1 to 2 s, are 0.982 to 1.013 of themselves so, with half of it too, and 0.974 to
+and logged each 0.1 to 2 s, are 0.982 to 1.014 of themselves so, with half of it too, and 0.974 to
 1.017 with twice."""
 SPIKE: Final = 3
 """Moves as quick that there have to be: a wild sample makes two."""
@@ -59,7 +60,7 @@ def rudder_rate(delta: Vector, period: float) -> float:
 
 
 class _Clocked(NamedTuple):
-    """How fast a rudder goes [rad/s], whether at one rate, and whether a long way shows it."""
+    """How fast a rudder goes [rad/s], whether at one rate, and by the middle of its moves."""
 
     rate: float
     even: bool

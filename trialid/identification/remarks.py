@@ -198,7 +198,7 @@ def _late(fit: Fit) -> list[str]:
         if off > 0.0
         else f"{c} is taken as {-off:.2g} s early in all trials, which no sensor is: the rudder "
         "acts before its record, or she answers sooner than the model lets her; what is predicted "
-        "is without it, and ranges hold the model without any delay"
+        "of her is without it, so that she turns later there"
         for c, off in in_all_trials(fit).items()
     ]
 

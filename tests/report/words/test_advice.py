@@ -1,13 +1,18 @@
 import copy
 import json
 import shlex
+from dataclasses import replace
 
 import click
 import pytest
+from s175q import MODEL, OUTPUTS, SETTINGS, zigzag
 
 from trialid.cli.main import commands as known_commands
+from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.search.augment import augment
+from trialid.identification.fit import identify
 from trialid.names.wording import THIN
-from trialid.report.words.advice import OPENS, STATED, advice, moves, trust
+from trialid.report.words.advice import AS_STATED, OPENS, STATED, advice, moves, trust
 from trialid.result.fit_rows import WeakRow
 from trialid.result.json_file import result_of
 
@@ -100,6 +105,14 @@ def test_a_figure_that_is_stated_and_refused_is_not_asked_for_again(result):
     assert not any("opens a way" in words for words in said)
     [told] = [words for words in said if words.startswith("The noise that is stated is not used")]
     assert "noise of 1.77% where 1.29% is the whole error: state what is left of it" in told
+
+
+def test_what_is_refused_begins_as_it_is_looked_for():
+    """The words of the split are what tells a figure that is refused from one that lacks."""
+    fit = identify([zigzag(10)], MODEL, replace(SETTINGS, free=("Nr", "Ndelta")))
+    _, routes = split(fit, augment(fit, {}), dict.fromkeys(OUTPUTS, 1.0), {})
+    [stated] = [route for route in routes if route.method == STATED]
+    assert stated.why.startswith(AS_STATED)
 
 
 def assert_known(command):

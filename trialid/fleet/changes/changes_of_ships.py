@@ -5,20 +5,17 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from scipy.stats import norm
 
 from trialid.arrays import Vector
 from trialid.fleet.changes.change_points import Found, Varies, explain
 from trialid.fleet.changes.courses import Estimates
-from trialid.fleet.changes.of_voyage import each_of_voyage
+from trialid.fleet.changes.of_voyage import NORMAL, each_of_voyage
 from trialid.result.fleet_rows import ChangeRow, FittedRow, RunRow
 
 LEVEL: Final = 0.05
 """Share of fleets without any change in which one is found."""
 FEWEST: Final = 6
 """Voyages from which on changes are sought: two on either side, and two for the scatter."""
-NORMAL: Final = float(norm.ppf(0.975))
-"""Half of a range that holds 95 %, in standard deviations."""
 
 
 def changes(runs: Iterable[RunRow], fitted: Iterable[FittedRow]) -> Iterator[ChangeRow]:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from scipy.stats import norm
 
 from trialid.result.fleet_rows import FittedRow
 
@@ -17,6 +18,8 @@ TRIAL: Final = " ["
 """Begins the name of the trial behind that of a parameter: `tau_r [zz10]`."""
 STAYS: Final = ("tau_", "delta_0")
 """Begin the names of what stays from trial to trial."""
+NORMAL: Final = float(norm.ppf(0.975))
+"""Half of a range that holds 95 %, in standard deviations."""
 
 
 def each_of_voyage(fitted: Iterable[FittedRow]) -> Iterator[FittedRow]:
@@ -39,7 +42,7 @@ def _mean(name: str, rows: Sequence[FittedRow]) -> FittedRow:
     values = np.array([row.value for row in rows], dtype=float)
     errors = np.array([row.standard_error or 0.0 for row in rows])
     apart = np.var(values, ddof=1) if len(values) > 1 else 0.0
-    value, wide = values.mean(), 1.96 * np.sqrt((np.mean(errors**2) + apart) / len(values))
+    value, wide = values.mean(), NORMAL * np.sqrt((np.mean(errors**2) + apart) / len(values))
     return replace(
         rows[0],
         parameter=name,

@@ -190,10 +190,10 @@ def _unclear(run: Result) -> Iterable[Advice]:
             "model test, held fixed or given as priors."
         )
         return
-    refused = [row.why for row in run.split.routes if (row.why or "").startswith(AS_STATED)]
-    if refused:
+    whys = [row.why or "" for row in run.split.routes]
+    if refused := [why.removeprefix(AS_STATED) for why in whys if why.startswith(AS_STATED)]:
         yield Advice(
-            f"The noise that is stated is not used, {(refused[0] or '').removeprefix(AS_STATED)}: "
+            f"The noise that is stated is not used, {refused[0]}: "
             "state what is left of it in the samples of [align], which are means of what a sensor "
             "gives in their period."
         )
