@@ -56,20 +56,6 @@ NOTHING: Final = 0.01
 yaw that is fitted alone. Of two ships of an outsider's eight of the 17 that were to be freed move
 nothing at all, the others 0.7 of it and more: half and twice tell the same."""
 
-TOLD: Final = 0.5
-"""Share of the named effect's fall that slopes must foretell of what is held, before it is fitted:
-1.2 and 1.6 of it where that does as much, at most 0.2 where not (`test_meant_as_well.py` and the
-shipped sample, whose fit of it took a second), so that half and twice change none of them."""
-
-MOST: Final = 0.9
-"""Share of what slopes foretell of all that is held, from which on fewer of it are fitted alone. At
-half and at twice as far from all of it the same are told of the five of `test_meant_as_well.py`."""
-
-NOTHING: Final = 0.01
-"""Share of the residual below which a number that is held moves nothing, as one of roll beside a
-yaw that is fitted alone. Of an outsider's ships eight of 17 that were to be freed move it by nothing
-at all, the others by 0.7 of it and more, so that half and twice tell the same."""
-
 TOLD: Final = 2
 """Numbers that are held, those moved most, that a sentence tells of."""
 
