@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.arrays import Vector
+from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.prediction.seen_range import SeenRange
 from trialid.identification.fit import Fit
 from trialid.names.quantities import Quantity
@@ -111,9 +112,10 @@ def fitted_model(
 ) -> FittedModel:
     """The model of a fit, ready to be written; `words` are what to know of it.
 
-    `covariance` is that of the unknowns by noise; (n, n).
+    `covariance` is that of the unknowns by noise; (n, n). Where each trial has a zero of the rudder
+    of its own, the model has what they have together, as every prediction has.
     """
-    model = fit.model
+    model = with_rudders_zero(fit)
     equations = trace(model, (), fit.problem.outputs)
     rows = {row.name: row for row in result.physical}
     parameters = tuple(_parameter(model, n, rows.get(n)) for n in equations.parameters)

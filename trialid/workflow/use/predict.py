@@ -17,6 +17,7 @@ from trialid.design.prediction.embrace import embrace
 from trialid.design.prediction.likely_spread import LikelySpread, likely_spread
 from trialid.design.prediction.predicted_motion import Manoeuvre, sail_manoeuvre, sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
+from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.prediction.seen_range import beyond_words
 from trialid.design.rudder_rate import GEAR
 from trialid.design.rudders import steered_signals
@@ -188,7 +189,8 @@ def _ship_for(
     """The ship, losing speed in turns where no speed is given; inputs held as in her trials."""
     steered = ready_ship(model.fit)
     if "u" in given and "u" not in model.fit.model.states:
-        steered = vessel(model.fit.model, steered.period, steered.constants, steered.rudder_rate)
+        kept = with_rudders_zero(model.fit)
+        steered = vessel(kept, steered.period, steered.constants, steered.rudder_rate)
     steered = changed_ship(steered, what_if)
     needed = {*steered.simulator.equations.inputs} - given - steered_signals(steered.model) - {"t"}
     needed = {name for name in needed if f"{name}_order" not in given}
