@@ -25,6 +25,18 @@ def current(
     return Measured(x=V_cn * t, y=V_ce * t, x_dot=V_cn, y_dot=V_ce)
 
 
+@effect(source="uniform steady current: the ship moves with the water, and does not feel it")
+def current_in_velocity(
+    psi,
+    *,
+    V_cn=Parameter(0.3, "m/s", low=-5.0, high=5.0),
+    V_ce=Parameter(0.3, "m/s", low=-5.0, high=5.0),
+):
+    """u_measured = u + V_cn cos(psi) + V_ce sin(psi), v_measured so: both are over the ground."""
+    north, east = cos(psi), sin(psi)
+    return Measured(u=V_cn * north + V_ce * east, v=V_ce * north - V_cn * east)
+
+
 @effect(source="kinematics: U^2 = (u + c_x)^2 + (v + c_y)^2, c the current along and across her")
 def current_in_speed(
     u,

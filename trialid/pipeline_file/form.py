@@ -129,6 +129,9 @@ class TrialSection(Section):
     """What is cut out of the logs, `[from, to]` [s]; left out: all of it."""
     speed: NotNegative | None = None
     """Approach speed where no log has `u` [m/s]."""
+    over_ground: bool = False
+    """Whether `u` and `v` are made of what is recorded over the ground, turned by `psi`: of `sog`
+    and `cog`, or else of positions. A current is in them."""
     signals: Mapping[str, SignalSource] = {}
     """Which channel is which quantity."""
 

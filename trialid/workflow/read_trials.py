@@ -11,6 +11,7 @@ from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
 from trialid.alignment.held_roll import without_held_roll
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
+from trialid.alignment.track.body_velocity import with_velocity
 from trialid.diagnosis.records.one_speed import without_noise_of_speed
 from trialid.diagnosis.records.rudder_jumps import rudder_jump, said_of
 from trialid.errors import PipelineError
@@ -141,6 +142,7 @@ def align_trial(
         keep={q: s.keep for q, s in trial.signals.items() if s.keep},
     )  # fmt: skip
     made = _at_origin(pipeline, made)
+    made = with_velocity(made) if trial.over_ground else made
     if trial.speed is None:
         return made
     if "u" in made.signals:

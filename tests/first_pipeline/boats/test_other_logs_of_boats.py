@@ -84,8 +84,8 @@ def test_a_sway_that_is_logged_is_simulated(tmp_path: Path) -> None:
     assert text.count("as in turns.csv, of the same name") == 3  # rate, heading, sway
     model = pipeline_file.load(tmp_path / "p.toml")
     assert model.model.states == ("u", "v", "r")
-    assert "still_water_sway" in model.model.effects
-    assert "Yv0" in model.identify.free
+    assert "sway_drag_vav" in model.model.effects
+    assert {"Yv", "Yvav", "Nv", "Xvr"} <= {*model.identify.free}
     assert model.identify.outputs == ("u", "v", "r")
 
 

@@ -1,4 +1,4 @@
-"""A rudder's zero that her trials have together: in every prediction and every file of the model."""
+"""A rudder's zero that her trials have together: in predictions and in files of the model."""
 
 from pathlib import Path
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from trialid.effects import CATALOGUE
 from trialid.effects.environment import drift_in_speed_record
-from trialid.effects.track import current, current_in_speed
+from trialid.effects.track import current, current_in_speed, current_in_velocity
 from trialid.errors import NotIdentifiable
 from trialid.identification.nuisance.delays import delay_limits
 from trialid.identification.nuisance.priors import limits, nuisance_prior
@@ -71,13 +71,16 @@ def with_nuisance(
 
 def _currents(present: set[str], asked: Asked) -> list[Effect]:
     """What a current shows in; NotIdentifiable where that is nothing."""
-    shown = [current] if {*OVER_GROUND} & {*asked.outputs} else []
+    outputs = {*asked.outputs}
+    shown = [current] if {*OVER_GROUND} & outputs else []
+    if not shown and {"u", "v"} <= outputs:
+        shown = [current_in_velocity]
     read = [current_in_speed] if drift_in_speed_record.name in present else []
     if not shown and not read:
         raise NotIdentifiable(
-            'nuisance "current" shows only over the ground: simulate x and y and put them among '
-            "[identify] outputs, read a speed over ground by the effect drift_in_speed_record, or "
-            "take it out"
+            'nuisance "current" shows only over the ground: simulate x and y, or u and v, and put '
+            "them among [identify] outputs, read a speed over ground by the effect "
+            "drift_in_speed_record, or take it out"
         )
     return [*shown, *read]
 

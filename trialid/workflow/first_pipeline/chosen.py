@@ -71,6 +71,7 @@ class Signal:
 class Chosen:
     """One trial: its log and signals, and its speed [m/s] with the words for where it is from.
 
+    `made_over_ground` are `u` and `v`, where they are made of what is recorded over the ground.
     `beside` are signals that the log holds and that are left to the user, each with why; `window`
     is the manoeuvre alone, where a log is cut.
     """
@@ -82,11 +83,12 @@ class Chosen:
     speed_words: str
     beside: tuple[tuple[Signal, str], ...] = ()
     window: Window | None = None
+    made_over_ground: frozenset[str] = frozenset()
 
     @property
     def quantities(self) -> frozenset[str]:
-        """Quantities that the log holds."""
-        return frozenset(one.quantity for one in self.signals)
+        """Quantities that the log holds, or that are made of what it holds."""
+        return self.made_over_ground | {one.quantity for one in self.signals}
 
     @property
     def name(self) -> str:

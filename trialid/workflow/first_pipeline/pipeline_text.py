@@ -1,7 +1,7 @@
 """The text of a starter pipeline: a comment for each choice, the other choices commented out."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -91,8 +91,7 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
         why = ": no log has u" if trial.speed else ""
         yield f"speed = {float(trial.speed):.4g}  # m/s, {comment(trial.speed_words)}{why}"
     yield _window(trial)
-    for remark in _remarks(trial):
-        yield f"# {comment(remark)}"
+    yield from _remarks(trial)
     yield "[trial.signals]"
     width = max(len(one.quantity) for one in trial.signals)
     found = disagreements.findings(trial.survey)
@@ -110,7 +109,7 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
     for signal, why in trial.beside:
         yield f"# left to you: {signal.quantity}; {comment(why)}"
         yield f"# {signal.quantity} = {{ {_source(signal, signal.source)} }}"
-    yield from _track(trial.survey.channels.values())
+    yield from _track(trial)
 
 
 def _window(trial: Chosen) -> str:
@@ -121,10 +120,10 @@ def _window(trial: Chosen) -> str:
     return f"window = [{found.begin:.1f}, {found.end:.1f}]  # s, {why}"
 
 
-def _track(channels: Iterable[ChannelInspection]) -> Iterator[str]:
-    """Positions that the log holds, commented out: what they are for the guide says."""
-    found = positions(channels)
-    if not found:
+def _track(trial: Chosen) -> Iterator[str]:
+    """Positions that are not read, commented out: what they are for the guide says."""
+    found = positions(trial.survey.channels.values())
+    if not found or {*found} <= trial.quantities:
         return
     yield "# the track, its current and the turning circle: `trialid guide track`"
     if "x" in found:
@@ -151,8 +150,10 @@ def _log(trial: Chosen, path: Path) -> str:
 
 
 def _remarks(trial: Chosen) -> Iterator[str]:
-    yield from trial.survey.warnings[:3]
-    yield from (remark for file in trial.survey.files[:1] for remark in file.remarks[:3])
+    if trial.made_over_ground:
+        yield "over_ground = true  # u, v are those over ground: no log has them by water"
+    told = (remark for file in trial.survey.files[:1] for remark in file.remarks[:3])
+    yield from (f"# {comment(remark)}" for remark in (*trial.survey.warnings[:3], *told))
 
 
 def _facts(one: ChannelInspection) -> str:

@@ -26,6 +26,12 @@ FROM_EAST: Final = -1.5708
 """[rad] What turns an angle that counts from the east to port into one from the north."""
 
 
+Motion = tuple[Vector, Vector, Vector, Mask]
+"""Speed, course and heading [rad], and where all are known."""
+Timed = tuple[Signal, float, Motion]
+"""A course over ground, the period [s] of a clock, and the motion on it."""
+
+
 def from_east(source: ChannelInspection, positive: str | None) -> bool:
     """Whether an angle is one of the axes of ROS, x to the east and y to the north (REP-103)."""
     of_ros = source.angle in ("yaw", "course") or "orientation" in words(source.name)
@@ -43,9 +49,8 @@ def with_course(trial: Chosen) -> Chosen:
     speed, heading = by_name.get("u"), by_name.get("psi")
     if speed is None or heading is None or _logs_water(speed.source):
         return trial
-    courses = [*_courses(trial, speed.source)]
-    read = [(c, *m) for c in courses if (m := _on_one_clock(speed, c, heading)) is not None]
-    along = next((one for one in read if moves_along(*one[2])), None)
+    read, along = _read(trial, speed, heading)
+    courses = [course for course, *_ in read]
     if not read or (along is None and _of_her_own_axes(speed.source, courses[0])):
         return trial
     if along is None:
@@ -60,6 +65,23 @@ def with_course(trial: Chosen) -> Chosen:
     further = (*speed.further, "negative where cog says astern")
     signed = dataclasses.replace(speed, further=further)
     return _with(trial, speed, signed, told)
+
+
+def course_along(trial: Chosen) -> tuple[Signal, Motion] | None:
+    """The course by which she goes ahead or astern of her heading, and how; None where none is.
+
+    Of a trial with a speed over ground and a heading.
+    """
+    by_name = {one.quantity: one for one in trial.signals}
+    along = _read(trial, by_name["u"], by_name["psi"])[1]
+    return None if along is None else (along[0], along[2])
+
+
+def _read(trial: Chosen, speed: Signal, heading: Signal) -> tuple[list[Timed], Timed | None]:
+    """Courses on one clock with speed and heading, and the first that she goes along."""
+    courses = _courses(trial, speed.source)
+    read = [(c, *m) for c in courses if (m := _on_one_clock(speed, c, heading)) is not None]
+    return read, next((one for one in read if moves_along(*one[2])), None)
 
 
 def _with(trial: Chosen, speed: Signal, read: Signal, *more: Signal) -> Chosen:
@@ -96,21 +118,17 @@ def _of_her_own_axes(speed: ChannelInspection, course: Signal) -> bool:
     return speed.angle == "speed" and float(np.mean(along)) >= ALONG
 
 
-Motion = tuple[Vector, Vector, Vector, Mask]
-"""Speed, course and heading [rad], and where all are known."""
-
-
 def _on_one_clock(speed: Signal, course: Signal, heading: Signal) -> tuple[float, Motion] | None:
     """The period [s] and the motion; None where they have too little in common."""
     common = on_one_clock(*(one.source.sketch for one in (speed, course, heading)))
     if common is None:
         return None
     period, (u, chi, psi), whole = common
-    return period, (u, _angle(chi, course), _angle(psi, heading), whole)
+    return period, (u, angle_of(chi, course), angle_of(psi, heading), whole)
 
 
-def _angle(y: Vector, signal: Signal) -> Vector:
-    """Clockwise, in rad."""
+def angle_of(y: Vector, signal: Signal) -> Vector:
+    """An angle as a signal is read, clockwise from north [rad]."""
     factor = to_si(signal.unit or signal.source.unit or "rad", "rad") or 1.0
     turned = factor * y + (FROM_EAST if from_east(signal.source, signal.positive) else 0.0)
     return -turned if signal.positive == "port" else turned

@@ -18,6 +18,7 @@ from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator, Command, actuator_tables
 from trialid.ship.particulars import Ship
+from trialid.workflow.first_pipeline.boats.over_ground import with_velocity_over_ground
 from trialid.workflow.first_pipeline.boats.turned_drives import (
     ANGLE,
     angle_signals,
@@ -109,14 +110,17 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     known, told = approach_speed(survey, live, stated)
     speed = through_water(live, known, told) if live.get("u") else velocity_speed(survey)
     speed = speed or other_speed(survey, known, told)
-    if speed is None:
-        raise no_speed_of_boat(survey)
-    if known is None and speed.source.angle == "speed":
+    if known is None and speed is not None and speed.source.angle == "speed":
         known = float(np.median(speed.source.sketch.y))
         told = f"median length of {speed.source.name}"
-    signals = (*angle_signals(survey, drives, turn), *drives, turn, speed)
+    moved = (turn,) if speed is None else (turn, speed)
+    signals = (*angle_signals(survey, drives, turn), *drives, *moved)
     boat = Chosen(survey=survey, path=survey.path, signals=signals, speed=known, speed_words=told)
-    return with_sway(with_wind(with_course(with_heading(boat, live)), live), live)
+    boat = with_course(with_heading(boat, live))
+    boat = with_velocity_over_ground(boat, live)
+    if "u" not in boat.quantities:
+        raise no_speed_of_boat(survey)
+    return with_sway(with_wind(boat, live), live)
 
 
 def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
