@@ -67,13 +67,12 @@ def with_course(trial: Chosen) -> Chosen:
     return _with(trial, speed, signed, told)
 
 
-def course_along(trial: Chosen) -> tuple[Signal, Motion] | None:
+def course_along(trial: Chosen, speed: Signal, heading: Signal) -> tuple[Signal, Motion] | None:
     """The course by which she goes ahead or astern of her heading, and how; None where none is.
 
-    Of a trial with a speed over ground and a heading.
+    Of a trial with a speed over ground.
     """
-    by_name = {one.quantity: one for one in trial.signals}
-    along = _read(trial, by_name["u"], by_name["psi"])[1]
+    along = _read(trial, speed, heading)[1]
     return None if along is None else (along[0], along[2])
 
 

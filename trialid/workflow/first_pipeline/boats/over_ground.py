@@ -39,7 +39,7 @@ def with_velocity_over_ground(trial: Chosen, live: Live) -> Chosen:
     water = speed is not None and not speed.over_ground
     if heading is None or heading.open or live.get("v") or water:
         return trial
-    read = _by_course(trial, speed) if speed is not None else None
+    read = _by_course(trial, speed, heading) if speed is not None else None
     read = read or _by_position(trial, heading)
     if read is None or (speed is not None and not _goes_outwards(read[1])):
         return trial
@@ -52,9 +52,9 @@ Read = tuple[tuple[Signal, ...], Motion]
 """Signals that tell a velocity, and what they tell."""
 
 
-def _by_course(trial: Chosen, speed: Signal) -> Read | None:
+def _by_course(trial: Chosen, speed: Signal, heading: Signal) -> Read | None:
     """Speed and course over ground; None where no course is by her heading."""
-    found = None if speed.open else course_along(trial)
+    found = None if speed.open else course_along(trial, speed, heading)
     if found is None:
         return None
     course, motion = found
