@@ -196,3 +196,24 @@ def test_a_strangers_first_logs(tmp_path, monkeypatch, names, length):
     ship = read_ship(tmp_path / "first_trial_ship.toml")
     rudders = ["rudder_port", "rudder_starboard"] if length == 96 else []
     assert [one.name for one in ship.actuators] == rudders
+
+
+def test_a_word_for_steering_is_a_rudder_and_its_unit_is_asked_for(tmp_path, monkeypatch):
+    for word in ("steering", "nozzle", "tiller"):
+        made = log(tmp_path / f"{word}.csv")
+        text = made.read_text(encoding="utf-8").replace("rudder[deg]", word, 1)
+        assert word in text
+        made.write_text(text, encoding="utf-8")
+        told = started(tmp_path, monkeypatch, made, *SHIP, "--pipeline", f"{word}_.toml")
+        words = " ".join(told.stdout.split())
+        assert f"{word}, by its name; FILL IN unit = " in words, told.stderr
+
+
+def test_what_turns_her_is_named_where_no_rudder_is_known(tmp_path, monkeypatch):
+    made = log(tmp_path / "a.csv")
+    text = made.read_text(encoding="utf-8").replace("rudder[deg]", "channel_7", 1)
+    made.write_text(text, encoding="utf-8")
+    done = started(tmp_path, monkeypatch, made, *SHIP)
+    assert done.exit_code == 2
+    assert "'channel_7' goes with" in done.stderr
+    assert "where it steers her, call it `steering`" in done.stderr

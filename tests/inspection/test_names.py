@@ -85,7 +85,7 @@ WITH_UNITS = {
     ("steering", "deg"): "delta",
     ("servo_cmd", "deg"): "delta_order",
     ("servo", "us"): None,
-    ("steering", None): None,
+    ("steering", None): "delta",
     ("steering wheel", "deg"): None,
     ("v_meas", "V"): None,
     ("v_meas", None): None,

@@ -91,7 +91,9 @@ QUALIFIERS: Final = frozenset(
 )  # fmt: skip
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
 
-TURNED: Final = dict.fromkeys(("steering", "nozzle", "azimuth", "servo"), "delta")
+STEERING: Final = frozenset(("steering", "steer", "nozzle", "tiller", "helm"))
+"""Words of what steers her, by an angle or a share of full: with no unit, too, a rudder."""
+TURNED: Final = dict.fromkeys((*STEERING, "azimuth", "servo"), "delta")
 LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
 """What such words may follow; a letter alone and the words only with a unit that fits."""
 
@@ -101,9 +103,7 @@ NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
 BARE: Final = frozenset(("u", "v", "p", "r", "phi", "psi", "delta", "n", "rev"))
 """Letters that mean it as capitals or with the unit behind them, where that fits: `R [deg/s]`,
 `psi_deg`. A depth is not among them: `H [m]` is a wave's height as often."""
-SIDED: Final = frozenset(("delta", "n"))
-"""Quantities of which a ship may have one to each side: `delta_PS`, `n_S`."""
-
+SIDED: Final = frozenset(("delta", "n"))  # a ship may have one to each side: `delta_PS`, `n_S`
 OVER_GROUND: Final = frozenset(
     {
         ("sog",), ("speed", "over", "ground"), ("speed", "ground"), ("fahrt", "über", "grund"),
@@ -193,7 +193,7 @@ def _qualified(name: str, unit: str | None) -> str | None:
     stated = unit or unit_in_name(name)
     fits = stated is not None and _fits(found, stated)
     if about or letter not in ALONE:
-        return found if fits or letter in NAMED else None
+        return found if fits or letter in NAMED or (stated is None and letter in STEERING) else None
     named = letter in NAMED and any(word in SIDES for word in more)
     return found if named or (fits and letter in BARE and is_column(name)) else None
 

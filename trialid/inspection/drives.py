@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from trialid.inspection.channel_names import STEERING, unit_in_name
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import sides, words
 from trialid.inspection.usual_units import to_si
@@ -102,3 +103,13 @@ def _by_format(one: ChannelInspection) -> set[str]:
     if one.guess is not None and one.guess.how == "format" and one.guess.quantity in SHAFTS:
         return {one.guess.quantity}
     return {side for words_of_it, side in ENGINES.items() if f"({words_of_it})" in one.description}
+
+
+def of_some_steering(name: str) -> bool:
+    """Whether a name says that she is steered by it, and neither its unit nor that it is an angle.
+
+    >>> of_some_steering("/jet/command:nozzle"), of_some_steering("steering_deg")
+    (True, False)
+    """
+    field = words(name.rpartition(":")[2])
+    return field[:1] != () and field[0] in STEERING and unit_in_name(name) is None

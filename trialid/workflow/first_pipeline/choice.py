@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trialid.inspection import channel_names, name_words
+from trialid.inspection.drives import of_some_steering
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.own_scale import why_no_angle
 from trialid.inspection.positions import FASTEST, approach_by_positions
@@ -14,38 +15,30 @@ from trialid.inspection.relations import side, slope_agreement, unit_of_rate, un
 from trialid.inspection.speed_letters import of_either
 from trialid.names import units
 from trialid.names.quantities import SIGNALS
-from trialid.workflow.first_pipeline.chosen import OPEN, UNSAID, Chosen, Reason, Signal
+from trialid.workflow.first_pipeline.chosen import (
+    AS_RADIANS,
+    ASK_COUNTS,
+    ASK_FULL,
+    ASK_PERCENT,
+    ASK_SIDE,
+    ASK_STEERING,
+    ASK_UNIT,
+    BY_NAME,
+    CONVENTION,
+    OF_FULL,
+    OPEN,
+    UNSAID,
+    Chosen,
+    Reason,
+    Signal,
+)
 from trialid.workflow.first_pipeline.not_begun import no_signal
 
 RUDDERS: Final = ("delta", "delta_order")
 SURE: Final = 0.9
 """Correlation from which a rate of turn and a heading tell each other's side."""
-ASK_UNIT: Final = Reason("FILL IN the unit, the log states none", "asked")
 BY_OTHERS: Final = "no unit is stated, but its size, jumps or turns, here or elsewhere, leave"
 BY_SPEED: Final = "no unit is stated, but her positions or approach speed, here or elsewhere, leave"
-AS_RADIANS: Final = Reason(
-    "CAREFUL: no unit is stated: so small a rudder is read in radians; a share of full, with unit "
-    '= "deg" and gain = the degrees at full, looks the same',
-    "small",
-)
-OF_FULL: Final = "share of the full deflection"  # as a format says it
-ASK_FULL: Final = Reason(
-    'FILL IN unit = "deg" and gain = the degrees at full, of which it is a share', "asked"
-)
-ASK_PERCENT: Final = Reason(
-    'FILL IN unit = "deg" and gain = the degrees at full / 100, for it is in %', "asked"
-)
-ASK_COUNTS: Final = (
-    'FILL IN unit = "deg", gain = degrees of one count, offset = less what it shows amidships '
-    "times gain"
-)
-ASK_SIDE: Final = Reason(
-    "FILL IN starboard or port: the side the ship turns to when it is positive", "asked"
-)
-CONVENTION: Final = Reason(
-    "CAREFUL: side by the format's convention, the motion does not confirm it", "convention"
-)
-BY_NAME: Final = Reason("unit by its name")
 GROUND: Final = "over ground"
 
 
@@ -283,16 +276,22 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, Reason]
         return OPEN, ASK_PERCENT
     if stated is not None:
         return stated, UNSAID if source.unit else BY_NAME
-    largest = max(abs(source.low), abs(source.high))
-    if quantity in RUDDERS and largest <= 1.6:
-        share = OF_FULL in source.description
-        return (OPEN, ASK_FULL) if share else ("rad", AS_RADIANS)
     if quantity in RUDDERS:
-        words = f"no unit is stated, but up to {largest:.3g} can only be deg"
-        return "deg", Reason(words, "size")
+        return _unit_of_rudder(source)
     unit = source.unit_by_size
     by = BY_SPEED if quantity in ("u", "v") else BY_OTHERS
     return (unit, Reason(f"{by} {unit}")) if unit is not None else (OPEN, ASK_UNIT)
+
+
+def _unit_of_rudder(source: ChannelInspection) -> tuple[str, Reason]:
+    """The unit of one whose log states none."""
+    if of_some_steering(source.name):
+        return OPEN, ASK_STEERING
+    largest = max(abs(source.low), abs(source.high))
+    if largest > 1.6:
+        return "deg", Reason(f"no unit is stated, but up to {largest:.3g} can only be deg", "size")
+    share = OF_FULL in source.description
+    return (OPEN, ASK_FULL) if share else ("rad", AS_RADIANS)
 
 
 def shared_signals(trials: Sequence[Chosen]) -> frozenset[str]:

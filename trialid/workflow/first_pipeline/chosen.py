@@ -35,6 +35,35 @@ class Reason:
 
 
 UNSAID: Final = Reason("")
+ASK_UNIT: Final = Reason("FILL IN the unit, the log states none", "asked")
+AS_RADIANS: Final = Reason(
+    "CAREFUL: no unit is stated: so small a rudder is read in radians; a share of full, with unit "
+    '= "deg" and gain = the degrees at full, looks the same',
+    "small",
+)
+OF_FULL: Final = "share of the full deflection"  # as a format says it
+ASK_FULL: Final = Reason(
+    'FILL IN unit = "deg" and gain = the degrees at full, of which it is a share', "asked"
+)
+ASK_PERCENT: Final = Reason(
+    'FILL IN unit = "deg" and gain = the degrees at full / 100, for it is in %', "asked"
+)
+ASK_STEERING: Final = Reason(
+    'FILL IN unit = "deg", and where it is a share of full or in % gain = the degrees at full, or '
+    "those / 100",
+    "counts",
+)
+ASK_COUNTS: Final = (
+    'FILL IN unit = "deg", gain = degrees of one count, offset = less what it shows amidships '
+    "times gain"
+)
+ASK_SIDE: Final = Reason(
+    "FILL IN starboard or port: the side the ship turns to when it is positive", "asked"
+)
+CONVENTION: Final = Reason(
+    "CAREFUL: side by the format's convention, the motion does not confirm it", "convention"
+)
+BY_NAME: Final = Reason("unit by its name")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,12 +10,18 @@ from trialid.inspection import Inspection
 from trialid.inspection.channel_names import is_course
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection
+from trialid.inspection.name_words import sides
 from trialid.inspection.positions import positions
+from trialid.inspection.relations import side
 from trialid.inspection.usual_units import to_si
 from trialid.recording import OF_TEXT
 from trialid.ship.estimate.particulars_given import KNOT
 
 NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
+
+
+TURNS: Final = 0.7
+"""Correlation with what turns her from which a channel may be what steers her."""
 
 
 class TooLittle(LogError):
@@ -75,6 +81,12 @@ def _courses(survey: Inspection) -> list[str]:
 
 def _what_then(survey: Inspection, called: bool) -> str:
     """What to do where no rudder or no motion is recognised, or one is that is `called` so."""
+    turning = None if called else _turns_with(survey)
+    if turning is not None:
+        return (
+            f"{turning}: where it steers her, call it `steering`, or map it to delta or "
+            f"delta_order by hand, see `trialid inspect --all {shlex.quote(str(survey.path))}`"
+        )
     drives = [] if called else drives_among(survey)
     if drives:
         return (
@@ -83,6 +95,20 @@ def _what_then(survey: Inspection, called: bool) -> str:
             "see `trialid guide actuators`"
         )
     return f"see `trialid inspect --all {shlex.quote(str(survey.path))}`, and map them by hand"
+
+
+def _turns_with(survey: Inspection) -> str | None:
+    """The channel that is not read by which she turns most, where it is by one; else None."""
+    turns = next((one for q in ("r", "psi") for one in survey.sources(q) if not one.constant), None)
+    if turns is None:
+        return None
+    moves = (c for c in survey.channels.values() if c.guess is None and not c.constant)
+    unread = (c for c in moves if not sides(c.name))  # one to a side is a drive
+    found = [(abs(s.strength), c.name, s) for c in unread if (s := side(c, turns)) is not None]
+    strength, name, told = max(found, default=(0.0, "", None), key=lambda one: one[0])
+    if told is None or strength < TURNS:
+        return None
+    return f"{name!r} goes with {told.by} of {turns.name!r} (correlation {told.strength:+.2f})"
 
 
 def no_speed(surveys: Sequence[Inspection]) -> str:

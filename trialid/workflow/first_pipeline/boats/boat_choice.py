@@ -9,7 +9,7 @@ import numpy as np
 
 from trialid.errors import LogError
 from trialid.inspection.channel_names import ORDERED
-from trialid.inspection.drives import drives_of, has_side
+from trialid.inspection.drives import drives_of, has_side, of_some_steering
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
 from trialid.inspection.own_scale import at_rest
@@ -24,6 +24,7 @@ from trialid.workflow.first_pipeline.boats.turned_drives import (
     angle_signals,
     angles_of,
     do_the_same,
+    hardly_differ,
 )
 from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
 from trialid.workflow.first_pipeline.choice import (
@@ -96,9 +97,13 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
         It holds neither, or no motion.
     """
     live = {name: live_sources(survey, name) for name in SIGNALS}
-    steered = any(live[name] for name in RUDDERS)
     turns, drives = live.get("r") or live.get("psi"), drives_of(survey)
-    if not turns or len(drives) != 2 or (steered and not angles_of(survey, drives)):
+    if not turns or len(drives) != 2:
+        return with_further(choose_signals(survey, speed), live)
+    rudders = [one for name in RUDDERS for one in live[name]]
+    steered = any(not of_some_steering(one.name) for one in rudders)
+    steered = steered or (bool(rudders) and hardly_differ(*drives))
+    if steered and not angles_of(survey, drives):
         return with_further(choose_signals(survey, speed), live)
     return _choose_boat(survey, live, speed)
 

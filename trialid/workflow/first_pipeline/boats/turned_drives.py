@@ -10,8 +10,7 @@ from trialid.inspection.name_words import sides, words
 from trialid.inspection.relations import side
 from trialid.inspection.sketch import on_one_clock
 from trialid.inspection.usual_units import to_si
-from trialid.workflow.first_pipeline.choice import ASK_UNIT
-from trialid.workflow.first_pipeline.chosen import OPEN, UNSAID, Reason, Signal
+from trialid.workflow.first_pipeline.chosen import ASK_UNIT, OPEN, UNSAID, Reason, Signal
 
 PODS: Final = frozenset(words("azimuth azimut azi pod asd azimuththruster"))
 THRUSTERS: Final = frozenset(words("thr thruster thrusters"))
@@ -56,10 +55,11 @@ def angles_of(
 def do_the_same(survey: Inspection, drives: Sequence[ChannelInspection]) -> bool:
     """Whether two drives that are turned, and their angles, hardly differ."""
     angles = angles_of(survey, drives)
-    return bool(angles) and all(_hardly_differ(*pair) for pair in (drives, angles))
+    return bool(angles) and all(hardly_differ(*pair) for pair in (drives, angles))
 
 
-def _hardly_differ(one: ChannelInspection, other: ChannelInspection) -> bool:
+def hardly_differ(one: ChannelInspection, other: ChannelInspection) -> bool:
+    """Whether two channels are the same, but for their noise."""
     common = on_one_clock(one.sketch, other.sketch)
     if common is None:
         return False

@@ -5,8 +5,7 @@ from typing import Final
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.name_words import words
 from trialid.inspection.own_scale import at_rest
-from trialid.workflow.first_pipeline.choice import BY_NAME
-from trialid.workflow.first_pipeline.chosen import OPEN, UNSAID, Reason
+from trialid.workflow.first_pipeline.chosen import BY_NAME, OPEN, UNSAID, Reason
 
 SHARE: Final = 1.05
 """No share of full is larger; a stated thrust of a boat that moves is."""
