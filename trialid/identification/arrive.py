@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from trialid.identification.one_search import End, Progress, cost_at, random_starts, search
 from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
-from trialid.identification.record_starts import record_starts, with_own_starts
+from trialid.identification.record_starts import (
+    further_starts,
+    record_starts,
+    with_own_starts,
+)
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.roll_range import RollRange
 from trialid.identification.roll.told_gm import FAR, along_GM, rivals, roll_error
@@ -80,7 +84,11 @@ def arrive(
     if embedded is not None and _is_worse(problem, settings, embedded, best_of(ends)):
         ends.append(search(problem, settings, embedded, progress))
         told.append("searched again from where the smaller model had ended, which was better")
-    steps = (_by_ship, _by_record, _further, _by_chance) if embedded is None else (_further,)
+    steps = (
+        (_by_ship, _by_record, _in_pieces, _further, _by_chance)
+        if embedded is None
+        else (_further,)
+    )
     for step in steps:
         more, words = step(problem, settings, ends, progress)
         ends, told = [*ends, *more], [*told, *words]
@@ -129,6 +137,18 @@ def _by_record(
     return more, _words(why, "starts by the record itself", ends, more)
 
 
+def _in_pieces(
+    problem: Problem, settings: Settings, ends: Sequence[End], progress: Progress
+) -> Step:
+    """From what the record tells of her in pieces, where all else explained next to nothing."""
+    best = best_of(ends)
+    if best.began and not _explains_nothing(best):
+        return [], []
+    starts = further_starts(problem, settings)
+    more = [search(problem, settings, start, progress) for start in starts]
+    return more, _words(_doubt(problem, best), "the record in pieces", ends, more)
+
+
 def _further(problem: Problem, settings: Settings, ends: Sequence[End], progress: Progress) -> Step:
     """On from the best end, where its iterations were used up."""
     best, most = best_of(ends), PATIENCE * settings.max_iterations
@@ -162,6 +182,10 @@ def _arrived(end: End) -> bool:
     return end.began and end.minimum.converged
 
 
+def _explains_nothing(end: End) -> bool:
+    return bool(np.sqrt(2.0 * end.V) > UNEXPLAINED)
+
+
 def _same(V: float, best: float) -> bool:
     return best * (1.0 + SAME_OPTIMUM) + 1e-20 >= V
 
@@ -177,7 +201,7 @@ def _doubt(problem: Problem, end: End) -> str:
         return REASONS[end.minimum.reason]
     if held := _at_bounds(problem, end):
         return f"{held[0].name} ended at its bound"
-    if np.sqrt(2.0 * end.V) > UNEXPLAINED:
+    if _explains_nothing(end):
         return "next to nothing was explained"
     if problem.roll is None:
         return "more is left than noise" if np.sqrt(2.0 * end.V) > NO_NOISE else ""

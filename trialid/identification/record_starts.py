@@ -33,6 +33,13 @@ Rows = NDArray[np.int_]
 GM_OVER_L: Final = tuple(np.geomspace(0.001, 0.045, 12))
 """A factor of 1.4 from one to the next, 1.2 in the roll period."""
 
+STIFF: Final = 0.1
+"""GM over the length from which a ship that capsizes at every other begins: a boat of 7.5 m has
+0.08. Half of it and twice lead her to the same end."""
+
+DRIFT: Final = "Nv"
+"""The moment by which a ship that drifts turns on."""
+
 RATIOS: Final = (0.03, 0.15)
 FOLLOWED: Final = 3
 """Points of the grid that are searched from, ..."""
@@ -72,8 +79,14 @@ def record_starts(problem: Problem, settings: Settings) -> list[Vector]:
     the roll where there is one.
     """
     if problem.roll is not None:
-        return _by_motion(problem)
-    return [*_in_pieces(problem, settings), *_by_motion(problem)]
+        return _by_motion(problem, problem.start)
+    return [*_in_pieces(problem, settings), *_by_motion(problem, problem.start)]
+
+
+def further_starts(problem: Problem, settings: Settings) -> list[Vector]:
+    """Where no GM of the grid leads anywhere: in pieces, and the grid again from there."""
+    pieces = _in_pieces(problem, settings) if problem.roll is not None else []
+    return [start for one in pieces for start in (one, *_by_motion(problem, one))]
 
 
 def with_own_starts(problem: Problem) -> Vector:
@@ -94,8 +107,8 @@ def _in_pieces(problem: Problem, settings: Settings) -> list[Vector]:
     near = {x.name: x.start for x in problem.unknowns if x.trial is None}
     most = min(PIECES_STEPS, settings.max_iterations)
     for number in PIECES:
-        for pieces in (number, MANY):
-            cut = in_pieces(problem, settings, pieces, near)
+        for pieces, begun in ((number, near), (MANY, near), (MANY, _steady(problem, near))):
+            cut = in_pieces(problem, settings, pieces, begun)
             end = search(cut, settings, cut.start, max_iterations=most)
             if end.began:
                 break
@@ -104,6 +117,18 @@ def _in_pieces(problem: Problem, settings: Settings) -> list[Vector]:
         ended = zip(cut.unknowns, end.minimum.theta, strict=True)
         near = {x.name: float(a) for x, a in ended}
     return [np.array([near.get(x.name, x.start) for x in problem.unknowns])]
+
+
+def _steady(problem: Problem, near: Mapping[str, float]) -> Mapping[str, float]:
+    """The same starts of a ship whose drift turns her no way, and that no moment capsizes.
+
+    As far as both are free; she stays within her model whatever else is wrong with her file.
+    """
+    free = {x.column: x.name for x in problem.unknowns if x.trial is None}
+    steady = {free[DRIFT]: 0.0} if DRIFT in free else {}
+    if problem.roll is not None:
+        steady[problem.unknowns[problem.roll.GM].name] = STIFF * problem.roll.length
+    return {**near, **steady}
 
 
 def in_pieces(
@@ -141,13 +166,13 @@ def _cut(problem: Problem, trial: Trial, number: int) -> list[Trial]:
     ]
 
 
-def _by_motion(problem: Problem) -> list[Vector]:
+def _by_motion(problem: Problem, begun: Vector) -> list[Vector]:
     """Yaw found without the roll, then the best of a grid of the roll where its GM is free."""
     rolls, turns = rows_of(problem, ROLLING), rows_of(problem, _others(problem))
     if not len(rolls) or not len(turns):
-        theta = problem.start
+        theta = begun
     else:
-        theta = _descend(problem, problem.start, turns, ~of_roll(problem))
+        theta = _descend(problem, begun, turns, ~of_roll(problem))
     if problem.roll is None or not len(rolls):
         return [theta] if len(rolls) and len(turns) else []
     return _best_of_grid(problem, theta, rolls)

@@ -16,3 +16,17 @@ def test_a_ship_that_capsizes_at_once_is_asked_for_her_gm():
     free = replace(s175q.SETTINGS, free=("Nr",))
     with pytest.raises(SimulationError, match="the GM of her file lets her capsize: state hers"):
         identify([s175q.zigzag(20)], replace(s175q.MODEL, ship=ship), free)
+
+
+@pytest.mark.parametrize(("drift", "heel", "GM"), [(30.0, 60.0, 0.01), (60.0, 100.0, 0.005)])
+def test_one_whose_file_makes_her_turn_on_and_capsize_is_found_all_the_same(drift, heel, GM):
+    """No pipeline of an outsider's RIB ran, of whose draught nobody had said anything."""
+    stated = s175q.SHIP.coefficients
+    wild = {"Nv": drift * stated["Nv"], "Kdelta": heel * stated["Kdelta"], "GM": GM}
+    model = replace(s175q.MODEL, ship=replace(s175q.SHIP, coefficients=stated | wild))
+    free = ("Nv", "Nr", "Ndelta", "Kdelta", "GM")
+    trials = [s175q.zigzag(10), s175q.zigzag(20)]
+    found = identify(trials, model, replace(s175q.SETTINGS, free=free))
+    assert found.converged
+    for name in free:
+        assert found.value(name) == pytest.approx(s175q.MODEL.value(name), rel=1e-3), name
