@@ -12,7 +12,7 @@ from trialid.identification.adequacy import (
     UNEXPLAINED,
     why_no_fit,
 )
-from trialid.identification.file_of_ship import moment_by_rudder, steers_backwards
+from trialid.identification.file_of_ship import turned_by_rudder, steers_backwards
 from trialid.identification.fit import identify
 from trialid.identification.no_manoeuvre import RUDDER_RANGE
 from trialid.identification.problem import Settings
@@ -254,9 +254,21 @@ def test_by_a_race_that_grips_the_rudder_she_turns_as_she_should():
     settings = replace(SETTINGS, free=("Nr", "Ndelta", "N_nn"))
     fit = identify(trials, replace(racing, values={**racing.values, "Ndelta": 0.0}), settings)
     assert fit.value("Ndelta") == pytest.approx(racing.value("Ndelta"), rel=0.1)
-    assert moment_by_rudder(fit) > 0.0
+    assert turned_by_rudder(fit) > 0.0
     assert not steers_backwards(fit)
     assert why_no_fit(fit) is None
+
+
+def test_by_a_side_force_that_the_water_couples_she_turns_as_she_should():
+    """An outsider's boat: her Ndelta alone was of the other sign, and her sides were doubted."""
+    coupled = replace(MODEL, ship=replace(MODEL.ship, mass={**MODEL.ship.mass, "Nvdot": -0.004}))
+    coupled = coupled.with_values({"Ndelta": -0.1 * MODEL.value("Ndelta")})
+    trials = [noisy(zigzag(angle, coupled), angle) for angle in (10, 20)]
+    assert np.corrcoef(trials[0].signals["delta"][:60], trials[0].signals["r"][:60])[0, 1] > 0.5
+    fit = identify(trials, coupled, replace(SETTINGS, free=("Nr", "Ndelta")))
+    assert fit.value("Ndelta") == pytest.approx(coupled.value("Ndelta"), rel=0.2)
+    assert turned_by_rudder(fit) > 0.0
+    assert not steers_backwards(fit)
 
 
 @pytest.mark.study

@@ -12,9 +12,8 @@ from trialid.identification.one_search import search
 from trialid.identification.output_error import Unknown, ranges
 from trialid.identification.trial_score import Score
 from trialid.least_squares.fold import triangle
-from trialid.ship.effect import Force
-from trialid.ship.motion import effect_parts
 from trialid.simulation.integrate import inputs
+from trialid.simulation.reference import evaluator
 
 Vector = NDArray[np.float64]
 
@@ -152,33 +151,32 @@ def steers_backwards(fit: Fit) -> bool:
     error = float(_standard_errors(fit)[names.index(STEERS)])
     if value * (stated or 0.0) >= 0.0 or abs(value) <= CLEARLY * error:
         return False
-    return value * moment_by_rudder(fit) >= 0.0
+    return value * turned_by_rudder(fit) >= 0.0
 
 
-def moment_by_rudder(fit: Fit) -> float:
-    """Yaw moment by a radian of rudder [N m], of all forces, on average along the fitted trials."""
+def turned_by_rudder(fit: Fit) -> float:
+    """Yaw acceleration by a radian of rudder [rad/s^2], on average along the fitted trials.
+
+    Of all forces and of what the water adds: a side force turns her as well where sway and yaw are
+    coupled. An outsider's boat, whose Ndelta alone pointed the wrong way, turned as she should.
+    """
     fitted = [s for s in fit.scores if s.trial.use == "fit"]
-    over = [_moment(fit, i, s, SMALL) - _moment(fit, i, s, -SMALL) for i, s in enumerate(fitted)]
-    return float(np.mean([np.nanmean(moment) for moment in over])) / (2.0 * SMALL)
+    over = [_turning(fit, i, s, SMALL) - _turning(fit, i, s, -SMALL) for i, s in enumerate(fitted)]
+    return float(np.mean([np.nanmean(one) for one in over])) / (2.0 * SMALL)
 
 
-def _moment(fit: Fit, place: int, score: Score, off: float) -> Vector:
-    """Yaw moment at each sample of a fitted trial with the rudder off by so much [N m]; (N,)."""
-    simulator, own = fit.problem.simulator, fit.problem.values(fit.theta, place)
-    model = simulator.model
-    known = {n: own[n] if n in own else model.value(n) for n in model.parameters}
-    given = inputs(simulator, score.trial, known)
-    states, acting = (
-        {n: x + off if n == "delta" else x for n, x in zip(names, columns.T, strict=True)}
-        for names, columns in (
-            (model.all_states, score.response.states),
-            (simulator.equations.inputs, given),
-        )
-    )
-    total = np.zeros(score.trial.samples)
-    for _, part in effect_parts(model, states, acting, known):
-        total = total + (part.N if isinstance(part, Force) else 0.0)
-    return total
+def _turning(fit: Fit, place: int, score: Score, off: float) -> Vector:
+    """Yaw acceleration at each sample of a fitted trial, the rudder off by so much; (N,)."""
+    simulator = fit.problem.simulator
+    equations = simulator.equations
+    values = {**simulator.fixed, **fit.problem.values(fit.theta, place)}
+    names = (*equations.states, *equations.inputs)
+    moving = np.hstack([score.response.states, inputs(simulator, score.trial, values)])
+    moving[:, [n == "delta" for n in names]] += off
+    known = [np.full(len(moving), values[n]) for n in equations.parameters]
+    acceleration = [equations.f[equations.states.index("r")]]
+    run = evaluator(acceleration, (*names, *equations.parameters), scalar=False)
+    return np.asarray(run([*moving.T, *known])[0])
 
 
 def _as_in_file(fit: Fit) -> tuple[Unknown, ...]:
