@@ -12,7 +12,7 @@ from trialid.identification.adequacy import (
     UNEXPLAINED,
     why_no_fit,
 )
-from trialid.identification.file_of_ship import turned_by_rudder, steers_backwards
+from trialid.identification.file_of_ship import steers_backwards, turned_by_rudder
 from trialid.identification.fit import identify
 from trialid.identification.no_manoeuvre import RUDDER_RANGE
 from trialid.identification.problem import Settings
