@@ -45,6 +45,8 @@ from spread import add_options, spread
 from trialid.diagnosis.diagnose import refits_of
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import gap_beside_best
+from trialid.diagnosis.force.missing_force import missing_force
+from trialid.diagnosis.gap_untold import without_gap
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.meant_as_well import beside_others
@@ -141,6 +143,9 @@ def diagnosed(
         verdict = with_held_out(fit.examined, verdict, lambda: sure().covariance, asked.level)
         named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
         verdict = beside_others(fit, verdict, named, parts, whole, asked=asked, progress=silent)
+        gap = verdict.kind == "not in catalogue"
+        force = missing_force(fit.examined, asked.level) if gap else None
+        verdict = without_gap(fit, verdict, ranking, parts, force)
     return Diagnosis(fit, ranking, tried.refits, named if verdict.effect else None, verdict)
 
 
@@ -154,10 +159,8 @@ def true_candidate(
     scenario: Scenario, ranking: Sequence[Candidate]
 ) -> tuple[int, Candidate] | None:
     """Place in the ranking, from 1, and score of what is hidden; None where it has neither."""
-    for place, candidate in enumerate(ranking, 1):
-        if candidate.effect.name in scenario.exact:
-            return place, candidate
-    return None
+    places = enumerate(ranking, 1)
+    return next(((i, c) for i, c in places if c.effect.name in scenario.exact), None)
 
 
 @one_thread
@@ -187,8 +190,7 @@ def run(task: Task) -> Row:
 def judged(row: Row, scenario: Scenario, right: set[str], done: Diagnosis) -> Row:
     """What the diagnosis said beside what is true, and what is `right` to name."""
     verdict, named, family = done.verdict, done.named, done.verdict.family
-    found = true_candidate(scenario, done.ranking)
-    if found is not None:
+    if (found := true_candidate(scenario, done.ranking)) is not None:
         place, candidate = found
         row = row.also(
             score=candidate.score, p=candidate.p_value, rank=place,
@@ -196,8 +198,7 @@ def judged(row: Row, scenario: Scenario, right: set[str], done: Diagnosis) -> Ro
         )  # fmt: skip
     if named is not None:
         row = row.also(eps_predicted=named.candidate.eps_predicted, eps_after=named.fit.eps_rmsn)
-    tried = min(done.refits, key=lambda r: r.fit.eps_rmsn, default=None)
-    if tried is not None:
+    if tried := min(done.refits, key=lambda r: r.fit.eps_rmsn, default=None):
         row = row.also(tried=tried.candidate.effect.name, eps_tried=tried.fit.eps_rmsn,
                        eps_check_tried=tried.fit.eps_check)  # fmt: skip
     effect = named.candidate.effect if named is not None else None
@@ -271,11 +272,10 @@ def options() -> argparse.Namespace:
     asked = parser.parse_args()
     if asked.out is not None and asked.out.suffix not in (".md", ".csv"):
         parser.error(f"--out {asked.out}: a name that ends in .md or .csv is needed")
-    short = asked.short
-    asked.seeds = asked.seeds or (SHORT_SEEDS if short else SEEDS)
-    asked.scenarios = asked.scenarios or list(SHORT_SCENARIOS if short else CORE)
-    asked.noise = asked.noise or list(SHORT_NOISES if short else NOISES)
-    asked.trials = asked.trials or (["mixed"] if short else list(TRIAL_SETS))
+    full, short = (SEEDS, CORE, NOISES, TRIAL_SETS), (SHORT_SEEDS, SHORT_SCENARIOS, SHORT_NOISES)
+    seeds, scenarios, noise, trials = (*short, ["mixed"]) if asked.short else full
+    asked.seeds, asked.scenarios = asked.seeds or seeds, asked.scenarios or list(scenarios)
+    asked.noise, asked.trials = asked.noise or list(noise), asked.trials or list(trials)
     return asked
 
 
@@ -284,8 +284,7 @@ def main() -> int:
     asked = options()
     began = time.perf_counter()
     rows = run_all(tasks(asked), asked.jobs, asked.on)
-    limits = SHORT if asked.short else FULL
-    text = report(rows, limits)
+    text = report(rows, limits := SHORT if asked.short else FULL)
     print(text)
     print(f"{len(rows)} runs in {time.perf_counter() - began:.0f} s", file=sys.stderr)
     if asked.out is not None:

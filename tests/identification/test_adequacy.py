@@ -259,18 +259,6 @@ def test_by_a_race_that_grips_the_rudder_she_turns_as_she_should():
     assert why_no_fit(fit) is None
 
 
-def test_by_a_side_force_that_the_water_couples_she_turns_as_she_should():
-    """An outsider's boat: her Ndelta alone was of the other sign, and her sides were doubted."""
-    coupled = replace(MODEL, ship=replace(MODEL.ship, mass={**MODEL.ship.mass, "Nvdot": -0.004}))
-    coupled = coupled.with_values({"Ndelta": -0.1 * MODEL.value("Ndelta")})
-    trials = [noisy(zigzag(angle, coupled), angle) for angle in (10, 20)]
-    assert np.corrcoef(trials[0].signals["delta"][:60], trials[0].signals["r"][:60])[0, 1] > 0.5
-    fit = identify(trials, coupled, replace(SETTINGS, free=("Nr", "Ndelta")))
-    assert fit.value("Ndelta") == pytest.approx(coupled.value("Ndelta"), rel=0.2)
-    assert turned_by_rudder(fit) > 0.0
-    assert not steers_backwards(fit)
-
-
 @pytest.mark.study
 def test_another_ships_file_is_noticed():
     """The container ship's zig-zags as if a ship of a third of her length had sailed them."""

@@ -16,6 +16,7 @@ from trialid.diagnosis.examine import (
 )
 from trialid.diagnosis.force.missing_force import MissingForce, missing_force
 from trialid.diagnosis.force.usual_forces import hull_at_once
+from trialid.diagnosis.gap_untold import without_gap
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.meant_as_well import beside_others
@@ -33,7 +34,12 @@ from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, further_gears, look_beside
 from trialid.diagnosis.search.together import Together, two_at_once
-from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_several
+from trialid.diagnosis.verdict import (
+    Verdict,
+    decide,
+    gross_verdict,
+    verdict_on_several,
+)
 from trialid.diagnosis.where.misfit import where
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit
@@ -75,7 +81,7 @@ def diagnose(
         if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
         missing = _force(force, verdict, named.fit if named else fit, asked.level, progress)
-        there = where(fit)
+        verdict = without_gap(fit, verdict, ranking, before.split, missing)
         after = best() if named is tried.best else _after(named, tried, asked, progress)
     return Diagnosis(
         before=before.beside(verdict.effect, after),
@@ -83,7 +89,7 @@ def diagnose(
         left_out=left_out,
         refits=tried.refits,
         verdict=verdict,
-        where=there,
+        where=where(fit),
         after=after,
         force=missing,
         together=together,

@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.force.missing_force import MissingForce
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.split import INPUT_DRIVEN
 from trialid.diagnosis.objections import AS_SLOW
@@ -105,6 +106,23 @@ def explains_little(named: Refit, share: float, parts: Split) -> str:
     return (
         f"something is missing that the catalogue does not hold: its best effect, "
         f"{named.candidate.effect.name}, explains {most}{share:.0%} of what is not noise ({route})"
+    )
+
+
+def untold(fit: Fit, found: Candidate) -> str:
+    """An effect would explain what is left, where chance explains it as often."""
+    return (
+        f"{found.effect.name} would take the error from {fit.eps_rmsn:.2%} to "
+        f"{found.eps_predicted:.2%}, but it acts in so few stretches of the record that chance "
+        f"does as well (p = {found.p_value:.2g})"
+    )
+
+
+def no_force(found: MissingForce) -> str:
+    """A shape does what no effect does, and no force in any equation stands out."""
+    return (
+        "no effect of the catalogue explains what is left as a simple shape would, but "
+        f"{found.sentence}: a fault of a sensor, or noise of another colour, may be all of it"
     )
 
 

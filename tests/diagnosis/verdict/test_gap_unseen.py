@@ -1,8 +1,11 @@
 """Something outside the catalogue is not claimed of what nobody would notice."""
 
-import pytest
-from made_up_fits import NO_ROUTE, fit
+from types import SimpleNamespace
 
+import pytest
+from made_up_fits import NO_ROUTE, fit, refit, split
+
+from trialid.diagnosis.gap_untold import without_gap
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.verdict import decide
 
@@ -15,3 +18,30 @@ def test_a_record_without_noise_leaves_rounding(left: float, kind: bool) -> None
     assert GAP.gap
     found = decide(fit(left), (), [], NO_ROUTE, GAP, 0.05)
     assert (found.kind == "not in catalogue") is kind
+
+
+@pytest.mark.parametrize(
+    ("foretold", "allowed", "kind"),
+    [(0.06, True, "cannot tell"), (0.095, True, "not in catalogue"), (0.06, False, "not in c")],
+)
+def test_what_chance_does_as_well_is_not_outside_the_catalogue(foretold, allowed, kind) -> None:
+    """A waterjet's push went with her revolutions in one trial alone: p = 1, and most of it."""
+    one = refit("rudder_race_shaft", 0.5, foretold).candidate
+    one.shown, one.allowed = (lambda level: False), allowed
+    one.p_value, one.eps_predicted = 1.0, foretold
+    claimed = decide(fit(0.10), (one,), [], split(0.03), None, 0.05)
+    assert claimed.kind == "not in catalogue"
+    found = without_gap(fit(0.10), claimed, (one,), split(0.03), None)
+    assert found.kind.startswith(kind)
+    assert found.family == (("rudder_race_shaft",) if kind == "cannot tell" else ())
+
+
+@pytest.mark.parametrize(("possible", "kind"), [((), "cannot tell"), (("N",), "not in catalogue")])
+def test_no_gap_is_claimed_where_no_force_stands_out(possible, kind) -> None:
+    """A compass that jumped had a force in no equation, and the advice to draft one led nowhere."""
+    claimed = decide(fit(0.10), (), [], NO_ROUTE, GAP, 0.05)
+    force = SimpleNamespace(possible=possible, sentence="no force stands out")
+    found = without_gap(fit(0.10), claimed, (), NO_ROUTE, force)
+    assert found.kind == kind
+    assert ("a fault of a sensor" in found.sentence) is (not possible)
+    assert without_gap(fit(0.10), claimed, (), NO_ROUTE, None) == claimed
