@@ -38,6 +38,10 @@ SOMETHING_ELSE: Final = (
     "check the ship's file, the signs and the units, and whether something else moved her"
 )
 
+NO_GM: Final = 1e-6
+"""GM over the length, or less, that is none: a search that ran to its end stops there. Ships have
+0.001 to 0.08; at a hundred times of it the same fits of real records are told."""
+
 SLOWEST_TIMES: Final = 4.0
 """Time scales of the slowest motion that one trial must hold: a lag has settled to 2 % by then, an
 oscillation has swung twice. Half of it lets a lag be fitted that was seen to 14 %, twice turns
@@ -127,6 +131,18 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
     )
 
 
+def _no_stability(fit: Fit) -> Inadequate | None:
+    """Her GM ran to nothing, which no ship has that stands upright."""
+    roll = fit.problem.roll
+    if roll is None or fit.theta[roll.GM] > NO_GM * roll.length:
+        return None
+    return Inadequate(
+        f"she does not right herself as fitted: GM = {fit.theta[roll.GM]:.2g} m",
+        "her heel follows something else, sails, wind or a swell: leave phi and p out of states "
+        "and outputs, or state GM and take it out of free",
+    )
+
+
 def _little_explained(fit: Fit) -> Inadequate | None:
     """No output that moves is explained by more than half."""
     scores = of_use(fit, "fit")
@@ -211,12 +227,12 @@ def worse_than_none(fit: Fit, score: Score) -> dict[str, float]:
 
 CHECKS: Final = (
     no_manoeuvre, _at_noise_level, _too_short, _no_number, _search_failed,
-    _sensor_at_bound, _little_explained, _steered_backwards, _another_ship, _false_valley,
-    _held_out_lost, _held_out_unexplained,
+    _sensor_at_bound, _little_explained, _no_stability, _steered_backwards, _another_ship,
+    _false_valley, _held_out_lost, _held_out_unexplained,
 )  # fmt: skip
 
 LACKING: Final = frozenset(
-    (_sensor_at_bound, _steered_backwards, _false_valley, _held_out_unexplained)
+    (_sensor_at_bound, _no_stability, _steered_backwards, _false_valley, _held_out_unexplained)
 )
 """Those that a model without an effect of the ship fails, however well it was fitted."""
 
