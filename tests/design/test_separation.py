@@ -76,7 +76,7 @@ def test_trials_so_far_are_fitted_together_with_the_new():
     assert alone.before is None
     assert added.before == likeness(GEAR, [TEN_TEN])
     assert min(added.after.odds) > min(added.before.odds)
-    assert f", {min(added.before.odds):.0f} so far, " in added.sentence
+    assert f" {min(added.before.odds):.0f} so far" in added.sentence
 
 
 def test_the_odds_are_what_the_record_loses_by_the_wrong_name():
@@ -113,6 +113,15 @@ def test_the_sentence_of_two_that_come_apart():
     assert found.sentence == (
         "a and b come apart: log odds for the right one 9, 1 so far, where 6 are enough against "
         "noise alone; |cos| 0.100"
+    )
+
+
+def test_odds_that_would_be_enough_are_not_said_to_have_been():
+    """`28127 so far, where 6 are enough` stood beside `cannot tell it from`."""
+    found = Separation(("a", "b"), (), Likeness(0.9, (40.0, 50.0)), Likeness(0.1, (200.0, 90.0)), 5)
+    assert found.sentence == (
+        "a and b come apart: log odds for the right one 90, where 6 are enough against noise "
+        "alone; the 40 so far would be, too, were it not for what else is in them; |cos| 0.100"
     )
 
 

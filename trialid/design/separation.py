@@ -33,6 +33,9 @@ their noise alone should have kept apart, and did not, are not told apart by mor
 seven strangers' records six gain 5 times or more, one 1.6 times. At half any test will do, at twice
 the same six are left."""
 
+BUT: Final = "were it not for what else is in them"
+"""Said of log odds that the trials have by their noise alone, and have not told the two apart."""
+
 
 @dataclass(frozen=True)
 class Rivals:
@@ -100,15 +103,17 @@ class Separation:
                 f"{min(self.after.odds):.1f}, where {ENOUGH:g} are needed"
             )
         odds = f"log odds for the right one {min(self.after.odds):.0f}"
-        came = "" if self.before is None else f", {self.so_far:.0f} so far"
+        known = self.so_far >= ENOUGH
         if not self.separate:
             return (
-                f"no feasible test tells {one} from {other} much better than the trials there are: "
-                f"{odds} at best{came}"
+                f"no feasible test tells {one} from {other} much better than the trials there are, "
+                f"whose {self.so_far:.0f} would be enough, {BUT}: {odds} at best"
             )
+        came = "" if self.before is None or known else f", {self.so_far:.0f} so far"
+        but = f"; the {self.so_far:.0f} so far would be, too, {BUT}" if known else ""
         return (
             f"{one} and {other} come apart: {odds}{came}, where {ENOUGH:g} are enough against "
-            f"noise alone; |cos| {self.after.cosine:.3f}"
+            f"noise alone{but}; |cos| {self.after.cosine:.3f}"
         )
 
 

@@ -131,7 +131,7 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
     )
 
 
-def _no_stability(fit: Fit) -> Inadequate | None:
+def no_stability(fit: Fit) -> Inadequate | None:
     """Her GM ran to nothing, which no ship has that stands upright."""
     roll = fit.problem.roll
     if roll is None or fit.theta[roll.GM] > NO_GM * roll.length:
@@ -227,12 +227,12 @@ def worse_than_none(fit: Fit, score: Score) -> dict[str, float]:
 
 CHECKS: Final = (
     no_manoeuvre, _at_noise_level, _too_short, _no_number, _search_failed,
-    _sensor_at_bound, _little_explained, _no_stability, _steered_backwards, _another_ship,
+    _sensor_at_bound, _little_explained, no_stability, _steered_backwards, _another_ship,
     _false_valley, _held_out_lost, _held_out_unexplained,
 )  # fmt: skip
 
 LACKING: Final = frozenset(
-    (_sensor_at_bound, _no_stability, _steered_backwards, _false_valley, _held_out_unexplained)
+    (_sensor_at_bound, no_stability, _steered_backwards, _false_valley, _held_out_unexplained)
 )
 """Those that a model without an effect of the ship fails, however well it was fitted."""
 
