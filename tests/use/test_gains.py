@@ -132,8 +132,11 @@ def test_a_doubtful_ship_has_wider_promises_and_a_wild_one_none(
         width = [np.ptp(one.promise.ranges[name]) for one in (sure, unsure)]
         assert width[1] > 3.0 * width[0]
     lost = known_by("Ndelta", 3.0 * abs(MODEL.value("Ndelta")))
-    with pytest.raises(DesignError, match="would swing"):
+    with pytest.raises(DesignError, match=r"would swing.*ask for less by --bandwidth"):
         rate_gains(ship(MODEL), lost)
+    turning_on = known_by("Nv", 2.0 * abs(MODEL.value("Nv")))
+    with pytest.raises(DesignError, match=r"would swing.*ask for more by --bandwidth"):
+        heading_gains(ship(MODEL), turning_on, 0.1 / nomoto(ship(MODEL), CERTAIN).values["T"])
     wild = MODEL.with_values({"Nv": 4.0 * MODEL.value("Nv")})
     with pytest.raises(DesignError, match="not directionally stable"):
         heading_gains(ship(wild), CERTAIN)

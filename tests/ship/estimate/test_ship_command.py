@@ -105,6 +105,8 @@ HULL = "--length 175 --beam 25.4 --draught 8.5 --block 0.56"
         (f"{HULL} --displacement 15000", "coefficient of 0.387, and block coefficient 0.56"),
         (f"{HULL} --displacement 30000", "coefficient of 0.775, and block coefficient 0.56"),
         ("--length 175 --displacement 21752550", "displacement 21752550 t makes a hull of"),
+        ("--length 5 --beam 2.2 --displacement 0.00032", "displacement 0.00032 t makes a hull of"),
+        ("--length 400 --beam 60 --displacement 4000", "makes a hull of 400 x 60 x 0.25 m"),
         ("--length 175 --displacement -1", "displacement -1 t is not above zero"),
         (f"{HULL} --gm 30", "GM 30 m would put gravity below the keel"),
         (f"{HULL} --roll-period 2", "m, would put gravity below the keel"),
@@ -164,3 +166,14 @@ def test_a_name_can_neither_break_the_file_nor_a_line(tmp_path: Path) -> None:
     assert tomllib.loads(text)["name"] == name
     assert "\x1b" not in text
     assert "\x7f" not in text
+
+
+@pytest.mark.parametrize(
+    "words", ["5 --beam 2.2 --displacement 0.32", "4.9 --beam 2.4 --displacement 0.18"]
+)
+def test_a_light_catamaran_is_a_hull(words: str, tmp_path: Path) -> None:
+    """Over her whole beam she is 60 and 110 times as broad as deep: `check the units` was said."""
+    out = tmp_path / "cat.toml"
+    said = told(str(out), *f"--length {words} --speed 4".split())
+    assert said.exit_code == 0, said.output
+    assert read_ship(out).particulars["T"] < 0.05

@@ -129,6 +129,14 @@ def heading_gains(
     return _tried(models, linear, values, wanted, lambda one: hold_heading(one, **values))
 
 
+LESS: Final = "ask for less by --bandwidth, or sail more trials"
+MORE: Final = (
+    "most of those turn on by themselves, which gains for more hold sooner: ask for more by "
+    "--bandwidth, or sail trials that tell whether she is stable on her course"
+)
+"""What to do where too many ships swing: by too much of a gain, or as too little holds them."""
+
+
 def _known(ship: Vessel) -> tuple[LinearShip, float, float]:
     """The linear ship in calm water, her K and T."""
     course = StraightCourse(in_calm(ship))
@@ -167,17 +175,18 @@ def _tried(
     DesignError
         Too many of the ships that the record leaves open swing, or hold no speed.
     """
+    ships = [[*_drawn(*model)] for model in models]
     drawn = [
-        [SWINGS if one is None else answer(made(one), bandwidth) for one in _drawn(*model)]
-        for model in models
+        [SWINGS if one is None else answer(made(one), bandwidth) for one in some] for some in ships
     ]
     stable = min(float(np.mean([one.stable for one in some])) for some in drawn)
     unheld = ", or hold no speed," if linear.steered_by.thrusters else ""
     if stable < ENDS[1] / 100.0:
+        turn_on = max(float(np.mean([o is not None and not o.stable for o in s])) for s in ships)
+        other = MORE if turn_on > 0.5 * (1.0 - stable) else LESS
         raise DesignError(
             f"{1.0 - stable:.0%} of the ships that the record leaves open would swing{unheld} "
-            f"under gains for {bandwidth:.3g} rad/s; ask for less by --bandwidth, or sail more "
-            "trials"
+            f"under gains for {bandwidth:.3g} rad/s; {other}"
         )
     fitted = answer(made(linear), bandwidth)
     ranges = {n: _range(n, fitted, drawn) for n in FIELDS}
