@@ -172,7 +172,7 @@ def test_a_name_can_neither_break_the_file_nor_a_line(tmp_path: Path) -> None:
     "words", ["5 --beam 2.2 --displacement 0.32", "4.9 --beam 2.4 --displacement 0.18"]
 )
 def test_a_light_catamaran_is_a_hull(words: str, tmp_path: Path) -> None:
-    """Over her whole beam she is 60 and 110 times as broad as deep: `check the units` was said."""
+    """Over her whole beam she is 50 and 106 times as broad as deep: `check the units` was said."""
     out = tmp_path / "cat.toml"
     said = told(str(out), *f"--length {words} --speed 4".split())
     assert said.exit_code == 0, said.output

@@ -26,8 +26,8 @@ HIGHEST: Final = 1.5
 FASTEST: Final = 3.0
 """Froude number of a racing boat."""
 SLIMMEST: Final = 40.0
-"""Length over beam, and beam over draught, of no hull: a rowing shell has 30. Over the whole beam of
-a light catamaran it is more, 61 of one of 5 m and 320 kg, ..."""
+"""Length over beam, and beam over draught, of no hull: a rowing shell has 30. Over both hulls of a
+light catamaran it is more, 50 of one of 5 m and 320 kg, ..."""
 LIGHTEST: Final = 12.0
 """... whose length over the cube root of her volume tells that she is no slip: 7 of that one, 10 of
 racing trimarans; of feet for metres 13 to 26 of merchant ships, of kilograms for tonnes 40."""
@@ -134,7 +134,7 @@ def _shape(given: Given, form: HullForm) -> Found:
         form.B > form.L
         or form.T > form.L
         or form.L > SLIMMEST * form.B
-        or (form.B > SLIMMEST * form.T and form.L**3 > LIGHTEST**3 * form.volume)
+        or (form.B > SLIMMEST * form.T and LIGHTEST**3 * form.volume < form.L**3)
     )
     if wrong:
         box = f"{form.L:.4g} x {form.B:.3g} x {form.T:.3g} m"
