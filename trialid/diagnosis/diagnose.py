@@ -81,7 +81,7 @@ def diagnose(
         if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
             return _no_fit(fit, before, left_out, failed)
         missing = _force(force, verdict, named.fit if named else fit, asked.level, progress)
-        verdict = without_gap(fit, verdict, ranking, before.split, missing)
+        verdict = without_gap(fit, verdict, ranking, before.split, missing, asked.level)
         after = best() if named is tried.best else _after(named, tried, asked, progress)
     return Diagnosis(
         before=before.beside(verdict.effect, after),

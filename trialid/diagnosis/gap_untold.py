@@ -26,25 +26,26 @@ def without_gap(
     ranking: Sequence[Candidate],
     parts: Split,
     force: MissingForce | None,
+    level: float = 0.05,
 ) -> Verdict:
     """The verdict, which claims no gap of the catalogue where that is not told.
 
-    Not where an effect would explain most of what is no noise, though chance does it as often: it
-    acts in so few stretches of the record. Nor where no force in any equation stands out beside
-    noise of the colour that it has then.
+    Not where an effect would explain most of what is no noise, though by this record chance does as
+    well: one that acts in few of its stretches is not told from it. Nor where no force in any
+    equation stands out beside noise of the colour that it has then.
     """
     if verdict.kind != "not in catalogue":
         return verdict
-    if (best := _untold(fit, ranking, parts)) is not None:
+    if (best := _untold(fit, ranking, parts, level)) is not None:
         return Verdict("cannot tell", None, (best.effect.name,), untold(fit, best))
     if force is None or force.possible:
         return verdict
     return replace(verdict, kind="cannot tell", sentence=no_force(force))
 
 
-def _untold(fit: Fit, ranking: Sequence[Candidate], parts: Split) -> Candidate | None:
-    """The effect that would explain most of what is known to be no noise."""
-    able = [c for c in ranking if c.allowed and np.isfinite(c.eps_predicted)]
+def _untold(fit: Fit, ranking: Sequence[Candidate], parts: Split, level: float) -> Candidate | None:
+    """The effect that would explain most of what is known to be no noise, as chance does."""
+    able = [c for c in ranking if c.allowed and c.p_value >= level and np.isfinite(c.eps_predicted)]
     best = min(able, key=lambda c: c.eps_predicted, default=None)
     if best is None or parts.undermodelling is None:
         return None

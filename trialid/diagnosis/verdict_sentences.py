@@ -113,8 +113,8 @@ def untold(fit: Fit, found: Candidate) -> str:
     """An effect would explain what is left, where chance explains it as often."""
     return (
         f"{found.effect.name} would take the error from {fit.eps_rmsn:.2%} to "
-        f"{found.eps_predicted:.2%}, but it acts in so few stretches of the record that chance "
-        f"does as well (p = {found.p_value:.2g})"
+        f"{found.eps_predicted:.2%}, but by this record chance does as well (p = "
+        f"{found.p_value:.2g})"
     )
 
 

@@ -40,7 +40,7 @@ SOMETHING_ELSE: Final = (
 
 NO_GM: Final = 1e-6
 """GM over the length, or less, that is none: a search that ran to its end stops there. Ships have
-0.001 to 0.08; at a hundred times of it the same fits of real records are told."""
+0.001 to 0.08; at a hundred times of it no verdict of a record that is tested is another."""
 
 SLOWEST_TIMES: Final = 4.0
 """Time scales of the slowest motion that one trial must hold: a lag has settled to 2 % by then, an

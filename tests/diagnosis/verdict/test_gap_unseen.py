@@ -36,6 +36,14 @@ def test_what_chance_does_as_well_is_not_outside_the_catalogue(foretold, allowed
     assert found.family == (("rudder_race_shaft",) if kind == "cannot tell" else ())
 
 
+def test_what_stands_out_and_was_denied_is_not_said_to_be_chance() -> None:
+    one = refit("rudder_race_shaft", 0.5, 0.06).candidate
+    one.eps_predicted = 0.06
+    claimed = decide(fit(0.10), (), [], split(0.03), None, 0.05)
+    assert one.p_value < 0.05
+    assert without_gap(fit(0.10), claimed, (one,), split(0.03), None) == claimed
+
+
 @pytest.mark.parametrize(("possible", "kind"), [((), "cannot tell"), (("N",), "not in catalogue")])
 def test_no_gap_is_claimed_where_no_force_stands_out(possible, kind) -> None:
     """A compass that jumped had a force in no equation, and the advice to draft one led nowhere."""

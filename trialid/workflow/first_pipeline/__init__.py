@@ -35,7 +35,7 @@ from trialid.workflow.first_pipeline.by_other_logs import (
 from trialid.workflow.first_pipeline.choice import approach_speed, live_sources, shared_signals
 from trialid.workflow.first_pipeline.chosen import Chosen
 from trialid.workflow.first_pipeline.long_log import Windows
-from trialid.workflow.first_pipeline.not_begun import TooLittle, no_speed
+from trialid.workflow.first_pipeline.not_begun import OF_ONE, STILL, TooLittle, no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
 from trialid.workflow.first_pipeline.read_as_order import with_orders
 from trialid.workflow.first_pipeline.revolutions import with_depth, with_revolutions
@@ -279,7 +279,8 @@ def _check_shared(trials: Sequence[Chosen]) -> None:
             held = "; ".join(
                 f"{one.path.name}: {', '.join(sorted(one.quantities & needed))}" for one in trials
             )
-            raise LogError(f"the logs share no {words} ({held}); begin with logs of one recorder")
+            then = STILL if any(is_boat(one.quantities) for one in trials) else OF_ONE
+            raise LogError(f"the logs share no {words} ({held}); {then}")
 
 
 def _to_fill(trials: Sequence[Chosen]) -> list[str]:

@@ -20,6 +20,11 @@ from trialid.ship.estimate.particulars_given import KNOT
 NO_SPEED: Final = "no log tells the speed in a stated unit; add --speed KNOTS, the approach speed"
 
 
+OF_ONE: Final = "begin with logs of one recorder"
+STILL: Final = (
+    f"{OF_ONE}; where they are, her drives stand still in some, in which what turns them is read "
+    "as a rudder: begin with the others, and map those by hand"
+)
 TURNS: Final = 0.7
 """Correlation with what turns her from which a channel may be what steers her."""
 

@@ -17,6 +17,7 @@ from trialid.ship.particulars import Ship
 from trialid.toml_text import array, quote
 from trialid.workflow.first_pipeline.boats.boat_choice import main_drives
 from trialid.workflow.first_pipeline.boats.boat_model import boat_model
+from trialid.workflow.first_pipeline.boats.over_ground import UNITS
 from trialid.workflow.first_pipeline.choice import RUDDERS
 from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Signal
 from trialid.workflow.first_pipeline.free_lines import free_lines
@@ -30,9 +31,6 @@ HEAD: Final = """\
 #     trialid run {name}
 # It begins with the simplest model. What is missing in it the run says; `trialid add` puts it in.
 """
-
-UNITS: Final = {"lat": "deg", "lon": "deg", "x": "m", "y": "m"}
-"""Of positions that state none."""
 
 MOST_OTHERS: Final = 6
 """Other sources of a signal that are written down."""
@@ -129,7 +127,7 @@ def _track(trial: Chosen) -> Iterator[str]:
     if "x" in found:
         yield "# (x has to be to the north and y to the east; ROS often has it the other way round)"
     for name, one in found.items():
-        keys = {"channel": one.name} | ({} if one.unit else {"unit": UNITS[name]})
+        keys = {"channel": one.name} | ({} if one.unit else {"unit": UNITS[name][0]})
         yield f"# {name} = {{ {', '.join(f'{k} = {quote(v)}' for k, v in keys.items())} }}"
 
 

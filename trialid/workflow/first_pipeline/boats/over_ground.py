@@ -41,9 +41,10 @@ def with_velocity_over_ground(trial: Chosen, live: Live) -> Chosen:
         return trial
     read = _by_course(trial, speed, heading) if speed is not None else None
     read = read or _by_position(trial, heading)
-    if read is None or (speed is not None and not _goes_outwards(read[1])):
+    sways = read is not None and _goes_outwards(read[1])
+    if read is None or (speed is not None and not sways):
         return trial
-    made = frozenset(("u", "v") if _goes_outwards(read[1]) else ("u",))
+    made = frozenset(("u", "v") if sways else ("u",))
     kept = (one for one in trial.signals if one.quantity not in ("u", "cog"))
     return dataclasses.replace(trial, signals=(*kept, *read[0]), made_over_ground=made)
 
@@ -73,13 +74,14 @@ def _by_position(trial: Chosen, heading: Signal) -> Read | None:
         pair = {name: found[other] for name, other in zip(found, order, strict=True)}
         motion = _motion(pair, heading) if pair else None
         if motion is not None and moves_along(*motion):
-            return tuple(_position(name, one) for name, one in pair.items()), motion
+            by = "by its name" if order is names else "by the heading that she goes by"
+            return tuple(_position(name, one, by) for name, one in pair.items()), motion
     return None
 
 
-def _position(name: str, one: ChannelInspection) -> Signal:
+def _position(name: str, one: ChannelInspection, by: str) -> Signal:
     unit = one.stated_unit or UNITS[name][0]
-    return Signal(quantity=name, source=one, unit=unit, taken=f"by its name; its slope is {MADE}")
+    return Signal(quantity=name, source=one, unit=unit, taken=f"{by}; its slope is {MADE}")
 
 
 def _motion(pair: Mapping[str, ChannelInspection], heading: Signal) -> Motion | None:
