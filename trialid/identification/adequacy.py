@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.effects.actuators.push_kinds import PUSHES
 from trialid.identification import file_of_ship
 from trialid.identification.explained import closer_in_pieces, of_use, over_noise, unexplained_share
 from trialid.identification.fit import Fit
@@ -153,8 +154,22 @@ def _little_explained(fit: Fit) -> Inadequate | None:
     return Inadequate(
         f"the model explains too little: {_listed(kept)} of what moves is left, where "
         "a constant would leave 100 %",
-        SOMETHING_ELSE,
+        drives_unread(fit) or SOMETHING_ELSE,
     )
+
+
+def drives_unread(fit: Fit) -> str:
+    """What to add first where a drive is recorded that pushes nothing of the model; else empty."""
+    recorded = {n for score in of_use(fit, "fit") for n in score.trial.signals}
+    read = {*fit.problem.simulator.equations.inputs}
+    for one in fit.model.ship.actuators:
+        told = {one.drive, f"{one.drive}_order"} & recorded if one.drive else set()
+        if told and not told & read:
+            return (
+                f"put what {one.name} does into the model first, `trialid add PIPELINE "
+                f"{PUSHES[one.kind].effect}`: it is recorded, and nothing reads it"
+            )
+    return ""
 
 
 def _another_ship(fit: Fit) -> Inadequate | None:
