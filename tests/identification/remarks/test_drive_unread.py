@@ -25,7 +25,7 @@ def made(recorded: tuple[str, ...], read: tuple[str, ...], *actuators: Actuator)
 
 @pytest.mark.parametrize("name", ["bow_thruster", "bow_thruster_order"])
 def test_what_is_recorded_and_unread_is_added_first(name):
-    """An outsider's bow thruster: 76 % were left, and `check the ship's file` was all the advice."""
+    """Of an outsider's with a bow thruster 76 % were left, with `check the ship's file`."""
     said = drives_unread(made(("r", "delta", name), ("delta", "u"), RUDDER, BOW))
     assert "`trialid add PIPELINE tunnels`" in said
     assert "bow_thruster" in said
