@@ -3,6 +3,7 @@
 python tests/benchmarks/ingest.py --only tables
 """
 
+import json
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -72,6 +73,16 @@ def _hdf5(path: Path) -> list[object]:
         return [one[()] for one in file["trial"].values()]
 
 
+def _archive(path: Path) -> list[object]:
+    with np.load(path) as file:
+        return [file[name] for name in file.files]
+
+
+def _json_lines(path: Path) -> pd.DataFrame:
+    with path.open(encoding="utf-8") as file:
+        return pd.json_normalize([json.loads(line) for line in file])
+
+
 def _excel(path: Path) -> object:
     return python_calamine.CalamineWorkbook.from_path(str(path)).get_sheet_by_index(0).to_python()
 
@@ -83,6 +94,8 @@ PLAIN: dict[str, Callable[[Path], object]] = {
     "parquet": lambda path: pq.read_table(path, use_threads=False).to_pandas(),
     "mat5": scipy.io.loadmat,
     "mat73": _hdf5,
+    "npz": _archive,
+    "jsonl": _json_lines,
 }
 
 
