@@ -34,12 +34,7 @@ from trialid.diagnosis.search.rivals import to_fit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, further_gears, look_beside
 from trialid.diagnosis.search.together import Together, two_at_once
-from trialid.diagnosis.verdict import (
-    Verdict,
-    decide,
-    gross_verdict,
-    verdict_on_several,
-)
+from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_several
 from trialid.diagnosis.where.misfit import where
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit

@@ -37,10 +37,11 @@ def without_gap(
     if verdict.kind != "not in catalogue":
         return verdict
     if (best := _untold(fit, ranking, parts, level)) is not None:
-        return Verdict("cannot tell", None, (best.effect.name,), untold(fit, best))
+        family = (best.effect.name,)
+        return replace(verdict, kind="cannot tell", family=family, sentence=untold(fit, best))
     if force is None or force.possible:
         return verdict
-    return replace(verdict, kind="cannot tell", sentence=no_force(force))
+    return replace(verdict, kind="cannot tell", sentence=no_force(verdict.sentence, force))
 
 
 def _untold(fit: Fit, ranking: Sequence[Candidate], parts: Split, level: float) -> Candidate | None:

@@ -22,6 +22,8 @@ NONE_STANDS_OUT: Final = "no effect stands out"
 NONE_HOLDS: Final = "no effect that stands out stands every check"
 """How a verdict begins that names none: what the table calls `stands out` is not denied."""
 
+OF_SHAPE: Final = "a force of a simple shape"
+
 MANY: Final = 8
 """Others that do as well from which on a name is the first of a list, and said so: a terminal cuts
 the list. Half of it says so of families that are told whole, twice lets 15 stand behind one."""
@@ -33,7 +35,7 @@ def outdone_by_a_shape(named: Refit | None, whole: Completeness) -> str:
     share = max(whole.catalogue, 0.0) / whole.any_shape
     return (
         "something is missing that the catalogue does not hold: its effects gain "
-        f"{share:.0%} of what a force of a simple shape would{closest}"
+        f"{share:.0%} of what {OF_SHAPE} would{closest}"
     )
 
 
@@ -113,13 +115,15 @@ def untold(fit: Fit, found: Candidate) -> str:
     """An effect would explain what is left, where chance explains it as often."""
     return (
         f"{found.effect.name} would take the error from {fit.eps_rmsn:.2%} to "
-        f"{found.eps_predicted:.2%}, but by this record chance does as well (p = "
-        f"{found.p_value:.2g})"
+        f"{found.eps_predicted:.2%}, but by this record chance does as well "
+        f"{100.0 * found.p_value:.0f} times in 100"
     )
 
 
-def no_force(found: MissingForce) -> str:
-    """A shape does what no effect does, and no force in any equation stands out."""
+def no_force(claimed: str, found: MissingForce) -> str:
+    """A gap was claimed, by a shape or because noise is less, and no force stands out."""
+    if OF_SHAPE not in claimed:
+        return f"{claimed}; nor does a force: {found.sentence}"
     return (
         "no effect of the catalogue explains what is left as a simple shape would, but "
         f"{found.sentence}: a fault of a sensor, or noise of another colour, may be all of it"

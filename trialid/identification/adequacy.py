@@ -16,6 +16,7 @@ from trialid.identification.fit import Fit
 from trialid.identification.inadequate import Inadequate
 from trialid.identification.no_manoeuvre import no_manoeuvre
 from trialid.identification.nuisance.at_the_end import at_the_end
+from trialid.identification.roll.roll_range import LEAST
 from trialid.identification.time_scales import longest_by_its_clock
 from trialid.identification.trial_score import Score
 from trialid.identification.weighing import NO_NOISE
@@ -38,10 +39,6 @@ NOTHING: Final = 0.9
 SOMETHING_ELSE: Final = (
     "check the ship's file, the signs and the units, and whether something else moved her"
 )
-
-NO_GM: Final = 1e-6
-"""GM over the length, or less, that is none: a search that ran to its end stops there. Ships have
-0.001 to 0.08; at a hundred times of it no verdict of a record that is tested is another."""
 
 SLOWEST_TIMES: Final = 4.0
 """Time scales of the slowest motion that one trial must hold: a lag has settled to 2 % by then, an
@@ -135,7 +132,7 @@ def _sensor_at_bound(fit: Fit) -> Inadequate | None:
 def no_stability(fit: Fit) -> Inadequate | None:
     """Her GM ran to nothing, which no ship has that stands upright."""
     roll = fit.problem.roll
-    if roll is None or fit.theta[roll.GM] > NO_GM * roll.length:
+    if roll is None or fit.theta[roll.GM] > LEAST * roll.length:
         return None
     return Inadequate(
         f"she does not right herself as fitted: GM = {fit.theta[roll.GM]:.2g} m",
@@ -154,20 +151,21 @@ def _little_explained(fit: Fit) -> Inadequate | None:
     return Inadequate(
         f"the model explains too little: {_listed(kept)} of what moves is left, where "
         "a constant would leave 100 %",
-        drives_unread(fit) or SOMETHING_ELSE,
+        f"{drives_unread(fit)}{SOMETHING_ELSE}",
     )
 
 
 def drives_unread(fit: Fit) -> str:
     """What to add first where a drive is recorded that pushes nothing of the model; else empty."""
-    recorded = {n for score in of_use(fit, "fit") for n in score.trial.signals}
+    fitted = [score.trial.signals for score in of_use(fit, "fit")]
+    moving = {n for signals in fitted for n, x in signals.items() if np.ptp(x) > 0.0}
     read = {*fit.problem.simulator.equations.inputs}
     for one in fit.model.ship.actuators:
-        told = {one.drive, f"{one.drive}_order"} & recorded if one.drive else set()
+        told = {one.drive, f"{one.drive}_order"} & moving if one.drive else set()
         if told and not told & read:
             return (
                 f"put what {one.name} does into the model first, `trialid add PIPELINE "
-                f"{PUSHES[one.kind].effect}`: it is recorded, and nothing reads it"
+                f"{PUSHES[one.kind].effect}`, for it is recorded and nothing reads it; then "
             )
     return ""
 

@@ -32,7 +32,7 @@ files of ships at least twice or half as long 23 leave more than 2.0, and 17 mor
 STEERS: Final = "Ndelta"
 """What a missing effect moves least: the yaw acceleration with which she answers her rudder."""
 SMALL: Final = float(np.deg2rad(1.0))
-"""[rad] Rudder to either side by which its moment is told."""
+"""[rad] Rudder to either side by which what it does is told."""
 PLACEHOLDER: Final = "PLACEHOLDER"
 """How the source of a ship file begins that says itself that it is not hers."""
 

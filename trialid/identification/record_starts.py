@@ -124,10 +124,11 @@ def _steady(problem: Problem, near: Mapping[str, float]) -> Mapping[str, float]:
 
     As far as both are free; she stays within her model whatever else is wrong with her file.
     """
-    free = {x.column: x.name for x in problem.unknowns if x.trial is None}
-    steady = {free[DRIFT]: 0.0} if DRIFT in free else {}
+    wanted = {x.name: 0.0 for x in problem.unknowns if x.trial is None and x.column == DRIFT}
     if problem.roll is not None:
-        steady[problem.unknowns[problem.roll.GM].name] = STIFF * problem.roll.length
+        wanted[problem.unknowns[problem.roll.GM].name] = STIFF * problem.roll.length
+    known = {x.name: x for x in problem.unknowns}
+    steady = {n: min(max(x, known[n].low), known[n].high) for n, x in wanted.items()}
     return {**near, **steady}
 
 

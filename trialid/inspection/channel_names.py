@@ -92,11 +92,10 @@ QUALIFIERS: Final = frozenset(
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
 
 STEERING: Final = frozenset(("steering", "steer", "nozzle", "tiller", "helm"))
-"""Words of what steers her, by an angle or a share of full: with no unit, too, a rudder."""
+STEERED: Final = ORDERED | {"act", "actual", "meas", "measured"}  # may follow without a unit
 TURNED: Final = dict.fromkeys((*STEERING, "azimuth", "servo"), "delta")
 LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
 """What such words may follow; a letter alone and the words only with a unit that fits."""
-
 NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
 """Letters that mean the same without a unit too."""
 
@@ -193,7 +192,8 @@ def _qualified(name: str, unit: str | None) -> str | None:
     stated = unit or unit_in_name(name)
     fits = stated is not None and _fits(found, stated)
     if about or letter not in ALONE:
-        return found if fits or letter in NAMED or (stated is None and letter in STEERING) else None
+        fits = fits or (stated is None and letter in STEERING and STEERED.issuperset(about))
+        return found if fits or letter in NAMED else None
     named = letter in NAMED and any(word in SIDES for word in more)
     return found if named or (fits and letter in BARE and is_column(name)) else None
 

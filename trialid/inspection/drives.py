@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from trialid.inspection.channel_names import STEERING, unit_in_name
+from trialid.inspection.channel_names import STEERED, STEERING
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import sides, words
 from trialid.inspection.usual_units import to_si
@@ -105,11 +105,7 @@ def _by_format(one: ChannelInspection) -> set[str]:
     return {side for words_of_it, side in ENGINES.items() if f"({words_of_it})" in one.description}
 
 
-def of_some_steering(name: str) -> bool:
-    """Whether a name says that she is steered by it, and neither its unit nor that it is an angle.
-
-    >>> of_some_steering("/jet/command:nozzle"), of_some_steering("steering_deg")
-    (True, False)
-    """
-    field = words(name.rpartition(":")[2])
-    return field[:1] != () and field[0] in STEERING and unit_in_name(name) is None
+def of_some_steering(one: ChannelInspection) -> bool:
+    """Whether she is steered by it, and neither its unit nor that it is an angle is said."""
+    field = {*words(one.name.rpartition(":")[2])} - {*SIDES}
+    return one.stated_unit is None and bool(field & STEERING) and field <= STEERING | STEERED

@@ -4,10 +4,12 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from trialid.errors import PipelineError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
 from trialid.least_squares.gauss_newton import Iteration
-from trialid.pipeline_file import Pipeline
+from trialid.names.quantities import OVER_GROUND
+from trialid.pipeline_file import Pipeline, where
 from trialid.progress import Progress
 from trialid.result.series import OutputSeries, TrialSeries
 from trialid.ship.effect import Effect
@@ -20,6 +22,26 @@ from trialid.workflow.build_model import (
     settings_of,
 )
 from trialid.workflow.track_prediction import track_of
+
+
+def check_current(pipeline: Pipeline) -> None:
+    """PipelineError where speeds are outputs beside a current, and not all are over the ground."""
+    outputs = {*pipeline.identify.outputs}
+    if "current" not in pipeline.identify.nuisance or not {"u", "v"} <= outputs:
+        return
+    water = [trial.name for trial in pipeline.trials if not trial.over_ground]
+    placed = [name for name in OVER_GROUND if name in outputs]
+    at = where(pipeline, "identify.nuisance")
+    if placed and len(water) < len(pipeline.trials):
+        raise PipelineError(
+            f"{at}: u and v over the ground and {placed[0]} are outputs, and the current is taken "
+            "off one of them; keep u and v, or the other"
+        )
+    if water and not placed:
+        raise PipelineError(
+            f"{at}: in a speed through the water no current shows, and trial {water[0]!r} has no "
+            "over_ground = true; take the current out, or let each trial make u and v so"
+        )
 
 
 def fit_of(
@@ -38,6 +60,7 @@ def fit_of(
     model = build_model(pipeline, catalogue)
     settings = settings_of(pipeline, model)
     check_bounds(pipeline, model, settings)
+    check_current(pipeline)
     check_headway(pipeline, model, trials)
     progress("fitting", 0.3)
     return fit_with_progress(trials, model, settings, progress)

@@ -53,3 +53,11 @@ def test_no_gap_is_claimed_where_no_force_stands_out(possible, kind) -> None:
     assert found.kind == kind
     assert ("a fault of a sensor" in found.sentence) is (not possible)
     assert without_gap(fit(0.10), claimed, (), NO_ROUTE, None) == claimed
+
+
+def test_what_is_not_noise_is_not_said_to_be_noise() -> None:
+    claimed = decide(fit(0.10), (), [], split(0.03), None, 0.05)
+    force = SimpleNamespace(possible=(), sentence="no force stands out")
+    found = without_gap(fit(0.10), claimed, (), split(0.03), force)
+    assert found.kind == "cannot tell"
+    assert found.sentence == f"{claimed.sentence}; nor does a force: no force stands out"

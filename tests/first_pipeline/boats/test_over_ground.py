@@ -114,3 +114,32 @@ def test_a_sway_that_does_not_show_is_not_simulated(tmp_path: Path) -> None:
     head = path.read_text(encoding="utf-8").splitlines()[0]
     begun(tmp_path, table(path, dict(zip(head.split(",")[1:], rows[:, 1:].T, strict=True))))
     assert pipeline_file.load(tmp_path / "p.toml").model.states == ("u", "r")
+
+
+def test_fixes_that_are_none_take_no_sway_away(tmp_path: Path) -> None:
+    path = logged(tmp_path / "lost.csv", 2, "globe")
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    rows[300:305, -2:] = 0.0
+    head = path.read_text(encoding="utf-8").splitlines()[0]
+    np.savetxt(path, rows, delimiter=",", header=head, comments="", fmt="%.9g")
+    begun(tmp_path, path)
+    assert pipeline_file.load(tmp_path / "p.toml").model.states == ("u", "v", "r")
+
+
+@pytest.mark.parametrize(("name", "read"), [("steering", False), ("steering_angle", True)])
+def test_what_turns_her_beside_two_drives_is_not_lost(
+    tmp_path: Path, name: str, read: bool
+) -> None:
+    """An angle is a rudder; a word alone is told beside two drives that differ."""
+    path = logged(tmp_path / "a.csv", 2, "course")
+    lines = path.read_text(encoding="utf-8").splitlines()
+    turned = np.rad2deg(0.3 * np.gradient(drifted(pushes(2))["r"], PERIOD))
+    with_it = [
+        f"{lines[0]},{name}",
+        *(f"{x},{y:.3f}" for x, y in zip(lines[1:], turned, strict=True)),
+    ]
+    path.write_text("\n".join(with_it), encoding="utf-8")
+    [trial] = begun(tmp_path, path).trials
+    assert ("delta" in {one.quantity.removesuffix("_order") for one in trial.signals}) is read
+    beside = {one.source.name for one, _ in trial.beside}
+    assert read or name in beside

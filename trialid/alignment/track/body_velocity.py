@@ -107,7 +107,8 @@ def slope_of_positions(
 ) -> Velocity | None:
     """The slope of a parabola through as many positions as their noise asks for.
 
-    None where those are a tenth of the trial and more, or she turns too far meanwhile.
+    None where those are a tenth of the trial and more, or she turns too far meanwhile. A position
+    that the log repeats until the next is one. At its ends half a slope is not known.
 
     Parameters
     ----------
@@ -118,25 +119,49 @@ def slope_of_positions(
     period
         Time between samples [s].
     """
+    told = np.flatnonzero(known & np.isfinite(north) & np.isfinite(east))
+    if len(told) < FEWEST:
+        return None
+    fresh = told[np.flatnonzero(_moves(north[told]) | _moves(east[told]))]
+    every = round(float(np.median(np.diff(fresh)))) if len(fresh) > FEWEST else 1
+    if every < 2:
+        return _slope(north, east, psi, known, period)
+    made = _slope(north[fresh], east[fresh], psi[fresh], known[fresh], every * period)
+    if made is None:
+        return None
+    on = np.arange(len(north))
+    inside = np.interp(on, fresh, made.known.astype(float), left=0.0, right=0.0) > 1.0 - 1e-9
+    by = (np.interp(on, fresh, one) for one in (made.north, made.east))
+    return Velocity(*by, inside & known, made.told)
+
+
+def _moves(one: Vector) -> Mask:
+    """Which values are others than those before."""
+    return np.diff(one, prepend=np.nan) != 0.0
+
+
+def _slope(north: Vector, east: Vector, psi: Vector, known: Mask, period: float) -> Velocity | None:
+    """The same of positions each of which is measured anew."""
     count = _samples_of_slope(north, east, known, period)
     if not 0 < count <= max(LONGEST * len(north), FEWEST):
         return None
     turned = np.abs(psi[count:] - psi[:-count])[known[count:] & known[:-count]]
     if not len(turned) or np.quantile(turned, 0.9) > TURNED:
         return None
-    by = [savgol_filter(one, count, 2, deriv=1, delta=period) for one in (north, east)]
-    missing = np.convolve(~known, np.ones(count), mode="same")
-    told = f"positions, over {count * period:.2g} s"
-    return Velocity(by[0], by[1], np.asarray(missing < 0.5), told)
+    filled = (np.interp(np.arange(len(x)), np.flatnonzero(known), x[known]) for x in (north, east))
+    by = [savgol_filter(one, count, 2, deriv=1, delta=period) for one in filled]
+    whole = np.convolve(known, np.ones(count), mode="same") > count - 0.5
+    return Velocity(by[0], by[1], whole, f"positions, over {count * period:.2g} s")
 
 
 def _samples_of_slope(north: Vector, east: Vector, known: Mask, period: float) -> int:
     """Fewest samples, an odd number, whose slope has no more noise than `SCATTER`; 0 for none."""
     noise = max(white_noise_of_most(one, known) for one in (north, east))
     for count in range(FEWEST, len(north), 2):
-        moved = np.hypot(*(one[count:] - one[:-count] for one in (north, east)))
-        speed = float(np.median(moved)) / (count * period)
+        both = known[count:] & known[:-count]
+        moved = np.hypot(*(one[count:] - one[:-count] for one in (north, east)))[both]
+        speed = float(np.median(moved)) / (count * period) if len(moved) else 0.0
         # an even slope over n samples has the variance 12 noise^2 / (n^3 period^2)
-        if noise * np.sqrt(12.0 / count**3) / period <= SCATTER * speed:
+        if speed and noise * np.sqrt(12.0 / count**3) / period <= SCATTER * speed:
             return count
     return 0

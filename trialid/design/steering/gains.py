@@ -182,8 +182,10 @@ def _tried(
     stable = min(float(np.mean([one.stable for one in some])) for some in drawn)
     unheld = ", or hold no speed," if linear.steered_by.thrusters else ""
     if stable < ENDS[1] / 100.0:
-        turn_on = max(float(np.mean([o is not None and not o.stable for o in s])) for s in ships)
-        other = MORE if turn_on > 0.5 * (1.0 - stable) else LESS
+        pairs = [x for some in zip(ships, drawn, strict=True) for x in zip(*some, strict=True)]
+        swing = [one for one, answered in pairs if not answered.stable]
+        turn_on = sum(one is not None and not one.stable for one in swing)
+        other = MORE if turn_on > 0.5 * len(swing) else LESS
         raise DesignError(
             f"{1.0 - stable:.0%} of the ships that the record leaves open would swing{unheld} "
             f"under gains for {bandwidth:.3g} rad/s; {other}"

@@ -113,7 +113,7 @@ def fitted_model(
     """The model of a fit, ready to be written; `words` are what to know of it.
 
     `covariance` is that of the unknowns by noise; (n, n). Where each trial has a zero of the rudder
-    of its own, the model has what they have together, as every prediction has.
+    of its own, the model has what they have together; how uncertain that is predictions know alone.
     """
     model = with_rudders_zero(fit)
     equations = trace(model, (), fit.problem.outputs)

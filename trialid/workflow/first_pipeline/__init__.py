@@ -60,7 +60,6 @@ from trialid.workflow.first_pipeline.unit_by_turning import (
 
 __all__ = ["Starter", "begun_ship", "starter"]
 
-
 STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
 
 FIGURES: Final = re.compile(r"\d[\d.e+-]*+")
@@ -279,7 +278,8 @@ def _check_shared(trials: Sequence[Chosen]) -> None:
             held = "; ".join(
                 f"{one.path.name}: {', '.join(sorted(one.quantities & needed))}" for one in trials
             )
-            then = STILL if any(is_boat(one.quantities) for one in trials) else OF_ONE
+            drives = needed is STEERS and any(is_boat(one.quantities) for one in trials)
+            then = STILL if drives else OF_ONE
             raise LogError(f"the logs share no {words} ({held}); {then}")
 
 

@@ -285,7 +285,7 @@ def _unit(source: ChannelInspection, quantity: str) -> tuple[str | None, Reason]
 
 def _unit_of_rudder(source: ChannelInspection) -> tuple[str, Reason]:
     """The unit of one whose log states none."""
-    if of_some_steering(source.name):
+    if of_some_steering(source):
         return OPEN, ASK_STEERING
     largest = max(abs(source.low), abs(source.high))
     if largest > 1.6:

@@ -53,7 +53,8 @@ def no_signal(survey: Inspection, quantities: Sequence[str]) -> TooLittle:
 def no_speed_of_boat(survey: Inspection) -> TooLittle:
     """That a boat with two thrusters has no speed, and what may tell it."""
     there = positions(survey.channels.values())
-    beside = "her positions tell it, see `trialid guide track`; or " if there else ""
+    coarse = "her positions are too coarse to tell it, or without a heading that she goes by; "
+    beside = coarse if there else ""
     return TooLittle(
         survey,
         "she steers by two thrusters, and no speed is recognised, which is half of what they do",

@@ -149,7 +149,7 @@ def _log(trial: Chosen, path: Path) -> str:
 
 def _remarks(trial: Chosen) -> Iterator[str]:
     if trial.made_over_ground:
-        yield "over_ground = true  # u, v are those over ground: no log has them by water"
+        yield "over_ground = true  # u and v are made of what is recorded over the ground"
     told = (remark for file in trial.survey.files[:1] for remark in file.remarks[:3])
     yield from (f"# {comment(remark)}" for remark in (*trial.survey.warnings[:3], *told))
 

@@ -180,7 +180,7 @@ def ready_ship(fit: Fit) -> Vessel:
         return sailed_ship(fit)
     except DesignError:
         steady = steady_inputs(fit)
-        return vessel(fit.model, fit.problem.trials[0].period, steady, GEAR)
+        return vessel(with_rudders_zero(fit), fit.problem.trials[0].period, steady, GEAR)
 
 
 def _ship_for(

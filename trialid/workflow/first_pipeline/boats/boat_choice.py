@@ -56,6 +56,7 @@ BOTH_ALIKE: Final = Reason(
     "CAREFUL: which is to port does not show; both always do the same, so that little hangs on it",
     "alike",
 )
+BY_DRIVES: Final = "her two drives differ, and are taken to steer her"
 UNSIGNED: Final = "CAREFUL: without sign, thrust astern counts as ahead: hold it against the gear"
 ARM: Final = 0.2
 """Thrusters stand so far from the middle, over the length of a boat: 0.2 of the Otter and the
@@ -101,11 +102,13 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     if not turns or len(drives) != 2:
         return with_further(choose_signals(survey, speed), live)
     rudders = [one for name in RUDDERS for one in live[name]]
-    steered = any(not of_some_steering(one.name) for one in rudders)
+    steered = any(not of_some_steering(one) for one in rudders)
     steered = steered or (bool(rudders) and hardly_differ(*drives))
     if steered and not angles_of(survey, drives):
         return with_further(choose_signals(survey, speed), live)
-    return _choose_boat(survey, live, speed)
+    boat = _choose_boat(survey, live, speed)
+    unread = [plain_signal(name, live, "") for name in RUDDERS if live[name] and not steered]
+    return dataclasses.replace(boat, beside=(*boat.beside, *((one, BY_DRIVES) for one in unread)))
 
 
 def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen:

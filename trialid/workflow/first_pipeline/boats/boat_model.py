@@ -28,7 +28,7 @@ either sign. Of three simulated boats of 2 to 12 m it left 13 to 22 % of trials 
 hidden in them included; with damping at rest and Munk's moment in its place 13 to 29 %, and a
 memory of the flow had the name of a fin."""
 NONE: Final = ("Yr", "Nr", "Nv")
-AT_REST: Final = "none to begin with: what damps turns at rest is in Nr0 and Nrar0"
+AT_REST: Final = "for a ship's: Nr0 and Nrar0 damp turns, at rest too, and Nv begins at none"
 
 ASTERN: Final = 0.1
 """Share of the largest push ahead that one astern must reach to tell a gain of its own."""

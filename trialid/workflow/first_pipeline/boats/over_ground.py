@@ -20,7 +20,10 @@ from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 from trialid.workflow.first_pipeline.further_signals import OUTWARDS
 from trialid.workflow.first_pipeline.signed_speed import Motion, angle_of, course_along
 
-MADE: Final = "over the ground: ahead and to starboard of it are u and v, by psi"
+MADE: Final = (
+    "over the ground: ahead and to starboard of it are u and v, by psi; CAREFUL: where its antenna "
+    "stands off midships, [antenna] in her file takes what turning does there off, else it is sway"
+)
 UNITS: Final = {"lat": ("deg", "rad"), "lon": ("deg", "rad"), "x": ("m", "m"), "y": ("m", "m")}
 """Unit of a position that states none, and that of what is made of it."""
 
@@ -90,21 +93,25 @@ def _motion(pair: Mapping[str, ChannelInspection], heading: Signal) -> Motion | 
     if common is None:
         return None
     period, (first, second, psi), whole = common
-    north, east = _in_plane(pair, first, second, whole)
+    fixed = whole & ((first != 0.0) | (second != 0.0))  # 0, 0 is no fix
+    if (placed := _in_plane(pair, first, second, fixed)) is None:
+        return None
     psi = angle_of(psi, heading)
-    made = slope_of_positions(north, east, psi, whole, period)
+    made = slope_of_positions(*placed, psi, fixed, period)
     if made is None:
         return None
     return np.hypot(made.north, made.east), np.arctan2(made.east, made.north), psi, made.known
 
 
 def _in_plane(
-    pair: Mapping[str, ChannelInspection], first: Vector, second: Vector, whole: Mask
-) -> tuple[Vector, Vector]:
-    """Metres to the north and to the east."""
-    sizes = [to_si(one.stated_unit or UNITS[n][0], UNITS[n][1]) or 1.0 for n, one in pair.items()]
+    pair: Mapping[str, ChannelInspection], first: Vector, second: Vector, fixed: Mask
+) -> tuple[Vector, Vector] | None:
+    """Metres to the north and to the east; None where a unit is none of a place."""
+    sizes = [to_si(one.stated_unit or UNITS[n][0], UNITS[n][1]) for n, one in pair.items()]
+    if sizes[0] is None or sizes[1] is None or not fixed.any():
+        return None
     north, east = sizes[0] * first, sizes[1] * second
-    return plane(north, east, int(np.argmax(whole))) if "lat" in pair else (north, east)
+    return plane(north, east, int(np.argmax(fixed))) if "lat" in pair else (north, east)
 
 
 def _goes_outwards(motion: Motion) -> bool:
