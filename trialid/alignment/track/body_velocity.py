@@ -131,8 +131,8 @@ def slope_of_positions(
         return None
     on = np.arange(len(north))
     inside = np.interp(on, fresh, made.known.astype(float), left=0.0, right=0.0) > 1.0 - 1e-9
-    by = (np.interp(on, fresh, one) for one in (made.north, made.east))
-    return Velocity(*by, inside & known, made.told)
+    to_north, to_east = (np.interp(on, fresh, one) for one in (made.north, made.east))
+    return Velocity(to_north, to_east, inside & known, made.told)
 
 
 def _moves(one: Vector) -> Mask:
