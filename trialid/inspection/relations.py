@@ -15,7 +15,9 @@ from trialid.alignment.agreement import signs
 from trialid.alignment.agreement.first_turn import first_turn
 from trialid.alignment.agreement.turning import Turning
 from trialid.arrays import Mask
+from trialid.inspection.drives import DRIVES
 from trialid.inspection.inspected import ChannelInspection, Guess
+from trialid.inspection.name_words import words
 from trialid.inspection.sketch import Vector, on_one_clock
 from trialid.inspection.usual_units import to_si
 from trialid.names import units
@@ -50,14 +52,14 @@ def recognise(channels: Mapping[str, ChannelInspection]) -> dict[str, ChannelIns
             for channel in unnamed:
                 strength = abs(slope_agreement(channel, reference))
                 if strength > SURE and unit_of_rate(channel, reference):
-                    words = f"by its relation to {angle} (correlation {strength:.2f})"
-                    guess = Guess(rate, "relation", words)
+                    why = f"by its relation to {angle} (correlation {strength:.2f})"
+                    guess = Guess(rate, "relation", why)
                     found[channel.key] = dataclasses.replace(channel, guess=guess)
     return found
 
 
 def _unnamed(channel: ChannelInspection) -> bool:
-    able = (channel.stated_unit or RATES[0]) in RATES
+    able = (channel.stated_unit or RATES[0]) in RATES and not DRIVES & {*words(channel.name)}
     return able and channel.guess is None and not channel.constant and len(channel.sketch.t) > 40
 
 

@@ -9,6 +9,7 @@ from made_boat import PERIOD, T, begun, pushes, table
 
 from trialid import pipeline_file
 from trialid.errors import LogError
+from trialid.inspection import inspect_log
 from trialid.progress import silent
 from trialid.workflow.read_trials import align_trials
 
@@ -143,3 +144,14 @@ def test_what_turns_her_beside_two_drives_is_not_lost(
     assert ("delta" in {one.quantity.removesuffix("_order") for one in trial.signals}) is read
     beside = {one.source.name for one, _ in trial.beside}
     assert read or name in beside
+
+
+@pytest.mark.parametrize(("name", "taken"), [("thruster_port", []), ("x7", ["x7"])])
+def test_a_drive_is_no_rate_of_turn(tmp_path: Path, name: str, taken: list[str]) -> None:
+    """In a turn by one step both go alike: `2 sources of yaw rate r`, one of them a thruster."""
+    acts = np.full((len(T), 2), 0.6)
+    acts[len(T) // 3 :] = 0.8, 0.4
+    seen = drifted(acts)
+    columns = {name: np.rad2deg(seen["r"]), "heading_deg": np.rad2deg(seen["psi"]) % 360.0}
+    path = table(tmp_path / "step.csv", columns)
+    assert [one.name for one in inspect_log(path).sources("r")] == taken
