@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from trialid.alignment.track.astern import moves_along
-from trialid.alignment.track.body_velocity import slope_of_positions
+from trialid.alignment.track.body_velocity import slope, slope_of_positions
 from trialid.alignment.track.position import plane
 from trialid.arrays import Mask, Vector
 from trialid.inspection.inspected import ChannelInspection
@@ -123,7 +122,8 @@ def _goes_outwards(motion: Motion) -> bool:
     count = max(len(psi) // SHARE, 5) | 1
     if len(psi) <= count or known.sum() < count:
         return False
-    turning, sway = savgol_filter(psi, count, 2, deriv=1), speed * np.sin(course - psi)
+    turning, sway = slope(psi, count), speed * np.sin(course - psi)
+    known = known & (np.convolve(np.ones(len(psi)), np.ones(count), mode="same") > count - 0.5)
     carried = np.column_stack([np.ones(len(psi)), np.cos(psi), np.sin(psi)])[known]
     both = np.column_stack([turning, sway])[known]
     left = both - carried @ np.linalg.lstsq(carried, both)[0]
