@@ -145,7 +145,7 @@ def diagnosed(
         verdict = beside_others(fit, verdict, named, parts, whole, asked=asked, progress=silent)
         gap = verdict.kind == "not in catalogue"
         force = missing_force(fit.examined, asked.level) if gap else None
-        verdict = without_gap(fit, verdict, ranking, parts, force)
+        verdict = without_gap(fit, verdict, ranking, parts, force, asked.level)
     return Diagnosis(fit, ranking, tried.refits, named if verdict.effect else None, verdict)
 
 

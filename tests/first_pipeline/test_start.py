@@ -217,3 +217,17 @@ def test_what_turns_her_is_named_where_no_rudder_is_known(tmp_path, monkeypatch)
     assert done.exit_code == 2
     assert "'channel_7' goes with" in done.stderr
     assert "where it steers her, call it `steering`" in done.stderr
+
+
+def test_what_goes_as_she_turns_is_not_said_to_steer_her(tmp_path, monkeypatch):
+    """Of outsiders' logs a latitude, a course and the speed that a turn costs were named."""
+    _, _, r, psi, u = trial()
+    others = {"cog_deg": (psi - 3.0 * r) % 360.0, "lost": u - 2.0 * np.abs(r)}
+    others["latitude"] = 59.0 + 1e-5 * np.cumsum(u * np.cos(np.deg2rad(psi)))
+    made = log(tmp_path / "a.csv", **others)
+    rows = [line.split(",") for line in made.read_text(encoding="utf-8").splitlines()]
+    made.write_text("\n".join(",".join((one[0], *one[2:])) for one in rows), encoding="utf-8")
+    done = started(tmp_path, monkeypatch, made, *SHIP)
+    assert done.exit_code == 2
+    assert "no moving rudder" in done.stderr
+    assert "steers her" not in done.stderr

@@ -26,7 +26,7 @@ def without_gap(
     ranking: Sequence[Candidate],
     parts: Split,
     force: MissingForce | None,
-    level: float = 0.05,
+    level: float,
 ) -> Verdict:
     """The verdict, which claims no gap of the catalogue where that is not told.
 

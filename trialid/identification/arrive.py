@@ -10,11 +10,7 @@ from numpy.typing import NDArray
 from trialid.identification.one_search import End, Progress, cost_at, random_starts, search
 from trialid.identification.output_error import Problem, Unknown
 from trialid.identification.problem import Settings
-from trialid.identification.record_starts import (
-    further_starts,
-    record_starts,
-    with_own_starts,
-)
+from trialid.identification.record_starts import further_starts, record_starts, with_own_starts
 from trialid.identification.roll.own_roll import damped_by, is_a_ships
 from trialid.identification.roll.roll_range import RollRange
 from trialid.identification.roll.told_gm import FAR, along_GM, rivals, roll_error

@@ -31,7 +31,7 @@ def test_what_chance_does_as_well_is_not_outside_the_catalogue(foretold, allowed
     one.p_value, one.eps_predicted = 1.0, foretold
     claimed = decide(fit(0.10), (one,), [], split(0.03), None, 0.05)
     assert claimed.kind == "not in catalogue"
-    found = without_gap(fit(0.10), claimed, (one,), split(0.03), None)
+    found = without_gap(fit(0.10), claimed, (one,), split(0.03), None, 0.05)
     assert found.kind.startswith(kind)
     assert found.family == (("rudder_race_shaft",) if kind == "cannot tell" else ())
 
@@ -41,7 +41,7 @@ def test_what_stands_out_and_was_denied_is_not_said_to_be_chance() -> None:
     one.eps_predicted = 0.06
     claimed = decide(fit(0.10), (), [], split(0.03), None, 0.05)
     assert one.p_value < 0.05
-    assert without_gap(fit(0.10), claimed, (one,), split(0.03), None) == claimed
+    assert without_gap(fit(0.10), claimed, (one,), split(0.03), None, 0.05) == claimed
 
 
 @pytest.mark.parametrize(("possible", "kind"), [((), "cannot tell"), (("N",), "not in catalogue")])
@@ -49,15 +49,15 @@ def test_no_gap_is_claimed_where_no_force_stands_out(possible, kind) -> None:
     """A compass that jumped had a force in no equation, and the advice to draft one led nowhere."""
     claimed = decide(fit(0.10), (), [], NO_ROUTE, GAP, 0.05)
     force = SimpleNamespace(possible=possible, sentence="no force stands out")
-    found = without_gap(fit(0.10), claimed, (), NO_ROUTE, force)
+    found = without_gap(fit(0.10), claimed, (), NO_ROUTE, force, 0.05)
     assert found.kind == kind
     assert ("a fault of a sensor" in found.sentence) is (not possible)
-    assert without_gap(fit(0.10), claimed, (), NO_ROUTE, None) == claimed
+    assert without_gap(fit(0.10), claimed, (), NO_ROUTE, None, 0.05) == claimed
 
 
 def test_what_is_not_noise_is_not_said_to_be_noise() -> None:
     claimed = decide(fit(0.10), (), [], split(0.03), None, 0.05)
     force = SimpleNamespace(possible=(), sentence="no force stands out")
-    found = without_gap(fit(0.10), claimed, (), split(0.03), force)
+    found = without_gap(fit(0.10), claimed, (), split(0.03), force, 0.05)
     assert found.kind == "cannot tell"
     assert found.sentence == f"{claimed.sentence}; nor does a force: no force stands out"

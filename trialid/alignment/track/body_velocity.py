@@ -12,18 +12,20 @@ from trialid.white_noise import white_noise_of_most
 
 SCATTER: Final = 0.03
 """Share of her usual speed that the noise of positions may be in a slope of them; the slope is of
-as many samples as that takes. Of three simulated boats of 2 to 12 m, fixes of 2 cm at 5 and 10 Hz
-told u and v to 3 to 25 % of what they move, of 30 cm to 6 to 54 where she turns little enough; with
-half of it turns are smoothed away instead, to twice the error of a boat of 2 m in fixes of 30 cm,
-and with twice of it noise doubles."""
+as many samples as that takes. Of three simulated boats of 2 to 12 m in three manoeuvres, fixes of 2
+cm at 5 and 10 Hz told u to 3 to 23 % and v to 6 to 36 % of what they move, of 30 cm, where she
+turns little enough, to 9 to 31 and 17 to 54 %. Half of it refuses the boat of 2 m at 5 Hz, and that
+of 5 m in 30 cm; with twice of it what 30 cm leave is 16 to 58 and 25 to 115 %."""
 
-LONGEST: Final = 0.1
-"""Share of a trial that the slope of a position may be of."""
+LONGEST: Final = 0.05
+"""Share of a trial that the slope of a position may be of. Twice of it lets a boat of 5 m in fixes
+of 1 m pass, u off by 60 % and v by 127 %; half of it refuses one of 12 m, 14 to 23 and 35 to 52 %.
+"""
 
 TURNED: Final = 1.2
 """[rad] What she may turn through within a slope, nine times in ten: it is a chord then, shorter
-than her way. Of those boats what stayed below was off as said, beyond it 9 to 80 % of what u moves;
-half of it refuses a boat of 2 m by fixes of 2 cm, twice lets 43 % pass."""
+than her way. Of those boats what stayed below was off as said; half of it refuses one of 2 m by
+fixes of 2 cm, twice lets v of 30 cm be off by 69 %."""
 
 FEWEST: Final = 5
 """Samples of a slope."""
@@ -106,8 +108,8 @@ def slope_of_positions(
 ) -> Velocity | None:
     """The slope of a parabola through as many positions as their noise asks for.
 
-    None where those are a tenth of the trial and more, or she turns too far meanwhile. A position
-    that the log repeats until the next is one. At its ends half a slope is not known.
+    None where those are a twentieth of the trial and more, or she turns too far meanwhile. A
+    position that the log repeats until the next is one. At its ends half a slope is not known.
 
     Parameters
     ----------

@@ -36,6 +36,13 @@ SLOWER: Final = 25.0
 """By how much the integral of a rate controller is slower than its bandwidth."""
 FASTER: Final = 2.0
 """Bandwidth of a rate controller, where none is asked for, in 1 / T: twice as fast as the ship."""
+LESS: Final = "ask for less by --bandwidth, or sail more trials"
+MORE: Final = (
+    "most of those turn on by themselves, which gains for more hold sooner: ask for more by "
+    "--bandwidth, or sail trials that tell whether she is stable on her course"
+)
+"""What to do where too many ships swing: by too much of a gain, or as too little holds them."""
+
 MOST: Final = 30.0
 """Times the usual bandwidth up to which gains are made: beyond, steering gears, samples and waves
 are what acts, of which her model says nothing. Where it stands is a choice, by no record."""
@@ -127,14 +134,6 @@ def heading_gains(
     models = [(ship, spread), *others]
     values = {"Kp": float(Kp), "Ki": float(natural * Kp / 10.0), "Kd": float(Kd)}
     return _tried(models, linear, values, wanted, lambda one: hold_heading(one, **values))
-
-
-LESS: Final = "ask for less by --bandwidth, or sail more trials"
-MORE: Final = (
-    "most of those turn on by themselves, which gains for more hold sooner: ask for more by "
-    "--bandwidth, or sail trials that tell whether she is stable on her course"
-)
-"""What to do where too many ships swing: by too much of a gain, or as too little holds them."""
 
 
 def _known(ship: Vessel) -> tuple[LinearShip, float, float]:

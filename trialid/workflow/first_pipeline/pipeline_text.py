@@ -88,8 +88,8 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
     if trial.states_speed and trial.speed is not None:
         why = ": no log has u" if trial.speed else ""
         yield f"speed = {float(trial.speed):.4g}  # m/s, {comment(trial.speed_words)}{why}"
-    yield _window(trial)
-    yield from _remarks(trial)
+    yield from _stretch(trial)
+    yield from (f"# {comment(remark)}" for remark in _remarks(trial))
     yield "[trial.signals]"
     width = max(len(one.quantity) for one in trial.signals)
     found = disagreements.findings(trial.survey)
@@ -108,6 +108,13 @@ def _trial(path: Path, name: str, trial: Chosen, held: str) -> Iterator[str]:
         yield f"# left to you: {signal.quantity}; {comment(why)}"
         yield f"# {signal.quantity} = {{ {_source(signal, signal.source)} }}"
     yield from _track(trial)
+
+
+def _stretch(trial: Chosen) -> Iterator[str]:
+    """What of the log is the trial, and what is made of it."""
+    yield _window(trial)
+    if trial.made_over_ground:
+        yield "over_ground = true  # u and v are made of what is recorded over the ground"
 
 
 def _window(trial: Chosen) -> str:
@@ -148,10 +155,8 @@ def _log(trial: Chosen, path: Path) -> str:
 
 
 def _remarks(trial: Chosen) -> Iterator[str]:
-    if trial.made_over_ground:
-        yield "over_ground = true  # u and v are made of what is recorded over the ground"
-    told = (remark for file in trial.survey.files[:1] for remark in file.remarks[:3])
-    yield from (f"# {comment(remark)}" for remark in (*trial.survey.warnings[:3], *told))
+    yield from trial.survey.warnings[:3]
+    yield from (remark for file in trial.survey.files[:1] for remark in file.remarks[:3])
 
 
 def _facts(one: ChannelInspection) -> str:

@@ -27,7 +27,8 @@ UNITS: Final = {"lat": ("deg", "rad"), "lon": ("deg", "rad"), "x": ("m", "m"), "
 """Unit of a position that states none, and that of what is made of it."""
 
 SHARE: Final = 100
-"""Times as long as the slope of a heading is a trial: 1 s of one and a half minutes."""
+"""Times as long as the slope of a heading is a trial: 1 s of one and a half minutes. Of 60 logs of
+three simulated boats half of it and twice tell sway in the same, all of them."""
 
 
 def with_velocity_over_ground(trial: Chosen, live: Live) -> Chosen:
