@@ -223,6 +223,8 @@ def test_what_goes_as_she_turns_is_not_said_to_steer_her(tmp_path, monkeypatch):
     """Of outsiders' logs a latitude, a course and the speed that a turn costs were named."""
     _, _, r, psi, u = trial()
     others = {"cog_deg": (psi - 3.0 * r) % 360.0, "lost": u - 2.0 * np.abs(r)}
+    shaken = np.random.default_rng(2).normal(size=len(r))
+    others["lean"] = r + 0.5 * np.std(r) * shaken
     others["latitude"] = 59.0 + 1e-5 * np.cumsum(u * np.cos(np.deg2rad(psi)))
     made = log(tmp_path / "a.csv", **others)
     rows = [line.split(",") for line in made.read_text(encoding="utf-8").splitlines()]
