@@ -10,6 +10,7 @@ from test_first_pipeline import L, trial, written
 from trialid import pipeline_file
 from trialid.cli.main import commands
 from trialid.inspection import inspect_trials
+from trialid.inspection.relations import Side
 from trialid.result.json_file import read
 from trialid.ship.particulars import read_ship
 
@@ -223,8 +224,6 @@ def test_what_goes_as_she_turns_is_not_said_to_steer_her(tmp_path, monkeypatch):
     """Of outsiders' logs a latitude, a course and the speed that a turn costs were named."""
     _, _, r, psi, u = trial()
     others = {"cog_deg": (psi - 3.0 * r) % 360.0, "lost": u - 2.0 * np.abs(r)}
-    shaken = np.random.default_rng(2).normal(size=len(r))
-    others["lean"] = r + 0.5 * np.std(r) * shaken
     others["latitude"] = 59.0 + 1e-5 * np.cumsum(u * np.cos(np.deg2rad(psi)))
     made = log(tmp_path / "a.csv", **others)
     rows = [line.split(",") for line in made.read_text(encoding="utf-8").splitlines()]
@@ -233,3 +232,14 @@ def test_what_goes_as_she_turns_is_not_said_to_steer_her(tmp_path, monkeypatch):
     assert done.exit_code == 2
     assert "no moving rudder" in done.stderr
     assert "steers her" not in done.stderr
+
+
+@pytest.mark.parametrize(("by", "named"), [("dr/dt", True), ("r, as it is first laid", False)])
+def test_what_steers_her_goes_with_the_change_of_her_rate(tmp_path, monkeypatch, by, named):
+    """With the rate itself a position goes in a turning circle, and a heel."""
+    made = log(tmp_path / "a.csv")
+    text = made.read_text(encoding="utf-8").replace("rudder[deg]", "channel_7", 1)
+    made.write_text(text, encoding="utf-8")
+    found = Side("starboard", 0.9, "starboard", by)
+    monkeypatch.setattr("trialid.workflow.first_pipeline.not_begun.side", lambda *more: found)
+    assert ("steers her" in started(tmp_path, monkeypatch, made, *SHIP).stderr) is named
