@@ -126,6 +126,7 @@ PARTNERS = {a: b for a, b in zip("abcdefgh", "badcfehg", strict=True)}
         "azimuths_race",
         "azimuths_strut",
         "waterjets",
+        "waterjets_advance",
         "rudders",
         "rudders_drag",
         "rudders_race",
@@ -198,6 +199,16 @@ def test_a_bucket_takes_the_jet_away_and_turns_it_back() -> None:
     astern = EFFECTS["waterjets_bucket"](at | {"jet_bucket": 1.0})[0]
     assert X + astern.X < 0.0
     assert EFFECTS["waterjets_bucket"](at | {"jet": -10.0})[0] == pytest.approx((0.0,) * 4)
+
+
+def test_the_water_that_a_jet_takes_in_is_brought_to_her_speed() -> None:
+    """Along her, however the jet points; by hand at 2 m/s: 0.5 * 3 * 2 N, 5 m aft, 2 m to port."""
+    jet = Actuator(name="jet", kind="waterjet", x=-5.0, y=-2.0, direction=0.3)
+    lost = actuator_effects(ship_with((jet,)))["waterjets_advance"]
+    at = {"jet": 3.0, "u": 2.0, "k_jet_advance": 0.5}
+    assert lost(at)[0] == pytest.approx((-3.0, 0.0, 0.0, -6.0))
+    assert lost(at | {"jet": -3.0})[0] == pytest.approx((-3.0, 0.0, 0.0, -6.0))
+    assert lost(at | {"u": -2.0})[0] == pytest.approx((3.0, 0.0, 0.0, 6.0))
 
 
 @pytest.mark.parametrize(("order", "held", "passed"), [(0.9, 0.7, 0.7), (-0.6, -0.6, -0.4)])

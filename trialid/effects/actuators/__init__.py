@@ -7,7 +7,7 @@ a ship with one rudder stays what it was.
 from collections.abc import Collection
 
 from trialid.effects.actuators.actuator_faults import fault_effects
-from trialid.effects.actuators.jet_bucket import bucket_effects
+from trialid.effects.actuators.jets import jet_effects
 from trialid.effects.actuators.many_rudders import rudder_effects
 from trialid.effects.actuators.pods import pod_effects
 from trialid.effects.actuators.pushes import push_effects
@@ -32,7 +32,7 @@ def actuator_effects(ship: Ship, ordered: Collection[str] = ()) -> dict[str, Eff
         *rudder_effects(ship),
         *push_effects(ship),
         *pod_effects(ship),
-        *bucket_effects(ship),
+        *jet_effects(ship),
         *standstill_effects(ship),
         *fault_effects(ship, ordered),
     )
