@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 from geared_rudder import geared
 
+from trialid import pipeline_file
 from trialid.alignment.track.position import RADIUS
 from trialid.inspection import Inspection, inspect_log
 from trialid.inspection.positions import approach_by_positions, usual_speed
+from trialid.progress import silent
 from trialid.ship.estimate import Given
 from trialid.workflow.first_pipeline import starter
+from trialid.workflow.read_trials import align_trials
 
 SPEED = 1.2
 """[m/s] Of a boat of 4 m."""
@@ -24,6 +27,7 @@ def log(
     scatter: float = 0.1,
     held: int = 1,
     speed: float = SPEED,
+    falls: float = 0.0,
 ) -> Path:
     """Zig-zags of a boat at 5 Hz: her heading, rudder, speed in knots, and fixes that are held."""
     t = np.arange(0.0, 300.0, 0.2)
@@ -31,7 +35,7 @@ def log(
     for k in range(len(t) - 1):
         r[k + 1] = r[k] + 0.2 * (0.3 * delta[k] - r[k]) / 2.0
     psi = np.cumsum(0.2 * r)
-    way = speed * 0.2 * np.exp(1j * np.deg2rad(psi))
+    way = speed * (1.0 - falls * t / t[-1]) * 0.2 * np.exp(1j * np.deg2rad(psi))
     told = np.arange(len(t)) // held * held
     noise = scatter * (rng.standard_normal(len(t)) + 1j * rng.standard_normal(len(t)))
     fixes = (np.cumsum(way) + noise)[told] / RADIUS
@@ -108,8 +112,31 @@ def test_a_speed_that_her_positions_contradict_is_told(
     assert (f"{1.0 / times:.1f}" in text.split("sailed at")[-1][:6]) is told
 
 
-def test_positions_tell_the_speed_where_no_channel_does(tmp_path: Path, survey: Inspection) -> None:
-    text = begun(tmp_path, without(survey, "speed"))
+def test_positions_tell_a_speed_that_falls_where_no_channel_does(tmp_path: Path) -> None:
+    """At 1.2 m/s to begin with, at 0.7 of it in the end: no one number is it."""
+    path = log(tmp_path / "zz.csv", np.random.default_rng(46), scatter=0.02, falls=0.3)
+    made = starter(
+        [without(inspect_log(path), "speed")], tmp_path / "p.toml", None, Given(length=4.0)
+    )
+    for where, text in made.files.items():
+        where.write_text(text, encoding="utf-8")
+    text = made.files[tmp_path / "p.toml"]
+    assert "\nover_ground = true" in text
+    assert "\nspeed = " not in text
+    assert 'outputs = ["psi"]' in text
+    [trial] = align_trials(pipeline_file.load(tmp_path / "p.toml"), silent)
+    true = SPEED * (1.0 - 0.3 * trial.t / 300.0)
+    known = trial.valid["u"]
+    assert known.mean() > 0.95
+    assert trial.signals["u"][known] == pytest.approx(true[known], abs=0.15)
+    assert np.std((trial.signals["u"] - true)[known]) < 0.05
+    assert trial.signals["u"][~known] == pytest.approx(true[~known], abs=0.15)
+
+
+def test_fixes_too_coarse_for_a_slope_tell_one_speed(tmp_path: Path) -> None:
+    path = log(tmp_path / "zz.csv", np.random.default_rng(47), scatter=3.0)
+    text = begun(tmp_path, without(inspect_log(path), "speed"))
+    assert "over_ground" not in text
     [stated] = [line for line in text.splitlines() if line.startswith("speed = ")]
     assert float(stated.split()[2]) == pytest.approx(SPEED, rel=0.1)
     assert "over ground, by her positions" in stated

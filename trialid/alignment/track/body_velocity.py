@@ -162,7 +162,9 @@ def _slope(north: Vector, east: Vector, psi: Vector, known: Mask, period: float)
     if not len(turned) or np.quantile(turned, 0.9) > TURNED:
         return None
     filled = (np.interp(np.arange(len(x)), np.flatnonzero(known), x[known]) for x in (north, east))
-    by = [slope(one, count) / period for one in filled]
+    half = count // 2
+    inner = (slope(one, count)[half:-half] / period for one in filled)
+    by = [np.pad(one, half, mode="edge") for one in inner]  # a speed goes on, though not known
     whole = np.convolve(known, np.ones(count), mode="same") > count - 0.5
     return Velocity(by[0], by[1], whole, f"positions, over {count * period:.2g} s")
 

@@ -18,7 +18,10 @@ from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator, Command, actuator_tables
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.over_ground import with_velocity_over_ground
+from trialid.workflow.first_pipeline.boats.over_ground import (
+    with_speed_by_position,
+    with_velocity_over_ground,
+)
 from trialid.workflow.first_pipeline.boats.turned_drives import (
     ANGLE,
     angle_signals,
@@ -100,15 +103,19 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     live = {name: live_sources(survey, name) for name in SIGNALS}
     turns, drives = live.get("r") or live.get("psi"), drives_of(survey)
     if not turns or len(drives) != 2:
-        return with_further(choose_signals(survey, speed), live)
+        return _choose_ship(survey, live, speed)
     rudders = [one for name in RUDDERS for one in live[name]]
     steered = any(not of_some_steering(one) for one in rudders)
     steered = steered or (bool(rudders) and hardly_differ(*drives))
     if steered and not angles_of(survey, drives):
-        return with_further(choose_signals(survey, speed), live)
+        return _choose_ship(survey, live, speed)
     boat = _choose_boat(survey, live, speed)
     unread = [plain_signal(name, live, "") for name in RUDDERS if live[name] and not steered]
     return dataclasses.replace(boat, beside=(*boat.beside, *((one, BY_DRIVES) for one in unread)))
+
+
+def _choose_ship(survey: Inspection, live: Live, stated: float | None) -> Chosen:
+    return with_speed_by_position(with_further(choose_signals(survey, stated), live))
 
 
 def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen:

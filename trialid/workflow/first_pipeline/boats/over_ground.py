@@ -1,4 +1,4 @@
-"""A boat's speed ahead and to starboard by what is recorded over the ground and her heading."""
+"""Her speed ahead and to starboard by what is recorded over the ground and her heading."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -23,6 +23,9 @@ MADE: Final = (
     "over the ground: ahead and to starboard of it are u and v, by psi; CAREFUL: where its antenna "
     "stands off midships, [antenna] in her file takes what turning does there off, else it is sway"
 )
+AHEAD: Final = (
+    "over the ground: ahead of it, by psi, is u, for want of a speed; CAREFUL: a current adds to it"
+)
 UNITS: Final = {"lat": ("deg", "rad"), "lon": ("deg", "rad"), "x": ("m", "m"), "y": ("m", "m")}
 """Unit of a position that states none, and that of what is made of it."""
 
@@ -43,13 +46,27 @@ def with_velocity_over_ground(trial: Chosen, live: Live) -> Chosen:
     if heading is None or heading.open or live.get("v") or water:
         return trial
     read = _by_course(trial, speed, heading) if speed is not None else None
-    read = read or _by_position(trial, heading)
+    read = read or _by_position(trial, heading, MADE)
     sways = read is not None and _goes_outwards(read[1])
     if read is None or (speed is not None and not sways):
         return trial
     made = frozenset(("u", "v") if sways else ("u",))
     kept = (one for one in trial.signals if one.quantity not in ("u", "cog"))
     return dataclasses.replace(trial, signals=(*kept, *read[0]), made_over_ground=made)
+
+
+def with_speed_by_position(trial: Chosen) -> Chosen:
+    """The trial of a ship with a position of which `u` is made, where no speed is logged.
+
+    Her sway is left out of it: far from midships, where an antenna of a ship stands, it is another.
+    """
+    heading = next((one for one in trial.signals if one.quantity == "psi"), None)
+    if heading is None or heading.open or "u" in trial.quantities:
+        return trial
+    if (read := _by_position(trial, heading, AHEAD)) is None:
+        return trial
+    made = frozenset(("u",))
+    return dataclasses.replace(trial, signals=(*trial.signals, *read[0]), made_over_ground=made)
 
 
 Read = tuple[tuple[Signal, ...], Motion]
@@ -66,7 +83,7 @@ def _by_course(trial: Chosen, speed: Signal, heading: Signal) -> Read | None:
     return (dataclasses.replace(speed, quantity="sog", further=()), told), motion
 
 
-def _by_position(trial: Chosen, heading: Signal) -> Read | None:
+def _by_position(trial: Chosen, heading: Signal, made: str) -> Read | None:
     """A position whose slope is by her heading; None where there is none.
 
     Of one in a plane it is not known which of its axes is to the north: the one by which she goes.
@@ -78,13 +95,14 @@ def _by_position(trial: Chosen, heading: Signal) -> Read | None:
         motion = _motion(pair, heading) if pair else None
         if motion is not None and moves_along(*motion):
             by = "by its name" if order is names else "by the heading that she goes by"
-            return tuple(_position(name, one, by) for name, one in pair.items()), motion
+            told = f"{by}; its slope is {made}"
+            return tuple(_position(name, one, told) for name, one in pair.items()), motion
     return None
 
 
-def _position(name: str, one: ChannelInspection, by: str) -> Signal:
+def _position(name: str, one: ChannelInspection, told: str) -> Signal:
     unit = one.stated_unit or UNITS[name][0]
-    return Signal(quantity=name, source=one, unit=unit, taken=f"{by}; its slope is {MADE}")
+    return Signal(quantity=name, source=one, unit=unit, taken=told)
 
 
 def _motion(pair: Mapping[str, ChannelInspection], heading: Signal) -> Motion | None:
