@@ -11,7 +11,8 @@ from trialid.names.wording import THIN
 from trialid.report.pages.page import page
 from trialid.report.pictures.error_history import LINE, error_history
 from trialid.report.tables.use_tables import commands, kinds_of
-from trialid.report.words.advice import first_step, trust
+from trialid.report.words.advice import first_step
+from trialid.report.words.doubt import trust
 from trialid.report.words.fall import fell
 from trialid.result.fit_rows import ModelPart
 from trialid.result.json_file import result_of

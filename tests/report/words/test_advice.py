@@ -12,7 +12,8 @@ from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.augment import augment
 from trialid.identification.fit import identify
 from trialid.names.wording import THIN
-from trialid.report.words.advice import AS_STATED, OPENS, STATED, advice, moves, trust
+from trialid.report.words.advice import AS_STATED, OPENS, STATED, advice
+from trialid.report.words.doubt import moves, trust
 from trialid.result.fit_rows import WeakRow
 from trialid.result.json_file import result_of
 
@@ -42,6 +43,36 @@ def test_what_is_missing_is_added_by_commands_that_exist(result):
     ]
     for command in commands:
         assert_known(command)
+
+
+STAYS = ("leaves most of the error", "so more than it is missing")
+
+
+@pytest.mark.parametrize(
+    ("noise", "held_out", "stays"),
+    [(None, 0.17, True), (0.16, 0.17, False), (None, 0.14, False), (None, None, True)],
+)
+def test_where_most_of_the_error_stays_whole_models_are_compared(result, noise, held_out, stays):
+    """Before it 0.2, of those held out and of those fitted: half of the square is 0.14."""
+    run = copy.deepcopy(result)
+    run["split"]["noise"], run["trials"] = noise, run["trials"][:1] * 3
+    run["fit"] |= {"eps_rmsn": 0.2, "eps_rmsn_check": held_out and 0.2}
+    row = {"effect": "yaw_drag", "eps_rmsn_refitted": 0.17, "eps_rmsn_check": held_out}
+    run["missing"] = [run["missing"][0] | row]
+    found = [each for each in advised(run, verdict=MISSING) if "structures" in each.command]
+    assert len(found) == stays
+    for each in found:
+        assert all(words in each.words for words in STAYS)
+        assert_known(each.command)
+
+
+def test_two_trials_are_too_few_to_compare_whole_models_by(result):
+    run = copy.deepcopy(result)
+    run["trials"], run["split"]["noise"] = run["trials"][:1] * 2, None
+    run["fit"] |= {"eps_rmsn": 0.2, "eps_rmsn_check": None}
+    row = {"effect": "yaw_drag", "eps_rmsn_refitted": 0.19, "eps_rmsn_check": None}
+    run["missing"] = [run["missing"][0] | row]
+    assert not [e for e in advised(run, verdict=MISSING) if "structures" in e.command]
 
 
 def test_two_that_are_missing_at_once_are_added_by_the_loop(result):

@@ -237,7 +237,7 @@ def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     yield table
     if short:
         yield Text(f"... and {len(found) - len(shown)} more, all better known", style="dim")
-    if said := f"{doubt.doubtful(found)} {advice.widest_range(run)}".strip():
+    if said := f"{doubt.doubtful(found)} {doubt.widest_range(run)}".strip():
         yield Words(said, 3)
     if known := beforehand.prior_words(found):
         yield Words(plain(known), 2)

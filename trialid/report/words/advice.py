@@ -8,7 +8,6 @@ from typing import Final
 from trialid.names import wording
 from trialid.names.quantities import MOTIONS
 from trialid.report.words import doubt
-from trialid.result.fit_rows import WeakRow
 from trialid.result.schema import Result
 from trialid.toml_text import array
 
@@ -26,6 +25,9 @@ OPENS: Final = {
 }
 """What would open a route to the noise that this record does not have; of a ship that nothing
 drives, as in a roll decay, only the last is one."""
+
+FEWEST_COMPARED: Final = 3
+"""Trials from which on whole models are compared: two that are fitted and one left out."""
 
 EACH: Final = ("This", "Any one of these")
 
@@ -134,6 +136,28 @@ def _missing(run: Result) -> Iterable[Advice]:
         "Or let it add effect after effect until none is named; the file stays as it is:",
         command(run, "run", "--auto"),
     )
+    yield from _most_stays(run, effect)
+
+
+def _most_stays(run: Result, effect: str) -> Iterable[Advice]:
+    """Where it leaves more than half of what is not noise: what is missing is more than one."""
+    row = next((row for row in run.missing if row.effect == effect), None)
+    if row is None:
+        return
+    held_out = row.eps_rmsn_check is not None
+    before = run.fit.eps_rmsn_check if held_out else run.fit.eps_rmsn
+    after = row.eps_rmsn_check if held_out else row.eps_rmsn_refitted
+    if before is None or after is None or len(run.trials) < FEWEST_COMPARED:
+        return
+    noise = (run.split.noise or 0.0) ** 2
+    if after**2 - noise > 0.5 * (before**2 - noise):
+        where = "where it was not fitted" if held_out else "of the fitted trials"
+        yield Advice(
+            f"{effect} leaves most of the error {where}, {wording.percent(after)} of "
+            f"{wording.percent(before)}, so more than it is missing. Compare whole models, each "
+            "fitted anew with every trial left out in turn:",
+            command(run, "structures"),
+        )
 
 
 def _nothing(run: Result) -> Iterable[Advice]:
@@ -243,47 +267,3 @@ def _loose(run: Result) -> Iterable[Advice]:
                 "act differently, such as larger or smaller orders or another rhythm of them; "
                 "more of the same shrinks only the noise."
             )
-
-
-def trust(run: Result) -> str:
-    """What the accuracy table comes to, beside those not to be believed."""
-    known = [(r.may_be_off, r.name) for r in run.physical if r.may_be_off is not None]
-    if not known or run.verdict.kind == "no fit":
-        return ""
-    least, name = min(known)
-    best = f"Best known is {name}, to {wording.percent(least, 2)}. " if least <= doubt.HALF else ""
-    words = f"{best}{widest_range(run)}"
-    if run.verdict.effect and run.before_after:
-        words += f" With {run.verdict.effect} in the model the ranges are others: add it first."
-    return words
-
-
-def widest_range(run: Result) -> str:
-    """Which likely range is the widest, what makes it so, and the trial that would narrow it.
-
-    Nothing without a fit: then no effect may be spoken of.
-    """
-    if run.verdict.kind == "no fit":
-        return ""
-    return f"{doubt.widest(run.physical)} {run.accuracy.narrowed_by or ''}".strip()
-
-
-def moves(weak: WeakRow) -> str:
-    """How far a weak direction's parameters go together unseen, in words.
-
-    >>> moves(WeakRow(moves={"Nr": 0.108, "Nv": 0.157})).replace(wording.THIN, " ")
-    'Nr by 11 % and Nv by 16 % of their size, both up or both down'
-    """
-    found = {name: move for name, move in weak.moves.items() if move is not None}
-    if len(found) < 2:
-        return ""
-    sizes = [f"{name} by {wording.percent(abs(move), 2)}" for name, move in found.items()]
-    listed = ", ".join(sizes[:-1]) + " and " + sizes[-1]
-    signs = {move > 0.0 for move in found.values()}
-    if len(signs) == 1:
-        word = "both up or both down" if len(found) == 2 else "all up or all down"
-    else:
-        up = [name for name, move in found.items() if move > 0.0]
-        down = [name for name, move in found.items() if move <= 0.0]
-        word = f"{', '.join(up)} up while {', '.join(down)} down, or the reverse"
-    return f"{listed} of their size, {word}"

@@ -1,13 +1,15 @@
-"""Which parameters are not to be believed, in words."""
+"""How far parameters are to be believed, in words."""
 
 import math
 from collections.abc import Sequence
 from typing import Final
 
 from trialid.accuracy.ranges import ANOTHER_GM, IN_TIME, USUAL_FORCES
+from trialid.names import wording
 from trialid.names.wording import named_together
 from trialid.result.finding_rows import VerdictPart
-from trialid.result.fit_rows import LeversPart, ParameterRow
+from trialid.result.fit_rows import LeversPart, ParameterRow, WeakRow
+from trialid.result.schema import Result
 
 HALF: Final = 0.5
 """A parameter that may be off by more than this share of its value is not to be believed."""
@@ -111,3 +113,47 @@ def widest(parameters: Sequence[ParameterRow]) -> str:
     _, row = max(known, key=lambda pair: pair[0])
     why = WIDENED.get(row.widened_by or "", f"as {row.widened_by} may be missing")
     return f"Least known: {row.name}, {why}."
+
+
+def trust(run: Result) -> str:
+    """What the accuracy table comes to, beside those not to be believed."""
+    known = [(r.may_be_off, r.name) for r in run.physical if r.may_be_off is not None]
+    if not known or run.verdict.kind == "no fit":
+        return ""
+    least, name = min(known)
+    best = f"Best known is {name}, to {wording.percent(least, 2)}. " if least <= HALF else ""
+    words = f"{best}{widest_range(run)}"
+    if run.verdict.effect and run.before_after:
+        words += f" With {run.verdict.effect} in the model the ranges are others: add it first."
+    return words
+
+
+def widest_range(run: Result) -> str:
+    """Which likely range is the widest, what makes it so, and the trial that would narrow it.
+
+    Nothing without a fit: then no effect may be spoken of.
+    """
+    if run.verdict.kind == "no fit":
+        return ""
+    return f"{widest(run.physical)} {run.accuracy.narrowed_by or ''}".strip()
+
+
+def moves(weak: WeakRow) -> str:
+    """How far a weak direction's parameters go together unseen, in words.
+
+    >>> moves(WeakRow(moves={"Nr": 0.108, "Nv": 0.157})).replace(wording.THIN, " ")
+    'Nr by 11 % and Nv by 16 % of their size, both up or both down'
+    """
+    found = {name: move for name, move in weak.moves.items() if move is not None}
+    if len(found) < 2:
+        return ""
+    sizes = [f"{name} by {wording.percent(abs(move), 2)}" for name, move in found.items()]
+    listed = ", ".join(sizes[:-1]) + " and " + sizes[-1]
+    signs = {move > 0.0 for move in found.values()}
+    if len(signs) == 1:
+        word = "both up or both down" if len(found) == 2 else "all up or all down"
+    else:
+        up = [name for name, move in found.items() if move > 0.0]
+        down = [name for name, move in found.items() if move <= 0.0]
+        word = f"{', '.join(up)} up while {', '.join(down)} down, or the reverse"
+    return f"{listed} of their size, {word}"
