@@ -49,6 +49,12 @@ def drives_of(survey: Inspection) -> tuple[ChannelInspection, ...]:
     return tuple(ones[0] for ones in found.values() if len(ones) == 1)
 
 
+def lone_drive(survey: Inspection) -> ChannelInspection | None:
+    """The one channel that drives her, moving or held; None where there is none, or another."""
+    able = [one for one in survey.channels.values() if _is_called_drive(one) and one.mostly_there]
+    return able[0] if len(able) == 1 and (able[0].low or able[0].high) else None
+
+
 def drives_among(survey: Inspection) -> list[str]:
     """Names of all channels that seem to drive her; a lone shaft and its thrust steer nobody."""
     found = [
@@ -84,7 +90,12 @@ def _numbered(survey: Inspection) -> tuple[ChannelInspection, ...]:
 
 
 def _drives(one: ChannelInspection) -> bool:
-    """Whether a channel that moves drives a boat: by its words, or by the letter of a shaft.
+    """Whether a channel drives a boat, and moves."""
+    return _is_called_drive(one) and not one.constant and one.mostly_there
+
+
+def _is_called_drive(one: ChannelInspection) -> bool:
+    """Whether a channel drives a boat: by its words, or by the letter of a shaft.
 
     That needs a unit, or no more beside it than a side or a number: `n_left`, `n1`. A side alone is
     a drive's, too, `left` beside `right`, where nothing states a unit: the turn has to say so.
@@ -94,8 +105,7 @@ def _drives(one: ChannelInspection) -> bool:
     plain = one.stated_unit is None and set() < told - {"n"} <= {*SIDES, *LETTERS, *NUMBERS}
     shaft = "n" in told and (turns or plain)
     bare = one.stated_unit is None and set() < told <= SIDES.keys()
-    told_of = bool(DRIVES & told or shaft or bare) and not NO_DRIVE & told
-    return told_of and not one.constant and one.mostly_there
+    return bool(DRIVES & told or shaft or bare) and not NO_DRIVE & told
 
 
 def _by_format(one: ChannelInspection) -> set[str]:

@@ -1,6 +1,5 @@
 """A pipeline to begin with, written from what logs hold: every choice stated, none hidden."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,24 +15,24 @@ from trialid.workflow.first_pipeline.axes_of_earth import (
     with_velocities_beside,
     without_axes_of_earth,
 )
-from trialid.workflow.first_pipeline.boats.boat_choice import (
-    PORT,
+from trialid.workflow.first_pipeline.boats.actuators_begun import (
     actuator_lines,
     boat_actuators,
-    choose,
-    is_boat,
     main_drives,
     named_by_ship,
 )
+from trialid.workflow.first_pipeline.boats.boat_choice import PORT, choose, is_boat
 from trialid.workflow.first_pipeline.boats.numbered_drives import with_ports
+from trialid.workflow.first_pipeline.boats.one_drive import DRIVE, with_turned_drive
 from trialid.workflow.first_pipeline.boats.tunnel_thrusters import tunnels_of, with_tunnels
+from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE
 from trialid.workflow.first_pipeline.by_other_logs import (
     with_sides,
     with_units,
     with_unshown,
 )
 from trialid.workflow.first_pipeline.choice import approach_speed, live_sources, shared_signals
-from trialid.workflow.first_pipeline.chosen import Chosen
+from trialid.workflow.first_pipeline.chosen import Chosen, open_questions
 from trialid.workflow.first_pipeline.long_log import Windows
 from trialid.workflow.first_pipeline.not_begun import OF_ONE, STILL, TooLittle, no_speed
 from trialid.workflow.first_pipeline.pipeline_text import comment, pipeline_text
@@ -60,10 +59,8 @@ from trialid.workflow.first_pipeline.unit_by_turning import (
 
 __all__ = ["Starter", "begun_ship", "starter"]
 
-STEERS: Final = frozenset(("delta", "delta_order", PORT, *RUDDERS.values()))
+STEERS: Final = frozenset(("delta", "delta_order", PORT, f"{DRIVE}{ANGLE}", *RUDDERS.values()))
 
-FIGURES: Final = re.compile(r"\d[\d.e+-]*+")
-"""Numbers in a question, which differ from log to log."""
 NO_SERVICE_SPEED: Final = (
     "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "
     "--speed KNOTS"
@@ -150,7 +147,7 @@ def starter(
     trials = with_doubtful_speeds(_cut(trials, windows) if windows else trials, L)
     left_out += filter(None, (one.left_beside for one in trials))
     files[pipeline] = pipeline_text(pipeline, ship, own, L, u0, trials, left_out=left_out)
-    return Starter(files, tuple(_to_fill(trials)), tuple(trials), tuple(left_out))
+    return Starter(files, tuple(open_questions(trials)), tuple(trials), tuple(left_out))
 
 
 def _with_units(
@@ -180,7 +177,8 @@ def _steered(
     if not able:
         raise too_little[0]
     chosen = with_unshown(with_ports(_with_speeds(able, speed)))
-    trials = with_revolutions(without_small_roll(with_sides(with_twins(chosen, own))))
+    told = with_turned_drive(with_sides(with_twins(chosen, own)), own)
+    trials = with_revolutions(without_small_roll(told))
     trials = with_tunnels(with_depth(trials), own)
     as_read = [one for one, found in zip(surveys, tried, strict=True) if isinstance(found, Chosen)]
     trials = [
@@ -281,20 +279,3 @@ def _check_shared(trials: Sequence[Chosen]) -> None:
             drives = needed is STEERS and any(is_boat(one.quantities) for one in trials)
             then = STILL if drives else OF_ONE
             raise LogError(f"the logs share no {words} ({held}); {then}")
-
-
-def _to_fill(trials: Sequence[Chosen]) -> list[str]:
-    """What stays open, each question once, with the log where it stands first and how many have it.
-
-    Of the same channel in several logs the numbers in a question differ, and nothing else.
-    """
-    asked: dict[tuple[str, str, str], list[str]] = {}
-    for one in trials:
-        for s in (s for s in one.signals if s.open):
-            question = FIGURES.sub("", s.why.partition("FILL IN")[2].partition(";")[0])
-            same = asked.setdefault((s.quantity, s.source.name, question), [])
-            same += (one.path.name, f": {s.quantity}, {comment(s.why)}")
-    return [
-        first + (f" and {len(more) // 2} more" if more else "") + words
-        for first, words, *more in asked.values()
-    ]

@@ -1,11 +1,17 @@
 """A signal of a starter pipeline with its reasons, and a trial of such signals."""
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
+from trialid.errors import printable
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.workflow.first_pipeline.long_log import Window
+
+FIGURES: Final = re.compile(r"\d[\d.e+-]*+")
+"""Numbers in a question, which differ from log to log."""
 
 OPEN: Final = "?"
 """Stands where only the user knows; the pipeline does not run until it is replaced."""
@@ -140,3 +146,20 @@ class Chosen:
         """Which manoeuvres of its log are no trials, and why; told by the first that is."""
         told = self.window.beside if self.window else ""
         return f"{self.path.name}: {told}" if told else ""
+
+
+def open_questions(trials: Sequence[Chosen]) -> list[str]:
+    """What stays open, each question once, with the log where it stands first and how many have it.
+
+    Of the same channel in several logs the numbers in a question differ, and nothing else.
+    """
+    asked: dict[tuple[str, str, str], list[str]] = {}
+    for one in trials:
+        for s in (s for s in one.signals if s.open):
+            question = FIGURES.sub("", s.why.partition("FILL IN")[2].partition(";")[0])
+            same = asked.setdefault((s.quantity, s.source.name, question), [])
+            same += (one.path.name, f": {s.quantity}, {printable(s.why)}")
+    return [
+        first + (f" and {len(more) // 2} more" if more else "") + words
+        for first, words, *more in asked.values()
+    ]

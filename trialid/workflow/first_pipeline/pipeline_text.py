@@ -15,7 +15,7 @@ from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import rudder_signals
 from trialid.ship.particulars import Ship
 from trialid.toml_text import array, quote
-from trialid.workflow.first_pipeline.boats.boat_choice import main_drives
+from trialid.workflow.first_pipeline.boats.actuators_begun import main_drives
 from trialid.workflow.first_pipeline.boats.boat_model import boat_model
 from trialid.workflow.first_pipeline.boats.over_ground import UNITS
 from trialid.workflow.first_pipeline.choice import RUDDERS

@@ -1,14 +1,16 @@
-"""The model a boat with two thrusters begins with: surge and yaw, damped at rest too."""
+"""The model a boat begins with that is steered by what pushes her: surge, sway where told, yaw."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
 
 from trialid.effects.actuators.instances import typical_drive, typical_gain
+from trialid.effects.actuators.push_kinds import PUSHES
 from trialid.effects.actuators.pushes import push_effects
 from trialid.inspection.own_scale import at_rest
 from trialid.inspection.usual_units import to_si
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import main_drives
+from trialid.workflow.first_pipeline.boats.actuators_begun import main_drives
+from trialid.workflow.first_pipeline.boats.one_drive import TURNED
 from trialid.workflow.first_pipeline.chosen import Chosen, Signal
 from trialid.workflow.first_pipeline.held_out import held_out
 
@@ -36,7 +38,8 @@ ASTERN: Final = 0.1
 
 def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
     """Lines of `[model]` and `[identify]`."""
-    kind = "azimuths" if any(one.kind == "azimuth" for one in ship.actuators) else "thrusters"
+    kinds = {one.kind for one in ship.actuators}
+    kind = PUSHES[next((one for one in TURNED if one in kinds), "thruster")].effect
     gains = next(one for one in push_effects(ship) if one.name == kind).parameters
     astern = _goes_astern(trials, ship)
     free = [name for name in gains if astern or "ahead" in name]

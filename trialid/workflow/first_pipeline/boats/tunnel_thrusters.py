@@ -12,7 +12,7 @@ from trialid.inspection.relations import Side, side
 from trialid.names.quantities import SIGNALS
 from trialid.ship.actuators import Actuator
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import command_of
+from trialid.workflow.first_pipeline.boats.actuators_begun import command_of
 from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
 from trialid.workflow.first_pipeline.choice import RUDDERS
 from trialid.workflow.first_pipeline.chosen import Chosen, Signal
