@@ -69,15 +69,21 @@ def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
     from trialid.workflow.grow import survivors
 
     added = survivors(done)
-    words = f"Added no more: {done[-1].end}."
+    refused = (stage.refused for stage in done[:-1] if not stage.kept)  # the last is the end
+    words = "".join(f"Tried and not kept: {why}.\n" for why in refused)
+    words += f"Added no more: {done[-1].end}."
     if names := worth_naming(done[-1].worths):
-        rest = [n for n in added if n not in names]
+        costed = {one.effect for one in done[-1].worths}
+        rest = [n for n in added if n in costed and n not in names]
+        placed = [n for n in added if n not in costed]
         corrected = (
             f"; each worth less than a tenth, which the shapes of others may be: {', '.join(rest)}"
             if rest
             else ""
         )
-        words += f"\nWhat was added, the dearest to leave out first: {', '.join(names)}{corrected}."
+        instead = f"; in the place of what the file had: {', '.join(placed)}" if placed else ""
+        listed = f"{', '.join(names)}{corrected}{instead}"
+        words += f"\nWhat was added, the dearest to leave out first: {listed}."
     if added and keep:
         words += f"\n{pipeline} now has {', '.join(added)}."
     elif added:

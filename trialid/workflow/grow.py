@@ -43,8 +43,8 @@ class Stage:
     """One step of the loop.
 
     `run` is the model with `added` in it (two with a comma), or without `dropped` (both None: the
-    model as written), unless it was not `kept`; then it is the model before. `end` says why the
-    loop ends here, empty where it goes on. `worths` are those of the effects that were added, the
+    model as written), unless it was not `kept`; then it is the model before, and `refused` says
+    why. `end` says why the loop ends here, empty where it goes on. `worths` are those of the effects that were added, the
     dearest first.
     """
 
@@ -55,6 +55,7 @@ class Stage:
     end: str
     dropped: str | None = None
     worths: tuple[Worth, ...] = ()
+    refused: str = ""
 
 
 @dataclass
@@ -97,8 +98,8 @@ class _Path:
             return None
         fit = run.findings.before.fit
         able = [r for r in run.findings.refits if self._new((r.candidate.effect.name,))]
-        grown = bool(self.own)
-        return likeliest_refit(fit, able, level, grown)
+        named = next((r for r in able if r.candidate.effect.name == verdict.effect), None)
+        return named or likeliest_refit(fit, able, level, grown=bool(self.own))
 
     def _together(self, run: Run) -> Together | None:
         found = run.findings.together
@@ -165,7 +166,7 @@ def _forward(path: _Path, stage: Stage) -> Stage:
 def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:
     """The model before once more; the loop goes on where something else stands every check."""
     end = "" if path.next_up(stage.run) is not None else why
-    return replace(stage, added=name, dropped=None, kept=False, end=end)
+    return replace(stage, added=name, dropped=None, kept=False, end=end, refused=why)
 
 
 def _told(

@@ -21,6 +21,7 @@ from trialid.design.prediction.rudders_zero import with_rudders_zero
 from trialid.design.prediction.seen_range import beyond_words
 from trialid.design.rudder_rate import GEAR
 from trialid.design.rudders import steered_signals
+from trialid.design.standard import AT_SEA
 from trialid.errors import DesignError, TrialidError, list_names
 from trialid.identification.fit import Fit
 from trialid.names import labels
@@ -192,9 +193,16 @@ def _ship_for(
         kept = with_rudders_zero(model.fit)
         steered = vessel(kept, steered.period, steered.constants, steered.rudder_rate)
     steered = changed_ship(steered, what_if)
-    needed = {*steered.simulator.equations.inputs} - given - steered_signals(steered.model) - {"t"}
+    own = {*steered_signals(steered.model), *steered.model.all_states, "t"}
+    needed = ({*steered.simulator.equations.inputs} | _of_ranges(model)) - given - own
     needed = {name for name in needed if f"{name}_order" not in given}
     return steered, {n: steered.constants[n] for n in sorted(needed) if n in steered.constants}
+
+
+def _of_ranges(model: FinishedModel) -> set[str]:
+    """What effects read that may be missing: its ranges count with them, the model does not."""
+    read = {name for one in model.done.doubts.missing for name in one.effect.signals}
+    return read - AT_SEA
 
 
 def _loses(ship: Vessel) -> str:
