@@ -44,8 +44,8 @@ class Stage:
 
     `run` is the model with `added` in it (two with a comma), or without `dropped` (both None: the
     model as written), unless it was not `kept`; then it is the model before, and `refused` says
-    why. `end` says why the loop ends here, empty where it goes on. `worths` are those of the effects that were added, the
-    dearest first.
+    why. `end` says why the loop ends here, empty where it goes on. `worths` are those of the
+    effects that were added, the dearest first.
     """
 
     pipeline: Pipeline
