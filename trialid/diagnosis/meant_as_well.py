@@ -16,6 +16,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import gap_with, tried_effects
+from trialid.diagnosis.found_values import by_heading, her_own
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.augment import fixed_coefficients
@@ -26,6 +27,7 @@ from trialid.diagnosis.search.falls import fall
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.together import Pair, Together, fit_pairs
 from trialid.diagnosis.verdict import Verdict
+from trialid.diagnosis.verdict_sentences import by_herself
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings, pose_problem
@@ -118,7 +120,11 @@ def beside_others(
     if asked.coefficients and adds and (freed := held_instead(fit, named, progress)):
         return held_before(fit, named, freed)
     tried = tried_effects(fit, asked)
-    return also_from(verdict, two_instead(fit, named, verdict.family, tried, asked.refit, progress))
+    two = two_instead(fit, named, verdict.family, tried, asked.refit, progress)
+    if two is not None and by_heading(named.candidate.effect) and all(map(her_own, two.effects)):
+        said = by_herself(fit, named, two)
+        return Verdict("cannot tell", None, (), said, pair_as_well=two.names)
+    return also_from(verdict, two)
 
 
 def also_from(found: Verdict, two: Together | None) -> Verdict:

@@ -236,3 +236,13 @@ def significant_and_small(shown: Sequence[Candidate]) -> str:
         f"; {first.effect.name} is significant and small (p = {first.p_value:.2g}): where it was "
         f"not fitted it changes the squared error by {first.carried.ratio - 1.0:+.1%}"
     )
+
+
+def by_herself(fit: Fit, named: Refit, two: Together) -> str:
+    """What nobody recorded does no more than two effects of the ship at once."""
+    before, after, other = (f"{x.eps_rmsn:.2%}" for x in (fit, named.fit, two.fit))
+    return (
+        f"{named.candidate.effect.name} takes the error from {before} to {after}, and "
+        f"{' and '.join(two.names)} of the ship herself together to {other}: this record does not "
+        "tell them apart, and what nobody recorded gives way to her"
+    )

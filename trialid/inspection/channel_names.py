@@ -42,14 +42,14 @@ PHRASES: Final = {
     "twist angular x, gyro x",
     "phi": "roll, roll angle, rolling, heel, heel angle, rollwinkel, kraengung, krängung, "
     "kraengungswinkel, krängungswinkel, krengning, slagside, list angle, bank angle, gite, gîte, "
-    "roulis, escora, angulo de escora, ángulo de escora, sbandamento, rollio, slagzij",
+    "roulis, escora, angulo de escora, ángulo de escora, sbandamento, rollio, slagzij, inclinometer",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
     "kompasskurs, kreiselkurs, cap vrai, cap compas, prua, rumbo verdadero, rumbo aguja",
     "u": "stw, speed through water, speed water, water speed, speed log, log speed, "
     "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
     "forward velocity, longitudinal speed, longitudinal velocity, long speed, vitesse surface, "
-    "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fdw, fd w, dvl u, vel u, "
-    "velocity u, loch, corredera",
+    "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fart gjennom vannet, fdw, "
+    "fart genom vattnet, fd w, dvl u, vel u, velocity u, loch, corredera",
     "v": "sway speed, sway velocity, sway vel, vel sway, lateral speed, lateral velocity, "
     "lat speed, transverse speed, transverse velocity, dvl v, vel v, velocity v",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
@@ -94,7 +94,7 @@ QUALIFIERS: Final = frozenset(
 STEERING: Final = frozenset(("steering", "steer", "nozzle", "tiller", "helm"))
 STEERED: Final = ORDERED | {"act", "actual", "meas", "measured"}  # may follow without a unit
 TURNED: Final = dict.fromkeys((*STEERING, "azimuth", "servo"), "delta")
-LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", **TURNED}
+LETTERS: Final = {**ALONE, "vm": "v", "surge": "u", "sway": "v", "log": "u", **TURNED}
 """What such words may follow; a letter alone and the words only with a unit that fits."""
 NAMED: Final = frozenset(("phi", "psi", "delta", "delta_c", "delta_order"))
 """Letters that mean the same without a unit too."""

@@ -47,6 +47,21 @@ def words(name: str) -> tuple[str, ...]:
     return tuple(word.lower() for word in _WORD.findall(name))
 
 
+WATER: Final = frozenset(
+    "stw vhw water wasser eau agua acqua vann vannet vatten vattnet fdw loch corredera".split()
+)
+"""Words of a speed that a log measures through the water."""
+
+
+def is_through_water(name: str) -> bool:
+    """Whether a channel says that its speed is one through the water.
+
+    >>> is_through_water("VHW/II:speed"), is_through_water("speed/12:water"), is_through_water("u")
+    (True, True, False)
+    """
+    return bool(WATER.intersection(words(name)))
+
+
 def drop_number(name: str) -> str:
     """A name without the number of one of several behind its unit.
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -22,12 +22,18 @@ from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
+from trialid.inspection.name_words import is_through_water
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
 from trialid.result.build import Findings
 from trialid.second_process import both
 from trialid.ship.effect import Effect
 from trialid.workflow.build_model import candidates, declared_quiet, stated_noise
+
+OVER_GROUND: Final = ("current_in_speed_record", "drift_in_speed_record", "current_in_surge")
+"""What is tried of a speed that may be one over ground. Of two strangers' ships whose channel was
+`stw`, or a water speed by its format, a current of 2.5 m/s had a name, and a compass's deviation
+was called one."""
 
 
 def diagnose_settings(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> DiagnoseSettings:
@@ -39,8 +45,11 @@ def diagnose_settings(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> Di
         A listed effect does not exist.
     """
     asked = pipeline.diagnose
+    tried = candidates(pipeline, catalogue)
+    if asked.candidates == "all" and _says_water(pipeline):
+        tried = {name: one for name, one in tried.items() if name not in OVER_GROUND}
     return DiagnoseSettings(
-        candidates=candidates(pipeline, catalogue),
+        candidates=tried,
         coefficients=asked.candidates == "all",
         family_cos=asked.family_cos,
         level=asked.level,
@@ -48,6 +57,12 @@ def diagnose_settings(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> Di
         noise=stated_noise(pipeline),
         quiet=declared_quiet(pipeline),
     )
+
+
+def _says_water(pipeline: Pipeline) -> bool:
+    """Whether in every trial the channel of the speed says that it is through the water."""
+    read = [trial.signals.get("u") for trial in pipeline.trials]
+    return all(one and one.channel and is_through_water(one.channel) for one in read)
 
 
 def find_out(

@@ -203,6 +203,33 @@ def test_two_at_once_are_said_after_what_is_said(family, said):
     assert also_from(found, None) is found
 
 
+@pytest.mark.parametrize(
+    ("name", "two", "kind"),
+    [
+        ("steady_wind", ("yaw_drag_rar", "heel_yaw"), "cannot tell"),
+        ("steady_wind", ("yaw_drag_rar", "bias_r"), "missing"),
+        ("heel_yaw_cubic", ("yaw_drag_rar", "heel_yaw"), "missing"),
+    ],
+)
+def test_what_nobody_recorded_gives_way_to_two_of_the_ship(monkeypatch, name, two, kind):
+    """A ship in gusts of 1 m/s about none had a steady wind; rudder and hull did as much."""
+    pair = SimpleNamespace(
+        names=two, effects=[CATALOGUE[n] for n in two], fit=SimpleNamespace(eps_rmsn=0.03)
+    )
+    monkeypatch.setattr(meant_as_well, "two_instead", lambda *_: pair)
+    named = SimpleNamespace(
+        candidate=SimpleNamespace(effect=CATALOGUE[name]), fit=SimpleNamespace(eps_rmsn=0.02)
+    )
+    found = Verdict("missing", name, (name,), f"{name} is missing")
+    asked = DiagnoseSettings(candidates={}, coefficients=False)
+    monkeypatch.setattr(meant_as_well, "tried_effects", lambda *_: {})
+    fit = SimpleNamespace(eps_rmsn=0.05)
+    said = beside_others(fit, found, named, None, None, asked=asked, progress=silent)
+    assert (said.kind, said.pair_as_well) == (kind, two)
+    assert (said.effect is None) == (kind == "cannot tell")
+    assert "2.00%" in said.sentence or kind == "missing"
+
+
 def test_two_at_once_stand_in_the_result_too():
     two = SimpleNamespace(names=("b", "c"))
     row = verdict_part(also_from(Verdict("missing", "a", ("a",), "a is missing"), two), None)
