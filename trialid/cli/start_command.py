@@ -135,10 +135,13 @@ def _unread(begun: "Starter") -> list[str]:
 
     Of an outsider's ship her fins were, and her damping was that with them, without a word.
     """
+    from trialid.inspection.positions import positions
+
     first = begun.trials[0]
     signals = (*first.signals, *(signal for signal, _ in first.beside))
     taken = {one.key for signal in signals for one in (signal.source, *signal.others)}
     channels = first.survey.channels.values()
+    taken |= {one.key for one in positions(channels).values()}  # commented out in the pipeline
     moving = [c.key for c in channels if c.guess is None and not c.constant and c.key not in taken]
     return moving if len(moving) <= MOST_UNREAD else []
 

@@ -32,22 +32,23 @@ PHRASES: Final = {
     "helm order",
     "r": "rate of turn, turn rate, rot, yaw rate, yawrate, yaw speed, yawspeed, yaw velocity, "
     "yaw dot, psi dot, psidot, heading rate, heading dot, girhastighet, velocidad de giro, "
-    "angular rate z, ang vel z, omega z, wendegeschw, drehgeschw, "
-    "drehrate, wendegeschwindigkeit, drehgeschwindigkeit, gierrate, "
-    "giergeschwindigkeit, svinghastighet, draaisnelheid, angular velocity z, twist angular z, "
-    "gyro z, taux de giration, taux de virage, vitesse de giration, velocidad de guinada, "
-    "velocidad de guiñada, taxa de guinada, velocita di accostata, velocità di accostata",
+    "angular rate z, ang vel z, omega z, wendegeschw, drehgeschw, drehrate, "
+    "wendegeschwindigkeit, drehgeschwindigkeit, gierrate, giergeschwindigkeit, svinghastighet, "
+    "draaisnelheid, angular velocity z, twist angular z, gyro z, taux de giration, "
+    "taux de virage, vitesse de giration, velocidad de guinada, velocidad de guiñada, "
+    "taxa de guinada, velocita di accostata, velocità di accostata",
     "p": "roll rate, rollrate, rollgeschwindigkeit, roll speed, rollspeed, roll velocity, "
     "roll dot, phi dot, phidot, angular rate x, ang vel x, omega x, angular velocity x, "
     "twist angular x, gyro x",
     "phi": "roll, roll angle, rolling, heel, heel angle, rollwinkel, kraengung, krängung, "
     "kraengungswinkel, krängungswinkel, krengning, slagside, list angle, bank angle, gite, gîte, "
-    "roulis, escora, angulo de escora, ángulo de escora, sbandamento, rollio, slagzij, inclinometer",
+    "roulis, escora, angulo de escora, ángulo de escora, sbandamento, rollio, slagzij, "
+    "inclinometer",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
     "kompasskurs, kreiselkurs, cap vrai, cap compas, prua, rumbo verdadero, rumbo aguja",
-    "u": "stw, speed through water, speed water, water speed, speed log, log speed, "
-    "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
-    "forward velocity, longitudinal speed, longitudinal velocity, long speed, vitesse surface, "
+    "u": "stw, speed through water, speed water, water speed, speed log, log speed, doppler log, "
+    "em log, surge speed, surge velocity, surge vel, vel surge, forward speed, forward velocity, "
+    "longitudinal speed, longitudinal velocity, long speed, vitesse surface, "
     "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fart gjennom vannet, fdw, "
     "fart genom vattnet, fd w, dvl u, vel u, velocity u, loch, corredera",
     "v": "sway speed, sway velocity, sway vel, vel sway, lateral speed, lateral velocity, "
@@ -90,7 +91,6 @@ QUALIFIERS: Final = frozenset(
     )
 )  # fmt: skip
 """Words behind a letter that leave its meaning: `psi_hat`, `u_velo`, `n_prop`."""
-
 STEERING: Final = frozenset(("steering", "steer", "nozzle", "tiller", "helm"))
 STEERED: Final = ORDERED | {"act", "actual", "meas", "measured"}  # may follow without a unit
 TURNED: Final = dict.fromkeys((*STEERING, "azimuth", "servo"), "delta")

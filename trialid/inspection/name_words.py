@@ -48,7 +48,10 @@ def words(name: str) -> tuple[str, ...]:
 
 
 WATER: Final = frozenset(
-    "stw vhw water wasser eau agua acqua vann vannet vatten vattnet fdw loch corredera".split()
+    (
+        *("stw", "vhw", "fdw", "loch", "corredera", "water", "wasser", "eau", "agua", "acqua"),
+        *("vann", "vannet", "vatten", "vattnet"),
+    )
 )
 """Words of a speed that a log measures through the water."""
 

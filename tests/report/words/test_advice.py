@@ -156,7 +156,8 @@ def assert_known(command):
 
 def test_a_force_outside_the_catalogue_is_drafted(result):
     commands = [e.command for e in advised(result, verdict=verdict("not in catalogue"))]
-    [draft] = [c for c in commands if c.startswith("trialid")]
+    compared, draft = [c for c in commands if c.startswith("trialid")]
+    assert compared == "trialid structures container_ship.toml"
     assert draft == "trialid run --draft my_effect.py container_ship.toml"
     assert_known(draft)
     assert 'effects_from = ["my_effect.py"]' in commands

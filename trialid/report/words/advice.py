@@ -170,6 +170,12 @@ def _nothing(run: Result) -> Iterable[Advice]:
 
 
 def _outside(run: Result) -> Iterable[Advice]:
+    if len(run.trials) >= FEWEST_COMPARED:
+        yield Advice(
+            "What was built up effect by effect may end where another hull does not. Compare whole "
+            "models, each fitted anew with every trial left out in turn:",
+            command(run, "structures"),
+        )
     first = next((row.sentence for row in run.where if row.sentence), None)
     if first is not None:
         yield Advice(f"Look where the model fails first: {first.rstrip('.')}.")
