@@ -1,10 +1,12 @@
 """What the loop says when it ends: what it refused, and what of its own nobody held against it."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
-from world import changed, loop, no_fit
+from world import changed, loop, no_fit, steps
 
 from trialid.cli.grow_loop import _loop_ended
 from trialid.diagnosis.search.backward import Worth
@@ -32,6 +34,16 @@ def test_what_was_named_and_not_kept_is_told_before_what_took_its_place(
     assert [stage.kept for stage in done] == [True, False, True]
     assert f"Tried and not kept: {done[1].refused}." in ended(done)
     assert done[1].refused.startswith("with a: ")
+
+
+def test_what_is_named_is_added_whatever_else_stands_every_check(monkeypatch) -> None:
+    """The screen names it and tells how to add it: another would be without a word."""
+    assert steps(loop(monkeypatch, WORLD))[0] == "+a"
+
+    def of_b(findings: Any) -> None:
+        findings.verdict = SimpleNamespace(kind="missing", effect="b", sentence="b is missing")
+
+    assert steps(changed(monkeypatch, "", of_b))[0] == "+b"
 
 
 def test_a_gear_in_the_place_of_another_is_worth_what_nobody_asked(monkeypatch) -> None:

@@ -30,7 +30,7 @@ from trialid.diagnosis.search.falls import fall, worse_held_out
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.rivals import is_open, rivals, unlike_in_trace
 from trialid.diagnosis.search.score import Candidate
-from trialid.diagnosis.search.stand_in import far_ahead
+from trialid.diagnosis.search.stand_in import far_ahead, shown_in_few
 from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.verdict_sentences import (
     NONE_HOLDS,
@@ -41,6 +41,7 @@ from trialid.diagnosis.verdict_sentences import (
     denied_lead,
     explains_little,
     falls_by,
+    in_few,
     little_more,
     moved_otherwise,
     no_split,
@@ -147,7 +148,10 @@ def decide(
 
 def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> str | None:
     """What one check alone denies, where nothing stands them all; None where that is nothing."""
-    if (against := standing_but(HELD_OUT, fit, refits, level)) is not None:
+    against = standing_but(HELD_OUT, fit, refits, level)
+    if against is not None:
+        if (lead := shown_in_few(fit, against, refits, level)) is not None:
+            return in_few(fit, lead)
         ahead = _ahead(fit, against, refits, level)
         return unfinished_lead(fit, against, ahead) if ahead else contradiction(fit, against)
     if (apart := standing_but(BESIDE, fit, refits, level)) is not None:

@@ -86,10 +86,21 @@ def unfinished_lead(fit: Fit, named: Refit, ahead: Refit) -> str:
 def denied_lead(fit: Fit, named: Refit, lead: Refit, against: str) -> str:
     """An effect does far more than what stands every check, but something speaks against it."""
     name = lead.candidate.effect.name
+    lost = fall_of_check(fit, lead) < -1.0  # twice the squared error of trials held out
+    then = "" if lost else f"`trialid add PIPELINE {name}` and "
     return (
         f"with {name} {falls_by(fit, lead.fit)}, but {against}; {named.candidate.effect.name} "
-        f"stands every check and leaves {named.fit.eps_rmsn:.2%}: `trialid add PIPELINE {name}` "
-        "and other trials may tell"
+        f"stands every check and leaves {named.fit.eps_rmsn:.2%}: {then}other trials may tell"
+    )
+
+
+def in_few(fit: Fit, lead: Refit) -> str:
+    """An effect does more than any other, in few of the blocks: where she does what shows it."""
+    name, found = lead.candidate.effect.name, lead.carried
+    return (
+        f"with {name} {falls_by(fit, lead.fit)} (p = {lead.candidate.p_value:.2g}), but where it "
+        f"was not fitted in {found.better} of {found.blocks} blocks only: another trial like those "
+        f"in which it shows, and `trialid add PIPELINE {name}`, may tell"
     )
 
 

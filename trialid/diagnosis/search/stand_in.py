@@ -14,11 +14,11 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.objections import likeliest_refit, objection
+from trialid.diagnosis.objections import best_of, likeliest_refit, objection
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.carried import is_far
 from trialid.diagnosis.search.carry_over import left_out
-from trialid.diagnosis.search.falls import fall
+from trialid.diagnosis.search.falls import fall, fall_of_all, worse_held_out
 from trialid.diagnosis.search.refit import Progress, Refit, moves_rudder, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
@@ -138,3 +138,21 @@ def _large_beside(augmented: Augmented, able: Sequence[Candidate]) -> list[Candi
             price = carried.price(len(trace.effect.parameters))
             found[name] = min(price, found.get(name, price))
     return [by_name[name] for name in sorted(found, key=lambda name: found[name])]
+
+
+def shown_in_few(fit: Fit, against: Refit, refits: Sequence[Refit], level: float) -> Refit | None:
+    """The one that stands out and takes far more off, of trials held out too, in few blocks.
+
+    Of a made catamaran with a weak jet that showed where the shafts were set apart, a nozzle's zero
+    was told of, which trials held out deny, and not the shafts.
+    """
+    able = [
+        r
+        for r in refits
+        if r.candidate.p_value < level
+        and r.fit.converged
+        and not r.carried.in_most
+        and not worse_held_out(fit, r.fit)
+        and is_far(fall_of_all(fit, r), fall(fit, against))
+    ]
+    return best_of(able, level)
