@@ -71,24 +71,6 @@ def test_what_held_out_trials_lose_by_is_not_named():
 
 
 @pytest.mark.parametrize(
-    ("eps", "check", "told"),
-    [(0.07, 0.15, "few"), (0.097, 0.195, "denied"), (0.07, 0.21, "denied")],
-)
-def test_what_shows_in_few_blocks_is_told_before_what_is_denied(eps, check, told):
-    """By far more, of trials held out too: half of the squared error, where that takes a tenth."""
-    denied = refit("denied", 0.88, 0.095, check=0.4)
-    few = refit("few", 0.8, eps, check=check)
-    after = tuple(x * (0.1 if k < 2 else 1.01) for k, x in enumerate(BEFORE))
-    few = replace(few, carried=Carried(BEFORE, after))
-    found = decide(fit(0.10, 0.20), (), [denied, few], NO_ROUTE, None, 0.05)
-    assert found.kind == "cannot tell"
-    assert found.effect is None
-    assert ("with few the error falls" in found.sentence) is (told == "few")
-    assert ("in 2 of" in found.sentence) is (told == "few")
-    assert ("denied lowers the squared error" in found.sentence) is (told == "denied")
-
-
-@pytest.mark.parametrize(
     ("eps", "check", "kind"),
     [
         (0.08, 0.2001, "cannot tell"),  # 36 % of the square, where the one with a name takes 3
