@@ -43,7 +43,7 @@ def rudder_servo_second_order(
     return Rate(delta=delta_rate, delta_rate=omega_servo * drive)
 
 
-@effect(source="play of the linkage: 0.2 to 1.5 deg", states={"delta_blade": "delta_order"})
+@effect(source="play of the linkage: 0.2 to 1.5 deg", states={"delta_blade": "delta"})
 def rudder_backlash(
     delta, delta_blade, *,
     b_play=Parameter(0.01, "rad", low=0.0, high=0.1, scan=(0.004, 0.01, 0.025)),

@@ -186,8 +186,8 @@ def guess(model: ShipModel, trial: Trial, state: str) -> float:
     for effect in model.effects:
         if state in effect.states:
             follows = effect.states[state]
-            known = follows is not None and follows in trial.signals
-            return float(trial.signals[follows][0]) if follows and known else 0.0
+            known = None if follows is None else record_for(trial, follows)
+            return 0.0 if known is None else float(trial.signals[known][0])
     if state in trial.signals:
         return float(trial.signals[state][0])
     return model.ship.particulars["U0"] if state == "u" else 0.0

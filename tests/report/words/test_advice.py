@@ -12,6 +12,7 @@ from trialid.diagnosis.noise.split import split
 from trialid.diagnosis.search.augment import augment
 from trialid.identification.fit import identify
 from trialid.names.wording import THIN
+from trialid.report.pages.page import FOLLOWS, heading
 from trialid.report.words.advice import AS_STATED, OPENS, STATED, advice
 from trialid.report.words.doubt import moves, trust
 from trialid.result.fit_rows import WeakRow
@@ -81,6 +82,17 @@ def test_two_that_are_missing_at_once_are_added_by_the_loop(result):
     assert both_at_once.words.startswith("Let it add sway_drag and slipstream at once")
     assert both_at_once.command == "trialid run container_ship.toml --auto"
     assert_known(both_at_once.command)
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.25, True), (0.05, False)])
+def test_what_follows_the_rudder_is_no_noise_where_nothing_is_missing(result, share, told):
+    """A page said so of a quarter of the heading's error, below a headline that nothing is."""
+    said = "heading psi: a part is coherent with the rudder: the model, not the noise"
+    row = {"output": "psi", "finding": "frequency", "share": share, "sentence": said}
+    run = copy.deepcopy(result) | {"verdict": verdict("nothing missing"), "where": [row]}
+    assert any(said in each.words for each in advice(result_of(run))) is told
+    assert (heading(result_of(run)) == FOLLOWS) is told
+    assert heading(result_of(run | {"verdict": verdict("cannot tell")})) != FOLLOWS
 
 
 @pytest.mark.parametrize("use", ["fit", "check"])

@@ -32,6 +32,9 @@ VERDICTS = {
 }
 """What the kinds of verdict are called at the top of the page."""
 
+FOLLOWS = "No effect stands out, and what is left follows the rudder"
+"""... and of a record that shows no effect, where an output says so."""
+
 HELD = "A coefficient is held at another value than the ship's"
 """... and where what is named is of an effect that the model has."""
 
@@ -41,6 +44,8 @@ def heading(run: Result) -> str:
     named = _named(run)
     if named is not None and named.held is not None:
         return HELD
+    if run.verdict.kind == "nothing missing" and advice.following(run):
+        return FOLLOWS
     return VERDICTS.get(run.verdict.kind or "", "No verdict")
 
 
