@@ -44,7 +44,7 @@ def heading(run: Result) -> str:
     named = _named(run)
     if named is not None and named.held is not None:
         return HELD
-    if run.verdict.kind == "nothing missing" and advice.following(run):
+    if run.verdict.kind == "nothing missing" and advice.what_follows(run):
         return FOLLOWS
     return VERDICTS.get(run.verdict.kind or "", "No verdict")
 

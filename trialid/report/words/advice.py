@@ -172,14 +172,14 @@ def _nothing(run: Result) -> Iterable[Advice]:
     if not any(trial.use == "check" for trial in run.trials):
         use = "Hold a trial out before you use the model: what was fitted does not test it. No"
     yield Advice(f"{use} effect is to be added on the strength of this record.{limit}")
-    for said in following(run):
+    for said in what_follows(run):
         yield Advice(
             f"Do not take what is left for noise: {said}. It is small, or no effect that was tried "
             "has its shape; a trial that moves her more tells."
         )
 
 
-def following(run: Result) -> list[str]:
+def what_follows(run: Result) -> list[str]:
     """Outputs of which what is left follows the rudder, in the sentences that say so."""
     return [
         row.sentence.rstrip(".")
