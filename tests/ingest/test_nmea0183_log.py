@@ -198,12 +198,13 @@ def rmc(t, status="A", date="141123"):
     return sentence("GP", "RMC", fields)
 
 
-def unstamped(tick, seconds=20, per_second=5):
-    """A tick a second, and sentences at equal steps between."""
+def unstamped(tick, seconds=20, per_second=8):
+    """A tick a second, and sentences at equal steps between, every second one of them a rate."""
     lines = []
     for i in range(seconds):
         lines.append(tick(i))
-        lines += [rot(i + k / per_second) for k in range(1, per_second)]
+        for k in range(1, per_second):
+            lines.append(rot(i + k / per_second) if k % 2 else sentence("YX", "MTW", ["8.0", "C"]))
     return "".join(line + "\r\n" for line in lines)
 
 
@@ -215,7 +216,7 @@ def test_the_receiver_as_clock(tmp_path, name):
     np.testing.assert_allclose((channel.t - START) / 1e9, channel.y, atol=1e-8)
     assert channel.clock == f"times of GP{name}, interpolated by place in the log"
     assert recording.remarks[0].endswith("good to about 1 s")
-    assert recording.remarks[1] == "4 of 100 sentences without a usable time left out"
+    assert recording.remarks[1] == "7 of 160 sentences without a usable time left out"
 
 
 def test_a_receiver_that_jumps(tmp_path):

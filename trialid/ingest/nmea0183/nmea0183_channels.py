@@ -7,11 +7,13 @@ over several connections is kept apart: `ROT/GP0001.TI:rate`.
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trialid.ingest.adapter import Wanted, is_wanted
+from trialid.ingest.nmea0183.nmea0183_evened import evenly
 from trialid.ingest.nmea0183.nmea0183_gather import Column, Found, Key, Sender
 from trialid.ingest.nmea0183.nmea0183_instruments import SHAFTS
 from trialid.recording import Channel
@@ -25,7 +27,14 @@ LISTED = 6
 
 
 def channels(
-    found: Found, t: Ints, received: Ints | None, clock: str, wanted: Wanted, none: int
+    found: Found,
+    t: Ints,
+    received: Ints | None,
+    clock: str,
+    wanted: Wanted,
+    none: int,
+    *,
+    tick: int = 0,
 ) -> tuple[dict[str, Channel], list[str]]:
     """Channels of what was gathered, and remarks; LogError never.
 
@@ -35,6 +44,8 @@ def channels(
         Stamp of every sentence of the log [ns], `none` where it has none; (N,).
     clock
         Words for `Channel.clock`.
+    tick
+        Usual time between two sentences that state one [ns], where times are by place; else 0.
 
     A channel that holds not one value is left out and named in a remark; so are the samples in the
     rarer units of a channel whose unit changes.
@@ -60,6 +71,7 @@ def channels(
         channel = _channel(
             name=name, key=key, column=column, t=t, received=received, clock=clock, none=none
         )
+        channel = replace(channel, t=evenly(channel.t, tick)) if tick else channel
         if np.isnan(channel.y).all():
             empty.append(name)
         else:

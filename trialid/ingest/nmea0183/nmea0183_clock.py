@@ -36,11 +36,15 @@ class Ticks:
 
 @dataclass(frozen=True)
 class Clock:
-    """A time for every sentence of the log, NONE where there is none, and words on it."""
+    """A time for every sentence of the log, NONE where there is none, and words on it.
+
+    `tick` is the usual time between those that state one [ns].
+    """
 
     t: Ints
     words: str
     remarks: tuple[str, ...]
+    tick: int
 
 
 def ticks(block: Sentences, rows: Places, sentence: str, offset: int) -> Ticks:
@@ -125,7 +129,7 @@ def _between(
     jumps = int(((step <= 0) | (step > JUMP * usual)).sum())
     if jumps:
         remarks.append(f"the times of {name} jump {jumps} times; what lies there has no time")
-    return Clock(t, words, tuple(remarks))
+    return Clock(t, words, tuple(remarks), round(usual))
 
 
 def _trusted(good: Mask, valid: Mask) -> Mask:

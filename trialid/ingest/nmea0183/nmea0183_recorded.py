@@ -66,12 +66,16 @@ class Stream:
 
 @dataclass(frozen=True)
 class Timed:
-    """Times of all sentences [ns], when they were received if that is another time, and words."""
+    """Times of all sentences [ns], when they were received if that is another time, and words.
+
+    `tick` is how far those are apart that the times are interpolated between [ns]; 0 if none are.
+    """
 
     t: Ints
     received: Ints | None
     clock: str
     remarks: tuple[str, ...]
+    tick: int = 0
 
 
 def blocks(path: Path) -> Iterator[bytes]:
@@ -123,7 +127,7 @@ def channels(
         return {}, ["no sentence in it tells of the motion of the ship (AIS and satellites only?)"]
     timed = _timed(path, stream, zone)
     found, remarks = nmea0183_channels.channels(
-        stream.found, timed.t, timed.received, timed.clock, wanted, NONE
+        stream.found, timed.t, timed.received, timed.clock, wanted, NONE, tick=timed.tick
     )
     return found, [*_losses(stream, checked), *timed.remarks, *remarks]
 
@@ -225,7 +229,8 @@ def _timed(path: Path, stream: Stream, zone: str | None) -> Timed:
             f"{path}: no time in the log: its lines have no stamps and no ZDA, RMC, GGA, GNS or "
             "GLL states one; record it with stamps on the lines, or with the GPS on the same stream"
         )
-    return Timed(clock.t, None, clock.words, (*clock.remarks, *_untimed(clock.t)))
+    remarks = (*clock.remarks, *_untimed(clock.t))
+    return Timed(clock.t, None, clock.words, remarks, clock.tick)
 
 
 def _whole(parts: list[tuple[int, Ints, Mask]], total: int) -> Ints:
