@@ -200,11 +200,10 @@ def rmc(t, status="A", date="141123"):
 
 def unstamped(tick, seconds=20, per_second=8):
     """A tick a second, and sentences at equal steps between, every second one of them a rate."""
-    lines = []
+    lines, other = [], sentence("YX", "MTW", ["8.0", "C"])
     for i in range(seconds):
         lines.append(tick(i))
-        for k in range(1, per_second):
-            lines.append(rot(i + k / per_second) if k % 2 else sentence("YX", "MTW", ["8.0", "C"]))
+        lines += [rot(i + k / per_second) if k % 2 else other for k in range(1, per_second)]
     return "".join(line + "\r\n" for line in lines)
 
 
