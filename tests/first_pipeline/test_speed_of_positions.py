@@ -133,6 +133,22 @@ def test_positions_tell_a_speed_that_falls_where_no_channel_does(tmp_path: Path)
     assert trial.signals["u"][~known] == pytest.approx(true[~known], abs=0.15)
 
 
+def test_no_speed_is_made_beside_one_that_is_stated_logged_or_a_sway(tmp_path: Path) -> None:
+    """A speed through the water beside one over the ground is two; `u` and a logged `v` clash."""
+    rng = np.random.default_rng(48)
+    here, there = (inspect_log(log(tmp_path / f"{n}.csv", rng, scatter=0.02)) for n in "ab")
+    bare = without(here, "speed")
+    for surveys, stated in (([bare], SPEED), ([bare, there], None)):
+        made = starter(surveys, tmp_path / "p.toml", None, Given(length=4.0), stated)
+        assert "over_ground" not in made.files[tmp_path / "p.toml"]
+    table = np.loadtxt(here.path, delimiter=",", skiprows=1)
+    table[:, 3] = -0.2 * np.gradient(table[:, 4])
+    heads = "time,lat,lon,sway speed [m/s],heading,rudder"
+    np.savetxt(tmp_path / "c.csv", table, delimiter=",", header=heads, comments="", fmt="%.9f")
+    text = begun(tmp_path, inspect_log(tmp_path / "c.csv"))
+    assert ("over_ground" in text) != ("\nv " in text)
+
+
 def test_fixes_too_coarse_for_a_slope_tell_one_speed(tmp_path: Path) -> None:
     path = log(tmp_path / "zz.csv", np.random.default_rng(47), scatter=3.0)
     text = begun(tmp_path, without(inspect_log(path), "speed"))

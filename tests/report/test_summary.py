@@ -78,6 +78,9 @@ def test_the_verdict_comes_first_and_then_what_to_do(result):
     run = copy.deepcopy(result)
     run["verdict"]["kind"] = "nothing missing"
     (line,) = [line for line in lines(run, file="a.toml") if line.startswith("Next: ")]
+    assert line.startswith("Next: Do not take what is left for noise")  # it follows the rudder
+    run["where"] = []
+    (line,) = [line for line in lines(run, file="a.toml") if line.startswith("Next: ")]
     assert line.startswith("Next: Use the model within the orders")
     run["verdict"]["kind"] = "not in catalogue"
     (line,) = [line for line in lines(run, file="a.toml") if line.startswith("Next: ")]

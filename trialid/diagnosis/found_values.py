@@ -52,6 +52,11 @@ def by_heading(effect: Effect) -> bool:
     return "psi" in effect.signals and {*effect.signals} <= {*STATES, *PARTICULARS}
 
 
+def comes_from_outside(effect: Effect) -> bool:
+    """Whether it is of wind or current that nobody recorded; a compass is a sensor of hers."""
+    return by_heading(effect) and "psi" not in effect.acts_on(Measured)
+
+
 def her_own(effect: Effect) -> bool:
     """Whether it is of the ship, and not of wind or current that nobody recorded."""
     return of_the_ship(effect) and not by_heading(effect)

@@ -16,7 +16,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.diagnosis.diagnosed import DiagnoseSettings
 from trialid.diagnosis.examine import gap_with, tried_effects
-from trialid.diagnosis.found_values import by_heading, her_own
+from trialid.diagnosis.found_values import comes_from_outside, her_own
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.search.augment import fixed_coefficients
@@ -121,7 +121,11 @@ def beside_others(
         return held_before(fit, named, freed)
     tried = tried_effects(fit, asked)
     two = two_instead(fit, named, verdict.family, tried, asked.refit, progress)
-    if two is not None and by_heading(named.candidate.effect) and all(map(her_own, two.effects)):
+    if (
+        two is not None
+        and comes_from_outside(named.candidate.effect)
+        and all(map(her_own, two.effects))
+    ):
         said = by_herself(fit, named, two)
         return Verdict("cannot tell", None, (), said, pair_as_well=two.names)
     return also_from(verdict, two)

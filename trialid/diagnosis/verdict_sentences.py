@@ -95,7 +95,7 @@ def denied_lead(fit: Fit, named: Refit, lead: Refit, against: str) -> str:
 
 
 def in_few(fit: Fit, lead: Refit) -> str:
-    """An effect does more than any other, in few of the blocks: where she does what shows it."""
+    """An effect does far more than what held-out trials deny, in few of the blocks."""
     name, found = lead.candidate.effect.name, lead.carried
     return (
         f"with {name} {falls_by(fit, lead.fit)} (p = {lead.candidate.p_value:.2g}), but where it "

@@ -50,7 +50,7 @@ def words(name: str) -> tuple[str, ...]:
 WATER: Final = frozenset(
     (
         *("stw", "vhw", "fdw", "loch", "corredera", "water", "wasser", "eau", "agua", "acqua"),
-        *("vann", "vannet", "vatten", "vattnet"),
+        *("vann", "vannet", "vatten", "vattnet", "vandet", "água"),
     )
 )
 """Words of a speed that a log measures through the water."""

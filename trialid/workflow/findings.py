@@ -22,6 +22,7 @@ from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.verdict import Verdict
 from trialid.errors import DesignError
 from trialid.identification.fit import Fit
+from trialid.inspection.channel_names import over_ground
 from trialid.inspection.name_words import is_through_water
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
@@ -62,7 +63,10 @@ def diagnose_settings(pipeline: Pipeline, catalogue: Mapping[str, Effect]) -> Di
 def _says_water(pipeline: Pipeline) -> bool:
     """Whether in every trial the channel of the speed says that it is through the water."""
     read = [trial.signals.get("u") for trial in pipeline.trials]
-    return all(one and one.channel and is_through_water(one.channel) for one in read)
+    return all(
+        one and one.channel and is_through_water(one.channel) and not over_ground(one.channel, None)
+        for one in read
+    )
 
 
 def find_out(

@@ -36,6 +36,7 @@ LISTED = '[diagnose]\ncandidates = ["current_in_speed_record"]'
         (("stw", "VHW/II:speed"), "", False),
         (("stw", "speed"), "", True),
         (("sog", "sog"), "", True),
+        (("sog_open_water", "sog_open_water"), "", True),
         (("stw", "stw"), LISTED, True),
     ],
 )

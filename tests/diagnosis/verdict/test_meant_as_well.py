@@ -209,6 +209,7 @@ def test_two_at_once_are_said_after_what_is_said(family, said):
         ("steady_wind", ("yaw_drag_rar", "heel_yaw"), "cannot tell"),
         ("steady_wind", ("yaw_drag_rar", "bias_r"), "missing"),
         ("heel_yaw_cubic", ("yaw_drag_rar", "heel_yaw"), "missing"),
+        ("compass_deviation", ("yaw_drag_rar", "heel_yaw"), "missing"),
     ],
 )
 def test_what_nobody_recorded_gives_way_to_two_of_the_ship(monkeypatch, name, two, kind):

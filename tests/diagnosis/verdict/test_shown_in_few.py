@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from made_up_fits import BEFORE, NO_ROUTE, fit, refit
 
+from trialid.diagnosis.search import stand_in
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.verdict import decide
 
@@ -25,3 +26,17 @@ def test_what_shows_in_few_blocks_is_told_before_what_is_denied(eps, check, told
     assert ("with few the error falls" in found.sentence) is (told == "few")
     assert ("in 2 of" in found.sentence) is (told == "few")
     assert ("denied lowers the squared error" in found.sentence) is (told == "denied")
+
+
+@pytest.mark.parametrize("flaw", ["no value of a ship", "in no block"])
+def test_nobody_is_sent_to_what_no_ship_has_or_no_block_shows(monkeypatch, flaw):
+    few = refit("few", 0.8, 0.07, check=0.15)
+    shown = [0.1 if k < 2 and flaw != "in no block" else 1.5 for k in range(len(BEFORE))]
+    few = replace(
+        few, carried=Carried(BEFORE, tuple(x * y for x, y in zip(BEFORE, shown, strict=True)))
+    )
+    if flaw == "no value of a ship":
+        monkeypatch.setattr(stand_in, "NO_SUCH_VALUE", (lambda effect, fit: effect.name == "few",))
+    denied = refit("denied", 0.88, 0.095, check=0.4)
+    found = decide(fit(0.10, 0.20), (), [denied, few], NO_ROUTE, None, 0.05)
+    assert "with few" not in found.sentence

@@ -21,6 +21,10 @@ SWAY, TURN = 450.0, 4000.0
 GAIN = "k_pod_ahead"
 
 
+JET = 'name = "jet"\nkind = "waterjet"\nat = [-3.0, 0.0]\ncommand = "share"'
+SCREW = 'name = "screw"\nkind = "thruster"\nat = [-3.0, 0.0]\ncommand = "share"'
+
+
 def sailed(seed: int, held: float | None) -> tuple[np.ndarray, ...]:
     """Throttle, angle to port of the push, heading and way of a boat of 6 m with an outboard.
 
@@ -125,15 +129,29 @@ def test_one_that_is_held_at_another_in_the_next_log_varies(tmp_path: Path) -> N
     assert 'effects = ["azimuths", ' in text
 
 
+def test_a_start_from_rest_and_a_lost_value_hold_nothing_up(tmp_path: Path) -> None:
+    log = logged(tmp_path / "a.csv", 5, held=0.7)
+    rows = np.loadtxt(log, delimiter=",", skiprows=1)
+    rows[:10, 2] = rows[600, 2] = 0.0
+    head = log.read_text(encoding="utf-8").partition("\n")[0]
+    np.savetxt(log, rows, delimiter=",", header=head, comments="", fmt="%.9g")
+    assert "\ndelta " in begun(tmp_path, log).files[tmp_path / "p.toml"]
+
+
 @pytest.mark.parametrize(
     ("table", "told"),
     [
-        ('name = "jet"\nkind = "waterjet"\nat = [-3.0, 0.0]\ncommand = "share"', True),
+        (JET, True),
         ('name = "helm"\nkind = "rudder"\nat = [-3.0, 0.0]', False),
+        ('name = "jet"\nkind = "waterjet"\nat = [3.0, 0.0]\ncommand = "share"', False),
+        (f"{JET}\n[[actuator]]\n{SCREW}", False),
     ],
 )
 def test_her_own_file_names_it(tmp_path: Path, table: str, told: bool) -> None:
-    """The angle of a jet counts as a rudder's does; a file without any that is turned has none."""
+    """The angle of a jet counts as a rudder's does; from the bow it turns her the other way.
+
+    Where another drives her too, nobody knows of which the throttle is.
+    """
     begun(tmp_path, logged(tmp_path / "a.csv", 7))
     ship = (tmp_path / "p_ship.toml").read_text(encoding="utf-8").partition("[[actuator]]")[0]
     own = tmp_path / "own.toml"

@@ -47,12 +47,26 @@ def test_a_compass_of_five_a_second_has_no_gaps(tmp_path):
     assert seen.gaps.count == 0
 
 
-def test_a_pause_stays_one(tmp_path):
-    channel = written(tmp_path, lost=range(20, 25)).channels["HDG/HC:heading"]
+@pytest.mark.parametrize(("lost", "longest"), [(range(20, 25), 5.2), (range(20, 21), 1.2)])
+def test_a_pause_stays_one(tmp_path, lost, longest):
+    """What comes before and after it is where it was, and no part of it is taken for sent."""
+    channel = written(tmp_path, lost=lost).channels["HDG/HC:heading"]
     apart = np.diff(channel.t) / SECOND
     assert np.sum(apart > 1.0) == 1
     assert apart[apart < 1.0] == pytest.approx(1.0 / RATE, abs=0.03)  # on both sides of it
-    assert apart.max() == pytest.approx(5.2, abs=0.3)
+    assert apart.max() == pytest.approx(longest, abs=0.3)
+    assert np.ptp((channel.t - START) / SECOND - channel.y) < 0.3
+
+
+def test_a_clock_put_back_parts_what_is_evened():
+    """By 5 s: both stretches are as even as without it."""
+    places = np.array([0.0, 0.3, 0.4, 0.7, 0.8])
+    one = (SECOND * (np.arange(60)[:, None] + places).ravel()).astype(np.int64)
+    made = evenly(np.concatenate([one, one + 55 * SECOND]), SECOND)
+    assert np.array_equal(
+        made, np.concatenate([evenly(one, SECOND), evenly(one, SECOND) + 55 * SECOND])
+    )
+    assert np.diff(made[:300]) / SECOND == pytest.approx(0.2, abs=0.03)
 
 
 def test_what_comes_as_seldom_as_the_time_or_in_bursts_stays_where_it_is():

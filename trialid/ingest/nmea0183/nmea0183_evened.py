@@ -12,8 +12,10 @@ ABOUT: Final = 5
 sentences of a receiver and others come in between, its places are 0.1 and 0.2 s apart in turns: it
 was called one of 10 Hz with a gap every second, and at its own 5 Hz nothing of it was usable. Half
 and twice tell the same."""
-PAUSE: Final = 1.5
-"""Ticks between two sentences from which on a sensor paused."""
+PAUSE: Final = 3.0
+"""Times as long as usual from one sentence to the next from which on a sensor paused: by place one
+of five a second comes 0.5 to 2 times as late as usual, a second without it is 6. Half of it cuts
+what has no pause, twice lets that second be spread over ten."""
 OFTEN: Final = 1.2
 """Sentences a tick; those that come as seldom as the receiver's lie where it says."""
 
@@ -21,8 +23,8 @@ OFTEN: Final = 1.2
 def evenly(t: Ints, tick: int) -> Ints:
     """The times of one sensor's sentences, each the mean of those about it.
 
-    As they are where a sensor paused, sends no more often than the receiver, or would be moved by
-    more than a tick: its sentences come in bursts then.
+    As they are across a pause or a clock put back, where it sends no more often than the receiver,
+    or would be moved by more than a tick: its sentences come in bursts then.
 
     Parameters
     ----------
@@ -31,7 +33,10 @@ def evenly(t: Ints, tick: int) -> Ints:
     tick
         Usual time between two sentences that state one [ns].
     """
-    pauses = np.flatnonzero(np.diff(t) > PAUSE * tick) + 1
+    step = np.diff(t)
+    going = step[(step > 0) & (step <= 2 * tick)]
+    usual = float(np.mean(going)) if len(going) else 0.0
+    pauses = np.flatnonzero((step <= 0) | (step > PAUSE * usual)) + 1
     made = [_evened(part, tick) for part in np.split(t, pauses)]
     return np.concatenate(made) if made else t
 

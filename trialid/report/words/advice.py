@@ -168,15 +168,15 @@ def _most_stays(run: Result, effect: str) -> Iterable[Advice]:
 def _nothing(run: Result) -> Iterable[Advice]:
     ends = run.split.ends("undermodelling")
     limit = f" A model error of up to {wording.percent(ends[1])} would not be seen." if ends else ""
-    use = "Use the model within the orders, speeds and heel that the trials cover; no"
-    if not any(trial.use == "check" for trial in run.trials):
-        use = "Hold a trial out before you use the model: what was fitted does not test it. No"
-    yield Advice(f"{use} effect is to be added on the strength of this record.{limit}")
     for said in what_follows(run):
         yield Advice(
             f"Do not take what is left for noise: {said}. It is small, or no effect that was tried "
             "has its shape; a trial that moves her more tells."
         )
+    use = "Use the model within the orders, speeds and heel that the trials cover; no"
+    if not any(trial.use == "check" for trial in run.trials):
+        use = "Hold a trial out before you use the model: what was fitted does not test it. No"
+    yield Advice(f"{use} effect is to be added on the strength of this record.{limit}")
 
 
 def what_follows(run: Result) -> list[str]:

@@ -24,6 +24,7 @@ from trialid.workflow.first_pipeline.boats.actuators_begun import (
 from trialid.workflow.first_pipeline.boats.boat_choice import PORT, choose, is_boat
 from trialid.workflow.first_pipeline.boats.numbered_drives import with_ports
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE, with_turned_drive
+from trialid.workflow.first_pipeline.boats.over_ground import with_speed_by_position
 from trialid.workflow.first_pipeline.boats.tunnel_thrusters import tunnels_of, with_tunnels
 from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE
 from trialid.workflow.first_pipeline.by_other_logs import (
@@ -178,6 +179,7 @@ def _steered(
         raise too_little[0]
     chosen = with_unshown(with_ports(_with_speeds(able, speed)))
     told = with_turned_drive(with_sides(with_twins(chosen, own)), own)
+    told = with_speed_by_position(told, speed)
     trials = with_revolutions(without_small_roll(told))
     trials = with_tunnels(with_depth(trials), own)
     as_read = [one for one, found in zip(surveys, tried, strict=True) if isinstance(found, Chosen)]

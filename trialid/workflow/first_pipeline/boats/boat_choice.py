@@ -13,10 +13,7 @@ from trialid.inspection.relations import side, turns_late
 from trialid.inspection.sketch import Sketch
 from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE
-from trialid.workflow.first_pipeline.boats.over_ground import (
-    with_speed_by_position,
-    with_velocity_over_ground,
-)
+from trialid.workflow.first_pipeline.boats.over_ground import with_velocity_over_ground
 from trialid.workflow.first_pipeline.boats.turned_drives import (
     angle_signals,
     angles_of,
@@ -70,19 +67,15 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
     live = {name: live_sources(survey, name) for name in SIGNALS}
     turns, drives = live.get("r") or live.get("psi"), drives_of(survey)
     if not turns or len(drives) != 2:
-        return _choose_ship(survey, live, speed)
+        return with_further(choose_signals(survey, speed), live)
     rudders = [one for name in RUDDERS for one in live[name]]
     steered = any(not of_some_steering(one) for one in rudders)
     steered = steered or (bool(rudders) and hardly_differ(*drives))
     if steered and not angles_of(survey, drives):
-        return _choose_ship(survey, live, speed)
+        return with_further(choose_signals(survey, speed), live)
     boat = _choose_boat(survey, live, speed)
     unread = [plain_signal(name, live, "") for name in RUDDERS if live[name] and not steered]
     return dataclasses.replace(boat, beside=(*boat.beside, *((one, BY_DRIVES) for one in unread)))
-
-
-def _choose_ship(survey: Inspection, live: Live, stated: float | None) -> Chosen:
-    return with_speed_by_position(with_further(choose_signals(survey, stated), live))
 
 
 def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen:

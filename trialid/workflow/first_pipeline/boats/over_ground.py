@@ -1,7 +1,7 @@
 """Her speed ahead and to starboard by what is recorded over the ground and her heading."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -55,13 +55,21 @@ def with_velocity_over_ground(trial: Chosen, live: Live) -> Chosen:
     return dataclasses.replace(trial, signals=(*kept, *read[0]), made_over_ground=made)
 
 
-def with_speed_by_position(trial: Chosen) -> Chosen:
-    """The trial of a ship with a position of which `u` is made, where no speed is logged.
+def with_speed_by_position(trials: Sequence[Chosen], stated: float | None) -> list[Chosen]:
+    """The trials of a ship with a position of which `u` is made, where nothing tells a speed.
 
-    Her sway is left out of it: far from midships, where an antenna of a ship stands, it is another.
+    As they are where one is stated, or any log has one: a speed through the water beside one over
+    the ground is two. Her sway is left out of it: far from midships, where an antenna of a ship
+    stands, it is another.
     """
+    if stated is not None or any("u" in one.quantities for one in trials):
+        return list(trials)
+    return [_speed_by_position(one) for one in trials]
+
+
+def _speed_by_position(trial: Chosen) -> Chosen:
     heading = next((one for one in trial.signals if one.quantity == "psi"), None)
-    if heading is None or heading.open or "u" in trial.quantities:
+    if heading is None or heading.open or "v" in trial.quantities:
         return trial
     if (read := _by_position(trial, heading, AHEAD)) is None:
         return trial
