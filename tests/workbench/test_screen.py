@@ -301,7 +301,7 @@ def test_all_four_verdicts(turn, kind):
     effect = ADDED if kind == "missing" else None
     sentence = f"a sentence about {kind}: 5% of it"
     verdict = {"kind": kind, "effect": effect, "sentence": sentence, "family": []}
-    shown = with_result(turn.before, verdict=verdict)
+    shown = with_result(turn.before, verdict=verdict, where=())
     part = screen.parts(shown)["verdict"]
     text = Reader(part).text
     assert report.VERDICTS[kind] in text
