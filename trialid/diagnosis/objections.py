@@ -211,6 +211,7 @@ every 2 s leaves as much. Of 12 such records of a ship of whom nothing was missi
 0.0012 and 0.0017 for it; with half of it they have."""
 
 ENDS: Final = (at_a_sensors_end, mostly_at_ends)
+HARDLY_FALLS: Final = "the error hardly falls"
 NO_SUCH_VALUE: Final = (turns_round, *ENDS, sweeps_away, no_wind, no_such_mass)
 """What a value is that no ship, no sensor and no trial has."""
 
@@ -225,7 +226,7 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     if worse_held_out(fit, refit.fit):
         return HELD_OUT
     if not falls(fit, refit):
-        return "the error hardly falls"
+        return HARDLY_FALLS
     if grown and not refit.carried.worth >= SHAPE:
         return SLIGHT
     return _something_else(fit, refit, grown)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from made_up_fits import BEFORE, NO_ROUTE, fit, refit
 
-from trialid.diagnosis.search import stand_in
+from trialid.diagnosis import objections
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.verdict import decide
 
@@ -36,7 +36,9 @@ def test_nobody_is_sent_to_what_no_ship_has_or_no_block_shows(monkeypatch, flaw)
         few, carried=Carried(BEFORE, tuple(x * y for x, y in zip(BEFORE, shown, strict=True)))
     )
     if flaw == "no value of a ship":
-        monkeypatch.setattr(stand_in, "NO_SUCH_VALUE", (lambda effect, fit: effect.name == "few",))
+        monkeypatch.setattr(
+            objections, "NO_SUCH_VALUE", (lambda effect, fit: effect.name == "few",)
+        )
     denied = refit("denied", 0.88, 0.095, check=0.4)
     found = decide(fit(0.10, 0.20), (), [denied, few], NO_ROUTE, None, 0.05)
     assert "with few" not in found.sentence

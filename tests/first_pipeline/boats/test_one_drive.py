@@ -1,5 +1,6 @@
 """An outboard, a jet or one pod: what pushes her steers her, and where it varies is no rudder."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,9 @@ from trialid import pipeline_file, read_ship
 from trialid.inspection import inspect_log
 from trialid.ship.estimate import Given
 from trialid.workflow.first_pipeline import Starter, starter
+from trialid.workflow.first_pipeline.boats.boat_choice import choose
+from trialid.workflow.first_pipeline.boats.one_drive import _as_angle
+from trialid.workflow.first_pipeline.chosen import CONVENTION
 from trialid.workflow.run import run
 
 LENGTH, ARM = 6.0, 3.0
@@ -113,6 +117,18 @@ def test_its_sense_is_by_the_turn(tmp_path: Path, side: float) -> None:
     text = begun(tmp_path, logged(tmp_path / "a.csv", 4, side=side)).files[tmp_path / "p.toml"]
     [line] = [one for one in text.splitlines() if one.startswith("drive_angle")]
     assert ('positive = "port"' in line) == (side > 0.0)
+
+
+@pytest.mark.parametrize("positive", ["starboard", "port"])
+def test_a_sense_that_no_turn_shows_is_told_as_taken(tmp_path: Path, positive: str) -> None:
+    """By the format alone: it was told as what she turns by."""
+    survey = inspect_log(logged(tmp_path / "a.csv", 4))
+    rudder = next(s for s in choose(survey, None).signals if s.quantity == "delta")
+    unseen = dataclasses.replace(rudder, positive=positive, of_side=CONVENTION)
+    angle = _as_angle(unseen, "azimuth")
+    assert f"taken to turn her to {positive} where it is positive" in angle.why
+    assert "as she turns" not in angle.why
+    assert (angle.positive == "port") == (positive == "starboard")
 
 
 def test_a_throttle_that_is_held_makes_a_rudder_of_it(tmp_path: Path) -> None:

@@ -14,11 +14,11 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.objections import NO_SUCH_VALUE, best_of, likeliest_refit, objection
+from trialid.diagnosis.objections import HARDLY_FALLS, best_of, likeliest_refit, objection
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.carried import is_far
 from trialid.diagnosis.search.carry_over import left_out
-from trialid.diagnosis.search.falls import fall, fall_of_all, worse_held_out
+from trialid.diagnosis.search.falls import fall, fall_of_all
 from trialid.diagnosis.search.refit import Progress, Refit, moves_rudder, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
@@ -149,13 +149,10 @@ def shown_in_few(fit: Fit, against: Refit, refits: Sequence[Refit], level: float
     able = [
         r
         for r in refits
-        if r.candidate.p_value < level
-        and r.candidate.allowed
-        and r.fit.converged
+        if objection(fit, r, level) == HARDLY_FALLS
+        and r.candidate.p_value < level
         and r.carried.better > 0
         and not r.carried.in_most
-        and not any(no_such(r.candidate.effect, r.fit) for no_such in NO_SUCH_VALUE)
-        and not worse_held_out(fit, r.fit)
         and is_far(fall_of_all(fit, r), fall(fit, against))
     ]
     return best_of(able, level)

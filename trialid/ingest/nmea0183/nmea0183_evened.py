@@ -10,12 +10,13 @@ Ints = NDArray[np.int64]
 ABOUT: Final = 5
 """Ticks to either side that a time is the mean of. Where a compass sends five times between two
 sentences of a receiver and others come in between, its places are 0.1 and 0.2 s apart in turns: it
-was called one of 10 Hz with a gap every second, and at its own 5 Hz nothing of it was usable. Half
-and twice tell the same."""
+was called one of 10 Hz with a gap every second, and at its own 5 Hz nothing of it was usable. Now
+they are 0.198 to 0.203 s apart, with half of it 0.198 to 0.206, with twice 0.199 to 0.201, but a
+stretch of 20 s between two pauses is too short for that and stays as it is."""
 PAUSE: Final = 3.0
 """Times as long as usual from one sentence to the next from which on a sensor paused: by place one
-of five a second comes 0.5 to 2 times as late as usual, a second without it is 6. Half of it cuts
-what has no pause, twice lets that second be spread over ten."""
+of five a second comes 0.5 to 1.7 times as late as usual, a second without it is 6. Half of it cuts
+that where there is no pause and evens nothing, twice still finds the second."""
 OFTEN: Final = 1.2
 """Sentences a tick; those that come as seldom as the receiver's lie where it says."""
 

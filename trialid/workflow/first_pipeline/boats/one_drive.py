@@ -10,7 +10,7 @@ from trialid.inspection import name_words
 from trialid.inspection.drives import lone_drive
 from trialid.ship.particulars import Ship
 from trialid.workflow.first_pipeline.boats.over_ground import UNITS, with_velocity_over_ground
-from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE, CLOCKWISE, TO_PORT, UNSEEN
+from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE, CLOCKWISE, TO_PORT
 from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
 from trialid.workflow.first_pipeline.choice import AS_RUDDER, PUSHES, live_sources
 from trialid.workflow.first_pipeline.chosen import OPEN, Chosen, Reason, Signal
@@ -88,7 +88,8 @@ def _as_angle(rudder: Signal, kind: str) -> Signal:
     """
     clockwise = rudder.positive == "port"
     seen = rudder.of_side.rests_on("measured")
-    sense = (CLOCKWISE if clockwise else TO_PORT) if seen else UNSEEN
+    taken = f"taken to turn her to {rudder.positive} where it is positive"
+    sense = (CLOCKWISE if clockwise else TO_PORT) if seen else taken
     as_it_is = clockwise is not (kind == "waterjet")
     return dataclasses.replace(
         rudder,
