@@ -151,12 +151,17 @@ def test_a_ship_file_gives_its_own_names_or_says_what_it_lacks(tmp_path, monkeyp
 def test_a_stranger_without_a_rudder_is_told_that_what_is_left_is_noise(
     tmp_path, monkeypatch, record
 ) -> None:
-    """Nothing stated and nothing changed: the noise is what is left while both thrusters rest."""
+    """Nothing stated and nothing changed: the noise is what is left while both thrusters rest.
+
+    Her receiver stands aft of midships, which nobody told: of her sway a little more shows, and no
+    name is alone.
+    """
     done = started(tmp_path, monkeypatch, [NEWCOMER / f"{record}.mcap"], "--length 4.9")
     assert done.exit_code == 0, done.output
     found = read(tmp_path / "runs" / "first_trial" / "result.json")
     assert found.fit.converged
-    assert found.verdict.kind == "nothing missing"
+    assert "lever_arm_x" in [m.effect for m in found.missing if m.p_value < 0.05]
+    assert found.verdict.effect is None or "lever_arm_x" in found.verdict.family
     assert found.split.method == "quiet stretch"
     assert found.fit.eps_rmsn < 1.2 * found.split.noise, found.split
 

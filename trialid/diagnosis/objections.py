@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.best_refit import best_of
 from trialid.diagnosis.found_values import (
     as_slow_as_the_ship,
     at_a_sensors_end,
@@ -24,11 +25,9 @@ from trialid.diagnosis.plain_damping import is_plain_damping
 from trialid.diagnosis.records.course_keeping import by_the_rudder, gained_on_course
 from trialid.diagnosis.records.rudder_jumps import jump_in
 from trialid.diagnosis.search.carried import (
-    FAINT,
     FALL,
     SHAPE,
     as_good,
-    believed_as_much,
     does_as_well,
     is_far,
 )
@@ -43,6 +42,7 @@ from trialid.diagnosis.search.falls import (
 from trialid.diagnosis.search.refit import Progress, Refit, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
+from trialid.identification.roll.own_roll import ROLLING, goes_on
 from trialid.ship.effect import Effect
 
 HELD_OUT: Final = "the held-out error rises"
@@ -55,6 +55,10 @@ ON_COURSE: Final = (
     "model does not know, and small angles look as if they did less; a zig-zag tells"
 )
 BESIDE: Final = "something else moves what the model leaves most of, and this may be what that does"
+SWELL: Final = (
+    "her roll as it was fitted goes on as a swell does, and dies down as no ship's; this may be "
+    "what moves that"
+)
 """Objections in their words."""
 
 LEFT: Final = 0.25
@@ -180,31 +184,6 @@ def _told_by_held_out(fit: Fit, refit: Refit, other: Refit) -> bool:
     return by_heading(refit.candidate.effect) and denied and is_far(check, 0.0)
 
 
-def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit | None:
-    """The refit that leaves least on blocks left out, sensors, clocks and forces alike.
-
-    One of which the parameters leave next to nothing gives way to any that is as good. In a model
-    that has `grown` a sensor or a clock gives way to what is of the ship and as good: that the hull
-    is another is then known, and a lag mends any hull a little. What stands out against the noise
-    comes before what only the blocks show.
-    """
-    if not refits:
-        return None
-    least = min(refits, key=lambda r: r.cost)
-    close = [r for r in refits if believed_as_much(least.carried, r.carried)]
-
-    def standing(r: Refit) -> tuple[bool, bool, float]:
-        return _gives_way(r, grown), not r.candidate.p_value < level, r.cost
-
-    return min([least, *close], key=standing)
-
-
-def _gives_way(refit: Refit, grown: bool) -> bool:
-    """Whether an effect is not named where another is as good."""
-    beside = grown and not of_the_ship(refit.candidate.effect)
-    return beside or refit.carried.seen < FAINT
-
-
 SEEN: Final = 0.002
 """Error that must go, as a share of what moved: nobody notices less, and a rudder that is logged
 every 2 s leaves as much. Of 12 such records of a ship of whom nothing was missing two had a name,
@@ -239,6 +218,21 @@ def outputs_beside(fit: Fit, refit: Refitted) -> tuple[str, ...]:
     return tuple(name for name in much if after[name] > (1.0 - TOUCHED) * before[name])
 
 
+def follows_a_swell(fit: Fit, refit: Refitted) -> bool:
+    """Whether most that it takes is of a roll that as it was fitted is a swell's, and no ship's.
+
+    Of seven records of a linear ship that rolls in a swell of her own period two had an effect of
+    the roll named, in fits that damp her by 0.001 of what is critical.
+    """
+    before, after = (f.eps_by_output for f in (fit, refit.fit))
+    rolls = [n in ROLLING for n in before]
+    problem = refit.fit.problem
+    if not any(rolls) or problem.roll is None:
+        return False
+    taken = problem.weights**2 * [before[n] ** 2 - after[n] ** 2 for n in before]
+    return bool(2.0 * (taken @ rolls) > taken.sum()) and goes_on(problem, refit.fit.theta)
+
+
 def _takes_most(fit: Fit, refit: Refit) -> bool:
     """Whether once it is fitted most goes with it, in all blocks, whatever its slope had shown."""
     return refit.candidate.allowed and refit.carried.large and fall(fit, refit) > MOST
@@ -249,9 +243,11 @@ def _found(refit: Refit) -> tuple[Effect, Fit]:
 
 
 def _something_else(fit: Fit, refit: Refit, grown: bool) -> str:
-    """What may do what an effect does: what moves the rest, an autopilot, what else is late."""
+    """What may do what an effect does: what moves the rest, a swell, an autopilot, what is late."""
     if outputs_beside(fit, refit):
         return BESIDE
+    if follows_a_swell(fit, refit):
+        return SWELL
     if by_the_rudder(refit.candidate.effect) and gained_on_course(fit, refit.fit):
         return ON_COURSE
     if late_sensor(refit.candidate.effect) and jump_in(fit) is not None:

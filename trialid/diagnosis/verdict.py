@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.diagnosis.best_refit import best_of
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.objections import (
     AS_A_GEAR,
@@ -17,7 +18,7 @@ from trialid.diagnosis.objections import (
     ON_COURSE,
     SEEN,
     SLIGHT,
-    best_of,
+    SWELL,
     likeliest_refit,
     more_on_course,
     objection,
@@ -156,7 +157,7 @@ def _denied(fit: Fit, refits: Sequence[Refit], level: float, *, grown: bool) -> 
         return unfinished_lead(fit, against, ahead) if ahead else contradiction(fit, against)
     if (apart := standing_but(BESIDE, fit, refits, level)) is not None:
         return moved_otherwise(fit, apart, outputs_beside(fit, apart))
-    for why in (AS_A_GEAR, AS_SLOW) if grown else (AS_A_GEAR,):
+    for why in (SWELL, AS_A_GEAR, AS_SLOW) if grown else (SWELL, AS_A_GEAR):
         if (other := standing_but(why, fit, refits, level)) is not None:
             return other_cause(fit, other, why)
     if grown and (slight := standing_but(SLIGHT, fit, refits, level)) is not None:

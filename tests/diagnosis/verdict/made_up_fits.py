@@ -21,7 +21,7 @@ def fit(eps, check=None, converged=True):
         eps_by_output={"r": eps},
         at_bounds={},
         eps_check_by_output={} if check is None else {"r": check},
-        problem=SimpleNamespace(weights=np.ones(1), unknowns=()),
+        problem=SimpleNamespace(weights=np.ones(1), unknowns=(), roll=None),
         model=SimpleNamespace(displaced_by=lambda effect: ()),
     )
 

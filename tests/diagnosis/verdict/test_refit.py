@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from made_up_fits import BEFORE, fit
 
+from trialid.diagnosis.best_refit import best_of
 from trialid.diagnosis.objections import (
     AS_A_GEAR,
     AS_SLOW,
     HELD_OUT,
     SLIGHT,
-    best_of,
     likeliest_refit,
     objection,
 )
@@ -288,12 +288,3 @@ def test_where_no_trial_is_held_out_the_blocks_alone_tell():
     old, new = refit("a", BEFORE, LESS, check=(None, None))
     new.candidate.effect.parameters = {}
     assert objection(old, new, 0.05, grown=True) == ""
-
-
-def test_of_two_as_good_the_one_that_stands_out_against_the_noise_is_taken():
-    blocks = refit("blocks", BEFORE, ALIKE, p_value=0.23)[1]
-    sure = refit("sure", BEFORE, LESS, p_value=0.04)[1]
-    assert best_of([blocks, sure], 0.05) is sure
-    assert best_of([blocks, sure], 0.01) is blocks
-    far = refit("far", BEFORE, tuple(0.5 * x for x in BEFORE), p_value=0.23)[1]
-    assert best_of([far, sure], 0.05) is far  # no equal

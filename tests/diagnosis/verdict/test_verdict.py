@@ -7,9 +7,10 @@ import pytest
 from made_up_fits import BEFORE, NO_ROUTE, fit, refit, split
 
 from trialid.diagnosis import left_out_motion
+from trialid.diagnosis.best_refit import best_of
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.noise.error_parts import Split
-from trialid.diagnosis.objections import NOT_ARRIVED, best_of
+from trialid.diagnosis.objections import NOT_ARRIVED
 from trialid.diagnosis.search.carried import Carried, as_good
 from trialid.diagnosis.search.completeness import Completeness, _Search
 from trialid.diagnosis.search.refit import Refit

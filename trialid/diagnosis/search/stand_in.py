@@ -14,7 +14,8 @@ from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.objections import HARDLY_FALLS, best_of, likeliest_refit, objection
+from trialid.diagnosis.best_refit import best_of
+from trialid.diagnosis.objections import HARDLY_FALLS, likeliest_refit, objection
 from trialid.diagnosis.search.augment import Augmented, augment
 from trialid.diagnosis.search.carried import is_far
 from trialid.diagnosis.search.carry_over import left_out

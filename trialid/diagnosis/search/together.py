@@ -15,7 +15,7 @@ import numpy as np
 
 from trialid.diagnosis.found_values import her_own
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
-from trialid.diagnosis.objections import outputs_beside
+from trialid.diagnosis.objections import follows_a_swell, outputs_beside
 from trialid.diagnosis.records.course_keeping import by_the_rudder, gained_on_course
 from trialid.diagnosis.search.augment import Augmented, Trace, augment
 from trialid.diagnosis.search.carried import EACH, LARGE, Carried, as_good
@@ -113,6 +113,7 @@ def stands(fit: Fit, one: Together) -> bool:
         one.arrives
         and held
         and not outputs_beside(fit, one)
+        and not follows_a_swell(fit, one)
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large
         and not (any(map(by_the_rudder, one.effects)) and gained_on_course(fit, one.fit))
