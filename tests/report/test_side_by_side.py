@@ -34,7 +34,7 @@ def test_a_parameter_beyond_the_joint_errors_is_told(result, other):
     first, second, third = rows[:3]
     assert isinstance(first[-2], Figure)
     assert first[-2].value == pytest.approx(5.0)
-    assert (first[-1], second[-1], third[-1]) == ("yes", "cannot tell", "no")
+    assert (first[-1], second[-1], third[-1]) == ("by more than noise", "cannot tell", "no")
     assert third[-2] == Figure(0.0, 2)
 
 
@@ -96,9 +96,12 @@ def test_nothing_known_still_makes_tables(result):
     assert made({}, {})["verdicts"].rows[1][3] == "No verdict"
 
 
-@pytest.mark.parametrize(("errors", "word"), [(1.9, "no"), (2.0, "yes"), (2.9, "yes")])
+MORE = "by more than noise"
+
+
+@pytest.mark.parametrize(("errors", "word"), [(1.9, "no"), (2.0, MORE), (2.9, MORE)])
 def test_values_differ_from_two_joint_errors_on(result, other, errors, word):
-    """At 95 % for one pair: 1.96 of the root of both squared."""
+    """At 95 % for one pair: 1.96 of the root of both squared; what a model lacks moves them too."""
     first, again = (run["accuracy"]["parameters"][0] for run in (result, other))
     again["value"] = first["value"] + errors * math.hypot(
         first["standard_error"], again["standard_error"]
@@ -106,3 +109,12 @@ def test_values_differ_from_two_joint_errors_on(result, other, errors, word):
     row = made(result, other)["parameters"].rows[0]
     assert row[-2].value == pytest.approx(errors)
     assert row[-1] == word
+
+
+@pytest.mark.parametrize(("gap", "word"), [(-0.1, MORE), (0.1, "yes")])
+def test_they_differ_whatever_is_missing_where_their_ranges_lie_apart(result, other, gap, word):
+    first, again = (run["accuracy"]["parameters"][0] for run in (result, other))
+    low, high = first["likely"]
+    again["value"] = first["value"] + (1.0 + gap) * (high - low)
+    again["likely"] = [low + (1.0 + gap) * (high - low), high + (1.0 + gap) * (high - low)]
+    assert made(result, other)["parameters"].rows[0][-1] == word
