@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from trialid.errors import LogError
 from trialid.names.side_words import LETTERS, SIDES
 
-POSITIVE = frozenset(("+", "ve", "positive", "pos", "is", "to", "side", "down", "="))
+POSITIVE = frozenset(
+    ("+", "ve", "positive", "positiv", "positivo", "pos", "is", "to", "side", "down", "=")
+)
 """What stands beside a side behind a unit: `deg, + stbd`."""
 
 BRACKETED = re.compile(r"[\[(](.*)[\])]")
@@ -74,11 +76,14 @@ def without_side(unit: str) -> str:
 
     >>> [without_side(one) for one in ("deg, S+", "deg, + stbd", "deg; port positive", "m, MSL")]
     ['deg', 'deg', 'deg', 'm, MSL']
+    >>> [without_side(one) for one in ("deg +stbd", "grader, styrbord positiv", "deg C", "m s")]
+    ['deg', 'grader', 'deg C', 'm s']
     """
-    plain, mark, rest = unit.replace(";", ",").partition(",")
+    spaced = unit.replace(";", ",")
+    plain, mark, rest = spaced.partition("," if "," in spaced else " ")
     told = set(rest.lower().replace("+", " + ").split())
-    sides = told - POSITIVE
-    return plain.strip() if mark and sides and sides <= {*SIDES, *LETTERS} else unit
+    sides, signed = told - POSITIVE, bool(told & POSITIVE) or mark == ","
+    return plain.strip() if signed and sides and sides <= {*SIDES, *LETTERS} else unit
 
 
 def head(text: str, unit: str | None = None) -> Head:
