@@ -1,11 +1,13 @@
 """Something outside the catalogue is not claimed of what nobody would notice."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from made_up_fits import NO_ROUTE, fit, refit, split
 
 from trialid.diagnosis.gap_untold import without_gap
+from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.verdict import decide
 
@@ -18,6 +20,12 @@ def test_a_record_without_noise_leaves_rounding(left: float, kind: bool) -> None
     assert GAP.gap
     found = decide(fit(left), (), [], NO_ROUTE, GAP, 0.05)
     assert (found.kind == "not in catalogue") is kind
+
+
+@pytest.mark.parametrize(("better", "gap"), [(2, False), (3, False), (4, True)])
+def test_what_most_blocks_do_not_follow_is_no_gap(better: int, gap: bool) -> None:
+    after = tuple(0.7 if i < better else 1.01 for i in range(6))
+    assert replace(GAP, carried=Carried((1.0,) * 6, after)).gap is gap
 
 
 @pytest.mark.parametrize(

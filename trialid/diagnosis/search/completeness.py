@@ -68,9 +68,15 @@ class Completeness:
 
     @property
     def gap(self) -> bool:
-        """Whether the catalogue misses much of what can be explained."""
+        """Whether the catalogue misses much of what can be explained.
+
+        Where blocks that were left out follow the force better, most of them: of 23 gaps of hidden
+        forces each does in four of six at least. Of a linear ship in a sea a gap was claimed for a
+        force of 57 in twice the log likelihood that two of six follow better.
+        """
         missed = 0.0 if self.closed else self.any_shape - self.catalogue
-        return missed > max(WORTH, SHARE * self.any_shape)
+        carries_over = self.carried is None or self.carried.in_most
+        return carries_over and missed > max(WORTH, SHARE * self.any_shape)
 
     def outdoes(self, named: Carried) -> bool:
         """Whether there is a gap beside a named effect: the force takes far more off what is left.
