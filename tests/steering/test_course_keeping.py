@@ -77,7 +77,10 @@ def verdict_of(seed: int, *, kept: bool, dead: float = 0.0) -> Verdict:
     "seed", [70, *(pytest.param(s, marks=pytest.mark.study(turn=1)) for s in SEEDS[1:])]
 )
 def test_no_dead_band_is_named_where_the_rudder_keeps_her_on_course(seed: int, dead: float) -> None:
-    """Whether she has one or not: nothing else is named in its place, and a zig-zag would tell."""
+    """Whether she has one or not: nothing else is named in its place, and a zig-zag would tell.
+
+    A play behind the indicator looks the same, and needs no order on record.
+    """
     found = verdict_of(seed, kept=True, dead=dead)
     assert (found.kind, found.effect, found.together) == ("cannot tell", None, ())
     assert found.sentence.startswith(("with rudder_deadband the ", "with rudder_backlash the "))

@@ -20,13 +20,14 @@ def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit
     if not refits:
         return None
     least = min(refits, key=lambda r: r.cost)
-    close = [r for r in refits if believed_as_much(least.carried, r.carried)]
+    close = [least, *(r for r in refits if believed_as_much(least.carried, r.carried))]
+    staying = [r for r in close if not _gives_way(r, grown)] or close
+    best = min(staying, key=lambda r: r.cost)
 
-    def standing(r: Refit) -> tuple[bool, bool, float]:
-        shown = r.candidate.p_value < level and as_near(least.carried.after, r.carried.after)
-        return _gives_way(r, grown), not shown, r.cost
+    def shown(r: Refit) -> bool:
+        return r.candidate.p_value < level and as_near(best.carried.after, r.carried.after)
 
-    return min([least, *close], key=standing)
+    return min(staying, key=lambda r: (not shown(r), r.cost))
 
 
 def _gives_way(refit: Refit, grown: bool) -> bool:

@@ -16,6 +16,7 @@ from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Parameter
+from trialid.ship.estimate.roll_moments import MOMENTS
 
 SMALLEST: Final = 1e-12
 """Typical size of a parameter whose effect calls nothing typical."""
@@ -86,14 +87,9 @@ def _as_contradicted(priors: Vector, fit: Fit) -> Vector:
     """
     own = np.array([x.kind == "physical" for x in fit.problem.unknowns])
     off = np.maximum(np.abs(priors[:, 1]) / fit.level, 1.0)
-    by_lever = np.array([_is_over_a_lever(x.column) for x in fit.problem.unknowns]) & own
+    by_lever = np.array([x.column in MOMENTS for x in fit.problem.unknowns]) & own
     off[by_lever] = np.max(off[by_lever], initial=1.0)
     return priors / np.where(own, off, 1.0)[:, None]
-
-
-def _is_over_a_lever(name: str) -> bool:
-    """Whether it is a moment in roll by drift, turning or rudder, and no damping nor by heel."""
-    return name.startswith("K") and not name.startswith("Kp")
 
 
 def _may_be_missing(augmented: Augmented) -> tuple[Vector, tuple[Trace, ...]]:

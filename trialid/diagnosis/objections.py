@@ -32,6 +32,7 @@ from trialid.diagnosis.search.carried import (
     does_as_well,
     is_far,
 )
+from trialid.diagnosis.search.carry_over import levels
 from trialid.diagnosis.search.falls import (
     Refitted,
     fall,
@@ -222,6 +223,8 @@ def outputs_beside(fit: Fit, refit: Refitted) -> tuple[str, ...]:
 def follows_a_swell(fit: Fit, refit: Refitted) -> bool:
     """Whether most that it takes is of a roll that as it was fitted is a swell's, and no ship's.
 
+    Each output by its own error: of what shakes all the time little is much of the whole.
+
     Of seven records of a linear ship that rolls in a swell of her own period two had an effect of
     the roll named, in fits that damp her by 0.001 of what is critical.
     """
@@ -230,8 +233,9 @@ def follows_a_swell(fit: Fit, refit: Refitted) -> bool:
     problem = refit.fit.problem
     if not any(rolls) or problem.roll is None:
         return False
-    taken = problem.weights**2 * [before[n] ** 2 - after[n] ** 2 for n in before]
-    return bool(2.0 * (taken @ rolls) > taken.sum()) and goes_on(problem, refit.fit.theta)
+    counts = levels(fit) * problem.weights**2
+    taken = counts * [before[n] ** 2 - after[n] ** 2 for n in before]
+    return bool(2.0 * (taken @ rolls) > taken.sum() > 0.0) and goes_on(problem, refit.fit.theta)
 
 
 def _takes_most(fit: Fit, refit: Refit) -> bool:

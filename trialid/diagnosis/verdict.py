@@ -137,7 +137,7 @@ def decide(
     if named and (lead := far_ahead(fit, named, refits, level, grown=grown)):
         why = objection(fit, lead, level, grown)
         return Verdict("cannot tell", None, (), denied_lead(fit, named, lead, why))
-    gap = whole is not None and (whole.outdoes(named.carried) if named else whole.gap)
+    gap = whole is not None and (whole.outdoes(named.carried) if named else whole.carries_over)
     if whole is not None and gap and fit.eps_rmsn >= SEEN:  # of less nobody notices all of it
         return Verdict("not in catalogue", None, (), outdone_by_a_shape(named, whole))
     if named is not None:

@@ -23,9 +23,12 @@ def test_a_record_without_noise_leaves_rounding(left: float, kind: bool) -> None
 
 
 @pytest.mark.parametrize(("better", "gap"), [(2, False), (3, False), (4, True)])
-def test_what_most_blocks_do_not_follow_is_no_gap(better: int, gap: bool) -> None:
+def test_what_most_blocks_do_not_follow_is_not_claimed(better: int, gap: bool) -> None:
     after = tuple(0.7 if i < better else 1.01 for i in range(6))
-    assert replace(GAP, carried=Carried((1.0,) * 6, after)).gap is gap
+    found = replace(GAP, carried=Carried((1.0,) * 6, after))
+    assert (found.gap, found.carries_over) == (True, gap)
+    claimed = decide(fit(0.10), (), [], NO_ROUTE, found, 0.05)
+    assert (claimed.kind == "not in catalogue") is gap
 
 
 @pytest.mark.parametrize(

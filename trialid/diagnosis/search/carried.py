@@ -45,6 +45,11 @@ EACH: Final = 0.01
 CHANCE: Final = 0.975
 """Student's level beyond which the errors of two models differ by more than chance."""
 
+NEAR: Final = 1.0
+"""Standard errors within which two are as good and another reason may choose, as of structures
+(Breiman et al. 1984, `one_standard_error.py`). Two of a tanker's model on zig-zags lie 1.7 apart:
+half of it says the same of them, twice names the other."""
+
 TINY: Final = 1e-300
 """What an error of nothing counts as where its logarithm is taken."""
 
@@ -223,11 +228,8 @@ def as_good(one: Sequence[float], other: Sequence[float]) -> bool:
 
 
 def as_near(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Whether it is not greater by more than one standard error, as of structures to choose from.
-
-    Two of a tanker's model on zig-zags lie 1.7 apart: half of it says the same of them, twice not.
-    """
-    return len(one) < 2 or _in_standard_errors(_gaps(one, other)) <= 1.0
+    """Whether the second list of squared errors is not greater by more than chance may well do."""
+    return len(one) < 2 or _in_standard_errors(_gaps(one, other)) <= NEAR
 
 
 def _gaps(one: Sequence[float], other: Sequence[float]) -> Vector:

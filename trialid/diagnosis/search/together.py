@@ -113,10 +113,10 @@ def stands(fit: Fit, one: Together) -> bool:
         one.arrives
         and held
         and not outputs_beside(fit, one)
-        and not follows_a_swell(fit, one)
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large
         and not (any(map(by_the_rudder, one.effects)) and gained_on_course(fit, one.fit))
+        and not follows_a_swell(fit, one)
     )
 
 

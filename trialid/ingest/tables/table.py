@@ -14,7 +14,20 @@ from trialid.errors import LogError
 from trialid.names.side_words import LETTERS, SIDES
 
 POSITIVE = frozenset(
-    ("+", "ve", "positive", "positiv", "positivo", "pos", "is", "to", "side", "down", "=")
+    (
+        "+",
+        "ve",
+        "positive",
+        "positiv",
+        "positif",
+        "positief",
+        "pos",
+        "is",
+        "to",
+        "side",
+        "down",
+        "=",
+    )
 )
 """What stands beside a side behind a unit: `deg, + stbd`."""
 
@@ -82,8 +95,10 @@ def without_side(unit: str) -> str:
     spaced = unit.replace(";", ",")
     plain, mark, rest = spaced.partition("," if "," in spaced else " ")
     told = set(rest.lower().replace("+", " + ").split())
-    sides, signed = told - POSITIVE, bool(told & POSITIVE) or mark == ","
-    return plain.strip() if signed and sides and sides <= {*SIDES, *LETTERS} else unit
+    sides, known = told - POSITIVE, {*SIDES, *LETTERS}
+    if mark != ",":  # no unit of two words, nor a letter, is a side
+        known = {*SIDES} if told & POSITIVE and plain not in POSITIVE else set()
+    return plain.strip() if mark and sides and sides <= known else unit
 
 
 def head(text: str, unit: str | None = None) -> Head:

@@ -109,8 +109,8 @@ def _differ(distance: float | None, rows: Sequence[ParameterRow]) -> str:
     if distance <= APART:
         return "no"
     ranges = [row.likely for row in rows if row.likely is not None]
-    apart = max((low for low, _ in ranges), default=0.0) > min((x for _, x in ranges), default=0.0)
-    return "yes" if apart and len(ranges) == len(rows) else "by more than noise"
+    apart = len(ranges) > 1 and max(low for low, _ in ranges) > min(high for _, high in ranges)
+    return "yes" if apart else "by more than noise"
 
 
 def _errors(runs: Sequence[Shown]) -> Table:

@@ -17,11 +17,6 @@ Design = Mapping[str, Any]
 ALIKE = 1e-9
 """Share of the outputs below which the full model and the fitted one do not differ."""
 
-FAR: Final = 0.3
-"""Relative error from which on slopes foretell too little. Promised 37 % of a roll damping, six of
-34 fits of simulated trials were off by 2.5 to 10 times; of what was promised to 14.6 %, 16.7. Half
-of it doubts the latter, twice says nothing of the former."""
-
 MEANING: Final = (
     "S_imin: what the outputs tell of the parameter beside all others; R_i: how many times more "
     "they would tell if the others were known, 1 at best; R: largest over least of what they tell, "
@@ -60,16 +55,15 @@ def _best(best: Mapping[str, Any] | None, of: int, wanted: Sequence[str]) -> Wor
         return Words("No test keeps the limits.", 1, "bold red")
     error, name = _worst(best["rating"], wanted)
     rank = f"Best of {of}: " if of > 1 else ""
-    more = " or far more" if (error or 0.0) > FAR else ""
-    said = f"{rank}{best['name']}; largest error to expect: {percent(error)}{more}, of {name}"
+    said = f"{rank}{best['name']}; largest error to expect: {error}, of {name}"
     return Words(said, 2, "bold")
 
 
-def _worst(rating: Mapping[str, Any], wanted: Sequence[str]) -> tuple[float | None, str]:
+def _worst(rating: Mapping[str, Any], wanted: Sequence[str]) -> tuple[str, str]:
     """Error and name of the wanted parameter that is least known."""
     errors = {p["name"]: p["relative_error"] for p in rating["parameters"] if p["name"] in wanted}
     name = max(errors, key=lambda name: errors[name] or float("inf"))
-    return errors[name], coefficient_label(name)
+    return percent(errors[name]), coefficient_label(name)
 
 
 def _tests(tests: Sequence[Mapping[str, Any]], wanted: Sequence[str]) -> "Table":
@@ -80,8 +74,7 @@ def _tests(tests: Sequence[Mapping[str, Any]], wanted: Sequence[str]) -> "Table"
             add_row(table, test["name"], numbers_of(test), "not feasible", "", "", "", style="red")
             continue
         known = number(rating["R"], 4), number(rating["S_min"], 2)
-        error, name = _worst(rating, wanted)
-        add_row(table, test["name"], numbers_of(test), *known, percent(error), name)
+        add_row(table, test["name"], numbers_of(test), *known, *_worst(rating, wanted))
     return table
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, Final
 
 from trialid.design.helm import Vessel, vessel
 from trialid.design.imo.speed_loss import with_speed_loss
@@ -11,6 +11,9 @@ from trialid.design.search import Ship
 from trialid.design.standard import Measure, predict
 from trialid.pipeline_file.finished_run import FinishedRun
 from trialid.result.imo import UNRELIABLE, measure_rows, sailing_words
+
+SAME: Final = 1e-6
+"""Share of a measure that the run's own differs by where it is of the same ship."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +32,10 @@ def imo(ships: Sequence[Ship], run: FinishedRun) -> Imo:
     """
     vessels = [_as_in_run(ship.vessel, run) for ship in ships]
     measures = predict(vessels)
-    if len(ships) == 1:
-        measures = tuple(_with_range(m, run) for m in measures)
+    if len(ships) == 1 and run.intervals:
+        known = predict([replace(vessels[0], rudder_rate=run.gear_rate(None))])
+        pairs = zip(measures, known, strict=True)
+        measures = tuple(_with_range(m, in_run, run) for m, in_run in pairs)
     return Imo(measures, vessels[0], reliable=run.verdict != "no fit")
 
 
@@ -42,16 +47,17 @@ def _as_in_run(ship: Vessel, run: FinishedRun) -> Vessel:
     return with_speed_loss(ship, run.speed_lost)
 
 
-def _with_range(measure: Measure, run: FinishedRun) -> Measure:
-    """A measure with the run's range; of one sailed otherwise with that as a share of it, too.
+def _with_range(measure: Measure, known: Measure, run: FinishedRun) -> Measure:
+    """A measure with the run's range, where it is of the run's ship.
 
-    Of a boat whose file states 4 deg/s of rudder, where her trials have 4.01, an overshoot of 8.65
-    deg was called kept, that the run leaves open at 8.11 to 10.5.
+    She is if with the run's gear her measure is the run's. By another gear the range grows, by as
+    much about her own: of a boat whose file states 4 deg/s of rudder, where her trials have 4.01,
+    an overshoot of 8.65 deg was called kept, that the run leaves open at 8.11 to 10.5.
     """
-    value, (low, high) = run.intervals.get(measure.criterion.name, (0.0, (0.0, 0.0)))
-    if not value or measure.value is None:
+    value, (low, high) = run.intervals.get(measure.criterion.name, (None, (0.0, 0.0)))
+    if not value or known.value is None or abs(value - known.value) > SAME * abs(value):
         return measure
-    share = measure.value / value
+    share = (measure.value or value) / value
     return replace(measure, interval=(min(low, low * share), max(high, high * share)))
 
 
