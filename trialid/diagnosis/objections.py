@@ -1,7 +1,7 @@
 """What speaks against an effect once it is fitted, and the likeliest that stands every check."""
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -44,7 +44,7 @@ from trialid.diagnosis.search.falls import (
 from trialid.diagnosis.search.refit import Progress, Refit, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
-from trialid.identification.roll.own_roll import ROLLING, goes_on
+from trialid.identification.roll.own_roll import ROLLING
 from trialid.ship.effect import Effect
 
 HELD_OUT: Final = "the held-out error rises"
@@ -197,6 +197,14 @@ NO_SUCH_VALUE: Final = (turns_round, is_not_there, *ENDS, sweeps_away, no_wind, 
 """What a value is that no ship, no sensor and no trial has."""
 
 
+class Rolled(Refitted, Protocol):
+    """What was fitted, and whether its roll goes on."""
+
+    @property
+    def rolls_on(self) -> bool:
+        """As a swell does."""
+
+
 def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
     shown = refit.candidate.shown(level) or _takes_most(fit, refit)
@@ -220,7 +228,7 @@ def outputs_beside(fit: Fit, refit: Refitted) -> tuple[str, ...]:
     return tuple(name for name in much if after[name] > (1.0 - TOUCHED) * before[name])
 
 
-def follows_a_swell(fit: Fit, refit: Refitted) -> bool:
+def follows_a_swell(fit: Fit, refit: Rolled) -> bool:
     """Whether most that it takes is of a roll that as it was fitted is a swell's, and no ship's.
 
     Each output by its own error: of what shakes all the time little is much of the whole.
@@ -235,7 +243,7 @@ def follows_a_swell(fit: Fit, refit: Refitted) -> bool:
         return False
     counts = levels(fit) * problem.weights**2
     taken = counts * [before[n] ** 2 - after[n] ** 2 for n in before]
-    return bool(2.0 * (taken @ rolls) > taken.sum() > 0.0) and goes_on(problem, refit.fit.theta)
+    return bool(2.0 * (taken @ rolls) > taken.sum() > 0.0) and refit.rolls_on
 
 
 def _takes_most(fit: Fit, refit: Refit) -> bool:

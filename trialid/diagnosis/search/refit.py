@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from trialid.diagnosis.search.score import Candidate
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
+from trialid.identification.roll.own_roll import goes_on
 from trialid.identification.ship_priors import known_of_ship
 from trialid.second_process import each
 from trialid.ship.effect import Effect
@@ -33,6 +35,11 @@ class Refit:
     def effects(self) -> tuple[Effect, ...]:
         """What was added, one effect."""
         return (self.candidate.effect,)
+
+    @cached_property
+    def rolls_on(self) -> bool:
+        """Whether her roll with it goes on as a swell's: asked often, and a simulation."""
+        return goes_on(self.fit.problem, self.fit.theta)
 
     @property
     def cost(self) -> float:

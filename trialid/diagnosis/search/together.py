@@ -9,6 +9,7 @@ and those that foretell most are fitted.
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -26,6 +27,7 @@ from trialid.errors import TrialidError
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
 from trialid.identification.problem import Settings
+from trialid.identification.roll.own_roll import goes_on
 from trialid.ship.effect import Effect
 
 Pair = tuple[Trace, Trace]
@@ -53,6 +55,11 @@ class Together:
         """Whether the search did, with none of their parameters at an end of its range."""
         new = {n for e in self.effects for n in e.parameters}
         return self.fit.converged and not new & {*self.fit.at_bounds}
+
+    @cached_property
+    def rolls_on(self) -> bool:
+        """Whether her roll with them goes on as a swell's."""
+        return goes_on(self.fit.problem, self.fit.theta)
 
     @property
     def cost(self) -> float:
