@@ -56,7 +56,10 @@ def test_two_effects_do_what_none_does_alone(found):
     assert all(objection(fit, alone, 0.05) for alone in found.refits)
 
 
-LOOKED_AT = ("residual", "eps_rmsn", "eps_by_output", "eps_check", "at_bounds", "converged")
+LOOKED_AT = (
+    *("residual", "eps_rmsn", "eps_by_output", "eps_check", "at_bounds", "converged"),
+    *("problem", "theta"),
+)
 
 
 def test_each_check_can_deny_two_effects(found):
