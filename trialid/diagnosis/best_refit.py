@@ -12,10 +12,10 @@ def best_of(refits: Sequence[Refit], level: float, grown: bool = False) -> Refit
 
     One of which the parameters leave next to nothing gives way to any that is as good. In a model
     that has `grown` a sensor or a clock gives way to what is of the ship and as good: that the hull
-    is another is then known, and a lag mends any hull a little. Of those within one
-    standard error of the best what stands out against the noise comes first. Of a tanker's model on
-    zig-zags a rudder that stalls stood out (p = 0.009) and left 1.13 times what her loss of speed
-    does (p = 0.36) of blocks, 1.67 times of trials held out, 1.7 standard errors apart.
+    is another is then known, and a lag mends any hull a little. Of those within one standard error
+    of the best what stands out against the noise comes first. Of a tanker's model on zig-zags a
+    rudder that stalls stood out (p = 0.009) and left 1.13 times what her loss of speed does
+    (p = 0.36) of blocks, 1.67 times of trials held out, 1.7 standard errors apart.
     """
     if not refits:
         return None

@@ -49,19 +49,8 @@ def words(name: str) -> tuple[str, ...]:
 
 WATER: Final = frozenset(
     (
-        *(
-            "stw",
-            "sow",
-            "vhw",
-            "fdw",
-            "loch",
-            "corredera",
-            "water",
-            "wasser",
-            "eau",
-            "agua",
-            "acqua",
-        ),
+        *("stw", "sow", "vhw", "fdw", "loch", "corredera"),
+        *("water", "wasser", "eau", "agua", "acqua"),
         *("vann", "vannet", "vatten", "vattnet", "vandet", "água"),
     )
 )

@@ -1,21 +1,19 @@
 """Where the roll that was fitted goes on as a swell does, what bends it has no name."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import s175q
+from test_moved_otherwise import said_of
 
-from trialid.diagnosis.diagnosed import DiagnoseSettings
-from trialid.diagnosis.examine import examine_fit
-from trialid.diagnosis.objections import SWELL, objection
+from trialid.diagnosis.objections import SWELL, follows_a_swell, objection
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
-from trialid.diagnosis.verdict import decide
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit, identify
-from trialid.progress import silent
 from trialid.ship.model import ShipModel
 from trialid.simulation.integrate import prepare, respond
 from trialid.trial import Trial
@@ -59,8 +57,24 @@ def test_what_bends_a_roll_that_goes_on_has_no_name(held, why) -> None:
     before, refit = found(sailed(SHIP), **held)
     assert objection(before, refit, 0.05) == why
     if why:
-        asked = DiagnoseSettings(candidates={}, coefficients=False)
-        split = examine_fit(before, asked, silent)[0].split
-        said = decide(before, [refit.candidate], [refit], split, None, 0.05)
+        said = said_of(before, refit)
         assert (said.kind, said.effect) == ("cannot tell", None)
         assert "goes on as a swell does" in said.sentence
+
+
+@pytest.mark.parametrize(
+    ("after", "rolls_on", "follows"),
+    [
+        ({"r": 0.05, "phi": 0.30}, True, True),
+        ({"r": 0.05, "phi": 0.30}, False, False),
+        ({"r": 0.02, "phi": 0.445}, True, False),  # of the yaw, by its own error
+        ({"r": 0.06, "phi": 0.449}, True, False),  # all in all it takes nothing
+    ],
+)
+def test_what_is_mostly_of_the_yaw_keeps_its_name(after, rolls_on, follows) -> None:
+    problem = SimpleNamespace(weights=np.ones(2), roll=object())
+    before, then = (
+        SimpleNamespace(eps_by_output=left, problem=problem)
+        for left in ({"r": 0.05, "phi": 0.45}, after)
+    )
+    assert follows_a_swell(before, SimpleNamespace(fit=then, rolls_on=rolls_on)) is follows

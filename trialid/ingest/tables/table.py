@@ -15,18 +15,8 @@ from trialid.names.side_words import LETTERS, SIDES
 
 POSITIVE = frozenset(
     (
-        "+",
-        "ve",
-        "positive",
-        "positiv",
-        "positif",
-        "positief",
-        "pos",
-        "is",
-        "to",
-        "side",
-        "down",
-        "=",
+        *("+", "ve", "pos", "is", "to", "side", "down", "="),
+        *("positive", "positiv", "positif", "positief"),
     )
 )
 """What stands beside a side behind a unit: `deg, + stbd`."""

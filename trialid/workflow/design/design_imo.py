@@ -33,7 +33,8 @@ def imo(ships: Sequence[Ship], run: FinishedRun) -> Imo:
     vessels = [_as_in_run(ship.vessel, run) for ship in ships]
     measures = predict(vessels)
     if len(ships) == 1 and run.intervals:
-        known = predict([replace(vessels[0], rudder_rate=run.gear_rate(None))])
+        there = replace(vessels[0], rudder_rate=run.gear_rate(None))
+        known = measures if there.rudder_rate == vessels[0].rudder_rate else predict([there])
         pairs = zip(measures, known, strict=True)
         measures = tuple(_with_range(m, in_run, run) for m, in_run in pairs)
     return Imo(measures, vessels[0], reliable=run.verdict != "no fit")
@@ -55,9 +56,11 @@ def _with_range(measure: Measure, known: Measure, run: FinishedRun) -> Measure:
     an overshoot of 8.65 deg was called kept, that the run leaves open at 8.11 to 10.5.
     """
     value, (low, high) = run.intervals.get(measure.criterion.name, (None, (0.0, 0.0)))
-    if not value or known.value is None or abs(value - known.value) > SAME * abs(value):
+    if value is None or measure.value is None or known.value is None:
         return measure
-    share = (measure.value or value) / value
+    if abs(value - known.value) > SAME * abs(value):
+        return measure
+    share = measure.value / value if value else 1.0
     return replace(measure, interval=(min(low, low * share), max(high, high * share)))
 
 

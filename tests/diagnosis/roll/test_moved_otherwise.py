@@ -13,7 +13,7 @@ from trialid.diagnosis.objections import BESIDE, objection, outputs_beside
 from trialid.diagnosis.search.carried import Carried
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.score import Candidate
-from trialid.diagnosis.verdict import decide
+from trialid.diagnosis.verdict import Verdict, decide
 from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit, identify
 from trialid.progress import silent
@@ -51,6 +51,13 @@ def refitted(fit: Fit, whole: Fit) -> Refit:
     return Refit(one, whole, carried)
 
 
+def said_of(before: Fit, found: Refit) -> Verdict:
+    """The verdict where nothing else was tried."""
+    asked = DiagnoseSettings(candidates={}, coefficients=False)
+    split = examine_fit(before, asked, silent)[0].split
+    return decide(before, [found.candidate], [found], split, None, 0.05)
+
+
 @pytest.mark.parametrize(("size", "beside"), [(0.0, ()), (0.3, ()), (1.2, ("phi",))])
 def test_an_effect_of_the_yaw_has_a_name_where_the_roll_is_explained(size, beside) -> None:
     before, after = fitted(LACKS, size), fitted(s175q.MODEL, size)
@@ -58,9 +65,7 @@ def test_an_effect_of_the_yaw_has_a_name_where_the_roll_is_explained(size, besid
     assert outputs_beside(before, found) == beside
     assert (objection(before, found, 0.05) == BESIDE) is bool(beside)
     if beside:
-        asked = DiagnoseSettings(candidates={}, coefficients=False)
-        split = examine_fit(before, asked, silent)[0].split
-        said = decide(before, [found.candidate], [found], split, None, 0.05)
+        said = said_of(before, found)
         assert (said.kind, said.effect) == ("cannot tell", None)
         assert "of phi is left as before: something else moves that" in said.sentence
 
