@@ -140,7 +140,7 @@ def test_a_gm_that_leans_on_a_clock_no_sensor_has_is_not_told():
     drawn = draw(9982)
     fit = identify(drawn.trials, begun(drawn), SETTINGS)
     assert fit.value("GM") < 0.25 * drawn.GM
-    assert fit.rivals[-1]["GM"] == pytest.approx(drawn.GM, rel=0.1)
+    assert any(values["GM"] == pytest.approx(drawn.GM, rel=0.1) for values in fit.rivals)
     assert any("is no sensor's" in line for line in remarks(fit))
 
 

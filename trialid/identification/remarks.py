@@ -9,7 +9,7 @@ from trialid.accuracy.parameter_table import Accuracy
 from trialid.identification.approach import approach_speed
 from trialid.identification.fit import Fit
 from trialid.identification.nuisance.priors import time_per_length
-from trialid.identification.roll.own_roll import damped_by, is_a_ships
+from trialid.identification.roll.own_roll import damped_by, is_a_ships, is_rolled_by_others
 from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import with_unit
 
@@ -236,9 +236,15 @@ def _untold_GM(fit: Fit) -> list[str]:
     )
     late = late_roll(fit.problem, fit.theta)
     place = max(late, key=lambda place: abs(late[place]), default=None)
-    if place is None:
-        return [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]
-    return [
-        f"the record does not tell GM: {rivals} m, as its clocks are; "
-        f"{fit.problem.unknowns[place].name} = {late[place]:.3g} s is no sensor's"
-    ]
+    if place is not None:
+        return [
+            f"the record does not tell GM: {rivals} m, as its clocks are; "
+            f"{fit.problem.unknowns[place].name} = {late[place]:.3g} s is no sensor's"
+        ]
+    if is_rolled_by_others(fit.problem, fit.theta):
+        period = 2.0 * np.pi / fit.problem.roll.frequency(fit.theta)
+        return [
+            f"the record does not tell GM: of her roll with a period about {period:.2g} s most is "
+            f"of nothing that the model has, and so {fit.value('GM'):.3g} m may be of a swell"
+        ]
+    return [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from trialid.identification.one_search import End
 from trialid.identification.output_error import Problem, ranges, stretches
 from trialid.identification.record_starts import Part, of_roll, rows_of
-from trialid.identification.roll.own_roll import goes_on, only_follows
-from trialid.identification.roll.roll_range import FACTOR, GM_OVER_L
+from trialid.identification.roll.own_roll import goes_on, is_rolled_by_others, only_follows
+from trialid.identification.roll.roll_range import DAMPING_RATIO, FACTOR, GM_OVER_L
 from trialid.identification.weighing import CONTRADICTS, Weighing, deviations
 from trialid.least_squares.fold import triangle
 from trialid.least_squares.gauss_newton import minimise
@@ -134,10 +134,14 @@ def rivals(
 def _is_no_ships(problem: Problem, best: End, walked: Sequence[End]) -> bool:
     """Whether it is a swell's, or a heel without a period that other GM leave as it is.
 
+    Or a resonance amid a roll that nothing in the model makes.
+
     Fins may damp a ship by half of what is critical, and her record tell GM all the same.
     """
     theta = best.minimum.theta
-    return goes_on(problem, theta) or (bool(walked) and only_follows(problem, theta))
+    if goes_on(problem, theta) or is_rolled_by_others(problem, theta):
+        return True
+    return bool(walked) and only_follows(problem, theta)
 
 
 def roll_error(problem: Problem, end: End) -> float:
@@ -174,16 +178,18 @@ def _factor(near: Sequence[Vector], place: int) -> float:
 
 
 def _as_ships_have(problem: Problem, best: End) -> list[Vector]:
-    """The least and the greatest GM that a ship of this length may have, her heel as it was.
+    """The least and the greatest GM and damping that ships of this length have, her heel as it was.
 
     What was fitted was no resonance of hers, and so nothing of the record speaks of it.
     """
     assert problem.roll is not None
-    place, middle = problem.roll.GM, GM_OVER_L * problem.roll.length
-    found = []
-    for off in (-2.0, 2.0):
-        GM = middle * float(np.exp(off * FACTOR))
-        found.append(_scaled(problem, best.minimum.theta, GM / best.minimum.theta[place]))
+    roll, middle, found = problem.roll, GM_OVER_L * problem.roll.length, list[Vector]()
+    for off in (-1.0, 1.0):
+        GM = middle * float(np.exp(2.0 * off * FACTOR))
+        there = _scaled(problem, best.minimum.theta, GM / best.minimum.theta[roll.GM])
+        if roll.Kp is not None:
+            there[roll.Kp] = roll.damping(GM, DAMPING_RATIO * float(np.exp(off * FACTOR)))
+        found.append(there)
     return found
 
 
