@@ -17,7 +17,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from trialid.alignment.clocks import Series, moment
+from trialid.alignment.clocks import Series, in_time_order, moment
+from trialid.alignment.stamps.row_order import DISTINCT, is_out_of_order
 from trialid.alignment.stamps.sample_index import Vector
 from trialid.alignment.stamps.stamp_regression import FEWEST_COUNTED, Line, is_even, regress_stamps
 from trialid.alignment.stamps.time_steps import breaks, unwrap_counter, wrap_words
@@ -25,8 +26,6 @@ from trialid.alignment.stamps.time_steps import breaks, unwrap_counter, wrap_wor
 TABLE = 0.5
 """Share of values below which a channel is the slow one of a table, and its own pace is not that of
 the rows."""
-DISTINCT = 10
-"""Different values that a stretch delivered again has at least."""
 
 
 def repair_stamps(series: Series) -> tuple[Series, tuple[str, ...]]:
@@ -37,6 +36,8 @@ def repair_stamps(series: Series) -> tuple[Series, tuple[str, ...]]:
     logged, y = series.t[use], series.y[use]
     if len(logged) < FEWEST_COUNTED or is_even(logged):
         return series, ()
+    if is_out_of_order(logged, y):
+        return _by_their_stamps(series)
     origin = int(logged[0])
     t, turns, first = _run_on((logged - origin) / 1e9, y)
     kept = first == np.arange(len(t))
@@ -47,6 +48,15 @@ def repair_stamps(series: Series) -> tuple[Series, tuple[str, ...]]:
     everyone = new if len(new) == len(t) else new[np.cumsum(kept)[first] - 1]
     made = origin + np.rint(everyone * 1e9).astype(np.int64)
     return replace(series, t=_for_all(series.t, use, made)), remarks
+
+
+def _by_their_stamps(series: Series) -> tuple[Series, tuple[str, ...]]:
+    """The same of rows that stand in another order."""
+    ordered = in_time_order(series)
+    repaired, remarks = repair_stamps(ordered)
+    if repaired is ordered:
+        return series, remarks
+    return replace(series, t=repaired.t[np.searchsorted(ordered.t, series.t)]), remarks
 
 
 def _repaired(t: Vector, y: Vector, origin: int) -> tuple[Vector, list[str]]:
