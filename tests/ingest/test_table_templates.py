@@ -218,30 +218,6 @@ def test_a_step_back_within_the_day_is_no_midnight(tmp_path):
     assert remarks == ()
 
 
-@pytest.mark.parametrize("local", ["2023-10-29 02:30:00", "2023-03-26 02:30:00"])
-def test_hours_that_a_change_of_the_clocks_doubles_or_leaves_out(tmp_path, local):
-    path = tmp_path / "log"
-    path.write_text(f"t,roll\n{local},1\n")
-    message = refused(path, Aids(zone="Europe/Oslo"))
-    assert f"line 2, column 't': {local} is no one instant in Europe/Oslo" in message
-
-
-def test_the_zone_may_come_with_the_log_and_must_not_contradict(tmp_path):
-    path, aids = given(tmp_path, "t,roll\n2023-11-05 15:00:00,1\n", PLAIN)
-    assert read(path, None, Aids(zone="Europe/Oslo")).channels["roll"].t[0] == START * 10**9
-    assert read(path).channels["roll"].t[0] == (START + 3600) * 10**9
-    told = PLAIN.replace('kind = "seconds"', 'zone = "Europe/Berlin"')
-    path, aids = given(tmp_path, "t,roll\n2023-11-05 15:00:00,1\n", told)
-    both = Aids(template=aids.template, zone="Europe/Oslo")
-    assert "zone 'Europe/Oslo' and its template says 'Europe/Berlin'; leave one" in refused(
-        path, both
-    )
-    path.write_text("t,roll\n0,1\n")
-    assert "its time is no date, so that zone 'Europe/Oslo' says nothing" in refused(
-        path, Aids(zone="Europe/Oslo")
-    )
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -266,7 +242,10 @@ def test_seconds_at_a_likely_rate_are_seconds(tmp_path):
     assert read(tmp_path / "log").channels["u"].t.tolist() == [45235500000000, 45235600000000]
 
 
-@pytest.mark.parametrize("units_row", ["[s];[°];[°/s]", "s;deg;deg/s", "(s);(deg);-"])
+@pytest.mark.parametrize(
+    "units_row",
+    ["[s];[°];[°/s]", "s;deg;deg/s", "(s);(deg);-", ";°;°/min", "-;deg;knots", "[s];°;%"],
+)
 def test_a_row_of_units_is_no_data(tmp_path, units_row):
     text = f"Zeit;Krängung;Drehrate\n{units_row}\n0;1,5;2\n"
     (tmp_path / "log").write_bytes(text.encode("cp1252"))

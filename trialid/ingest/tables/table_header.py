@@ -14,12 +14,14 @@ from trialid.errors import UnitError
 from trialid.ingest.tables.table import MISSING
 from trialid.ingest.tables.table_names import is_time
 from trialid.ingest.tables.templates.template_guess import DATE, is_number
-from trialid.names import units
+from trialid.names import unit_words, units
 
 DEEPEST = 60
 """Lines above a header; titles of a trial take a few."""
 OF_CLOCK = re.compile(r"(?=.*h.*m)[dmyhst:./ -]+", re.IGNORECASE)
 """How a time is written, where a unit might stand: `hh:mm:ss`, `DD.MM.YYYY hh:mm`."""
+WITHOUT = ("", "-", "UTC", "GMT", "Z")
+"""What stands where there is no unit, as of dates."""
 NAME = re.compile(r"([^\w\s(\[]{1,2}|\d{1,3}_)?[^\W\d]")
 """Topics begin with a slash, what `rostopic` prints with `%time`; a column may be `-rudder`, `#row`
 or `1_rpm`. A number with its unit, `5 kn`, is none."""
@@ -83,13 +85,19 @@ def _texts(row: Sequence[Any]) -> list[str]:
 def are_units(names: Sequence[str], fields: Sequence[str]) -> bool:
     """True for a second row that can be nothing but units: in brackets, or a unit of time first.
 
+    Or, where the time has none as dates have, units that logs are full of.
+
     >>> are_units(["t", "roll", "mode"], ["[s]", "[deg]", ""])
     True
     >>> are_units(["t", "roll", "mode"], ["s", "deg", "-"])
     True
     >>> are_units(["Time", "roll"], ["hh:mm:ss", "deg"])
     True
+    >>> are_units(["Time", "roll", "mode"], ["UTC", "deg", "-"])
+    True
     >>> are_units(["t", "roll", "mode"], ["0.0", "", "AUTO"])
+    False
+    >>> are_units(["t", "roll", "mode"], ["", "m", "AUTO"])
     False
     """
     stated = [field.strip(' "') for field in fields]
@@ -99,8 +107,20 @@ def are_units(names: Sequence[str], fields: Sequence[str]) -> bool:
     if all(re.fullmatch(r"\[\D*\]|\(\D*\)|\[\w[^/]*/.*\]", field) for field in told):
         return True
     times = [i for i, name in enumerate(names) if is_time(name.strip(' "'))]
-    clocks = [stated[i] for i in times if _counts_time(stated[i]) or OF_CLOCK.fullmatch(stated[i])]
-    return bool(clocks) and all(units.TEXT.fullmatch(one) for one in told if one not in clocks)
+    bare = [field.strip("[]()") for field in stated]
+    clocks = [i for i in times if _counts_time(bare[i]) or OF_CLOCK.fullmatch(bare[i])]
+    rest = [one for i, one in enumerate(bare) if i not in times and one not in WITHOUT]
+    if not all(units.TEXT.fullmatch(one) for one in rest):
+        return False
+    silent = all(bare[i] in WITHOUT for i in times)
+    return bool(clocks) or (silent and 2 * sum(map(_is_usual, rest)) > len(rest))
+
+
+def _is_usual(unit: str) -> bool:
+    """Whether it measures what logs are full of: an angle, a rate, a speed, a distance."""
+    if unit_words.plain(unit) in units.USUAL:
+        return True
+    return any(units.becomes(unit, si) for si in ("rad", "rad/s", "m/s", "m"))
 
 
 def _counts_time(text: str) -> bool:

@@ -135,12 +135,22 @@ def _date(table: Table, row: int, column: int, text: str, form: str | None) -> d
 
 
 def _localized(table: Table, column: int, t: NDArray[np.int64], zone: str) -> NDArray[np.int64]:
-    """Local stamps to UTC; LogError for those a change of the clocks makes none or two of."""
+    """Local stamps to UTC; LogError for those a change of the clocks makes none or two of.
+
+    Of an hour that comes twice the rows before the one step back in it, by more than half of it,
+    are of summer.
+    """
     import pandas as pd
 
     local = pd.DatetimeIndex(t.astype("datetime64[ns]"))
     known = local.tz_localize(zone, ambiguous="NaT", nonexistent="NaT")
     doubtful = np.asarray(known.isna())
+    steps = np.diff(t[doubtful])
+    back = np.flatnonzero(steps < 0)
+    if len(back) == 1 and steps[back[0]] < -DAY_NS // 48:
+        summer = np.arange(len(t)) <= np.flatnonzero(doubtful)[back[0]]
+        known = local.tz_localize(zone, ambiguous=summer, nonexistent="NaT")
+        doubtful = np.asarray(known.isna())
     if doubtful.any():
         row = int(np.argmax(doubtful))
         raise LogError(
