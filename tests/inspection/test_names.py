@@ -166,6 +166,7 @@ def test_speed_over_ground_is_no_speed_through_the_water():
     assert channel_names.over_ground("RMC/GP:speed_over_ground", "kn")
     assert channel_names.quantity("RMC/GP:speed_over_ground", "kn") is None
     assert channel_names.over_ground("gps_speed_kn", "kn")
+    assert channel_names.over_ground("GPS_Spd", None)
     assert not channel_names.over_ground("speed_through_water", "kn")
     assert channel_names.over_ground("forward speed over ground", "kn")
     assert not channel_names.over_ground("transverse speed over ground", "kn")
@@ -185,8 +186,10 @@ def test_a_gyro_in_rps_is_in_doubt_and_a_shaft_is_not():
 
 
 def test_a_course_over_ground():
-    for name, told in (("cog_deg", True), ("Course", True), ("heading", False), ("Kurs", False)):
-        assert channel_names.is_course(name, "", "deg") is told
+    named = ("cog_deg", "Course", "gps_course_deg", "GPS_GCrs", "COG_gps")
+    assert all(channel_names.is_course(name, "", "deg") for name in named)
+    for name in ("heading", "Kurs", "gps_heading_deg", "wind_course", "gps_course_error"):
+        assert not channel_names.is_course(name, "", "deg")
     assert channel_names.is_course("GPS:GCrs", "GPS, course over ground", "deg")
     assert not channel_names.is_course("course_setpoint", "", "deg")
 

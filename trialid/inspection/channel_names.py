@@ -107,20 +107,16 @@ OVER_GROUND: Final = frozenset(
     {
         ("sog",), ("speed", "over", "ground"), ("speed", "ground"), ("fahrt", "über", "grund"),
         ("fahrt", "ueber", "grund"), ("füg",), ("fueg",), ("gps", "speed"), ("gnss", "speed"),
-        ("speed", "gps"), ("speed", "gnss"), ("vitesse", "fond"), ("velocidad", "fondo"),
+        ("speed", "gps"), ("speed", "gnss"), ("gps", "spd"), ("vitesse", "fond"),
+        ("velocidad", "fondo"),
         ("velocidad", "sobre", "fondo"), ("velocidad", "sobre", "el", "fondo"),
     }
 )  # fmt: skip
 RUDDERS: Final = ("delta", "delta_order")
 SIDEWAYS: Final = frozenset(("sway", "lateral", "transverse", "transversal", "east", "north"))
 COURSES: Final = (
-    ("cog",),
-    ("course", "over", "ground"),
-    ("kurs", "über", "grund"),
-    ("course",),
-    ("route", "fond"),
-    ("rumbo", "sobre", "fondo"),
-    ("rumbo", "sobre", "el", "fondo"),
+    *("cog", "course", "course over ground", "crs", "g crs", "kurs über grund", "route fond"),
+    *("rumbo sobre fondo", "rumbo sobre el fondo"),
 )
 """Names of the course over ground; a `Kurs` alone is a heading."""
 SPEEDS: Final = frozenset(
@@ -130,6 +126,7 @@ SPEEDS: Final = frozenset(
 HERS: Final = frozenset(("ship", "ships", "vessel", "boat", "own"))
 """Words before it that say no more."""
 GROUND: Final = frozenset(("ground", "grund", "cog"))
+RECEIVERS: Final = ("gps", "gnss")
 
 NO_MEASUREMENT: Final = frozenset(
     (
@@ -222,7 +219,8 @@ def is_course(name: str, description: str, unit: str | None) -> bool:
     field = bare_words(name.rpartition(":")[2])
     if (NO_MEASUREMENT | ORDERED).intersection(field) or not _fits("psi", unit):
         return False
-    return tuple(field) in COURSES or description.endswith("course over ground")
+    told = " ".join(word for word in field if word not in RECEIVERS)
+    return told in COURSES or description.endswith("course over ground")
 
 
 def unit_in_name(name: str) -> str | None:

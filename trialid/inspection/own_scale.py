@@ -33,7 +33,7 @@ she turned as fast to both sides, which is `AS_FAST` twice, is true of none."""
 
 def at_rest(drive: ChannelInspection) -> float:
     """What a drive shows where it does nothing: that of pulses of servos, else 0."""
-    return REST if _are_pulses(drive) else 0.0
+    return REST if are_pulses(drive) else 0.0
 
 
 def why_no_angle(rudder: ChannelInspection, turning: ChannelInspection) -> str:
@@ -41,7 +41,7 @@ def why_no_angle(rudder: ChannelInspection, turning: ChannelInspection) -> str:
 
     `turning` is a rate of turn or a heading of the same log.
     """
-    if _are_pulses(rudder):
+    if are_pulses(rudder):
         return f"look like pulse widths [us], about {REST:.0f} amidships"
     most = np.rad2deg(LIMITS["delta"].high)
     if max(abs(rudder.low), abs(rudder.high)) > most:
@@ -51,7 +51,8 @@ def why_no_angle(rudder: ChannelInspection, turning: ChannelInspection) -> str:
     return ""
 
 
-def _are_pulses(one: ChannelInspection) -> bool:
+def are_pulses(one: ChannelInspection) -> bool:
+    """Whether its numbers lie where pulse widths of servos do."""
     return PULSES[0] < one.low and one.high < PULSES[1]
 
 

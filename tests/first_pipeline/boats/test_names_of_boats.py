@@ -7,6 +7,7 @@ import pytest
 from made_boat import T, begun, late, pushes, sailed, table
 
 from trialid import pipeline_file
+from trialid.errors import LogError
 from trialid.inspection import inspect_log
 from trialid.inspection.drives import drives_among, drives_of
 
@@ -47,6 +48,16 @@ def test_without_a_heading_they_are_asked_for(tmp_path: Path) -> None:
     made = begun(tmp_path, logged(tmp_path / "a.csv", names))
     assert 'channel = "gyro_z_rps", unit = "?"' in made.files[tmp_path / "p.toml"]
     assert any(": r, " in one for one in made.to_fill)
+
+
+def test_pulses_without_a_name_are_told_of(tmp_path: Path) -> None:
+    """Of a log with `RCOU_C1` and `RCOU_C3` no rudder was found, and no word of thrusters."""
+    pulses, seen = 1500.0 + 400.0 * pushes(2), sailed(pushes(2))
+    columns = {"RCOU_C1": pulses[:, 0], "RCOU_C3": pulses[:, 1], "Press": 1013.0 + np.sin(T)}
+    columns |= {"ATT_Yaw": np.rad2deg(seen["psi"]) % 360.0, "speed_kn": seen["u"] / 0.514444}
+    with pytest.raises(LogError, match="RCOU_C1, RCOU_C3 range as pulse widths") as caught:
+        begun(tmp_path, table(tmp_path / "a.csv", columns))
+    assert "call them thruster_port and thruster_starboard" in str(caught.value)
 
 
 def test_a_steering_command_is_no_thruster(tmp_path: Path) -> None:

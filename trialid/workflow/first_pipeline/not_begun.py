@@ -11,6 +11,7 @@ from trialid.inspection.channel_names import is_course
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.name_words import sides
+from trialid.inspection.own_scale import are_pulses
 from trialid.inspection.positions import positions
 from trialid.inspection.relations import side
 from trialid.inspection.usual_units import to_si
@@ -31,6 +32,11 @@ TURNS: Final = 0.7
 """Correlation with that from which a channel may be what steers her. Of 148 logs of outsiders and
 real ones eight have one, a servo's pulse in each; at half of it eleven more, most of them speeds,
 winds and positions, at twice none."""
+
+
+PULSED: Final = 100.0
+"""[us] How far pulses range at least that steer, a tenth of all; the air's 950 to 1050 hPa do not
+in an hour. Only words depend on it."""
 
 
 class TooLittle(LogError):
@@ -104,7 +110,18 @@ def _what_then(survey: Inspection, called: bool) -> str:
             "called left and right or 1 and 2, beside heading or yaw rate; map others by hand, "
             "see `trialid guide actuators`"
         )
+    pulses = [] if called else [one.name for one in survey.channels.values() if _is_driven(one)]
+    if pulses:
+        return (
+            f"{', '.join(pulses[:4])} range as pulse widths [us] do: of two thrusters call them "
+            "thruster_port and thruster_starboard, of a servo steering; `trialid guide actuators`"
+        )
     return f"see `trialid inspect --all {shlex.quote(str(survey.path))}`, and map them by hand"
+
+
+def _is_driven(one: ChannelInspection) -> bool:
+    """Whether its numbers move as pulses of servos do, and no pressure of the air."""
+    return one.guess is None and are_pulses(one) and one.high - one.low > PULSED
 
 
 def _turns_with(survey: Inspection) -> str | None:
