@@ -137,6 +137,17 @@ def test_what_opens_a_way_to_the_noise_of_a_free_roll(result, signals, ways):
     assert OPENS[STATED] in said
 
 
+def test_where_a_steady_course_was_too_short_a_longer_one_is_asked_for(result):
+    """Of logs that all begin with a minute of steady course a minute of it was asked for."""
+    why = "residual in 0-60 s of 'zz2020': too short, the noise is hardly known at all"
+    routes = [{"method": "quiet stretch", "available": False, "why": why}]
+    run = copy.deepcopy(result) | {"verdict": verdict("cannot tell")}
+    run["split"] |= {"noise": None, "routes": routes}
+    [said] = [each.words for each in advice(result_of(run)) if "opens a way" in each.words]
+    assert "record a longer steady course" in said
+    assert "a minute or more" not in said
+
+
 def test_a_figure_that_is_stated_and_refused_is_not_asked_for_again(result):
     """Of an outsider's decays the same was asked for, whatever he stated."""
     why = (

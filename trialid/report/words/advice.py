@@ -17,10 +17,12 @@ RIVALS: Final = 2
 STATED: Final = "stated sensor figure"
 AS_STATED: Final = "as stated in [diagnose] noise: not typical, "
 """Begins why a figure that is stated is not used."""
+STEADY: Final = "quiet stretch"
+LONGER: Final = "record a longer steady course, nothing ordered: what there is of it is too short"
 OPENS: Final = {
     "repeated manoeuvre": "run one manoeuvre twice, with the same orders",
     "periods of a periodic test": "run a test whose orders repeat themselves several times",
-    "quiet stretch": "record a minute or more of steady course, nothing ordered, in the same sea",
+    STEADY: "record a minute or more of steady course, nothing ordered, in the same sea",
     STATED: "state how much each sensor scatters, as noise under [diagnose]",
 }
 """What would open a route to the noise that this record does not have; of a ship that nothing
@@ -247,14 +249,17 @@ def _unclear(run: Result) -> Iterable[Advice]:
             "gives in their period."
         )
         return
-    closed = {row.method for row in run.split.routes if not row.available}
+    if ways := _ways(run):
+        opens = f"{EACH[len(ways) > 1]} opens a way: {'; '.join(ways)}."
+        yield Advice(f"Noise and model error cannot be told apart. {opens}")
+
+
+def _ways(run: Result) -> list[str]:
+    """What would open a route to the noise that is closed."""
+    closed = {row.method: row.why or "" for row in run.split.routes if not row.available}
     driven = not run.signals or not MOTIONS.issuperset(row.signal for row in run.signals)
-    ways = [w for method, w in OPENS.items() if method in closed and (driven or method == STATED)]
-    if ways:
-        yield Advice(
-            f"Noise and model error cannot be told apart. {EACH[len(ways) > 1]} opens a way: "
-            + "; ".join(ways) + "."
-        )  # fmt: skip
+    ways = OPENS | ({STEADY: LONGER} if "too short" in closed.get(STEADY, "") else {})
+    return [w for method, w in ways.items() if method in closed and (driven or method == STATED)]
 
 
 def _one_of(run: Result) -> Iterable[Advice]:
