@@ -170,3 +170,12 @@ def test_units_that_the_log_does_not_state_are_asked_for(ros, tmp_path):
     log = tmp_path / "a.csv"
     log.write_text("t,rudder[deg],heading_deg\n0,1,2\n1,2,3\n")
     assert "no unit is stated" not in text(inspect_log(log))
+
+
+@pytest.mark.parametrize(
+    ("zone", "told"), [("Z", "02:00:01 UTC"), ("", "02:00:01 as written, no zone is given")]
+)
+def test_dates_are_of_utc_only_where_they_say_so(tmp_path, zone, told):
+    rows = [f"2026-10-25T02:00:0{i}{zone},{i}" for i in (0, 1)]
+    (tmp_path / "log.csv").write_text("\n".join(("time,rudder", *rows)))
+    assert told in text(inspect_log(tmp_path / "log.csv"), width=200)

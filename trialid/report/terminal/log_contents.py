@@ -18,6 +18,7 @@ from trialid.inspection.inspected import ChannelInspection, Inspection, Received
 from trialid.inspection.positions import position_words
 from trialid.names import labels, wording
 from trialid.names.quantities import SIGNALS
+from trialid.recording import ZONELESS
 from trialid.report.terminal.terminal import Words, add_row, cut, new_table
 from trialid.report.words.decisions import decisions
 
@@ -67,16 +68,15 @@ def _title(survey: Inspection) -> Any:
 
 def _span(survey: Inspection) -> str:
     """How long it is and from when to when, of channels on two clocks for each clock."""
-    spans = survey.spans
-    words = [_between(*span) for span in spans]
+    unstated = any(ZONELESS in one.clock.words for one in survey.channels.values())
+    zone = "as written, no zone is given" if unstated else "UTC"
+    words = [_between(*span, zone) for span in survey.spans]
     return words[0] if len(words) == 1 else f"two clocks: {'; '.join(words)}"
 
 
-def _between(first: int, last: int) -> str:
-    duration = f"{(last - first) / 1e9:.1f} s"
-    if first > CALENDAR_NS:
-        return f"{duration}, {_date(first)} to {_date(last)} UTC"
-    return f"{duration}, {moment(first)} to {moment(last)}"
+def _between(first: int, last: int, zone: str) -> str:
+    shown, of = (_date, f" {zone}") if first > CALENDAR_NS else (moment, "")
+    return f"{(last - first) / 1e9:.1f} s, {shown(first)} to {shown(last)}{of}"
 
 
 def _date(stamp: int) -> str:

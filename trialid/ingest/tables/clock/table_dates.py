@@ -21,6 +21,7 @@ from trialid.ingest.tables.clock.table_time import (
 from trialid.ingest.tables.table import Table
 from trialid.ingest.tables.table_names import is_universal
 from trialid.ingest.tables.templates.template import Time
+from trialid.recording import ZONELESS
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 FIRST_DAY = {"excel days": 25_569, "matlab datenum": 719_529}
@@ -45,7 +46,8 @@ def date_clock(table: Table, columns: tuple[int, ...], spec: Time, zone: str | N
         said = f"column {name}, dates"
     remarks = (f"{table.path.name}: {remark}",) if remark else ()
     if aware or zone is None:
-        return Clock(naive, columns, f"{said} (UTC where no zone is given)", remarks)
+        words = f"{said}, UTC" if aware else f"{said} ({ZONELESS})"
+        return Clock(naive, columns, words, remarks)
     t = _localized(table, columns[0], naive, zone)
     return Clock(t, columns, f"{said}, time zone {zone}", remarks)
 
