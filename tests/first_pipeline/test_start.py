@@ -135,6 +135,7 @@ def test_a_rudder_that_is_left_out_is_told(tmp_path, monkeypatch):
 def test_channels_of_which_nothing_is_known_are_told_if_they_move(tmp_path, monkeypatch):
     t, delta, *_ = trial()
     fins = {"fin_port_in_deg": -delta, "fin_stbd_in_deg": delta, "spare_in_V": 0.0 * t}
+    fins |= {"gps_course_in_deg": 90.0 + delta}  # known, and not needed
     told = started(tmp_path, monkeypatch, log(tmp_path / "a.csv", **fins), *SHIP).stdout
     words = " ".join(told.split())
     said = "Not read, as their names say nothing that is known: fin_port, fin_stbd."
