@@ -18,11 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.alignment.clocks import Series, in_time_order, moment
-from trialid.alignment.stamps.row_order import DISTINCT, is_out_of_order
+from trialid.alignment.stamps.row_order import is_out_of_order
 from trialid.alignment.stamps.sample_index import Vector
 from trialid.alignment.stamps.stamp_regression import FEWEST_COUNTED, Line, is_even, regress_stamps
 from trialid.alignment.stamps.time_steps import breaks, unwrap_counter, wrap_words
 
+DISTINCT = 10
+"""Different values that a stretch delivered again has at least."""
 TABLE = 0.5
 """Share of values below which a channel is the slow one of a table, and its own pace is not that of
 the rows."""
@@ -36,7 +38,7 @@ def repair_stamps(series: Series) -> tuple[Series, tuple[str, ...]]:
     logged, y = series.t[use], series.y[use]
     if len(logged) < FEWEST_COUNTED or is_even(logged):
         return series, ()
-    if is_out_of_order(logged, y):
+    if is_out_of_order(logged):
         return _by_their_stamps(series)
     origin = int(logged[0])
     t, turns, first = _run_on((logged - origin) / 1e9, y)
