@@ -13,7 +13,7 @@ from trialid.errors import printable
 OF_TEXT: Final = "holds text, left out"
 """How a recording's remark says that a column is no signal, as a rudder in words is none."""
 
-ZONELESS: Final = "taken as UTC, no zone is given"
+ZONELESS: Final = "taken as UTC"
 """How the words of a clock say that its dates may be of any zone."""
 
 

@@ -26,6 +26,10 @@ def test_of_a_log_through_the_end_of_summer_time_the_order_of_its_rows_tells_the
     assert np.diff(found).tolist() == [120, 59 * 60]
     path.write_text(text.format("30:01", "30:00"))
     assert "2026-10-25 02:30:01 is no one instant" in refused(path, berlin)
+    joined = ("02:35", "02:59", "03:05", "03:30", "01:30", "01:55", "02:00", "02:25")
+    rows = [f"2026-10-25 {at}:00,{i}" for i, at in enumerate(joined)]  # the later file first
+    path.write_text("\n".join(("t,roll", *rows)))
+    assert "2026-10-25 02:35:00 is no one instant" in refused(path, berlin)
 
 
 def test_the_zone_may_come_with_the_log_and_must_not_contradict(tmp_path):

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trialid.ingest.times import local_time
+from trialid.recording import ZONELESS
 
 Ints = NDArray[np.int64]
 
@@ -113,4 +114,4 @@ def date_stamps(t: Ints, zone: str | None, tally: Tally) -> tuple[Ints, str]:
         "the header's date is of a local clock, of which time zone it does not say: taken as UTC; "
         "`zone` can state it"
     )
-    return t, "start local, zone not stated, taken as UTC"
+    return t, f"start local, zone not stated, {ZONELESS}"

@@ -19,6 +19,7 @@ from trialid.ingest.can import can_alike
 from trialid.ingest.can.can_alike import Alike
 from trialid.ingest.can.can_frames import EXTENDED_ID, Frames, Tally, join_frames
 from trialid.ingest.times import local_time
+from trialid.recording import ZONELESS
 
 REMOTE_FLAG, ERROR_FLAG = 0x4000_0000, 0x2000_0000
 """Bits of an identifier that say the frame is none of data."""
@@ -99,7 +100,7 @@ def _clock(t: Ints, dated: bool, zone: str | None, tally: Tally) -> tuple[Ints, 
             "stamps are dates of a local clock, the log does not say of which time zone: taken as "
             "UTC; `zone` can state it"
         )
-        return t, "line stamps (local dates, zone not stated, taken as UTC)"
+        return t, f"line stamps (local dates, zone not stated, {ZONELESS})"
     if t.max(initial=0) >= BEGAN_NS:
         return t, "line stamps"
     if len(t) > 2 and np.mean(np.diff(t) < 0) > STEPS_BACK:

@@ -32,7 +32,7 @@ from trialid.ingest.nmea0183.nmea0183_sentences import (
 from trialid.ingest.nmea0183.nmea0183_stamps import LOCAL, NONE, TIME_OF_DAY
 from trialid.ingest.nmea0183.nmea0183_steps import out_of_step
 from trialid.ingest.times import local_time
-from trialid.recording import Channel
+from trialid.recording import ZONELESS, Channel
 
 Ints = NDArray[np.int64]
 Connections = Callable[[Sentences], Iterable[tuple[Places, str]]]
@@ -261,7 +261,7 @@ def _of_lines(stream: Stream, stamped: Ints, zone: str | None) -> Timed:
         t = np.full(len(stamped), NONE)
         t[ours] = times
     words = {
-        LOCAL: f"line stamps, zone {zone}" if zone else "line stamps, no zone stated: taken as UTC",
+        LOCAL: f"line stamps, zone {zone}" if zone else f"line stamps, no zone stated: {ZONELESS}",
         TIME_OF_DAY: "line stamps, time of day, no date",
     }.get(kind, "line stamps")
     remarks = list(_untimed(t))

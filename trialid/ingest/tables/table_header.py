@@ -99,6 +99,8 @@ def are_units(names: Sequence[str], fields: Sequence[str]) -> bool:
     False
     >>> are_units(["t", "roll", "mode"], ["", "m", "AUTO"])
     False
+    >>> are_units(["Vessel", "Trial", "Place"], ["Time", "rpm", "kn"])
+    False
     """
     stated = [field.strip(' "') for field in fields]
     told = [field for field in stated if field not in ("", "-")]
@@ -112,15 +114,17 @@ def are_units(names: Sequence[str], fields: Sequence[str]) -> bool:
     rest = [one for i, one in enumerate(bare) if i not in times and one not in WITHOUT]
     if not all(units.TEXT.fullmatch(one) for one in rest):
         return False
-    silent = all(bare[i] in WITHOUT for i in times)
-    return bool(clocks) or (silent and 2 * sum(map(_is_usual, rest)) > len(rest))
+    silent = bool(times) and all(bare[i].upper() in WITHOUT for i in times)
+    return bool(clocks) or (silent and _are_usual(rest))
 
 
-def _is_usual(unit: str) -> bool:
-    """Whether it measures what logs are full of: an angle, a rate, a speed, a distance."""
-    if unit_words.plain(unit) in units.USUAL:
+def _are_usual(stated: Sequence[str]) -> bool:
+    """Whether most measure what logs are full of: an angle, a rate, a speed, a distance."""
+    usual = [one for one in stated if unit_words.plain(one) in units.USUAL]
+    if 2 * len(usual) > len(stated):  # without the library of all units, which takes its time
         return True
-    return any(units.becomes(unit, si) for si in ("rad", "rad/s", "m/s", "m"))
+    known = [any(units.becomes(one, si) for si in ("rad", "rad/s", "m/s", "m")) for one in stated]
+    return 2 * sum(known) > len(stated)
 
 
 def _counts_time(text: str) -> bool:

@@ -33,7 +33,8 @@ def date_clock(table: Table, columns: tuple[int, ...], spec: Time, zone: str | N
     name, remark = " and ".join(table.heads[column].name for column in columns), ""
     values = table.columns[columns[0]]
     if spec.kind in FIRST_DAY:
-        naive, aware = _days(table, columns[0], FIRST_DAY[spec.kind]), False
+        naive = _days(table, columns[0], FIRST_DAY[spec.kind])
+        aware = _universal(table, columns)
         said = f"column {name}, {spec.kind}"
     elif values.dtype.kind == "M" and len(columns) == 1:
         naive = values.astype("datetime64[ns]").astype(np.int64)
@@ -46,7 +47,7 @@ def date_clock(table: Table, columns: tuple[int, ...], spec: Time, zone: str | N
         said = f"column {name}, dates"
     remarks = (f"{table.path.name}: {remark}",) if remark else ()
     if aware or zone is None:
-        words = f"{said}, UTC" if aware else f"{said} ({ZONELESS})"
+        words = f"{said}, UTC" if aware else f"{said} (no zone stated, {ZONELESS})"
         return Clock(naive, columns, words, remarks)
     t = _localized(table, columns[0], naive, zone)
     return Clock(t, columns, f"{said}, time zone {zone}", remarks)
@@ -139,18 +140,17 @@ def _date(table: Table, row: int, column: int, text: str, form: str | None) -> d
 def _localized(table: Table, column: int, t: NDArray[np.int64], zone: str) -> NDArray[np.int64]:
     """Local stamps to UTC; LogError for those a change of the clocks makes none or two of.
 
-    Of an hour that comes twice the rows before the one step back in it, by more than half of it,
-    are of summer.
+    Of an hour that comes twice the rows before the step back in it are of summer, where it is the
+    one in the log that goes back by more than half of an hour.
     """
     import pandas as pd
 
     local = pd.DatetimeIndex(t.astype("datetime64[ns]"))
     known = local.tz_localize(zone, ambiguous="NaT", nonexistent="NaT")
     doubtful = np.asarray(known.isna())
-    steps = np.diff(t[doubtful])
-    back = np.flatnonzero(steps < 0)
-    if len(back) == 1 and steps[back[0]] < -DAY_NS // 48:
-        summer = np.arange(len(t)) <= np.flatnonzero(doubtful)[back[0]]
+    back = np.flatnonzero(np.diff(t) < -DAY_NS // 48)
+    if len(back) == 1 and doubtful[back[0]] and doubtful[back[0] + 1]:
+        summer = np.arange(len(t)) <= back[0]
         known = local.tz_localize(zone, ambiguous=summer, nonexistent="NaT")
         doubtful = np.asarray(known.isna())
     if doubtful.any():
