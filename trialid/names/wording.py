@@ -9,6 +9,8 @@ DASH = "\N{EN DASH}"
 MINUS = "\N{MINUS SIGN}"
 THIN = "\N{NARROW NO-BREAK SPACE}"
 _TIMES = f"{THIN}\N{MULTIPLICATION SIGN}{THIN}10"
+TOO_SHORT: Final = "too short"
+"""Begins why what there is of a stretch tells nothing; what to do asks for a longer one then."""
 RAISED = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=True))
 """Signs of an exponent, plain to raised."""
 

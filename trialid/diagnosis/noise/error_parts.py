@@ -8,6 +8,7 @@ import numpy as np
 
 from trialid.diagnosis.noise.residual import OutputNoise, heavy_tail, pool_variance, residuals
 from trialid.identification.fit import Fit
+from trialid.names.wording import TOO_SHORT
 
 Interval = tuple[float, float]
 CONFIDENCE: Final = 1.96
@@ -112,8 +113,8 @@ def _hardly_known(noise2: float, off: float, unlike: float) -> str:
     if unlike > off:
         return f"not alike, errors of the model may differ by {np.sqrt(unlike):.2%}"
     if off > 2.0 * noise2:  # a percentage of next to nothing says nothing
-        return "too short, the noise is hardly known at all"
-    return f"too short, the noise is known to +-{0.5 * off / noise2:.0%} only"
+        return f"{TOO_SHORT}, the noise is hardly known at all"
+    return f"{TOO_SHORT}, the noise is known to +-{0.5 * off / noise2:.0%} only"
 
 
 def _roots(low: float, high: float) -> Interval:

@@ -18,7 +18,7 @@ STATED: Final = "stated sensor figure"
 AS_STATED: Final = "as stated in [diagnose] noise: not typical, "
 """Begins why a figure that is stated is not used."""
 STEADY: Final = "quiet stretch"
-LONGER: Final = "record a longer steady course, nothing ordered: what there is of it is too short"
+LONGER: Final = "record a longer steady course in the same sea: what there is of it is too short"
 OPENS: Final = {
     "repeated manoeuvre": "run one manoeuvre twice, with the same orders",
     "periods of a periodic test": "run a test whose orders repeat themselves several times",
@@ -258,7 +258,7 @@ def _ways(run: Result) -> list[str]:
     """What would open a route to the noise that is closed."""
     closed = {row.method: row.why or "" for row in run.split.routes if not row.available}
     driven = not run.signals or not MOTIONS.issuperset(row.signal for row in run.signals)
-    ways = OPENS | ({STEADY: LONGER} if "too short" in closed.get(STEADY, "") else {})
+    ways = OPENS | ({STEADY: LONGER} if wording.TOO_SHORT in closed.get(STEADY, "") else {})
     return [w for method, w in ways.items() if method in closed and (driven or method == STATED)]
 
 
