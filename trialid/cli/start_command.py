@@ -21,7 +21,6 @@ from trialid.names import wording
 from trialid.own_files import write_or_say_why
 
 if TYPE_CHECKING:
-    from trialid.inspection.inspected import ChannelInspection
     from trialid.workflow.first_pipeline import Starter
     from trialid.workflow.first_pipeline.chosen import Signal
 
@@ -136,24 +135,19 @@ def _unread(begun: "Starter") -> list[str]:
 
     Of an outsider's ship her fins were, and her damping was that with them, without a word.
     """
+    from trialid.inspection.channel_names import is_course
     from trialid.inspection.positions import positions
+    from trialid.workflow.first_pipeline.choice import speeds_of
 
     first = begun.trials[0]
     signals = (*first.signals, *(signal for signal, _ in first.beside))
     taken = {one.key for signal in signals for one in (signal.source, *signal.others)}
     channels = first.survey.channels.values()
     taken |= {one.key for one in positions(channels).values()}  # commented out in the pipeline
-    unknown = [c for c in channels if c.guess is None and c.key not in taken and not _of_ground(c)]
-    moving = [c.key for c in unknown if not c.constant]
+    taken |= {one.key for one in speeds_of(first.survey)}
+    taken |= {c.key for c in channels if is_course(c.name, c.description, c.stated_unit)}
+    moving = [c.key for c in channels if c.guess is None and not c.constant and c.key not in taken]
     return moving if len(moving) <= MOST_UNREAD else []
-
-
-def _of_ground(one: "ChannelInspection") -> bool:
-    """Whether it is known as a course or a speed over ground, of which each run needs one."""
-    from trialid.inspection.channel_names import is_course, over_ground
-
-    unit = one.stated_unit
-    return is_course(one.name, one.description, unit) or over_ground(one.name, unit)
 
 
 def _left_out(signal: "Signal") -> str:

@@ -55,7 +55,7 @@ def test_pulses_without_a_name_are_told_of(tmp_path: Path) -> None:
     pulses, seen = 1500.0 + 400.0 * pushes(2), sailed(pushes(2))
     columns = {"RCOU_C1": pulses[:, 0], "RCOU_C3": pulses[:, 1], "Press": 1013.0 + np.sin(T)}
     columns |= {"ATT_Yaw": np.rad2deg(seen["psi"]) % 360.0, "speed_kn": seen["u"] / 0.514444}
-    with pytest.raises(LogError, match="RCOU_C1, RCOU_C3 range as pulse widths") as caught:
+    with pytest.raises(LogError, match="RCOU_C1, RCOU_C3 may be pulse widths") as caught:
         begun(tmp_path, table(tmp_path / "a.csv", columns))
     assert "call them thruster_port and thruster_starboard" in str(caught.value)
 

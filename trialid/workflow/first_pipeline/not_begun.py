@@ -35,8 +35,8 @@ winds and positions, at twice none."""
 
 
 PULSED: Final = 100.0
-"""[us] How far pulses range at least that steer, a tenth of all; the air's 950 to 1050 hPa do not
-in an hour. Only words depend on it."""
+"""[us] How far pulses range at least that steer, a tenth of 1000 to 2000; a pressure of the air
+does not in an hour. Only words depend on it."""
 
 
 class TooLittle(LogError):
@@ -113,8 +113,9 @@ def _what_then(survey: Inspection, called: bool) -> str:
     pulses = [] if called else [one.name for one in survey.channels.values() if _is_driven(one)]
     if pulses:
         return (
-            f"{', '.join(pulses[:4])} range as pulse widths [us] do: of two thrusters call them "
-            "thruster_port and thruster_starboard, of a servo steering; `trialid guide actuators`"
+            f"{', '.join(pulses[:4])} may be pulse widths [us]: where they order two thrusters, "
+            "call them thruster_port and thruster_starboard, where one orders her servo, call it "
+            "steering; `trialid guide actuators`"
         )
     return f"see `trialid inspect --all {shlex.quote(str(survey.path))}`, and map them by hand"
 
