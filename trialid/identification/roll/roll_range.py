@@ -6,12 +6,14 @@ objects. Both are therefore held on a logarithmic scale, within a factor of thre
 deviation, which a record that does roll overrules.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trialid.ship.estimate.hydrostatics import metacentre
 from trialid.ship.model import ShipModel
 from trialid.ship.prime import mass_scale
 
@@ -49,6 +51,8 @@ class RollRange:
         Kp of critical damping at a GM of 1 m, negative; in proportion to sqrt(GM).
     swing
         Frequency of small rolls at a GM of 1 m [rad/s]; in proportion to sqrt(GM) too.
+    stiffest
+        The greatest GM that a ship like her may have [m].
     known
         Places with a prior of their own: of those this says nothing.
     """
@@ -58,6 +62,7 @@ class RollRange:
     length: float
     critical: float
     swing: float
+    stiffest: float
     known: frozenset[int] = frozenset()
 
     def damping(self, GM: float, ratio: float) -> float:
@@ -97,6 +102,18 @@ class RollRange:
         return -np.array(list(off.values())), slopes
 
 
+def _stiffest(particulars: Mapping[str, float]) -> float:
+    """Twice the deviations above the middle, or her metacentre above her keel where that is more.
+
+    Yachts of 12 m stand with 0.09 of their length on ballast beneath them; ships have 0.03 at most.
+    """
+    most = GM_OVER_L * particulars["L"] * float(np.exp(2.0 * FACTOR))
+    if not {"B", "T"} <= particulars.keys():
+        return most
+    L, B, T = (particulars[n] for n in ("L", "B", "T"))
+    return max(most, metacentre(B, T, particulars["nabla"] / (L * B * T)))
+
+
 def roll_range(
     model: ShipModel, U: float, places: dict[str, int], known: frozenset[int] = frozenset()
 ) -> RollRange | None:
@@ -123,5 +140,6 @@ def roll_range(
         length=L,
         critical=critical,
         swing=swing,
+        stiffest=_stiffest(model.ship.particulars),
         known=known,
     )

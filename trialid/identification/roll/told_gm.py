@@ -178,19 +178,28 @@ def _factor(near: Sequence[Vector], place: int) -> float:
 
 
 def _as_ships_have(problem: Problem, best: End) -> list[Vector]:
-    """The least and the greatest GM and damping that ships of this length have, her heel as it was.
+    """The least and the greatest GM that a ship like her may have, her heel as it was.
 
-    What was fitted was no resonance of hers, and so nothing of the record speaks of it.
+    With as little and as much damping as is usual, a standard deviation. What was fitted was no
+    resonance of hers, and so nothing of the record speaks of it; a GM that was stated does.
     """
     assert problem.roll is not None
-    roll, middle, found = problem.roll, GM_OVER_L * problem.roll.length, list[Vector]()
-    for off in (-1.0, 1.0):
-        GM = middle * float(np.exp(2.0 * off * FACTOR))
+    roll, found = problem.roll, list[Vector]()
+    if _is_stated(problem, roll.GM):
+        return found
+    least = GM_OVER_L * roll.length * float(np.exp(-2.0 * FACTOR))
+    for GM, off in ((least, -1.0), (roll.stiffest, 1.0)):
         there = _scaled(problem, best.minimum.theta, GM / best.minimum.theta[roll.GM])
         if roll.Kp is not None:
             there[roll.Kp] = roll.damping(GM, DAMPING_RATIO * float(np.exp(off * FACTOR)))
         found.append(there)
     return found
+
+
+def _is_stated(problem: Problem, place: int) -> bool:
+    """Whether it is known beforehand within `FAR`; of what a file assumes of ships it is not."""
+    prior = problem.unknowns[place].prior
+    return prior is not None and 2.0 * prior[1] < (FAR - 1.0) * abs(prior[0])
 
 
 def _scaled(problem: Problem, theta: Vector, factor: float) -> Vector:
