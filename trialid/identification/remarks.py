@@ -244,7 +244,7 @@ def _untold_GM(fit: Fit) -> list[str]:
     if is_rolled_by_others(fit.problem, fit.theta):
         period = 2.0 * np.pi / fit.problem.roll.frequency(fit.theta)
         return [
-            f"the record does not tell GM: of her roll with a period about {period:.2g} s most is "
-            f"of nothing that the model has, and so {fit.value('GM'):.3g} m may be of a swell"
+            f"the record does not tell GM: most of her roll in about {period:.2g} s is of nothing "
+            f"in the model, as a swell's, so that {fit.value('GM'):.3g} m may be the swell's"
         ]
     return [f"the record does not tell GM: {rivals} m fit as well or hardly worse"]
