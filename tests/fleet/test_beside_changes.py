@@ -4,6 +4,7 @@ from dataclasses import replace
 from datetime import date
 
 import numpy as np
+import pytest
 from records_of_ships import rows_of
 
 from trialid.fleet.changes import remarks
@@ -112,6 +113,7 @@ def test_an_effect_missing_from_a_voyage_on_is_told() -> None:
     assert "is missing in 0 of 8, before in 8 of 8" in back
 
 
+@pytest.mark.study(turn="each")
 def test_effects_missing_here_and_there_are_missing_since_no_voyage() -> None:
     """Each second voyage or by chance: one ship of twenty at most."""
     runs = voyages()

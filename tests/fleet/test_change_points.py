@@ -106,6 +106,7 @@ def test_a_drift_and_a_step_the_other_way_in_one_parameter() -> None:
     assert found >= 9
 
 
+@pytest.mark.study(turn="each")
 def test_when_a_change_began_lies_within_its_range() -> None:
     """A step of twice the scatter is dated to a voyage or three: the range says so."""
     held, alone = [], []
@@ -147,6 +148,7 @@ def test_what_a_fleet_without_a_change_shows_as_often_is_not_told() -> None:
     assert max(row.p_value for row in found) <= 0.05
 
 
+@pytest.mark.study(turn="each")
 def test_scatter_beyond_the_likely_ranges_is_no_change() -> None:
     """It is told that they vary by more than these."""
     told = [list(changes(*fleet(2000 + seed, scatter=4.0))) for seed in range(50)]

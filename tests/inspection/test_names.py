@@ -186,7 +186,7 @@ def test_a_gyro_in_rps_is_in_doubt_and_a_shaft_is_not():
 
 
 def test_a_course_over_ground():
-    named = ("cog_deg", "Course", "gps_course_deg", "GPS_GCrs", "COG_gps")
+    named = ("cog_deg", "Course", "gps_course_deg", "GPS_GCrs", "COG_gps", "crs_deg")
     assert all(channel_names.is_course(name, "", "deg") for name in named)
     for name in ("heading", "Kurs", "gps_heading_deg", "wind_course", "gps_course_error"):
         assert not channel_names.is_course(name, "", "deg")

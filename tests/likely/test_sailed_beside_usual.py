@@ -100,7 +100,14 @@ def test_the_folder_keeps_both_hulls(folder, model):
         assert mine[name][1] == pytest.approx(ends, rel=1e-4)
 
 
-@pytest.mark.parametrize("words", [("circle", "35"), ("zigzag", "10"), ("zigzag", "20")])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("circle", "35"),
+        ("zigzag", "20"),
+        pytest.param(("zigzag", "10"), marks=pytest.mark.study(turn="each")),
+    ],
+)
 def test_a_manoeuvre_s_ranges_hold_what_both_do(model, words):
     asked = named_manoeuvre([*words])
     whole, *others = (predict_manoeuvre(m, asked).motion for m in (model, *model.others))
@@ -126,6 +133,7 @@ def test_one_number_has_one_range(model):
         assert low <= one.value <= high
 
 
+@pytest.mark.study(turn="each")
 def test_nomoto_s_numbers_hold_for_both_and_say_where_she_may_be_unstable(model):
     def written(one, form):
         return json.loads(WRITERS[form](one, "x", Wishes())[".json"])

@@ -20,6 +20,7 @@ def told(seed):
     return stability_part(found), hers.margin
 
 
+@pytest.mark.study(turn="each")
 def test_an_unstable_ship_is_not_called_stable_by_a_model_without_her_cubes():
     """Fitted to zig-zags that her other forces end: 20 standard errors on the wrong side."""
     said, hers = told(23)

@@ -99,6 +99,7 @@ def test_ranges_hold_what_a_linear_model_has_a_quarter_of():
     assert sum(alone) < 0.8 * len(alone)
 
 
+@pytest.mark.study(turn="each")
 def test_a_range_says_what_widens_it_and_holds_the_truth():
     own, both, truth = counted(27)
     assert not held(own, truth)["Nv"]

@@ -28,7 +28,7 @@ def record(truth, seed):
     return made
 
 
-@pytest.mark.parametrize("stall", [12.0, 15.0])
+@pytest.mark.parametrize("stall", [pytest.param(12.0, marks=pytest.mark.study(turn="each")), 15.0])
 def test_a_stall_that_no_rudder_at_its_typical_angle_shows_is_named(stall):
     values = {"N_stall": -0.0006, "delta_stall": np.deg2rad(stall)}
     truth = (MODEL + CATALOGUE["rudder_stall"]).with_values(values)
@@ -38,6 +38,7 @@ def test_a_stall_that_no_rudder_at_its_typical_angle_shows_is_named(stall):
     assert np.rad2deg(refit.fit.value("delta_stall")) == pytest.approx(stall, abs=1.0)
 
 
+@pytest.mark.study(turn="each")
 def test_an_inflow_that_differs_by_drift_alone_is_named():
     values = {"N_flow": -0.0008, "l_flow": 0.0}
     truth = (MODEL + CATALOGUE["rudder_flow_asymmetry"]).with_values(values)

@@ -22,6 +22,7 @@ STEERED = 4
 """Of the kinds that a day is sailed of, the first so many are by the rudder."""
 
 
+@pytest.mark.study(turn="each")
 def test_each_window_holds_manoeuvres_whole_and_none_the_harbour_alone() -> None:
     windows, right = 0, 0
     for seed in DAYS:

@@ -118,7 +118,7 @@ COURSES: Final = (
     *("cog", "course", "course over ground", "crs", "g crs", "kurs über grund", "route fond"),
     *("rumbo sobre fondo", "rumbo sobre el fondo"),
 )
-"""Names of the course over ground; a `Kurs` alone is a heading."""
+"""Names of the course over ground, `GCrs` a flight controller's; a `Kurs` alone is a heading."""
 SPEEDS: Final = frozenset(
     ("speed", "fahrt", "geschwindigkeit", "fart", "vitesse", "velocidad", "boatspeed", "bsp")
 )

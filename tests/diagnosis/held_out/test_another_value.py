@@ -30,7 +30,10 @@ def fitted(ahead=1.0, settings=SETTINGS, her=MODEL, **times):
     return identify([*made[:-1], replace(made[-1], signals=signals)], her, settings)
 
 
-@pytest.mark.parametrize("times", [0.4, 0.6, 1.5, 2.0])
+@pytest.mark.parametrize(
+    "times",
+    [0.4, 1.5, *(pytest.param(x, marks=pytest.mark.study(turn="each")) for x in (0.6, 2.0))],
+)
 def test_a_ship_with_another_gm_is_told(times):
     fit = fitted(GM=times)
     [said] = follow_with_another_value(fit)
@@ -42,7 +45,9 @@ def test_a_ship_with_another_gm_is_told(times):
     assert left < 1.3 * fit.eps_rmsn
 
 
-@pytest.mark.parametrize("times", [0.7, 0.78, 1.3])
+@pytest.mark.parametrize(
+    "times", [0.7, 1.3, pytest.param(0.78, marks=pytest.mark.study(turn="each"))]
+)
 def test_a_ship_that_rolls_for_long_is_told_too(times):
     """Hardly damped and of more GM: a little off, her roll is out of phase within few cycles."""
     light = MODEL.with_values({"Kp": 0.25 * MODEL.value("Kp"), "GM": 1.2})

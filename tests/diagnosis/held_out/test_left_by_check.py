@@ -45,7 +45,9 @@ def said(fit, of=covariance):
     return with_held_out(fit, NOTHING, lambda: of(fit), 0.05)
 
 
-@pytest.mark.parametrize("noise", [white, waves])
+@pytest.mark.parametrize(
+    "noise", [white, pytest.param(waves, marks=pytest.mark.study(turn="each"))]
+)
 def test_noise_alone_leaves_any_share_as_often(noise):
     """Of 16 chances a half below 0.5, none beyond belief: 150 s of waves are few values."""
     chances = []

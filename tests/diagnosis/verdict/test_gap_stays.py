@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+import pytest
+
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 from hidden_effects import settings_of
@@ -14,6 +16,7 @@ from trialid.diagnosis.diagnose import diagnose
 from trialid.identification.fit import identify
 
 
+@pytest.mark.study(turn="each")
 def test_a_gap_stays_beside_an_effect_that_stands_every_check(monkeypatch):
     """Here a rudder's feedback curve does; beside it forces of any shape still do more."""
     odd = SCENARIOS["odd_switch"]

@@ -83,6 +83,7 @@ def begun(folder: Path, *logs: Path) -> Starter:
     return made
 
 
+@pytest.mark.study(turn="each")
 def test_it_is_begun_as_what_it_is(tmp_path: Path) -> None:
     """Thrust over mass comes back, and half as much is left as to a rudder of the same records."""
     made = begun(tmp_path, *(logged(tmp_path / f"{k}.csv", k) for k in (1, 2, 3)))

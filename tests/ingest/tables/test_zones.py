@@ -2,10 +2,31 @@
 
 import numpy as np
 import pytest
-from test_table_logs import refused
-from test_table_templates import PLAIN, START, given
 
+from trialid.errors import LogError
 from trialid.ingest import Aids, read
+
+START = 1_699_192_800  # 2023-11-05 14:00:00 UTC
+PLAIN = """
+reviewed = true
+header = ["t", "roll"]
+time = { columns = ["t"], kind = "seconds" }
+"""
+
+
+def refused(path, aids):
+    """What is said of a log that is not read."""
+    with pytest.raises(LogError) as caught:
+        read(path, None, aids)
+    return str(caught.value)
+
+
+def given(tmp_path, content, told):
+    """A log and its template."""
+    path, aid = tmp_path / "log", tmp_path / "template.toml"
+    path.write_text(content)
+    aid.write_text(told, encoding="utf-8")
+    return path, Aids(template=aid)
 
 
 @pytest.mark.parametrize("local", ["2023-10-29 02:30:00", "2023-03-26 02:30:00"])
