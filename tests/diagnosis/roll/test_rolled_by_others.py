@@ -47,7 +47,7 @@ def told_as_unknown(fit: Fit) -> bool:
 
 
 def test_a_swells_period_is_not_told_as_her_gm() -> None:
-    """Damped by 0.03 of what is critical as any ship's, five times her GM stood without a word."""
+    """Damped by 0.037 of what is critical, as any ship, four times her GM stood without a word."""
     fit = in_swell(5.0, 83)
     assert is_wrong(fit)
     assert is_a_ships(fit.problem, fit.theta)

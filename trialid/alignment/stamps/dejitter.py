@@ -23,11 +23,11 @@ from trialid.alignment.stamps.sample_index import Vector
 from trialid.alignment.stamps.stamp_regression import FEWEST_COUNTED, Line, is_even, regress_stamps
 from trialid.alignment.stamps.time_steps import breaks, unwrap_counter, wrap_words
 
-DISTINCT = 10
-"""Different values that a stretch delivered again has at least."""
 TABLE = 0.5
 """Share of values below which a channel is the slow one of a table, and its own pace is not that of
 the rows."""
+DISTINCT = 10
+"""Different values that a stretch delivered again has at least."""
 
 
 def repair_stamps(series: Series) -> tuple[Series, tuple[str, ...]]:
