@@ -74,7 +74,7 @@ def test_the_verdict_comes_first_and_then_what_to_do(result):
     shown = lines(result, file="pipelines/a.toml")
     assert shown[1].startswith("The model lacks nonlinear yaw damping")
     place = shown.index("Next: trialid add pipelines/a.toml yaw_damping_cubic")
-    assert place < shown.index("") < [s.startswith("error, share") for s in shown].index(True)
+    assert place < shown.index("") < [s.startswith("error by RMS") for s in shown].index(True)
     run = copy.deepcopy(result)
     run["verdict"]["kind"] = "nothing missing"
     (line,) = [line for line in lines(run, file="a.toml") if line.startswith("Next: ")]

@@ -67,3 +67,17 @@ def test_the_zone_may_come_with_the_log_and_must_not_contradict(tmp_path):
     assert "its time is no date, so that zone 'Europe/Oslo' says nothing" in refused(
         path, Aids(zone="Europe/Oslo")
     )
+
+
+@pytest.mark.parametrize("zoned", [0, 1, 2])
+def test_stamps_of_which_some_state_a_zone_are_of_no_one_clock(tmp_path, zoned):
+    """Those without it were read as of UTC, two hours off the others."""
+    stamps = [f"2026-07-01T12:00:0{i}" + ("+02:00" if i == zoned else "") for i in range(3)]
+    path = tmp_path / "log"
+    path.write_text("\n".join(("t,roll", *(f"{at},{i}" for i, at in enumerate(stamps)))))
+    bare = 1 if zoned == 0 else 0
+    message = refused(path, Aids())
+    assert f"line {bare + 2}, column 't': '{stamps[bare]}' states no zone, where other" in message
+    whole = "\n".join(("t,roll", *(f"{at[:19]}+02:00,{i}" for i, at in enumerate(stamps))))
+    path.write_text(whole)
+    assert read(path).channels["roll"].t[0] == 1_782_900_000 * 10**9

@@ -220,8 +220,8 @@ def _validation(run: Result) -> Table:
         if eps is not None
     ]
     headings = ("trial", "use", *(f"{labels.label(n)} [%]" for n in names), "all outputs [%]")
-    return Table("validation", "Error by trial, as a share of the measured RMS", headings,
-                 tuple(rows))  # fmt: skip
+    title = "Error by trial, as a share of the RMS of the fitted trials"
+    return Table("validation", title, headings, tuple(rows))
 
 
 def _missing(run: Result) -> Table:

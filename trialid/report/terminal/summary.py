@@ -131,7 +131,7 @@ def _errors(run: Result, rows: Rows) -> "Table":
     outputs = list(fit.eps_rmsn_by_output)[:6]
     letters = map(labels.symbol, outputs)
     tracked = {*POSITION} & {*outputs}
-    share = "error by RMS; x, y by length" if tracked else "error, share of measured RMS"
+    share = "error by RMS; x, y by length" if tracked else "error by RMS of fitted trials"
     table = new_table(share, "use", *letters, "all", words=2)
     trials = run.trials
     shown = trials if len(trials) <= rows.trials else _worst(trials, rows.trials - 1)

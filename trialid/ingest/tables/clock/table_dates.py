@@ -116,9 +116,16 @@ def _date_text(value: Any) -> str:
 def _one_by_one(
     table: Table, columns: Sequence[int], texts: Sequence[str], form: str | None
 ) -> tuple[NDArray[np.int64], bool]:
-    """The slow way, which knows which text is none, and takes texts with and without a zone."""
+    """The slow way, which knows which text is none, or without a zone where others have one."""
     dates = [_date(table, row, columns[-1], text, form) for row, text in enumerate(texts)]
-    aware = any(date.tzinfo for date in dates)
+    zoned = [date.tzinfo is not None for date in dates]
+    aware = any(zoned)
+    if aware != all(zoned):
+        row = zoned.index(False)
+        raise LogError(
+            f"{table.where(row, columns[-1])}: {texts[row]!r} states no zone, where other rows do; "
+            "state one in every row, or in none and give its name with --zone"
+        )
     utc = (date if date.tzinfo else date.replace(tzinfo=UTC) for date in dates)
     nanos = [(date - EPOCH) // timedelta(microseconds=1) * 1000 for date in utc]
     late = next((row for row, one in enumerate(nanos) if abs(one) >= LATEST_S * 1e9), None)
