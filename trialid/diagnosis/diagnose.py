@@ -30,7 +30,7 @@ from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.search.completeness import Completeness
 from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults, with_other_fault
 from trialid.diagnosis.search.refit import Refit, refit
-from trialid.diagnosis.search.rivals import to_fit
+from trialid.diagnosis.search.rivals import foretold, to_fit
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, further_gears, look_beside
 from trialid.diagnosis.search.together import Together, two_at_once
@@ -73,7 +73,7 @@ def diagnose(
         named = _named(found, tried.refits)
         verdict, together = _or_of_several(fit, found, whole, tried.refits, asked, progress)
         verdict = settle_held_out(fit, verdict, named or together)
-        if failed is not None and together is None and (named is None or why_no_fit(named.fit)):
+        if failed is not None and together is None and not _mended(named):
             return _no_fit(fit, before, left_out, failed)
         missing = _force(force, verdict, named.fit if named else fit, asked.level, progress)
         verdict = without_gap(fit, verdict, ranking, before.split, missing, asked.level)
@@ -89,6 +89,15 @@ def diagnose(
         force=missing,
         together=together,
     )
+
+
+def _mended(named: Refit | None) -> bool:
+    """Whether a fit that carries no verdict does so with what is named, and its slope said so.
+
+    Where it did not, others that were not fitted may do more: a boat that parted from her model had
+    the name of a coefficient that she does not have in 4 of 4 records.
+    """
+    return named is not None and foretold(named) and why_no_fit(named.fit) is None
 
 
 def _of(refit: Refit | None) -> tuple[Fit, ...]:

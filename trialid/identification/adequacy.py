@@ -232,10 +232,15 @@ def _held_out_unexplained(fit: Fit) -> Inadequate | None:
 
 
 def worse_than_none(fit: Fit, score: Score) -> dict[str, float]:
-    """Shares of variance left of outputs that move, where all are foretold worse than by means."""
+    """Shares of variance left of outputs that move, where most are foretold worse than by means.
+
+    A boat that turned to the other side than her model left 74 % of her speed's, and 225 and 161 %
+    of sway and turn.
+    """
     left, seen = unexplained_share(fit, [score]), over_noise(fit, [score])
     kept = {c: x for c, x in left.items() if seen[c] > ABOVE_NOISE}
-    return kept if min(kept.values(), default=0.0) > 1.0 else {}
+    worse = sum(x > 1.0 for x in kept.values())
+    return kept if 2 * worse > len(kept) else {}
 
 
 CHECKS: Final = (

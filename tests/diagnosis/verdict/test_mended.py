@@ -55,6 +55,14 @@ def test_a_sensor_at_its_bound_stands_for_what_the_model_lacks(unstable):
     assert found.after.fit.eps_check < 0.7 * unstable.eps_check
 
 
+def test_what_its_slope_did_not_foretell_mends_nothing(unstable, monkeypatch):
+    """Others, which were not fitted for their slopes, might do more."""
+    monkeypatch.setattr(module, "foretold", lambda named: False)
+    found = diagnose(unstable, ASKED)
+    assert (found.verdict.kind, found.after) == ("no fit", None)
+    assert "delta_0 [zigzag-5]" in found.verdict.sentence
+
+
 def test_where_no_effect_alone_mends_it_a_whole_hull_may(unstable, monkeypatch):
     """And no two: they would be chosen by the slopes of a fit that stands nowhere."""
     damping = [CATALOGUE["yaw_drag_rar"]]

@@ -26,11 +26,11 @@ def to_fit(
     """
     found = _by_slope(named, ranking, refits)
     if not gives_way(named.candidate.effect, grown):
-        return () if _foretold(named) else found
+        return () if foretold(named) else found
     fitted = {r.candidate.effect.name for r in refits}
     alike = {*named.candidate.family} - fitted
     more = [c for c in ranking if c.allowed and (c in found or c.effect.name in alike)]
-    return tuple(c for c in more if her_own(c.effect) or not _foretold(named))
+    return tuple(c for c in more if her_own(c.effect) or not foretold(named))
 
 
 def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) -> tuple[str, ...]:
@@ -51,7 +51,7 @@ def rivals(named: Refit, ranking: Sequence[Candidate], refits: Sequence[Refit]) 
     good = {r.candidate.effect.name for r in as_well}
     apart = {r.candidate.effect.name for r in others} - good
     apart |= {c.effect.name for c in ranking if _has_ends(c.effect) and not c.allowed}
-    if _foretold(named):
+    if foretold(named):
         good |= {c.effect.name for c in _by_slope(named, ranking, refits)}
     close = [c.effect.name for c in ranking if c.effect.name in good and c.allowed]
     alike = [n for n in named.candidate.family[1:] if n not in close and n not in apart]
@@ -129,7 +129,7 @@ def _told(share: float) -> float:
     return max(1.0 - share, 1e-9)
 
 
-def _foretold(named: Refit) -> bool:
+def foretold(named: Refit) -> bool:
     """Whether the slope of the named effect foretold half of its fall, as a logarithm."""
     return named.candidate.carried.ratio < named.carried.ratio**RIVAL
 
