@@ -221,6 +221,7 @@ def _validation(run: Result) -> Table:
     ]
     headings = ("trial", "use", *(f"{labels.label(n)} [%]" for n in names), "all outputs [%]")
     title = "Error by trial, as a share of the RMS of the fitted trials"
+    title += "; x, y of her length" if {"x", "y"} & {*names} else ""
     return Table("validation", title, headings, tuple(rows))
 
 
