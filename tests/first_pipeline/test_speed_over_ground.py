@@ -173,3 +173,19 @@ def test_a_speed_that_is_one_number_throughout_is_offered_as_the_stated_one(
     np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.5g")
     with pytest.raises(LogError, match="add --speed KNOTS"):
         starter([inspect_log(path)], tmp_path / "p.toml", None, Given(length=150.0))
+
+
+@pytest.mark.parametrize(
+    ("head", "told"), [("through_kn", True), ("fwd [m/s]", True), ("loading_t", False)]
+)
+def test_what_moves_in_a_unit_of_speeds_and_is_not_read_is_told(
+    tmp_path: Path, head: str, told: bool
+) -> None:
+    """So that nobody states one speed for all who has recorded it."""
+    path = log(tmp_path / "z.csv", ZIGZAG, 0.9, 1.0)
+    lines = path.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join([f"Time,HDG,Rudder [deg],{head},RPM", *lines[1:]]), encoding="utf-8")
+    with pytest.raises(LogError, match="add --speed KNOTS") as caught:
+        starter([inspect_log(path)], tmp_path / "p.toml", None, Given(length=150.0))
+    name = head.partition(" ")[0]
+    assert (f"call the channel that is it stw: '{name}' moves" in str(caught.value)) is told

@@ -40,7 +40,8 @@ def fit_in(world: World, effects: str) -> Any:
     return SimpleNamespace(effects=effects, eps_rmsn=eps, eps_check=check, converged=True,
                            at_bounds={}, eps_by_output={"r": eps}, eps_check_by_output={},
                            model=SimpleNamespace(values={}, displaced_by=lambda effect: ()),
-                           problem=SimpleNamespace(weights=np.ones(1)))  # fmt: skip
+                           problem=SimpleNamespace(weights=np.ones(1), unknowns=()),
+                           theta=np.zeros(0))  # fmt: skip
 
 
 def with_(effects: str, more: str) -> str:

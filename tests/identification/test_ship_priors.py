@@ -169,7 +169,8 @@ def test_a_share_is_told_and_a_contradiction_too():
     fit = fitted(wrong, free=("Nv", "Nr", "Ndelta", "Nvav"), amplitude=20)
     found = diagnose(fit, candidates={}).result
     words = prior_words(found.physical)
-    assert re.match(r"Known beforehand, as a share of what is known now: Nr [0-9.]+", words)
+    assert words.startswith("The record contradicts what was known of Nr: -0.00")
+    assert re.search(r"Known beforehand, as a share of what is known now: Nr [0-9.]+", words)
     assert "contradicts what was known of Nr: -0.00" in words
     [row] = [r for r in found.physical if r.name == "Nr"]
     assert row.off_prior < -3.0

@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from trialid.cli.main import commands
+from trialid.names import wording
 from trialid.report.pages.page import page
 from trialid.result import json_file
 
@@ -82,6 +83,27 @@ def test_one_sailed_otherwise_has_the_range_of_the_run_and_as_much_about_her_own
     assert "rudder at 4 deg/s" in other["imo_sailed"]
 
 
+def test_what_a_run_may_lack_is_told_beside_the_errors_that_are_promised(folder, result):
+    """Of each parameter that it may move by more than is promised, and of no other."""
+    noisy = DESIGN.replace("r = 0.05, phi = 0.1", "r = 0.3, phi = 0.6")
+    planned = design(folder, noisy)
+    promised = {p["name"]: p["relative_error"] for p in planned["tests"][0]["rating"]["parameters"]}
+    lacks = {row.name: row.undermodelling_error for row in result.physical}
+    beyond = {n: lacks[n] for n in planned["wanted"] if lacks[n] > promised[n]}
+    assert 0 < len(beyond) < len(planned["wanted"])
+    doubt = planned["error_doubt"]
+    assert doubt.startswith(f"In the run it builds on (its verdict: {result.verdict.kind}) what")
+    for name in planned["wanted"]:
+        share = wording.percent(lacks[name], 2)
+        assert (f" {name} by {share}" in doubt) is (name in beyond)
+    shown = " ".join(said("design", folder / "design.toml", "--out", folder / "plan").split())
+    assert ", were the model complete " in shown.partition("parameter by parameter")[0]
+    assert " ".join(doubt.split()) in shown
+    alone = design(folder, DESIGN.replace('run = "out"\n', ""))
+    assert alone["error_doubt"] == ""
+    assert "were the model" not in said("design", folder / "design.toml", "--out", folder / "plan")
+
+
 def test_the_page_says_how_the_ship_is_sailed(result):
     """Gear as in the logs, 2.5 deg/s; the speed comes from them, and so does what turns cost."""
     assert result.sailed.rudder_rate == pytest.approx(0.0436, rel=0.03)
@@ -116,6 +138,8 @@ def test_a_run_without_a_fit_relies_on_none(folder):
     said("run", folder / "quiet.toml", "--quiet", "--out", folder / "quiet")
     found = json_file.read(folder / "quiet" / "result.json", "")
     assert found.verdict.kind == "no fit"
+    assert (found.split.noise, found.split.undermodelling) == (None, None)
+    assert "carries no verdict tells neither" in found.split.why
     assert found.imo.doubt == (
         "The fit carries no verdict: none of these numbers is to be relied on."
     )

@@ -54,6 +54,34 @@ def test_errors_verdicts_and_models_stand_side_by_side(result, other):
     assert fitted[1].value == pytest.approx(100.0 * result["fit"]["eps_rmsn"])
 
 
+def test_what_is_simulated_fitted_and_which_ship_it_is_stands_in_the_models(result, other):
+    other["model"]["states"] = [*other["model"]["states"], "u"]
+    result["model"]["outputs"], other["model"]["outputs"] = ["r", "phi"], ["r"]
+    result["model"]["ship"], other["model"]["ship"] = "a tanker", "a boat of 2.4 m"
+    rows = {row[0]: row[1:] for row in made(result, other)["models"].rows}
+    assert rows["simulated u"] == ("no", "yes")
+    assert rows["fitted phi"] == ("yes", "no")
+    assert rows["ship a boat of 2.4 m"] == ("no", "yes")
+    assert rows["ship a tanker"] == ("yes", "no")
+
+
+def test_a_run_without_a_fit_differs_in_nothing_that_can_be_told(result, other):
+    gone = other["accuracy"]["parameters"].pop(2)["name"]
+    other["verdict"]["kind"] = "no fit"
+    for row in made(result, other)["parameters"].rows:
+        if row[0] == gone:  # it has none, and says nothing of it
+            assert row[-1] == "cannot tell"
+        else:
+            assert row[-2:] == (Figure(None), "cannot tell: no fit")
+
+
+def test_what_was_only_proposed_is_not_shown_as_done(result, other):
+    result["history"][-1] |= {"step": "proposed", "added": "cross_flow_drag"}
+    other["history"][-1] |= {"step": "added", "added": "cross_flow_drag"}
+    done = [row[2] for row in made(result, other)["history"].rows if "cross_flow" in row[2]]
+    assert done == ["+ cross_flow_drag (proposed, not in the file)", "+ cross_flow_drag"]
+
+
 def test_stacked_tables_hold_every_row_of_both(result, other):
     tables = made(result, other)
     for each in run_tables.tables(result_of(result)):

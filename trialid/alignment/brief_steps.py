@@ -26,9 +26,6 @@ from trialid.alignment.spikes import (
 from trialid.arrays import Mask, Vector
 from trialid.names.quantities import SIGNALS, is_input
 
-STOPPED_S: Final = 5.0
-"""[s] No ship stops and is as fast again in less: boats of a few metres take three lengths to stop
-from full astern, models of a basin ten seconds; nor does one stop to turn or to heel so briefly."""
 ORDER: Final = "delta_order"
 """What somebody may well set to zero, or anywhere, and back; so may a signal of one's own be."""
 
@@ -52,7 +49,10 @@ class _Runs:
 
 
 def long_dropouts(series: Series, zero: float) -> Iterator[Fault]:
-    """Exact zeros for a time too short to stop and start again, far from zero on both sides."""
+    """Exact zeros that a motion jumps to and from, or an input for less than a shaft can stop.
+
+    However long: no ship stops within a sample, nor does one stop to turn or to heel.
+    """
     s = available_samples(series)
     null = np.isclose(series.y[s.at], zero, rtol=0.0, atol=1e-12)
     if not null.any() or null.mean() > MOST_ZEROS or _ordered(series):
@@ -63,9 +63,11 @@ def long_dropouts(series: Series, zero: float) -> Iterator[Fault]:
     jump = np.minimum(np.abs(before - low), np.abs(after - high))
     steps = np.abs(np.diff(s.y))[~(null[1:] | null[:-1])]
     far = max(SHARP * usual_size(steps[steps > 0.0]), 4.0 * resolution(s.y)) if steps.any() else 0.0
-    limit = PULSE_S if is_input(series.quantity) else STOPPED_S
-    found = (jump > far) & (np.abs(after - before) < jump / 2) & (far > 0.0)
-    found &= _lasting(s, runs, WIDEST_DROPOUT, limit)
+    found = (jump > far) & (far > 0.0)
+    if is_input(series.quantity):
+        found &= np.abs(after - before) < jump / 2
+        found &= s.t[runs.last + 1] - s.t[runs.first - 1] <= PULSE_S
+    found &= _whole(s, runs) & (runs.last - runs.first + 1 > WIDEST_DROPOUT)
     yield from _fault(series, s, runs.those(found), "dropouts", "dropped to zero", sure=True)
 
 
@@ -80,7 +82,8 @@ def long_spikes(series: Series, zero: float) -> Iterator[Fault]:
     if not len(sharp) or len(sharp) > MOST_SPIKES * len(s.y):
         return
     runs = _there_and_back(steps, sharp)
-    runs = runs.those(_lasting(s, runs, WIDEST_SPIKE, PULSE_S))
+    brief = s.t[runs.last + 1] - s.t[runs.first - 1] <= PULSE_S
+    runs = runs.those(_whole(s, runs) & brief & (runs.last - runs.first + 1 > WIDEST_SPIKE))
     edges = np.minimum(size[runs.first - 1], size[runs.last])
     others = np.ones(len(size), np.bool_)
     others[runs.first - 1] = others[runs.last] = False
@@ -108,12 +111,10 @@ def _runs(null: Mask) -> _Runs:
     return _Runs(first[: len(last)], last)
 
 
-def _lasting(s: Samples, runs: _Runs, widest: int, limit: float) -> Mask:
-    """Runs of more than `widest` samples, without a hole in them, that last no longer than that."""
+def _whole(s: Samples, runs: _Runs) -> Mask:
+    """Runs without a hole in them, or beside them."""
     holes = np.cumsum(~s.near)
-    whole = holes[runs.last + 1] == holes[runs.first - 1]
-    brief = s.t[runs.last + 1] - s.t[runs.first - 1] <= limit
-    return np.asarray(whole & brief & (runs.last - runs.first + 1 > widest))
+    return np.asarray(holes[runs.last + 1] == holes[runs.first - 1])
 
 
 def _there_and_back(steps: Vector, sharp: np.ndarray) -> _Runs:

@@ -20,7 +20,7 @@ from trialid.diagnosis.gap_untold import without_gap
 from trialid.diagnosis.left_by_check import with_held_out
 from trialid.diagnosis.left_out_motion import with_motion
 from trialid.diagnosis.meant_as_well import beside_others
-from trialid.diagnosis.noise.noise_bound import held_against
+from trialid.diagnosis.noise.noise_bound import OF_NO_FIT, held_against
 from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
 from trialid.diagnosis.plain_damping import dampings
@@ -213,7 +213,7 @@ def _no_fit(
 ) -> Diagnosis:
     """Nothing is concluded from a fit that carries no verdict: no ranking, no names."""
     return Diagnosis(
-        before=before,
+        before=replace(before, split=OF_NO_FIT),
         left_out=left_out,
         verdict=settle(fit, Verdict("no fit", None, (), f"no fit: {failed}")),
         where=where(fit),

@@ -8,7 +8,6 @@ sensors are its own and count for nothing.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 from scipy.special import fdtrc  # scipy.stats would take another 0.4 s to import
@@ -19,15 +18,11 @@ from trialid.diagnosis.objections import SEEN
 from trialid.diagnosis.search.falls import fall, fall_of_all, fall_of_check
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.verdict import SHARE, Verdict
+from trialid.identification.check.own_sensor import OWN
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import row_scale, stretches_of
 from trialid.identification.remarks import zero_between_trials
 from trialid.identification.trial_score import check_rows
-
-OWN: Final = 1.5
-"""Times what is left in held-out trials with sensors of their own that they leave with the others',
-from which on it is told. Of zig-zags on a pond 1.7; of 64 simulated outputs whose zeros noise alone
-moves 1.003 at most, so half as far beyond one tells of none; twice as far not of the pond."""
 
 Piece = tuple[Vector, Mask]
 """The residual of one output of one trial, and where it was compared; (N,) each."""

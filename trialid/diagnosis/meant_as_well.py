@@ -154,7 +154,7 @@ def held_before(fit: Fit, named: Refit | None, freed: Freed) -> Verdict:
     )
     said = (
         f"{begun}, off by at most twice what is known of each: to {other}, by {which}. "
-        "No effect has to be missing: free all of them first, and look again"
+        "Free all of them before any effect is added, and look again"
     )
     return Verdict("cannot tell", None, (), said, held_as_well=freed.moved)
 

@@ -5,8 +5,9 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from trialid.diagnosis.best_refit import best_of
+from trialid.diagnosis.best_refit import best_of, choose_best
 from trialid.diagnosis.found_values import (
+    SURE,
     as_slow_as_the_ship,
     at_a_sensors_end,
     by_heading,
@@ -14,6 +15,7 @@ from trialid.diagnosis.found_values import (
     her_own,
     is_not_there,
     late_sensor,
+    leaves_priors,
     mostly_at_ends,
     no_such_mass,
     no_wind,
@@ -115,7 +117,7 @@ def likeliest_refit(
         and not _looks_like_the_ship(fit, r, refits, level, grown)
         and not is_plain_damping(r, [o for o in refits if o.fit.converged], level)
     ]
-    best = best_of(able, level, grown)
+    best = choose_best(fit, able, level, grown)
     if best is None or grown:  # what is added later is held against these trials step by step
         return best
     ahead = [r for r in able if _foretells_more(fit, r, best)]
@@ -208,7 +210,8 @@ class Rolled(Refitted, Protocol):
 def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
     shown = refit.candidate.shown(level) or _takes_most(fit, refit)
-    if not shown or any(no_such(*_found(refit)) for no_such in NO_SUCH_VALUE):
+    elsewhere = leaves_priors(fit, refit.fit, SURE)
+    if not shown or elsewhere or any(no_such(*_found(refit)) for no_such in NO_SUCH_VALUE):
         return "chance would do it, or no ship and no sensor has such a value"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
         return NOT_ARRIVED

@@ -9,7 +9,7 @@ from typing import Final
 
 from trialid import own_files
 from trialid.errors import TrialidError
-from trialid.fleet.changes import changes, remarks
+from trialid.fleet.changes import changes, remarks, told_from
 from trialid.fleet.dask_workers import Pack, check_threads, connect, results
 from trialid.fleet.do_run import Done, failure_row
 from trialid.fleet.finished_runs import (
@@ -183,7 +183,7 @@ def _write(fleet: FleetFile, folder: Path, kept: Sequence[Kept], anew: int) -> B
     runs = tuple(each.row for each in kept)
     fitted = tuple(row for each in kept for row in each.fitted)
     found = tuple(changes(runs, fitted))
-    known = remarks(runs)
+    known = (*remarks(runs), *told_from(runs, fitted, found))
     made = Batch(
         name=fleet.name,
         folder=folder,

@@ -7,6 +7,7 @@ import numpy as np
 
 from trialid.accuracy.parameter_table import Accuracy
 from trialid.identification.approach import approach_speed
+from trialid.identification.check.own_sensor import own_sensors
 from trialid.identification.fit import Fit
 from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.roll.own_roll import damped_by, is_a_ships, is_rolled_by_others
@@ -101,6 +102,7 @@ def remarks(fit: Fit) -> tuple[str, ...]:
     ]
     weak = ["the search was slow to the end: some parameters can hardly be told apart"]
     return (
+        *own_sensors(fit),
         *_untold_GM(fit),
         *bounds,
         *against,

@@ -48,7 +48,8 @@ PHRASES: Final = {
     "kompasskurs, kreiselkurs, cap vrai, cap compas, prua, rumbo verdadero, rumbo aguja",
     "u": "stw, sow, speed through water, speed water, water speed, speed log, log speed, "
     "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
-    "forward velocity, longitudinal speed, longitudinal velocity, long speed, vitesse surface, "
+    "fwd speed, speed fwd, speed forward, speed ahead, forward velocity, longitudinal speed, "
+    "longitudinal velocity, long speed, vitesse surface, "
     "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fart gjennom vannet, fdw, "
     "fart genom vattnet, fd w, dvl u, vel u, velocity u, loch, corredera",
     "v": "sway speed, sway velocity, sway vel, vel sway, lateral speed, lateral velocity, "

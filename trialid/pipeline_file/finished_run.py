@@ -26,6 +26,8 @@ class FinishedRun:
         How the ship is sailed where she is predicted.
     intervals
         The value of each standard measure with its 95 % range.
+    model_errors
+        How far what the model lacks or holds may move each fitted parameter, a share of its size.
     """
 
     values: Mapping[str, float] = field(default_factory=dict)
@@ -34,6 +36,7 @@ class FinishedRun:
     speed_lost: Mapping[str, float] = field(default_factory=dict)
     rudders_zero: float | None = None
     intervals: Mapping[str, tuple[float, tuple[float, float]]] = field(default_factory=dict)
+    model_errors: Mapping[str, float] = field(default_factory=dict)
     verdict: str = ""
     effects: tuple[str, ...] = ()
 
@@ -78,6 +81,7 @@ def _read(pipeline: DesignFile, file: Path) -> FinishedRun:
             speed_lost=_numbers(sailed.get("speed_lost")),
             rudders_zero=None if zero is None else float(zero),
             intervals=_intervals(result.get("imo")),
+            model_errors={p["name"]: float(p.get("undermodelling_error") or 0.0) for p in rows},
             verdict=str((result.get("verdict") or {}).get("kind", "")),
             effects=effects,
         )

@@ -45,6 +45,18 @@ def test_a_speed_of_zero_for_seconds_is_no_speed_at_any_rate(rate, lasting):
     assert words.endswith("masked")
 
 
+@pytest.mark.parametrize("rate", [1.0, 2.0])
+@pytest.mark.parametrize("lasting", [11.5, 20.0, 30.0])
+def test_a_rate_and_a_speed_of_zero_for_as_long_as_a_tanker_needs_are_lost(rate, lasting):
+    """Of 300 m, logged once a second: both end elsewhere than they began, by then."""
+    t = at(rate, 900.0)
+    lost = (t > 400.0) & (t < 400.0 + lasting)
+    noise = np.random.default_rng(3).normal(scale=2e-5, size=len(t))
+    for quantity, y in (("r", 4e-3 * np.cos(0.015 * t)), ("u", 7.0 + 0.6 * np.cos(0.03 * t))):
+        found, _ = masked(quantity, t, np.where(lost, 0.0, y + noise))
+        assert found.tolist() == lost.tolist()
+
+
 def test_motions_that_are_lost_at_once_are_all_lost():
     t = at(50.0)
     lost = (t > 20.0) & (t < 20.6)
@@ -102,9 +114,9 @@ REAL = {
         "n",
         lambda t: np.where((t > 20.0) & (t < 22.0), 0.0, 10.0 + 0.05 * np.sin(9.0 * t)),
     ),
-    "a speed of zero for longer than that": (
-        "u",
-        lambda t: np.where((t > 10.0) & (t < 15.5), 0.0, speed(t)),
+    "an order of revolutions that stops her for a while": (
+        "n",
+        lambda t: np.where((t > 10.0) & (t < 30.0), 0.0, 10.0 + 0.05 * np.sin(9.0 * t)),
     ),
 }
 

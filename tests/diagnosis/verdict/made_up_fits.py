@@ -22,6 +22,7 @@ def fit(eps, check=None, converged=True):
         at_bounds={},
         eps_check_by_output={} if check is None else {"r": check},
         problem=SimpleNamespace(weights=np.ones(1), unknowns=(), roll=None),
+        theta=np.zeros(0),
         model=SimpleNamespace(displaced_by=lambda effect: ()),
     )
 

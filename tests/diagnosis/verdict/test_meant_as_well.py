@@ -156,8 +156,8 @@ def test_where_what_is_held_does_as_well_nothing_has_a_name(without_two):
     before, after = (f"{fit.eps_rmsn:.2%}" for fit in (without_two, named.fit))
     assert found.sentence == (
         f"yaw_drag_rar takes the error from {before} to {after}, and numbers that are held do as "
-        f"well, off by at most twice what is known of each: to {after}, by m and Yv most of 3. No "
-        "effect has to be missing: free all of them first, and look again"
+        f"well, off by at most twice what is known of each: to {after}, by m and Yv most of 3. "
+        "Free all of them before any effect is added, and look again"
     )
 
 

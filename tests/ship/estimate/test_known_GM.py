@@ -66,7 +66,8 @@ def test_start_frees_the_inertia_where_GM_is_the_surer(given, freed, tmp_path):
     done = CliRunner().invoke(commands, asked)
     assert done.exit_code == 0, done.output
     text = path.read_text(encoding="utf-8")
-    assert ('"GM", "I_xx"]' in text) == freed
+    assert ('"GM", "I_xx", "Kvdot", "Ypdot"]' in text) == freed
+    assert ("# Kvdot and Ypdot weigh roll moments against GM" in text) == freed
     assert ("# GM is known, and a roll tells its ratio to I_xx" in text) == freed
     assert ti.read_ship(tmp_path / "mine_ship.toml").coefficients.keys() >= {"GM"}
 

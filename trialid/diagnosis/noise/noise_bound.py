@@ -27,6 +27,9 @@ SLOW: Final = 0.5
 noise of sensors, waves and turbulence has at most 0.2, zig-zags in wind without the wind 0.75. At
 half of it these verdicts are the same, twice doubts nothing."""
 
+OF_NO_FIT: Final = Split("not separable", "a fit that carries no verdict tells neither")
+"""What is said of both where nothing is concluded."""
+
 
 def held_against(
     chosen: Split,

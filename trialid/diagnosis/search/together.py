@@ -14,7 +14,7 @@ from itertools import combinations
 
 import numpy as np
 
-from trialid.diagnosis.found_values import her_own
+from trialid.diagnosis.found_values import SURE, her_own, leaves_priors
 from trialid.diagnosis.noise.thinning import on_every_sample, with_means
 from trialid.diagnosis.objections import follows_a_swell, outputs_beside
 from trialid.diagnosis.records.course_keeping import by_the_rudder, gained_on_course
@@ -119,6 +119,7 @@ def stands(fit: Fit, one: Together) -> bool:
     return (
         one.arrives
         and held
+        and not leaves_priors(fit, one.fit, SURE)
         and not outputs_beside(fit, one)
         and fall(fit, one) > 1.0 - LARGE
         and one.carried.large

@@ -20,9 +20,9 @@ FEWEST: Final = 6
 
 def changes(runs: Iterable[RunRow], fitted: Iterable[FittedRow]) -> Iterator[ChangeRow]:
     """Every change in a fleet's records, and what varies otherwise, ship by ship."""
-    records = list(_records(with_a_say(runs), each_of_voyage(fitted)))
+    records = list(records_of(with_a_say(runs), each_of_voyage(fitted)))
     for rows in records:
-        estimates, unit = _estimates(rows)
+        estimates, unit = estimates_of(rows)
         found = explain(estimates, LEVEL / len(records))
         told = [_row(rows, estimates, each) for each in found.changes]
         if found.varies and rows[0].kind == "physical":  # what is each trial's may
@@ -44,7 +44,7 @@ def is_sound(row: RunRow) -> bool:
     return row.failure is None and row.verdict != "no fit"
 
 
-def _records(runs: Sequence[RunRow], fitted: Iterable[FittedRow]) -> Iterator[list[FittedRow]]:
+def records_of(runs: Sequence[RunRow], fitted: Iterable[FittedRow]) -> Iterator[list[FittedRow]]:
     """The records that are long enough: a parameter of a ship in one model, done in one way."""
     models = {row.run: row.model for row in runs}
     courses: dict[tuple[object, ...], list[FittedRow]] = {}
@@ -56,7 +56,7 @@ def _records(runs: Sequence[RunRow], fitted: Iterable[FittedRow]) -> Iterator[li
     yield from (rows for rows in courses.values() if len(rows) >= FEWEST)
 
 
-def _estimates(rows: Sequence[FittedRow]) -> tuple[Estimates, float]:
+def estimates_of(rows: Sequence[FittedRow]) -> tuple[Estimates, float]:
     """Estimates in units of their usual deviation, and that unit."""
     x = np.array([row.value for row in rows], dtype=float)
     deviation = np.array([_deviation(row) for row in rows])

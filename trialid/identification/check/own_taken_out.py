@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from trialid.identification.check.own_start import OwnRows, columns_of_its_own, 
 from trialid.identification.output_error import Problem
 from trialid.simulation.integrate import respond, starts_of
 from trialid.trial import Trial
+
+TINY: Final = 1e-300
+"""What nothing counts as where it is divided by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,10 +26,14 @@ class OwnTakenOut:
         Normed as the rows of the fit, one output after the other; (M,).
     psi
         What they move by with the parameters that all trials share; (M, n_shared).
+    alone
+        Of each sensor: how far it is off the others' mean if it alone is the trial's own, and what
+        is left then, as a share of what is left with none.
     """
 
     residual: Vector
     psi: Vector
+    alone: Mapping[str, tuple[float, float]]
 
 
 def own_taken_out(
@@ -54,8 +62,23 @@ def own_taken_out(
     places = [problem.simulator.columns.index(c) for c in (*sensors, *shared)]
     slopes = np.zeros((len(gap), len(places)))
     slopes[: len(gap) - len(starts)] = rows.taken(response.S[:, :, places])
-    own = np.column_stack([by_start, slopes[:, : len(sensors)]])
-    both = np.column_stack([gap, slopes[:, len(sensors) :]])
-    left = both - own @ np.linalg.lstsq(own, both, rcond=None)[0]
+    of_sensors, of_shared = slopes[:, : len(sensors)], slopes[:, len(sensors) :]
+    own = np.column_stack([by_start, of_sensors])
+    left = _less(own, np.column_stack([gap, of_shared]))
     measured = left[: len(gap) - len(starts)]
-    return OwnTakenOut(measured[:, 0], measured[:, 1:])
+    each = _alone(_less(by_start, np.column_stack([gap, of_sensors])))
+    return OwnTakenOut(measured[:, 0], measured[:, 1:], dict(zip(sensors, each, strict=True)))
+
+
+def _less(own: Vector, rows: Vector) -> Vector:
+    """Columns less what these columns reach of them."""
+    return rows - own @ np.linalg.lstsq(own, rows, rcond=None)[0] if own.size else rows
+
+
+def _alone(columns: Vector) -> list[tuple[float, float]]:
+    """Of each column after the first: its coefficient in the first, and what it leaves of that."""
+    gap, slopes = columns[:, 0], columns[:, 1:]
+    sizes = np.maximum(np.einsum("ij,ij->j", slopes, slopes), TINY)
+    off = slopes.T @ gap / sizes
+    left = np.linalg.norm(gap[:, None] - slopes * off, axis=0) / max(np.linalg.norm(gap), TINY)
+    return [(float(a), float(b)) for a, b in zip(off, left, strict=True)]

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -79,12 +79,16 @@ def _parameters(runs: Sequence[Shown]) -> Table:
         label = each.label
         headings += [label, f"+- ({label})", f"likely from ({label})", f"likely to ({label})"]
     names = dict.fromkeys(name for rows in found for name in rows)
-    rows = tuple(_parameter(name, [rows.get(name) for rows in found]) for name in names)
+    fits = [each.run.verdict.kind != "no fit" for each in runs]
+    rows = tuple(_parameter(name, [rows.get(name) for rows in found], fits) for name in names)
     return Table("parameters", "Parameters by run, with standard errors and likely ranges",
                  (*headings, "apart, in joint errors", "differ"), rows)  # fmt: skip
 
 
-def _parameter(name: str, rows: Sequence[ParameterRow | None]) -> tuple[Cell, ...]:
+def _parameter(
+    name: str, rows: Sequence[ParameterRow | None], fits: Sequence[bool]
+) -> tuple[Cell, ...]:
+    """A parameter of each run; those without a fit say nothing of it."""
     known = [row for row in rows if row is not None]
     units = list(dict.fromkeys(wording.shown_unit(row.unit)[0] for row in known))
     cells: list[Cell] = []
@@ -95,6 +99,8 @@ def _parameter(name: str, rows: Sequence[ParameterRow | None]) -> tuple[Cell, ..
         cells += [value, Figure(error, 2), *ends]
     if len(units) > 1:
         return name, " or ".join(units), *cells, Figure(None), "other units"
+    if not all(fit for fit, row in zip(fits, rows, strict=True) if row is not None):
+        return name, units[0], *cells, Figure(None), "cannot tell: no fit"
     distance = joint_distance([(row.value, row.standard_error) for row in known])
     return name, units[0], *cells, Figure(distance, 2), _differ(distance, known)
 
@@ -137,14 +143,19 @@ _PARTS: Final[Mapping[Part, str]] = {"noise": "noise", "undermodelling": "model"
 
 
 def _effects(runs: Sequence[Shown]) -> Table:
-    """Effects and free parameters that not every run has."""
-    held: list[set[str]] = [
-        {f"effect {e}" for e in each.run.model.effects} | {f"free {p}" for p in each.run.model.free}
-        for each in runs
-    ]
+    """What not every run has: effects, free parameters, what is simulated and fitted, the ship."""
+    held = [{*_parts(each.run)} for each in runs]
     names = sorted(held[0].union(*held) - held[0].intersection(*held))
     rows = tuple((name, *("yes" if name in own else "no" for own in held)) for name in names)
     return Table("models", "What the models differ in", ("of the model", *_of(runs)), rows)
+
+
+def _parts(run: Result) -> Iterator[str]:
+    """Of a model, each in words."""
+    model = run.model
+    named = {"effect": model.effects, "free": model.free, "simulated": model.states}
+    named |= {"fitted": model.outputs, "ship": (model.ship,) if model.ship else ()}
+    return (f"{what} {name}" for what, names in named.items() for name in names)
 
 
 def _of(runs: Sequence[Shown]) -> tuple[str, ...]:

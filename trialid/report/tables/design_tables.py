@@ -29,7 +29,9 @@ def tables(design: Design) -> list["RenderableType"]:
     """Everything a design says, in reading order: the best test first."""
     tests, wanted = design["tests"], design["wanted"]
     best = next((t for t in tests if t["name"] == design["best"]), None)
-    shown: list[RenderableType] = [_best(best, len(tests), wanted), _tests(tests, wanted), ""]
+    doubt = design.get("error_doubt", "")
+    first = _best(best, len(tests), wanted, doubt)
+    shown: list[RenderableType] = [first, _tests(tests, wanted), ""]
     for test in tests:
         shown += _broken(test)
         shown += [Words(f"{test['name']}: {remark}", 3, "yellow") for remark in test["remarks"]]
@@ -37,6 +39,7 @@ def tables(design: Design) -> list["RenderableType"]:
         shown += [
             Words(f"{best['name']}, parameter by parameter, what to expect of a fit:", 2, "bold"),
             _parameters(best["rating"], wanted),
+            *([Words(doubt, 4, "yellow")] if doubt else []),
             Words(MEANING, 4, "dim"),
             "",
         ]
@@ -49,13 +52,14 @@ def tables(design: Design) -> list["RenderableType"]:
     return shown
 
 
-def _best(best: Mapping[str, Any] | None, of: int, wanted: Sequence[str]) -> Words:
+def _best(best: Mapping[str, Any] | None, of: int, wanted: Sequence[str], doubt: str) -> Words:
     """Which test to sail, before all figures."""
     if best is None:
         return Words("No test keeps the limits.", 1, "bold red")
     error, name = _worst(best["rating"], wanted)
+    complete = ", were the model complete" if doubt else ""
     rank = f"Best of {of}: " if of > 1 else ""
-    said = f"{rank}{best['name']}; largest error to expect: {error}, of {name}"
+    said = f"{rank}{best['name']}; largest error to expect: {error}, of {name}{complete}"
     return Words(said, 2, "bold")
 
 

@@ -6,7 +6,7 @@ from trialid.names import labels, wording
 from trialid.report.pictures import error_history
 from trialid.report.tables import imo_tables
 from trialid.report.tables.rounded_table import Cell, Figure, Table, by_error, percent
-from trialid.result.change_rows import MovedRow
+from trialid.result.change_rows import MovedRow, StepRow
 from trialid.result.finding_rows import ForceEquationRow
 from trialid.result.fit_rows import Interval, LeversPart, ParameterRow, PartsRow, SplitPart
 from trialid.result.schema import Result
@@ -157,7 +157,7 @@ def _split(run: Result) -> Table:
 def _history(run: Result) -> Table:
     rows = tuple(
         (
-            Figure(place), error_history.step_words(row), percent(row.eps_rmsn), percent(row.noise),
+            Figure(place), _step(row), percent(row.eps_rmsn), percent(row.noise),
             percent(row.undermodelling), *ends(error_history.interval(row, run)),
             percent(row.eps_rmsn_check), row.verdict or "",
         )
@@ -166,6 +166,12 @@ def _history(run: Result) -> Table:
     headings = ("step", "what was done", "error [%]", "noise [%]", "model [%]", "model from",
                 "model to", "held out [%]", "verdict on it")  # fmt: skip
     return Table("history", "How the error fell", headings, rows)
+
+
+def _step(row: StepRow) -> str:
+    """What was done, or only proposed."""
+    words = error_history.step_words(row)
+    return f"{words} (proposed, not in the file)" if row.step == "proposed" else words
 
 
 def _change(run: Result) -> Table:

@@ -240,7 +240,7 @@ def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     if said := f"{doubt.doubtful(found)} {doubt.widest_range(run)}".strip():
         yield Words(said, 3)
     if known := beforehand.prior_words(found):
-        yield Words(plain(known), 2)
+        yield Words(plain(known), 3)
     if run.fit.remarks:
         yield Words(f"{'; '.join(run.fit.remarks)}.", 3)
 

@@ -1,4 +1,4 @@
-"""What was known before the record, in words: how much of it is left, what speaks against it."""
+"""What was known before the record, in words: what speaks against it, how much of it is left."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -21,13 +21,13 @@ NAMED: Final = 8
 
 
 def prior_words(parameters: Sequence[ParameterRow]) -> str:
-    r"""How much of each parameter is its prior's, and which priors the record contradicts.
+    r"""Which priors the record contradicts, and how much of each parameter is its prior's.
 
     >>> rows = [ParameterRow(name="Yr", value=2.9, prior=(3.0, 1.0), prior_share=0.9),
     ...         ParameterRow(name="Nr", value=-6.0, prior=(-2.0, 1.0), prior_share=0.04)]
     >>> print(prior_words(rows).replace(wording.THIN, " ").replace(". ", ".\n"))
-    Known beforehand, as a share of what is known now: Yr 90 %, Nr 4.0 %.
     The record contradicts what was known of Nr: -6, where -2 +-1 was expected (4.1 deviations).
+    Known beforehand, as a share of what is known now: Yr 90 %, Nr 4.0 %.
     >>> prior_words(rows[:0])
     ''
     """
@@ -41,16 +41,17 @@ def prior_words(parameters: Sequence[ParameterRow]) -> str:
         shares = [f"less than {wording.percent(LEAST, 1)} of each"]
     more = f" and {len(held) - len(telling)} more, less" if 0 < len(telling) < len(held) else ""
     listed = f"Known beforehand, as a share of what is known now: {', '.join(shares)}{more}."
-    return " ".join([listed, *(contradictions(held))])
+    return " ".join([*contradictions(held), listed])
 
 
 def contradictions(parameters: Sequence[ParameterRow]) -> list[str]:
-    """A sentence for each prior that the record contradicts, or that the fit alone left.
+    """A sentence for each prior, worst first, that the record contradicts or the fit alone left.
 
     An estimate that may be off as far contradicts nothing: of a GM that was known, where the
     inertia in roll was not, the record tells their ratio alone.
     """
     far = [row for row in parameters if abs(row.off_prior or 0.0) > CONTRADICTS]
+    far.sort(key=lambda row: -abs(row.off_prior or 0.0))
     return [_away(row) if _may_be_as_known(row) else _against(row) for row in far]
 
 

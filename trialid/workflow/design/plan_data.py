@@ -6,10 +6,12 @@ import numpy as np
 
 from trialid.design.ordered_signals import ordered_signals
 from trialid.names.quantities import SIGNALS, Quantity
+from trialid.pipeline_file.finished_run import finished_run
 from trialid.report.files import design_data
 from trialid.version import VERSION
 from trialid.workflow.design import design_imo
-from trialid.workflow.design.design_run import Plan
+from trialid.workflow.design.design_run import Plan, Rated
+from trialid.workflow.design.error_doubt import error_doubt
 
 
 def steering(plan: Plan) -> dict[str, Quantity]:
@@ -23,6 +25,11 @@ def _recorded(plan: Plan) -> list[str]:
     outputs, still = plan.pipeline.identify.outputs, plan.ship.vessel.constants
     names = [*steering(plan), *outputs, *(n for n in still if n in known), "psi", "u"]
     return [known[n].meaning.partition(",")[0] for n in dict.fromkeys(names)]
+
+
+def _error_doubt(plan: Plan, best: Rated) -> str:
+    """What the errors of the best programme rest on."""
+    return error_doubt(best.outcome.rating, plan.ship.goal.wanted, finished_run(plan.pipeline))
 
 
 def plain(plan: Plan) -> dict[str, Any]:
@@ -50,6 +57,7 @@ def plain(plan: Plan) -> dict[str, Any]:
         "roll_period": 2.0 * np.pi / plan.ship.roll_frequency,
         "tests": tests,
         "best": None if best is None else best.name,
+        "error_doubt": "" if best is None else _error_doubt(plan, best),
         "separation": design_data.of_separation(plan.separation),
         **design_imo.plain(plan.imo),
     }

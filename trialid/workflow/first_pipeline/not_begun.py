@@ -7,7 +7,7 @@ from typing import Final
 
 from trialid.errors import LogError
 from trialid.inspection import Inspection
-from trialid.inspection.channel_names import is_course
+from trialid.inspection.channel_names import is_course, unit_in_name
 from trialid.inspection.drives import drives_among
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.name_words import sides
@@ -155,7 +155,19 @@ def no_speed(surveys: Sequence[Inspection]) -> str:
                     "under way is; if that is the approach speed, add "
                     f"--speed {held / KNOT:.4g} (knots)"
                 )
-    return NO_SPEED
+    unread = dict.fromkeys(name for survey in surveys for name in _in_a_speeds_unit(survey))
+    if not unread:
+        return NO_SPEED
+    listed = ", ".join(repr(name) for name in [*unread][:3])
+    return f"{NO_SPEED}, or call the channel that is it stw: {listed} moves in a speed's unit"
+
+
+def _in_a_speeds_unit(survey: Inspection) -> Iterator[str]:
+    """Channels that are read as nothing, and move in a unit of speeds."""
+    for one in survey.channels.values():
+        unit = one.stated_unit or unit_in_name(one.name)
+        if one.guess is None and not one.constant and unit and to_si(unit, "m/s") is not None:
+            yield one.name
 
 
 def _held(one: ChannelInspection) -> float:
