@@ -48,7 +48,8 @@ def found(model, seed, current):
     return diagnose(identify(trials, model, SETTINGS))
 
 
-@pytest.mark.parametrize("seed", [31, pytest.param(32, marks=pytest.mark.study(turn="each"))])
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", [31, 32])
 def test_in_still_water_drift_is_read_out_of_it(seed):
     """Read as the speed ahead her drift counts twice, and her coefficients take it up."""
     plain, read = (found(model, seed, 0.0) for model in (PLAIN, READ))

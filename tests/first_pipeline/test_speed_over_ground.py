@@ -188,4 +188,4 @@ def test_what_moves_in_a_unit_of_speeds_and_is_not_read_is_told(
     with pytest.raises(LogError, match="add --speed KNOTS") as caught:
         starter([inspect_log(path)], tmp_path / "p.toml", None, Given(length=150.0))
     name = head.partition(" ")[0]
-    assert (f"call the channel that is it stw: '{name}' moves" in str(caught.value)) is told
+    assert (f"in a unit of speeds: '{name}': where one is her" in str(caught.value)) is told

@@ -50,7 +50,6 @@ def drawn(seed):
     c["I_xx"] = c["m"] * G * GM * (period / (2.0 * np.pi)) ** 2 / L**2  # the water's in it
     c["lever"], c["water"] = rng.uniform(0.2, 0.6) * d / L, rng.uniform(-0.1, 0.6) * d / L
     c["Kp"] = -2.0 * rng.uniform(0.04, 0.1) * c["I_xx"] * (2.0 * np.pi / period) * L / U0
-    c["GM3"] = B**2 / (12.0 * d * block) / 2.0 * rng.uniform(0.5, 1.5)
     return Ship(c=c, L=L, B=B, d=d, block=block, U0=U0, GM=GM, gear=np.deg2rad(3.5))
 
 
@@ -64,9 +63,8 @@ def rates(ship, x, delta):
     hull = c["Yv"] * b + c["Yr"] * w + c["Yvav"] * b * abs(b)
     Y = q * (hull + c["Ydelta"] * delta) - c["m"] * 0.5 * RHO * L**3 * u * r
     N = q * L * (c["Nv"] * b + c["Nr"] * w + c["Nrar"] * w * abs(w) + c["Ndelta"] * delta)
-    arm = ship.GM * phi + c["GM3"] * phi**3
     K = q * L * (-c["lever"] * (hull + c["Ydelta"] * delta) + c["Kp"] * s)
-    K -= RHO * G * ship.nabla * arm
+    K -= RHO * G * ship.nabla * ship.GM * phi
     m3 = 0.5 * RHO * L**3
     sway, roll = (c["m"] - c["Yvdot"]) * m3, c["I_xx"] * m3 * L**2
     both = c["water"] * c["Yvdot"] * m3 * L  # what the water that sways does to the roll

@@ -58,7 +58,10 @@ def _fitted(folder, seed):
     return fit, diagnose_settings(asked, catalogue)
 
 
-@pytest.fixture(scope="module", params=(500, pytest.param(511, marks=pytest.mark.study(turn=17))))
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(s, marks=pytest.mark.study(turn=t)) for s, t in ((500, 20), (511, 17))],
+)
 def of_seed(request, tmp_path_factory):
     return request.param, *_fitted(tmp_path_factory.mktemp("current"), request.param)
 

@@ -43,10 +43,8 @@ def sailed(amplitude: int, seed: int) -> Trial:
     return s175q.with_noise(replace(trial, signals=seen), *noise)
 
 
-@pytest.mark.parametrize(
-    "seed",
-    [*(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in (2095, 2096)), 2097],
-)
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", [2095, 2096, 2097])
 def test_it_has_its_name_where_the_indicator_alone_is_logged(seed: int) -> None:
     """A dead band had it alone, with which ranges missed the truth of an outsider's ship.
 

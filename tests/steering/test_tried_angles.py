@@ -28,7 +28,8 @@ def record(truth, seed):
     return made
 
 
-@pytest.mark.parametrize("stall", [pytest.param(12.0, marks=pytest.mark.study(turn="each")), 15.0])
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("stall", [12.0, 15.0])
 def test_a_stall_that_no_rudder_at_its_typical_angle_shows_is_named(stall):
     values = {"N_stall": -0.0006, "delta_stall": np.deg2rad(stall)}
     truth = (MODEL + CATALOGUE["rudder_stall"]).with_values(values)

@@ -26,6 +26,12 @@ from trialid.alignment.spikes import (
 from trialid.arrays import Mask, Vector
 from trialid.names.quantities import SIGNALS, is_input
 
+STOPPED_S: Final = 2.5
+"""[s] No ship loses all her speed in less: boats of a few metres take three lengths to stop from
+full astern, models of a basin ten seconds."""
+SHOWN: Final = 0.1
+"""Share of the largest motion below which a display may show none. What an outsider's logs lost was
+0.7 and more of it; half and twice mask the same there."""
 ORDER: Final = "delta_order"
 """What somebody may well set to zero, or anywhere, and back; so may a signal of one's own be."""
 
@@ -51,7 +57,8 @@ class _Runs:
 def long_dropouts(series: Series, zero: float) -> Iterator[Fault]:
     """Exact zeros that a motion jumps to and from, or an input for less than a shaft can stop.
 
-    However long: no ship stops within a sample, nor does one stop to turn or to heel.
+    However long: no ship stops within `STOPPED_S`, nor does one stop to turn or to heel so quickly.
+    A display that shows small motions as none has zeros, too, from close by.
     """
     s = available_samples(series)
     null = np.isclose(series.y[s.at], zero, rtol=0.0, atol=1e-12)
@@ -64,9 +71,13 @@ def long_dropouts(series: Series, zero: float) -> Iterator[Fault]:
     steps = np.abs(np.diff(s.y))[~(null[1:] | null[:-1])]
     far = max(SHARP * usual_size(steps[steps > 0.0]), 4.0 * resolution(s.y)) if steps.any() else 0.0
     found = (jump > far) & (far > 0.0)
+    begins, ends = (np.diff(s.t)[at] for at in (runs.first - 1, runs.last))
     if is_input(series.quantity):
         found &= np.abs(after - before) < jump / 2
         found &= s.t[runs.last + 1] - s.t[runs.first - 1] <= PULSE_S
+    else:
+        found &= (np.maximum(begins, ends) < STOPPED_S) & ((before - low) * (after - high) > 0.0)
+        found &= series.quantity.angle | (jump > SHOWN * np.ptp(s.y))
     found &= _whole(s, runs) & (runs.last - runs.first + 1 > WIDEST_DROPOUT)
     yield from _fault(series, s, runs.those(found), "dropouts", "dropped to zero", sure=True)
 

@@ -25,10 +25,11 @@ HURRICANE: Final = 32.7
 """m/s: Beaufort 12, World Meteorological Organization, Manual on codes; none is sailed in."""
 
 SURE: Final = 0.2
-"""Share of its value to which a number of hers is known that no effect may take elsewhere. Of a
-ship whose GM was stated to 10 %, at 0.55 m, and who has drag in sway and yaw, a heel moment was
-named that takes it to 0.10 m. Half of it says the same of her; at twice a boat whose screw turns
-on loses that name, for a rate's damping known to 35 %."""
+"""Share of its value to less than which a number is known that no effect may take elsewhere: what
+formulas tell best, added masses and a radius of gyration, is known to as much. Of a ship whose GM
+was stated to 10 %, at 0.55 m, and who has drag in sway and yaw, a heel moment was named that takes
+it to 0.10 m. Half of it says the same of her; at twice a boat whose screw turns on loses that name,
+for a rate's damping known to 35 %."""
 
 WINDAGE: Final = 2.5e-4
 """rho_air C_Y A / rho L^2 of a ship with a side of a fifth of her length squared. At half of it the
@@ -161,9 +162,9 @@ def no_such_mass(effect: Effect, fit: Fit) -> bool:
 
 
 def leaves_priors(before: Fit, after: Fit, within: float = np.inf) -> bool:
-    """Whether with an effect numbers of hers leave what is known of them, that lay in it before.
+    """Whether an effect takes numbers of hers three deviations further off what is known of them.
 
-    Or its own do; of those only that are known to `within` this share of their value.
+    Its own count from nothing. Only numbers are looked at that are known to less than this share.
     """
     old, new = (_off_known(f, within) for f in (before, after))
     return any(abs(z) > abs(old.get(n, 0.0)) + CONTRADICTS for n, z in new.items())
@@ -174,7 +175,7 @@ def _off_known(fit: Fit, within: float) -> dict[str, float]:
     off = deviations(fit.problem, fit.theta)
     known = [(x, x.prior, off[i]) for i, x in enumerate(fit.problem.unknowns) if x.prior]
     hers = ((x.name, z, prior) for x, prior, z in known if x.kind == "physical")
-    return {name: z for name, z, (mean, by) in hers if not by > within * abs(mean)}
+    return {name: z for name, z, (mean, by) in hers if within == np.inf or by < within * abs(mean)}
 
 
 def as_slow_as_the_ship(effect: Effect, fit: Fit) -> bool:

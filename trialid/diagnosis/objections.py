@@ -51,6 +51,7 @@ from trialid.ship.effect import Effect
 
 HELD_OUT: Final = "the held-out error rises"
 NOT_ARRIVED: Final = "the search does not arrive"
+ELSEWHERE: Final = "it takes what is surely known of her elsewhere"
 SLIGHT: Final = "it corrects the shapes of others"
 AS_SLOW: Final = "a sensor as slow as that looks like the ship's own memory"
 AS_A_GEAR: Final = "the recorded rudder jumps as an order does, and a gear is as late"
@@ -130,6 +131,7 @@ def _foretells_more(fit: Fit, refit: Refit, best: Refit) -> bool:
         fit.eps_check is not None
         and of_the_ship(refit.candidate.effect)
         and as_good(best.carried.after, refit.carried.after)
+        and (leaves_priors(fit, best.fit) or not leaves_priors(fit, refit.fit))
         and is_far(fall_of_all(fit, refit), fall_of_all(fit, best))
     )
 
@@ -210,8 +212,7 @@ class Rolled(Refitted, Protocol):
 def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
     shown = refit.candidate.shown(level) or _takes_most(fit, refit)
-    elsewhere = leaves_priors(fit, refit.fit, SURE)
-    if not shown or elsewhere or any(no_such(*_found(refit)) for no_such in NO_SUCH_VALUE):
+    if not shown or any(no_such(*_found(refit)) for no_such in NO_SUCH_VALUE):
         return "chance would do it, or no ship and no sensor has such a value"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
         return NOT_ARRIVED
@@ -260,6 +261,8 @@ def _found(refit: Refit) -> tuple[Effect, Fit]:
 
 def _something_else(fit: Fit, refit: Refit, grown: bool) -> str:
     """What may do what an effect does: what moves the rest, a swell, an autopilot, what is late."""
+    if leaves_priors(fit, refit.fit, SURE):
+        return ELSEWHERE
     if outputs_beside(fit, refit):
         return BESIDE
     if follows_a_swell(fit, refit):

@@ -27,7 +27,7 @@ class FinishedRun:
     intervals
         The value of each standard measure with its 95 % range.
     model_errors
-        How far what the model lacks or holds may move each fitted parameter, a share of its size.
+        How far what the model lacks may move each fitted parameter, a share of its size.
     """
 
     values: Mapping[str, float] = field(default_factory=dict)

@@ -105,7 +105,21 @@ def waves(t):
     return 0.02 * np.sign(np.sin(2.1 * t)) * np.ceil(2.0 * np.abs(np.sin(2.1 * t)))
 
 
+def band(t):
+    """A rate that is shown as none below a tenth of the largest, between turns to one side."""
+    r = 0.05 * (1.0 - np.exp(-((t - 30.0) ** 2) / 4.5))
+    return np.where(r < 0.0045, 0.0, r)
+
+
+def crossing(t):
+    """The same of a zig-zag."""
+    r = 0.05 * np.tanh((t - 30.0) / 8.0)
+    return np.where(np.abs(r) < 0.012, 0.0, r)
+
+
 REAL = {
+    "a display that shows no small rates": ("r", band),
+    "one that shows none as she goes over to the other side": ("r", crossing),
     "a ship that stops and starts": ("u", stopped),
     "a rudder order to midships": ("delta_order", steps),
     "a display of two digits": ("r", held),
@@ -119,6 +133,14 @@ REAL = {
         lambda t: np.where((t > 10.0) & (t < 30.0), 0.0, 10.0 + 0.05 * np.sin(9.0 * t)),
     ),
 }
+
+
+def test_a_speed_that_is_logged_too_seldom_may_have_been_lost_on_the_way():
+    t = np.arange(0.0, 3000.0, 10.0)
+    stopped_for_long = (t > 1000.0) & (t < 1150.0)
+    noise = np.random.default_rng(4).normal(scale=NOISE, size=len(t))
+    found, _ = masked("u", t, np.where(stopped_for_long, 0.0, 1.5 + noise))
+    assert not found.any()
 
 
 @pytest.mark.parametrize(("quantity", "made"), REAL.values(), ids=REAL)

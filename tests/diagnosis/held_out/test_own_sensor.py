@@ -45,7 +45,9 @@ def test_a_gyro_that_is_off_is_told_as_that():
     assert "b_r of its own, 0.3" in words
 
 
-@pytest.mark.parametrize("seed", range(40, 44))
+@pytest.mark.parametrize(
+    "seed", [40, *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in range(41, 44))]
+)
 def test_of_noise_and_of_what_the_model_lacks_in_all_trials_nothing_is_told(seed):
     assert own_sensors(fitted(seed)) == []
     assert own_sensors(fitted(seed, model=LACKING, asked=FEWER)) == []

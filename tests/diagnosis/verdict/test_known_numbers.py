@@ -8,7 +8,7 @@ from made_up_fits import fit, refit
 
 from trialid.diagnosis.best_refit import choose_best
 from trialid.diagnosis.found_values import SURE, leaves_priors
-from trialid.diagnosis.objections import likeliest_refit, objection
+from trialid.diagnosis.objections import ELSEWHERE, likeliest_refit, objection
 
 GM = (0.55, 0.055)
 GUESSED = (-4.2e-3, 1.5e-3)
@@ -43,13 +43,15 @@ def test_what_was_off_to_the_other_side_does_not_leave():
     assert not leaves_priors(old, new)
 
 
-@pytest.mark.parametrize(("prior", "sure"), [(GM, True), (GUESSED, False), ((1.0, SURE), True)])
+@pytest.mark.parametrize(
+    ("prior", "sure"), [(GM, True), (GUESSED, False), ((1.0, SURE), False), ((1.0, 0.19), True)]
+)
 def test_only_what_is_known_to_a_fifth_denies_a_name(prior, sure):
     old, new = with_known(fit(0.1), N=off(0.0, prior)), refit("drag", 0.5, 0.06)
     with_known(new.fit, N=off(-8.0, prior))
     assert leaves_priors(old, new.fit)
     assert leaves_priors(old, new.fit, SURE) is sure
-    assert bool(objection(old, new, 0.05)) is sure
+    assert objection(old, new, 0.05) == (ELSEWHERE if sure else "")
     assert (likeliest_refit(old, [new], 0.05) is None) is sure
 
 

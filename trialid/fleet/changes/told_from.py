@@ -55,11 +55,13 @@ def least_step(y: Estimates, level: float) -> float:
 
 
 def _words(own: dict[str, float]) -> str:
-    surest = sorted(own, key=lambda name: own[name])
+    surest = sorted((n for n in own if own[n] < 1.0), key=lambda name: own[name])
     each = [f"{wording.percent(own[name], 2)} of {name}" for name in surest[:NAMED]]
     more = len(surest) - NAMED
     listed = f"{', '.join(each)} and {more} more" if more > 0 else wording.named_together(each)
     return (
-        f"a change that lasts from the middle of her voyages on is told from {listed} on; less may "
-        "have passed"
+        "a change that lasts from the middle of her voyages on is as likely told as not at "
+        f"{listed}; less may have passed"
+        if each
+        else "no parameter is known so well that losing all of it would be told"
     )

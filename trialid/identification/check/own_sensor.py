@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from trialid.identification.trial_score import check_rows
 from trialid.names.wording import with_unit
 
@@ -12,6 +14,9 @@ OWN: Final = 1.5
 """Times what is left in held-out trials with sensors of their own that they leave with the others',
 from which on it is told. Of zig-zags on a pond 1.7; of 64 simulated outputs whose zeros noise alone
 moves 1.003 at most, so half as far beyond one tells of none; twice as far not of the pond."""
+
+SEEN: Final = 0.002
+"""Error that must go with it, as a share of what moved: nobody notices less."""
 
 
 def own_sensors(fit: "Fit") -> list[str]:
@@ -26,10 +31,11 @@ def own_sensors(fit: "Fit") -> list[str]:
         if score.trial.use != "check" or (rows := check_rows(fit, score.trial)) is None:
             continue
         name, (off, left) = min(rows.alone.items(), key=lambda one: one[1][1], default=("", (0, 1)))
-        if name and left * OWN < 1.0:
+        gone, whole = 1.0 - left**2, np.mean(np.square(list(score.eps_rmsn.values())))
+        if left * OWN < 1.0 and np.sqrt(gone * whole) >= SEEN:
             said.append(
                 f"{score.trial.name}, held out: {name} of its own, {with_unit(off, units[name])} "
-                f"from the others', takes {1.0 - left:.0%} of its error: what it was set to, or "
-                "what acts there alone; its error says little of the model"
+                f"from the others', takes {gone:.0%} of its squared error: its sensors stood "
+                "otherwise, or something acts there alone; so much is not the model's"
             )
     return said

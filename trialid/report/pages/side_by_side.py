@@ -88,7 +88,7 @@ def _parameters(runs: Sequence[Shown]) -> Table:
 def _parameter(
     name: str, rows: Sequence[ParameterRow | None], fits: Sequence[bool]
 ) -> tuple[Cell, ...]:
-    """A parameter of each run; those without a fit say nothing of it."""
+    """A parameter of each run; whether it differs runs with a fit say, if two have it."""
     known = [row for row in rows if row is not None]
     units = list(dict.fromkeys(wording.shown_unit(row.unit)[0] for row in known))
     cells: list[Cell] = []
@@ -99,10 +99,11 @@ def _parameter(
         cells += [value, Figure(error, 2), *ends]
     if len(units) > 1:
         return name, " or ".join(units), *cells, Figure(None), "other units"
-    if not all(fit for fit, row in zip(fits, rows, strict=True) if row is not None):
+    sound = [row for fit, row in zip(fits, rows, strict=True) if fit and row is not None]
+    if len(sound) < min(2, len(known)):
         return name, units[0], *cells, Figure(None), "cannot tell: no fit"
-    distance = joint_distance([(row.value, row.standard_error) for row in known])
-    return name, units[0], *cells, Figure(distance, 2), _differ(distance, known)
+    distance = joint_distance([(row.value, row.standard_error) for row in sound])
+    return name, units[0], *cells, Figure(distance, 2), _differ(distance, sound)
 
 
 def _differ(distance: float | None, rows: Sequence[ParameterRow]) -> str:

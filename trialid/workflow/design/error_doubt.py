@@ -11,7 +11,7 @@ from trialid.pipeline_file.finished_run import FinishedRun
 def error_doubt(rating: Rating | None, wanted: Sequence[str], run: FinishedRun) -> str:
     """How far parameters may be off in the run that is built on, by more than is promised here.
 
-    Noise is what a better trial makes less of. What the model may lack, or holds, goes on: of a
+    Noise is what a better trial makes less of. What the model may lack goes on: of a
     ship with drag that her run had not found `Nv` was promised to 4 %, and was 23 % off.
     """
     if rating is None:
@@ -20,9 +20,11 @@ def error_doubt(rating: Rating | None, wanted: Sequence[str], run: FinishedRun) 
     beyond = {n: off for n, off in beyond.items() if off > rating.of(n).error}
     if not beyond:
         return ""
-    listed = named_together([f"{n} by {wording.percent(off, 2)}" for n, off in beyond.items()])
+    listed = named_together(
+        [f"{n} by up to {wording.percent(off, 2)}" for n, off in beyond.items()]
+    )
     said = f" (its verdict: {run.verdict})" if run.verdict else ""
     return (
-        f"In the run it builds on{said} what may be missing, or is held, moves {listed}: no trial "
-        "mends that before it is in the model, and these errors leave it out."
+        f"In the run it builds on{said} what the model lacks may move {listed}: no trial mends "
+        "that before it is in the model, and these errors know of no more than [full] states."
     )

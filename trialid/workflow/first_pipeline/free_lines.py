@@ -18,7 +18,7 @@ def free_lines(free: Sequence[str], ship: Ship) -> Iterator[str]:
         yield "# GM is known, and a roll tells its ratio to I_xx: so both, each as well as known."
         free = [*free, "I_xx"]
     if "GM" in free and "Kv" in free and (coupled := _known_less_than_GM(COUPLING, ship)):
-        yield f"# {' and '.join(coupled)} weigh roll moments against GM; no formula is sure of it."
+        yield f"# {' and '.join(coupled)} weigh roll moments against GM: no formula is sure of it."
         free = [*free, *coupled]
     yield f"free = {array(free)}"
     if any(name in ship.uncertainty for name in free):

@@ -159,7 +159,11 @@ def no_speed(surveys: Sequence[Inspection]) -> str:
     if not unread:
         return NO_SPEED
     listed = ", ".join(repr(name) for name in [*unread][:3])
-    return f"{NO_SPEED}, or call the channel that is it stw: {listed} moves in a speed's unit"
+    more = f" and {len(unread) - 3} more" if len(unread) > 3 else ""
+    return (
+        f"{NO_SPEED}; of what is not read, in a unit of speeds: {listed}{more}: where one is her "
+        "speed through the water, call it stw"
+    )
 
 
 def _in_a_speeds_unit(survey: Inspection) -> Iterator[str]:
