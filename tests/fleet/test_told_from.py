@@ -7,13 +7,18 @@ import pytest
 from records_of_ships import rows_of
 
 from trialid.fleet.changes import changes, told_from
+from trialid.result.fleet_rows import Remark
 
 
 def share_told(seed: int, voyages: int) -> float:
     """From which share of the level on a step is told, by the line of a record without any."""
     runs, fitted = rows_of(np.full(voyages, 0.8), None, seed)
     assert not [*changes(runs, fitted)]
-    (line,) = told_from(runs, fitted, ())
+    return share_of(*told_from(runs, fitted, ()))
+
+
+def share_of(line: Remark) -> float:
+    """Of the one parameter that a line is of."""
     words = line.words.replace("\N{NARROW NO-BREAK SPACE}", " ")
     assert words.endswith("of GM; less may have passed")
     return float(words.partition("as likely told as not at ")[2].split(" %")[0]) / 100.0
@@ -32,6 +37,15 @@ def test_a_step_is_told_from_about_there_on(voyages: int) -> None:
     assert told[0.5] <= 2
     assert 4 <= told[1.0] <= 16
     assert told[2.0] >= 18
+
+
+@pytest.mark.parametrize("seed", range(420, 424))
+def test_what_passed_unseen_does_not_count_as_scatter(seed: int) -> None:
+    least = 0.8 * share_told(seed, 8)
+    x = np.where(np.arange(8) < 4, 0.8, 0.8 - 0.6 * least)
+    runs, fitted = rows_of(x, None, seed)
+    assert not [*changes(runs, fitted)]
+    assert share_of(*told_from(runs, fitted, ())) < 1.5 * least / 0.8
 
 
 def test_what_has_changed_is_not_told_of_again() -> None:

@@ -6,27 +6,18 @@ acts at a level of its own, between her keel and her waterline, and so does the 
 
 from dataclasses import dataclass
 
+import mmg
 import numpy as np
 
-RHO, G = 1025.0, 9.81
+RHO, G = mmg.RHO, 9.81
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ship:
-    """A ship: her coefficients (primed by length), size [m], volume [m^3], speed [m/s], GM [m]."""
+class Ship(mmg.Ship):
+    """A ship as of `mmg`, without her shaft, and GM [m]; coefficients are primed by length."""
 
-    c: dict[str, float]
-    L: float
-    B: float
-    d: float
-    block: float
-    U0: float
     GM: float
-    gear: float
-
-    @property
-    def nabla(self):
-        return self.block * self.L * self.B * self.d
+    n: float = 0.0
 
 
 MIDDLE = {
@@ -64,7 +55,7 @@ def rates(ship, x, delta):
     Y = q * (hull + c["Ydelta"] * delta) - c["m"] * 0.5 * RHO * L**3 * u * r
     N = q * L * (c["Nv"] * b + c["Nr"] * w + c["Nrar"] * w * abs(w) + c["Ndelta"] * delta)
     K = q * L * (-c["lever"] * (hull + c["Ydelta"] * delta) + c["Kp"] * s)
-    K -= RHO * G * ship.nabla * ship.GM * phi
+    K -= G * ship.mass * ship.GM * phi
     m3 = 0.5 * RHO * L**3
     sway, roll = (c["m"] - c["Yvdot"]) * m3, c["I_xx"] * m3 * L**2
     both = c["water"] * c["Yvdot"] * m3 * L  # what the water that sways does to the roll

@@ -28,10 +28,10 @@ from trialid.names.quantities import SIGNALS, is_input
 
 STOPPED_S: Final = 2.5
 """[s] No ship loses all her speed in less: boats of a few metres take three lengths to stop from
-full astern, models of a basin ten seconds."""
+full astern, models of a basin ten seconds. Half and twice mask the same of an outsider's logs."""
 SHOWN: Final = 0.1
-"""Share of the largest motion below which a display may show none. What an outsider's logs lost was
-0.7 and more of it; half and twice mask the same there."""
+"""Share of a motion's span below which a display may show none. What is masked of those logs was
+0.22 to 0.89 of it; half and twice mask the same."""
 ORDER: Final = "delta_order"
 """What somebody may well set to zero, or anywhere, and back; so may a signal of one's own be."""
 

@@ -20,7 +20,7 @@ FEWEST: Final = 6
 
 def changes(runs: Iterable[RunRow], fitted: Iterable[FittedRow]) -> Iterator[ChangeRow]:
     """Every change in a fleet's records, and what varies otherwise, ship by ship."""
-    records = list(records_of(with_a_say(runs), each_of_voyage(fitted)))
+    records = records_of(runs, fitted)
     for rows in records:
         estimates, unit = estimates_of(rows)
         found = explain(estimates, LEVEL / len(records))
@@ -44,16 +44,16 @@ def is_sound(row: RunRow) -> bool:
     return row.failure is None and row.verdict != "no fit"
 
 
-def records_of(runs: Sequence[RunRow], fitted: Iterable[FittedRow]) -> Iterator[list[FittedRow]]:
+def records_of(runs: Iterable[RunRow], fitted: Iterable[FittedRow]) -> list[list[FittedRow]]:
     """The records that are long enough: a parameter of a ship in one model, done in one way."""
-    models = {row.run: row.model for row in runs}
+    models = {row.run: row.model for row in with_a_say(runs)}
     courses: dict[tuple[object, ...], list[FittedRow]] = {}
-    for row in fitted:
+    for row in each_of_voyage(fitted):
         known = row.value is not None and _deviation(row) > 0.0
         if row.run in models and known:
             key = (row.ship, *row.varied, models[row.run], row.parameter)
             courses.setdefault(key, []).append(row)
-    yield from (rows for rows in courses.values() if len(rows) >= FEWEST)
+    return [rows for rows in courses.values() if len(rows) >= FEWEST]
 
 
 def estimates_of(rows: Sequence[FittedRow]) -> tuple[Estimates, float]:

@@ -7,18 +7,18 @@ import numpy as np
 from scipy.stats import f
 
 from trialid.fleet.changes.change_points import WAYS
-from trialid.fleet.changes.changes_of_ships import LEVEL, estimates_of, records_of, with_a_say
+from trialid.fleet.changes.changes_of_ships import LEVEL, estimates_of, records_of
 from trialid.fleet.changes.courses import (
     TINY,
     Course,
     Estimates,
     columns_of,
     courses_of,
+    is_change,
     sizes_of,
     sum_of_rest,
     take_away,
 )
-from trialid.fleet.changes.of_voyage import each_of_voyage
 from trialid.names import wording
 from trialid.result.fleet_rows import ChangeRow, FittedRow, Remark, RunRow
 
@@ -31,7 +31,7 @@ def told_from(
 ) -> tuple[Remark, ...]:
     """For each ship the parameters without a change, and from which step on it would be told."""
     changed = {(row.ship, row.parameter) for row in found}
-    records = list(records_of(with_a_say(runs), each_of_voyage(fitted)))
+    records = records_of(runs, fitted)
     ships: dict[str, dict[str, float]] = {}
     for rows in records:
         first = rows[0]
@@ -44,12 +44,18 @@ def told_from(
 
 
 def least_step(y: Estimates, level: float) -> float:
-    """The least step in the middle of a record that is told beside its scatter, over its level."""
+    """The least step in the middle of a record that is told beside its scatter, over its level.
+
+    The scatter is what the best change leaves, though none is told: else one that passed unseen
+    would count as scatter. Of a rudder that lost 15 % in four fleets 21 to 25 % are named so, 54 to
+    63 % else; 20 % lost is told of another.
+    """
     middle: Course = ("step", len(y) // 2)
     column, _ = take_away(y, [], columns_of(y, [middle]))
-    freedom, tried = len(y) - 2, len(courses_of(y.time))
-    scatter = max(y.least, sum_of_rest(y, []) / freedom, TINY)
-    gain = scatter * float(f.isf(level / WAYS / tried, 1, freedom))
+    freedom, tried = len(y) - 2, courses_of(y.time)
+    left = min(sum_of_rest(y, [one]) for one in tried if is_change(one))
+    scatter = max(y.least, left / (freedom - 1), TINY)
+    gain = scatter * float(f.isf(level / WAYS / len(tried), 1, freedom))
     size = float(np.sqrt(gain / max(float(np.sum(column**2)), TINY)))
     return size / max(abs(float(sizes_of(y, [])[0])), TINY)
 

@@ -11,8 +11,8 @@ from trialid.pipeline_file.finished_run import FinishedRun
 def error_doubt(rating: Rating | None, wanted: Sequence[str], run: FinishedRun) -> str:
     """How far parameters may be off in the run that is built on, by more than is promised here.
 
-    Noise is what a better trial makes less of. What the model may lack goes on: of a
-    ship with drag that her run had not found `Nv` was promised to 4 %, and was 23 % off.
+    Noise is what a better trial makes less of. What the model may lack goes on: of a ship with drag
+    that her run had not found `Nv` was promised to 4 %, and was 23 % off.
     """
     if rating is None:
         return ""
