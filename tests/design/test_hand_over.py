@@ -16,6 +16,7 @@ from trialid.own_files import LIST
 from trialid.pipeline_file import load
 from trialid.pipeline_file.design_file import load_design
 from trialid.toml_text import quote
+from trialid.workflow import history
 from trialid.workflow.design.design_folder import write
 from trialid.workflow.design.design_run import plan
 
@@ -174,3 +175,21 @@ def test_a_test_that_may_not_be_run_is_not_handed_over(handed):
     _, text = read(folder / "bridge.html")
     assert "zig-zag" not in text
     assert data["best"] == "stairs"
+
+
+@pytest.mark.parametrize(("joined", "grown"), [("heel_roll", True), ("cross_flow_drag", False)])
+def test_a_model_that_has_grown_is_a_grown_one_for_the_log_to_come(handed, tmp_path, joined, grown):
+    effects = ["linear_hull", "linear_rudder", "linear_roll", "heel_roll"]
+    steps = [
+        {"step": "as written", "effects": effects[:-1], "eps_rmsn": 0.2, "logs": ["a"]},
+        {"step": "added", "added": joined, "effects": effects, "eps_rmsn": 0.1, "logs": ["a"]},
+        {"step": "proposed", "added": "static_list", "effects": effects, "eps_rmsn": 0.09},
+    ]
+    made = {"accuracy": {"parameters": []}, "model": {"effects": effects}, "history": steps}
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "result.json").write_text(json.dumps(made), encoding="utf-8")
+    _, folder, _ = handed('run = "run"', HEAD, ZIGZAG)
+    read_back, torn = history.read(folder / "zig-zag.toml")
+    assert [step.added for step in read_back] == [None, joined]
+    assert torn == ""
+    assert history.has_joined(read_back, effects) == grown

@@ -1,6 +1,7 @@
 """What is planned: pipelines that stand by themselves, ways of doing them, keys of all inputs."""
 
 import shutil
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,10 +10,13 @@ from generated_fleet import ROOT
 
 from trialid.errors import PipelineError
 from trialid.fleet import task as task_module
+from trialid.fleet.parcels import pack
 from trialid.fleet.plan import plan
 from trialid.fleet.task import Task
 from trialid.pipeline_file import read
 from trialid.pipeline_file.fleet_file import load_fleet
+from trialid.result.change_rows import StepRow
+from trialid.workflow.history import append_steps
 
 
 def planned(folder: Path, more: str = "") -> tuple[Task, ...]:
@@ -129,3 +133,18 @@ def test_the_shipped_pipeline_is_planned_as_it_is(tmp_path: Path) -> None:
     (task,) = planned(tmp_path)
     assert (task.made, task.pipeline, task.content) == (False, pipeline, pipeline.read_bytes())
     assert not (tmp_path / "out").exists()
+
+
+def test_what_is_made_of_a_template_that_has_grown_has_grown(fleet_folder: Path) -> None:
+    before = planned(fleet_folder)
+    text = (fleet_folder / "template-csv.toml").read_text(encoding="utf-8")
+    effect = tomllib.loads(text)["model"]["effects"][-1]
+    steps = [StepRow(step="added", added=effect, eps_rmsn=0.1)]
+    for name in ("template-csv.toml", "template-other.toml"):
+        with append_steps(fleet_folder / name, steps):
+            pass
+    after = planned(fleet_folder)
+    assert not any(task.grown for task in before)
+    assert all(task.grown for task in after)
+    assert {task.key for task in before}.isdisjoint({task.key for task in after})
+    assert all(pack(task, fleet_folder / "out", "path").grown for task in after)

@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import pytest
 
+from trialid.names.wording import percent
 from trialid.report.pictures.error_history import (
     FLOOR,
     MOST,
@@ -131,3 +132,17 @@ def test_a_sign_stays_with_its_name(result):
     named = (replace(row, added="righting_arm_cubic") for row in others)
     run = replace(run, history=(first, *named))
     assert error_history(run).columns[1].words == ("+\N{NO-BREAK SPACE}righting_", "arm_cubic")
+
+
+def test_errors_of_other_logs_are_not_held_against_these(result):
+    run = grown(result, 4)
+    first, second, third, last = run.history
+    ours = [replace(row, logs=("b", "a")) for row in (third, last)]
+    run = replace(run, history=(first, replace(second, logs=("c",)), *ours))
+    assert run.comparable == run.history[2:]
+    words = fell(run)
+    assert f"goes from {percent(third.eps_rmsn)} to {percent(last.eps_rmsn)}" in words
+    assert words.endswith("2 earlier steps had other logs, and other errors for it.")
+    assert len(error_history(run).columns) == 2
+    other_way_round = replace(run, history=(replace(third, logs=("a", "b")), ours[1]))
+    assert len(other_way_round.comparable) == 2

@@ -24,6 +24,7 @@ class Parcel:
     key: str
     inputs: Inputs
     folder: str
+    grown: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +47,7 @@ def do_run(parcel: Parcel) -> Done:
         warnings.filterwarnings("ignore", category=RuntimeWarning)  # as the command line does
         place = root / parcel.inputs.pipeline
         try:
-            done = run(read(parcel.inputs.content, place))
+            done = run(read(parcel.inputs.content, place), grown=parcel.grown)
         except TrialidError as error:
             said = _from_pipeline(str(error), place)
             return Done(row=failure_row(parcel.label, parcel.key, said))

@@ -10,4 +10,10 @@ from trialid.fleet.task import Task
 def pack(task: Task, folder: Path, logs: Travel) -> Parcel:
     """What a worker needs for a run whose results go to this folder."""
     inputs, root = pack_inputs(task.pipeline, task.content, task.files, logs, [folder])
-    return Parcel(label=task.label, key=task.key, inputs=inputs, folder=from_root(folder, root))
+    return Parcel(
+        label=task.label,
+        key=task.key,
+        inputs=inputs,
+        folder=from_root(folder, root),
+        grown=task.grown,
+    )

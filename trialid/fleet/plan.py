@@ -16,6 +16,7 @@ from trialid.pipeline_file import Pipeline, load, read, where
 from trialid.pipeline_file.complaints import dotted_key
 from trialid.pipeline_file.fleet_file import FleetFile, FleetShip, matches
 from trialid.result.fleet_rows import RunLabel
+from trialid.workflow import history
 
 _DATE: Final = re.compile(r"\d{4}-\d{2}-\d{2}(?!\d)")
 
@@ -208,7 +209,15 @@ def _task(run: Asked, folder: Path, hash_of: Hash) -> Task:
         content = changed_text(content, run.label.run, changes)
     made = Task(label=run.label, pipeline=place, content=content, made=bool(run.changes))
     try:
-        files = files_of(read(content, place))
-        return replace(made, files=files, key=key_of(content, place, files, hash_of))
+        pipeline = read(content, place)
+        files, grown = files_of(pipeline), made.made and _has_grown(run.place, pipeline)
+        key = key_of(content, place, files, hash_of, grown)
+        return replace(made, files=files, grown=grown, key=key)
     except (TrialidError, OSError) as error:
         return replace(made, made=False, problem=_of(place, error))
+
+
+def _has_grown(template: Path, pipeline: Pipeline) -> bool:
+    """Whether what is made of a template has effects that were added to that."""
+    steps, _ = history.read(template)
+    return history.has_joined(steps, pipeline.model.effects)

@@ -30,6 +30,8 @@ class Task:
     ----------
     pipeline, content
         The pipeline's place, and its text; it is written there where the fleet has `made` it.
+    grown
+        Whether the template that it was made of has grown: the steps of that are of other logs.
     files
         Every other file that the run reads.
     key
@@ -42,6 +44,7 @@ class Task:
     pipeline: Path
     content: bytes
     made: bool = False
+    grown: bool = False
     files: tuple[Path, ...] = ()
     key: str = ""
     problem: str = ""
@@ -62,11 +65,14 @@ def _below(path: Path) -> Iterator[Path]:
     yield from sorted(child for child in path.rglob("*") if child.is_file())
 
 
-def key_of(content: bytes, place: Path, files: tuple[Path, ...], hash_of: Hash) -> str:
+def key_of(
+    content: bytes, place: Path, files: tuple[Path, ...], hash_of: Hash, grown: bool = False
+) -> str:
     """The key of a run: the same for the same bytes under the same names, and no other."""
     folder = place.parent.resolve()
     named = [[Path(os.path.relpath(f.resolve(), folder)).as_posix(), hash_of(f)] for f in files]
     whole = [VERSION, hashlib.sha256(content).hexdigest(), sorted(named)]
+    whole += ["grown"] if grown else []
     return hashlib.sha256(json.dumps(whole).encode()).hexdigest()
 
 

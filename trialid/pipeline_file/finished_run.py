@@ -28,6 +28,8 @@ class FinishedRun:
         The value of each standard measure with its 95 % range.
     model_errors
         How far what the model lacks may move each fitted parameter, a share of its size.
+    steps
+        Rows of its history.
     """
 
     values: Mapping[str, float] = field(default_factory=dict)
@@ -39,6 +41,7 @@ class FinishedRun:
     model_errors: Mapping[str, float] = field(default_factory=dict)
     verdict: str = ""
     effects: tuple[str, ...] = ()
+    steps: tuple[Mapping[str, Any], ...] = ()
 
     def gear_rate(self, given: float | None) -> float:
         """Of the rudder [rad/s]: as a file gives it in deg/s, else as in the run, else usual."""
@@ -84,6 +87,7 @@ def _read(pipeline: DesignFile, file: Path) -> FinishedRun:
             model_errors={p["name"]: float(p.get("undermodelling_error") or 0.0) for p in rows},
             verdict=str((result.get("verdict") or {}).get("kind", "")),
             effects=effects,
+            steps=tuple(s for s in result.get("history", ()) if s["step"] != "proposed"),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise PipelineError(

@@ -83,6 +83,12 @@ class Result:
         return next(row for row in reversed(self.history) if row.step != "proposed")
 
     @property
+    def comparable(self) -> tuple[StepRow, ...]:
+        """The steps whose errors are of the same logs as the present one's."""
+        own = sorted(self.present.logs) if self.history else []
+        return tuple(row for row in self.history if sorted(row.logs) == own)
+
+    @property
     def physical(self) -> tuple[ParameterRow, ...]:
         """The parameters of the ship, those of trials and sensors apart."""
         return tuple(row for row in self.accuracy.parameters if row.kind == "physical")

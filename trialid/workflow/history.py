@@ -111,6 +111,16 @@ def free_before(
     return tuple(parameters)
 
 
+def has_joined(steps: Sequence[StepRow], effects: Sequence[str]) -> bool:
+    """Whether one of the effects was added: the model has grown."""
+    return not {n for step in steps for n in step.joined}.isdisjoint(effects)
+
+
+def lines(steps: Sequence[StepRow]) -> str:
+    """The steps as the file has them."""
+    return "".join(json.dumps(plain(step), allow_nan=False) + "\n" for step in steps)
+
+
 @contextmanager
 def append_steps(pipeline: Path, steps: Sequence[StepRow]) -> Iterator[None]:
     """Add steps at the end of the file; taken back if what follows fails.
@@ -122,7 +132,7 @@ def append_steps(pipeline: Path, steps: Sequence[StepRow]) -> Iterator[None]:
     """
     path = place(pipeline)
     there = path.exists()
-    text = "".join(json.dumps(plain(step), allow_nan=False) + "\n" for step in steps)
+    text = lines(steps)
     try:
         with path.open("ab+") as stream:
             size = stream.seek(0, os.SEEK_END)

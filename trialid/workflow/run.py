@@ -20,18 +20,23 @@ from trialid.workflow.read_trials import align_trials
 
 @one_thread
 def run(
-    pipeline: Pipeline, progress: Progress = lambda words, share: None, force: bool = False
+    pipeline: Pipeline,
+    progress: Progress = lambda words, share: None,
+    force: bool = False,
+    grown: bool = False,
 ) -> Run:
     """Everything from a pipeline, nothing written.
 
-    With `force` the missing force is sought whatever the verdict, beside a named effect.
+    With `force` the missing force is sought whatever the verdict, beside a named effect; `grown`
+    as of `examine`.
 
     Raises
     ------
     TrialidError
         The input is wrong; nothing is left behind.
     """
-    return examine(pipeline, align_trials(pipeline, progress), progress, force=force)
+    trials = align_trials(pipeline, progress)
+    return examine(pipeline, trials, progress, force=force, grown=grown)
 
 
 @one_thread
@@ -56,7 +61,7 @@ def examine(
     steps, remark = history.read(pipeline.path)
     catalogue = available(pipeline)
     fit = fit or fit_of(pipeline, trials, catalogue, progress)
-    grown = grown or bool({n for step in steps for n in step.joined} & {*pipeline.model.effects})
+    grown = grown or history.has_joined(steps, pipeline.model.effects)
     findings = find_out(pipeline, fit, catalogue, progress, force=force, grown=grown)
     progress("done", 1.0)
     present, *proposed = steps_from(findings)

@@ -88,7 +88,7 @@ class ErrorHistory:
 
 def error_history(run: Result) -> ErrorHistory | None:
     """The picture of a run's history, None where no step has an error."""
-    known = [row for row in run.history if is_number(row.eps_rmsn)]
+    known = [row for row in run.comparable if is_number(row.eps_rmsn)]
     shown = known[-MOST:]
     if not shown:
         return None
@@ -252,7 +252,8 @@ def break_lines(text: str, room: int) -> list[str]:
 
 def step_sentence(row: StepRow) -> str:
     """A step in one sentence, for who does not see the picture."""
-    said = f"{step_words(row)}: error {wording.percent(row.eps_rmsn)}"
+    tried = " (proposed)" if row.step == "proposed" else ""
+    said = f"{step_words(row)}{tried}: error {wording.percent(row.eps_rmsn)}"
     parts = (("noise", "noise"), ("model", "undermodelling"), ("held out", "eps_rmsn_check"))
     return said + "".join(f", {word} {wording.percent(getattr(row, key))}" for word, key in parts
                           if is_number(getattr(row, key)))  # fmt: skip

@@ -157,7 +157,7 @@ def _split(run: Result) -> Table:
 def _history(run: Result) -> Table:
     rows = tuple(
         (
-            Figure(place), _step(row), percent(row.eps_rmsn), percent(row.noise),
+            Figure(place), _step(row, run), percent(row.eps_rmsn), percent(row.noise),
             percent(row.undermodelling), *ends(error_history.interval(row, run)),
             percent(row.eps_rmsn_check), row.verdict or "",
         )
@@ -168,10 +168,12 @@ def _history(run: Result) -> Table:
     return Table("history", "How the error fell", headings, rows)
 
 
-def _step(row: StepRow) -> str:
-    """What was done, or only proposed."""
+def _step(row: StepRow, run: Result) -> str:
+    """What was done, or only proposed, or done for other logs."""
     words = error_history.step_words(row)
-    return f"{words} (proposed, not in the file)" if row.step == "proposed" else words
+    if row.step == "proposed":
+        return f"{words} (proposed, not in the file)"
+    return words if row in run.comparable else f"{words} (on other logs)"
 
 
 def _change(run: Result) -> Table:

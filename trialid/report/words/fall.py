@@ -8,18 +8,27 @@ from trialid.result.schema import Result
 
 def fell(run: Result) -> str:
     """What the picture shows, in words."""
-    known = [row for row in run.history if is_number(row.eps_rmsn)]
+    known = [row for row in run.comparable if is_number(row.eps_rmsn)]
+    apart = _apart(run)
     if not known:
-        return "No step has an error."
+        return f"No step has an error.{apart}"
     first, last = known[0], known[-1]
     if first is last:
-        return f"One model so far, {step_sentence(last)}.{_zero(last, run)}"
+        return f"One model so far, {step_sentence(last)}.{_zero(last, run)}{apart}"
     words = f"The error goes from {_pair(first, last, 'eps_rmsn')}"
     parts = {"eps_rmsn_check": "held out", "undermodelling": "the model part"}
     for key, word in {**parts, "noise": "the noise part"}.items():
         if is_number(getattr(first, key)) and is_number(getattr(last, key)):
             words += f", {word} from {_pair(first, last, key)}"
-    return f"{words}.{_zero(last, run)} {_proof(first, last)}"
+    return f"{words}.{_zero(last, run)} {_proof(first, last)}{apart}"
+
+
+def _apart(run: Result) -> str:
+    """Words on steps that other logs were fitted for."""
+    others = len(run.history) - len(run.comparable)
+    if not others:
+        return ""
+    return f" {wording.count_of(others, 'earlier step')} had other logs, and other errors for it."
 
 
 def _proof(first: StepRow, last: StepRow) -> str:

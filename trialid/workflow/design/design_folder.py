@@ -12,8 +12,11 @@ from trialid.names.quantities import SIGNALS
 from trialid.pipeline_file.design_file import DesignFile
 from trialid.report.pages import bridge
 from trialid.report.pages.bridge import file_name
+from trialid.result.change_rows import StepRow
+from trialid.result.json_file import row_of
 from trialid.ship.actuators import actuator_quantities
 from trialid.toml_text import quote
+from trialid.workflow import history
 from trialid.workflow.design import plan_data
 from trialid.workflow.design.design_run import Plan, Rated
 
@@ -46,6 +49,9 @@ def _texts(plan: Plan, data: Mapping[str, Any], folder: Path) -> dict[str, str]:
             texts[f"{stem}.csv"] = bridge.order_csv(passage)
         own = stems[0] if len(stems) == 1 else file_name(rated.name, taken)
         texts[f"{own}.toml"] = _pipeline(plan, folder, rated, stems)
+        if plan.run.steps:  # a model that has grown is a grown one for its next log, too
+            steps = [row_of(StepRow, row) for row in plan.run.steps]
+            texts[history.place(Path(f"{own}.toml")).name] = history.lines(steps)
     texts["bridge.html"] = bridge.page(data, sheets, bridge.aborts(plan.limits))
     return texts
 

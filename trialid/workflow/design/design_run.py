@@ -18,7 +18,7 @@ from trialid.errors import DesignError, PipelineError, nearest
 from trialid.identification.problem import Settings
 from trialid.pipeline_file import where
 from trialid.pipeline_file.design_file import DesignFile, Numbers, TestSection
-from trialid.pipeline_file.finished_run import finished_run
+from trialid.pipeline_file.finished_run import FinishedRun, finished_run
 from trialid.ship.effect import Effect
 from trialid.threads import one_thread
 from trialid.workflow.build_model import available, settings_of
@@ -42,11 +42,12 @@ class Rated:
     remarks: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What a design file asked for."""
+    """What a design file asked for; `run` is the one that it builds on."""
 
     pipeline: DesignFile
+    run: FinishedRun
     ship: Ship
     limits: Limits
     rated: tuple[Rated, ...]
@@ -91,8 +92,17 @@ def plan(pipeline: DesignFile, progress: Progress = lambda words, share: None) -
     for i, (name, programme) in enumerate(programmes):
         tell = _told(progress, name, i / len(programmes), pipeline.search.criterion)
         rated.append(_rated(pipeline, name, programme, ships, limits, tell))
-    imo = design_imo.imo(ships, finished_run(pipeline)) if pipeline.imo else None
-    return Plan(pipeline, ships[0], limits, tuple(rated), separation, imo)
+    run = finished_run(pipeline)
+    imo = design_imo.imo(ships, run) if pipeline.imo else None
+    return Plan(
+        pipeline=pipeline,
+        run=run,
+        ship=ships[0],
+        limits=limits,
+        rated=tuple(rated),
+        separation=separation,
+        imo=imo,
+    )
 
 
 BEST: Final[Mapping[str, tuple[str, Callable[[float], float]]]] = {

@@ -6,7 +6,6 @@ import numpy as np
 
 from trialid.design.ordered_signals import ordered_signals
 from trialid.names.quantities import SIGNALS, Quantity
-from trialid.pipeline_file.finished_run import finished_run
 from trialid.report.files import design_data
 from trialid.version import VERSION
 from trialid.workflow.design import design_imo
@@ -29,7 +28,7 @@ def _recorded(plan: Plan) -> list[str]:
 
 def _error_doubt(plan: Plan, best: Rated) -> str:
     """What the errors of the best programme rest on."""
-    return error_doubt(best.outcome.rating, plan.ship.goal.wanted, finished_run(plan.pipeline))
+    return error_doubt(best.outcome.rating, plan.ship.goal.wanted, plan.run)
 
 
 def plain(plan: Plan) -> dict[str, Any]:
