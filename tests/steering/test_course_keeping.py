@@ -17,10 +17,12 @@ from trialid.diagnosis.records.course_keeping import (
     by_the_rudder,
     gained_on_course,
     stretches_on_course,
+    zigzag_first,
 )
 from trialid.diagnosis.records.rudder_jumps import own_time
 from trialid.diagnosis.verdict import Verdict
 from trialid.effects import CATALOGUE
+from trialid.identification.inadequate import Inadequate
 from trialid.identification.output_error import stretches
 from trialid.trial import Trial
 
@@ -105,6 +107,17 @@ def test_what_is_gained_in_turns_is_not_gained_on_course() -> None:
     for better, gained in ((on_course, True), (~on_course, False)):
         after = SimpleNamespace(residual=np.where(better, 0.5, 1.0) * fit.residual)
         assert gained_on_course(fit, after) is gained
+
+
+@pytest.mark.parametrize(("kept", "told"), [(True, True), (False, False)])
+def test_of_no_fit_on_course_a_zigzag_is_the_way_out(kept: bool, told: bool) -> None:
+    fit = missions.mission_fit(missions.Boat(), 71, kept=kept)
+    failed = Inadequate("the search did not converge", "free fewer parameters")
+    found = zigzag_first(fit, failed)
+    assert (found == failed) is not told
+    assert found.reason == failed.reason
+    assert found.advice.startswith("fit a zig-zag") == told
+    assert found.advice.endswith(failed.advice)
 
 
 @pytest.mark.study(turn=1)

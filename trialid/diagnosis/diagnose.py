@@ -25,6 +25,7 @@ from trialid.diagnosis.noise.thinning import with_means
 from trialid.diagnosis.objections import likeliest_refit, more_on_course, refit_best
 from trialid.diagnosis.plain_damping import dampings
 from trialid.diagnosis.records.contradicting_trial import settle_held_out, settle_trials
+from trialid.diagnosis.records.course_keeping import zigzag_first
 from trialid.diagnosis.records.in_doubt import in_doubt, settle
 from trialid.diagnosis.records.unrecorded import name_records
 from trialid.diagnosis.search.completeness import Completeness
@@ -201,8 +202,7 @@ def _force(
     asked: bool, verdict: Verdict, fit: Fit, level: float, progress: Progress
 ) -> MissingForce | None:
     """The missing force, None where nobody asks or nothing is simulated that it could push."""
-    wanted = asked or verdict.kind == "not in catalogue"
-    if not wanted or not fit.model.states:
+    if not (asked or verdict.kind == "not in catalogue") or not fit.model.states:
         return None
     progress("looking for the missing force", 0.9)
     return missing_force(fit, level)
@@ -215,7 +215,7 @@ def _no_fit(
     return Diagnosis(
         before=replace(before, split=OF_NO_FIT),
         left_out=left_out,
-        verdict=settle(fit, Verdict("no fit", None, (), f"no fit: {failed}")),
+        verdict=settle(fit, Verdict("no fit", None, (), f"no fit: {zigzag_first(fit, failed)}")),
         where=where(fit),
     )
 
