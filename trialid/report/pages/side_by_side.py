@@ -74,7 +74,7 @@ def _parameters(runs: Sequence[Shown]) -> Table:
         {row.name: row for row in run_tables.rows_of_kind(each.run, nuisance=False)}
         for each in runs
     ]
-    headings = ["parameter", "unit"]
+    headings = ["parameter", "unit", "differ", "apart, in joint errors"]
     for each in runs:
         label = each.label
         headings += [label, f"+- ({label})", f"likely from ({label})", f"likely to ({label})"]
@@ -82,7 +82,7 @@ def _parameters(runs: Sequence[Shown]) -> Table:
     fits = [each.run.verdict.kind != "no fit" for each in runs]
     rows = tuple(_parameter(name, [rows.get(name) for rows in found], fits) for name in names)
     return Table("parameters", "Parameters by run, with standard errors and likely ranges",
-                 (*headings, "apart, in joint errors", "differ"), rows)  # fmt: skip
+                 tuple(headings), rows)  # fmt: skip
 
 
 def _parameter(
@@ -98,12 +98,14 @@ def _parameter(
         ends = (Figure(None), Figure(None)) if row is None else run_tables.likely(row)
         cells += [value, Figure(error, 2), *ends]
     if len(units) > 1:
-        return name, " or ".join(units), *cells, Figure(None), "other units"
+        return name, " or ".join(units), "other units", Figure(None), *cells
+    if len(known) < 2:
+        return name, units[0], "in one run", Figure(None), *cells
     sound = [row for fit, row in zip(fits, rows, strict=True) if fit and row is not None]
-    if len(sound) < min(2, len(known)):
-        return name, units[0], *cells, Figure(None), "cannot tell: no fit"
+    if len(sound) < 2:
+        return name, units[0], "cannot tell: no fit", Figure(None), *cells
     distance = joint_distance([(row.value, row.standard_error) for row in sound])
-    return name, units[0], *cells, Figure(distance, 2), _differ(distance, sound)
+    return name, units[0], _differ(distance, sound), Figure(distance, 2), *cells
 
 
 def _differ(distance: float | None, rows: Sequence[ParameterRow]) -> str:
