@@ -41,7 +41,9 @@ def test_what_is_named_is_added_whatever_else_stands_every_check(monkeypatch) ->
     assert steps(loop(monkeypatch, WORLD))[0] == "+a"
 
     def of_b(findings: Any) -> None:
-        findings.verdict = SimpleNamespace(kind="missing", effect="b", sentence="b is missing")
+        findings.verdict = SimpleNamespace(
+            kind="missing", effect="b", sentence="b is missing", held_as_well=()
+        )
 
     assert steps(changed(monkeypatch, "", of_b))[0] == "+b"
 

@@ -94,7 +94,7 @@ def found_in(world: World, fit: Any, grown: bool) -> Any:
     return SimpleNamespace(
         before=SimpleNamespace(fit=fit), refits=tuple(refits),
         ranking=tuple(r.candidate for r in refits),
-        verdict=SimpleNamespace(kind=kind, effect=effect), together=pair,
+        verdict=SimpleNamespace(kind=kind, effect=effect, held_as_well=()), together=pair,
     )  # fmt: skip
 
 
@@ -140,6 +140,7 @@ def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
     stubs = {
         "align_trials": lambda *_: (), "available": lambda *_: {}, "examine": examine,
         "add_to_pipeline": lambda r, n: edit("added", r, n, with_(r.effects, n)),
+        "free_in_pipeline": lambda r, names: recipe(with_(r.effects, "".join(names))),
         "drop_from_pipeline": lambda r, n: edit("dropped", r, n, r.effects.replace(n, "")),
         "started_at": lambda *_: None, "fit_of": lambda r, *_: fit_in(world, r.effects),
         "carried_between": carried_between, "worths": worths,
@@ -149,7 +150,7 @@ def loop(monkeypatch: pytest.MonkeyPatch, world: World) -> list[grow.Stage]:
 
 
 def changed(
-    monkeypatch: pytest.MonkeyPatch, of: str, change: Callable[[Any], None]
+    monkeypatch: pytest.MonkeyPatch, of: str, change: Callable[[Any], None], priors: Any = None
 ) -> list[grow.Stage]:
     """The loop once more, where what is found of a model with these effects is changed."""
     usual = grow.examine
@@ -161,12 +162,16 @@ def changed(
         return run
 
     monkeypatch.setattr(grow, "examine", examine)
-    recipe = SimpleNamespace(effects="", diagnose=SimpleNamespace(level=0.05))
+    identify = SimpleNamespace(free=(), priors=priors)
+    diagnose = SimpleNamespace(level=0.05)
+    recipe = SimpleNamespace(effects="", diagnose=diagnose, identify=identify)
     return list(grow.stages(recipe, lambda words, share: None))  # type: ignore[arg-type]
 
 
 def no_fit(findings: Any) -> None:
-    findings.verdict = SimpleNamespace(kind="no fit", effect=None, sentence="no fit: x")
+    findings.verdict = SimpleNamespace(
+        kind="no fit", effect=None, sentence="no fit: x", held_as_well=()
+    )
 
 
 def steps(done: list[grow.Stage]) -> list[str]:

@@ -124,6 +124,9 @@ def test_what_was_done_is_told_by_sign():
     assert step_words(replace(known, step="dropped")) == "\N{MINUS SIGN} b"
     assert step_words(replace(known, step="as written")) == "as written"
     assert step_words(StepRow(step="added")) == "added"
+    held = replace(known, added="Yv, Nvdot", effects=("a",), free=("Nr", "Yv", "Nvdot"))
+    assert step_words(held) == "free Yv, Nvdot"
+    assert step_words(replace(held, free=("Nr", "Yv"))) == "+ Yv, Nvdot"
 
 
 def test_a_sign_stays_with_its_name(result):

@@ -75,14 +75,17 @@ def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
     if names := worth_naming(done[-1].worths):
         costed = {one.effect for one in done[-1].worths}
         rest = [n for n in added if n in costed and n not in names]
-        placed = [n for n in added if n not in costed]
+        there = done[-1].pipeline.model.effects
+        placed = [n for n in added if n not in costed and n in there]
         corrected = (
             f"; each worth less than a tenth, which the shapes of others may be: {', '.join(rest)}"
             if rest
             else ""
         )
         instead = f"; in the place of what the file had: {', '.join(placed)}" if placed else ""
-        listed = f"{', '.join(names)}{corrected}{instead}"
+        freed = [n for n in added if n not in costed and n not in there]
+        free = f"; free now, about her file's values: {', '.join(freed)}" if freed else ""
+        listed = f"{', '.join(names)}{corrected}{instead}{free}"
         words += f"\nWhat was added, the dearest to leave out first: {listed}."
     if added and keep:
         words += f"\n{pipeline} now has {', '.join(added)}."

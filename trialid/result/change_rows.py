@@ -45,6 +45,12 @@ class StepRow:
         """Names of what was added."""
         return names_in(self.added)
 
+    @property
+    def sign(self) -> str:
+        """What stands before what was added: `free` where these were numbers that it held."""
+        held = self.joined and {*self.joined} <= {*self.free} - {*self.effects}
+        return "free" if held else "+"
+
 
 def names_in(added: str | None) -> tuple[str, ...]:
     """Names of what was added at once; two stand with a comma.

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Literal
 
 from trialid.diagnosis.search.freed import free_coefficient
@@ -58,6 +59,17 @@ def add_to_pipeline(pipeline: Pipeline, name: str) -> Edit:
     new = [n for n in free if n not in pipeline.identify.free]
     after, said = _edited(pipeline, lambda text: _in_its_place(pipeline, text, effect, new))
     return Edit("added", effect, pipeline, after, said)
+
+
+def free_in_pipeline(pipeline: Pipeline, names: Sequence[str]) -> Pipeline:
+    """The pipeline with numbers free that it holds.
+
+    Raises
+    ------
+    PipelineError
+        The file would not be a pipeline.
+    """
+    return _edited(pipeline, lambda text: (reduce(set_free, names, text), ()))[0]
 
 
 def _in_its_place(

@@ -1,24 +1,26 @@
 """The loop that adds what is missing until nothing is: fit, diagnose, decide, add, and again.
 
-Forward by the refit whose fall carries over best to blocks left out, and shows on held-out trials
-once effects were added, or by two effects at once where none alone stands every check; then
-backward, each effect that was added left out in turn, and what no longer pays is dropped for good.
-It stops where the evidence ends, and never keeps what raised the error of held-out trials. Names
-are given at the end, to what survives: what leaving it out costs says how much it is worth. Nothing
-is written here.
+First numbers that the model holds, where her file says how well they are known and they do as well
+as what would be added. Forward by the refit whose fall carries over best to blocks left out, and
+shows on held-out trials once effects were added, or by two effects at once where none alone stands
+every check; then backward, each effect that was added left out in turn, and what no longer pays is
+dropped for good. It stops where the evidence ends, and never keeps what raised the error of
+held-out trials. Names are given at the end, to what survives: what leaving it out costs says how
+much it is worth. Nothing is written here.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from trialid.diagnosis.objections import likeliest_refit
+from trialid.diagnosis.objections import HELD_OUT, likeliest_refit
 from trialid.diagnosis.search.backward import Worth, to_drop, worth_naming, worths
 from trialid.diagnosis.search.falls import worse_held_out
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.together import Together
 from trialid.errors import TrialidError
 from trialid.pipeline_file import Pipeline
+from trialid.pipeline_file.prior_section import OfTheShip
 from trialid.progress import Progress
 from trialid.result.change_rows import GrownRow, StepRow, names_in
 from trialid.ship.effect import Effect
@@ -26,7 +28,7 @@ from trialid.trial import Trial
 from trialid.workflow import history
 from trialid.workflow.addition_fit import fit_addition
 from trialid.workflow.edit_model import proposed_steps
-from trialid.workflow.edit_pipeline import drop_from_pipeline
+from trialid.workflow.edit_pipeline import drop_from_pipeline, free_in_pipeline
 from trialid.workflow.outcome import Run
 from trialid.workflow.read_trials import align_trials
 from trialid.workflow.run import examine
@@ -85,6 +87,12 @@ class _Path:
             kept.append(effect)
         self.own = kept
 
+    def held(self, run: Run) -> tuple[str, ...]:
+        """Numbers that do as well as an effect, to be free first, each about her file's value."""
+        names = run.findings.verdict.held_as_well
+        about = names and isinstance(run.pipeline.identify.priors, OfTheShip)
+        return names if about and frozenset(names) not in self.tried else ()
+
     def next_up(self, run: Run) -> Refit | Together | None:
         """What to add: what is named, and in later steps whatever stands every check.
 
@@ -112,6 +120,8 @@ class _Path:
     def end(self, run: Run) -> str:
         """Why nothing more is to be added, empty where something is."""
         verdict = run.findings.verdict
+        if self.held(run):
+            return ""
         if self.next_up(run) is None:
             tried = verdict.effect is not None and not self._new((verdict.effect,))
             return f"{verdict.effect} was tried" if tried else f"the verdict is `{verdict.kind}`"
@@ -133,7 +143,7 @@ def stages(pipeline: Pipeline, progress: Progress) -> Iterator[Stage]:
     stage = Stage(pipeline, run, None, True, path.end(run))
     yield stage
     while not stage.end:
-        stage = _forward(path, stage)
+        stage = _freed(path, stage) if path.held(stage.run) else _forward(path, stage)
         yield stage
         while stage.kept and (less := _backward(path, stage)) is not None:
             stage = less
@@ -153,14 +163,35 @@ def _forward(path: _Path, stage: Stage) -> Stage:
         if trouble:
             return _not_kept(path, stage, name, f"{trouble} with {name}")
         run = examine(after, path.trials, path.progress, fit, grown=True)
+        _check_carries(run)
     except TrialidError as error:
         return _not_kept(path, stage, name, f"with {name}: {error}")
-    if run.findings.verdict.kind == "no fit":
-        return _not_kept(path, stage, name, f"with {name}: {run.findings.verdict.sentence}")
     path.joined |= {e.name for e in effects}
     for effect in effects:
         path.join(effect, before.model.displaced_by(effect))
     return _told(path, after, run, added=name)
+
+
+def _freed(path: _Path, stage: Stage) -> Stage:
+    """The stage with numbers free that do as well as an effect, or why they stay as they are."""
+    names, before = path.held(stage.run), stage.run.findings.before.fit
+    path.tried.add(frozenset(names))
+    name = ", ".join(names)
+    try:
+        after = free_in_pipeline(stage.pipeline, names)
+        run = examine(after, path.trials, path.progress, grown=bool(path.own))
+        _check_carries(run)
+    except TrialidError as error:
+        return _not_kept(path, stage, name, f"with {name} free: {error}")
+    if worse_held_out(before, run.findings.before.fit):
+        return _not_kept(path, stage, name, f"{HELD_OUT} with {name} free")
+    return _told(path, after, run, added=name)
+
+
+def _check_carries(run: Run) -> None:
+    """Refuse a model whose fit carries no verdict, with the reason."""
+    if run.findings.verdict.kind == "no fit":
+        raise TrialidError(run.findings.verdict.sentence)
 
 
 def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:

@@ -217,7 +217,7 @@ def step_words(row: StepRow) -> str:
     """What was done to come to a step, in words."""
     match row.step:
         case "added" | "proposed" if row.added:
-            return f"+ {row.added}"
+            return f"{row.sign} {row.added}"
         case "dropped" if row.dropped:
             return f"{wording.MINUS} {row.dropped}"
         case other:
@@ -226,8 +226,9 @@ def step_words(row: StepRow) -> str:
 
 def _words(row: StepRow, present: bool, step: float) -> list[str]:
     """A label in short lines, broken at underscores."""
-    sign, _, name = step_words(row).rpartition(" ")
-    whole = f"{sign}\N{NO-BREAK SPACE}{name}" if sign in ("+", wording.MINUS) else step_words(row)
+    whole = step_words(row)
+    if row.added or row.dropped:
+        whole = whole.replace(" ", "\N{NO-BREAK SPACE}", 1)
     lines = break_lines(whole, int(step / 6.8))
     if row.step == "proposed":
         lines.append("(proposed)")

@@ -52,7 +52,7 @@ def short_words(step: StepRow) -> str:
     """
     match step.step:
         case "added" | "proposed":
-            return f"+ {step.added}"
+            return f"{step.sign} {step.added}"
         case "dropped":
             return f"- {step.dropped}"
         case other:

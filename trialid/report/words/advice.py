@@ -229,7 +229,8 @@ def _unclear(run: Result) -> Iterable[Advice]:
     if held := run.verdict.held_as_well:
         yield Advice(
             f"Under [identify] free {wording.count_of(len(held), 'number')} as well, held about "
-            'her file by priors = "ship", and run again:',
+            'her file by priors = "ship", and run again; so does `trialid run --auto` where these '
+            "priors are there already:",
             f"free = {array([*run.model.free, *held])}",
         )
         return
