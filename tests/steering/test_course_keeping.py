@@ -54,6 +54,17 @@ def test_one_that_is_put_over_and_held_is_not(seed: int) -> None:
     assert share_kept(turned) == 0.0
 
 
+@pytest.mark.parametrize("seed", SEEDS)
+def test_so_it_is_where_turns_are_rare(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What few angles exceed is then small itself: of four such records a fifth at most was."""
+    monkeypatch.setattr(missions, "LEG", 600.0)
+    monkeypatch.setattr(missions, "DURATION", 2000.0)
+    rare = sailed(seed, kept=True)
+    turned = np.abs(rare.signals["delta"]) > np.deg2rad(8.0)
+    assert 0.0 < turned.mean() < 0.05
+    assert share_kept(rare) > 0.8
+
+
 def test_where_the_rate_was_not_measured_nothing_is_known() -> None:
     kept = sailed(70, kept=True)
     rest = {n: x for n, x in kept.signals.items() if n != "r"}

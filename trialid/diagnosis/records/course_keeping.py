@@ -25,11 +25,11 @@ from trialid.ship.effect import Effect
 from trialid.trial import Trial
 
 SMALL: Final = 0.3
-"""Share of the rudder's large angles, those that 5 % exceed, up to which an angle is small. Of 16
-records in which an autopilot made a dead band half of it finds all, twice 15."""
-
-LARGE: Final = 95.0
-"""Percentile of what is large."""
+"""Share of the rudder's large angles, their mean weighed by their squares, up to which an angle is
+small. Of 15 records of strangers' autopilots 14 are found, of 16 missions of a boat all; half of it
+finds 13, twice 11, all of the missions both. What 5 % of the angles exceed found 10 of the 15:
+where turns are rare it is small itself, and in 4 of 4 such records in gusts a dead band was named
+that the ship did not have."""
 
 SPAN: Final = 7.0
 """Times in which the ship goes her length that a window lasts: within it the course is one. Half of
@@ -95,14 +95,18 @@ def stretches_on_course(trials: Sequence[Trial], own_time: float) -> tuple[Mask,
     able = [i for i, t in enumerate(trials) if {"delta", "r"} <= {*t.signals}]
     if not able:
         return none
-    angles = np.concatenate([np.abs(trials[i].signals["delta"]) for i in able])
-    small = SMALL * float(np.percentile(angles, LARGE))
+    small = SMALL * _large(np.concatenate([np.abs(trials[i].signals["delta"]) for i in able]))
     found = [(i, at, rows) for i in able for at, rows in _windows(trials[i], own_time, small)]
     if not found or not _follows(np.concatenate([rows for _, _, rows in found])):
         return none
     for i, at, _ in found:
         none[i][at] = True
     return none
+
+
+def _large(angles: Vector) -> float:
+    """The angle at which most of what the rudder does is done, however rarely; 0 where it rests."""
+    return float((angles**3).sum() / max((angles**2).sum(), 1e-300))
 
 
 def _windows(trial: Trial, own_time: float, small: float) -> list[tuple[slice, Vector]]:
