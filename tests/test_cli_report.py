@@ -108,7 +108,8 @@ def test_two_runs_side_by_side(place: Path) -> None:
         assert words in text
     head, *rows = (folder / "tables" / "parameters.csv").read_text("utf-8").splitlines()
     own = "{0},+- ({0}),likely from ({0}),likely to ({0})"
-    assert head.startswith(f"parameter,unit,{own.format('plain')},{own.format('marked')}")
+    runs = f"{own.format('plain')},{own.format('marked')}"
+    assert head == f'parameter,unit,differ,"apart, in joint errors",{runs}'
     assert {row.split(",")[0] for row in rows} == {"Nr", "Ndelta", "Nv"}
     own = (place / "plain" / "report.html").read_bytes()
     assert (folder / "plain" / "report.html").read_bytes() == own

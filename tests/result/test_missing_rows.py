@@ -75,5 +75,9 @@ def test_what_is_not_worth_a_name_is_called_small_only_where_it_is(after, said):
     """A wind that took a fifth of the squared error off, in three blocks of six, was small."""
     carried = Carried((1.0,) * 3, after)
     one = replace(candidate("w"), p_value=0.001, carried=carried)
-    found = SimpleNamespace(verdict=Verdict("cannot tell", None, (), ""))
+    found = SimpleNamespace(verdict=Verdict("cannot tell", None, (), ""), refits=())
     assert place_in_ranking(one, found) == said
+    fitted = SimpleNamespace(candidate=one, carried=Carried((1.0,) * 6, (0.7,) * 6))
+    assert place_in_ranking(one, SimpleNamespace(**vars(found) | {"refits": [fitted]})) == (
+        "stands out"  # what was fitted tells more than what its slope foretold
+    )

@@ -238,10 +238,12 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None, none: str) -> Ver
             f"({parts.method}), and no effect of the catalogue explains it",
         )  # fmt: skip
     total = float(np.hypot(parts.noise or 0.0, parts.undermodelling or 0.0))
+    little = _is_little(high, total)
+    much = f", too much of an error of {total:.1%} to say that nothing is missing"
     return Verdict(
-        "nothing missing" if _is_little(high, total) else "cannot tell", None, (),
+        "nothing missing" if little else "cannot tell", None, (),
         f"{none}{' against the noise' * (none == NONE_STANDS_OUT)}; a model error of up to "
-        f"{high:.1%} would not be seen ({parts.method})",
+        f"{high:.1%} would not be seen ({parts.method}){'' if little else much}",
     )  # fmt: skip
 
 

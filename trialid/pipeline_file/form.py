@@ -200,7 +200,7 @@ class IdentifySection(Section):
     max_iterations: Rounds = 50
     """Steps after which a search gives up."""
     norm: Literal["mean", "zero"] = "mean"
-    """Whether y_RMS of Eq. 8 is taken about the channel's own mean or about zero."""
+    """Whether y_RMS of Eq. 8 is taken about each trial's own mean or about zero."""
     substeps: Rounds = 1
     """Simulation steps in one sample to begin with; a run takes more where they are too long."""
     engine: Literal["compiled", "numpy"] = "compiled"

@@ -67,7 +67,7 @@ def _parameter(p: ParameterAccuracy, prior: tuple[float, float] | None) -> Param
 
 def weighting(fit: Fit) -> str:
     """How outputs count, in words."""
-    about = "its own mean" if fit.settings.norm == "mean" else "zero"
+    about = "each trial's own mean" if fit.settings.norm == "mean" else "zero"
     weights = fit.problem.weights
     equal = bool(np.allclose(weights, 1.0))
     listed = ", ".join(f"{c} {w:.3g}" for c, w in zip(fit.problem.outputs, weights, strict=True))

@@ -75,16 +75,18 @@ def place_in_ranking(c: Candidate, found: Diagnosis) -> str:
         return "not visible"
     if not c.allowed:
         return "unphysical"
-    if c.worth_a_name(0.05):
+    return _by_evidence(c, found) if c.shown(0.05) else "no evidence"
+
+
+def _by_evidence(c: Candidate, found: Diagnosis) -> str:
+    """What one is called that is there against the noise, or in the blocks left out."""
+    fitted = (r.carried for r in found.refits if r.candidate is c)
+    carried = next(fitted, c.carried)  # what was fitted tells more than what its slope foretold
+    if carried.falls:
         return "stands out" if c.p_value < 0.05 else "lowers the error"
-    return _short_of_a_name(c) if c.shown(0.05) else "no evidence"
-
-
-def _short_of_a_name(c: Candidate) -> str:
-    """What is there against the noise and not worth a name: why not, small being one reason."""
-    if c.carried.ratio > 1.0:
+    if carried.ratio > 1.0:
         return "does not carry over"
-    return "significant and small" if c.carried.in_most else "not in most blocks"
+    return "significant and small" if carried.in_most else "not in most blocks"
 
 
 def _chance(candidate: Candidate) -> str:

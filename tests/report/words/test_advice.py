@@ -46,12 +46,18 @@ def test_what_is_missing_is_added_by_commands_that_exist(result):
         assert_known(command)
 
 
-STAYS = ("leaves most of the error", "so more than it is missing")
+STAYS = "leaves most of the error"
 
 
 @pytest.mark.parametrize(
     ("noise", "held_out", "stays"),
-    [(None, 0.17, True), (0.16, 0.17, False), (None, 0.14, False), (None, None, True)],
+    [
+        (None, 0.17, True),
+        (0.16, 0.17, False),
+        (None, 0.14, False),
+        (None, None, True),
+        (0.05, 0.17, True),
+    ],
 )
 def test_where_most_of_the_error_stays_whole_models_are_compared(result, noise, held_out, stays):
     """Before it 0.2, of those held out and of those fitted: half of the square is 0.14."""
@@ -63,7 +69,9 @@ def test_where_most_of_the_error_stays_whole_models_are_compared(result, noise, 
     found = [each for each in advised(run, verdict=MISSING) if "structures" in each.command]
     assert len(found) == stays
     for each in found:
-        assert all(words in each.words for words in STAYS)
+        assert STAYS in each.words
+        so = "so more than it is missing" if noise else "noise, or more is missing than it"
+        assert so in each.words
         assert_known(each.command)
 
 

@@ -35,7 +35,7 @@ VERDICTS = {
 FOLLOWS = "No effect stands out, and what is left follows the rudder"
 """... and of a record that shows no effect, where an output says so."""
 
-HELD = "A coefficient is held at another value than the ship's"
+HELD = "The record asks for another value of a coefficient that is held"
 """... and where what is named is of an effect that the model has."""
 
 

@@ -148,21 +148,21 @@ def _missing(run: Result) -> Iterable[Advice]:
 
 def _most_stays(run: Result, effect: str) -> Iterable[Advice]:
     """Where it leaves more than half of what is not noise: what is missing is more than one."""
-    row = next((row for row in run.missing if row.effect == effect), None)
-    if row is None:
+    if (row := next((row for row in run.missing if row.effect == effect), None)) is None:
         return
     held_out = row.eps_rmsn_check is not None
     before = run.fit.eps_rmsn_check if held_out else run.fit.eps_rmsn
     after = row.eps_rmsn_check if held_out else row.eps_rmsn_refitted
     if before is None or after is None or len(run.trials) < FEWEST_COMPARED:
         return
+    so = "so more than it is missing" if run.split.noise else "noise, or more is missing than it"
     noise = (run.split.noise or 0.0) ** 2
     if after**2 - noise > 0.5 * (before**2 - noise):
         where = "where it was not fitted" if held_out else "of the fitted trials"
         yield Advice(
             f"{effect} leaves most of the error {where}, {wording.percent(after)} of "
-            f"{wording.percent(before)}, so more than it is missing. Compare whole models, each "
-            "fitted anew with every trial left out in turn:",
+            f"{wording.percent(before)}, {so}. Compare whole models, each fitted anew with every "
+            "trial left out in turn:",
             command(run, "structures"),
         )
 
