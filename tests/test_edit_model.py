@@ -134,9 +134,9 @@ def test_an_earlier_run_is_used_and_changes_nothing(monkeypatch: pytest.MonkeyPa
     examined = []
     whole: Callable[..., Any] = module.examine
 
-    def examine(recipe: Any, *rest: Any) -> Any:
+    def examine(recipe: Any, *rest: Any, **words: Any) -> Any:
         examined.append(recipe)
-        return whole(recipe, *rest)
+        return whole(recipe, *rest, **words)
 
     monkeypatch.setattr(module, "examine", examine)
     text = FILE.read_bytes()

@@ -4,12 +4,16 @@ import json
 import re
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from test_bad_input import PIPELINE, Table, record, trialid_
 
+import trialid as ti
+from trialid.diagnosis.diagnose import diagnose
 from trialid.errors import TrialidError
 from trialid.result.schema import Result
+from trialid.workflow import findings
 from trialid.workflow.repeat import compare, comparison_words, earlier, repeat
 
 ROOT = Path(__file__).parent.parent
@@ -165,3 +169,25 @@ def test_the_library_gives_the_same(place: Path) -> None:
     _, found = repeat(earlier(run_of(place)), lambda words, share: None)
     assert found.same
     assert found.differing == 0
+
+
+def test_what_an_effect_joined_is_judged_by_add_as_by_the_run_of_its_file(
+    made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of one fit `add` named a current that `run` did not: to `add` the model had not grown."""
+    file, asked = shutil.copytree(made, tmp_path / "again") / "short.toml", []
+
+    def noted(*given: Any, grown: bool, **more: Any) -> Any:
+        asked.append(grown)
+        return diagnose(*given, grown=grown, **more)
+
+    monkeypatch.setattr(findings, "diagnose", noted)
+    for command in ("run", "add", "run", "drop", "run"):
+        effect = ["yaw_drag_rar"] * (command in ("add", "drop"))
+        outcome = trialid_(command, str(file), *effect, "--quiet", "--out", str(tmp_path / "out"))
+        assert outcome.exit_code == 0, outcome.stderr
+    assert asked == [False, True, True, False, False]
+    run = ti.run(file)
+    asked.clear()
+    run.add("yaw_drag_rar").add("yaw_drag_vav")
+    assert asked == [True, True]

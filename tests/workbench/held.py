@@ -21,10 +21,10 @@ class Gate:
         self.reached = threading.Event()
         self.open.set()
 
-    def examine(self, *arguments: Any) -> Any:
+    def examine(self, *arguments: Any, **words: Any) -> Any:
         self.reached.set()
         assert self.open.wait(quick.LONGEST)
-        return EXAMINE(*arguments)
+        return EXAMINE(*arguments, **words)
 
     def close(self) -> None:
         self.open.clear()

@@ -129,7 +129,8 @@ def work_out(task: Task, shelf: Shelf, seat: Seat) -> None:
     pipeline = task.pipeline if edit is None else edit.after
     shown = replace(shown, pipeline=pipeline, model=fit.model, fit=fit, series=time_series(fit))
     seat.show(shown)
-    run = examine(pipeline, trials, seat.progress, fit)
+    grown = bool(_came(task)) if edit is None else edit.grows
+    run = examine(pipeline, trials, seat.progress, fit, grown=grown)
     outcome = _concluded(replace(task, edit=edit), run.outcome, foreseen, seat)
     seat.show(replace(shown, run=outcome, named=_named(shown, outcome)))
 
@@ -191,11 +192,18 @@ def _began_with(
     if last is None or not task.recorded:
         return steps, present
     steps = history.continue_steps(steps, last.result.present)
-    had, has = last.pipeline.model.effects, task.pipeline.model.effects
-    came = [n for n in has if n not in had]
-    if came and not {*had} - {*has}:
+    if came := _came(task):
         present = replace(present, step="added", added=", ".join(came))
     return steps, present
+
+
+def _came(task: Task) -> list[str]:
+    """Effects that joined the last model that was worked out, where none of its own went."""
+    last = _last(task)
+    if last is None or not task.recorded:
+        return []
+    had, has = last.pipeline.model.effects, task.pipeline.model.effects
+    return [] if {*had} - {*has} else [n for n in has if n not in had]
 
 
 def _last(task: Task) -> Outcome | None:

@@ -74,7 +74,7 @@ def carry_out(edit: Edit, folder: Path, progress: Progress) -> Changed:
     known = _before(edit, trials, folder, progress, kept)
     before, foreseen = (None, known) if isinstance(known, str) else known
     edit, fit = fit_edit(edit, trials, foreseen, progress)
-    run = examine(edit.after, trials, progress, fit)
+    run = examine(edit.after, trials, progress, fit, grown=edit.grows)
     result, steps = set_beside(edit, run.result, before, foreseen)
     return Changed(edit, replace(run, result=result), steps)
 

@@ -30,6 +30,11 @@ class Edit:
     after: Pipeline
     taken_out: tuple[str, ...] = ()
 
+    @property
+    def grows(self) -> bool:
+        """Whether an effect joins the model; a coefficient that it held and frees is none."""
+        return self.step == "added" and self.effect.name in self.after.model.effects
+
 
 def add_to_pipeline(pipeline: Pipeline, name: str) -> Edit:
     """The pipeline with an effect more, its parameters free; or with a held coefficient free.

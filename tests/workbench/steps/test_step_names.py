@@ -1,6 +1,7 @@
 """What an edit changed in few words, and how the steps of a desk are called."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 import quick
@@ -8,11 +9,12 @@ from quick import ADDED, TEXT, diagnosed, edit, opened
 
 from trialid.names.wording import MINUS
 from trialid.pipeline_file import load
-from trialid.workbench import screen
+from trialid.workbench import compute, screen
 from trialid.workbench.desk import Desk
 from trialid.workbench.steps.step_names import change_words
 from trialid.workbench.steps.step_rows import steps
 from trialid.workflow.build_model import available
+from trialid.workflow.run import examine
 
 FREE = '"Nrar"]'
 EDITS = [
@@ -78,6 +80,26 @@ def test_every_step_at_a_desk_has_the_name_of_its_edit(path: Path) -> None:
         error = screen.parts(desk.shown)["error"]
         assert "Other trials" not in error
         assert 'class="rose"' in error
+
+
+def test_a_model_that_an_effect_joined_has_grown(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def noted(*given: Any, grown: bool) -> Any:
+        asked.append(grown)
+        return examine(*given, grown=grown)
+
+    monkeypatch.setattr(compute, "examine", noted)
+    with opened(path) as desk:
+        diagnosed(desk)
+        edit(desk, "add", effect=ADDED)
+        diagnosed(desk)
+        edit(desk, "drop", effect=ADDED)
+        diagnosed(desk)
+    assert asked[:2] == [False, True]
+    assert not any(asked[2:])
 
 
 def test_the_model_before_the_first_edit_stays_in_the_history(path: Path) -> None:

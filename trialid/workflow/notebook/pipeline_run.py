@@ -11,6 +11,7 @@ from trialid.result.schema import Result
 from trialid.result.series import TrialSeries
 from trialid.threads import one_thread
 from trialid.user_files import path_of
+from trialid.workflow import history
 from trialid.workflow.edit_model import fit_edit, foresee_edit, set_beside
 from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
 from trialid.workflow.notebook.arguments import effect_name
@@ -56,7 +57,8 @@ class PipelineRun(RunView):
     def _edited(self, edit: Edit) -> "PipelineRun":
         foreseen = foresee_edit(edit, self.fit)
         edit, fit = fit_edit(edit, self.trials, foreseen, silent)
-        after = examine(edit.after, self.trials, silent, fit)
+        grown = edit.grows or history.has_joined(self.result.history, edit.after.model.effects)
+        after = examine(edit.after, self.trials, silent, fit, grown=grown)
         result, _ = set_beside(edit, after.result, self.result, foreseen)
         return pipeline_run(replace(after, result=result))
 
