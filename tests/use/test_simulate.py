@@ -135,9 +135,9 @@ def test_a_range_ends_where_what_it_is_of_does(model: FinishedModel) -> None:
     low, high = found.ranges["phi"]
     assert (low.min(), high.max()) == (-np.pi / 2, np.pi / 2)
     off = np.array([-1.26, -1.0]), np.array([1.0, 60.0])
-    slowest, fastest = _possible("U", np.array([1.0, 2.0]), off)
+    slowest, fastest = _possible("U", {"U": np.array([1.0, 2.0])}, off)
     assert (slowest.tolist(), fastest.tolist()) == ([0.0, 1.0], [2.0, 50.0])
-    beyond = _possible("phi", np.array([2.0]), (np.array([-1.0]), np.array([1.0])))
+    beyond = _possible("phi", {"phi": np.array([2.0])}, (np.array([-1.0]), np.array([1.0])))
     assert (beyond[0].item(), beyond[1].item()) == (1.0, 2.0)  # what was sailed lies in its range
 
 

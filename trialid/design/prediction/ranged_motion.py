@@ -92,7 +92,7 @@ def with_ranges(
             np.interp(np.arange(n), places, ends[:, c, i] - values[places, c]) for i in (0, 1)
         )
         lower, upper = np.minimum(low, -wide), np.maximum(high, wide)
-        ranges[name] = _possible(name, signals[name], (lower, upper))
+        ranges[name] = _possible(name, signals, (lower, upper))
     named = {*SIGNALS, *actuator_quantities(ship.model.ship.actuators)}
     given = [n for n in trial.signals if n in named and n not in (*names, *OVER_GROUND)]
     return PredictedMotion(
@@ -104,15 +104,24 @@ def with_ranges(
     )
 
 
-def _possible(name: str, motion: Vector, off: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
-    """A range as far as a number of this kind can be at all, the motion always in it."""
+def _possible(
+    name: str, signals: Mapping[str, Vector], off: tuple[Vector, Vector]
+) -> tuple[Vector, Vector]:
+    """A range as far as a number of this kind can be at all, the motion always in it.
+
+    What follows an order is nowhere that it was never told to be, but for what it is off by all the
+    time: by its slope alone a quick rudder that is put over at an instant nobody knows well would
+    stand at 90 deg.
+    """
+    motion = signals[name]
     lower, upper = (motion + end for end in off)
-    if (limit := LIMITS.get(name)) is None:
-        return lower, upper
-    return (
-        np.maximum(lower, np.minimum(motion, limit.low)),
-        np.minimum(upper, np.maximum(motion, limit.high)),
-    )
+    if (limit := LIMITS.get(name)) is not None:
+        lower = np.maximum(lower, np.minimum(motion, limit.low))
+        upper = np.minimum(upper, np.maximum(motion, limit.high))
+    if (order := signals.get(f"{name}_order")) is not None:
+        lower = np.maximum(lower, min(motion.min(), order.min()) + off[0].max())
+        upper = np.minimum(upper, max(motion.max(), order.max()) + off[1].min())
+    return lower, upper
 
 
 def _as_sailed(ship: Vessel, name: str, signals: Mapping[str, Vector]) -> Vector:
