@@ -103,6 +103,24 @@ def test_a_log_that_does_not_follow_the_turns_leaves_the_loss_open(trials):
     assert open_[0] > 0.4 * TYPICAL[0]
 
 
+@pytest.mark.parametrize(("low", "told"), [(0.45, False), (0.9, True)])
+def test_a_trial_whose_shaft_was_set_anew_tells_nothing_of_what_turns_cost(trials, low, told):
+    """A ship that speeds up before her circle seemed to lose 6 % in it, and lost a third.
+
+    A shaft that falls by a tenth in a turn was set once.
+    """
+    one = trials[1]
+    late = 0.5 * (1.0 + np.tanh((one.t - 150.0) / 30.0))
+    share = low + (1.0 - low) * late
+    moved = {n: one.signals[n] * share for n in ("u", "n")}
+    anew = replace(one, name="anew", signals={**one.signals, **moved})
+    alone = speed_loss(fit_of(GIVEN, trials)).values
+    found = speed_loss(fit_of(GIVEN, [*trials, anew])).values
+    [turns, *_] = NAMES
+    assert (found[turns] == pytest.approx(alone[turns], rel=0.1)) is not told
+    assert loses_speed(found)
+
+
 def test_the_track_goes_by_the_speed_that_is_left():
     law = dict(zip(NAMES, (5.0, 0.5, 5.0), strict=True))
     ship = with_speed_loss(KEEPING, law)

@@ -21,7 +21,7 @@ def test_a_quick_rudder_lies_within_its_orders(off: float) -> None:
     assert upper.max() == pytest.approx(np.deg2rad(20.0) + off)  # a zero is off all the time
     assert lower.min() == pytest.approx(-np.deg2rad(20.0) - off)
     assert np.all(lower <= FOLLOWS)
-    assert np.all(FOLLOWS <= upper)
+    assert np.all(upper >= FOLLOWS)
     moved = STEEP > 0.0
     assert np.all((upper - lower)[moved] > 2.0 * off)
 
