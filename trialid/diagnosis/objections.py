@@ -213,7 +213,7 @@ def objection(fit: Fit, refit: Refit, level: float, grown: bool = False) -> str:
     """What speaks against an effect once it is fitted, empty where nothing does."""
     shown = refit.candidate.shown(level) or _takes_most(fit, refit)
     if not shown or any(no_such(*_found(refit)) for no_such in NO_SUCH_VALUE):
-        return "chance would do it, or no ship and no sensor has such a value"
+        return "no ship, sensor or trial has such a value" if shown else "chance would do it"
     if not (refit.fit.converged and np.isfinite(refit.fit.eps_rmsn)):
         return NOT_ARRIVED
     if worse_held_out(fit, refit.fit):

@@ -8,6 +8,7 @@ import pytest
 from made_up_fits import BEFORE, fit
 
 from trialid.diagnosis.best_refit import best_of
+from trialid.diagnosis import objections
 from trialid.diagnosis.objections import (
     AS_A_GEAR,
     AS_SLOW,
@@ -25,7 +26,7 @@ from trialid.trial import Trial
 FORMS = ((Force,), (Lagged,))
 """Of an effect of the ship, and of a sensor."""
 
-CHANCE = "chance would do it, or no ship and no sensor has such a value"
+CHANCE = "chance would do it"
 
 
 def refit(
@@ -193,6 +194,14 @@ def test_what_takes_most_off_once_it_is_fitted_is_there_whatever_its_slope_shows
     new.candidate.shown = lambda level: False
     new.candidate.allowed = allowed
     assert objection(old, new, 0.05) == said
+
+
+def test_a_value_that_none_has_is_not_put_down_to_chance(monkeypatch: pytest.MonkeyPatch):
+    """Of a boat in wind it was said of what took half of the error off, at p = 0.009."""
+    old, new = refit("wind", BEFORE, LESS)
+    assert objection(old, new, 0.05) == ""
+    monkeypatch.setattr(objections, "NO_SUCH_VALUE", (lambda effect, fit: True,))
+    assert objection(old, new, 0.05) == "no ship, sensor or trial has such a value"
 
 
 def test_without_held_out_trials_none_is_put_ahead_by_what_it_takes_off_the_fitted():
