@@ -1,12 +1,15 @@
 """A ship stated right whose trial begins wrong: her own start is found before anything else is."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
-from s175q import GYRO, SHIP, zigzag
+from s175q import GYRO, MODEL, SHIP, zigzag
 
 from trialid.effects import CATALOGUE
+from trialid.identification.adequacy import _no_such_inertia
 from trialid.identification.arrive import _by_ship
 from trialid.identification.one_search import cost_at, search
 from trialid.identification.problem import Settings, pose_problem
@@ -72,3 +75,22 @@ def test_pieces_hold_more_than_a_delay_may_spoil():
     cut = in_pieces(whole, asked, MANY, {})
     assert len(cut.trials) > 4
     assert min(int(one.sum()) for one in cut.compared) >= SHORTEST
+
+
+@pytest.mark.parametrize(("name", "share"), [("I_zz", 0.25), ("I_zz", 0.9), ("I_xx", 0.9)])
+def test_a_ship_with_the_inertia_of_a_longer_one_is_no_fit(name: str, share: float) -> None:
+    """Of a ferry whose pods were logged the wrong way round it was 1.5e8, and no word said."""
+    mass = MODEL.value("m")
+    free = SimpleNamespace(unknowns=(SimpleNamespace(name=name),))
+    held = SimpleNamespace(unknowns=())
+
+    def fit(times: float, problem: Any) -> Any:
+        model = MODEL.with_values({name: times * share * mass})
+        return SimpleNamespace(model=model, problem=problem)
+
+    assert _no_such_inertia(fit(1.0, free)) is None
+    assert _no_such_inertia(fit(1e4, held)) is None  # as stated: the file's, and not the fit's
+    found = _no_such_inertia(fit(10.0, free))
+    assert found is not None
+    assert found.reason.endswith(f"{name} = {10 * share:.2g} m L^2, her mass at both ends is 0.25")
+    assert found.advice.endswith(f"hold {name} by priors")

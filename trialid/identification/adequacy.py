@@ -22,6 +22,8 @@ from trialid.identification.trial_score import Score
 from trialid.identification.weighing import NO_NOISE
 from trialid.least_squares.gauss_newton import REASONS
 from trialid.names import wording
+from trialid.names.quantities import MASS_PARAMETERS
+from trialid.ship.motion import masses_of
 
 ABOVE_NOISE: Final = 2.0
 """Standard deviation of an output over its white noise above which it tells of a motion. Noise
@@ -141,6 +143,25 @@ def no_stability(fit: Fit) -> Inadequate | None:
     )
 
 
+def _no_such_inertia(fit: Fit) -> Inadequate | None:
+    """A moment of inertia that was sought is as of a ship longer than she is.
+
+    Twice what her ends alone would have; without a force that is known each moment grows with it.
+    """
+    free = {x.name for x in fit.problem.unknowns}
+    model, own = fit.model, (*MASS_PARAMETERS, *fit.model.parameters)
+    mass = masses_of(model, {n: model.value(n) for n in own})
+    beyond = {n: mass[n] for n in ("I_xx", "I_zz") if n in free and mass[n] > mass["m"]}
+    if not beyond:
+        return None
+    found = " and ".join(f"{n} = {x / mass['m']:.2g} m L^2" for n, x in beyond.items())
+    return Inadequate(
+        f"no ship has the inertia as fitted: {found}, her mass at both ends is 0.25",
+        f"check which of what drives her stands where, sides and units, or hold "
+        f"{' and '.join(beyond)} by priors",
+    )
+
+
 def _little_explained(fit: Fit) -> Inadequate | None:
     """No output that moves is explained by more than half."""
     scores = of_use(fit, "fit")
@@ -245,8 +266,8 @@ def worse_than_none(fit: Fit, score: Score) -> dict[str, float]:
 
 CHECKS: Final = (
     no_manoeuvre, _at_noise_level, _too_short, _no_number, _search_failed,
-    _sensor_at_bound, _little_explained, no_stability, _steered_backwards, _another_ship,
-    _false_valley, _held_out_lost, _held_out_unexplained,
+    _sensor_at_bound, _no_such_inertia, _little_explained, no_stability, _steered_backwards,
+    _another_ship, _false_valley, _held_out_lost, _held_out_unexplained,
 )  # fmt: skip
 
 LACKING: Final = frozenset(

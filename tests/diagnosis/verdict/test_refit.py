@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from made_up_fits import BEFORE, fit
 
-from trialid.diagnosis.best_refit import best_of
 from trialid.diagnosis import objections
+from trialid.diagnosis.best_refit import best_of
 from trialid.diagnosis.objections import (
     AS_A_GEAR,
     AS_SLOW,
