@@ -160,8 +160,8 @@ def test_wind_blows_to_lee_and_heels_the_ship_away_from_it() -> None:
     assert steady["Y"] == pytest.approx(Y, rel=1e-6)
     assert steady["K"] == pytest.approx(0.04 * L * Y, rel=1e-6)
     assert steady["N"] == pytest.approx(0.05 * L * Y, rel=1e-6)
-    across = forces("steady_wind", {"F_N": 0.0, "F_E": 2e-4}, psi=math.pi / 2)
-    assert across["Y"] == pytest.approx(0.0, abs=1e-6 * Y)
+    across = forces("steady_wind", {"F_N": 1e-4, "F_E": 2e-4, "X_wind": 0.4}, psi=math.pi / 2)
+    assert [across[n] for n in "XY"] == pytest.approx([0.4 * Y, -0.5 * Y], rel=1e-6)  # eastbound
     apparent = {"C_aw": 8e-5, "z_aw": 0.05}
     seen = forces("apparent_wind", apparent, V_aw=12.0, gamma_aw=-math.pi / 2)
     assert seen["Y"] == pytest.approx(0.5 * RHO * L**2 * 8e-5 * 12.0**2, rel=1e-6)

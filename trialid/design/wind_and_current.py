@@ -75,7 +75,8 @@ def cannot_tell(fit: Fit, accuracy: Accuracy) -> tuple[str, ...]:
     led = _leading(fit, accuracy, trials, _held(fit, winds))
     if led:
         them = f"{' and '.join(led)} of the wind, held at a value"
-        return (f"{WORDS}: {them}, may lead the current off as far as noise does: free it",)
+        free = "free it" if len(led) == 1 else "free them"
+        return (f"{WORDS}: {them}, may lead the current off as far as noise does: {free}",)
     said = [f"{t} ({s:.2g} +-{h:.2g} m/s)" for t, s, h in _untold(fit, accuracy, trials, wind)]
     turn = "sail a full turn in the same wind and water"
     return (f"{WORDS} in {', '.join(said)}: {turn}",) if said else ()

@@ -160,11 +160,11 @@ class ShipModel:
         effect = next(e for e in self.effects if name in e.parameters)
         if effect.forms != (Force,):
             return True
-        signals = dict.fromkeys(effect.signals, 0.1)
-        [there] = effect({**signals, **effect.nulls, name: effect.parameters[name].start})
-        [absent] = effect({**signals, **effect.nulls})
+        typical = {n: p.start for n, p in effect.parameters.items()}
+        values = dict.fromkeys(effect.signals, 0.1) | typical
+        [whole], [half] = (effect({**values, name: x * typical[name]}) for x in (1.0, 0.5))
         rows = {ROWS[s] for s in self.states if s in ROWS}
-        moved = {row for row, a, b in zip(Force._fields, there, absent, strict=True) if a != b}
+        moved = {row for row, a, b in zip(Force._fields, whole, half, strict=True) if a != b}
         return bool(rows & moved) or not moved
 
     def stated(self, name: str) -> float | None:

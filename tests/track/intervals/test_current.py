@@ -128,9 +128,9 @@ def test_a_held_coefficient_that_leads_the_current_off_is_named() -> None:
     ]
     assert max(off) > 3.0 * rows["V_cn [circle]"].standard_error  # what it is about
     [said] = cannot_tell(held, accuracy(held))
-    assert said.startswith(f"{WORDS}: x_wind of the wind, held at a value, ")
-    assert said.endswith("free it")
-    told = record("circle", seed, unread, free)
+    assert said.startswith(f"{WORDS}: x_wind and X_wind of the wind, held at a value, ")
+    assert said.endswith("free them")
+    told = record("circle", seed, unread, (*free, "X_wind"))
     assert not any("held at a value" in x for x in cannot_tell(told, accuracy(told)))
 
 

@@ -45,7 +45,7 @@ NUISANCE: Final[tuple[Nuisance, ...]] = (
     "current",
 )
 UNREAD: Final = (SHIP + CATALOGUE["steady_wind"]).with_values(
-    {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.05, "z_wind": 0.05}
+    {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.05, "z_wind": 0.05, "X_wind": 0.0}
 )
 MODELS: Final[dict[str, tuple[ShipModel, tuple[str, ...]]]] = {
     "read": (sailed_wind.WINDY, ("C_aw", "N_aw", "N_2aw")),
