@@ -3,6 +3,7 @@ import copy
 import pytest
 from rich.console import Console
 
+from trialid.report.pages.page import page
 from trialid.report.terminal.summary import summary
 from trialid.result.json_file import result_of
 
@@ -226,3 +227,13 @@ def test_what_a_person_has_to_judge_in_a_record_is_told_whatever_the_verdict(res
         assert f"To check, in {name}: psi: 1 value jumped by up to 13 deg" in said
         assert "(2 more on the page)" in said
         assert "masked" not in said
+
+
+def test_beside_numbers_that_rest_on_doubtful_records_that_is_said(result):
+    """Of a rate behind a filter of 4 s two of three ranges were wrong, and no word said."""
+    said = "What the records leave in doubt may be in all numbers here, and in their ranges."
+    run = copy.deepcopy(result)
+    assert said not in " ".join(lines(run, lines=60))
+    run["verdict"]["doubts"] = ["r comes 3.9 s later than the slope of psi"]
+    assert said in " ".join(" ".join(lines(run, lines=60)).split())
+    assert said in page(result_of(run), [])

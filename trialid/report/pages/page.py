@@ -138,6 +138,7 @@ def _filters() -> dict[str, Any]:
         "percent_range": wording.percent_range,
         "by_error": wording.by_error,
         "doubtful": doubt.doubtful,
+        "records_doubt": doubt.records_doubt,
         "stability_words": doubt.stability_words,
         "prior_words": beforehand.prior_words,
         "likely": run_tables.likely,

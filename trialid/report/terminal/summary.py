@@ -237,7 +237,8 @@ def _parameters(run: Result, rows: Rows) -> "Iterable[RenderableType]":
     yield table
     if short:
         yield Text(f"... and {len(found) - len(shown)} more, all better known", style="dim")
-    if said := f"{doubt.doubtful(found)} {doubt.widest_range(run)}".strip():
+    first, second = doubt.records_doubt(run.verdict), doubt.doubtful(found)
+    if said := " ".join(filter(None, (first, second, doubt.widest_range(run)))):
         yield Words(said, 3)
     if known := beforehand.prior_words(found):
         yield Words(plain(known), 3)

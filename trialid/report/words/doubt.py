@@ -48,6 +48,19 @@ def doubtful(parameters: Sequence[ParameterRow]) -> str:
     return f"{_disbelieved([row for row in rows if not is_idle(row)])} {said}".strip()
 
 
+def records_doubt(verdict: VerdictPart) -> str:
+    """That what the records leave in doubt about themselves is in the numbers; else empty.
+
+    >>> records_doubt(VerdictPart(kind="cannot tell", doubts=("r comes 3.9 s late",)))
+    'What the records leave in doubt may be in all numbers here, and in their ranges.'
+    >>> records_doubt(VerdictPart(kind="cannot tell"))
+    ''
+    """
+    if not verdict.doubts:
+        return ""
+    return "What the records leave in doubt may be in all numbers here, and in their ranges."
+
+
 def missing_words(verdict: VerdictPart) -> str:
     """What the verdict says the model lacks, for who uses it; empty where it says nothing of that.
 

@@ -12,7 +12,7 @@ from trialid.identification.fit import Fit, revive
 from trialid.names.quantities import SIGNALS, Quantity
 from trialid.pipeline_file import Pipeline
 from trialid.progress import Progress
-from trialid.report.words.doubt import doubtful, missing_words
+from trialid.report.words.doubt import doubtful, missing_words, records_doubt
 from trialid.result.schema import Result
 from trialid.ship.actuators import actuator_quantities
 from trialid.ship.quantity_of import quantity_of
@@ -69,7 +69,8 @@ class FinishedModel:
         """What anybody who uses the model has to know of it, a sentence each."""
         verdict = self.result.verdict
         said = [verdict.sentence or "no fit"] if verdict.kind == NO_FIT else []
-        said += filter(None, [missing_words(verdict), doubtful(self.result.physical)])
+        doubts = records_doubt(verdict), missing_words(verdict), doubtful(self.result.physical)
+        said += filter(None, doubts)
         return (*said, *(f"{line}." for line in self.result.fit.remarks))
 
 
