@@ -95,12 +95,15 @@ def test_commands_are_those_that_the_model_answers(result, model, has, lacks):
     assert ("pid" in kinds_of(model)) == ("pid" in given)
 
 
-def test_the_first_screen_has_the_command_and_the_next_trial(result):
-    planned = {"sentence": "turning circle at 35 deg: a and b come apart"}
+@pytest.mark.parametrize(("test", "said"), [("circle", "Next trial"), (None, "No next trial")])
+def test_the_first_screen_has_the_command_and_the_next_trial(result, test, said):
+    """`Run this trial next: no feasible test separates a from b` was said."""
+    planned = {"sentence": "turning circle at 35 deg: a and b come apart", "test": test}
     run = changed(result, verdict={"kind": "missing", "effect": "b", "next_trial": planned})
     first = words_of(run).partition("How well the model fits")[0]
     assert "Next: trialid add container_ship.toml b" in first
-    assert "Next trial: turning circle at 35 deg" in first
+    assert f"{said}: turning circle at 35 deg" in first
+    assert ("No next trial" in first) == (test is None)
     assert first_step(result_of(run)).command == "trialid add container_ship.toml b"
 
 

@@ -46,7 +46,7 @@ PHRASES: Final = {
     "inclinometer",
     "psi": "heading, true heading, gyro heading, yaw, yaw angle, hdg, hdt, kurs, steuerkurs, "
     "kompasskurs, kreiselkurs, cap vrai, cap compas, prua, rumbo verdadero, rumbo aguja",
-    "u": "stw, sow, speed through water, speed water, water speed, speed log, log speed, "
+    "u": "stw, sow, speed through water, speed water, water speed, speed log, log speed, logspeed, "
     "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
     "fwd speed, speed fwd, speed forward, speed ahead, forward velocity, longitudinal speed, "
     "longitudinal velocity, long speed, vitesse surface, "

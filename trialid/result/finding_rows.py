@@ -148,6 +148,11 @@ class NextTrialPart:
     cosine: float | None = None
     cosine_before: float | None = None
 
+    @property
+    def heading(self) -> str:
+        """What stands before the sentence: that there is such a trial, or none that is known."""
+        return "Next trial" if self.test else "No next trial"
+
 
 @dataclass(frozen=True, kw_only=True)
 class VerdictPart:

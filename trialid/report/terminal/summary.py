@@ -122,7 +122,7 @@ def next_lines(run: Result, file: str) -> "Iterable[RenderableType]":
     if run.before_after is not None and verdict.kind != "missing":
         yield Words(_change(run.before_after), 2)
     if verdict.next_trial and verdict.next_trial.sentence:
-        yield Words(f"Next trial: {verdict.next_trial.sentence}", 3)
+        yield Words(f"{verdict.next_trial.heading}: {verdict.next_trial.sentence}", 3)
 
 
 def _errors(run: Result, rows: Rows) -> "Table":

@@ -112,9 +112,9 @@ def _no_fit(run: Result) -> Iterable[Advice]:
 
 
 def _planned(run: Result) -> Iterable[Advice]:
-    following = run.verdict.next_trial
-    if following and following.sentence:
-        yield Advice(f"Run this trial next: {following.sentence.rstrip('.')}.")
+    if (following := run.verdict.next_trial) and following.sentence:
+        begun = "Run this trial next" if following.test else following.heading
+        yield Advice(f"{begun}: {following.sentence.rstrip('.')}.")
 
 
 def _missing(run: Result) -> Iterable[Advice]:
