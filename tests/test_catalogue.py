@@ -135,7 +135,7 @@ PUBLISHED = {
     "surge_heel": {"Xphiphi": (-0.0002,)},
     "shaft_speed_drop": {"k_n": (0.0, 0.4)},
     "steady_wind": {"F_E": (1e-4, 3e-4), "x_wind": (0.05,), "z_wind": (0.05,),
-                    "X_wind": (0.1, 1.0)},
+                    "k_wind": (0.1, 1.0)},
     "apparent_wind_yaw": {"N_2aw": (-0.1 * 8e-5,)},
     "shallow_water_yaw": {"Nvz": (-0.24 * 0.0155,), "Nrz": (-0.047 * 0.0155,),
                           "Nravz": (-0.12 * 0.0155,)},

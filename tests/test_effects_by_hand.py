@@ -160,14 +160,14 @@ def test_wind_blows_to_lee_and_heels_the_ship_away_from_it() -> None:
     assert steady["Y"] == pytest.approx(Y, rel=1e-6)
     assert steady["K"] == pytest.approx(0.04 * L * Y, rel=1e-6)
     assert steady["N"] == pytest.approx(0.05 * L * Y, rel=1e-6)
-    across = forces("steady_wind", {"F_N": 1e-4, "F_E": 2e-4, "X_wind": 0.4}, psi=math.pi / 2)
-    assert [across[n] for n in "XY"] == pytest.approx([0.4 * Y, -0.5 * Y], rel=1e-6)  # eastbound
+    for psi, X, side in ((math.pi / 2, 0.4, -0.5), (0.0, 0.2, 1.0)):  # eastbound, northbound
+        got = forces("steady_wind", {"F_N": 1e-4, "F_E": 2e-4, "k_wind": 0.4}, psi=psi)
+        assert [got["X"], got["Y"]] == pytest.approx([X * Y, side * Y], rel=1e-6)
     apparent = {"C_aw": 8e-5, "z_aw": 0.05}
     seen = forces("apparent_wind", apparent, V_aw=12.0, gamma_aw=-math.pi / 2)
     assert seen["Y"] == pytest.approx(0.5 * RHO * L**2 * 8e-5 * 12.0**2, rel=1e-6)
     assert seen["K"] == pytest.approx(0.05 * L * seen["Y"], rel=1e-6)
-    ahead = forces("apparent_wind_ahead", {"C_ax": 1e-5}, V_aw=12.0, gamma_aw=0.0)
-    assert ahead["X"] < 0.0
+    assert forces("apparent_wind_ahead", {"C_ax": 1e-5}, V_aw=12.0, gamma_aw=0.0)["X"] < 0.0
 
 
 def test_a_uniform_current_is_seen_over_ground_only() -> None:

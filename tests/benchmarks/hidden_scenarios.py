@@ -173,7 +173,7 @@ _PHYSICS: Final[Mapping[str, Mapping[str, float]]] = {
     "shaft_speed_drop": {"k_n": 0.2},
     # weather
     "steady_wind": {"F_N": 0.0001, "F_E": 0.00015, "x_wind": 0.05, "z_wind": 0.05,
-                    "X_wind": 0.3},  # 10 m/s
+                    "k_wind": 0.3},  # 10 m/s
 }  # fmt: skip
 
 _SENSORS: Final[Mapping[str, Mapping[str, float]]] = {

@@ -186,7 +186,7 @@ def test_a_ship_whose_speed_is_given():
 
 def test_calm_water_has_no_wind_and_no_sensors():
     windy = MODEL + CATALOGUE["steady_wind"] + CATALOGUE["lag_r"]
-    wind = {"F_N": 2e-4, "F_E": 2e-4, "x_wind": 0.1, "z_wind": 0.05, "X_wind": 0.3}
+    wind = {"F_N": 2e-4, "F_E": 2e-4, "x_wind": 0.1, "z_wind": 0.05, "k_wind": 0.3}
     windy = windy.with_values({**wind, "T_r": 3.0})
     left = in_calm(vessel(windy, 0.5, VESSEL.constants, VESSEL.rudder_rate)).model.effects
     assert left == MODEL.effects

@@ -201,14 +201,14 @@ def test_masses_are_above_zero_and_what_water_adds_below(s175q: ShipModel) -> No
     assert replace(s175q, ship=other).parameters["Yvdot"].high == np.inf
 
 
-@pytest.mark.parametrize(("states", "needs"), [("vr", None), ("uvr", "X_wind"), ("vpr", "z_wind")])
+@pytest.mark.parametrize(("states", "needs"), [("vr", None), ("uvr", "k_wind"), ("vpr", "z_wind")])
 def test_what_reaches_nothing_that_is_simulated_needs_no_value(
     s175q: ShipModel, states: str, needs: str | None
 ) -> None:
     """A push from ahead where the speed is read from the log, a heel where she does not roll."""
     known = {"F_N": 2e-4, "F_E": 0.0, "x_wind": 0.05}
     model = ShipModel(s175q.ship, tuple(states), (CATALOGUE["steady_wind"],)).with_values(known)
-    for name in {"X_wind", "z_wind"} - {needs}:
+    for name in {"k_wind", "z_wind"} - {needs}:
         assert model.value(name) == 0.0
     if needs:
         with pytest.raises(EffectError, match=f"parameter '{needs}' has no value"):

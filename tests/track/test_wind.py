@@ -103,7 +103,7 @@ def test_an_overshoot_less_the_wind_is_that_of_calm_air() -> None:
 
 def test_what_is_wind_and_what_is_not() -> None:
     """What frees a held coefficient has its own name, and blows no less."""
-    steady = {"F_N": 0.001, "F_E": 0.0, "x_wind": 0.05, "X_wind": 0.3, "z_wind": 0.05}
+    steady = {"F_N": 0.001, "F_E": 0.0, "x_wind": 0.05, "k_wind": 0.3, "z_wind": 0.05}
     windy = (SHIP + CATALOGUE["steady_wind"]).with_values(steady)
     assert is_wind(free_coefficient(windy, "x_wind"))
     assert is_wind(free_coefficient(WINDY, "z_aw"))

@@ -83,10 +83,11 @@ def _loop_ended(done: "Sequence[Stage]", pipeline: Path, keep: bool) -> str:
             else ""
         )
         instead = f"; in the place of what the file had: {', '.join(placed)}" if placed else ""
-        freed = [n for n in added if n not in costed and n not in there]
-        free = f"; free now, about her file's values: {', '.join(freed)}" if freed else ""
-        listed = f"{', '.join(names)}{corrected}{instead}{free}"
+        listed = f"{', '.join(names)}{corrected}{instead}"
         words += f"\nWhat was added, the dearest to leave out first: {listed}."
+    free = {*done[-1].pipeline.identify.free} - {one.effect for one in done[-1].worths}
+    if freed := [n for n in added if n in free]:
+        words += f"\nFree now, about her file's values: {', '.join(freed)}."
     if added and keep:
         words += f"\n{pipeline} now has {', '.join(added)}."
     elif added:

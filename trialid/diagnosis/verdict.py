@@ -239,7 +239,7 @@ def _unnamed_plainly(parts: Split, whole: Completeness | None, none: str) -> Ver
         )  # fmt: skip
     total = float(np.hypot(parts.noise or 0.0, parts.undermodelling or 0.0))
     little = _is_little(high, total)
-    much = f", too much of an error of {total:.1%} to say that nothing is missing"
+    much = f", which is not little beside an error of {total:.1%}"
     return Verdict(
         "nothing missing" if little else "cannot tell", None, (),
         f"{none}{' against the noise' * (none == NONE_STANDS_OUT)}; a model error of up to "

@@ -18,18 +18,18 @@ def steady_wind(
     F_N=Parameter(0.0002, low=-0.05, high=0.05), F_E=Parameter(0.0002, low=-0.05, high=0.05),
     x_wind=Parameter(0.05, low=-0.3, high=0.3, null=None),
     z_wind=Parameter(0.05, low=0.0, high=0.5, null=None),
-    X_wind=Parameter(0.3, low=0.0, high=1.5, null=None),
+    k_wind=Parameter(0.3, low=0.0, high=1.5, null=None),
 ):  # fmt: skip
     """Y = (F_E cos(psi) - F_N sin(psi)) U0^2 / U^2,  K = z_wind Y,  N = x_wind Y: wind unseen.
 
     A force that is steady to north and east, of wind or of wave drift, over 1/2 rho L^2 U0^2. It is
-    there at rest too. From ahead it grips X_wind times as hard, X = X_wind (F_N cos(psi) +
+    there at rest too. From ahead it grips k_wind times as hard, X = k_wind (F_N cos(psi) +
     F_E sin(psi)) U0^2 / U^2, which a model feels that simulates u: without it two of three boats
     in wind had currents of 0.1 m/s told that were not there, and the wind from the other side.
     """
     X = (F_N * cos(psi) + F_E * sin(psi)) * U0 * U0
     Y = (F_E * cos(psi) - F_N * sin(psi)) * U0 * U0
-    return Force(X=X_wind * X, Y=Y, K=z_wind * Y, N=x_wind * Y)
+    return Force(X=k_wind * X, Y=Y, K=z_wind * Y, N=x_wind * Y)
 
 
 @effect(source=WIND)

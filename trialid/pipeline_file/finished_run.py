@@ -29,7 +29,7 @@ class FinishedRun:
     model_errors
         How far what the model lacks may move each fitted parameter, a share of its size.
     steps
-        Rows of its history.
+        Rows of its history, without what was only proposed.
     """
 
     values: Mapping[str, float] = field(default_factory=dict)

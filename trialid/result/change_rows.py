@@ -42,7 +42,7 @@ class StepRow:
 
     @property
     def joined(self) -> tuple[str, ...]:
-        """Names of what was added."""
+        """Names of what was added, or set free."""
         return names_in(self.added)
 
     @property

@@ -80,7 +80,8 @@ def place_in_ranking(c: Candidate, found: Diagnosis) -> str:
 
 def _by_evidence(c: Candidate, found: Diagnosis) -> str:
     """What one is called that is there against the noise, or in the blocks left out."""
-    fitted = (r.carried for r in found.refits if r.candidate is c)
+    name = c.effect.name
+    fitted = (r.carried for r in found.refits if r.candidate.effect.name == name)
     carried = next(fitted, c.carried)  # what was fitted tells more than what its slope foretold
     if carried.falls:
         return "stands out" if c.p_value < 0.05 else "lowers the error"

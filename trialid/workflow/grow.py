@@ -1,12 +1,12 @@
 """The loop that adds what is missing until nothing is: fit, diagnose, decide, add, and again.
 
-First numbers that the model holds, where her file says how well they are known and they do as well
-as what would be added. Forward by the refit whose fall carries over best to blocks left out, and
-shows on held-out trials once effects were added, or by two effects at once where none alone stands
-every check; then backward, each effect that was added left out in turn, and what no longer pays is
-dropped for good. It stops where the evidence ends, and never keeps what raised the error of
-held-out trials. Names are given at the end, to what survives: what leaving it out costs says how
-much it is worth. Nothing is written here.
+Where her file says how well numbers are known that the model holds, and they do as well as what
+would be added, they are free before that. Forward by the refit whose fall carries over best to
+blocks left out, and shows on held-out trials once effects were added, or by two effects at once
+where none alone stands every check; then backward, each effect that was added left out in turn, and
+what no longer pays is dropped for good. It stops where the evidence ends, and never keeps what
+raised the error of held-out trials. Names are given at the end, to what survives: what leaving it
+out costs says how much it is worth. Nothing is written here.
 """
 
 from collections.abc import Iterator, Sequence
@@ -44,10 +44,10 @@ MOST: Final = 12
 class Stage:
     """One step of the loop.
 
-    `run` is the model with `added` in it (two with a comma), or without `dropped` (both None: the
-    model as written), unless it was not `kept`; then it is the model before, and `refused` says
-    why. `end` says why the loop ends here, empty where it goes on. `worths` are those of the
-    effects that were added, the dearest first.
+    `run` is the model with `added` in it (effects, or numbers free, with a comma), or without
+    `dropped` (both None: the model as written), unless it was not `kept`; then it is the model
+    before, and `refused` says why. `end` says why the loop ends here, empty where it goes on.
+    `worths` are those of the effects that were added, the dearest first.
     """
 
     pipeline: Pipeline
@@ -86,6 +86,10 @@ class _Path:
         if not displaced or len(kept) < len(self.own):
             kept.append(effect)
         self.own = kept
+
+    def has_grown(self, pipeline: Pipeline) -> bool:
+        """Whether the model has an effect that was added."""
+        return not self.joined.isdisjoint(pipeline.model.effects)
 
     def held(self, run: Run) -> tuple[str, ...]:
         """Numbers that do as well as an effect, to be free first, each about her file's value."""
@@ -129,7 +133,7 @@ class _Path:
 
 
 def stages(pipeline: Pipeline, progress: Progress) -> Iterator[Stage]:
-    """The model as written, then one stage for each effect that is added or dropped.
+    """The model as written, then one stage for what is added, set free or dropped.
 
     Raises
     ------
@@ -179,7 +183,7 @@ def _freed(path: _Path, stage: Stage) -> Stage:
     name = ", ".join(names)
     try:
         after = free_in_pipeline(stage.pipeline, names)
-        run = examine(after, path.trials, path.progress, grown=bool(path.own))
+        run = examine(after, path.trials, path.progress, grown=path.has_grown(after))
         _check_carries(run)
     except TrialidError as error:
         return _not_kept(path, stage, name, f"with {name} free: {error}")
@@ -196,7 +200,7 @@ def _check_carries(run: Run) -> None:
 
 def _not_kept(path: _Path, stage: Stage, name: str, why: str) -> Stage:
     """The model before once more; the loop goes on where something else stands every check."""
-    end = "" if path.next_up(stage.run) is not None else why
+    end = why if path.end(stage.run) else ""
     return replace(stage, added=name, dropped=None, kept=False, end=end, refused=why)
 
 
@@ -241,7 +245,7 @@ def _backward(path: _Path, stage: Stage) -> Stage | None:
 
 
 def survivors(done: Sequence[Stage]) -> tuple[str, ...]:
-    """The effects that were added and are still there, in the order in which they came."""
+    """Effects that were added, and numbers set free, that still are so, as they came."""
     last = done[-1].pipeline
     there = {*last.model.effects, *last.identify.free}
     joined = (name for s in done if s.kept for name in names_in(s.added))

@@ -116,7 +116,7 @@ def has_joined(steps: Sequence[StepRow], effects: Sequence[str]) -> bool:
     return not {n for step in steps for n in step.joined}.isdisjoint(effects)
 
 
-def lines(steps: Sequence[StepRow]) -> str:
+def text_of(steps: Sequence[StepRow]) -> str:
     """The steps as the file has them."""
     return "".join(json.dumps(plain(step), allow_nan=False) + "\n" for step in steps)
 
@@ -132,7 +132,7 @@ def append_steps(pipeline: Path, steps: Sequence[StepRow]) -> Iterator[None]:
     """
     path = place(pipeline)
     there = path.exists()
-    text = lines(steps)
+    text = text_of(steps)
     try:
         with path.open("ab+") as stream:
             size = stream.seek(0, os.SEEK_END)

@@ -12,12 +12,16 @@ from trialid.result.series import TrialSeries
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a finished run leaves behind: plain data, the time series, the force where sought."""
+    """What a finished run leaves behind: plain data, the time series, the force where sought.
+
+    `grown` where its model was judged as one that effects were added to.
+    """
 
     pipeline: Pipeline
     result: Result
     series: tuple[TrialSeries, ...]
     force: MissingForce | None
+    grown: bool = False
 
     @property
     def forces(self) -> tuple[ForceSeries, ...]:
@@ -27,12 +31,16 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Run:
-    """A finished run of a pipeline: its findings, the same as its result, and the time series."""
+    """A finished run of a pipeline: its findings, the same as its result, and the time series.
+
+    `grown` where its model was judged as one that effects were added to.
+    """
 
     pipeline: Pipeline
     findings: Findings
     result: Result
     series: tuple[TrialSeries, ...]
+    grown: bool = False
 
     @property
     def force(self) -> MissingForce | None:
@@ -42,4 +50,4 @@ class Run:
     @property
     def outcome(self) -> Outcome:
         """The run without the matrices of its fits, which take most of the room."""
-        return Outcome(self.pipeline, self.result, self.series, self.force)
+        return Outcome(self.pipeline, self.result, self.series, self.force, self.grown)

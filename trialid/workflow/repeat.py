@@ -30,7 +30,7 @@ SAME: Final = 1e-6
 
 @dataclass(frozen=True)
 class Earlier:
-    """A finished run: its folder and result, its pipeline as it was, and if it sought a force.
+    """A finished run: its folder and result, its pipeline as it was, and how it was judged.
 
     The pipeline's paths are resolved from where it stood, wherever that lies from the folder.
     """
@@ -39,6 +39,7 @@ class Earlier:
     result: Result
     pipeline: Pipeline
     force: bool
+    grown: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,8 @@ def earlier(folder: Path) -> Earlier:
     if _hash(content) != origin.get("sha256"):
         raise PipelineError(f"{copy}: is not the pipeline the run was made from; it was edited")
     _check_files(folder, place.resolve().parent, result)
-    return Earlier(folder, result, read(content, place.resolve()), bool(origin.get("force")))
+    force, grown = (bool(origin.get(key)) for key in ("force", "grown"))
+    return Earlier(folder, result, read(content, place.resolve()), force, grown)
 
 
 def _check_files(folder: Path, home: Path, result: Result) -> None:
@@ -126,7 +128,7 @@ def repeat(done: Earlier, progress: Progress) -> tuple[Run, Compared]:
     TrialidError
         As `workflow.run`.
     """
-    fresh = run(done.pipeline, progress, force=done.force)
+    fresh = run(done.pipeline, progress, force=done.force, grown=done.grown)
     return fresh, compare(plain(done.result), plain(fresh.result))
 
 

@@ -72,4 +72,4 @@ def examine(
         sources=sources_of(pipeline),
         signals=signals_of(pipeline),
     )
-    return Run(pipeline, findings, result, time_series(fit))
+    return Run(pipeline, findings, result, time_series(fit), grown)

@@ -89,6 +89,7 @@ def _write_origin(done: Run | Outcome, work: Path, folder: Path) -> None:
         "sha256": hashlib.sha256(pipeline.content).hexdigest(),
         "seed": pipeline.identify.seed,
         "force": done.force is not None,
+        "grown": done.grown,
     }
     text = json.dumps(origin, indent=1) + "\n"
     (work / "run.json").write_text(text, encoding="utf-8")

@@ -26,6 +26,21 @@ def test_a_quick_rudder_lies_within_its_orders(off: float) -> None:
     assert np.all((upper - lower)[moved] > 2.0 * off)
 
 
+def test_a_gear_that_overshoots_lies_as_far_beyond_as_nobody_knows() -> None:
+    """Of second order, and damped by nobody knows how little."""
+    after = np.exp(-(T % 10.0)) * np.sin(T % 10.0)  # how far it goes beyond
+    motion = ORDER * (1.0 + 0.1 * after)
+    off = 0.2 * np.abs(ORDER) * np.abs(after)
+    _, upper = _possible("delta", {"delta": motion, "delta_order": ORDER}, (-off, off))
+    assert upper.max() > motion.max() + 0.7 * off[np.argmax(motion)]
+
+
+def test_where_its_range_is_not_known_the_rest_of_it_is() -> None:
+    off = np.where(T < 3.0, np.nan, STEEP)
+    _, upper = _possible("delta", {"delta": FOLLOWS, "delta_order": ORDER}, (-off, off))
+    assert np.array_equal(np.isnan(upper), T < 3.0)
+
+
 def test_what_nobody_ordered_may_be_anywhere_that_it_can() -> None:
     lower, upper = _possible("r", {"r": FOLLOWS}, (-STEEP, STEEP))
     assert np.array_equal(lower, FOLLOWS - STEEP)

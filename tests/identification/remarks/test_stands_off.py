@@ -96,7 +96,7 @@ def test_what_is_said_of_all_trials_is_not_said_of_each_again():
 
 
 WINDY = (MODEL + CATALOGUE["steady_wind"]).with_values(
-    {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.08, "z_wind": 0.0, "X_wind": 0.0}
+    {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.08, "z_wind": 0.0, "k_wind": 0.0}
 )
 
 

@@ -70,7 +70,11 @@ def test_where_most_of_the_error_stays_whole_models_are_compared(result, noise, 
     assert len(found) == stays
     for each in found:
         assert STAYS in each.words
-        so = "so more than it is missing" if noise else "noise, or more is missing than it"
+        so = (
+            "so more than it is missing"
+            if noise
+            else "so that is noise, or more than it is missing"
+        )
         assert so in each.words
         assert_known(each.command)
 

@@ -121,16 +121,16 @@ def test_a_wind_that_is_held_is_said_to_be() -> None:
 def test_a_held_coefficient_that_leads_the_current_off_is_named() -> None:
     """Where the wind grips is held, by mistake on the other side; its range does not know."""
     seed, (unread, free) = 7321, MODELS["unread"]
-    held = record("circle", seed, unread, ("F_N", "F_E"))
+    held = record("circle", seed, unread.with_values({"k_wind": 0.0}), ("F_N", "F_E"))
     rows = {p.name: p for p in accuracy(held).parameters}
     off = [
         abs(rows[f"{n} [circle]"].value - x) for n, x in zip(CURRENT, weather(seed)[0], strict=True)
     ]
     assert max(off) > 3.0 * rows["V_cn [circle]"].standard_error  # what it is about
     [said] = cannot_tell(held, accuracy(held))
-    assert said.startswith(f"{WORDS}: x_wind and X_wind of the wind, held at a value, ")
+    assert said.startswith(f"{WORDS}: x_wind and k_wind of the wind, held at a value, ")
     assert said.endswith("free them")
-    told = record("circle", seed, unread, (*free, "X_wind"))
+    told = record("circle", seed, unread, free)
     assert not any("held at a value" in x for x in cannot_tell(told, accuracy(told)))
 
 

@@ -45,11 +45,11 @@ NUISANCE: Final[tuple[Nuisance, ...]] = (
     "current",
 )
 UNREAD: Final = (SHIP + CATALOGUE["steady_wind"]).with_values(
-    {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.05, "z_wind": 0.05, "X_wind": 0.0}
+    {"F_N": 0.0, "F_E": 0.0, "x_wind": 0.05, "z_wind": 0.05, "k_wind": 0.3}
 )
 MODELS: Final[dict[str, tuple[ShipModel, tuple[str, ...]]]] = {
     "read": (sailed_wind.WINDY, ("C_aw", "N_aw", "N_2aw")),
-    "unread": (UNREAD, ("F_N", "F_E", "x_wind")),
+    "unread": (UNREAD, ("F_N", "F_E", "x_wind", "k_wind")),
 }
 
 

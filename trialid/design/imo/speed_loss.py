@@ -153,14 +153,17 @@ def _logged(trial: Trial) -> bool:
     """
     if "u" not in trial.signals or record_for(trial, "delta") is None:
         return False
-    if any(_is_set_anew(np.abs(trial.signals[n])) for n in SHAFTS & {*trial.signals}):
+    if any(_is_set_anew(trial, n) for n in SHAFTS & {*trial.signals}):
         return False
     speeds = trial.signals["u"][_valid(trial)]
     return len(speeds) > 0 and float(np.ptp(speeds)) > 0.0
 
 
-def _is_set_anew(shaft: Vector) -> bool:
-    """Whether a shaft's speed changes by more than a governor lets it."""
+def _is_set_anew(trial: Trial, name: str) -> bool:
+    """Whether a shaft's speed, where it was logged, changes by more than a governor lets it."""
+    shaft = np.abs(trial.signals[name][trial.valid[name] & np.isfinite(trial.signals[name])])
+    if not len(shaft):
+        return False
     low, high = np.quantile(shaft, (0.02, 0.98))  # whatever a few samples say
     return bool(high - low > ONE_SETTING * high)
 

@@ -155,7 +155,7 @@ def _most_stays(run: Result, effect: str) -> Iterable[Advice]:
     after = row.eps_rmsn_check if held_out else row.eps_rmsn_refitted
     if before is None or after is None or len(run.trials) < FEWEST_COMPARED:
         return
-    so = "so more than it is missing" if run.split.noise else "noise, or more is missing than it"
+    so = f"so {'' if run.split.noise else 'that is noise, or '}more than it is missing"
     noise = (run.split.noise or 0.0) ** 2
     if after**2 - noise > 0.5 * (before**2 - noise):
         where = "where it was not fitted" if held_out else "of the fitted trials"

@@ -58,7 +58,8 @@ def _known(shown: Shown, run: Result) -> Iterator[tuple[StepRow, str]]:
     words = step_names.of_rows(run.history)
     for place, row in enumerate(run.history):
         if row.eps_rmsn is not None and (shown.run is not None or row.step != "proposed"):
-            yield row, shown.named.get(place, words[place])
+            apart = "" if row in run.comparable else " (on other logs)"
+            yield row, shown.named.get(place, words[place]) + apart
 
 
 def _longest(drawn: Sequence[StepRow], now: float | None) -> float:

@@ -51,7 +51,7 @@ def _texts(plan: Plan, data: Mapping[str, Any], folder: Path) -> dict[str, str]:
         texts[f"{own}.toml"] = _pipeline(plan, folder, rated, stems)
         if plan.run.steps:  # a model that has grown is a grown one for its next log, too
             steps = [row_of(StepRow, row) for row in plan.run.steps]
-            texts[history.place(Path(f"{own}.toml")).name] = history.lines(steps)
+            texts[history.place(Path(f"{own}.toml")).name] = history.text_of(steps)
     texts["bridge.html"] = bridge.page(data, sheets, bridge.aborts(plan.limits))
     return texts
 
