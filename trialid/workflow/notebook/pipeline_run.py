@@ -72,8 +72,9 @@ class PipelineRun(RunView):
         """
         place = path_of(folder, "write")
         check_replaceable(place, self.pipeline)
+        grown = history.has_joined(self.result.history, self.pipeline.model.effects)
         with write_or_say_why(place):
-            write(Run(self.pipeline, self.findings, self.result, self.series), place)
+            write(Run(self.pipeline, self.findings, self.result, self.series, grown), place)
         return place / "report.html"
 
 
