@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from made_boat import T, begun, table
 
 from trialid import pipeline_file
@@ -65,6 +66,24 @@ def test_pods_are_begun_with_their_angles(tmp_path: Path) -> None:
 def test_an_angle_that_counts_to_port_is_read_so(tmp_path: Path) -> None:
     text = begun(tmp_path, pods(tmp_path / "a.csv", NAMES, sign=-1.0)).files[tmp_path / "p.toml"]
     assert text.count('unit = "deg", positive = "port"') == 2
+
+
+@pytest.mark.parametrize("turned_round", [(), (2,), (0, 1, 2)])
+def test_an_angle_of_another_side_than_in_the_other_logs_is_told(
+    tmp_path: Path, turned_round: tuple[int, ...]
+) -> None:
+    """Of a ferry whose pods stood fore and aft both sides were written, and no word said.
+
+    The rate of turn is not confirmed by a heading here: so the user is asked.
+    """
+    logs = [
+        pods(tmp_path / f"run{i}.csv", NAMES, i, -1.0 if i in turned_round else 1.0)
+        for i in range(3)
+    ]
+    text = begun(tmp_path, *logs).files[tmp_path / "p.toml"]
+    said = "by the motion port, and of the same name clockwise in run0.csv"
+    assert text.count(said) == (2 if turned_round == (2,) else 0)
+    assert ("FILL IN starboard or port" in text) == (turned_round == (2,))
 
 
 def test_angles_that_are_called_so_are_no_rudders(tmp_path: Path) -> None:

@@ -44,7 +44,7 @@ def _sized(one: ChannelInspection, known: Mapping[str, str]) -> ChannelInspectio
 def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
     """The trials, with sides that only others of them show; where these disagree it stays open.
 
-    And so does the side of a rudder where most others of the same name show another, unless the
+    And so does the side of what steers where most others of the same name show another, unless the
     heading confirms her rate of turn: else one of the two was turned round, and nothing says which.
     """
     known, usual = _shown(trials), _usual(trials)
@@ -57,12 +57,12 @@ def with_sides(trials: Sequence[Chosen]) -> list[Chosen]:
 
 
 def _usual(trials: Sequence[Chosen]) -> Mapping[str, Side]:
-    """The side that most trials show of a rudder, by its channel's name; the first log of it."""
+    """The side that most trials show of what steers, by its channel's name; the first log of it."""
     shown: dict[str, list[Side]] = {}
     for one in trials:
         for s in one.signals:
-            if s.quantity in RUDDERS and s.of_side.rests_on("measured"):
-                shown.setdefault(s.source.name, []).append((str(s.positive), one.path.name))
+            if _steers(s.quantity) and s.of_side.rests_on("measured"):
+                shown.setdefault(s.source.name, []).append((_side(s), one.path.name))
     most = {name: Counter(side for side, _ in them).most_common(1) for name, them in shown.items()}
     return {
         name: next(each for each in them if each[0] == most[name][0][0])
@@ -70,12 +70,22 @@ def _usual(trials: Sequence[Chosen]) -> Mapping[str, Side]:
     }
 
 
+def _steers(quantity: str) -> bool:
+    """Whether it is a rudder's angle, or that of a drive that turns."""
+    return quantity in RUDDERS or quantity.endswith("_angle")
+
+
+def _side(signal: Signal) -> str:
+    """Where it is positive; of a drive that turns, where nothing is written, clockwise."""
+    return signal.positive or "clockwise"
+
+
 def _unlike(signal: Signal, trial: Chosen, usual: Mapping[str, Side]) -> Signal:
-    """A rudder that most others deny, told or left open."""
+    """What steers, where most others deny its side: told or left open."""
     side, log = usual.get(signal.source.name, ("", ""))
-    if not (signal.of_side.rests_on("measured") and side) or signal.positive == side:
+    if not (signal.of_side.rests_on("measured") and side) or _side(signal) == side:
         return signal
-    said = f"by the motion {signal.positive}, and of the same name {side} in {log}"
+    said = f"by the motion {_side(signal)}, and of the same name {side} in {log}"
     rate = next((s for s in trial.signals if s.quantity in ("r", "psi")), None)
     if rate is not None and (rate.quantity == "psi" or rate.of_side.rests_on("measured")):
         return dataclasses.replace(signal, further=(*signal.further, f"CAREFUL: {said}"))

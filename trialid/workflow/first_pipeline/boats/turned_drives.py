@@ -101,5 +101,5 @@ def _signal(drive: Signal, source: ChannelInspection, turn: Signal) -> Signal:
         positive="port" if sense is TO_PORT else None,
         taken="by its name",
         of_unit=of_unit,
-        of_side=Reason(f"{sense}{told}"),
+        of_side=Reason(f"{sense}{told}", None if found is None else "measured"),
     )
