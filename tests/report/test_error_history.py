@@ -147,5 +147,7 @@ def test_errors_of_other_logs_are_not_held_against_these(result):
     assert f"goes from {percent(third.eps_rmsn)} to {percent(last.eps_rmsn)}" in words
     assert words.endswith("2 earlier steps had other logs, and other errors for it.")
     assert len(error_history(run).columns) == 2
+    proposed = replace(run, history=(replace(last, step="proposed"),))
+    assert proposed.comparable == ()  # an edited file: of what it is proposed nobody knows
     other_way_round = replace(run, history=(replace(third, logs=("a", "b")), ours[1]))
     assert len(other_way_round.comparable) == 2

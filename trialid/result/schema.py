@@ -85,8 +85,8 @@ class Result:
     @property
     def comparable(self) -> tuple[StepRow, ...]:
         """The steps whose errors are of the same logs as the present one's."""
-        own = sorted(self.present.logs) if self.history else []
-        return tuple(row for row in self.history if sorted(row.logs) == own)
+        done = [sorted(row.logs) for row in self.history if row.step != "proposed"]
+        return tuple(row for row in self.history if sorted(row.logs) in done[-1:])
 
     @property
     def physical(self) -> tuple[ParameterRow, ...]:
