@@ -9,9 +9,10 @@ from test_page import known_without
 
 from trialid.report.pages.page import page
 from trialid.report.terminal.before_after import before_after
-from trialid.report.terminal.steps import rows
+from trialid.report.terminal.steps import line, rows
 from trialid.result.change_rows import StepRow
 from trialid.result.json_file import result_of
+from trialid.result.schema import Result
 
 WANTED = {"effect", "equation", "by_output", "by_output_check", "parameters", "verdict", "named",
           "taken_out"}  # fmt: skip
@@ -99,11 +100,15 @@ def test_side_by_side_fits_a_terminal(changed, width):
 
 def test_a_long_history_shows_its_end():
     step = StepRow(step="added", added="x", eps_rmsn=0.1, verdict="cannot tell")
-    lines = list(rows([replace(step, added=f"e{k}") for k in range(20)]))
+    run = Result(history=tuple(replace(step, added=f"e{k}") for k in range(20)))
+    lines = list(rows(run))
     assert len(lines) == 10
     assert lines[1] == "... 12 earlier steps"
     assert lines[-1].startswith("+ e19 ")
-    assert list(rows([replace(step, step="proposed")])) == lines[:1]
+    tried = replace(step, step="proposed")
+    assert list(rows(Result(history=(step, tried)))) == [lines[0], line(step)]
+    own = Result(history=(step, replace(step, logs=("another",))))
+    assert list(rows(own))[1] == "... 1 earlier step on other logs"
 
 
 def test_what_to_do_next_stands_below_the_verdict(changed):

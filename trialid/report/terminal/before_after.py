@@ -77,7 +77,7 @@ def _screen(run: Result, file: str, rows: Rows) -> "RenderableType":
         Words(_foreseen(change), 3),
         Text(),
         *_parameters(change, rows),
-        Text("\n".join(steps.rows(run.comparable, rows.steps)), no_wrap=True, overflow="ellipsis"),
+        Text("\n".join(steps.rows(run, rows.steps)), no_wrap=True, overflow="ellipsis"),
     )
 
 

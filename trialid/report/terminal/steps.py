@@ -6,6 +6,7 @@ from typing import Final
 from trialid.names import wording
 from trialid.report.terminal.terminal import percent
 from trialid.result.change_rows import StepRow
+from trialid.result.schema import Result
 
 SHOWN: Final = 8
 """Steps shown of a long history: the last ones."""
@@ -35,10 +36,12 @@ def _broken(words: str) -> list[str]:
     return words.replace(", ", ",\n  ").split("\n")
 
 
-def rows(history: Sequence[StepRow], most: int = SHOWN) -> Iterable[str]:
-    """The last steps of a history, those apart that were only tried."""
-    steps = [step for step in history if step.step != "proposed"]
+def rows(run: Result, most: int = SHOWN) -> Iterable[str]:
+    """The last steps of a run on its own logs, those apart that were only tried."""
+    steps = [step for step in run.comparable if step.step != "proposed"]
     yield heading()
+    if others := len(run.history) - len(run.comparable):
+        yield f"... {wording.count_of(others, 'earlier step')} on other logs"
     if len(steps) > most:
         yield f"... {wording.count_of(len(steps) - most, 'earlier step')}"
     yield from (line(step) for step in steps[-most:])
