@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -191,3 +192,19 @@ def test_what_an_effect_joined_is_judged_by_add_as_by_the_run_of_its_file(
     asked.clear()
     run.add("yaw_drag_rar").add("yaw_drag_vav")
     assert asked == [True, True]
+
+
+def test_a_run_done_again_is_judged_as_it_was(made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Effects that `--auto` added in memory have no history beside the pipeline."""
+    folder, asked = made / "runs" / "first", []
+    origin = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    assert origin["grown"] is False
+
+    def noted(*given: Any, grown: bool, **more: Any) -> Any:
+        asked.append(grown)
+        return diagnose(*given, grown=grown, **more)
+
+    monkeypatch.setattr(findings, "diagnose", noted)
+    for grown in (False, True):
+        repeat(replace(earlier(folder), grown=grown), lambda words, share: None)
+    assert asked == [False, True]

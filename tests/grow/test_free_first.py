@@ -1,11 +1,13 @@
 """Numbers that the model holds and that do as well as an effect are free before any is added."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from world import changed, loop, no_fit, steps
 
+from trialid.cli.grow_loop import _loop_ended
 from trialid.pipeline_file.prior_section import OfTheShip
 from trialid.workflow import grow
 
@@ -58,3 +60,13 @@ def test_nor_what_cannot_be_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     grown(monkeypatch, WORLD, OfTheShip())
     *_, last = changed(monkeypatch, "h", no_fit, OfTheShip())
     assert (last.kept, last.refused) == (False, "with h free: no fit: x")
+
+
+def test_what_was_set_free_is_told_apart_from_effects(monkeypatch: pytest.MonkeyPatch) -> None:
+    *_, last = done = grown(monkeypatch, WORLD, OfTheShip())
+    last.pipeline.identify.free = ("a", "h")
+    last.pipeline.model.effects = "a"
+    said = " ".join(_loop_ended(done, Path("p.toml"), keep=False).split())
+    assert "Free now, about her file's values: h." in said
+    assert "the dearest to leave out first: a." in said
+    assert "in the place of what the file had" not in said

@@ -77,19 +77,19 @@ def test_pieces_hold_more_than_a_delay_may_spoil():
     assert min(int(one.sum()) for one in cut.compared) >= SHORTEST
 
 
-@pytest.mark.parametrize(("name", "share"), [("I_zz", 0.25), ("I_zz", 0.9)])
-def test_a_ship_with_the_inertia_of_a_longer_one_is_no_fit(name: str, share: float) -> None:
+@pytest.mark.parametrize("share", [0.25, 0.9])
+def test_a_ship_with_the_inertia_of_a_longer_one_is_no_fit(share: float) -> None:
     """Of a ferry whose pods were logged the wrong way round it was 1.5e8, and no word said."""
     mass = MODEL.value("m")
-    free = SimpleNamespace(unknowns=(SimpleNamespace(name=name),))
+    free = SimpleNamespace(unknowns=(SimpleNamespace(name="I_zz"),))
     held = SimpleNamespace(unknowns=())
 
     def fit(times: float, problem: Any) -> Any:
-        model = MODEL.with_values({name: times * share * mass})
+        model = MODEL.with_values({"I_zz": times * share * mass})
         return SimpleNamespace(model=model, problem=problem)
 
     assert _no_such_inertia(fit(1.0, free)) is None
     assert _no_such_inertia(fit(1e4, held)) is None  # as stated: the file's, and not the fit's
     found = _no_such_inertia(fit(10.0, free))
     assert found is not None
-    assert f"{name} = {10 * share:.2g} m L^2, and 0.25 with all" in found.reason
+    assert f"I_zz = {10 * share:.2g} m L^2, and 0.25 with all" in found.reason

@@ -1,4 +1,4 @@
-"""Where a motion may lie: what follows an order is nowhere that it was never told to be."""
+"""Where a motion may lie: what follows an order goes no farther than that or itself."""
 
 import numpy as np
 import pytest
