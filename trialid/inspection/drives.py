@@ -30,6 +30,12 @@ ENGINES: Final = {"single engine or port": "n_p", "starboard engine": "n_s"}
 """Words by which NMEA 2000 says which of two engines it is."""
 
 
+ENDS: Final = {
+    "aft": frozenset(words("aft after rear stern achtern heck akter")),
+    "fore": frozenset(words("fore fwd forward front bow vorn bug forut")),
+}
+"""Words by which the one of two drives of a ferry with a bow at either end says where it stands."""
+
 NUMBERS: Final = ("1", "2")
 """Of two drives by number the first is tried as that to port; the turn has to say so."""
 
@@ -47,6 +53,26 @@ def drives_of(survey: Inspection) -> tuple[ChannelInspection, ...]:
     if not any(found.values()):
         return _numbered(survey)
     return tuple(ones[0] for ones in found.values() if len(ones) == 1)
+
+
+def drives_by_end(survey: Inspection) -> tuple[ChannelInspection, ...]:
+    """The one drive aft and the one that stands fore of it; nothing where there is not one each."""
+    found = {
+        at: [one for one in survey.channels.values() if _drives(one) and end_of(one.name) == at]
+        for at in ENDS
+    }
+    whole = all(len(ones) == 1 for ones in found.values())
+    return tuple(one for ones in found.values() for one in ones) if whole else ()
+
+
+def end_of(name: str) -> str:
+    """At which end a drive stands by its name, `aft` or `fore`; empty where it says a side.
+
+    >>> end_of("pod_fwd_rpm"), end_of("stern_azimuth_deg"), end_of("aft_port_rpm")
+    ('fore', 'aft', '')
+    """
+    said = [at for at, ones in ENDS.items() if ones & {*words(name)}]
+    return said[0] if len(said) == 1 and not sides(name) else ""
 
 
 def lone_drive(survey: Inspection) -> ChannelInspection | None:

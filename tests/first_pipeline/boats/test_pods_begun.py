@@ -7,6 +7,10 @@ import pytest
 from made_boat import T, begun, table
 
 from trialid import pipeline_file
+from trialid.errors import LogError
+from trialid.inspection import inspect_log
+from trialid.ship.estimate import Given
+from trialid.workflow.first_pipeline import starter
 from trialid.workflow.run import run
 
 
@@ -17,6 +21,8 @@ def turned(seed: int) -> np.ndarray:
 
 
 SIDES = ("Azimuth port rpm", "Azimuth stbd rpm")
+ENDS = ("pod_aft_rpm", "pod_fwd_rpm")
+AT_ENDS = ("pod_aft_angle_deg", "pod_fwd_angle_deg")
 
 
 def pods(
@@ -30,7 +36,7 @@ def pods(
 ) -> Path:
     """A log of a ship of 20 m that pods turn: to port where they push to starboard.
 
-    The second is turned and driven `less` than the first, as a share.
+    The second is turned and driven `less` than the first, as a share: by 2 at the other end.
     """
     a = turned(seed)
     u, r, psi = (np.zeros(len(T)) for _ in range(3))
@@ -41,7 +47,7 @@ def pods(
         psi[k + 1] = psi[k] + 0.1 * r[k]
     rng = np.random.default_rng(seed)
     rpm = 120.0 + rng.standard_normal(len(T))
-    columns = {name: (1.0 - less * k) * rpm for k, name in enumerate(turns)}
+    columns = {name: abs(1.0 - less * k) * rpm for k, name in enumerate(turns)}
     columns |= {n: sign * (1.0 - less * k) * np.rad2deg(a) for k, n in enumerate(names)}
     columns["yaw_rate_dps"] = np.rad2deg(r) + 0.02 * rng.standard_normal(len(T))
     columns["stw_mps"] = u + 0.01 * rng.standard_normal(len(T))
@@ -84,6 +90,61 @@ def test_an_angle_of_another_side_than_in_the_other_logs_is_told(
     said = "by the motion port, and of the same name clockwise in run0.csv"
     assert text.count(said) == (2 if turned_round == (2,) else 0)
     assert ("FILL IN starboard or port" in text) == (turned_round == (2,))
+
+
+def test_a_ferry_with_a_pod_at_either_end_is_begun(tmp_path: Path) -> None:
+    """An outsider's had to be mapped by hand; the one that stands ahead turns her the other way."""
+    logs = [pods(tmp_path / f"run{i}.csv", AT_ENDS, i, turns=ENDS, less=2.0) for i in range(3)]
+    made = begun(tmp_path, *logs)
+    text, ship = made.files[tmp_path / "p.toml"], made.files[tmp_path / "p_ship.toml"]
+    assert 'thruster_fore_angle = { channel = "pod_fwd_angle_deg", unit = "deg" }' in text
+    assert 'thruster_aft        = { channel = "pod_aft_rpm", unit = "rpm" }' in text
+    assert "positive" not in text.split("[align]")[0]
+    assert [line for line in ship.splitlines() if line.startswith("at = ")] == [
+        "at = [-0.8, 0.0]  # m ahead, m to starboard",
+        "at = [0.8, 0.0]  # m ahead, m to starboard",
+    ]
+    done = run(pipeline_file.load(tmp_path / "p.toml"))
+    assert done.result.fit.eps_rmsn_by_output["r"] < 0.05
+
+
+def test_her_own_file_says_which_of_two_at_the_ends_is_which(tmp_path: Path) -> None:
+    log = pods(tmp_path / "a.csv", AT_ENDS, turns=ENDS, less=2.0)
+    begun(tmp_path, log)
+    text = (tmp_path / "p_ship.toml").read_text("utf-8")
+    own = tmp_path / "own.toml"
+    own.write_text(text.replace("thruster_aft", "rear").replace("thruster_fore", "front"), "utf-8")
+    made = starter([inspect_log(log)], tmp_path / "q.toml", own, Given(length=2.0))
+    assert 'front_angle = { channel = "pod_fwd_angle_deg"' in made.files[tmp_path / "q.toml"]
+    own.write_text(text.replace("at = [0.8, 0.0]", "at = [-0.7, 0.0]"), "utf-8")
+    with pytest.raises(LogError, match="names 2 aft and 0 ahead; write an"):
+        starter([inspect_log(log)], tmp_path / "q.toml", own, Given(length=2.0))
+
+
+def test_ends_that_may_be_exchanged_are_told(tmp_path: Path) -> None:
+    log = pods(tmp_path / "a.csv", AT_ENDS[::-1], turns=ENDS[::-1], less=2.0)
+    text = begun(tmp_path, log).files[tmp_path / "p.toml"]
+    assert text.count('unit = "deg", positive = "port"') == 2
+    assert text.count("CAREFUL: or fore and aft are exchanged") == 2
+
+
+@pytest.mark.parametrize(
+    ("turns", "angles"),
+    [
+        (ENDS, AT_ENDS[:1]),
+        (("pod_aft_port_rpm", "pod_fwd_stbd_rpm"), AT_ENDS),
+        (ENDS, ("pod_aft_wind_angle_deg", "pod_fwd_wind_angle_deg")),
+    ],
+)
+def test_ends_without_an_angle_each_are_no_pods(
+    tmp_path: Path, turns: tuple[str, ...], angles: tuple[str, ...]
+) -> None:
+    log = pods(tmp_path / "a.csv", angles, turns=turns, less=2.0)
+    try:
+        text = begun(tmp_path, log).files[tmp_path / "p.toml"]
+    except LogError as unread:
+        text = str(unread)
+    assert "thruster_fore" not in text
 
 
 def test_angles_that_are_called_so_are_no_rudders(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from trialid.workflow.first_pipeline.boats.actuators_begun import (
     main_drives,
     named_by_ship,
 )
-from trialid.workflow.first_pipeline.boats.boat_choice import PORT, choose, is_boat
+from trialid.workflow.first_pipeline.boats.boat_choice import AFT, PORT, choose, is_boat
 from trialid.workflow.first_pipeline.boats.numbered_drives import with_ports
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE, with_turned_drive
 from trialid.workflow.first_pipeline.boats.over_ground import with_speed_by_position
@@ -60,7 +60,7 @@ from trialid.workflow.first_pipeline.unit_by_turning import (
 
 __all__ = ["Starter", "begun_ship", "starter"]
 
-STEERS: Final = frozenset(("delta", "delta_order", PORT, f"{DRIVE}{ANGLE}", *RUDDERS.values()))
+STEERS: Final = frozenset(("delta", "delta_order", PORT, AFT, f"{DRIVE}{ANGLE}", *RUDDERS.values()))
 
 NO_SERVICE_SPEED: Final = (
     "she rolls at rest, and the numbers of a new ship are made of the speed that she goes at; add "

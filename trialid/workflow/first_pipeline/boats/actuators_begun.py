@@ -9,9 +9,9 @@ from trialid.errors import LogError
 from trialid.inspection.own_scale import at_rest
 from trialid.ship.actuators import Actuator, Command, actuator_tables
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import PORT, STARBOARD
+from trialid.workflow.first_pipeline.boats.boat_choice import AFT, PORT, STARBOARD
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE, HUNG, TURNED
-from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE
+from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE, FORE
 from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
 from trialid.workflow.first_pipeline.chosen import OPEN, Signal
 
@@ -20,8 +20,9 @@ ARM: Final = 0.2
 WAM-V, 0.24 of the BlueBoat."""
 ARM_OF_PODS: Final = 0.08
 """Of pods: 0.08 of a research vessel, 0.09 of tugs; turned alike they do without it."""
-AFT: Final = -0.4
-"""And so far aft, which where both push alike tells nothing."""
+FAR_AFT: Final = -0.4
+"""And so far aft, which where both push alike tells nothing; pods of a ferry with a bow at either
+end so far aft and ahead: 0.36 of a small one that is published."""
 
 
 ASSUMED: Final = {
@@ -51,16 +52,19 @@ def boat_actuators(signals: tuple[Signal, ...], ship: Ship) -> tuple[Actuator, .
     if DRIVE in units:
         x, command = round(HUNG * length, 2), command_of(units[DRIVE])
         return (Actuator(name=DRIVE, kind="azimuth", x=x, y=0.0, command=command),)
-    turned = f"{PORT}{ANGLE}" in units
+    turned = any(name.endswith(ANGLE) for name in units)
+    arm = ARM_OF_PODS if turned else ARM
+    at_ends = {AFT: (FAR_AFT, 0.0), FORE: (-FAR_AFT, 0.0)}
+    places = at_ends if AFT in units else {PORT: (FAR_AFT, -arm), STARBOARD: (FAR_AFT, arm)}
     return tuple(
         Actuator(
             name=name,
             kind="azimuth" if turned else "thruster",
-            x=round(AFT * length, 2),
-            y=round(sign * (ARM_OF_PODS if turned else ARM) * length, 2),
+            x=round(x * length, 2),
+            y=round(y * length, 2),
             command=command_of(units[name]),
         )
-        for name, sign in ((PORT, -1.0), (STARBOARD, 1.0))
+        for name, (x, y) in places.items()
     )
 
 
@@ -93,10 +97,10 @@ def named_by_ship(signals: tuple[Signal, ...], ship: Ship) -> tuple[Signal, ...]
     Raises
     ------
     LogError
-        Her file does not name one to each side.
+        Her file does not name one to each side, or at each end.
     """
     lone = any(one.quantity == DRIVE for one in signals)
-    names = _lone_name(ship) if lone else _names_by_side(signals, ship)
+    names = _lone_name(ship) if lone else _names_by_place(signals, ship)
     names |= {f"{ours}{ANGLE}": f"{hers}{ANGLE}" for ours, hers in names.items()}
     return tuple(
         dataclasses.replace(one, quantity=names.get(one.quantity, one.quantity)) for one in signals
@@ -108,17 +112,21 @@ def _lone_name(ship: Ship) -> dict[str, str]:
     return {DRIVE: name}
 
 
-def _names_by_side(signals: tuple[Signal, ...], ship: Ship) -> dict[str, str]:
+def _names_by_place(signals: tuple[Signal, ...], ship: Ship) -> dict[str, str]:
     kind = "azimuth" if any(one.quantity.endswith(ANGLE) for one in signals) else "thruster"
-    port = [a.name for a in ship.actuators if a.kind == kind and a.y < 0.0]
-    starboard = [a.name for a in ship.actuators if a.kind == kind and a.y > 0.0]
-    if len(port) != 1 or len(starboard) != 1:
+    at_ends = any(one.quantity == AFT for one in signals)
+    hers = {a.name: a.x if at_ends else a.y for a in ship.actuators if a.kind == kind}
+    below = [name for name, place in hers.items() if place < 0.0]
+    above = [name for name, place in hers.items() if place > 0.0]
+    if len(below) != 1 or len(above) != 1:
+        where = ("aft", "ahead") if at_ends else ("to port", "to starboard")
         raise LogError(
-            f"the log has two of kind {kind}, and the file of ship {ship.name!r} names {len(port)} "
-            f"to port and {len(starboard)} to starboard; write an [[actuator]] for each, see "
-            "`trialid guide actuators`"
+            f"the log has two of kind {kind}, and the file of ship {ship.name!r} names "
+            f"{len(below)} {where[0]} and {len(above)} {where[1]}; write an [[actuator]] for each, "
+            "see `trialid guide actuators`"
         )
-    return {PORT: port[0], STARBOARD: starboard[0]}
+    names = (AFT, FORE) if at_ends else (PORT, STARBOARD)
+    return dict(zip(names, (below[0], above[0]), strict=True))
 
 
 def main_drives(ship: Ship) -> frozenset[str]:

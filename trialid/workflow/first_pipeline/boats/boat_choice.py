@@ -6,7 +6,13 @@ from typing import Final
 import numpy as np
 
 from trialid.inspection.channel_names import ORDERED
-from trialid.inspection.drives import drives_of, has_side, of_some_steering
+from trialid.inspection.drives import (
+    drives_by_end,
+    drives_of,
+    end_of,
+    has_side,
+    of_some_steering,
+)
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import words
 from trialid.inspection.relations import side, turns_late
@@ -15,6 +21,7 @@ from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE
 from trialid.workflow.first_pipeline.boats.over_ground import with_velocity_over_ground
 from trialid.workflow.first_pipeline.boats.turned_drives import (
+    FORE,
     angle_signals,
     angles_of,
     do_the_same,
@@ -43,6 +50,8 @@ from trialid.workflow.first_pipeline.not_begun import no_speed_of_boat
 from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
+AFT: Final = "thruster_aft"
+BY_END: Final = Reason("fore or aft by its name; on the midships line, as her file has it")
 ASK_PORT: Final = Reason(
     "FILL IN the unit after settling which is to port: the motion does not tell", "asked"
 )
@@ -65,7 +74,7 @@ def choose(survey: Inspection, speed: float | None) -> Chosen:
         It holds neither, or no motion.
     """
     live = {name: live_sources(survey, name) for name in SIGNALS}
-    turns, drives = live.get("r") or live.get("psi"), drives_of(survey)
+    turns, drives = live.get("r") or live.get("psi"), _two_drives(survey)
     if not turns or len(drives) != 2:
         return with_further(choose_signals(survey, speed), live)
     rudders = [one for name in RUDDERS for one in live[name]]
@@ -98,9 +107,17 @@ def _choose_boat(survey: Inspection, live: Live, stated: float | None) -> Chosen
     return with_sway(with_wind(boat, live), live)
 
 
+def _two_drives(survey: Inspection) -> tuple[ChannelInspection, ...]:
+    """Those to port and starboard, or one aft and one fore, which steer her where they turn."""
+    at_ends = drives_by_end(survey)
+    return at_ends if angles_of(survey, at_ends) else drives_of(survey)
+
+
 def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
     """Both drives as signals of a pipeline, their sides held against the turn."""
-    port, starboard = drives_of(survey)
+    port, starboard = _two_drives(survey)
+    if end_of(port.name):
+        return [_drive(AFT, port, BY_END), _drive(FORE, starboard, BY_END)]
     says = _agreement(port, starboard, turn)
     if not (has_side(port) or says.rests_on("measured")):
         says = _agreement(starboard, port, turn)
@@ -176,4 +193,4 @@ def velocity_speed(survey: Inspection) -> Signal | None:
 
 def is_boat(signals: frozenset[str]) -> bool:
     """Whether signals are of a boat that steers by thrusters, or by what pushes her."""
-    return {PORT, STARBOARD} <= signals or DRIVE in signals
+    return {PORT, STARBOARD} <= signals or {AFT, FORE} <= signals or DRIVE in signals

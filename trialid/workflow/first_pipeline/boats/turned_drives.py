@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from trialid.inspection.drives import ENDS, end_of
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.name_words import sides, words
 from trialid.inspection.relations import side
@@ -22,6 +23,11 @@ ANGLE: Final = "_angle"
 
 CLOCKWISE: Final = "clockwise from ahead, as to starboard she turns to port by it"
 TO_PORT: Final = "positive to port, as she turns to starboard by it"
+FORE: Final = "thruster_fore"
+"""The signal of a drive that stands ahead, of which the turn by it goes the other way."""
+AHEAD: Final = "clockwise from ahead, as it stands fore and to starboard she turns to starboard"
+AHEAD_TO_PORT: Final = "positive to port, as it stands fore and she turns to port by it"
+OR_EXCHANGED: Final = "CAREFUL: or fore and aft are exchanged, which looks alike"
 UNSEEN: Final = (
     "CAREFUL: taken as clockwise from ahead, to where it pushes; the motion does not show which "
     "way it counts"
@@ -38,7 +44,8 @@ twice say the same of them."""
 def angle_signals(survey: Inspection, drives: Sequence[Signal], turn: Signal) -> list[Signal]:
     """The angle of each of two drives, its sense by the turn; none where not each has one.
 
-    A pod stands aft: where it pushes to starboard her stern goes there, and she turns to port.
+    A pod stands aft: where it pushes to starboard her stern goes there, and she turns to port; to
+    starboard by one that stands ahead.
     """
     angles = angles_of(survey, [one.source for one in drives])
     return [_signal(one, angle, turn) for one, angle in zip(drives, angles, strict=False)]
@@ -72,14 +79,17 @@ def _angles(survey: Inspection, drive: ChannelInspection) -> Iterator[ChannelIns
     for one in survey.channels.values():
         told = {*words(one.name)}
         is_of_pod = PODS & told or ("angle" in told and THRUSTERS & told)
-        of_another = NO_ANGLE & told or not mine or _whose(one) != mine
+        no_angle = NO_ANGLE - ENDS.get(end_of(one.name), frozenset())
+        of_another = no_angle & told or not mine or _whose(one) != mine
         if is_of_pod and not of_another and one is not drive and _is_angle(one):
             yield one
 
 
 def _whose(one: ChannelInspection) -> set[str]:
-    """Its side, or its number where it has none."""
-    return sides(one.name) or {word for word in words(one.name) if word in ("1", "2")}
+    """Its side, or where it has none its end of the ship, or its number."""
+    end = end_of(one.name)
+    numbers = {word for word in words(one.name) if word in ("1", "2")}
+    return sides(one.name) or ({end} if end else numbers)
 
 
 def _is_angle(one: ChannelInspection) -> bool:
@@ -91,15 +101,20 @@ def _signal(drive: Signal, source: ChannelInspection, turn: Signal) -> Signal:
     towards = turn.positive or "starboard" if turn.quantity == "r" else None
     found = side(source, turn.source, towards)
     told = "" if found is None else f" (correlation with {found.by} {found.strength:+.2f})"
-    sense = UNSEEN if found is None else CLOCKWISE if found.side == "port" else TO_PORT
+    by_side = {"port": CLOCKWISE, "starboard": TO_PORT}
+    if drive.quantity == FORE:
+        by_side = {"starboard": AHEAD, "port": AHEAD_TO_PORT}
+    sense = UNSEEN if found is None else by_side[found.side]
+    to_port = sense in (TO_PORT, AHEAD_TO_PORT)
     unit = source.stated_unit or OPEN
     of_unit = ASK_UNIT if unit == OPEN else UNSAID
     return Signal(
         quantity=f"{drive.quantity}{ANGLE}",
         source=source,
         unit=unit,
-        positive="port" if sense is TO_PORT else None,
+        positive="port" if to_port else None,
         taken="by its name",
         of_unit=of_unit,
         of_side=Reason(f"{sense}{told}", None if found is None else "measured"),
+        further=(OR_EXCHANGED,) if to_port and end_of(drive.source.name) else (),
     )
