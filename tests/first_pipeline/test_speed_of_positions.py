@@ -1,5 +1,6 @@
 """A log whose positions alone tell the speed, and a channel's unit by it."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -222,3 +223,42 @@ def test_an_hour_in_which_nothing_was_logged_is_no_standing_still(tmp_path: Path
     found = inspect_log(path).channels.values()
     assert usual_speed(found) == pytest.approx(SPEED, rel=0.1)
     assert approach_by_positions(found) == pytest.approx(SPEED, rel=0.1)
+
+
+def turning(path: Path, reads: float, *, turn: float, current: complex = 0.6 - 0.8j) -> Path:
+    """A ship of 150 m put over at 100 s, in a current; her speed log reads by this factor."""
+    t = np.arange(0.0, 700.0, 1.0)
+    r = np.where((t > 100.0) & (np.cumsum(t > 100.0) * 0.7 < turn), 0.7, 0.0)
+    psi, u = np.cumsum(r), 8.0 - 2.5 * np.clip((t - 100.0) / 150.0, 0.0, 1.0) * (turn > 0.0)
+    v = -0.35 * u * np.deg2rad(r) / np.deg2rad(0.7) / 5.0
+    rng = np.random.default_rng(5)
+    way = np.cumsum((u + 1j * v) * np.exp(1j * np.deg2rad(psi)) + current)
+    fixes = (way + rng.standard_normal(len(t)) + 1j * rng.standard_normal(len(t))) / RADIUS
+    table = np.column_stack(
+        [t, 20.0 * np.sin(0.03 * t), psi % 360.0, reads * u / KNOT, np.rad2deg(fixes.real)]
+    )
+    table = np.column_stack([table, np.rad2deg(fixes.imag)])
+    heads = "time_s,rudder_deg,heading_deg,stw_kn,lat,lon"
+    np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.9f")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("reads", "turn", "told"),
+    [(1.12, 400.0, 1 / 1.12), (0.9, 220.0, 1 / 0.9), (1.0, 400.0, None), (1.12, 100.0, None)],
+)
+def test_a_speed_log_that_is_off_is_told_by_a_full_turn(
+    tmp_path: Path, reads: float, turn: float, told: float | None
+) -> None:
+    """An outsider's read 12 % high beside positions, and no word was said: all gains were off.
+
+    A current of 1 m/s is taken out; where she does not turn it is not, and nothing is said.
+    """
+    survey = inspect_log(turning(tmp_path / "turn.csv", reads, turn=turn))
+    made = starter([survey], tmp_path / "p.toml", None, Given(length=150.0))
+    found = re.search(r"by her positions she goes ([\d.]+)", made.files[tmp_path / "p.toml"])
+    if told is None:
+        assert found is None
+    else:
+        assert found is not None
+        assert float(found[1]) == pytest.approx(told, rel=0.02)

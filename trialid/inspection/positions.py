@@ -10,7 +10,7 @@ from trialid.arrays import Vector
 from trialid.inspection.channel_names import is_column
 from trialid.inspection.inspected import ChannelInspection
 from trialid.inspection.name_words import words
-from trialid.inspection.sketch import on_one_clock
+from trialid.inspection.sketch import Sketch, on_one_clock
 from trialid.inspection.usual_units import to_si
 
 PAIRS: Final[tuple[Mapping[str, frozenset[str]], ...]] = (
@@ -155,21 +155,29 @@ def _squared(north: Vector, east: Vector, over: int) -> Vector:
 
 def _track(found: Mapping[str, ChannelInspection]) -> Track | None:
     """The way that a position says; None where it is none, or its two have too little in common."""
+    way = way_beside(found)
+    return None if way is None else way[0]
+
+
+def way_beside(
+    found: Mapping[str, ChannelInspection], *beside: Sketch
+) -> tuple[Track, list[Vector]] | None:
+    """The way that a position says, and other channels on its clock; None as of a way alone."""
     globe = "lat" in found
     usual, si = ("deg", "rad") if globe else ("m", "m")
     pair = [found[name] for name in (("lat", "lon") if globe else ("x", "y")) if name in found]
     sizes = [to_si(one.stated_unit or usual, si) for one in pair]
-    common = on_one_clock(*(one.sketch for one in pair)) if pair else None
+    common = on_one_clock(*(one.sketch for one in pair), *beside) if pair else None
     if common is None or None in sizes:
         return None
     period, values, whole = common
     fixed = whole & ((values[0] != 0.0) | (values[1] != 0.0))
     north, east = (
-        np.where(fixed, y * (x or 0.0), np.nan) for y, x in zip(values, sizes, strict=True)
+        np.where(fixed, y * (x or 0.0), np.nan) for y, x in zip(values[:2], sizes, strict=True)
     )
     if globe:
         north, east = plane(north, east, int(np.argmax(fixed)))
-    return period, north, east
+    return (period, north, east), values[2:]
 
 
 def _fresh(period: float, north: Vector, east: Vector) -> Track:
