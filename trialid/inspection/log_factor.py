@@ -1,6 +1,6 @@
 """By how much a speed log reads too high, as the positions of a turning ship show it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -66,14 +66,18 @@ def _parts(period: float, u: Vector, psi: Vector, over: int) -> tuple[Vector, Ve
     The speed along her heading and across it, where that is off; a current to the north and to the
     east; what stands ahead of her and to starboard, or turns so.
     """
-    c, s = np.cos(psi), np.sin(psi)
-    time = period * np.arange(len(u))
+    c: Vector = np.cos(psi)
+    s: Vector = np.sin(psi)
+    time: Vector = np.arange(len(u), dtype=float) * period
     none = np.zeros(len(u))
-    sums = [period * np.cumsum(u * one) for one in (c, s)]
-    to_north = (sums[0], -sums[1], time, none, c, -s)
-    to_east = (sums[1], sums[0], none, time, s, c)
-    north, east = (np.column_stack([_over(one, over) for one in x]) for x in (to_north, to_east))
-    return north, east
+    ahead = [period * np.cumsum(u * one) for one in (c, s)]
+    to_north = (ahead[0], -ahead[1], time, none, c, -s)
+    to_east = (ahead[1], ahead[0], none, time, s, c)
+    return _columns(to_north, over), _columns(to_east, over)
+
+
+def _columns(parts: Sequence[Vector], over: int) -> Vector:
+    return np.column_stack([_over(one, over) for one in parts])
 
 
 def _over(y: Vector, over: int) -> Vector:
