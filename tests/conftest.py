@@ -14,10 +14,15 @@ from turns import pytest_collection_modifyitems as pytest_collection_modifyitems
 
 # xdist tells its workers the width of a terminal; what is tested is what a file or a pipe gets.
 os.environ.pop("COLUMNS", None)
+# A worker a core: a second thread for their small matrices waits for a core more than it works, a
+# fifth of all seconds. Read when numpy is first imported, which is after this.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROOT = Path(__file__).parent.parent
 collect_ignore_glob = ["*/conftest.py"]
 """They hold no doctests, and as modules of one name they could not be given in one command."""
+
+THREADS = {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"}
 
 
 RUN = """\
@@ -56,7 +61,7 @@ def _run_sample(folder: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", RUN, "run", str(pipeline), "--out", folder.name, "--quiet"],
         cwd=folder.parent,
-        env={**os.environ, "PYTHONPATH": paths, "PYTHONHASHSEED": "7", "OMP_NUM_THREADS": "2"},
+        env={**os.environ, "PYTHONPATH": paths, "PYTHONHASHSEED": "7", **THREADS},
         capture_output=True,
         text=True,
         check=False,

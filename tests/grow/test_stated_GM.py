@@ -47,7 +47,7 @@ def found(path):
 
 @pytest.mark.parametrize(
     "seed",
-    [11, 12, *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in range(13, 17))],
+    [11, *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in range(12, 17))],
 )
 def test_her_damping_is_found_where_what_couples_sway_and_roll_is_free(seed, tmp_path):
     """Held as a formula has it, it is a tenth to a quarter off, and more of the error is left."""

@@ -27,7 +27,8 @@ def here(): return os.getpid() == own
 def begun(code: str, cores: int = 2) -> subprocess.Popen[str]:
     """A process with no threads but its own, which those of a test's worker may have."""
     paths = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
-    env = {**os.environ, "PYTHONPATH": paths, "OMP_NUM_THREADS": str(cores)}
+    several = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), str(cores))
+    env = {**os.environ, "PYTHONPATH": paths, **several}
     command = [sys.executable, "-c", BEGIN + code]
     return subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True)
 

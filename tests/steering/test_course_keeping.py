@@ -85,7 +85,7 @@ def verdict_of(seed: int, *, kept: bool, dead: float = 0.0) -> Verdict:
     return diagnose(missions.mission_fit(boat, seed, kept=kept)).verdict
 
 
-@pytest.mark.parametrize("dead", [0.0, 1.0])
+@pytest.mark.parametrize("dead", [0.0, pytest.param(1.0, marks=pytest.mark.study(turn="each"))])
 @pytest.mark.parametrize(
     "seed", [70, *(pytest.param(s, marks=pytest.mark.study(turn=1)) for s in SEEDS[1:])]
 )

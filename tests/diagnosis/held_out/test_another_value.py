@@ -46,7 +46,7 @@ def test_a_ship_with_another_gm_is_told(times):
 
 
 @pytest.mark.parametrize(
-    "times", [0.7, 1.3, pytest.param(0.78, marks=pytest.mark.study(turn="each"))]
+    "times", [0.7, *(pytest.param(x, marks=pytest.mark.study(turn="each")) for x in (0.78, 1.3))]
 )
 def test_a_ship_that_rolls_for_long_is_told_too(times):
     """Hardly damped and of more GM: a little off, her roll is out of phase within few cycles."""
