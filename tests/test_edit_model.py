@@ -163,10 +163,7 @@ def test_ones_own_effect() -> None:
     assert FILE.read_bytes() == text
 
 
-ONE_LINE = pytest.param("values = { Yr = 0.0 }\n", marks=pytest.mark.study(turn="each"))
-
-
-@pytest.mark.parametrize("values", ["", ONE_LINE, "values.Yr = 0.0\n"])
+@pytest.mark.parametrize("values", ["", "values = { Yr = 0.0 }\n", "values.Yr = 0.0\n"])
 def test_a_start_far_off_gives_way_to_the_foreseen_one(values: str) -> None:
     """From the typical value no search can begin; the file then says from where this one began."""
     stiff = EFFECT.replace("-0.001", "1e3").replace("N=Nx * v * abs(v)", "K=Nx * phi")

@@ -3,11 +3,13 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import otter
 import pytest
-from otter_model import TRUTH, fitted, model, record
+from otter_model import ORDERED, TRUTH, fitted, model, record
 from test_bad_input import trialid_
 from test_start_with_thrusters import log, started
 from typical import known_by
@@ -18,7 +20,10 @@ from trialid.design.prediction.engine_orders import astern_orders, engine_of
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.stopping import sail_stop
 from trialid.design.standard import in_calm
+from trialid.effects.actuators.astern_gains import goes_astern
 from trialid.errors import DesignError, TrialidError
+from trialid.identification.fit import Fit
+from trialid.identification.remarks import _held_astern, untold_astern
 from trialid.ship.model import ShipModel
 from trialid.workflow.use.orders import Stop, stop_order
 
@@ -93,6 +98,53 @@ def test_more_is_ordered_astern_than_nothing() -> None:
         for a in (True, False)
     }
     assert reach[True] < 0.7 * reach[False]
+
+
+REACH = "head reach [m]"
+
+
+@pytest.mark.parametrize("held", [0.1, 9.0])
+def test_a_thrust_astern_that_nobody_told_goes_by_that_ahead(held: float) -> None:
+    """An outsider's was held at nine times that ahead: 0.06 m (0 to 0.25) of a true 0.69."""
+    off = truth().with_values({"k_astern": held * otter.AHEAD})
+    made = sail_stop(boat(off), 0.0, KNOWN, {}, astern=True, untold={"k_astern": "k_ahead"})
+    by_share = [
+        sail_stop(
+            boat(truth().with_values({"k_astern": x * otter.AHEAD})), 0.0, KNOWN, {}, astern=True
+        ).numbers[REACH][0]
+        for x in (1.0, 0.8, 0.6)
+    ]
+    value, ends = made.numbers[REACH]
+    assert value == pytest.approx(by_share[1])
+    assert ends == pytest.approx((by_share[0], by_share[2]))
+    told = sail_stop(boat(off), 0.0, KNOWN, {}, astern=True).numbers[REACH][0]
+    assert not by_share[0] < told < by_share[2]
+
+
+def a_fit(held: float, *, astern: bool = False, free: tuple[str, ...] = ("k_ahead",)) -> Fit:
+    """What is read of a fit whose gain astern is so many times that ahead."""
+    pushes = np.array([30.0, -20.0 if astern else 20.0])
+    known = truth().with_values({"k_astern": held * otter.AHEAD})
+    trials = [SimpleNamespace(use="fit", signals=dict.fromkeys(ORDERED, pushes))]
+    trials += [SimpleNamespace(use="check", signals=dict.fromkeys(ORDERED, -pushes))]
+    unknowns = [SimpleNamespace(name=name) for name in free]
+    problem = SimpleNamespace(unknowns=unknowns)
+    return cast("Fit", SimpleNamespace(model=known, trials=trials, problem=problem))
+
+
+def test_which_gains_astern_nobody_told() -> None:
+    """Those that are held, where none of what drives her goes astern in a fitted trial."""
+    assert untold_astern(a_fit(9.0)) == {"k_astern": "k_ahead"}
+    assert untold_astern(a_fit(9.0, astern=True)) == {}
+    assert untold_astern(a_fit(9.0, free=("k_ahead", "k_astern"))) == {}
+    assert not goes_astern(truth().ship, {"left": np.ones(3), "u": -np.ones(3)})
+    assert goes_astern(truth().ship, {"left": np.array([1.0, -0.2])})
+
+
+@pytest.mark.parametrize(("times", "told"), [(9.0, True), (0.8, False), (0.2, True), (1.5, False)])
+def test_a_gain_astern_that_no_screw_has_is_told(times: float, told: bool) -> None:
+    said = [line.partition(",")[0] for line in _held_astern(a_fit(times))]
+    assert said == [f"k_astern is held at {times:.2g} times k_ahead"] * told
 
 
 def test_what_is_not_known_astern_is_refused() -> None:

@@ -106,6 +106,21 @@ def test_what_a_run_may_lack_is_told_beside_the_errors_that_are_promised(folder,
     assert "were the model" not in said("design", folder / "design.toml", "--out", folder / "plan")
 
 
+def test_so_it_is_where_noise_and_model_were_not_told_apart(folder):
+    """Of the worst runs nothing was said: Nv promised to 2.6 % was 173 % off, of a likely 480."""
+    kept = json.loads((folder / "out" / "result.json").read_text("utf-8"))
+    for row in kept["accuracy"]["parameters"]:
+        row["undermodelling_error"] = None
+    row = next(p for p in kept["accuracy"]["parameters"] if p["name"] == "Nr")
+    size, error = abs(row["value"]), row["standard_error"]
+    row["likely"] = [row["value"] - 3.0 * size, row["value"] + size]
+    (folder / "split").mkdir(exist_ok=True)
+    (folder / "split" / "result.json").write_text(json.dumps(kept), "utf-8")
+    planned = design(folder, DESIGN.replace('run = "out"', 'run = "split"'))
+    share = wording.percent(3.0 - 2.0 * error / size, 2)
+    assert f" Nr by up to {share}" in planned["error_doubt"]
+
+
 def test_the_page_says_how_the_ship_is_sailed(result):
     """Gear as in the logs, 2.5 deg/s; the speed comes from them, and so does what turns cost."""
     assert result.sailed.rudder_rate == pytest.approx(0.0436, rel=0.03)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from trialid import user_files
+from trialid.accuracy.ranges import share_off
 from trialid.design.rudder_rate import GEAR
 from trialid.errors import PipelineError
 from trialid.pipeline_file.design_file import DesignFile
@@ -27,7 +28,8 @@ class FinishedRun:
     intervals
         The value of each standard measure with its 95 % range.
     model_errors
-        How far what the model lacks may move each fitted parameter, a share of its size.
+        How far what the model lacks may move each fitted parameter, a share of its size; of runs
+        whose noise and model are not told apart by their likely ranges.
     steps
         Rows of its history, without what was only proposed.
     """
@@ -84,7 +86,7 @@ def _read(pipeline: DesignFile, file: Path) -> FinishedRun:
             speed_lost=_numbers(sailed.get("speed_lost")),
             rudders_zero=None if zero is None else float(zero),
             intervals=_intervals(result.get("imo")),
-            model_errors={p["name"]: float(p.get("undermodelling_error") or 0.0) for p in rows},
+            model_errors={p["name"]: _model_error(p) for p in rows},
             verdict=str((result.get("verdict") or {}).get("kind", "")),
             effects=effects,
             steps=tuple(s for s in result.get("history", ()) if s["step"] != "proposed"),
@@ -94,6 +96,20 @@ def _read(pipeline: DesignFile, file: Path) -> FinishedRun:
             f"{pipeline.path}: run: {file} is no result of a run; give the folder that "
             "`trialid run` wrote"
         ) from error
+
+
+def _model_error(row: Mapping[str, Any]) -> float:
+    """How far a parameter may be off by what the model lacks, a share of it.
+
+    Where noise and model were not told apart, by how much more than two standard errors its likely
+    range reaches.
+    """
+    told = row.get("undermodelling_error")
+    if told is not None:
+        return float(told)
+    likely, value = row.get("likely"), row["value"]
+    off = share_off(value, None if likely is None else (float(likely[0]), float(likely[1])))
+    return 0.0 if off is None else max(0.0, off - 2.0 * abs((row["standard_error"] or 0.0) / value))
 
 
 def _numbers(rows: Mapping[str, Any] | None) -> dict[str, float]:

@@ -3,6 +3,7 @@
 import functools
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -14,7 +15,12 @@ from trialid.design.prediction.engine_orders import astern_orders, engine_of
 from trialid.design.prediction.likely_spread import LikelySpread
 from trialid.design.prediction.predicted_motion import sail_orders
 from trialid.design.prediction.ranged_motion import PredictedMotion
-from trialid.design.prediction.unseen_astern import all_of, screws_astern
+from trialid.design.prediction.unseen_astern import (
+    REMARK,
+    all_of,
+    gains_astern,
+    screws_astern,
+)
 from trialid.design.rudders import amidships
 from trialid.design.standard import LENGTHS, STEPS, STRAIGHT, in_calm
 from trialid.trial import Trial
@@ -27,6 +33,7 @@ def sail_stop(
     band: Mapping[str, float],
     *,
     astern: bool = False,
+    untold: Mapping[str, str] = MappingProxyType({}),
 ) -> PredictedMotion:
     """The engine stopped on a straight course in calm deep water, until the speed has fallen.
 
@@ -36,6 +43,8 @@ def sail_stop(
         Of the approach speed, that is left at the end.
     astern
         Ordered as fast astern as ahead on the approach, instead: a crash stop.
+    untold
+        Gains astern that no trial and nobody has told, each with that ahead.
 
     Raises
     ------
@@ -45,9 +54,11 @@ def sail_stop(
     base, start = in_calm(ship), round(STRAIGHT * STEPS)
     given = _orders(base, start, astern)
     read = functools.partial(_numbers, start, share)
-    others = screws_astern(base) if astern else ()
-    made = [sail_orders(one, given, spread, band, read=read) for one in others or (base,)]
-    return _until_slow(all_of(made) if others else made[0], share, start)
+    gains, screws = (gains_astern(base, untold), screws_astern(base)) if astern else ((), ())
+    made = [sail_orders(one, given, spread, band, read=read) for one in gains or screws or (base,)]
+    if gains:
+        return _until_slow(all_of(made), share, start)
+    return _until_slow(all_of(made, ASIDE, REMARK) if screws else made[0], share, start)
 
 
 def _orders(base: Vessel, start: int, astern: bool) -> Trial:

@@ -1,7 +1,7 @@
-"""A shaft ordered astern that no trial held astern: what its propeller does is a range.
+"""A shaft or a thruster ordered astern that no trial held astern: what it does there is a range.
 
 Screws are made for ahead. At rest one of the B-series gives 20 to 40 % less astern, a symmetrical
-one as much; which side its race pushes the stern to, nobody knows without a trial.
+one as much; which side a shaft's race pushes the stern to, nobody knows without a trial.
 """
 
 import math
@@ -19,11 +19,20 @@ from trialid.ship.model import ShipModel
 
 LESS: Final = (0.2, 0.0, 0.4)
 """By how much of its thrust at rest a screw is less astern: what is taken, and either end."""
-SIDEWAYS: Final = "lateral deviation [m]"
 REMARK: Final = (
     "no trial held the shaft astern: its thrust is taken as 60 to 100 % of that ahead, and to "
     "which side the race would push the stern is not known"
 )
+
+
+def gains_astern(ship: Vessel, untold: Mapping[str, str]) -> tuple[Vessel, ...]:
+    """The ship with each thrust astern that hers may have, by the gains ahead; none if told."""
+    known = [
+        ship.model.with_values({n: (1.0 - x) * ship.model.value(a) for n, a in untold.items()})
+        for x in LESS
+    ]
+    made = (vessel(one, ship.period, ship.constants, ship.rudder_rate) for one in known)
+    return tuple(made) if untold else ()
 
 
 def screws_astern(ship: Vessel) -> tuple[Vessel, ...]:
@@ -43,12 +52,12 @@ def _less(model: ShipModel, share: float) -> dict[str, float]:
     return {"X_ast": share * 2.0 * blades / (2.0 * math.pi) ** 2, "N_ast": 0.0}
 
 
-def all_of(made: Sequence[PredictedMotion]) -> PredictedMotion:
-    """The first of several predictions, with ranges that embrace those of all."""
+def all_of(made: Sequence[PredictedMotion], unknown: str = "", remark: str = "") -> PredictedMotion:
+    """The first of several predictions, with ranges that embrace those of all, `unknown` apart."""
     first = reduce(embrace, made)
-    kept = {n: x for n, (x, _) in first.numbers.items() if n != SIDEWAYS}
+    kept = {n: x for n, (x, _) in first.numbers.items() if n != unknown}
     numbers = {n: (x, _embracing([one.numbers for one in made], n)) for n, x in kept.items()}
-    return replace(first, numbers=numbers, remark=REMARK)
+    return replace(first, numbers=numbers, remark=remark)
 
 
 def _embracing(

@@ -14,8 +14,10 @@ from trialid.design.ordered_signals import late_orders
 from trialid.design.rating import Goal
 from trialid.design.search import Found, Outcome, Search, Ship, optimise, outcome, sail_all, score
 from trialid.design.separation import Separation, likeness, rivals, separate
+from trialid.effects.actuators.astern_gains import goes_astern, held_astern
 from trialid.errors import DesignError, PipelineError, nearest
 from trialid.identification.problem import Settings
+from trialid.names.wording import named_together
 from trialid.pipeline_file import where
 from trialid.pipeline_file.design_file import DesignFile, Numbers, TestSection
 from trialid.pipeline_file.finished_run import FinishedRun, finished_run
@@ -145,7 +147,20 @@ def _rated(
     _check_visible(pipeline, name, came, ships[0].goal)
     lines = [r for test in tests for r in _of_lines(test, ships[0])]
     late = [r for passage in came.passages for r in late_orders(passage)]
-    return Rated(name, tests, came, found, (*lines, *late))
+    return Rated(name, tests, came, found, (*lines, *late, *_held_astern(pipeline, came, ships[0])))
+
+
+def _held_astern(pipeline: DesignFile, came: Outcome, ship: Ship) -> list[str]:
+    """That what she does astern goes by a gain that nothing has found."""
+    model = ship.vessel.model
+    held = [*held_astern(model, pipeline.identify.free)]
+    if not held or not any(goes_astern(model.ship, p.trial.signals) for p in came.passages):
+        return []
+    are = "is" if len(held) == 1 else "are"
+    return [
+        f"goes astern by {named_together(held)} as stated, which {are} held and not found: how far "
+        "she turns and runs there is no better known than that"
+    ]
 
 
 def _check_visible(pipeline: DesignFile, name: str, came: Outcome, goal: Goal) -> None:

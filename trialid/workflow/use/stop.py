@@ -1,7 +1,11 @@
 """A finished run's model with the engine stopped, or ordered astern."""
 
+from dataclasses import replace
+from typing import Final
+
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.stopping import sail_stop
+from trialid.identification.remarks import untold_astern
 from trialid.threads import one_thread
 from trialid.workflow.use.finished_model import FinishedModel
 from trialid.workflow.use.orders import Stop
@@ -13,6 +17,11 @@ from trialid.workflow.use.predict import (
     with_words,
 )
 from trialid.workflow.use.what_if import AS_FITTED, WhatIf, changed_ship, known_changes
+
+OF_GAINS: Final = (
+    "No trial went astern: thrust astern is taken as 60 to 100 % of that ahead, and the ranges "
+    "embrace both; where it is known, state it: --what-if {}=..."
+)
 
 
 @one_thread
@@ -28,6 +37,16 @@ def predict_stop(model: FinishedModel, asked: Stop, what_if: WhatIf = AS_FITTED)
     def sail(one: FinishedModel) -> PredictedMotion:
         ship = changed_ship(ready_ship(one.fit), what_if)
         spread = known_changes(spread_of(one), what_if)
-        return sail_stop(ship, asked.share, spread, model.result.fit.band, astern=asked.astern)
+        untold = _untold(one, what_if)
+        band = model.result.fit.band
+        return sail_stop(ship, asked.share, spread, band, astern=asked.astern, untold=untold)
 
-    return with_words(model, asked.name, as_wide_as_others(model, sail), what_if)
+    made = with_words(model, asked.name, as_wide_as_others(model, sail), what_if)
+    untold = [*_untold(model, what_if)] if asked.astern else []
+    return replace(made, words=(*made.words, OF_GAINS.format(untold[0]))) if untold else made
+
+
+def _untold(model: FinishedModel, what_if: WhatIf) -> dict[str, str]:
+    """Gains astern that neither a trial nor the user tells, each with that ahead."""
+    found = untold_astern(model.fit)
+    return {name: ahead for name, ahead in found.items() if name not in what_if.values}

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from trialid.effects.actuators.astern_gains import ASTERN
 from trialid.effects.actuators.instances import typical_drive, typical_gain
 from trialid.effects.actuators.push_kinds import PUSHES
 from trialid.effects.actuators.pushes import push_effects
@@ -31,9 +32,6 @@ hidden in them included; with damping at rest and Munk's moment in its place 13 
 memory of the flow had the name of a fin."""
 NONE: Final = ("Yr", "Nr", "Nv")
 AT_REST: Final = "for a ship's: Nr0 and Nrar0 damp turns, at rest too, and Nv begins at none"
-
-ASTERN: Final = 0.1
-"""Share of the largest push ahead that one astern must reach to tell a gain of its own."""
 
 
 def boat_model(trials: Sequence[Chosen], ship: Ship) -> Iterator[str]:
