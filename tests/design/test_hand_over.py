@@ -128,6 +128,17 @@ def test_what_is_identified_and_given_by_hand_comes_along(handed):
     assert "n" in recipe.trials[1].signals
 
 
+def test_what_a_fitted_sensor_reads_is_named_too(handed):
+    """A heading parts a current from a speed over ground; without it the pipeline did not run."""
+    over_ground = HEAD.replace('"heel_roll"]', '"heel_roll", "drift_in_speed_record"]')
+    over_ground = over_ground.replace("nuisance = []", 'nuisance = ["current"]')
+    _, folder, _ = handed(over_ground, ZIGZAG)
+    text = (folder / "zig-zag.toml").read_text(encoding="utf-8")
+    assert 'psi = { channel = "NAME IT", unit = "deg" }' in text
+    _, folder, _ = handed(HEAD, ZIGZAG)
+    assert "psi" not in (folder / "zig-zag.toml").read_text(encoding="utf-8")
+
+
 def test_names_are_text_wherever_they_stand(handed):
     parts = [HEAD.replace('"small"', quote(ODD)), WRITTEN,
              ZIGZAG.replace('"zig-zag"', quote(ODD)),

@@ -7,7 +7,7 @@ from trialid.design import manoeuvres
 from trialid.design.helm import Passage, carry_out, vessel
 from trialid.design.imo import measures
 from trialid.design.imo.measures import Criterion
-from trialid.design.standard import Measure, predict
+from trialid.design.standard import Measure, in_calm, predict, sail_all
 from trialid.trial import Trial
 
 
@@ -31,6 +31,14 @@ def test_the_measures_are_those_of_the_manoeuvres():
 def test_a_ship_has_one_number_whatever_the_clock_of_her_logs(period):
     other = vessel(MODEL, period, {"n": SHAFT}, 5 * D)
     assert [m.value for m in predict([other])] == [m.value for m in predict([VESSEL])]
+
+
+def test_she_heads_ahead_whatever_she_headed_in_her_trials():
+    """Of an outsider's ship psi began at 340 deg, and her track at 0: the two did not agree."""
+    trialled = vessel(MODEL, 0.5, {"n": SHAFT, "psi": 5.93}, 5 * D)
+    for one in sail_all(in_calm(trialled)).values():
+        assert one.trial.signals["psi"][0] == 0.0
+    assert [m.value for m in predict([trialled])] == [m.value for m in predict([VESSEL])]
 
 
 def test_a_ship_that_never_turns_back_is_a_line_and_no_crash():

@@ -1,6 +1,7 @@
 """The NumPy file alone, without trialid: the numbers of the kernel, checks, the range seen."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,9 @@ from handed_models import NAMES, PERIOD, TIGHT, by_kernel, cases, handed, inputs
 from handed_models import largest_difference as apart
 from test_bad_input import trialid_
 
+from trialid.errors import TrialidError
 from trialid.export.model.numpy_text import numpy_text
+from trialid.workflow.notebook.front import run
 
 ALONE = f"""
 import sys
@@ -97,3 +100,28 @@ def test_the_command_writes_it(run_folder: Path, tmp_path: Path) -> None:
     assert (again.exit_code, again.stderr.count("\n")) == (2, 1)
     other = trialid_("export", str(run_folder), "--as", "python", "--out", str(tmp_path / "x.c"))
     assert "the suffix says the format, .py; " in other.stderr
+
+
+def test_a_run_in_python_hands_over_the_same(
+    run_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a run that no folder holds there was no way out."""
+    monkeypatch.chdir(tmp_path)
+    found = run(run_folder.parents[1] / "used.toml")
+    told = trialid_("export", str(run_folder), "--as", "python", "--out", "by_command.py")
+    assert told.exit_code == 0, told.stderr
+    assert found.export("python", "in_python.py") == Path("in_python.py")
+    own, same = (Path(name).read_text("utf-8") for name in ("in_python.py", "by_command.py"))
+    assert own == same
+    assert found.export("json") == Path("used_json.json")
+    for wrong, words in (
+        (("pyton",), "'pyton' is no kind of file; did you mean 'python'"),
+        (("python", "in_python.py"), "in_python.py exists; name another, or say force=True"),
+        (("python", "ship.txt"), "out = ship.txt: the suffix says the format, .py"),
+    ):
+        with pytest.raises(TrialidError, match=re.escape(words)):
+            found.export(*wrong)
+    with pytest.raises(TrialidError, match=r"^full_rudder -3: expected an angle above 0"):
+        found.export("ardupilot", full_rudder=-3)
+    there = {"in_python.py", "by_command.py", "used_json.json"}
+    assert {one.name for one in tmp_path.iterdir()} == there

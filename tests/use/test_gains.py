@@ -138,8 +138,11 @@ def test_a_doubtful_ship_has_wider_promises_and_a_wild_one_none(
     with pytest.raises(DesignError, match=r"would swing.*ask for more by --bandwidth"):
         heading_gains(ship(MODEL), turning_on, 0.1 / nomoto(ship(MODEL), CERTAIN).values["T"])
     wild = MODEL.with_values({"Nv": 4.0 * MODEL.value("Nv")})
-    with pytest.raises(DesignError, match="not directionally stable"):
+    with pytest.raises(DesignError, match=r"as fitted .* not directionally stable.* \(0% of the"):
         heading_gains(ship(wild), CERTAIN)
+    open_ = known_by("Nv", 2.0 * abs(wild.value("Nv")))
+    with pytest.raises(DesignError, match=r"not directionally stable.* \([2-6]\d% of the ships"):
+        heading_gains(ship(wild), open_)
     T = nomoto(ship(MODEL), CERTAIN).values["T"]
     with pytest.raises(DesignError, match="slower than the ship by herself"):
         rate_gains(ship(MODEL), CERTAIN, 0.5 / T)

@@ -2,21 +2,14 @@
 
 import json
 import sys
-from collections.abc import Mapping
-from math import inf, radians
 from pathlib import Path
-from typing import Final
 
 import click
 
-from trialid import temporary
 from trialid.cli.console import note, progress_bar, say
-from trialid.errors import TrialidError
 from trialid.names.model_kinds import KINDS
 
 FILE = click.Path(path_type=Path)
-FULL: Final = 90.0
-"""deg beyond which no rudder goes."""
 
 
 @click.command(short_help="Write the fitted model: ship file, JSON, NumPy, C, FMU.")
@@ -77,82 +70,16 @@ def export(
     if run is None or kind is None:
         missing = "argument 'RUN_DIR'" if run is None else f"option '--as' ({', '.join(KINDS)})"
         raise click.UsageError(f"Missing {missing}.")
-    places = _places(run, kind, out, force=force)
+    from trialid.workflow.use.export_model import export_model, export_places, wishes_of
     from trialid.workflow.use.finished_model import finished_model
-    from trialid.workflow.use.hand_over import WRITERS, beside_words
-    from trialid.workflow.use.steering import Wishes
+    from trialid.workflow.use.hand_over import beside_words
 
-    rudder = None if full_rudder is None else radians(_rudder(full_rudder))
-    wishes = Wishes(bandwidth, rudder, _command(full_command))
-
+    places = export_places(run.resolve().name, kind, out, force=force, by_command=True)
+    wishes = wishes_of(bandwidth, full_rudder, full_command, by_command=True)
     with progress_bar(shown=not quiet and sys.stderr.isatty()) as progress:
         model = finished_model(run, progress, anyway=anyway)
-        made = WRITERS[kind](model, places[0].stem, wishes)
-    _write({place: _bytes(made[place.suffix]) for place in places})
+        made = export_model(model, kind, places, wishes)
     if not quiet:
         for words in filter(None, (*model.doubts, beside_words(made))):
             note(words)
         say(f"Written: {', '.join(map(str, places))}")
-
-
-def _write(contents: Mapping[Path, bytes]) -> None:
-    """Write the files together.
-
-    Raises
-    ------
-    TrialidError
-        One of them cannot be written.
-    """
-    try:
-        temporary.replace_all(contents)
-    except OSError as error:
-        why = (error.strerror or str(error)).lower()
-        raise TrialidError(f"--out {next(iter(contents))}: {why}") from error
-
-
-def _bytes(content: str | bytes) -> bytes:
-    return content if isinstance(content, bytes) else content.encode()
-
-
-def _rudder(full: float) -> float:
-    """The angle of a full rudder [deg].
-
-    Raises
-    ------
-    TrialidError
-        It is none.
-    """
-    if not 0.0 < full <= FULL:
-        raise TrialidError(
-            f"--full-rudder {full:g}: expected an angle above 0 and at most {FULL:g} deg"
-        )
-    return full
-
-
-def _command(full: float | None) -> float | None:
-    """The command of a thruster at full output.
-
-    Raises
-    ------
-    TrialidError
-        It is none.
-    """
-    if full is not None and not 0.0 < full < inf:
-        raise TrialidError(f"--full-command {full:g}: expected a number above 0")
-    return full
-
-
-def _places(run: Path, kind: str, out: Path | None, *, force: bool) -> list[Path]:
-    """Where the files go, checked before the work.
-
-    Raises
-    ------
-    TrialidError
-        One is there already, or cannot be written, or is called by another ending.
-    """
-    from trialid.export import check_place
-
-    first = out or Path(f"{run.resolve().name}_{kind}{KINDS[kind].suffixes[0]}")
-    places = [first.with_suffix(suffix) for suffix in KINDS[kind].suffixes]
-    check_place(first, replace=force, formats=KINDS[kind].suffixes[:1], more=places[1:])
-    return places

@@ -125,11 +125,14 @@ def acts_in_calm(effect: Effect) -> bool:
 
 
 def in_calm(ship: Vessel) -> Vessel:
-    """The ship as the resolution's manoeuvres are sailed: calm deep water, her own clock."""
+    """The ship as the resolution's manoeuvres are sailed: calm deep water, her own clock.
+
+    She heads 0, whatever she headed in her trials: her track begins ahead.
+    """
     model, p = ship.model, ship.model.ship.particulars
     for effect in (e for e in ship.model.effects if not acts_in_calm(e)):
         model = model - effect.name
-    constants = {**ship.constants, "u": p["U0"]}
+    constants = {**ship.constants, "u": p["U0"], "psi": 0.0}
     return vessel(model, p["L"] / p["U0"] / STEPS, constants, ship.rudder_rate)
 
 

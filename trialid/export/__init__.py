@@ -35,7 +35,12 @@ def provenance_beside(path: Path) -> Path | None:
 
 
 def check_place(
-    path: Path, *, replace: bool, formats: Collection[str] = FORMATS, more: Collection[Path] = ()
+    path: Path,
+    *,
+    replace: bool,
+    formats: Collection[str] = FORMATS,
+    more: Collection[Path] = (),
+    words: tuple[str, str] = ("--out ", "add --force"),
 ) -> None:
     """Refuse, before the work, a file that cannot or should not be written.
 
@@ -43,23 +48,26 @@ def check_place(
     ----------
     more
         Files that are written with it.
+    words
+        What a mistake is told of, and what replaces a file, as the user says it.
 
     Raises
     ------
     TrialidError
         Its suffix is none of the formats, its folder is missing, or it exists.
     """
+    named, forced = f"{words[0]}{path}", words[1]
     if path.suffix.lower() not in formats:
         known = ", ".join(formats)
         given = f"{path.suffix!r} is none of them" if path.suffix else "it has none"
-        raise TrialidError(f"--out {path}: the suffix says the format, {known}; {given}")
+        raise TrialidError(f"{named}: the suffix says the format, {known}; {given}")
     if not path.parent.is_dir():
-        raise TrialidError(f"--out {path}: there is no folder {path.parent}; make it first")
+        raise TrialidError(f"{named}: there is no folder {path.parent}; make it first")
     for file in filter(None, (path, provenance_beside(path), *more)):
         if file.is_dir():
-            raise TrialidError(f"--out {path}: {file} is a folder; name a file")
+            raise TrialidError(f"{named}: {file} is a folder; name a file")
         if (file.exists() or file.is_symlink()) and not replace:
-            raise TrialidError(f"--out {path}: {file} exists; name another, or add --force")
+            raise TrialidError(f"{named}: {file} exists; name another, or {forced}")
     temporary.check_writable(path.parent)
 
 

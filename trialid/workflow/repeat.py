@@ -72,7 +72,9 @@ def earlier(folder: Path) -> Earlier:
     """
     result = json_file.read(folder / json_file.NAME)
     origin = json_file.read_object(
-        folder / "run.json", "the run was written by an older trialid; run its pipeline itself"
+        folder / "run.json",
+        "the run was written by an older trialid, or from Python and is of no pipeline; run its "
+        "pipeline itself, or use in Python what has none (run.export, run.simulate)",
     )
     copy = folder / "pipeline.toml"
     try:

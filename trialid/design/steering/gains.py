@@ -98,7 +98,7 @@ def rate_gains(
         The ship is not directionally stable, too slow is asked for, or ships that the record leaves
         open swing.
     """
-    linear, K, T = _known(ship)
+    linear, K, T = _known(ship, spread)
     wanted = _asked(bandwidth, FASTER / T)
     if wanted * T < 1.0:
         raise DesignError(
@@ -125,7 +125,7 @@ def heading_gains(
     DesignError
         The ship is not directionally stable, or ships that the record leaves open swing.
     """
-    linear, K, T = _known(ship)
+    linear, K, T = _known(ship, spread)
     wanted = _asked(bandwidth, 1.0 / T)
     z2 = DAMPING**2
     natural = wanted / np.sqrt(1.0 - 2.0 * z2 + np.sqrt(4.0 * z2 * z2 - 4.0 * z2 + 2.0))
@@ -136,15 +136,17 @@ def heading_gains(
     return _tried(models, linear, values, wanted, lambda one: hold_heading(one, **values))
 
 
-def _known(ship: Vessel) -> tuple[LinearShip, float, float]:
+def _known(ship: Vessel, spread: LikelySpread) -> tuple[LinearShip, float, float]:
     """The linear ship in calm water, her K and T."""
     course = StraightCourse(in_calm(ship))
     linear = course.at(course.theta)
     found = read(linear)
     if not linear.stable or found["K"] <= 0.0 or found["T"] <= 0.0:
+        drawn = [one is not None and one.stable for one in _drawn(ship, spread)]
         raise DesignError(
-            "the ship is not directionally stable, or turns against her order; gains by K and T "
-            "are for one that is"
+            "as fitted the ship is not directionally stable, or turns against her order "
+            f"({np.mean(drawn):.0%} of the ships that the record leaves open are stable); gains by "
+            "K and T are for one that is: free fewer parameters, or sail more trials"
         )
     return linear, found["K"], found["T"]
 

@@ -79,6 +79,9 @@ def _pipeline(plan: Plan, folder: Path, rated: Rated, stems: Sequence[str]) -> s
     # what is ordered of a drive stands for what it does where the model has no lag
     moving = [n for n in plan_data.steering(plan) if n in model.recorded] or ["delta"]
     wanted = [*moving, *pipeline.identify.outputs, *plan.ship.vessel.constants]
+    # sensors that are fitted beside her read what no vessel does: a heading that parts a current
+    read = plan.ship.goal.simulator.model.recorded
+    wanted += [n for n in read if n in known and not known[n].steers]
     for signal in dict.fromkeys([*wanted, "u"]):
         side = ', positive = "starboard"' if known[signal].steers else ""
         unit = known[signal].shown

@@ -172,7 +172,7 @@ def _check_visible(pipeline: DesignFile, name: str, came: Outcome, goal: Goal) -
             raise DesignError(
                 f"{pipeline.path}: test {name!r}: outputs {', '.join(goal.settings.outputs)} "
                 f"cannot see {parameter} beside the other free parameters; record more outputs, "
-                "or fix it"
+                "fix it, or name in `wanted` those that count (a design counts with no priors)"
             )
 
 

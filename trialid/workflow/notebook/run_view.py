@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from trialid.errors import TrialidError
@@ -11,6 +12,7 @@ from trialid.result.finding_rows import VerdictPart
 from trialid.result.schema import Result
 from trialid.result.series import TrialSeries
 from trialid.trial import Trial
+from trialid.user_files import path_of
 from trialid.workflow.notebook.arguments import changes_of, count_of, order_words
 
 if TYPE_CHECKING:
@@ -118,6 +120,46 @@ class RunView:
         words = order_words(manoeuvre, {"period": period, **inputs})
         number, seed = count_of(number, "number", 1), count_of(seed, "seed", 0)
         return drawn_ships(self, words, period, inputs, number=number, seed=seed, anyway=anyway)
+
+    def export(
+        self,
+        kind: str,
+        out: str | Path | None = None,
+        *,
+        bandwidth: float | None = None,
+        full_rudder: float | None = None,
+        full_command: float | None = None,
+        force: bool = False,
+        anyway: bool = False,
+    ) -> Path:
+        """The fitted model written for other programs, as `trialid export` writes it.
+
+        Parameters
+        ----------
+        kind, out
+            `"ship"`, `"json"`, `"python"`, `"c"`, `"fmu"`, ...; and where, by default the run's
+            name and the kind, here.
+        bandwidth, full_rudder, full_command
+            Of gains: how fast [rad/s], the rudder [deg] or command of a thruster at full output.
+        force, anyway
+            Replace what is there; of a fit that carries no verdict, too.
+
+        Returns
+        -------
+        Path
+            The first of the files.
+
+        Raises
+        ------
+        TrialidError
+            There is no such kind, a file is there, or the model is none of that kind.
+        """
+        from trialid.workflow.use.export_model import wishes_of
+        from trialid.workflow.use.in_memory import exported_model
+
+        wishes = wishes_of(bandwidth, full_rudder, full_command)
+        place = None if out is None else path_of(out, "export")
+        return exported_model(self, kind, place, wishes, force=force, anyway=anyway)
 
     @property
     def parameters(self) -> "pd.DataFrame":

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -16,6 +17,7 @@ from trialid.export.predicted_file import predicted_columns
 from trialid.result.build import Findings
 from trialid.result.schema import Result
 from trialid.signal_arrays import HALF_ROUND, numbers
+from trialid.workflow.use.export_model import export_model, export_places
 from trialid.workflow.use.finished_model import FinishedModel, check_verdict
 from trialid.workflow.use.orders import OrderTable, named_manoeuvre, stop_order
 from trialid.workflow.use.predict import (
@@ -28,6 +30,7 @@ from trialid.workflow.use.predict import (
 if TYPE_CHECKING:
     import pandas as pd
 
+from trialid.workflow.use.steering import Wishes
 from trialid.workflow.use.stop import predict_stop
 from trialid.workflow.use.what_if import WhatIf
 
@@ -51,10 +54,7 @@ def simulated_frame(
     """A manoeuvre by its words, or orders on a clock; see `RunView.simulate`."""
     import pandas as pd
 
-    name = run.findings.name
-    check_verdict(run.result, name, anyway=anyway)
-    done = run.findings.before
-    model = FinishedModel(name, run.result, done, seen_ranges(done.fit))
+    model = _model(run, anyway=anyway)
     stop = stop_order(words) if words else None
     if stop is not None:
         made = predict_stop(model, stop, what_if)
@@ -107,9 +107,7 @@ def drawn_ships(
 
     if number < 1:
         raise TrialidError(f"number={number}: expected how many ships to draw, at least 1")
-    check_verdict(run.result, run.findings.name, anyway=anyway)
-    done = run.findings.before
-    model = FinishedModel(run.findings.name, run.result, done, seen_ranges(done.fit))
+    model = _model(run, anyway=anyway)
     spread = spread_of(model)
     if words:
         asked = named_manoeuvre(words)
@@ -124,6 +122,22 @@ def drawn_ships(
     missing = [m.effect.name for m in spread.missing]
     about = {**ships.known, "missing": [missing[i] if i >= 0 else "" for i in ships.rivals]}
     return Draws(pd.DataFrame(about), pd.DataFrame(numbers), t, motion, model.doubts)
+
+
+def exported_model(
+    run: Found, kind: str, out: Path | None, wishes: Wishes, *, force: bool, anyway: bool
+) -> Path:
+    """The first of the files that a model is written to; see `RunView.export`."""
+    places = export_places(run.findings.name, kind, out, force=force)
+    export_model(_model(run, anyway=anyway), kind, places, wishes)
+    return places[0]
+
+
+def _model(run: Found, *, anyway: bool) -> FinishedModel:
+    """The model of a run in memory, as of one whose folder is read."""
+    check_verdict(run.result, run.findings.name, anyway=anyway)
+    done = run.findings.before
+    return FinishedModel(run.findings.name, run.result, done, seen_ranges(done.fit))
 
 
 def _table(
