@@ -71,6 +71,36 @@ def test_the_pipeline_of_the_run_counts_not_the_one_beside_the_logs(place: Path)
     )["fit"]  # fmt: skip
 
 
+def test_the_copy_in_the_folder_finds_what_the_pipeline_named(place: Path) -> None:
+    """Nobody could build on a grown model that was not written: no ship was beside its copy."""
+    copy = run_of(place) / "pipeline.toml"
+    outcome = trialid_("run", str(copy), "--quiet", "--out", str(place / "runs" / "again"))
+    assert outcome.exit_code == 0, outcome.stderr
+    old, new = (
+        json.loads((one / "result.json").read_text(encoding="utf-8"))["fit"]
+        for one in (run_of(place), place / "runs" / "again")
+    )
+    assert new == old
+    copy.with_name("run.json").unlink()
+    outcome = trialid_("run", str(copy), "--quiet")
+    assert outcome.exit_code == 2
+    assert "no file 'ship.toml'" in outcome.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [("add", "{}", "yaw_cubic_rrr"), ("run", "{}", "--auto", "--write")]
+)
+def test_the_copy_is_what_ran_and_is_not_edited(place: Path, words: tuple[str, ...]) -> None:
+    before = files(place)
+    outcome = trialid_(*(word.format(run_of(place) / "pipeline.toml") for word in words))
+    assert (outcome.exit_code, outcome.stderr.count("\n")) == (2, 1)
+    assert (
+        "is what a finished run was made from, and stays as it is; copy it, or ch" in outcome.stderr
+    )
+    assert outcome.stderr.rstrip().endswith("short.toml")
+    assert files(place) == before
+
+
 def test_other_numbers_are_told_with_the_largest(place: Path) -> None:
     path = run_of(place) / "result.json"
     result = json.loads(path.read_text(encoding="utf-8"))

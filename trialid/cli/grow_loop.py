@@ -18,10 +18,13 @@ def grow_and_answer(
     asked: "Pipeline", folder: Path, keep: bool, as_json: bool, quiet: bool
 ) -> None:
     """Add what is missing, one line for each step, and show the last model."""
+    from trialid.pipeline_file.rewrite import check_is_no_copy
     from trialid.workflow.edit_model import commit
     from trialid.workflow.grow import conclude
     from trialid.workflow.write_run import write
 
+    if keep:
+        check_is_no_copy(asked.path)
     told = not (as_json or quiet)
     done = list(_stages(asked, told, shown=not quiet and sys.stderr.isatty()))
     last, steps = conclude(done)

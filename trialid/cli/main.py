@@ -205,6 +205,9 @@ def _change(
 ) -> None:
     """Add or drop an effect, and show what it changed."""
     asked, folder = open_pipeline(pipeline, out)
+    from trialid.pipeline_file.rewrite import check_is_no_copy
+
+    check_is_no_copy(pipeline)
     temporary.check_writable(pipeline.parent, "place for the pipeline")
     from trialid.workflow.edit_model import carry_out, commit
     from trialid.workflow.edit_pipeline import add_to_pipeline, difference_words, drop_from_pipeline

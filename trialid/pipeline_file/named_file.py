@@ -1,10 +1,15 @@
-"""Files that a pipeline names: found beside it, or told what is there instead."""
+"""Files that a pipeline names: found beside it, or told what is there instead.
 
+The copy in a run's folder names them as the pipeline did, from where that stood.
+"""
+
+import json
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple, cast
 
 from pydantic import AfterValidator, ValidationInfo
 
+from trialid import user_files
 from trialid.pipeline_file.mistaken_file import neighbours
 
 
@@ -16,7 +21,7 @@ class Origin(NamedTuple):
 
 
 def _existing(path: Path, info: ValidationInfo) -> Path:
-    found = cast(Origin, info.context).path.parent / path
+    found = _place(path, info)
     match _kind(found):
         case "file":
             return found
@@ -26,8 +31,27 @@ def _existing(path: Path, info: ValidationInfo) -> Path:
 
 
 def _existing_log(path: Path, info: ValidationInfo) -> Path:
-    found = cast(Origin, info.context).path.parent / path
+    found = _place(path, info)
     return found if _kind(found) == "folder" else _existing(path, info)
+
+
+def _place(path: Path, info: ValidationInfo) -> Path:
+    """Beside the pipeline; else, of a run's copy, beside what it is a copy of."""
+    origin = cast(Origin, info.context).path
+    found = origin.parent / path
+    stood = stood_at(origin) if _kind(found) == "neither" else None
+    return found if stood is None else stood.parent / path
+
+
+def stood_at(pipeline: Path) -> Path | None:
+    """Where a pipeline stood of which this is a finished run's copy; None where it is none."""
+    if pipeline.name != "pipeline.toml":
+        return None
+    run = pipeline.with_name("run.json")
+    try:
+        return run.parent / json.loads(user_files.text(run))["pipeline"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
 
 
 def _kind(found: Path) -> Literal["file", "folder", "neither"]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from trialid import temporary
 from trialid.errors import PipelineError
+from trialid.pipeline_file.named_file import stood_at
 
 
 @contextmanager
@@ -20,9 +21,10 @@ def rewriting(path: Path, old: bytes, new: bytes) -> Iterator[Callable[[], None]
     Raises
     ------
     PipelineError
-        The place cannot be written, or the file is no longer the old one.
+        The place cannot be written, or the file is a run's copy or no longer the old one.
     """
     target = path.resolve()
+    check_is_no_copy(path)
     _check_unchanged(path, old)
     try:
         if not os.access(target, os.W_OK):
@@ -46,6 +48,21 @@ def rewriting(path: Path, old: bytes, new: bytes) -> Iterator[Callable[[], None]
         yield replace
     finally:
         ready.unlink(missing_ok=True)
+
+
+def check_is_no_copy(path: Path) -> None:
+    """Refuse to change the pipeline in a run's folder: it is what the run was made from.
+
+    Raises
+    ------
+    PipelineError
+        It is one.
+    """
+    if (stood := stood_at(path)) is not None:
+        raise PipelineError(
+            f"{path}: is what a finished run was made from, and stays as it is; copy it, or change "
+            f"{os.path.relpath(stood)}"
+        )
 
 
 def _check_unchanged(path: Path, old: bytes) -> None:
