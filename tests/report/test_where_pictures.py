@@ -32,6 +32,19 @@ def test_bars_are_as_tall_as_their_squares_and_as_wide_as_their_bins(bars):
     assert "62 % of the squared error" in squares[2].title.replace("\u202f", " ")
 
 
+def test_whiskers_stay_in_the_picture_and_means_have_a_scale(bars):
+    """They left it at the top; and how much a mean is was nowhere to read."""
+    drawn = picture(bars)
+    assert min(line.y2 for line in drawn.whiskers) > 1.0
+    far = picture(replace(bars, high=tuple(100.0 * x for x in bars.high)))
+    tallest = max(bars.mean_square)
+    assert max(box.height for box in far.boxes[:3]) == pytest.approx(0.46 * (FLOOR - 8.0))
+    assert far.whiskers[bars.mean_square.index(tallest)].y2 == 1.0
+    reach = max(abs(m) + 1.96 * e for m, e in zip(bars.mean, bars.error, strict=True))
+    words = [word for _, word in drawn.left]
+    assert words[2:] == [f"{reach:.2g} deg/s", "mean", f"\N{MINUS SIGN}{reach:.2g} deg/s"]
+
+
 def test_means_stand_above_the_zero_line_where_measured_exceeds_predicted(bars):
     drawn = picture(bars)
     up, _, down = drawn.boxes[3:]

@@ -5,6 +5,7 @@ from typing import Final
 
 Range = tuple[float, float]
 ANYWHERE: Final[Range] = (-float("inf"), float("inf"))
+FROM_ZERO: Final[Range] = (0.0, float("inf"))
 
 ANOTHER_GM: Final = "another GM"
 """What widens a range where the record does not tell the metacentric height."""

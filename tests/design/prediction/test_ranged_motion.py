@@ -2,8 +2,13 @@
 
 import numpy as np
 import pytest
+from s175q import MODEL, SHAFT
+from typical import known_by
 
+from trialid.design.helm import vessel
+from trialid.design.prediction.predicted_motion import sail_manoeuvre
 from trialid.design.prediction.ranged_motion import _possible
+from trialid.workflow.use.orders import named_manoeuvre
 
 T = np.arange(0.0, 40.0, 0.1)
 ORDER = np.deg2rad(20.0) * np.sign(np.sin(2.0 * np.pi * T / 20.0 + 0.1))
@@ -45,3 +50,14 @@ def test_what_nobody_ordered_may_be_anywhere_that_it_can() -> None:
     lower, upper = _possible("r", {"r": FOLLOWS}, (-STEEP, STEEP))
     assert np.array_equal(lower, FOLLOWS - STEEP)
     assert np.array_equal(upper, FOLLOWS + STEEP)
+
+
+def test_no_number_of_a_manoeuvre_is_likely_below_zero():
+    """Of an outsider's boat a tactical diameter was likely from -2214 m."""
+    wide = known_by("Nr", 20.0 * abs(MODEL.value("Nr")))
+    ship = vessel(MODEL, 0.5, {"n": SHAFT}, np.deg2rad(5.0))
+    for words in (["circle", "35"], ["zigzag", "20", "20"]):
+        numbers = sail_manoeuvre(ship, named_manoeuvre(words), wide, {}).numbers
+        lows = [ends[0] for _, ends in numbers.values()]
+        assert min(lows) == 0.0
+        assert all(value < ends[1] for value, ends in numbers.values())

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trialid.accuracy.ranges import FROM_ZERO, cut_to_ends
 from trialid.arrays import Vector
 from trialid.design.helm import Instructions, Passage, Vessel, carry_out
 from trialid.design.imo.measure_slopes import (
@@ -86,7 +87,8 @@ def sail_manoeuvre(
         apart = np.array([other.get(n, x) - x for n, x in found.items()])
         slopes[:, places] = apart[:, None]
     made = with_ranges(moved.ship, short.trial, by, spread, band)
-    ends = spread.ranges([*found.values()], slopes)
+    # ways and angles from an order on: none of them is below zero, whatever slopes say
+    ends = [cut_to_ends(r, FROM_ZERO) for r in spread.ranges([*found.values()], slopes)]
     numbers = {n: (x, r) for (n, x), r in zip(found.items(), ends, strict=True)}
     return replace(made, numbers=numbers, remark=remark, departure=passage.departure)
 

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from trialid.accuracy.ranges import ANYWHERE, Range, cut_to_ends
+from trialid.accuracy.ranges import ANYWHERE, FROM_ZERO, cut_to_ends
 from trialid.arrays import Vector
 from trialid.design.helm import Vessel
 from trialid.design.prediction.engine_orders import astern_orders, engine_of
@@ -77,7 +77,6 @@ def _orders(base: Vessel, start: int, astern: bool) -> Trial:
 FORWARD: Final = ("time to that speed [s]", "head reach [m]", "track reach [m]")
 ASIDE: Final = "lateral deviation [m]"
 """What is told of a stop; nothing of the first three is below zero, whatever slopes say."""
-AHEAD: Final[Range] = (0.0, float("inf"))
 
 
 def _numbers(start: int, share: float, t: Vector, now: Mapping[str, Vector]) -> dict[str, float]:
@@ -110,7 +109,7 @@ def _until_slow(made: PredictedMotion, share: float, start: int) -> PredictedMot
         return replace(made, remark=f"the speed falls to {u[-1] / u[start]:.0%} of itself only")
     end = start + int(np.flatnonzero(u[start:] <= share * u[start])[0]) + 1
     numbers = {
-        n: (x, cut_to_ends(r, AHEAD if n in FORWARD else ANYWHERE))
+        n: (x, cut_to_ends(r, FROM_ZERO if n in FORWARD else ANYWHERE))
         for n, (x, r) in made.numbers.items()
     }
     return replace(

@@ -14,7 +14,7 @@ from trialid.diagnosis.where.finding import Bars, Spectrum
 from trialid.names import wording
 
 WIDTH = 340.0
-LEFT, RIGHT = 50.0, 16.0
+LEFT, RIGHT = 72.0, 16.0
 TOP, FLOOR = 8.0, 84.0
 """Where the squares stand."""
 
@@ -22,7 +22,9 @@ MEAN_TOP, MEAN_FLOOR = 94.0, 134.0
 """Where the means stand."""
 
 TALLEST = 0.92
-"""Share of the height the tallest bar takes; whiskers may leave the picture at the top."""
+"""Share of the height that what is tallest takes, a bar or a whisker, ..."""
+REACH = 2.0
+"""... which may be so many times as tall as the tallest bar; a longer one leaves the picture."""
 
 CERTAIN = 1.96
 
@@ -91,7 +93,8 @@ def picture(given: Bars | Spectrum | None) -> Picture | None:
 def _bars(given: Bars) -> Picture:
     by, unit = given.by, given.unit
     places = _places(given.edges)
-    top = max(*given.mean_square, 1.0)
+    tallest = max(*given.mean_square, 1.0)
+    top = max(tallest, min(max(given.high), REACH * tallest))
     scale = TALLEST * (FLOOR - TOP) / top
     names = given.names or _ranges(given.edges, unit)
     boxes, whiskers = [], []
@@ -109,7 +112,9 @@ def _bars(given: Bars) -> Picture:
         zero, bottom = 0.5 * (MEAN_TOP + MEAN_FLOOR), MEAN_FLOOR
         more, lines = _means(given, places, names)
         boxes, whiskers = boxes + more, whiskers + lines
-        left.append((zero + 3.5, "mean"))
+        reach = f"{wording.number(_reach(given), 2)} {given.mean_unit}"
+        left += [(MEAN_TOP + 4.0, reach), (zero + 3.5, "mean")]
+        left += [(MEAN_FLOOR + 2.0, f"{wording.MINUS}{reach}")]
     return Picture(
         label=f"Error by {by}",
         height=bottom + (30.0 if below else 18.0),
@@ -147,7 +152,7 @@ def _means(
 ) -> tuple[list[Box], list[Line]]:
     """Signed bars about a zero line, each with 95 % either way."""
     mean, error, unit = given.mean or (), given.error or (), given.mean_unit
-    reach = max((abs(m) + CERTAIN * e for m, e in zip(mean, error, strict=True)), default=0.0)
+    reach = _reach(given)
     zero, scale = 0.5 * (MEAN_TOP + MEAN_FLOOR), 0.5 * (MEAN_FLOOR - MEAN_TOP) / (reach or 1.0)
     boxes, lines = [], []
     for (a, b), m, e, name, standing in zip(
@@ -160,6 +165,12 @@ def _means(
         middle, half = 0.5 * (a + b), scale * CERTAIN * e
         lines.append(Line(middle, y - half, middle, y + half))
     return boxes, lines
+
+
+def _reach(given: Bars) -> float:
+    """How far the means go, their errors included."""
+    both = zip(given.mean or (), given.error or (), strict=True)
+    return max((abs(m) + CERTAIN * e for m, e in both), default=0.0)
 
 
 def _ticks(given: Bars, places: Sequence[tuple[float, float]]) -> list[Tick]:
